@@ -4,6 +4,7 @@
 #include "base/random.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -31,6 +32,14 @@ void tl_hash_bytes(tl_hash *hash, const void *data, size_t bytes)
         uint64_t word = 0;
         memcpy(&word, p, bytes);
         tl_hash_word(hash, word);
+    }
+}
+
+void tl_hash_numbers(tl_hash *hash, const double *numbers, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        double number = isnan(numbers[i]) ? NAN : numbers[i];
+        tl_hash_bytes(hash, &number, sizeof number);
     }
 }
 

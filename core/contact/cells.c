@@ -36,7 +36,7 @@ bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes 
         return false;
     const tl_facet *f = &m->detect->contacts.facet[contact];
     size_t count = m->detect->contacts.point_count[contact], corners = count / 2;
-    if (f->kind != TL_FACET_PATCH || count % 2 == 0 || corners < 3)
+    if (!tl_facet_is_patch(f) || count % 2 == 0 || corners < 3)
         return false;
     *out = (tl_cell_patch){.p = &m->detect->points,
                            .lanes = lanes,

@@ -41,7 +41,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
     TL_COLUMN(t, c, law, 0);
     TL_COLUMN(t, c, facet, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, field, 0);
+    TL_COLUMN(t, c, kind, 0);
     TL_COLUMN(t, c, press, 0);
     TL_COLUMN(t, c, faces_valid_to, 0);
     TL_COLUMN(t, c, points_valid_to, 0);
@@ -112,7 +112,7 @@ uint32_t tl_law_row(const tl_model *m, tl_tag tag)
     return law ? (uint32_t)(law - m->joint_laws) : TL_NO_ROW;
 }
 
-bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,
+bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag,
                        size_t want_points)
 {
     tl_detect *d = m->detect;
@@ -128,8 +128,8 @@ bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_
     c->pair[row] = pair;
     c->tag[row] = tag;
     c->law[row] = tl_law_row(m, tag);
-    c->facet[row] = (tl_facet){.kind = field ? TL_FACET_FIELD : TL_FACET_PATCH};
-    c->field[row] = field;
+    c->facet[row] = (tl_facet){.kind = kind};
+    c->kind[row] = (uint8_t)kind;
     c->press[row] = TL_NO_ROW;
     c->points_valid_to[row] = tl_pair_odometer(m, p->a, p->b);
     c->faces_valid_to[row] = c->points_valid_to[row] + valid;
@@ -144,7 +144,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_
 }
 
 typedef struct place {
-    uint32_t law, held, field, a, b, row;
+    uint32_t law, held, kind, a, b, row;
 } place;
 
 static int compare_place(const void *x, const void *y)
@@ -154,8 +154,8 @@ static int compare_place(const void *x, const void *y)
         return p->law < q->law ? -1 : 1;
     if (p->held != q->held)
         return p->held < q->held ? -1 : 1;
-    if (p->field != q->field)
-        return p->field < q->field ? -1 : 1;
+    if (p->kind != q->kind)
+        return p->kind < q->kind ? -1 : 1;
     return tl_pair_order(p->a, p->b, q->a, q->b);
 }
 
@@ -167,7 +167,7 @@ static place *sorted(const tl_contacts *c, size_t *count)
     for (uint32_t row = 0; list && row < c->table.rows; row++)
         if (c->pending[row] != TL_PENDING_DIE)
             list[(*count)++] =
-                (place){c->law[row], c->held[row], c->field[row], c->a[row], c->b[row], row};
+                (place){c->law[row], c->held[row], c->kind[row], c->a[row], c->b[row], row};
     if (list && *count > 1)
         qsort(list, *count, sizeof *list, compare_place);
     return list;
@@ -343,9 +343,8 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind)
     tl_contact_places(m, contact, lanes);
     for (size_t k = 0; k < c->point_count[contact]; k++) {
         size_t i = tl_point_row(c, contact, k);
-        bool apart =
-            c->facet[contact].kind == TL_FACET_FIELD || /* edges and corners have no bonds */
-            (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
+        bool apart = tl_facet_is_field(&c->facet[contact]) || /* edges and corners have no bonds */
+                     (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
         tl_point_begin(&d->points, i, kind);
         d->points.flags[i] = apart ? TL_POINT_APART : 0;
     }
@@ -460,7 +459,7 @@ static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_
 
 static bool is_of_span(const tl_contacts *c, uint32_t row, const tl_span *span)
 {
-    return c->law[row] == span->law && c->held[row] == span->held && c->field[row] == span->field;
+    return c->law[row] == span->law && c->held[row] == span->held && c->kind[row] == span->kind;
 }
 
 /* Lays the span of the contacts from `row` on that are of it; returns the row behind them. */
@@ -493,7 +492,7 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
         tl_span *span = &layout->spans[layout->span_count++];
         *span = (tl_span){.law = c->law[row],
                           .held = c->held[row],
-                          .field = c->field[row],
+                          .kind = c->kind[row],
                           .begin = *points,
                           .group_begin = groups};
         size_t count = 0;

@@ -14,9 +14,9 @@ void tl_point_lanes_init(tl_point_lanes *lanes);
 bool tl_detect_hold_lanes(tl_detect *d, size_t capacity);
 /* The same for a tile, or the largest SIMD group of a layout, for every thread. */
 bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout);
-/* Adds a patch or a field contact of a pair, without points, wanting room for some, whose faces hold for a path length of `valid`;
+/* Adds a contact of a kind to a pair, without points, wanting room for some, whose faces hold for a path length of `valid`;
  * false when out of memory. */
-bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,
+bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag,
                        size_t want_points);
 /* Lays contacts and points out anew: without those with TL_PENDING_DIE, sorted by joint law and blocks,
  * each with the room it wants at least. */

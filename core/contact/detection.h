@@ -15,6 +15,8 @@ typedef struct tl_known_block {
 } tl_known_block;
 
 typedef struct tl_detect {
+    const struct tl_contact_kind *const *kinds; /* by the numbers of their facets */
+    uint32_t kind_count;
     tl_pair *pairs;
     size_t pair_count, pair_capacity;
     tl_pair_chunk *chunks;

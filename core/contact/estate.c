@@ -31,7 +31,7 @@ bool tl_estates_reserve(tl_detect *d, size_t estates, size_t points)
 
 static bool is_field(const tl_detect *d, uint32_t c)
 {
-    return d->contacts.facet[c].kind == TL_FACET_FIELD;
+    return tl_facet_is_field(&d->contacts.facet[c]);
 }
 
 uint32_t tl_estate_size(const tl_detect *d, uint32_t c)

@@ -58,7 +58,7 @@ static tl_vec3 arm_of_old(const tl_model *m, uint32_t c, tl_vec3 old, tl_vec3 ce
 static tl_vec3 centre_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    if (contacts->facet[c].kind == TL_FACET_FIELD)
+    if (tl_facet_is_field(&contacts->facet[c]))
         return tl_columns_get(lanes->arm, TL_FIELD_SHEAR);
     tl_vec3 sum = {0, 0, 0};
     double area = 0;
@@ -78,7 +78,7 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
     const tl_facet *f = &contacts->facet[c];
     size_t count = contacts->point_count[c];
     shear out = {.normal = f->last, .centre = lanes ? centre_of(m, c, lanes) : tl_v3(0, 0, 0)};
-    if (count && f->kind == TL_FACET_FIELD) {
+    if (count && tl_facet_is_field(f)) {
         size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
         size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
         out.area = p->area[torsion];
@@ -130,7 +130,7 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
-    if (!row || contacts->facet[c].kind != TL_FACET_FIELD || contacts->point_count[c] == 0)
+    if (!row || !tl_facet_is_field(&contacts->facet[c]) || contacts->point_count[c] == 0)
         return 0;
     bool is_flat = row->opened == 0 && row->opening[0] == 0 && row->opening[1] == 0;
     return is_flat && !tl_contact_opens(m, c) ? 0 : lift_field(m, c, row);
@@ -170,7 +170,7 @@ static law_state state_of(const tl_model *m, uint32_t c)
 {
     const tl_points_table *p = &m->detect->points;
     const tl_contacts *contacts = &m->detect->contacts;
-    size_t count = contacts->facet[c].kind == TL_FACET_PATCH ? contacts->point_count[c] : 1;
+    size_t count = tl_facet_is_patch(&contacts->facet[c]) ? contacts->point_count[c] : 1;
     law_state out = {.known = contacts->point_count[c] > 0, .normal = contacts->facet[c].last};
     double force = 0, sum = 0;
     for (size_t k = 0; k < count && out.known; k++)
@@ -230,7 +230,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const la
 static void turn_states(tl_model *m, uint32_t c, const law_state *old)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    bool field = contacts->facet[c].kind == TL_FACET_FIELD;
+    bool field = tl_facet_is_field(&contacts->facet[c]);
     uint32_t law = contacts->law[c];
     const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
     for (size_t k = 0; k < contacts->point_count[c] && old->known; k++) {
@@ -363,17 +363,17 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     tl_press_row *row = tl_press_row_of(m, c);
     const tl_estate *estate =
         contacts->point_count[c] ? NULL : tl_estate_of(m, contacts->a[c], contacts->b[c]);
-    if (estate && g->point_count && g->facet.kind == TL_FACET_FIELD) {
+    if (estate && g->point_count && tl_facet_is_field(&g->facet)) {
         take_share(m, c, g, estate, lanes);
         return;
     }
-    bool was_patch = contacts->facet[c].kind == TL_FACET_PATCH;
+    bool was_patch = tl_facet_is_patch(&contacts->facet[c]);
     tl_contact_places(m, c, lanes);
     shear old = shear_of(m, c, lanes);
     law_state state = state_of(m, c);
     double kept = tl_shear_kept(m, c);
     bool held = contacts->point_count[c] > 0;
-    bool field = g->facet.kind == TL_FACET_FIELD;
+    bool field = tl_facet_is_field(&g->facet);
     if (row && was_patch && held) {
         const tl_lean lean = tl_contact_lean(m, c, lanes);
         row->shift = lean.mean;
@@ -518,7 +518,7 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
 double tl_contact_sheared(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    if (contacts->facet[c].kind != TL_FACET_FIELD || contacts->law[c] == TL_NO_ROW)
+    if (!tl_facet_is_field(&contacts->facet[c]) || contacts->law[c] == TL_NO_ROW)
         return 0;
     double ks = m->joint_laws[contacts->law[c]].ks;
     return tl_shear_kept(m, c) + (ks > 0 ? 0.5 * shear_of(m, c, NULL).energy / ks : 0);

@@ -71,12 +71,12 @@ typedef struct tl_simd_group {
 enum { TL_SPAN_WOKEN, TL_SPAN_FOLLOWED, TL_SPAN_RESTS };
 
 /* A span: the SIMD groups of one joint law, one after the other in the list of SIMD groups, and their points, in rows from `begin`,
- * used up to `end`, with room up to `limit`. Patches and field contacts have spans apart. Contacts between
+ * used up to `end`, with room up to `limit`. Kinds of contact have spans apart. Contacts between
  * bodies that are held still have spans of their own. */
 typedef struct tl_span {
     uint32_t law;
     bool held;    /* between bodies that are held still */
-    bool field;   /* of field contacts, else of patches */
+    uint8_t kind; /* of contact: detection.h */
     uint8_t rest; /* of one that is held: TL_SPAN_* */
     bool
         changed; /* of one that is held: some point or sum was not what it had been, in the last step */

@@ -6,42 +6,31 @@
 #include "base/extremes.h"
 #include "contact/detection.h"
 #include "contact/facing.h"
+#include "contact/kind.h"
 #include "narrow/frame2.h"
 
-/* The frames of a contact's two bodies: axes of the model, A's centroid as zero. */
-typedef struct body_frames {
-    const tl_mat3 *ra, *rb;
-    tl_vec3 d; /* from A's centroid to B's */
-} body_frames;
-
-static body_frames body_frames_of(const tl_model *m, uint32_t c)
+static tl_body_frames body_frames_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    return (body_frames){.ra = &m->bodies.pose[a].r,
-                         .rb = &m->bodies.pose[b].r,
-                         .d = tl_body_apart(&m->bodies, a, b)};
+    return (tl_body_frames){.ra = &m->bodies.pose[a].r,
+                            .rb = &m->bodies.pose[b].r,
+                            .d = tl_body_apart(&m->bodies, a, b)};
 }
 
-/* Where points of A's frame are. */
-static tl_facing_place place_of(const tl_facet *f, const body_frames *frames)
+static tl_facing_place place_of(const tl_model *m, uint32_t c, const tl_body_frames *frames)
 {
-    if (f->kind == TL_FACET_FIELD)
-        return (tl_facing_place){*frames->ra, {0, 0, 0}};
-    return tl_facing_ride(frames->ra, frames->rb, frames->d, &f->laid.turn, f->laid.shift, f->ride);
+    return tl_contact_kind_of(m->detect, c)->place->place(&m->detect->contacts.facet[c], frames);
+}
+
+static tl_facing facing_of(const tl_model *m, uint32_t c, const tl_body_frames *frames)
+{
+    return tl_contact_kind_of(m->detect, c)->place->facing(&m->detect->contacts.facet[c], frames);
 }
 
 static tl_vec3 placed(const tl_facing_place *place, tl_vec3 p)
 {
     return tl_v3_add(tl_m3_mul(&place->to, p), place->at);
-}
-
-static tl_facing facing_of(const tl_facet *f, const body_frames *frames)
-{
-    if (f->kind == TL_FACET_FIELD)
-        return tl_facing_field(tl_m3_mul(frames->ra, f->na), f->offset);
-    return tl_facing_patch(tl_m3_mul(frames->ra, f->na), tl_m3_mul(frames->rb, f->nb), frames->d,
-                           f->offset, f->ride);
 }
 
 tl_contact_run tl_contact_run_to(const tl_facet *laid, const tl_pair_pose *now)
@@ -65,9 +54,9 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    body_frames frames = body_frames_of(m, contact);
-    tl_facing to = facing_of(&contacts->facet[contact], &frames);
-    tl_facing_place place = place_of(&contacts->facet[contact], &frames);
+    tl_body_frames frames = body_frames_of(m, contact);
+    tl_facing to = facing_of(m, contact, &frames);
+    tl_facing_place place = place_of(m, contact, &frames);
     for (size_t k = 0; k < contacts->point_count[contact]; k++) {
         size_t row = tl_point_row(contacts, contact, k);
         tl_vec3 x = placed(&place, tl_columns_get(p->p, row));
@@ -80,17 +69,17 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
 tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    body_frames frames = body_frames_of(m, contact);
-    tl_facing_place place = place_of(&contacts->facet[contact], &frames);
+    tl_body_frames frames = body_frames_of(m, contact);
+    tl_facing_place place = place_of(m, contact, &frames);
     return placed(&place, tl_columns_get(m->detect->points.p, tl_point_row(contacts, contact, k)));
 }
 
 void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    body_frames frames = body_frames_of(m, contact);
-    tl_facing to = facing_of(&contacts->facet[contact], &frames);
-    tl_facing_place at = place_of(&contacts->facet[contact], &frames);
+    tl_body_frames frames = body_frames_of(m, contact);
+    tl_facing to = facing_of(m, contact, &frames);
+    tl_facing_place at = place_of(m, contact, &frames);
     tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[contacts->a[contact]]);
     for (size_t k = 0; k < contacts->point_count[contact]; k++) {
         size_t row = tl_point_row(contacts, contact, k);
@@ -103,9 +92,9 @@ void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place
 void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     tl_facet *f = &m->detect->contacts.facet[contact];
-    body_frames frames = body_frames_of(m, contact);
+    tl_body_frames frames = body_frames_of(m, contact);
     tl_contact_places(m, contact, l);
-    f->last = facing_of(f, &frames).n;
+    f->last = facing_of(m, contact, &frames).n;
 }
 
 /* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that of its
@@ -118,7 +107,7 @@ static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *t
     const tl_facet *f = &contacts->facet[contact];
     size_t count = contacts->point_count[contact],
            last = tl_point_row(contacts, contact, count - 1);
-    if (f->kind != TL_FACET_PATCH || count < 2 || p->key[last] != tl_centroid_key(f->ia, f->ib))
+    if (!tl_facet_is_patch(f) || count < 2 || p->key[last] != tl_centroid_key(f->ia, f->ib))
         return gap;
     double centre = tl_v3_dot(to->plane, placed(place, tl_columns_get(p->p, last)));
     for (size_t k = count / 2; k < count - 1; k++) {
@@ -136,9 +125,9 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
     const tl_points_table *p = &m->detect->points;
     const tl_facet *f = &contacts->facet[contact];
     uint32_t body = m->blocks.body[contacts->a[contact]];
-    body_frames frames = body_frames_of(m, contact);
-    tl_facing to = facing_of(f, &frames);
-    tl_facing_place place = place_of(f, &frames);
+    tl_body_frames frames = body_frames_of(m, contact);
+    tl_facing to = facing_of(m, contact, &frames);
+    tl_facing_place place = place_of(m, contact, &frames);
     tl_vec3 x = {0, 0, 0};
     double area = 0;
     size_t count = contacts->point_count[contact];
@@ -151,7 +140,7 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
         *gap = tl_smaller(tl_v3_dot(to.plane, at) - to.offset, *gap);
     }
     *gap = corner_gap(m, contact, &to, &place, *gap);
-    if (f->kind == TL_FACET_FIELD && contacts->point_count[contact] > 0)
+    if (tl_facet_is_field(f) && contacts->point_count[contact] > 0)
         *gap = -m->detect->press[contacts->press[contact]].press.deepest;
     *normal = f->last;
     *point = tl_v3_madd(tl_body_place(&m->bodies, body), area > 0 ? 1 / area : 0, x);

@@ -4,6 +4,7 @@
 #include "contact/sound.h"
 
 #include "base/walk.h"
+#include "contact/kind.h"
 #include "narrow/narrow.h"
 
 /* A face number that every block may have had which has gone. */
@@ -191,16 +192,12 @@ static bool facet_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
 {
     const tl_contacts *c = &d->contacts;
     const tl_facet *f = &c->facet[row];
-    bool field = f->kind == TL_FACET_FIELD;
-    if (!field && f->kind != TL_FACET_PATCH)
-        return false;
-    if (!(f->ride >= 0 && f->ride <= 1))
+    if (f->kind >= d->kind_count || !(f->ride >= 0 && f->ride <= 1))
         return false;
     if (c->point_count[row] == 0)
         return f->ia < TL_POLY_MAX_FACES && f->ib < TL_POLY_MAX_FACES;
-    if (field)
-        return c->point_count[row] == TL_FIELD_POINTS && c->press[row] != TL_NO_ROW;
-    return f->ia < faces_of(m, d, c->a[row]) && f->ib < faces_of(m, d, c->b[row]);
+    return tl_contact_kind_of(d, row)->place->sound(d, row, faces_of(m, d, c->a[row]),
+                                                    faces_of(m, d, c->b[row]));
 }
 
 static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
@@ -210,8 +207,8 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
            c->b[row] < d->known_block_count && c->pair[row] < d->pair_count &&
            d->pairs[c->pair[row]].contact == row &&
            (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) &&
-           c->tag[row].joint <= m->joint_count && c->field[row] <= 1 && c->held[row] <= 1 &&
-           c->holds_over_gap[row] <= 1 && c->handed_over[row] <= 1 &&
+           c->tag[row].joint <= m->joint_count && c->kind[row] < d->kind_count &&
+           c->held[row] <= 1 && c->holds_over_gap[row] <= 1 && c->handed_over[row] <= 1 &&
            c->new_points[row] <= TL_POINTS_OTHERS && c->pending[row] <= TL_PENDING_GROW_PATCH &&
            c->deep[row] <= TL_DEEP_SUNK && c->point_count[row] <= c->point_capacity[row] &&
            facet_is_sound(m, d, row);
@@ -244,7 +241,7 @@ static bool group_is_sound(const tl_detect *d, const tl_span *span, const tl_sim
             continue;
         if (row >= c->table.rows || c->point_start[row] != group->start + l ||
             c->point_capacity[row] != group->slots || c->law[row] != span->law ||
-            c->held[row] != span->held || c->field[row] != span->field)
+            c->held[row] != span->held || c->kind[row] != span->kind)
             return false;
         ++*taken;
     }
@@ -255,7 +252,7 @@ static bool group_is_sound(const tl_detect *d, const tl_span *span, const tl_sim
 static bool span_is_sound(const tl_model *m, const tl_detect *d, const tl_span *span,
                           const tl_span *before, size_t *taken)
 {
-    if (!tl_is_flag(&span->held) || !tl_is_flag(&span->field) || !tl_is_flag(&span->changed) ||
+    if (!tl_is_flag(&span->held) || span->kind >= d->kind_count || !tl_is_flag(&span->changed) ||
         span->rest > TL_SPAN_RESTS || (span->law != TL_NO_ROW && span->law >= m->joint_law_count))
         return false;
     if (span->begin < (before ? before->limit : 0) || span->begin % TL_LANES ||

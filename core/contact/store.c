@@ -10,11 +10,13 @@
 
 #include <stdlib.h>
 
-tl_detect *tl_detect_make(unsigned threads)
+tl_detect *tl_detect_make(unsigned threads, const tl_contact_kind *const *kinds, uint32_t count)
 {
     tl_detect *d = calloc(1, sizeof *d);
     if (!d)
         return NULL;
+    d->kinds = kinds;
+    d->kind_count = count;
     d->threads = threads;
     d->narrow = calloc(threads, sizeof *d->narrow);
     d->lanes = calloc(threads, sizeof *d->lanes);
@@ -84,7 +86,7 @@ bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
 
 tl_detect *tl_detect_copy(const tl_detect *from)
 {
-    tl_detect *d = tl_detect_make(from->threads);
+    tl_detect *d = tl_detect_make(from->threads, from->kinds, from->kind_count);
     if (!d)
         return NULL;
     tl_entries entries = {.count = 0};

@@ -3,10 +3,11 @@
 #define TL_CONTACT_STORE_H
 
 #include "contact/detection.h"
+#include "contact/kind.h"
 #include "model/model.h"
 
-/* A detection without pairs and contacts, for so many threads; NULL when out of memory. */
-tl_detect *tl_detect_make(unsigned threads);
+/* A detection without pairs and contacts, for so many threads, that knows some kinds of contact; NULL when out of memory. */
+tl_detect *tl_detect_make(unsigned threads, const tl_contact_kind *const *kinds, uint32_t count);
 void tl_detect_destroy(tl_detect *d);
 /* Makes sure that points have initial forces and the overlaps they belong to, or so many columns of states; false when
  * out of memory (nothing changed). */

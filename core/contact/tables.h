@@ -15,7 +15,7 @@ typedef struct tl_contacts {
     tl_tag *tag;
     uint32_t *law; /* index into the model's joint_laws, or TL_NO_ROW */
     tl_facet *facet;
-    uint8_t *field;          /* its points belong into a span of field contacts */
+    uint8_t *kind;           /* of the span into which its points belong */
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
     double *faces_valid_to;  /* sum of odometers up to which the choice of its faces holds */
     double *points_valid_to; /* sum of odometers up to which its points may be reused */

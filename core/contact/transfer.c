@@ -654,7 +654,7 @@ void tl_shear_keep(tl_model *m, uint32_t c, double energy)
     uint32_t column = energy_column(m, c);
     if (column >= p->state_columns)
         return;
-    bool field = contacts->facet[c].kind == TL_FACET_FIELD;
+    bool field = tl_facet_is_field(&contacts->facet[c]);
     size_t count = field && contacts->point_count[c] ? 1 : contacts->point_count[c];
     double area = 0;
     for (size_t k = 0; k < count; k++)

@@ -1,16 +1,13 @@
 /* contact_forces.c - contacts act on bodies by the laws of their joints: the first contributor of a step. */
 #include "cycle/contact_forces.h"
 
-#include "base/columns.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
+#include "contact/kind.h"
 #include "cycle/cycle_data.h"
 #include "cycle/undo.h"
 #include "force/joint_laws.h"
 #include "force/laws.h"
-
-/* Tolerance: stiffness of a corner that is pressed in twice as deep, over what it is. */
-#define TWICE_AS_DEEP 4
 
 /* ---------------------------------------------------------------- forces ----------------- */
 
@@ -22,19 +19,26 @@ static tl_status prepare(tl_model *m)
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
-/* Of the points of some SIMD groups that follow each other, and of their contacts: what a failure puts back. */
+/* Of the points of some SIMD groups that follow each other, and of their contacts, rows that follow each other at once: what a failure
+ * puts back. */
 static void copy_groups(tl_model *m, const tl_simd_group *groups, size_t count, bool back)
 {
     const tl_detect *d = m->detect;
     size_t points = 0;
+    uint32_t first = 0, end = 0;
     for (size_t r = 0; r < count; r++) {
         points += (size_t)groups[r].slots * TL_LANES;
-        for (size_t l = 0; l < TL_LANES; l++)
-            if (groups[r].contact[l] != TL_NO_ROW)
-                tl_undo_rows(m, &d->contacts.table, groups[r].contact[l], 1, back);
+        for (size_t l = 0; l < TL_LANES; l++) {
+            uint32_t c = groups[r].contact[l];
+            if (c != TL_NO_ROW && c != end) {
+                tl_undo_rows(m, &d->contacts.table, first, end - first, back);
+                first = c;
+            }
+            end = c != TL_NO_ROW ? c + 1 : end;
+        }
     }
-    if (count > 0)
-        tl_undo_rows(m, &d->points.table, groups->start, points, back);
+    tl_undo_rows(m, &d->contacts.table, first, end - first, back);
+    tl_undo_rows(m, &d->points.table, count ? groups->start : 0, points, back);
 }
 
 static void keep_groups(tl_model *m, const tl_simd_group *groups, size_t count)
@@ -80,11 +84,11 @@ static tl_status apply(tl_model *m)
 }
 
 /* In order of the partner's id. */
-static tl_acting acting_on(const tl_model *m, uint32_t body)
+static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
-    tl_acting sum = {.magnitude = 0};
+    tl_acting sum = *on;
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
         uint32_t row = m->members[m->bodies.member_start[body] + k];
         for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
@@ -95,22 +99,16 @@ static tl_acting acting_on(const tl_model *m, uint32_t body)
             sum.magnitude += tl_v3_norm(c->force[i]);
         }
     }
-    return sum;
+    *on = sum;
 }
 
 /* What acts on idle bodies stands as it is. */
 static void gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
 {
     const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
-    for (uint32_t body = begin; body < end; body++) {
-        if (idle && idle[body])
-            continue;
-        tl_acting own = acting_on(m, body);
-        tl_acting *to = &on[body - begin];
-        to->force = tl_v3_add(to->force, own.force);
-        to->moment = tl_v3_add(to->moment, own.moment);
-        to->magnitude += own.magnitude;
-    }
+    for (uint32_t body = begin; body < end; body++)
+        if (!idle || !idle[body])
+            gather_body(m, body, &on[body - begin]);
 }
 
 /* Elastic energy and slip, in the order of the SIMD groups. */
@@ -149,28 +147,15 @@ static double stiffness(const tl_model *m, uint32_t body)
     return sum;
 }
 
-/* The points of a contact about the centroid of B's or of A's body. */
-static tl_spread points_of(const tl_model *m, uint32_t c, bool of_b)
+/* The area of a contact for the time step, about the centroid of B's or of A's body. */
+static tl_spread bounds_of(const tl_model *m, uint32_t c, bool of_b)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
     tl_vec3 centre = {0, 0, 0};
     if (of_b)
         centre = tl_m3_tmul(&m->bodies.pose[a].r, tl_body_apart(&m->bodies, a, b));
-    tl_spread out = {0, 0};
-    if (contacts->facet[c].kind == TL_FACET_FIELD) {
-        const tl_press *press = &m->detect->press[contacts->press[c]].press;
-        double r2 = tl_v3_norm2(tl_v3_sub(press->point, centre)) + press->radius * press->radius;
-        double stiffness = TWICE_AS_DEEP * press->stiffness;
-        return (tl_spread){stiffness, stiffness * r2};
-    }
-    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        out.sum += p->area[i];
-        out.r2 += p->area[i] * tl_v3_norm2(tl_v3_sub(tl_columns_get(p->p, i), centre));
-    }
-    return out;
+    return tl_contact_kind_of(m->detect, c)->place->bounds(m, c, centre);
 }
 
 /* Contacts without area have a law, too. */
@@ -187,7 +172,7 @@ static void hold(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
             double law = tl_law_stiffness(&m->joint_laws[c->law[i]]);
             sum->law = fmax(sum->law, law);
             if (points && c->point_count[i] > 0) {
-                tl_spread next = points_of(m, i, c->b[i] == row);
+                tl_spread next = bounds_of(m, i, c->b[i] == row);
                 sum->presses = true;
                 sum->stiffness.sum += law * next.sum;
                 sum->stiffness.r2 += law * next.r2;
@@ -213,33 +198,14 @@ static void hold_most(const tl_model *m, uint32_t body, tl_holding *sum)
             if (c->law[i] == TL_NO_ROW)
                 continue;
             tl_spread on = {c->area[i], c->area[i] * radius * radius};
-            if (c->facet[i].kind == TL_FACET_FIELD)
-                on = points_of(m, i, c->b[i] == row);
+            if (tl_contact_kind_of(d, i)->place->quick)
+                on = bounds_of(m, i, c->b[i] == row);
             double k = tl_law_stiffness(&m->joint_laws[c->law[i]]);
             sum->law = fmax(sum->law, k);
             sum->stiffness.sum += k * on.sum;
             sum->stiffness.r2 += k * on.r2;
         }
     }
-}
-
-/* Where a contact presses in A's frame, and its overlap there. A patch, whose area counts before it touches, has besides its
- * overlap the gap at which it is born: with that, blocks that come faster may press on by other faces. */
-static double overlap_of(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
-    if (contacts->facet[c].kind == TL_FACET_FIELD) {
-        const tl_press *press = &m->detect->press[contacts->press[c]].press;
-        *at = press->point;
-        return press->overlap;
-    }
-    uint32_t count = contacts->point_count[c];
-    *at = tl_v3(0, 0, 0);
-    for (uint32_t k = 0; k < count; k++)
-        *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(p->p, tl_point_row(contacts, c, k)));
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
 }
 
 /* Speed at which the blocks of a contact come together there, over their overlap. */
@@ -249,7 +215,7 @@ static double approach_of(const tl_model *m, uint32_t c, double law)
     const tl_bodies *bodies = &m->bodies;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
     tl_vec3 point;
-    double overlap = overlap_of(m, c, law, &point);
+    double overlap = tl_contact_kind_of(m->detect, c)->place->pressed(m, c, law, &point);
     tl_vec3 arm = tl_m3_mul(&bodies->pose[a].r, point);
     tl_vec3 arm_b = tl_v3_sub(arm, tl_body_apart(bodies, a, b));
     tl_vec3 v_a = tl_v3_add(bodies->v[a], tl_v3_cross(bodies->w[a], arm));

@@ -63,7 +63,7 @@ static double covered_area(const tl_model *m, uint32_t row, uint32_t face)
     for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
         uint32_t i = d->by_block[e];
         const tl_facet *f = &c->facet[i];
-        if (f->kind == TL_FACET_PATCH && (c->a[i] == row ? f->ia : f->ib) == face)
+        if (tl_facet_is_patch(f) && (c->a[i] == row ? f->ia : f->ib) == face)
             area += c->area[i];
     }
     return area;

@@ -159,7 +159,7 @@ static bool keep_field_force(tl_model *m, uint32_t c)
 static bool is_field(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    return contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0 &&
+    return tl_facet_is_field(&contacts->facet[c]) && contacts->point_count[c] > 0 &&
            contacts->law[c] != TL_NO_ROW;
 }
 

@@ -85,7 +85,8 @@ static void find_largest(const tl_model *m, const double *volume, uint32_t *of, 
         of[body] = largest[body] = body;
     for (uint32_t i = 0; i < c->table.rows; i++) {
         const uint32_t a = m->blocks.body[c->a[i]], b = m->blocks.body[c->b[i]];
-        if (c->point_count[i] && !c->field[i] && tl_bodies_may_join(&m->bodies, a, b))
+        if (c->point_count[i] && c->kind[i] == TL_FACET_PATCH &&
+            tl_bodies_may_join(&m->bodies, a, b))
             tl_put_together(of, a, b);
     }
     for (uint32_t body = 0; body < bodies; body++) {

@@ -20,6 +20,7 @@
 #include "base/columns.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
+#include "contact/kind.h"
 #include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
@@ -415,7 +416,7 @@ static bool is_inner(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    if (contacts->facet[c].kind == TL_FACET_FIELD || contacts->point_count[c] == 0 ||
+    if (tl_facet_is_field(&contacts->facet[c]) || contacts->point_count[c] == 0 ||
         contacts->law[c] == TL_NO_ROW)
         return false;
     tl_id whole = whole_of(m, a);
@@ -603,8 +604,7 @@ static void add_stress(const tl_model *m, uint32_t row, tl_vec3 centre, tl_sym3 
             continue;
         tl_contact_places(m, c, lanes);
         tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[c]]);
-        size_t count = d->contacts.facet[c].kind == TL_FACET_FIELD ? d->contacts.point_count[c] > 0
-                                                                   : d->contacts.point_count[c];
+        size_t count = tl_contact_areas(d, c);
         double sign = d->contacts.b[c] == row ? 1 : -1;
         for (size_t k = 0; k < count; k++) {
             size_t i = tl_point_row(&d->contacts, c, k);

@@ -20,8 +20,11 @@
 /* The columns of a table that a step overwrites (TL_COLUMN_STEP), one after the other, each of the table's capacity. */
 typedef struct shadow {
     char *memory;
-    size_t capacity; /* bytes */
+    size_t capacity;  /* bytes */
+    uint64_t columns; /* of the table, a bit each */
 } shadow;
+
+_Static_assert(TL_TABLE_COLUMNS <= 64, "each column has a bit");
 
 struct tl_undo {
     bool keeps;    /* in this step */
@@ -47,8 +50,12 @@ struct tl_undo {
 static bool shadow_reserve(shadow *s, const tl_table *table)
 {
     size_t row = 0;
+    s->columns = 0;
     for (size_t i = 0; i < table->column_count; i++)
-        row += table->columns[i].flags & TL_COLUMN_STEP ? table->columns[i].size : 0;
+        if (table->columns[i].flags & TL_COLUMN_STEP) {
+            s->columns |= (uint64_t)1 << i;
+            row += table->columns[i].size;
+        }
     return tl_fit(&s->memory, &s->capacity, row * table->capacity, 1);
 }
 
@@ -63,10 +70,8 @@ static void shadow_copy(const shadow *s, const tl_table *table, size_t first, si
                         bool back)
 {
     char *kept = s->memory;
-    for (size_t i = 0; i < table->column_count && count > 0; i++) {
-        const tl_column *column = &table->columns[i];
-        if (!(column->flags & TL_COLUMN_STEP))
-            continue;
+    for (uint64_t left = count ? s->columns : 0; left; left &= left - 1) {
+        const tl_column *column = &table->columns[__builtin_ctzll(left)];
         size_t begin = first * column->size, bytes = count * column->size;
         char *here;
         memcpy(&here, (const char *)table->owner + column->offset, sizeof here);

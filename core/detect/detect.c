@@ -18,6 +18,7 @@
 #include "detect/asked.h"
 #include "detect/broad.h"
 #include "detect/grazing.h"
+#include "detect/kinds.h"
 #include "detect/overlap.h"
 #include "detect/pairs.h"
 #include "detect/update.h"
@@ -48,7 +49,7 @@ static tl_status ensure(tl_model *m)
         uint32_t wanted = m->joint_laws[i].columns;
         columns = wanted > columns ? wanted : columns;
     }
-    tl_detect *d = tl_detect_make(tl_pool_threads(m->pool));
+    tl_detect *d = tl_detect_make(tl_pool_threads(m->pool), tl_contact_kinds, TL_FACET_KINDS);
     if (!d || !tl_detect_hold_states(d, columns)) {
         if (d)
             tl_detect_destroy(d);
@@ -328,7 +329,7 @@ static void find_laws(tl_model *m)
 static bool stays_patch(const tl_model *m, uint32_t row)
 {
     const tl_contacts *c = &m->detect->contacts;
-    if (c->point_count[row] == 0 || c->facet[row].kind == TL_FACET_FIELD)
+    if (c->point_count[row] == 0 || tl_facet_is_field(&c->facet[row]))
         return false;
     tl_min_area_rule rule = tl_min_area_of(m, c->tag[row]);
     double mean = fmin(m->blocks.mean_face[c->a[row]], m->blocks.mean_face[c->b[row]]);
@@ -375,7 +376,7 @@ static void find_rules(tl_model *m)
         bool patch = stays_patch(m, row);
         if (all || !patch)
             c->points_valid_to[row] = -INFINITY;
-        if (!patch && c->facet[row].kind == TL_FACET_PATCH)
+        if (!patch && tl_facet_is_patch(&c->facet[row]))
             c->faces_valid_to[row] = -INFINITY;
     }
 }
@@ -486,15 +487,16 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
-    if (!tl_manifold_find(&view, &region, &rule, &before, scratch) ||
-        !tl_contact_append(m, pair, g->facet.kind == TL_FACET_FIELD, g->valid, tag, g->point_count))
+    if (!tl_contact_find(m, d->pairs[pair].a, d->pairs[pair].b, &view, &region, &rule, &before,
+                         scratch) ||
+        !tl_contact_append(m, pair, g->facet.kind, g->valid, tag, g->point_count))
         return tl_fail_memory(&m->error);
     uint32_t row = (uint32_t)d->contacts.table.rows - 1;
     if (before.holds) { /* so that it is found once more when it has got its room */
         d->contacts.facet[row] = g->facet;
         d->contacts.holds_over_gap[row] = true;
     }
-    double overlap = g->facet.kind == TL_FACET_FIELD ? g->press->deepest : -region.gap;
+    double overlap = tl_facet_is_field(&g->facet) ? g->press->deepest : -region.gap;
     /* parts of blocks go on in the overlap of these */
     bool meet = !tl_estate_of(m, d->pairs[pair].a, d->pairs[pair].b);
     if (meet && overlap > TL_SHALLOW * view.size &&

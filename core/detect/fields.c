@@ -187,14 +187,14 @@ bool tl_field_lacks_reference(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_press_row *row = tl_press_row_of(m, c);
-    return row && contacts->facet[c].kind == TL_FACET_FIELD && !contacts->field[c] &&
+    return row && tl_facet_is_field(&contacts->facet[c]) && contacts->kind[c] != TL_FACET_FIELD &&
            (row->leans || row->shift != row->opening[TL_FIELD_SHEAR]) && !m->detect->points.initial;
 }
 
 bool tl_field_take_row(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    if (!contacts->field[c] || contacts->press[c] != TL_NO_ROW)
+    if (contacts->kind[c] != TL_FACET_FIELD || contacts->press[c] != TL_NO_ROW)
         return true;
     contacts->press[c] = tl_press_take(m->detect);
     if (contacts->press[c] == TL_NO_ROW)
@@ -232,7 +232,7 @@ bool tl_field_goes_on(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_press_row *row = tl_press_row_of(m, c);
-    return row && row->listed && contacts->facet[c].kind == TL_FACET_FIELD &&
+    return row && row->listed && tl_facet_is_field(&contacts->facet[c]) &&
            contacts->point_count[c] > 0 && contacts->deep[c] == TL_DEEP_NOT && is_listed(m, c, row);
 }
 

@@ -60,7 +60,7 @@ static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
     const tl_facet *f = &contacts->facet[c], *h = &g->facet;
     if (contacts->point_count[c] != g->point_count || f->kind != h->kind)
         return false;
-    if (f->kind == TL_FACET_FIELD)
+    if (tl_facet_is_field(f))
         return true;
     if (f->ia != h->ia || f->ib != h->ib)
         return false;
@@ -119,7 +119,7 @@ static void part(tl_model *m, uint32_t c, double way)
 {
     tl_contacts *contacts = &m->detect->contacts;
     contacts->pending[c] = TL_PENDING_DIE;
-    if (contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0)
+    if (tl_facet_is_patch(&contacts->facet[c]) && contacts->point_count[c] > 0)
         contacts->released[c] = tl_contact_ends(m, c);
     tl_pair_sleep(m->detect, &m->detect->pairs[contacts->pair[c]], way);
 }
@@ -177,7 +177,8 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
-    if (!tl_manifold_find(&view, &region, &rule, &before, scratch))
+    if (!tl_contact_find(m, contacts->a[c], contacts->b[c], &view, &region, &rule, &before,
+                         scratch))
         return false;
     contacts->faces_valid_to[c] = scratch->reframed ? -INFINITY : odometer + g->valid;
     contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);
@@ -190,7 +191,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     note_tag(m, c, tag);
     if (tl_press_row_of(m, c))
         tl_field_keep(tl_press_row_of(m, c), &view, &region);
-    if (row && g->point_count > 0 && g->facet.kind == TL_FACET_FIELD)
+    if (row && g->point_count > 0 && tl_facet_is_field(&g->facet))
         tl_press_shift_faces(m, c,
                              row->shift == 0 ? tl_touching_faces(&view, region.n) : row->shifted);
     return true;
@@ -198,27 +199,28 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
 
 /* ---------------------------------------------------------------- taking ------------------ */
 
-static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *g)
+static void note_manifold(tl_detect *d, uint32_t c, const tl_manifold *g)
 {
+    const uint32_t areas = d->kinds[g->facet.kind]->place->areas((uint32_t)g->point_count);
     double area = 0;
-    bool field = g->facet.kind == TL_FACET_FIELD;
-    for (size_t k = 0; k < g->point_count && (k == 0 || !field); k++)
+    for (size_t k = 0; k < areas; k++)
         area += g->points[k].area;
-    contacts->area[c] = area;
-    contacts->new_points[c] = TL_POINTS_PLACED;
+    d->contacts.area[c] = area;
+    d->contacts.new_points[c] = TL_POINTS_PLACED;
 }
 
 /* Asks for room for a manifold, or for a place in another span, unless the contact has them. */
 static bool wants_place(tl_detect *d, uint32_t c, const tl_manifold *g, bool reframed)
 {
     tl_contacts *contacts = &d->contacts;
-    bool field = g->facet.kind == TL_FACET_FIELD;
+    bool field = tl_facet_is_field(&g->facet);
     bool lacks_press =
         field && contacts->press[c] == TL_NO_ROW; /* it has not got the room for its press yet */
-    bool moves = (g->point_count > 0 || field) && (contacts->field[c] != field || lacks_press);
+    bool moves =
+        (g->point_count > 0 || field) && (contacts->kind[c] != g->facet.kind || lacks_press);
     if (!moves && g->point_count <= contacts->point_capacity[c])
         return false;
-    contacts->field[c] = field;
+    contacts->kind[c] = (uint8_t)g->facet.kind;
     d->pairs[contacts->pair[c]].want_points = (uint16_t)g->point_count;
     contacts->pending[c] = reframed ? TL_PENDING_REFRAME : TL_PENDING_GROW;
     return true;
@@ -236,7 +238,7 @@ static bool have_run(const tl_model *m, uint32_t c, const tl_manifold *g)
 
 static bool is_patch(const tl_contacts *contacts, uint32_t c)
 {
-    return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
+    return tl_facet_is_patch(&contacts->facet[c]) && contacts->point_count[c] > 0;
 }
 
 /* What a contact without points stays. A patch that is lifted becomes a field whose faces are moved so: they press again there. */
@@ -254,19 +256,24 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
 {
     tl_detect *d = m->detect;
     tl_manifold *g = &scratch->manifold;
-    note_manifold(&d->contacts, c, g);
+    note_manifold(d, c, g);
     if (g->point_count == 0)
         g->facet = parted_facet(m, c);
     if (wants_place(d, c, g, scratch->reframed))
         return true;
-    bool field = g->facet.kind == TL_FACET_FIELD, same = same_topology(d, c, g), done = true;
+    bool same = same_topology(d, c, g);
     if (!same)
         d->contacts.new_points[c] = TL_POINTS_OTHERS;
-    if (!same && (field || d->contacts.facet[c].kind == TL_FACET_FIELD)) {
+    return d->kinds[g->facet.kind]->make->take(m, c, same, scratch, lanes);
+}
+
+static bool take_patch(tl_model *m, uint32_t c, bool same, tl_narrow_scratch *scratch,
+                       const tl_point_lanes *lanes)
+{
+    const tl_manifold *g = &scratch->manifold;
+    bool done = true;
+    if (!same && tl_facet_is_field(&m->detect->contacts.facet[c])) {
         tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
-    } else if (field) {
-        if (g->point_count > 0)
-            tl_contact_refit_field(m, c, g);
     } else if (same && (scratch->reframed || !have_run(m, c, g))) {
         refit(m, c, g);
     } else {
@@ -276,6 +283,20 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     }
     return done;
 }
+
+static bool take_field(tl_model *m, uint32_t c, bool same, tl_narrow_scratch *scratch,
+                       const tl_point_lanes *lanes)
+{
+    const tl_manifold *g = &scratch->manifold;
+    if (!same)
+        tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
+    else if (g->point_count > 0)
+        tl_contact_refit_field(m, c, g);
+    return true;
+}
+
+const tl_kind_make tl_patch_make = {.take = take_patch};
+const tl_kind_make tl_field_make = {.take = take_field};
 
 /* How far the points of a patch have been carried apart by their blocks since they were laid, the farthest of them. */
 static double points_moved(const tl_model *m, uint32_t c)
@@ -321,7 +342,7 @@ static void contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     bool patch = is_patch(contacts, c);
-    bool field = contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0;
+    bool field = tl_facet_is_field(&contacts->facet[c]) && contacts->point_count[c] > 0;
     const tl_press *press = field ? &tl_press_row_of(m, c)->press : NULL;
     double most = field ? REUSE_FIELD * fmin(press->overlap, press->deepest) : still_way(m, c);
     if (!patch || contacts->new_points[c] != TL_POINTS_STAY)
@@ -497,7 +518,7 @@ static bool still_stands(const tl_model *m, uint32_t c, const tl_narrow_scratch 
     const tl_manifold *g = &scratch->manifold;
     const tl_facet *f = &contacts->facet[c], *now = &g->facet;
     return !scratch->reframed && is_patch(contacts, c) && g->point_count > 0 &&
-           now->kind == TL_FACET_PATCH && f->ia == now->ia && f->ib == now->ib &&
+           tl_facet_is_patch(now) && f->ia == now->ia && f->ib == now->ib &&
            tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c];
 }
 
@@ -510,7 +531,7 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     double faces_valid_to = contacts->faces_valid_to[c];
     tl_spot spot = contacts->spot[c];
     tl_tag tag = contacts->tag[c];
-    uint8_t field = contacts->field[c], pending = contacts->pending[c], deep = contacts->deep[c];
+    uint8_t kind = contacts->kind[c], pending = contacts->pending[c], deep = contacts->deep[c];
     if (find(m, c, scratch, &m->detect->lanes[thread]) &&
         (contacts->pending[c] == TL_PENDING_DIE || still_stands(m, c, scratch) ||
          take_manifold(m, c, scratch, &m->detect->lanes[thread])))
@@ -518,7 +539,7 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     contacts->faces_valid_to[c] = faces_valid_to;
     contacts->spot[c] = spot;
     contacts->tag[c] = tag;
-    contacts->field[c] = field;
+    contacts->kind[c] = kind;
     contacts->pending[c] = pending;
     contacts->deep[c] = deep;
     scratch->failed = true;

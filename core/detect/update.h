@@ -3,10 +3,13 @@
 #define TL_DETECT_UPDATE_H
 
 #include "contact/detection.h"
+#include "contact/kind.h"
 #include "contact/layout.h"
 #include "contact/pair_view.h"
 #include "model/model.h"
 
+/* Patches and field contacts, made. */
+extern const tl_kind_make tl_patch_make, tl_field_make;
 /* Whether they are although it has moved. */
 bool tl_contact_points_hold_yet(tl_model *m, uint32_t contact);
 /* Whether a contact's points are still good. */

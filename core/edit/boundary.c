@@ -143,7 +143,7 @@ static tl_status take_contacts(tl_model *m, tl_outer_face *f)
         uint32_t i = d->by_block[e];
         const tl_facet *facet = &c->facet[i];
         bool first = c->a[i] == f->row;
-        if (status == TL_OK && facet->kind == TL_FACET_PATCH && c->point_count[i] &&
+        if (status == TL_OK && tl_facet_is_patch(facet) && c->point_count[i] &&
             (first ? facet->ia : facet->ib) == f->face)
             status =
                 take_away(m, f, tl_contact_partner(c, i, f->row), first ? facet->ib : facet->ia);

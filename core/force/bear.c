@@ -182,7 +182,7 @@ double tl_contact_shear_used(const tl_model *m, uint32_t c)
 {
     const tl_detect *d = m->detect;
     const size_t all = d->contacts.point_count[c];
-    const bool field = d->contacts.facet[c].kind == TL_FACET_FIELD;
+    const bool field = tl_facet_is_field(&d->contacts.facet[c]);
     tl_traction given[MOST_TOLD], borne[MOST_TOLD];
     double carried = 0, most = 0, stored;
     if (all == 0 || all > MOST_TOLD || d->contacts.law[c] == TL_NO_ROW)

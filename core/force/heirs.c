@@ -763,7 +763,7 @@ static void forget_mixed(tl_model *m)
     tl_detect *d = m->detect;
     for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
         const tl_estate *estate = tl_estate_of(m, d->contacts.a[c], d->contacts.b[c]);
-        bool field = d->contacts.facet[c].kind == TL_FACET_FIELD;
+        bool field = tl_facet_is_field(&d->contacts.facet[c]);
         if (estate && d->contacts.point_count[c] > 0 &&
             (field || !tl_estate_is_of_law(m, estate, c)))
             d->estates[estate - d->estates].carried.most = 0;

@@ -158,7 +158,7 @@ static bool has_forces(const tl_detect *d, uint32_t c)
 
 static bool is_patch(const tl_model *m, uint32_t c)
 {
-    return m->detect->contacts.facet[c].kind == TL_FACET_PATCH;
+    return tl_facet_is_patch(&m->detect->contacts.facet[c]);
 }
 
 /* Whether a contact that has forces gets this law in place of another. */

@@ -395,6 +395,7 @@ typedef struct span_job {
     const tl_law_phase *phase;
     const tl_law *law;
     const tl_span *span;
+    const tl_kind_force *kind;
     /* of a span of bodies held still: some of it is not what it was; else NULL */
     atomic_bool *changed;
 } span_job;
@@ -402,7 +403,7 @@ typedef struct span_job {
 /* Whether the law is given closures at outermost fibres: only what pulls can tell. */
 static bool has_edges(const span_job *job)
 {
-    return !job->span->field && job->law->pulls != TL_PULL_NONE;
+    return job->kind->cells && job->law->pulls != TL_PULL_NONE;
 }
 
 /* Calls the law on `count` points from `first`, some of which are `partly` open; false when it failed. */
@@ -448,26 +449,17 @@ static bool call_law(const span_job *job, size_t first, size_t count, bool partl
     return status == TL_OK;
 }
 
-/* Of each contact of a SIMD group: force on B of its points, their moment about A's centroid, and the energies of
- * their springs and slip. */
-typedef struct group_sums {
-    double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
-    double holds_over_gap[TL_LANES]; /* above 0 when a force acts across a gap */
-    double odd
-        [TL_LANES]; /* 0, NaN when the force or moment is not finite, 1 when shear forces may leave their planes */
-} group_sums;
-
 /* Point after point: the same order for every width of the processor's vectors. */
-TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_lanes *t, size_t row,
+TL_VECTORIZED static void add_points(const tl_points_table *p, const tl_point_lanes *t, size_t row,
                                      size_t lane, size_t slots, const tl_arms *restrict arms,
-                                     group_sums *restrict out)
+                                     tl_group_sums *restrict out)
 {
     const double *f_n = p->f_n + row, *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row;
     const double *f_z = p->f_s[2] + row, *x = t->arm[0] + lane, *y = t->arm[1] + lane;
     const double *z = t->arm[2] + lane, *stored = t->stored + lane, *heat = t->dissipated + lane;
     const double *closure = t->closure + lane;
     const double *reference = p->reference ? p->reference + row : t->zero + lane;
-    group_sums s = {0};
+    tl_group_sums s = {0};
     for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
@@ -499,10 +491,10 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
     *out = s;
 }
 
-/* Adds 1 to what is odd of a contact whose shear forces may leave their planes. A loop of its own: sum_points has no
+/* Adds 1 to what is odd of a contact whose shear forces may leave their planes. A loop of its own: add_points has no
  * register left. */
 TL_VECTORIZED static void sum_tilts(const tl_points_table *p, const tl_point_lanes *t, size_t row,
-                                    size_t lane, size_t slots, group_sums *restrict out)
+                                    size_t lane, size_t slots, tl_group_sums *restrict out)
 {
     const double *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row, *f_z = p->f_s[2] + row;
     const double *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane, *n_z = t->normal[2] + lane;
@@ -544,7 +536,7 @@ static double sum_over_lanes(const double *lane)
 }
 
 /* Names what is wrong in a SIMD group of which a sum is odd. */
-static void report_odd(const span_job *job, const tl_simd_group *group, const group_sums *sum,
+static void report_odd(const span_job *job, const tl_simd_group *group, const tl_group_sums *sum,
                        const tl_point_lanes *t, size_t lane)
 {
     for (size_t l = 0; l < TL_LANES; l++)
@@ -555,19 +547,20 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
 
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
  * springs of the law hold pressed is not what the field holds: see tl_press. */
-static void sum_fields(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                       size_t lane, group_sums *out)
+static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                       const tl_point_lanes *t, size_t lane, const tl_arms *arms,
+                       tl_group_sums *out)
 {
-    const tl_detect *d = job->m->detect;
+    (void)arms;
+    const tl_detect *d = m->detect;
     const tl_contacts *contacts = &d->contacts;
     const tl_points_table *p = &d->points;
-    const tl_law *law = job->law;
     const size_t torsion = TL_FIELD_TORSION * TL_LANES;
     const bool tells = tl_law_presses(law), linear = tl_law_is_linear(law);
     tl_told_press pressed[TL_LANES];
     memset(out, 0, sizeof *out);
     if (tells)
-        tl_press_ask(job->m, law, group, t, lane, pressed);
+        tl_press_ask(m, law, group, t, lane, pressed);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
         size_t i = group->start + l, k = lane + l;
@@ -576,7 +569,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
             continue;
         const tl_press_row *row = &d->press[contacts->press[c]];
         const tl_press *press = &row->press;
-        const tl_mat3 *turn = &job->m->bodies.pose[job->m->blocks.body[contacts->a[c]]].r;
+        const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
         double f_n = p->f_n[i], same = p->f_n[i + torsion];
         tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
         tl_vec3 shear = tl_columns_get(p->f_s, i);
@@ -602,9 +595,32 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     }
 }
 
+static void sum_patches(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                        const tl_point_lanes *t, size_t lane, const tl_arms *arms,
+                        tl_group_sums *out)
+{
+    (void)law;
+    add_points(&m->detect->points, t, group->start, lane, group->slots, arms, out);
+}
+
+static void follow_patches(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
+                           size_t lane, uint32_t tangents, tl_arms *arms)
+{
+    tl_simd_group_follow(m, group, false, t, lane, tangents, arms);
+}
+
+static void follow_fields(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
+                          size_t lane, uint32_t tangents, tl_arms *arms)
+{
+    tl_simd_group_follow(m, group, true, t, lane, tangents, arms);
+}
+
+const tl_kind_force tl_patch_force = {.cells = true, .follow = follow_patches, .sum = sum_patches};
+const tl_kind_force tl_field_force = {.follow = follow_fields, .sum = sum_fields};
+
 /* Adds what partly open patches have beside their points. Gives the lanes that slip has opened. */
 static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                          size_t lane, tl_part_lanes parts, const tl_arms *arms, group_sums *sum)
+                          size_t lane, tl_part_lanes parts, const tl_arms *arms, tl_group_sums *sum)
 {
     tl_part_sums more[TL_LANES];
     tl_vec3 turn[TL_LANES];
@@ -637,14 +653,11 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
     tl_contacts *contacts = &m->detect->contacts;
     unsigned begins = 0; /* lanes of contacts that carried nothing in the step before */
     uint32_t opened = 0;
-    group_sums sum;
-    if (job->span->field)
-        sum_fields(job, group, t, lane, &sum);
-    else
-        sum_points(&m->detect->points, t, group->start, lane, group->slots, arms, &sum);
+    tl_group_sums sum;
+    job->kind->sum(m, job->law, group, t, lane, arms, &sum);
     if (parts.parts | parts.held)
         opened = add_parts(job, group, t, lane, parts, arms, &sum);
-    if (m->cycles % SHEAR_EVERY == 0 && !job->span->field)
+    if (m->cycles % SHEAR_EVERY == 0 && job->kind->cells)
         sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
     tl_group_energy energy = {0, 0};
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -694,19 +707,17 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
     tl_part_lanes part[GROUP_CHUNK];
     uint32_t any = 0;
     tl_arms arms[GROUP_CHUNK];
-    bool cells = !job->span->field;
     job->phase->keep(job->m, groups, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, tile_points(groups, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
             tl_simd_group_prefetch(job->m, &groups[count + r]);
-        tl_simd_group_follow(job->m, &groups[r], job->span->field, t, points, job->law->tangents,
-                             &arms[r]);
+        job->kind->follow(job->m, &groups[r], t, points, job->law->tangents, &arms[r]);
         if (has_edges(job))
             tl_simd_group_edges(job->m, &groups[r], t, points);
-        part[r] = cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points)
-                        : (tl_part_lanes){0, 0};
+        part[r] = job->kind->cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points)
+                                   : (tl_part_lanes){0, 0};
         any |= part[r].parts;
         points += (size_t)groups[r].slots * TL_LANES;
     }
@@ -801,7 +812,12 @@ tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase)
         if (span->law == TL_NO_ROW || tl_span_rests(m, span))
             continue;
         atomic_bool changed = false;
-        span_job job = {m, phase, &m->joint_laws[span->law], span, span->held ? &changed : NULL};
+        span_job job = {.m = m,
+                        .phase = phase,
+                        .law = &m->joint_laws[span->law],
+                        .span = span,
+                        .kind = d->kinds[span->kind]->force,
+                        .changed = span->held ? &changed : NULL};
         tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, force_range,
                         &job);
         span->changed = changed;

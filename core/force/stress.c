@@ -45,7 +45,7 @@ void tl_insitu_load(tl_model *m, const tl_insitu *s, uint32_t c)
     double centroid_z = m->origin.z + tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]).z;
     tl_contact_places(m, c, lanes);
     m->detect->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
-    if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
+    if (!tl_facet_is_patch(&contacts->facet[c]) || !faces_meet(m, c))
         return;
     contacts->stored[c] = NAN;
     double opening[TL_LANES];

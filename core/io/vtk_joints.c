@@ -100,7 +100,7 @@ static unsigned char *mark_touching(const joints *j, const size_t *first, size_t
     unsigned char *touching = calloc(faces + 1, 1);
     for (size_t i = 0; touching && i < j->contacts; i++) {
         uint32_t row = j->rows[i];
-        if (c->facet[row].kind != TL_FACET_PATCH)
+        if (!tl_facet_is_patch(&c->facet[row]))
             continue;
         touching[first[c->a[row]] + c->facet[row].ia] = 1;
         touching[first[c->b[row]] + c->facet[row].ib] = 1;

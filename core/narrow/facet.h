@@ -9,7 +9,8 @@
 
 typedef enum tl_facet_kind {
     TL_FACET_PATCH, /* face on face */
-    TL_FACET_FIELD  /* all else: the points are at the centre of the pressure */
+    TL_FACET_FIELD, /* all else: the points are at the centre of the pressure */
+    TL_FACET_KINDS
 } tl_facet_kind;
 
 /* What the contact points of a contact have in common: their normal, and the way to compute their gaps and places. A step reads the
@@ -25,6 +26,16 @@ typedef struct tl_facet {
     uint32_t kind;
     uint16_t ia, ib; /* faces */
 } tl_facet;
+
+static inline bool tl_facet_is_patch(const tl_facet *facet)
+{
+    return facet->kind == TL_FACET_PATCH;
+}
+
+static inline bool tl_facet_is_field(const tl_facet *facet)
+{
+    return facet->kind == TL_FACET_FIELD;
+}
 
 /* The points of a field contact, both at the centre of its pressure. The first carries the force and the shear, the second the
  * torsion. */

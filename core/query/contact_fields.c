@@ -61,11 +61,7 @@ const tl_field *tl_contact_fields(size_t *count)
 
 size_t tl_point_count(const tl_model *m, uint32_t contact)
 {
-    const tl_contacts *c = &m->detect->contacts;
-    size_t count = c->point_count[contact];
-    if (c->facet[contact].kind == TL_FACET_FIELD && count > TL_FIELD_TORSION)
-        count = TL_FIELD_TORSION;
-    return count;
+    return tl_contact_areas(m->detect, contact);
 }
 
 static void forces(const tl_model *m, uint32_t c, double *normal, tl_vec3 *shear)
@@ -81,7 +77,7 @@ static void forces(const tl_model *m, uint32_t c, double *normal, tl_vec3 *shear
         *shear = tl_v3_add(*shear, tl_v3(p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]));
     }
     /* what a field presses with is not the law's force at its mean overlap, where that is no line */
-    if (d->contacts.facet[c].kind == TL_FACET_FIELD && *normal > 0)
+    if (tl_facet_is_field(&d->contacts.facet[c]) && *normal > 0)
         *normal = tl_v3_norm(tl_v3_sub(d->contacts.force[c], *shear));
 }
 

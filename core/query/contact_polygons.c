@@ -3,9 +3,8 @@
 
 #include "base/parallel.h"
 #include "contact/detection.h"
-#include "contact/lean.h"
+#include "contact/kind.h"
 #include "contact/pair_view.h"
-#include "contact/presses.h"
 #include "narrow/place.h"
 #include "narrow/surface.h"
 
@@ -28,48 +27,13 @@ typedef struct job {
     part *parts;
 } job;
 
-/* The faces of a field contact that are moved out. false: none are. */
-static bool find_moved(const tl_model *m, uint32_t c, const tl_pair_view *view, tl_moved_faces *out)
-{
-    const tl_press_row *row = tl_press_row_of(m, c);
-    if (!row || (row->shift == 0 && !row->leans))
-        return false;
-    out->faces = row->shifted;
-    for (int k = 0; k < 2; k++) {
-        tl_plane plane = row->leans ? row->lean[k] : row->shifted_at[k];
-        if (k == 1) {
-            plane.normal = tl_m3_mul(&view->turn, plane.normal);
-            plane.offset += tl_v3_dot(plane.normal, view->shift);
-        }
-        plane.offset += 0.5 * row->shift;
-        out->plane[k] = plane;
-    }
-    return true;
-}
-
-/* How far apart the blocks of a contact with moved faces may be. */
-static double reach_of(const tl_press_row *row, const tl_pair_view *view)
-{
-    return tl_lean_reach(row->shift, row->leans ? row->lean : NULL,
-                         view->a->plane[row->shifted.a].normal, view->size);
-}
-
 /* Adds a contact's polygons in the frame of its first block's body. */
 static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl_surface *surface)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_facet *facet = &contacts->facet[c];
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (!tl_pair_place(&view, scratch))
-        return false;
-    if (facet->kind == TL_FACET_PATCH)
-        return tl_surface_add_patch(&view, facet->ia, facet->ib, surface);
-    tl_region region;
-    tl_moved_faces moved;
-    bool are_moved = find_moved(m, c, &view, &moved);
-    double margin = are_moved ? reach_of(tl_press_row_of(m, c), &view) : 0;
-    return tl_region_find(&view, margin, scratch, &region) &&
-           tl_surface_add_field(&view, &region, are_moved ? &moved : NULL, surface);
+    return tl_pair_place(&view, scratch) &&
+           tl_contact_kind_of(m->detect, c)->place->show(m, c, &view, scratch, surface);
 }
 
 /* From the frame of a block's body to places relative to the model's origin. */

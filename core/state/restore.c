@@ -13,6 +13,7 @@
 #include "cycle/energy.h"
 #include "cycle/prepare.h"
 #include "cycle/walk.h"
+#include "detect/kinds.h"
 #include "geometry/seam.h"
 #include "model/joints.h"
 #include "model/loads.h"
@@ -534,7 +535,7 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
 {
     if (!tl_archive_find(a, "detect.structure"))
         return TL_OK;
-    tl_detect *d = tl_detect_make((unsigned)m->config.threads);
+    tl_detect *d = tl_detect_make((unsigned)m->config.threads, tl_contact_kinds, TL_FACET_KINDS);
     if (!d)
         return tl_fail_memory(&m->error);
     m->detect = d;

@@ -35,15 +35,6 @@ static void hash_row(tl_hash *hash, const tl_table *table, size_t row)
     }
 }
 
-/* Any NaN counts as the same: what is not given. */
-static void hash_numbers(tl_hash *hash, const double *numbers, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        double number = isnan(numbers[i]) ? NAN : numbers[i];
-        tl_hash_bytes(hash, &number, sizeof number);
-    }
-}
-
 static void hash_text(tl_hash *hash, const char *text)
 {
     tl_hash_bytes(hash, text, strlen(text));
@@ -71,18 +62,7 @@ static void hash_point(tl_hash *hash, const tl_points_table *p, size_t row, uint
     for (uint32_t k = 0; k < columns; k++)
         late[2 + k] = k < p->state_columns ? p->state[k][row] : 0;
     hash_row(hash, &p->table, row);
-    hash_numbers(hash, late, 2 + columns);
-}
-
-/* Where a field contact has stayed, since when, and whether it goes by slopes from there. */
-static void hash_place(tl_hash *hash, const tl_press_row *row)
-{
-    double place[12];
-    memcpy(place, row->place.turn.m, 9 * sizeof *place);
-    memcpy(place + 9, &row->place.shift, 3 * sizeof *place);
-    hash_numbers(hash, place, sizeof place / sizeof *place);
-    tl_hash_word(hash, (uint64_t)row->since);
-    tl_hash_word(hash, row->by_slope);
+    tl_hash_numbers(hash, late, 2 + columns);
 }
 
 /* What a field contact keeps beside its points that does not follow from places: how far an initial stress moves a face, shear
@@ -92,26 +72,14 @@ static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
     if (d->contacts.press[contact] == TL_NO_ROW)
         return;
     const tl_press_row *row = &d->press[d->contacts.press[contact]];
-    if (d->contacts.facet[contact].kind == TL_FACET_FIELD && d->contacts.point_count[contact] > 0)
-        hash_place(hash, row);
     const double numbers[] = {row->shift, row->spare[0], row->spare[1], row->opening[0],
                               row->opening[1]};
     if (row->shift == 0 && row->spare[0] == 0 && row->spare[1] == 0)
         return;
-    hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
-    hash_numbers(hash, &row->lean[0].offset, row->leans ? 1 : 0);
+    tl_hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+    tl_hash_numbers(hash, &row->lean[0].offset, row->leans ? 1 : 0);
     uint32_t faces = row->shifted.a | (uint32_t)row->shifted.b << 16;
     tl_hash_word(hash, row->shift != 0 ? faces : 0);
-}
-
-/* How the points of a patch ride. */
-static void hash_laid(tl_hash *hash, const tl_facet *f)
-{
-    if (f->kind != TL_FACET_PATCH)
-        return;
-    hash_numbers(hash, &f->ride, 1);
-    hash_numbers(hash, &f->laid.turn.m[0][0], 9);
-    hash_numbers(hash, &f->laid.shift.x, 3);
 }
 
 /* In the order of their blocks: which row and lane a contact has depends on when it was made. */
@@ -129,7 +97,7 @@ static void hash_contacts(tl_hash *hash, const tl_model *m)
                 columns = tl_kind_state_columns(m->joint_laws[law].kind);
             tl_hash_word(hash, (uint64_t)m->blocks.id[block] << 32 | m->blocks.id[c->b[contact]]);
             hash_row(hash, &c->table, contact);
-            hash_laid(hash, &c->facet[contact]);
+            tl_contact_kind_of(d, contact)->place->hash(hash, d, contact);
             hash_press(hash, d, contact);
             for (uint32_t k = 0; k < c->point_count[contact]; k++)
                 hash_point(hash, &d->points, tl_point_row(c, contact, k), columns);
@@ -155,7 +123,7 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
     if (!rate)
         return tl_fail_memory(&m->error);
     tl_rates_try(m, tl_timestep_rate_limit(m), rate, rate + bodies);
-    hash_numbers(hash, rate, m->mass_scaling ? 2 * bodies : bodies);
+    tl_hash_numbers(hash, rate, m->mass_scaling ? 2 * bodies : bodies);
     free(rate);
     return TL_OK;
 }
@@ -214,7 +182,7 @@ static void hash_drive(tl_hash *hash, const tl_drive *drive)
     const double parts[] = {drive->velocity.x,         drive->velocity.y,
                             drive->velocity.z,         drive->angular_velocity.x,
                             drive->angular_velocity.y, drive->angular_velocity.z};
-    hash_numbers(hash, parts, sizeof parts / sizeof *parts);
+    tl_hash_numbers(hash, parts, sizeof parts / sizeof *parts);
     tl_hash_word(hash, (uint64_t)(drive->velocity_at != NULL) << 1 |
                            (uint64_t)(drive->angular_velocity_at != NULL));
 }
@@ -258,10 +226,10 @@ static void hash_laws(tl_hash *hash, const tl_model *m)
     for (size_t i = 0; i < m->joint_min_area_count; i++) {
         tl_hash one = tl_hash_start();
         hash_tag(&one, m->joint_min_areas[i].tag);
-        hash_numbers(&one,
-                     (const double[]){m->joint_min_areas[i].rule.fraction,
-                                      m->joint_min_areas[i].rule.absolute},
-                     2);
+        tl_hash_numbers(&one,
+                        (const double[]){m->joint_min_areas[i].rule.fraction,
+                                         m->joint_min_areas[i].rule.absolute},
+                        2);
         hash_any_order(&sum, &one);
     }
     tl_hash_word(hash, sum.a);
@@ -310,12 +278,12 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
                              m->timestep.rule,
                              m->mass_scaling,
                              m->origin_set};
-    hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+    tl_hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
     tl_hash_bytes(hash, words, sizeof words);
     if (m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(config->gravity, m->gravity_before)))
-        hash_numbers(hash, &m->gravity_before.x, 3);
+        tl_hash_numbers(hash, &m->gravity_before.x, 3);
     if (tl_adds_mass(m))
-        hash_numbers(hash, (const double[]){m->added_dt, m->added_most}, 2);
+        tl_hash_numbers(hash, (const double[]){m->added_dt, m->added_most}, 2);
     for (size_t i = 0; i < m->joint_count; i++) {
         hash_text(hash, m->joints[i].name);
         tl_hash_word(hash, m->joints[i].planes);

@@ -41,7 +41,7 @@ NUMBERS = [
     ("core/detect/fields.c", "BONDED_TILT", 0.05, "up to a tilt of asin 0.05, 2.9°"),
     ("core/model/rows.c", "ROUND_COEFFICIENT", 0.4, "I = 0.4 m r̄²"),
     ("core/cycle/timestep.c", "FLOOR", 0.15, "min(1, max(0.15, s)) ω²"),
-    ("core/cycle/contact_forces.c", "TWICE_AS_DEEP", 4, "k = 4 max(kn, ks) max("),
+    ("core/contact/kinds.c", "TWICE_AS_DEEP", 4, "k = 4 max(kn, ks) max("),
     ("core/cycle/timestep.c", "RECHECK_STEPS", 64, "and every 64 steps"),
     ("core/cycle/timestep.c", "STEP_GROWTH", 1.1, "only when it is 1.1 times the one in use"),
     (None, "TL_BODY_FRACTION", 0.5, 'FRAC is 0.5 with `"body"`'),
