@@ -129,7 +129,7 @@ static size_t join_some(filter *f, tl_filter_result *result, bool any)
     size_t joined = 0;
     for (size_t i = 0; i < result->count; i++) {
         tl_sliver *sliver = &result->slivers[i];
-        const uint32_t row = m->row_of[sliver->block], body = m->blocks.body[row];
+        const uint32_t row = tl_block_row_quiet(m, sliver->block), body = m->blocks.body[row];
         const uint32_t partner = sliver->joined_to ? TL_NO_ROW : find_partner(f, body, any);
         if (partner == TL_NO_ROW)
             continue;
@@ -139,7 +139,7 @@ static size_t join_some(filter *f, tl_filter_result *result, bool any)
     }
     for (size_t i = 0; i < result->count; i++)
         if (result->slivers[i].joined_to)
-            f->bad[m->blocks.body[m->row_of[result->slivers[i].block]]] = 0;
+            f->bad[m->blocks.body[tl_block_row_quiet(m, result->slivers[i].block)]] = 0;
     result->joined += joined;
     return joined;
 }

@@ -282,9 +282,9 @@ void tl_stage_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first, u
     for (uint32_t body = 0; body < stage->next_body; body++)
         first[body] = TL_NO_ROW;
     for (size_t i = 0; i < stage->count; i++) {
-        uint32_t row = m->row_of[ids[i]], body = stage->blocks[i].body;
+        uint32_t row = tl_block_row_quiet(m, ids[i]), body = stage->blocks[i].body;
         first[body] = row < first[body] ? row : first[body];
     }
     for (size_t i = 0; i < stage->count; i++)
-        group[m->row_of[ids[i]]] = first[stage->blocks[i].body];
+        group[tl_block_row_quiet(m, ids[i])] = first[stage->blocks[i].body];
 }

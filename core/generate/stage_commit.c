@@ -186,8 +186,8 @@ static void visit(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads, 
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++)
-        if (loads->of[i] != TL_NO_ROW && m->row_of[ids[i]] != TL_NO_ROW)
-            each(m, m->row_of[ids[i]], &loads->list[loads->of[i]]);
+        if (loads->of[i] != TL_NO_ROW && tl_block_row_quiet(m, ids[i]) != TL_NO_ROW)
+            each(m, tl_block_row_quiet(m, ids[i]), &loads->list[loads->of[i]]);
 }
 
 static tl_vec3 place_of(const tl_model *m, uint32_t row)
@@ -313,7 +313,7 @@ static void visit_parts(const tl_stage *stage, const tl_id *ids, const tl_cut_lo
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++) {
-        uint32_t row = loads->of[i] == TL_NO_ROW ? TL_NO_ROW : m->row_of[ids[i]];
+        uint32_t row = loads->of[i] == TL_NO_ROW ? TL_NO_ROW : tl_block_row_quiet(m, ids[i]);
         tl_cut_face *f = row == TL_NO_ROW ? NULL : faces_of(loads, stage->blocks[i].source);
         for (; f; f = next_of(loads, f)) {
             uint32_t part = part_of(m, row, f);
@@ -623,9 +623,9 @@ static void keep_splits(tl_stage *stage, commit_scratch *scratch)
     qsort(all, scratch->split_count, sizeof *all, compare_whole);
     for (size_t from = 0, to; from < scratch->split_count; from = to) {
         bool several = false;
-        uint32_t body = m->blocks.body[m->row_of[all[from].block]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, all[from].block)];
         for (to = from; to < scratch->split_count && all[to].whole == all[from].whole; to++)
-            several = several || m->blocks.body[m->row_of[all[to].block]] != body;
+            several = several || m->blocks.body[tl_block_row_quiet(m, all[to].block)] != body;
         for (size_t i = from; several && i < to; i++)
             all[kept++] = all[i];
     }
@@ -704,7 +704,7 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
            (!has_contacts(stage->model) ||
             tl_grow(&stage->model->heirs, &stage->model->heir_capacity,
                     stage->model->heir_count + made, sizeof *stage->model->heirs)) &&
-           tl_rows_reserve(stage->model, rows, stage->model->next_id + (tl_id)made) &&
+           tl_rows_reserve(stage->model, rows) &&
            (!stage->regroups || tl_rows_set_aside(stage->model, &scratch->aside));
 }
 

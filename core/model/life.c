@@ -128,7 +128,6 @@ void tl_model_destroy(tl_model *m)
     free(m->joint_min_areas);
     free(m->members);
     free(m->asked_ids);
-    free(m->row_of);
     tl_pool_destroy(m->pool);
     free(m);
 }

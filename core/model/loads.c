@@ -132,7 +132,7 @@ static bool face_loads_forget(tl_model *m, const tl_id *ids, size_t count)
     if (!meant)
         return false;
     for (size_t i = 0; i < count; i++)
-        meant[m->blocks.body[m->row_of[ids[i]]]] = 1;
+        meant[m->blocks.body[tl_block_row_quiet(m, ids[i])]] = 1;
     for (size_t i = 0; i < m->face_load_count; i++) {
         uint32_t row = tl_block_row_quiet(m, m->face_loads[i].block);
         if (row != TL_NO_ROW && !meant[m->blocks.body[row]])
@@ -198,7 +198,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     if (count)
         note_loads(m);
     for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         tl_vec3 from = tl_v3_sub(tl_v3_sub(load->at, m->origin), tl_body_place(&m->bodies, body));
         m->bodies.load[body] =
             (tl_body_load){load->force, load->moment,
@@ -315,7 +315,7 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
     record->angular_velocity = drive->angular_velocity;
     uint32_t index = (uint32_t)(record - m->drives) + 1;
     for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         if (m->bodies.drive[body] == index)
             continue;
         tl_drive_leave(m, body);

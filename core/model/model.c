@@ -213,9 +213,22 @@ tl_id tl_split_of(const tl_model *m, tl_id block)
     return split ? split->whole : TL_NO_ID;
 }
 
+/* Ids ascend with the rows. */
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id)
 {
-    return id != TL_NO_ID && id < m->next_id ? m->row_of[id] : TL_NO_ROW;
+    const tl_blocks *b = &m->blocks;
+    uint32_t row = 0, end = (uint32_t)b->table.rows;
+    if (end == 0 || id < b->id[0] || id > b->id[end - 1])
+        return TL_NO_ROW;
+    if (b->id[end - 1] - b->id[0] == end - 1) { /* none is missing */
+        row = id - b->id[0];
+    } else {
+        while (end - row > 1) {
+            uint32_t middle = row + (end - row) / 2;
+            *(b->id[middle] <= id ? &row : &end) = middle;
+        }
+    }
+    return b->id[row] == id && (m->gone == 0 || b->stays[row]) ? row : TL_NO_ROW;
 }
 
 uint32_t tl_block_row(tl_model *m, tl_id id)

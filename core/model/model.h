@@ -172,8 +172,7 @@ struct tl_model {
     tl_blocks blocks;
     tl_bodies bodies;
     uint32_t *members; /* block rows, body by body, ascending */
-    uint32_t *row_of;  /* [next_id] row of a block id, or TL_NO_ROW */
-    size_t member_capacity, row_of_capacity;
+    size_t member_capacity;
     tl_id next_id;
     size_t gone;          /* rows of blocks that are deleted */
     uint64_t structure;   /* counts changes of the rows */

@@ -472,7 +472,7 @@ static tl_status regroup_by(tl_model *m, const tl_id *ids, size_t count,
     if (status == TL_OK) {
         tl_bodies_groups(m, group);
         for (size_t i = 0; i < count; i++)
-            chosen[m->row_of[ids[i]]] = 1;
+            chosen[tl_block_row_quiet(m, ids[i])] = 1;
         change(m, chosen, group);
         status = tl_bodies_regroup(m, group);
     }
@@ -524,7 +524,7 @@ static tl_status check_spin(tl_model *m, const tl_id *ids, size_t count)
 {
     const tl_bodies *b = &m->bodies;
     for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         double speed = tl_v3_norm(b->v[body]) + tl_v3_norm(b->w[body]) * b->radius[body];
         if (b->member_count[body] > 1 && !(speed <= TL_FASTEST))
             return tl_fail(&m->error, TL_E_NUMERIC,

@@ -16,26 +16,19 @@
 /* Constant: inertia (20) of the paper over m r^2, that of a ball. The paper does not print it. */
 #define ROUND_COEFFICIENT 0.4
 
-bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id)
+bool tl_rows_reserve(tl_model *m, size_t count)
 {
     if (!tl_table_reserve(&m->blocks.table, count) || !tl_table_reserve(&m->bodies.table, count))
         return false;
     /* by an eighth more than is needed: blocks may come one by one */
-    size_t ids = (size_t)next_id + 1;
-    return (count + 1 <= m->member_capacity ||
-            tl_fit(&m->members, &m->member_capacity, count + count / 8 + 1, sizeof *m->members)) &&
-           (ids <= m->row_of_capacity ||
-            tl_fit(&m->row_of, &m->row_of_capacity, ids + ids / 8, sizeof *m->row_of));
+    return count + 1 <= m->member_capacity ||
+           tl_fit(&m->members, &m->member_capacity, count + count / 8 + 1, sizeof *m->members);
 }
 
 void tl_rows_refresh(tl_model *m)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
-    for (tl_id id = 0; id < m->next_id; id++)
-        m->row_of[id] = TL_NO_ROW;
-    for (uint32_t row = 0; row < blocks->table.rows; row++)
-        m->row_of[blocks->id[row]] = row;
     for (uint32_t body = 0; body < bodies->table.rows; body++)
         bodies->member_count[body] = 0;
     for (uint32_t row = 0; row < blocks->table.rows; row++)
@@ -57,7 +50,6 @@ void tl_rows_added(tl_model *m, uint32_t first)
 {
     for (uint32_t row = first; row < m->blocks.table.rows; row++) {
         uint32_t body = m->blocks.body[row];
-        m->row_of[m->blocks.id[row]] = row;
         m->bodies.member_start[body] = row; /* every block before is a member of one body */
         m->bodies.member_count[body] = 1;
         m->members[row] = row;

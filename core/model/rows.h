@@ -5,10 +5,10 @@
 #include "geometry/measure.h"
 #include "model/model.h"
 
-/* Makes room for `count` blocks and as many bodies, and for the ids below `next_id`. */
-bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id);
-/* Derives the members of all bodies and the id-to-row table after rows have changed; the memory must
- * have been reserved. Counts a change of structure. */
+/* Makes room for `count` blocks and as many bodies. */
+bool tl_rows_reserve(tl_model *m, size_t count);
+/* Derives the members of all bodies after rows have changed; the memory must have been reserved. Counts a change of
+ * structure. */
 void tl_rows_refresh(tl_model *m);
 /* The same where single blocks, bodies of their own, have been added from row `first` on. */
 void tl_rows_added(tl_model *m, uint32_t first);

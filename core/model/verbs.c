@@ -27,7 +27,7 @@ tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidde
     if (status != TL_OK)
         return status;
     for (size_t i = 0; i < count; i++)
-        m->blocks.hidden[m->row_of[ids[i]]] = hidden;
+        m->blocks.hidden[tl_block_row_quiet(m, ids[i])] = hidden;
     return TL_OK;
 }
 
@@ -35,7 +35,7 @@ tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidde
 static bool are_single(const tl_model *m, const tl_id *ids, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (m->bodies.member_count[m->blocks.body[m->row_of[ids[i]]]] > 1)
+        if (m->bodies.member_count[m->blocks.body[tl_block_row_quiet(m, ids[i])]] > 1)
             return false;
     return true;
 }
@@ -43,7 +43,7 @@ static bool are_single(const tl_model *m, const tl_id *ids, size_t count)
 /* Deletes a block that has no part in a body of several. Its row goes with others. */
 static void delete_block(tl_model *m, tl_id id)
 {
-    uint32_t row = m->row_of[id];
+    uint32_t row = tl_block_row_quiet(m, id);
     if (row == TL_NO_ROW) /* named twice */
         return;
     m->record.deleted += m->blocks.volume[row];
@@ -52,7 +52,6 @@ static void delete_block(tl_model *m, tl_id id)
     tl_poly_free(m->blocks.shape[row]);
     m->blocks.shape[row] = NULL;
     m->blocks.stays[row] = false;
-    m->row_of[id] = TL_NO_ROW;
     m->gone++;
 }
 
@@ -66,7 +65,7 @@ static tl_status part_blocks(tl_model *m, const tl_id *ids, size_t count)
     if (status == TL_OK) {
         memset(keep, 1, m->blocks.table.rows);
         for (size_t i = 0; i < count; i++)
-            keep[m->row_of[ids[i]]] = 0;
+            keep[tl_block_row_quiet(m, ids[i])] = 0;
         tl_bodies_groups(m, group);
         status = tl_bodies_fall_apart(m, keep, group);
     }
@@ -119,7 +118,7 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
         return status;
     bool changed = false;
     for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         tl_vec3 *v = &m->bodies.v[body];
         constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
@@ -144,7 +143,7 @@ tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
         return status;
     bool changed = false;
     for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
         if (m->bodies.fixed[body])
@@ -170,7 +169,7 @@ tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t cou
     if (count && !tl_blocks_hold_base(m))
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < count; i++)
-        displacement_from_now(m, m->row_of[ids[i]]);
+        displacement_from_now(m, tl_block_row_quiet(m, ids[i]));
     return TL_OK;
 }
 
@@ -201,8 +200,8 @@ static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl
         return tl_fail(&m->error, TL_E_ARGUMENT, "set: density = %g kg/m3 must be > 0",
                        set->density);
     for (size_t i = 0; i < count && !isnan(set->density); i++) {
-        tl_status status =
-            tl_check_measures(&m->error, m->blocks.shape[m->row_of[ids[i]]], set->density);
+        tl_status status = tl_check_measures(
+            &m->error, m->blocks.shape[tl_block_row_quiet(m, ids[i])], set->density);
         if (status != TL_OK)
             return tl_error_prefix(&m->error, "set: density = %g kg/m3, block %u: ", set->density,
                                    ids[i]);
@@ -219,7 +218,7 @@ static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl
 static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (m->bodies.member_count[m->blocks.body[m->row_of[ids[i]]]] > 1)
+        if (m->bodies.member_count[m->blocks.body[tl_block_row_quiet(m, ids[i])]] > 1)
             return true;
     return false;
 }
@@ -237,7 +236,7 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
 {
     tl_bodies *b = &m->bodies;
     for (size_t i = 0; i < count; i++) {
-        uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
+        uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
         if (given(set->velocity) && moved) {
             double mass = m->blocks.density[row] * m->blocks.volume[row];
             tl_vec3 arm = tl_m3_mul(&b->pose[body].r, tl_block_local(m, row));
@@ -250,7 +249,7 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
             tl_load_begins_anew(m, body);
     }
     for (size_t i = 0; i < count && given(set->velocity); i++) {
-        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         b->v[body] = set->velocity;
         if (moved && b->member_count[body] > 1)
             b->v[body] = tl_v3_sub(
@@ -283,7 +282,7 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
         return tl_fail_memory(&m->error);
     }
     for (size_t i = 0; i < count; i++) {
-        uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
+        uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
         if (set->group)
             m->blocks.group[row] = group;
         if (!isnan(set->density)) {

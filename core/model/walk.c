@@ -47,7 +47,6 @@ void tl_model_walk(tl_model *m, const tl_walk *walk)
     tl_walk_table(walk, TL_KEEP_STATE, "blocks", &m->blocks.table, offsetof(tl_memory, blocks));
     tl_walk_table(walk, TL_KEEP_STATE, "bodies", &m->bodies.table, offsetof(tl_memory, bodies));
     LIST(DERIVED, members, member_capacity, member_capacity);
-    LIST(DERIVED, row_of, row_of_capacity, row_of_capacity);
     VALUE(STATE, record.cuts);
     VALUE(STATE, record.refused);
     VALUE(STATE, record.coincident);

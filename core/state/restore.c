@@ -408,26 +408,15 @@ static tl_status share_planes(tl_model *m)
     return status;
 }
 
-/* The lists that follow from the rows. The row of each number that a block has ever had is in the file, so that there is no more memory for
- * them than a file of its size may ask for. */
-static tl_status derive_rows(tl_model *m, const tl_archive *a)
+/* The lists that follow from the rows. */
+static tl_status derive_rows(tl_model *m)
 {
     const uint64_t structure = m->structure;
-    const tl_chunk *chunk = tl_archive_find(a, "blocks.row_of");
-    if (!chunk || chunk->items != m->next_id || chunk->size != sizeof *m->row_of)
-        return tl_archive_bad(a, &m->error, "'blocks.row_of' is missing or does not fit");
-    uint32_t *rows = malloc(((size_t)m->next_id + 1) * sizeof *rows);
-    if (!rows || !tl_rows_reserve(m, m->blocks.table.rows, m->next_id)) {
-        free(rows);
+    if (!tl_rows_reserve(m, m->blocks.table.rows))
         return tl_fail_memory(&m->error);
-    }
     tl_rows_refresh(m);
     m->structure = structure;
-    bool fits = tl_archive_get(a, "blocks.row_of", rows, sizeof *rows, m->next_id) &&
-                memcmp(rows, m->row_of, m->next_id * sizeof *rows) == 0;
-    free(rows);
-    return fits ? share_planes(m)
-                : tl_archive_bad(a, &m->error, "'blocks.row_of' is missing or does not fit");
+    return share_planes(m);
 }
 
 static tl_status read_rows(tl_model *m, const tl_archive *a)
@@ -447,7 +436,7 @@ static tl_status read_rows(tl_model *m, const tl_archive *a)
         status = unsound(a, m, rows_unsound(m, m->group_count, drives_in(a)));
     if (status == TL_OK)
         status = tl_shapes_restore(m, a);
-    return status == TL_OK ? derive_rows(m, a) : status;
+    return status == TL_OK ? derive_rows(m) : status;
 }
 
 /* ---------------------------------------------------------------- step ------------------- */

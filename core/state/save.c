@@ -101,27 +101,12 @@ static bool save_planes(tl_archive_writer *w, const tl_model *m)
     return planes != NULL;
 }
 
-/* The row of each number that a block has ever had: what is kept for each of them takes memory (restore.c). */
-static bool save_rows_of_ids(tl_archive_writer *w, const tl_model *m)
-{
-    uint32_t *rows = malloc(((size_t)m->next_id + 1) * sizeof *rows);
-    for (tl_id id = 0; rows && id < m->next_id; id++)
-        rows[id] = TL_NO_ROW;
-    for (uint32_t row = 0; rows && row < m->blocks.table.rows; row++)
-        rows[m->blocks.id[row]] = row;
-    if (rows)
-        tl_archive_put(w, "blocks.row_of", rows, sizeof *rows, (size_t)m->next_id);
-    free(rows);
-    return rows != NULL;
-}
-
 static void save_all(tl_archive_writer *w, tl_model *m)
 {
     const tl_walk walk = {save_entry, w};
     tl_archive_put(w, "program", TALUS_VERSION, 1, strlen(TALUS_VERSION));
     tl_model_walk(m, &walk);
-    bool saved = save_rows_of_ids(w, m) && tl_shapes_save(m, w) &&
-                 save_names(w, "groups", m->group_count, group_name, m) &&
+    bool saved = tl_shapes_save(m, w) && save_names(w, "groups", m->group_count, group_name, m) &&
                  save_names(w, "joints.names", m->joint_count, joint_name, m) &&
                  save_planes(w, m) && save_drives(w, m);
     w->lost = w->lost || !saved;

@@ -292,7 +292,7 @@ static void edit(tl_model *m, uint64_t *seed)
     case 2: scene_ok(m, tl_blocks_unjoin(m, &id, 1)); break;
     case 3: scene_ok(m, tl_blocks_hide(m, &id, 1, check_random(seed) < 0.5)); break;
     case 4:
-        joint_plane(m, scene_direction(seed), tl_block_centroid(m, m->row_of[id]),
+        joint_plane(m, scene_direction(seed), tl_block_centroid(m, tl_block_row_quiet(m, id)),
                     check_random(seed) < 0.7 ? 0.1 : (double)INFINITY);
         break;
     case 5: add_box(m); break;
