@@ -45,17 +45,7 @@ typedef struct tl_facing_place {
 TL_INLINE tl_facing_place tl_facing_ride(const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d,
                                          const tl_mat3 *turn, tl_vec3 shift, double ride)
 {
-    tl_mat3 g = {
-        {{rb->m[0][0] * turn->m[0][0] + rb->m[0][1] * turn->m[0][1] + rb->m[0][2] * turn->m[0][2],
-          rb->m[0][0] * turn->m[1][0] + rb->m[0][1] * turn->m[1][1] + rb->m[0][2] * turn->m[1][2],
-          rb->m[0][0] * turn->m[2][0] + rb->m[0][1] * turn->m[2][1] + rb->m[0][2] * turn->m[2][2]},
-         {rb->m[1][0] * turn->m[0][0] + rb->m[1][1] * turn->m[0][1] + rb->m[1][2] * turn->m[0][2],
-          rb->m[1][0] * turn->m[1][0] + rb->m[1][1] * turn->m[1][1] + rb->m[1][2] * turn->m[1][2],
-          rb->m[1][0] * turn->m[2][0] + rb->m[1][1] * turn->m[2][1] + rb->m[1][2] * turn->m[2][2]},
-         {rb->m[2][0] * turn->m[0][0] + rb->m[2][1] * turn->m[0][1] + rb->m[2][2] * turn->m[0][2],
-          rb->m[2][0] * turn->m[1][0] + rb->m[2][1] * turn->m[1][1] + rb->m[2][2] * turn->m[1][2],
-          rb->m[2][0] * turn->m[2][0] + rb->m[2][1] * turn->m[2][1] +
-              rb->m[2][2] * turn->m[2][2]}}};
+    tl_mat3 g = tl_m3_product_t(rb, turn);
     tl_vec3 carried = tl_m3_mul(&g, shift);
     tl_facing_place out;
     out.to = (tl_mat3){{{ra->m[0][0] + ride * (g.m[0][0] - ra->m[0][0]),

@@ -11,10 +11,7 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
     uint32_t body_a = blocks->body[a], body_b = blocks->body[b];
     tl_pair_view view = {.a = blocks->shape[a], .b = blocks->shape[b]};
     const tl_mat3 *ra = &bodies->pose[body_a].r, *rb = &bodies->pose[body_b].r;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            view.turn.m[i][j] =
-                ra->m[0][i] * rb->m[0][j] + ra->m[1][i] * rb->m[1][j] + ra->m[2][i] * rb->m[2][j];
+    view.turn = tl_m3_tproduct(ra, rb);
     view.shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b));
     view.size = fmin(blocks->size[a], blocks->size[b]);
     view.mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b]);

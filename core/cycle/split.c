@@ -633,8 +633,7 @@ static tl_sym3 mean_stress(const tl_model *m, const tl_split_part *parts, size_t
             add_stress(m, row, parts[0].place, &sum);
             volume += m->blocks.volume[row];
         }
-    double by = 1 / volume;
-    return (tl_sym3){by * sum.xx, by * sum.yy, by * sum.zz, by * sum.xy, by * sum.yz, by * sum.zx};
+    return tl_s3_scale(1 / volume, sum);
 }
 
 /* Puts a point back to how it was made. In this step its law has been given roundings of closure and motion: what it has made of them,

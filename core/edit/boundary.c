@@ -85,13 +85,16 @@ static tl_point2 flatten(const tl_outer_face *f, tl_vec3 x)
     return (tl_point2){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
 }
 
-/* Place of corner i of a face, relative to the model's origin. */
+/* Places of a vertex and of corner i of a face, relative to the model's origin. */
+static tl_vec3 vertex_at(const tl_model *m, uint32_t row, uint32_t vertex)
+{
+    return tl_body_point(&m->bodies, m->blocks.body[row], m->blocks.shape[row]->vertex[vertex]);
+}
+
 static tl_vec3 corner_at(const tl_model *m, uint32_t row, uint32_t face, uint32_t i)
 {
     const tl_poly *p = m->blocks.shape[row];
-    uint32_t body = m->blocks.body[row];
-    tl_vec3 local = p->vertex[p->loop[p->start[face] + i]];
-    return tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.pose[body].r, local));
+    return vertex_at(m, row, p->loop[p->start[face] + i]);
 }
 
 /* Adds `sign` times the integrals over a polygon. */
@@ -235,13 +238,6 @@ static tl_vec3 side_normal(int32_t side)
         [TL_SIDE_XMIN] = {-1, 0, 0}, [TL_SIDE_XMAX] = {1, 0, 0},  [TL_SIDE_YMIN] = {0, -1, 0},
         [TL_SIDE_YMAX] = {0, 1, 0},  [TL_SIDE_ZMIN] = {0, 0, -1}, [TL_SIDE_ZMAX] = {0, 0, 1}};
     return normals[side];
-}
-
-static tl_vec3 vertex_at(const tl_model *m, uint32_t row, uint32_t vertex)
-{
-    uint32_t body = m->blocks.body[row];
-    return tl_v3_add(tl_body_place(&m->bodies, body),
-                     tl_m3_mul(&m->bodies.pose[body].r, m->blocks.shape[row]->vertex[vertex]));
 }
 
 /* The farthest place of a vertex along a direction, relative to the origin. */

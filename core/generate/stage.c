@@ -44,8 +44,7 @@ static tl_stage_ball ball_of(const tl_model *m, const tl_stage_block *block)
     tl_stage_ball ball = {center, sqrt(r2) * (1 + BALL_MARGIN)};
     if (block->source != TL_NO_ROW) {
         uint32_t body = m->blocks.body[block->source];
-        ball.center =
-            tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.pose[body].r, center));
+        ball.center = tl_body_point(&m->bodies, body, center);
     }
     ball.radius += BALL_ROUNDINGS * (tl_v3_norm(center) + tl_v3_norm(ball.center));
     return ball;

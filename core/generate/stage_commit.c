@@ -78,13 +78,12 @@ static tl_cut_load load_of(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
     tl_body_load load = b->load[body];
-    tl_vec3 arm = tl_m3_mul(&b->pose[body].r, load.arm);
     return (tl_cut_load){.load = load,
                          .before = b->load_before[body],
                          .changed = tl_load_changed(m, body),
                          .rest = {load.force, load.moment},
                          .placed = !tl_v3_is_zero(load.arm),
-                         .point = tl_v3_add(tl_body_place(b, body), arm),
+                         .point = tl_body_point(b, body, load.arm),
                          .nearest = TL_NO_ROW,
                          .distance = INFINITY};
 }
@@ -190,16 +189,9 @@ static void visit(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads, 
             each(m, tl_block_row_quiet(m, ids[i]), &loads->list[loads->of[i]]);
 }
 
-static tl_vec3 place_of(const tl_model *m, uint32_t row)
-{
-    uint32_t body = m->blocks.body[row];
-    return tl_v3_add(tl_body_place(&m->bodies, body),
-                     tl_m3_mul(&m->bodies.pose[body].r, tl_block_local(m, row)));
-}
-
 static tl_lump lump_of(const tl_model *m, uint32_t row)
 {
-    return (tl_lump){m->blocks.density[row] * m->blocks.volume[row], place_of(m, row),
+    return (tl_lump){m->blocks.density[row] * m->blocks.volume[row], tl_block_place(m, row),
                      tl_block_inertia(m, row)};
 }
 
@@ -207,9 +199,7 @@ static tl_lump lump_of(const tl_model *m, uint32_t row)
 static double distance_of(const tl_model *m, uint32_t row, tl_vec3 place)
 {
     const tl_poly *shape = m->blocks.shape[row];
-    uint32_t body = m->blocks.body[row];
-    tl_vec3 x =
-        tl_m3_tmul(&m->bodies.pose[body].r, tl_v3_sub(place, tl_body_place(&m->bodies, body)));
+    tl_vec3 x = tl_body_local(&m->bodies, m->blocks.body[row], place);
     double most = -INFINITY;
     for (uint32_t f = 0; f < shape->face_count; f++)
         most = fmax(most, tl_v3_dot(shape->plane[f].normal, x) - shape->plane[f].offset);
@@ -295,9 +285,8 @@ static uint32_t part_of(const tl_model *m, uint32_t row, const tl_cut_face *face
 {
     const tl_poly *shape = m->blocks.shape[row];
     uint32_t body = m->blocks.body[row];
-    const tl_mat3 *r = &m->bodies.pose[body].r;
-    tl_vec3 n = tl_m3_tmul(r, face->normal);
-    tl_vec3 x = tl_m3_tmul(r, tl_v3_sub(face->plate.place, tl_body_place(&m->bodies, body)));
+    tl_vec3 n = tl_m3_tmul(&m->bodies.pose[body].r, face->normal);
+    tl_vec3 x = tl_body_local(&m->bodies, body, face->plate.place);
     for (uint32_t f = 0; f < shape->face_count; f++)
         if (tl_v3_norm2(tl_v3_sub(shape->plane[f].normal, n)) < SAME_FACE * SAME_FACE &&
             fabs(tl_v3_dot(n, x) - shape->plane[f].offset) < SAME_PLACE * shape->size)

@@ -70,7 +70,7 @@ static tl_quat quaternion(const tl_mat3 *r)
 /* Column `from` of `r` as a unit vector whose largest component is positive. */
 static tl_vec3 axis(const tl_mat3 *r, int from)
 {
-    tl_vec3 v = {r->m[0][from], r->m[1][from], r->m[2][from]};
+    tl_vec3 v = tl_m3_column(r, from);
     double ax = fabs(v.x), ay = fabs(v.y), az = fabs(v.z);
     double largest = ax >= ay && ax >= az ? v.x : ay >= az ? v.y : v.z;
     return largest < 0 ? tl_v3_neg(v) : v;

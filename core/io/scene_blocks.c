@@ -102,10 +102,9 @@ static void put_block(const frame *f, size_t i)
     const tl_model *m = f->model;
     const tl_bodies *bodies = &m->bodies;
     uint32_t row = (uint32_t)i, body = m->blocks.body[row];
-    tl_vec3 arm = tl_m3_mul(&bodies->pose[body].r, tl_block_local(m, row));
     tl_quat q = bodies->q[body];
     tl_put_u32(f->id + 4 * i, m->blocks.id[row]);
-    tl_put_vec3(f->place + 12 * i, tl_v3_add(tl_body_place(bodies, body), arm));
+    tl_put_vec3(f->place + 12 * i, tl_block_place(m, row));
     unsigned char *turn = f->turn + 16 * i;
     turn = tl_put_f32(turn, q.x);
     turn = tl_put_f32(turn, q.y);

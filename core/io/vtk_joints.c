@@ -241,8 +241,7 @@ static unsigned char *put_contact(const joints *j, size_t i, corner_fn of, unsig
     const tl_model *m = j->model;
     uint32_t block = m->detect->contacts.a[j->rows[j->contact[i]]], body = m->blocks.body[block];
     for (uint32_t k = j->of.start[i]; k < j->of.start[i + 1]; k++) {
-        tl_vec3 arm = tl_v3_sub(j->of.corner[k], tl_body_place(&m->bodies, body));
-        to = of(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm), to);
+        to = of(m, block, tl_body_local(&m->bodies, body, j->of.corner[k]), to);
     }
     return to;
 }

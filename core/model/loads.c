@@ -35,10 +35,8 @@ void tl_lump_close(tl_lump *sum)
 
 void tl_lump_add_inertia(tl_lump *sum, const tl_lump *part)
 {
-    tl_sym3 add = tl_inertia_about(part->inertia, part->mass, tl_v3_sub(part->place, sum->place));
-    tl_sym3 *to = &sum->inertia;
-    *to = (tl_sym3){to->xx + add.xx, to->yy + add.yy, to->zz + add.zz,
-                    to->xy + add.xy, to->yz + add.yz, to->zx + add.zx};
+    tl_vec3 arm = tl_v3_sub(part->place, sum->place);
+    sum->inertia = tl_s3_madd(sum->inertia, 1, tl_inertia_about(part->inertia, part->mass, arm));
 }
 
 tl_wrench tl_lump_share(const tl_lump *part, const tl_lump *all, tl_wrench whole)

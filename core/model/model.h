@@ -258,6 +258,17 @@ static inline tl_vec3 tl_body_place(const tl_bodies *b, uint32_t body)
     return tl_v3_add(b->pose[body].x_ref, b->pose[body].u);
 }
 
+/* A point of a body's frame, relative to the model's origin; and the way back. */
+static inline tl_vec3 tl_body_point(const tl_bodies *b, uint32_t body, tl_vec3 local)
+{
+    return tl_v3_add(tl_body_place(b, body), tl_m3_mul(&b->pose[body].r, local));
+}
+
+static inline tl_vec3 tl_body_local(const tl_bodies *b, uint32_t body, tl_vec3 place)
+{
+    return tl_m3_tmul(&b->pose[body].r, tl_v3_sub(place, tl_body_place(b, body)));
+}
+
 /* From body a's centroid to body b's. The references are subtracted first, so that a small relative
  * displacement keeps its digits. */
 static inline tl_vec3 tl_apart(tl_vec3 x_ref_a, tl_vec3 u_a, tl_vec3 x_ref_b, tl_vec3 u_b)
@@ -274,9 +285,7 @@ static inline tl_vec3 tl_body_apart(const tl_bodies *bodies, uint32_t a, uint32_
 /* Present place of a point of a shape, in the user's coordinates. */
 static inline tl_vec3 tl_model_point(const tl_model *m, uint32_t body, tl_vec3 local)
 {
-    tl_vec3 x =
-        tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.pose[body].r, local));
-    return tl_v3_add(m->origin, x);
+    return tl_v3_add(m->origin, tl_body_point(&m->bodies, body, local));
 }
 
 /* Load of a body, zero where there is none. */
@@ -307,6 +316,12 @@ static inline bool tl_bodies_may_join(const tl_bodies *b, uint32_t one, uint32_t
 static inline tl_vec3 tl_block_local(const tl_model *m, uint32_t row)
 {
     return m->blocks.local ? m->blocks.local[row] : tl_v3(0, 0, 0);
+}
+
+/* Present place of a block's centroid, relative to the origin. */
+static inline tl_vec3 tl_block_place(const tl_model *m, uint32_t row)
+{
+    return tl_body_point(&m->bodies, m->blocks.body[row], tl_block_local(m, row));
 }
 
 /* Centroid and displacement of a block, in the user's coordinates. */

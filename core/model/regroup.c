@@ -19,25 +19,11 @@
  * that tolerances let exist. */
 #define WHOLE 1e-12
 
-/* R I R^T */
-static tl_sym3 turned(tl_sym3 t, const tl_mat3 *r)
-{
-    tl_vec3 row[3];
-    for (int i = 0; i < 3; i++)
-        row[i] = tl_s3_mul(t, tl_v3(r->m[i][0], r->m[i][1], r->m[i][2]));
-    tl_vec3 x = {r->m[0][0], r->m[0][1], r->m[0][2]};
-    tl_vec3 y = {r->m[1][0], r->m[1][1], r->m[1][2]};
-    tl_vec3 z = {r->m[2][0], r->m[2][1], r->m[2][2]};
-    return (tl_sym3){tl_v3_dot(x, row[0]), tl_v3_dot(y, row[1]), tl_v3_dot(z, row[2]),
-                     tl_v3_dot(x, row[1]), tl_v3_dot(y, row[2]), tl_v3_dot(z, row[0])};
-}
-
 tl_sym3 tl_block_inertia(const tl_model *m, uint32_t row)
 {
-    tl_sym3 t =
-        turned(tl_poly_mass(m->blocks.shape[row]).inertia, &m->bodies.pose[m->blocks.body[row]].r);
-    double d = m->blocks.density[row];
-    return (tl_sym3){d * t.xx, d * t.yy, d * t.zz, d * t.xy, d * t.yz, d * t.zx};
+    const tl_mat3 *r = &m->bodies.pose[m->blocks.body[row]].r;
+    return tl_s3_scale(m->blocks.density[row],
+                       tl_s3_turn(tl_poly_mass(m->blocks.shape[row]).inertia, r));
 }
 
 tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row)
@@ -62,30 +48,22 @@ void tl_bodies_groups(const tl_model *m, uint32_t *group)
         group[row] = m->members[m->bodies.member_start[m->blocks.body[row]]];
 }
 
-/* A block's centroid, relative to the model's origin. */
-static tl_vec3 part_place(const tl_model *m, uint32_t row)
-{
-    uint32_t body = m->blocks.body[row];
-    return tl_v3_add(tl_body_place(&m->bodies, body),
-                     tl_m3_mul(&m->bodies.pose[body].r, tl_block_local(m, row)));
-}
-
 static parts sum_parts(const tl_model *m, const uint32_t *rows, size_t count)
 {
     const tl_blocks *b = &m->blocks;
     parts sum = {.leader = b->body[rows[0]]};
-    tl_vec3 zero = part_place(m, rows[0]), offset = {0, 0, 0};
+    tl_vec3 zero = tl_block_place(m, rows[0]), offset = {0, 0, 0};
     for (size_t i = 0; i < count; i++) {
         double mass = b->density[rows[i]] * b->volume[rows[i]];
         sum.mass += mass;
-        offset = tl_v3_madd(offset, mass, tl_v3_sub(part_place(m, rows[i]), zero));
+        offset = tl_v3_madd(offset, mass, tl_v3_sub(tl_block_place(m, rows[i]), zero));
         sum.momentum = tl_v3_madd(sum.momentum, mass, tl_block_velocity(m, rows[i]));
         sum.fixed |= m->bodies.fixed[b->body[rows[i]]];
     }
     sum.place = tl_v3_madd(zero, 1 / sum.mass, offset);
     for (size_t i = 0; i < count; i++) {
         double mass = b->density[rows[i]] * b->volume[rows[i]];
-        tl_vec3 arm = tl_v3_sub(part_place(m, rows[i]), sum.place);
+        tl_vec3 arm = tl_v3_sub(tl_block_place(m, rows[i]), sum.place);
         tl_vec3 own = tl_s3_mul(tl_block_inertia(m, rows[i]), m->bodies.w[b->body[rows[i]]]);
         sum.spin = tl_v3_add(sum.spin, own);
         sum.spin = tl_v3_madd(sum.spin, mass, tl_v3_cross(arm, tl_block_velocity(m, rows[i])));
@@ -98,15 +76,9 @@ static tl_status new_shape(tl_model *m, const parts *sum, uint32_t row, tl_poly 
 {
     const tl_bodies *b = &m->bodies;
     uint32_t old = m->blocks.body[row];
-    tl_vec3 shift =
-        tl_m3_tmul(&b->pose[sum->leader].r, tl_v3_sub(tl_body_place(b, old), sum->place));
-    tl_mat3 turn;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            const tl_mat3 *to = &b->pose[sum->leader].r, *from = &b->pose[old].r;
-            turn.m[i][j] = to->m[0][i] * from->m[0][j] + to->m[1][i] * from->m[1][j] +
-                           to->m[2][i] * from->m[2][j];
-        }
+    const tl_mat3 *to = &b->pose[sum->leader].r;
+    tl_vec3 shift = tl_m3_tmul(to, tl_v3_sub(tl_body_place(b, old), sum->place));
+    tl_mat3 turn = tl_m3_tproduct(to, &b->pose[old].r);
     return tl_poly_transformed(m->blocks.shape[row], old == sum->leader ? NULL : &turn, shift,
                                shape, &m->error);
 }

@@ -107,12 +107,6 @@ void tl_block_measure(tl_model *m, uint32_t row, double volume)
     b->mean_face[row] = area / shape->face_count;
 }
 
-static tl_sym3 sum_scaled(tl_sym3 a, double s, tl_sym3 b)
-{
-    return (tl_sym3){a.xx + s * b.xx, a.yy + s * b.yy, a.zz + s * b.zz,
-                     a.xy + s * b.xy, a.yz + s * b.yz, a.zx + s * b.zx};
-}
-
 /* What a body sums over its blocks. */
 typedef struct body_sum {
     tl_sym3 inertia;
@@ -124,7 +118,7 @@ typedef struct body_sum {
 static void add_block(body_sum *sum, const tl_poly *shape, double density, const tl_mass *one)
 {
     sum->mass += density * one->volume;
-    sum->inertia = sum_scaled(sum->inertia, density,
+    sum->inertia = tl_s3_madd(sum->inertia, density,
                               tl_inertia_about(one->inertia, one->volume, one->centroid));
     for (uint32_t v = 0; v < shape->vertex_count; v++) {
         double r = tl_v3_norm(shape->vertex[v]);

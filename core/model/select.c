@@ -23,11 +23,9 @@ static bool has_joint(const tl_poly *shape, tl_tag pattern)
 
 static bool contains(const tl_model *m, uint32_t row, tl_vec3 point)
 {
-    uint32_t body = m->blocks.body[row];
-    tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, m->origin), tl_body_place(&m->bodies, body));
     const tl_poly *shape = m->blocks.shape[row];
-    return tl_poly_contains(shape, tl_m3_tmul(&m->bodies.pose[body].r, relative),
-                            BOUNDARY * shape->size);
+    tl_vec3 local = tl_body_local(&m->bodies, m->blocks.body[row], tl_v3_sub(point, m->origin));
+    return tl_poly_contains(shape, local, BOUNDARY * shape->size);
 }
 
 /* Signed height of a point over a half-space's plane. */

@@ -15,19 +15,9 @@ typedef struct motion {
     tl_vec3 way, turn;
 } motion;
 
-static tl_mat3 between(const tl_mat3 *from, const tl_mat3 *to)
-{
-    tl_mat3 out;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            out.m[i][j] = to->m[i][0] * from->m[j][0] + to->m[i][1] * from->m[j][1] +
-                          to->m[i][2] * from->m[j][2];
-    return out;
-}
-
 static motion motion_between(tl_vec3 point, const tl_pair_pose *from, const tl_pair_pose *to)
 {
-    tl_mat3 q = between(&from->turn, &to->turn);
+    tl_mat3 q = tl_m3_product_t(&to->turn, &from->turn);
     tl_vec3 arm = tl_v3_sub(from->shift, point);
     return (motion){.way = tl_v3_sub(tl_v3_sub(to->shift, point), tl_m3_mul(&q, arm)),
                     .turn = tl_v3_scale(0.5, tl_v3(q.m[2][1] - q.m[1][2], q.m[0][2] - q.m[2][0],
@@ -66,11 +56,7 @@ static tl_pair_view moved(const tl_pair_view *view, tl_vec3 point, int axis, dou
     tl_vec3 v = tl_v3_scale(0.5, way);
     tl_mat3 turn = tl_q_matrix(tl_q_unit((tl_quat){1 - 0.5 * half * half, v.x, v.y, v.z}));
     out.shift = tl_v3_add(point, tl_m3_mul(&turn, tl_v3_sub(view->shift, point)));
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            out.turn.m[i][j] = turn.m[i][0] * view->turn.m[0][j] +
-                               turn.m[i][1] * view->turn.m[1][j] +
-                               turn.m[i][2] * view->turn.m[2][j];
+    out.turn = tl_m3_product(&turn, &view->turn);
     return out;
 }
 

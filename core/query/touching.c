@@ -129,19 +129,12 @@ static double moved_of(const tl_model *m, uint32_t a, uint32_t b)
 static tl_pair_view view_of(const tl_model *m, uint32_t a, uint32_t b, bool now)
 {
     const place at = place_of(m, a, now), other = place_of(m, b, now);
-    tl_pair_view view = {.a = m->blocks.shape[a],
-                         .b = m->blocks.shape[b],
-                         .shift = tl_m3_tmul(&at.r, tl_v3_sub(other.x, at.x)),
-                         .size = fmin(m->blocks.size[a], m->blocks.size[b]),
-                         .mean_face = fmin(m->blocks.mean_face[a], m->blocks.mean_face[b])};
-    for (int j = 0; j < 3; j++) {
-        tl_vec3 column = {other.r.m[0][j], other.r.m[1][j], other.r.m[2][j]};
-        column = tl_m3_tmul(&at.r, column);
-        view.turn.m[0][j] = column.x;
-        view.turn.m[1][j] = column.y;
-        view.turn.m[2][j] = column.z;
-    }
-    return view;
+    return (tl_pair_view){.a = m->blocks.shape[a],
+                          .b = m->blocks.shape[b],
+                          .turn = tl_m3_tproduct(&at.r, &other.r),
+                          .shift = tl_m3_tmul(&at.r, tl_v3_sub(other.x, at.x)),
+                          .size = fmin(m->blocks.size[a], m->blocks.size[b]),
+                          .mean_face = fmin(m->blocks.mean_face[a], m->blocks.mean_face[b])};
 }
 
 static bool add(tl_touches *out, tl_touch touch)

@@ -118,10 +118,67 @@ static inline tl_vec3 tl_m3_tmul(const tl_mat3 *a, tl_vec3 v)
                      a->m[0][2] * v.x + a->m[1][2] * v.y + a->m[2][2] * v.z};
 }
 
+static inline tl_vec3 tl_m3_row(const tl_mat3 *a, int i)
+{
+    return (tl_vec3){a->m[i][0], a->m[i][1], a->m[i][2]};
+}
+
+static inline tl_vec3 tl_m3_column(const tl_mat3 *a, int j)
+{
+    return (tl_vec3){a->m[0][j], a->m[1][j], a->m[2][j]};
+}
+
+static inline tl_mat3 tl_m3_of_rows(tl_vec3 x, tl_vec3 y, tl_vec3 z)
+{
+    return (tl_mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+}
+
+/* a b */
+static inline tl_mat3 tl_m3_product(const tl_mat3 *a, const tl_mat3 *b)
+{
+    return tl_m3_of_rows(tl_m3_tmul(b, tl_m3_row(a, 0)), tl_m3_tmul(b, tl_m3_row(a, 1)),
+                         tl_m3_tmul(b, tl_m3_row(a, 2)));
+}
+
+/* transpose(a) b */
+static inline tl_mat3 tl_m3_tproduct(const tl_mat3 *a, const tl_mat3 *b)
+{
+    return tl_m3_of_rows(tl_m3_tmul(b, tl_m3_column(a, 0)), tl_m3_tmul(b, tl_m3_column(a, 1)),
+                         tl_m3_tmul(b, tl_m3_column(a, 2)));
+}
+
+/* a transpose(b) */
+static inline tl_mat3 tl_m3_product_t(const tl_mat3 *a, const tl_mat3 *b)
+{
+    return tl_m3_of_rows(tl_m3_mul(b, tl_m3_row(a, 0)), tl_m3_mul(b, tl_m3_row(a, 1)),
+                         tl_m3_mul(b, tl_m3_row(a, 2)));
+}
+
 static inline tl_vec3 tl_s3_mul(tl_sym3 a, tl_vec3 v)
 {
     return (tl_vec3){a.xx * v.x + a.xy * v.y + a.zx * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
                      a.zx * v.x + a.yz * v.y + a.zz * v.z};
+}
+
+static inline tl_sym3 tl_s3_scale(double s, tl_sym3 a)
+{
+    return (tl_sym3){s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.yz, s * a.zx};
+}
+
+/* a + s b */
+static inline tl_sym3 tl_s3_madd(tl_sym3 a, double s, tl_sym3 b)
+{
+    return (tl_sym3){a.xx + s * b.xx, a.yy + s * b.yy, a.zz + s * b.zz,
+                     a.xy + s * b.xy, a.yz + s * b.yz, a.zx + s * b.zx};
+}
+
+/* r a transpose(r): the tensor in the axes that the rotation r leads to. */
+static inline tl_sym3 tl_s3_turn(tl_sym3 a, const tl_mat3 *r)
+{
+    tl_vec3 x = tl_m3_row(r, 0), y = tl_m3_row(r, 1), z = tl_m3_row(r, 2);
+    tl_vec3 ax = tl_s3_mul(a, x), ay = tl_s3_mul(a, y), az = tl_s3_mul(a, z);
+    return (tl_sym3){tl_v3_dot(x, ax), tl_v3_dot(y, ay), tl_v3_dot(z, az),
+                     tl_v3_dot(x, ay), tl_v3_dot(y, az), tl_v3_dot(z, ax)};
 }
 
 static inline tl_quat tl_q_identity(void)
