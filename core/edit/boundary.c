@@ -12,6 +12,7 @@
 #include "contact/detection.h"
 #include "detect/detect.h"
 #include "geometry/point2.h"
+#include "geometry/seam.h"
 #include "model/loads.h"
 
 #include <math.h>
@@ -71,13 +72,11 @@ typedef struct body_sum {
  * The parts of faces that lie on no other block, and integrals over them.
  *
  * From a face's polygon the common parts with the faces that lie on it are taken away: those of contact patches, and those
- * of other blocks of the body in the same plane. Blocks do not overlap, so neither do these parts. Each is a convex polygon,
+ * of other blocks of the body. Blocks do not overlap, so neither do these parts. Each is a convex polygon,
  * over which polynomials of the second degree are integrated exactly: by triangles, at the middles of their edges. */
 
-/* Tolerance: share of a face that may be left bare for roundings, and tolerance of blocks of a body that fit: those of
- * seams. */
+/* Share of a face that may be left bare for roundings. */
 #define UNCOVERED 1e-5
-#define FIT 1e-6
 
 static tl_point2 flatten(const tl_outer_face *f, tl_vec3 x)
 {
@@ -154,16 +153,8 @@ static tl_status take_contacts(tl_model *m, tl_outer_face *f)
     return status;
 }
 
-/* Whether two faces of a body's blocks, in the body's frame, lie in one plane and face each other. */
-static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
-{
-    tl_plane p = a->plane[fa], q = b->plane[fb];
-    return tl_v3_norm(tl_v3_add(p.normal, q.normal)) < FIT &&
-           fabs(p.offset + q.offset) < FIT * fmin(a->size, b->size);
-}
-
-/* Takes away what lies on other blocks of the body. */
-static tl_status take_members(tl_model *m, tl_outer_face *f)
+/* Takes away what lies on other blocks of the body, and raises the share that may be left bare. */
+static tl_status take_members(tl_model *m, tl_outer_face *f, double *bare)
 {
     const tl_poly *shape = m->blocks.shape[f->row];
     uint32_t body = m->blocks.body[f->row];
@@ -172,7 +163,7 @@ static tl_status take_members(tl_model *m, tl_outer_face *f)
         const tl_poly *other = m->blocks.shape[member[i]];
         for (uint32_t g = 0; g < other->face_count && member[i] != f->row; g++) {
             tl_status status = TL_OK;
-            if (face_each_other(shape, f->face, other, g))
+            if (tl_poly_faces_meet(shape, f->face, other, g, bare))
                 status = take_away(m, f, member[i], g);
             if (status != TL_OK)
                 return status;
@@ -199,11 +190,11 @@ static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, tl_oute
         corners[i] = flatten(out, corner_at(m, row, face, i));
     add_polygon(&out->sums, corners, count, 1);
     free(corners);
-    double whole = out->sums.a;
+    double whole = out->sums.a, bare = UNCOVERED;
     tl_status status = take_contacts(m, out);
     if (status == TL_OK)
-        status = take_members(m, out);
-    if (out->sums.a <= UNCOVERED * whole)
+        status = take_members(m, out, &bare);
+    if (out->sums.a <= bare * whole)
         out->sums = (tl_area_sums){0};
     return status;
 }

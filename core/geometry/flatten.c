@@ -76,12 +76,8 @@ static bool allocate(flattener *w, const tl_poly *p)
 
 static tl_vec3 vector_area(const tl_poly *p, uint32_t face)
 {
-    const uint16_t *loop = p->loop + p->start[face];
-    tl_vec3 base = p->vertex[loop[0]], sum = {0, 0, 0};
-    for (uint32_t i = 1; i + 1 < tl_poly_face_size(p, face); i++)
-        sum = tl_v3_add(sum, tl_v3_cross(tl_v3_sub(p->vertex[loop[i]], base),
-                                         tl_v3_sub(p->vertex[loop[i + 1]], base)));
-    return tl_v3_scale(0.5, sum);
+    return tl_v3_scale(
+        0.5, tl_poly_fan_area(p->vertex, p->loop + p->start[face], tl_poly_face_size(p, face)));
 }
 
 typedef struct turned {

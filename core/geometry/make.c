@@ -29,12 +29,12 @@ static size_t allocation(size_t v, size_t f, size_t e)
 size_t tl_poly_bytes(const tl_poly *p)
 {
     return allocation(p->vertex_count, p->face_count, p->edge_count) +
-           (p->seams ? p->face_count + p->edge_count : 0) +
+           (p->seams ? p->face_count : 0) +
            (p->plane_count > p->face_count ? p->plane_count * sizeof *p->plane : 0);
 }
 
-/* No face is covered and no edge hidden: of all polyhedra without seams. */
-static const uint8_t no_seams[TL_POLY_MAX_EDGES];
+/* No face is covered: of all polyhedra without seams. */
+static const uint8_t no_seams[TL_POLY_MAX_FACES];
 
 /* The planes of the faces, in the allocation of the polyhedron. */
 static tl_plane *own_planes(tl_poly *p)
@@ -59,7 +59,7 @@ void tl_poly_clear_seams(tl_poly *p)
     if (p->seams)
         free((void *)(uintptr_t)p->covered);
     p->seams = false;
-    p->covered = p->hidden = no_seams;
+    p->covered = no_seams;
     forget_planes(p);
 }
 
@@ -80,13 +80,12 @@ bool tl_poly_add_planes(tl_poly *p, const tl_plane *planes, uint32_t count)
 
 uint8_t *tl_poly_open_seams(tl_poly *p)
 {
-    uint8_t *marks = calloc((size_t)p->face_count + p->edge_count, 1);
+    uint8_t *marks = calloc(p->face_count, 1);
     if (!marks)
         return NULL;
     tl_poly_clear_seams(p);
     p->seams = true;
     p->covered = marks;
-    p->hidden = marks + p->face_count;
     return marks;
 }
 
@@ -107,7 +106,7 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     p->loop = (uint16_t *)(p->edge + e);
     p->start = p->loop + 2 * e;
     p->seams = false;
-    p->covered = p->hidden = no_seams;
+    p->covered = no_seams;
     return p;
 }
 
@@ -228,13 +227,18 @@ double tl_poly_midway(double low, double high)
     return low == high ? low : 0.5 * (low + high);
 }
 
-tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count)
+tl_vec3 tl_poly_fan_area(const tl_vec3 *vertices, const uint16_t *loop, size_t count)
 {
     tl_vec3 base = vertices[loop[0]], sum = {0, 0, 0};
     for (size_t i = 1; i + 1 < count; i++)
         sum = tl_v3_add(sum, tl_v3_cross(tl_v3_sub(vertices[loop[i]], base),
                                          tl_v3_sub(vertices[loop[i + 1]], base)));
-    tl_plane plane = {.normal = tl_poly_normal(sum)};
+    return sum;
+}
+
+tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count)
+{
+    tl_plane plane = {.normal = tl_poly_normal(tl_poly_fan_area(vertices, loop, count))};
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < count; i++) {
         double height = tl_v3_dot(plane.normal, vertices[loop[i]]);
@@ -360,7 +364,7 @@ tl_poly *tl_poly_copy(const tl_poly *poly)
         return NULL;
     }
     if (marks)
-        memcpy(marks, poly->covered, (size_t)p->face_count + p->edge_count);
+        memcpy(marks, poly->covered, p->face_count);
     if (!tl_poly_add_planes(p, poly->plane + p->face_count, poly->plane_count - p->face_count)) {
         tl_poly_free(p);
         return NULL;

@@ -26,13 +26,14 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
  * direction; the polyhedron then is fit only to be freed. */
 tl_status tl_poly_link(tl_poly *poly, tl_error *error);
 
-/* Forgets the seams of a polyhedron; gives it seams of its own, where nothing is covered or hidden yet: first the
- * faces, then the edges, in one list; NULL without memory. */
+/* Forgets the seams of a polyhedron; gives it marks of its own, where no face is covered yet; NULL without memory. */
 void tl_poly_clear_seams(tl_poly *poly);
 uint8_t *tl_poly_open_seams(tl_poly *poly);
 /* Puts planes of other parts behind those of the faces; false without memory. With none there is nothing to allocate. */
 bool tl_poly_add_planes(tl_poly *poly, const tl_plane *planes, uint32_t count);
 
+/* Twice the vector area of a face, by its fan of triangles. */
+tl_vec3 tl_poly_fan_area(const tl_vec3 *vertices, const uint16_t *loop, size_t count);
 /* The normal of a vector area, an axis to the bit where that lies along one; 0 for 0. */
 tl_vec3 tl_poly_normal(tl_vec3 area);
 

@@ -48,12 +48,10 @@ typedef struct tl_poly {
     uint16_t *start; /* [face_count + 1] into loop */
     tl_edge *edge;   /* [edge_count], a < b never assumed */
     uint16_t *loop;  /* [2 edge_count] vertex indices */
-    /* Seams with the other parts of a body of several polyhedra (seam.c): zeros that all single ones share, or, where
-     * `seams`, an allocation of its own. */
-    const uint8_t *
-        covered; /* [face_count] TL_COVERED: the face lies on other parts; TL_SEAM: as all do that it lies on */
-    const uint8_t *hidden; /* [edge_count] 1: the edge is no corner of the body */
-    tl_vec3 vertex[];      /* [vertex_count] */
+    /* [face_count] TL_COVERED: the face lies on other parts of its body (seam.c); TL_SEAM: as all do that it lies on. Zeros
+     * that all single polyhedra share, or, where `seams`, an allocation of its own. */
+    const uint8_t *covered;
+    tl_vec3 vertex[]; /* [vertex_count] */
 } tl_poly;
 
 /* The place after place h in the loop of a face. */

@@ -1,13 +1,13 @@
-/* seam.c - a body made of several convex polyhedra: which of their faces and edges are inside it.
+/* seam.c - a body made of several convex polyhedra: which of their faces are inside it.
  *
- * A face is covered when faces of other parts, in the same plane and facing it, overlap all of its area. It is a seam
- * when these are covered as well; a smaller face on a larger one is none.
- * An edge of a covered face is hidden unless the surface turns outward there, from the edge's other face
- * to a face of another part. Covered faces and hidden edges are no directions in which the body could
- * part from another: a block that slides over a seam must not feel it. */
+ * One rule tells whether faces of two parts lie on each other: they face each other, and have as little between them as blocks
+ * that have settled. A face is covered when faces of other parts that fit it lie on all of its area. It is a seam when these are
+ * covered as well; a smaller face on a larger one is none. Covered faces are no directions in which the body could part from another: a
+ * block that slides over a seam must not feel it. */
 #include "geometry/seam.h"
 
 #include "base/error.h"
+#include "base/table.h"
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/point2.h"
@@ -21,14 +21,14 @@
 /* Tolerance: parts fit when planes and corners agree within this times their size. Joined blocks were cut by one
  * plane, or were placed in contact by coordinates of six digits. */
 #define FIT 1e-6
-/* Tolerance: parts of one body hang together up to this gap, this overlap and this sine of the angle between their
- * faces. Lengths are relative to the smaller part's size. They may have been joined after they had settled on each
- * other. Test: unit/test_seam, lua/test_bodies. */
+/* What parts of one body may have between them and lie on each other, over the smaller one's size: a gap, an overlap, and the sine of
+ * the angle between their faces. They may have been joined after they had settled on each other. */
 #define JOINED_GAP 1e-3
 #define JOINED_OVERLAP 1e-2
 #define JOINED_TILT 1e-2
-/* Tolerance: share of a face's area that may stay uncovered. */
+/* Share of a face's area that may stay uncovered: of parts that fit, and of those that have settled. */
 #define UNCOVERED 1e-5
+#define JOINED_UNCOVERED 1e-2
 
 typedef struct frame {
     tl_vec3 o, t1, t2;
@@ -66,12 +66,38 @@ static double common_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint3
     return flat_area(now, count);
 }
 
-static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
+/* How far a part reaches behind a face. */
+static double reach_behind(const tl_poly *p, uint32_t face)
+{
+    double most = 0;
+    for (uint32_t v = 0; v < p->vertex_count; v++)
+        most = fmax(most, p->plane[face].offset - tl_v3_dot(p->plane[face].normal, p->vertex[v]));
+    return most;
+}
+
+bool tl_poly_faces_meet(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
+                        double *uncovered)
 {
     tl_plane p = a->plane[fa], q = b->plane[fb];
-    double size = fmin(a->size, b->size);
-    return tl_v3_norm(tl_v3_add(p.normal, q.normal)) < FIT &&
-           fabs(p.offset + q.offset) < FIT * size;
+    double size = fmin(a->size, b->size), tilt = tl_v3_norm(tl_v3_add(p.normal, q.normal));
+    if (tilt > JOINED_TILT)
+        return false;
+    if (tilt < FIT && fabs(p.offset + q.offset) < FIT * size) {
+        *uncovered = fmax(*uncovered, UNCOVERED);
+        return true;
+    }
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t h = b->start[fb]; h < b->start[fb + 1]; h++) {
+        double height = tl_v3_dot(p.normal, b->vertex[b->loop[h]]) - p.offset;
+        low = fmin(low, height);
+        high = fmax(high, height);
+    }
+    /* faces of two thin plates on each other may look at each other through both */
+    if (low > JOINED_GAP * size || high < -JOINED_OVERLAP * size ||
+        high < -0.5 * fmin(reach_behind(a, fa), reach_behind(b, fb)))
+        return false;
+    *uncovered = fmax(*uncovered, JOINED_UNCOVERED);
+    return true;
 }
 
 /* Area common to two faces that face each other, in the plane of the first; false when out of memory. */
@@ -88,24 +114,26 @@ static bool face_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t 
 
 bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, double *area)
 {
+    double uncovered = 0;
     *area = 0;
-    return !face_each_other(a, fa, b, fb) || face_area(a, fa, b, fb, area);
+    return !tl_poly_faces_meet(a, fa, b, fb, &uncovered) || face_area(a, fa, b, fb, area);
 }
 
 typedef struct part {
     tl_poly *poly;
     tl_bounds bounds;
-    double *open;    /* [faces] area not covered yet */
-    uint8_t *hidden; /* [edges] of the polyhedron, when it has seams */
+    double *open;     /* [faces] area not covered yet */
+    uint8_t *covered; /* [faces] of the polyhedron, when it has seams */
     uint32_t index;
     struct part *group; /* towards the first part it hangs together with */
     tl_sever_fn severs;
     const void *user;
 } part;
 
-static bool apart(const part *a, const part *b, double fit)
+/* Whether nothing of two parts may lie on each other. */
+static bool apart(const part *a, const part *b)
 {
-    double slack = fit * fmax(a->poly->size, b->poly->size);
+    double slack = JOINED_OVERLAP * fmax(a->poly->size, b->poly->size);
     return a->bounds.min.x > b->bounds.max.x + slack || b->bounds.min.x > a->bounds.max.x + slack ||
            a->bounds.min.y > b->bounds.max.y + slack || b->bounds.min.y > a->bounds.max.y + slack ||
            a->bounds.min.z > b->bounds.max.z + slack || b->bounds.min.z > a->bounds.max.z + slack;
@@ -133,50 +161,61 @@ static bool is_severed(const part *p, uint32_t face)
     return p->severs && p->severs(p->user, p->poly->tag[face]);
 }
 
-/* Adds up what the parts cover of each other. */
-static bool cover(part *a, part *b)
+/* Faces of two parts that lie on each other, and their common area. */
+typedef struct contact {
+    part *a, *b;
+    uint32_t fa, fb;
+    double area, uncovered; /* see tl_poly_faces_meet */
+} contact;
+
+typedef void visit_fn(const contact *c);
+
+/* Visits the faces of two parts that lie on each other; false without memory. */
+static bool each_contact(part *a, part *b, visit_fn *visit)
 {
     for (uint32_t i = 0; i < a->poly->face_count; i++)
         for (uint32_t j = 0; j < b->poly->face_count; j++) {
-            double area;
-            if (!tl_poly_shared_area(a->poly, i, b->poly, j, &area))
-                return false;
-            a->open[i] -= area;
-            b->open[j] -= area;
-        }
-    return true;
-}
-
-/* Whether face f of a and face g of b face each other closely enough to hold parts of one body together. */
-static bool may_hold(const tl_poly *a, uint32_t f, const tl_poly *b, uint32_t g)
-{
-    tl_plane p = a->plane[f];
-    double size = fmin(a->size, b->size), low = INFINITY, high = -INFINITY;
-    if (tl_v3_norm(tl_v3_add(p.normal, b->plane[g].normal)) > JOINED_TILT)
-        return false;
-    for (uint32_t h = b->start[g]; h < b->start[g + 1]; h++) {
-        double height = tl_v3_dot(p.normal, b->vertex[b->loop[h]]) - p.offset;
-        low = fmin(low, height);
-        high = fmax(high, height);
-    }
-    return low <= JOINED_GAP * size && high >= -JOINED_OVERLAP * size;
-}
-
-/* Groups parts that lie on each other with an area, however they had settled when they were joined. */
-static bool hold(part *a, part *b)
-{
-    for (uint32_t i = 0; i < a->poly->face_count; i++)
-        for (uint32_t j = 0; j < b->poly->face_count && root(a) != root(b); j++) {
-            double area;
-            if (is_severed(a, i) || is_severed(b, j) || !may_hold(a->poly, i, b->poly, j))
+            contact c = {.a = a, .b = b, .fa = i, .fb = j};
+            if (!tl_poly_faces_meet(a->poly, i, b->poly, j, &c.uncovered))
                 continue;
-            if (!face_area(a->poly, i, b->poly, j, &area))
+            if (!face_area(a->poly, i, b->poly, j, &c.area))
                 return false;
-            if (area >
-                UNCOVERED * fmin(tl_poly_face_area(a->poly, i), tl_poly_face_area(b->poly, j)))
-                unite(a, b);
+            if (c.area > 0)
+                visit(&c);
         }
     return true;
+}
+
+/* Whether depths go on over the faces: they do where parts fit. */
+static bool fits(const contact *c)
+{
+    return c->uncovered <= UNCOVERED;
+}
+
+/* Takes off what the faces cover of each other. */
+static void cover(const contact *c)
+{
+    c->a->open[c->fa] -= fits(c) ? c->area : 0;
+    c->b->open[c->fb] -= fits(c) ? c->area : 0;
+}
+
+/* Groups the parts unless the faces are severed, or meet in next to nothing. */
+static void hold(const contact *c)
+{
+    double smaller =
+        fmin(tl_poly_face_area(c->a->poly, c->fa), tl_poly_face_area(c->b->poly, c->fb));
+    if (!is_severed(c->a, c->fa) && !is_severed(c->b, c->fb) && c->area > UNCOVERED * smaller)
+        unite(c->a, c->b);
+}
+
+/* A covered face that lies on one which is not covered is no seam. */
+static void compare(const contact *c)
+{
+    bool a = c->a->poly->covered[c->fa], b = c->b->poly->covered[c->fb];
+    if (a && !b && fits(c))
+        c->a->covered[c->fa] = TL_COVERED;
+    if (b && !a && fits(c))
+        c->b->covered[c->fb] = TL_COVERED;
 }
 
 static int compare_part(const void *x, const void *y)
@@ -188,62 +227,17 @@ static int compare_part(const void *x, const void *y)
     return (p->index > q->index) - (p->index < q->index); /* the same order from every qsort */
 }
 
-/* Calls `visit` for every two parts whose bounds, grown by `fit` times the size, meet; parts are sorted by their low x. */
-static bool each_pair(part *parts, size_t count, double fit, bool (*visit)(part *, part *))
+/* Calls `visit` for all faces that lie on each other; parts are sorted by their low x. */
+static bool each_pair(part *parts, size_t count, visit_fn *visit)
 {
     for (size_t i = 0; i < count; i++)
         for (size_t j = i + 1; j < count; j++) {
-            double slack = fit * fmax(parts[i].poly->size, parts[j].poly->size);
+            double slack = JOINED_OVERLAP * fmax(parts[i].poly->size, parts[j].poly->size);
             if (parts[j].bounds.min.x > parts[i].bounds.max.x + slack)
                 break;
-            if (!apart(&parts[i], &parts[j], fit) && !visit(&parts[i], &parts[j]))
+            if (!apart(&parts[i], &parts[j]) && !each_contact(&parts[i], &parts[j], visit))
                 return false;
         }
-    return true;
-}
-
-/* True when face g of b goes on outward from face f of a beyond the edge whose middle is x; `seam` is the
- * covered face of a at the edge. */
-static bool turns_outward(const tl_poly *a, uint32_t f, uint32_t seam, const tl_poly *b, uint32_t g,
-                          tl_vec3 x)
-{
-    double slack = FIT * fmin(a->size, b->size);
-    tl_plane q = b->plane[g];
-    if (b->covered[g] || face_each_other(a, seam, b, g) ||
-        fabs(tl_v3_dot(q.normal, x) - q.offset) > slack)
-        return false;
-    uint32_t start = b->start[g], count = tl_poly_face_size(b, g);
-    for (uint32_t i = 0; i < count; i++) {
-        tl_vec3 c = b->vertex[b->loop[start + i]];
-        tl_vec3 along = tl_v3_sub(b->vertex[b->loop[start + (i + 1) % count]], c);
-        tl_vec3 inward = tl_v3_unit(tl_v3_cross(q.normal, along));
-        if (tl_v3_dot(inward, tl_v3_sub(x, c)) < -slack)
-            return false;
-    }
-    tl_plane p = a->plane[f];
-    return tl_v3_dot(p.normal, tl_poly_face_centroid(b, g)) - p.offset < -slack;
-}
-
-/* Shows the hidden edges of a again where the body turns outward over b. */
-static void show_edges(const part *of, const tl_poly *b)
-{
-    const tl_poly *a = of->poly;
-    for (uint32_t e = 0; e < a->edge_count && a->seams; e++) {
-        const tl_edge *edge = &a->edge[e];
-        bool left = a->covered[edge->left], right = a->covered[edge->right];
-        if (left == right)
-            continue;
-        tl_vec3 x = tl_v3_scale(0.5, tl_v3_add(a->vertex[edge->a], a->vertex[edge->b]));
-        for (uint32_t g = 0; g < b->face_count && a->hidden[e]; g++)
-            of->hidden[e] = !turns_outward(a, left ? edge->right : edge->left,
-                                           left ? edge->left : edge->right, b, g, x);
-    }
-}
-
-static bool show(part *a, part *b)
-{
-    show_edges(a, b->poly);
-    show_edges(b, a->poly);
     return true;
 }
 
@@ -261,39 +255,11 @@ static bool mark(part *p)
         first++;
     if (first == poly->face_count)
         return true;
-    p->hidden = tl_poly_open_seams(poly);
-    if (!p->hidden)
+    p->covered = tl_poly_open_seams(poly);
+    if (!p->covered)
         return false;
     for (uint32_t f = first; f < poly->face_count; f++)
-        p->hidden[f] = is_covered(p, f) ? TL_SEAM : 0;
-    p->hidden += poly->face_count;
-    for (uint32_t e = 0; e < poly->edge_count; e++)
-        p->hidden[e] = poly->covered[poly->edge[e].left] || poly->covered[poly->edge[e].right];
-    return true;
-}
-
-/* A covered face that lies on one which is not covered is no seam. */
-static void compare_faces(const part *of, uint32_t face, const tl_poly *b, uint32_t g)
-{
-    const tl_poly *a = of->poly;
-    if (a->covered[face] && !b->covered[g])
-        (of->hidden - a->face_count)[face] = TL_COVERED;
-}
-
-static bool match(part *a, part *b)
-{
-    for (uint32_t i = 0; i < a->poly->face_count; i++)
-        for (uint32_t j = 0; j < b->poly->face_count; j++) {
-            double area;
-            if ((a->poly->covered[i] != 0) == (b->poly->covered[j] != 0))
-                continue;
-            if (!tl_poly_shared_area(a->poly, i, b->poly, j, &area))
-                return false;
-            if (area > 0) {
-                compare_faces(a, i, b->poly, j);
-                compare_faces(b, j, a->poly, i);
-            }
-        }
+        p->covered[f] = is_covered(p, f) ? TL_SEAM : 0;
     return true;
 }
 
@@ -328,12 +294,10 @@ tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *erro
     if (count < 2)
         return TL_OK;
     part *list = list_parts(parts, count);
-    bool done = list && each_pair(list, count, FIT, cover);
+    bool done = list && each_pair(list, count, cover);
     for (size_t i = 0; done && i < count; i++)
         done = mark(&list[i]);
-    done = done && each_pair(list, count, FIT, match);
-    if (done)
-        each_pair(list, count, FIT, show);
+    done = done && each_pair(list, count, compare);
     free(list);
     return done ? TL_OK : tl_fail_memory(error);
 }
@@ -346,7 +310,7 @@ tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn sev
         list[i].severs = severs;
         list[i].user = user;
     }
-    if (count && (!list || !each_pair(list, count, JOINED_OVERLAP, hold))) {
+    if (count && (!list || !each_pair(list, count, hold))) {
         free(list);
         return tl_fail_memory(error);
     }
@@ -412,14 +376,8 @@ static bool counts_for(const tl_poly *p, tl_plane plane, const planes *others)
 
 static bool append(planes *c, tl_plane plane)
 {
-    if (c->count == c->capacity) {
-        size_t capacity = 2 * c->capacity + 8;
-        tl_plane *all = realloc(c->plane, capacity * sizeof *all);
-        if (!all)
-            return false;
-        c->plane = all;
-        c->capacity = capacity;
-    }
+    if (!tl_grow(&c->plane, &c->capacity, c->count + 1, sizeof plane))
+        return false;
     c->plane[c->count++] = plane;
     return true;
 }

@@ -37,7 +37,7 @@ static size_t items_of(const shape_counts *c, part which)
     case STARTS: return (size_t)c->faces + 1;
     case LOOPS: return 2 * (size_t)c->edges;
     case EDGES: return c->edges;
-    default: return c->seams ? (size_t)c->faces + c->edges : 0;
+    default: return c->seams ? c->faces : 0;
     }
 }
 
@@ -141,8 +141,8 @@ static bool numbers_are_sound(const tl_poly *p, size_t joints)
         if (!tl_v3_finite(p->plane[f].normal) || !isfinite(p->plane[f].offset) ||
             p->tag[f].joint > joints)
             return false;
-    for (uint32_t k = 0; p->seams && k < p->face_count + p->edge_count; k++)
-        if (p->covered[k] > (k < p->face_count ? TL_SEAM : 1))
+    for (uint32_t f = 0; f < p->face_count; f++)
+        if (p->covered[f] > TL_SEAM)
             return false;
     return true;
 }

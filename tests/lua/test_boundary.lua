@@ -275,6 +275,22 @@ refused(function()
     model:boundary { xmin = "fixed", zmax = { box = { min = { 0, 0, 0 }, max = { 1, 1, 1 } } } }
 end, "zmax says where")
 refused(function() model:boundary { facing = { 0, 0, 1 }, within = 180, roller = true, side = "left" } end, "unknown side")
+-- what was joined after it had settled shows no face within
+do
+    local tower = empty()
+    for z = -1, 1 do
+        tower:generate("box", { min = { 0, 0, z }, max = { 1, 1, z + 1 }, density = 2500, group = z < 0 and "base" or "tower" })
+    end
+    tower:joint("*", "coulomb", { kn = 2e7, ks = 2e7, friction = 30 })
+    tower:blocks { group = "base" }:fix()
+    tower:damping "local"
+    tower:solve {}
+    check.equal(#tower:boundary { facing = { 0, 0, 1 } }.faces, 1) -- contacts cover the others
+    tower:blocks { group = "tower" }:join()
+    check.equal(#tower:boundary { facing = { 0, 0, 1 } }.faces, 1)
+    check.equal(#tower:boundary { facing = { 0, 0, -1 } }.faces, 1)
+    check.equal(#tower:boundary { facing = { 0, 0, 1 }, within = 180 }.faces, 14)
+end
 do
     local tilted = empty()
     tilted:generate("tetrahedron", { vertices = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, density = 2000 })

@@ -1,4 +1,4 @@
-/* test_seam.c - seams inside bodies of several blocks: which faces and edges are marked, and that a block
+/* test_seam.c - seams inside bodies of several blocks: which faces are marked, and that a block
  * slides over a seam as over one piece. */
 #include "check.h"
 #include "geometry/hull.h"
@@ -36,22 +36,13 @@ static unsigned seams(const tl_poly *p)
     return n;
 }
 
-static unsigned hidden(const tl_poly *p)
-{
-    unsigned n = 0;
-    for (uint32_t e = 0; e < p->edge_count; e++)
-        n += p->hidden[e];
-    return n;
-}
-
-TEST(equal_boxes_share_one_face_and_its_four_edges)
+TEST(equal_boxes_share_one_face)
 {
     tl_poly *parts[] = {box(0, 1, 0, 1), box(1, 2, 0, 1)};
     CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
     for (int i = 0; i < 2; i++) {
         CHECK_INT(covered(parts[i]), 1);
         CHECK_INT(seams(parts[i]), 1);
-        CHECK_INT(hidden(parts[i]), 4);
         tl_poly_free(parts[i]);
     }
 }
@@ -64,8 +55,6 @@ TEST(a_step_covers_only_the_lower_box)
     CHECK_INT(covered(parts[0]), 1);
     CHECK_INT(covered(parts[1]), 0);
     CHECK_INT(seams(parts[0]), 0);
-    CHECK_INT(hidden(parts[0]), 4);
-    CHECK_INT(hidden(parts[1]), 0);
     for (int i = 0; i < 2; i++)
         tl_poly_free(parts[i]);
 }
@@ -83,28 +72,42 @@ TEST(two_boxes_cover_the_side_of_a_third)
         tl_poly_free(parts[i]);
 }
 
-/* Two wedges back to back: their common edge at the top is a ridge of the body, the other three edges of
- * the seam are not. */
-TEST(a_ridge_stays_an_edge)
+/* Whether a box and one on it, `thick` high, lie on each other: `gap` apart, `off` along x and leaning by `lean` about y. Seams are
+ * marked where they fit. */
+static bool lies_on(double gap, double off, double lean, double thick)
 {
-    tl_poly *parts[2];
-    for (int i = 0; i < 2; i++) {
-        double x = i ? 1 : -1;
-        const tl_vec3 corners[] = {{0, 0, 0}, {0, 1, 0}, {x, 0, 0},
-                                   {x, 1, 0}, {0, 0, 1}, {0, 1, 1}};
-        CHECK_INT(tl_poly_hull(corners, 6, &parts[i], &error), TL_OK);
-    }
+    tl_poly *parts[] = {box(0, 1, -thick, 0), NULL}, *on = box(off, off + 1, gap, gap + thick);
+    const tl_mat3 turn = {{{cos(lean), 0, sin(lean)}, {0, 1, 0}, {-sin(lean), 0, cos(lean)}}};
+    CHECK_INT(tl_poly_transformed(on, &turn, tl_v3(0, 0, 0), &parts[1], &error), TL_OK);
     CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
+    bool fits = gap == 0 && off == 0 && lean == 0;
+    double area[2];
     for (int i = 0; i < 2; i++) {
-        CHECK_INT(covered(parts[i]), 1);
-        CHECK_INT(hidden(parts[i]), 3);
-        for (uint32_t e = 0; e < parts[i]->edge_count; e++) {
-            const tl_edge *edge = &parts[i]->edge[e];
-            if (parts[i]->vertex[edge->a].z == 1 && parts[i]->vertex[edge->b].z == 1)
-                CHECK(!parts[i]->hidden[e]);
-        }
-        tl_poly_free(parts[i]);
+        CHECK_INT(covered(parts[i]), fits);
+        CHECK(tl_poly_shared_area(parts[i], i ? 4 : 5, parts[!i], i ? 5 : 4, &area[i]));
     }
+    CHECK_INT(area[0] > 0.9, area[1] > 0.9);
+    tl_poly_free(on);
+    for (int i = 0; i < 2; i++)
+        tl_poly_free(parts[i]);
+    return area[0] > 0.9;
+}
+
+TEST(what_was_joined_after_it_had_settled_shows_no_seam)
+{
+    CHECK(lies_on(0, 0, 0, 1));
+    CHECK(lies_on(1e-3, 2e-3, 0, 1));
+    CHECK(lies_on(-5e-3, 2e-3, 0, 1));
+    CHECK(lies_on(0, 2e-3, 5e-3, 1));
+    CHECK(!lies_on(3e-3, 0, 0, 1));
+    CHECK(!lies_on(-3e-2, 0, 0, 1));
+    CHECK(!lies_on(0, 0, 2e-2, 1));
+    /* the outer faces of thin plates on each other look at each other through both */
+    tl_poly *plates[] = {box(0, 1, -1e-3, 0), box(0, 1, 0, 1e-3)};
+    double area;
+    CHECK(tl_poly_shared_area(plates[0], 4, plates[1], 5, &area) && area == 0);
+    for (int i = 0; i < 2; i++)
+        tl_poly_free(plates[i]);
 }
 
 /* ---------------------------------------------------------------- sliding ---------------- */
@@ -163,6 +166,38 @@ static void make_box(tl_model *m, tl_vec3 min, tl_vec3 max)
     const tl_args args = {values, 3};
     if (!CHECK_INT(tl_generate(m, "box", &args, NULL), TL_OK))
         printf("%s\n", tl_model_error(m)->text);
+}
+
+static void count_remark(void *user, const char *text)
+{
+    *(int *)user += strstr(text, "outer face") != NULL;
+}
+
+/* A column of two blocks that overlap by 2e-3, between blocks that are held, has no outer face above or below when it is one body. */
+TEST(insitu_feels_no_seam_of_what_was_joined_after_it_had_settled)
+{
+    int remarks = 0;
+    tl_model *m;
+    const tl_model_config config = {.size = sizeof(tl_model_config), .seed = 1, .threads = 1};
+    CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
+    tl_model_log(m, count_remark, &remarks);
+    make_box(m, tl_v3(0, 0, -1), tl_v3(1, 1, 0));
+    make_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1.002));
+    make_box(m, tl_v3(1e-3, 0, 1), tl_v3(1 + 1e-3, 1, 2));
+    make_box(m, tl_v3(0, 0, 2), tl_v3(1, 1, 3));
+    const tl_id held[] = {1, 4}, column[] = {2, 3};
+    CHECK_INT(tl_blocks_join(m, column, 2), TL_OK);
+    const tl_value law[] = {{.key = "kn", .type = TL_VALUE_NUMBER, .number = 1e9},
+                            {.key = "ks", .type = TL_VALUE_NUMBER, .number = 1e9},
+                            {.key = "friction", .type = TL_VALUE_NUMBER, .number = 30}};
+    const tl_args args = {law, 3};
+    CHECK_INT(tl_joint_law(m, "*", "coulomb", &args), TL_OK);
+    CHECK_INT(tl_blocks_fix(m, held, 2, TL_FIX_ALL), TL_OK);
+    tl_insitu insitu = tl_insitu_default();
+    insitu.stress.zz = -1e6;
+    CHECK_INT(tl_model_insitu(m, &insitu), TL_OK);
+    CHECK_INT(remarks, 0);
+    tl_model_destroy(m);
 }
 
 static double field(tl_model *m, tl_id block, const char *name, int component)
@@ -292,10 +327,11 @@ TEST(a_block_slides_over_a_seam_on_a_soft_joint)
 int main(void)
 {
     tl_plugins_load_default();
-    RUN(equal_boxes_share_one_face_and_its_four_edges);
+    RUN(equal_boxes_share_one_face);
     RUN(a_step_covers_only_the_lower_box);
     RUN(two_boxes_cover_the_side_of_a_third);
-    RUN(a_ridge_stays_an_edge);
+    RUN(what_was_joined_after_it_had_settled_shows_no_seam);
+    RUN(insitu_feels_no_seam_of_what_was_joined_after_it_had_settled);
     RUN(the_depth_in_the_parts_of_a_box_is_that_in_the_box);
     RUN(a_part_gets_no_plane_that_cuts_it_nor_one_that_is_never_near);
     RUN(parts_hang_together_however_they_had_settled);
