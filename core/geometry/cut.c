@@ -193,11 +193,6 @@ static uint16_t cut_vertex_between(const cutter *c, uint16_t a, uint16_t b)
 
 /* ---- loops ---- */
 
-static void begin_face(child *ch, uint32_t face)
-{
-    ch->from[ch->faces] = (uint16_t)face;
-}
-
 static void put(child *ch, uint16_t vertex)
 {
     ch->loop[ch->loops++] = vertex;
@@ -206,6 +201,12 @@ static void put(child *ch, uint16_t vertex)
 static void end_face(child *ch)
 {
     ch->face[ch->faces++] = (uint16_t)ch->loops;
+}
+
+/* The vertex at a place of a loop that is taken twice. */
+static uint16_t at_place(const uint16_t *loop, uint32_t n, uint32_t place)
+{
+    return loop[place < n ? place : place - n];
 }
 
 /* Notes the cap's half-edge from `a` to `b`; false when one leaves `a` already. */
@@ -233,8 +234,7 @@ static bool find_run_below(const cutter *c, const uint16_t *loop, uint32_t n, ru
     /* From one above around to itself: the first and the last one below. */
     uint32_t first = UINT32_MAX, last = 0;
     for (uint32_t i = 1; i < n; i++) {
-        uint32_t at = above + i < n ? above + i : above + i - n;
-        if (c->side[loop[at]] < 0) {
+        if (c->side[at_place(loop, n, above + i)] < 0) {
             first = first == UINT32_MAX ? i : first;
             last = i;
         }
@@ -242,9 +242,21 @@ static bool find_run_below(const cutter *c, const uint16_t *loop, uint32_t n, ru
     below->first = above + first < n ? above + first : above + first - n;
     below->last = below->first + (last - first);
     for (uint32_t i = below->first; i <= below->last; i++)
-        if (c->side[loop[i < n ? i : i - n]] > 0)
+        if (c->side[at_place(loop, n, i)] > 0)
             return false;
     return true;
+}
+
+/* Gives a child a part of a face: a run of its loop between the cut's vertices `first` and `last`. */
+static void put_part(child *ch, const tl_poly *p, uint32_t face, run part, uint16_t first,
+                     uint16_t last)
+{
+    ch->from[ch->faces] = (uint16_t)face;
+    put(ch, first);
+    for (uint32_t i = part.first; i <= part.last; i++)
+        put(ch, at_place(p->loop + p->start[face], tl_poly_face_size(p, face), i));
+    put(ch, last);
+    end_face(ch);
 }
 
 /* Splits a face with vertices on both sides. Its loop is: the run below, the way out through the
@@ -257,31 +269,17 @@ static bool split_face(cutter *c, uint32_t face)
     if (!find_run_below(c, loop, n, &below))
         return false;
     uint32_t next = below.last + 1, previous = below.first + n - 1;
-    uint16_t head = loop[below.first], tail = loop[below.last < n ? below.last : below.last - n];
-    uint16_t ahead = loop[previous < n ? previous : previous - n];
-    uint16_t behind = loop[next < n ? next : next - n];
+    uint16_t head = loop[below.first], tail = at_place(loop, n, below.last);
+    uint16_t ahead = at_place(loop, n, previous), behind = at_place(loop, n, next);
     uint16_t in = c->side[ahead] ? cut_vertex_between(c, ahead, head) : ahead;
     uint16_t out = c->side[behind] ? cut_vertex_between(c, tail, behind) : behind;
     /* The run above lies between, without vertices on the plane that serve as ways in and out. */
     run above = {c->side[behind] ? next : next + 1, c->side[ahead] ? previous : previous - 1};
-    if (above.last < above.first ||
-        c->side[loop[above.first < n ? above.first : above.first - n]] <= 0 ||
-        c->side[loop[above.last < n ? above.last : above.last - n]] <= 0)
+    if (above.last < above.first || c->side[at_place(loop, n, above.first)] <= 0 ||
+        c->side[at_place(loop, n, above.last)] <= 0)
         return false;
-
-    child *low = &c->child[0], *high = &c->child[1];
-    begin_face(low, face);
-    put(low, in);
-    for (uint32_t i = below.first; i <= below.last; i++)
-        put(low, loop[i < n ? i : i - n]);
-    put(low, out);
-    end_face(low);
-    begin_face(high, face);
-    put(high, out);
-    for (uint32_t i = above.first; i <= above.last; i++)
-        put(high, loop[i < n ? i : i - n]);
-    put(high, in);
-    end_face(high);
+    put_part(&c->child[0], c->poly, face, below, in, out);
+    put_part(&c->child[1], c->poly, face, above, out, in);
     /* The lower part runs out -> in along the cut, its cap the other way. */
     return add_cap_edge(c, in, out);
 }
@@ -308,7 +306,7 @@ static bool split_faces(cutter *c)
         if (side == 0)
             continue;
         child *ch = &c->child[side > 0];
-        begin_face(ch, f);
+        ch->from[ch->faces] = (uint16_t)f;
         for (uint32_t i = p->start[f]; i < p->start[f + 1]; i++)
             put(ch, p->loop[i]);
         end_face(ch);

@@ -1,6 +1,6 @@
 /* hull.c - the convex hull of points as a polyhedron.
  *
- * The points are put on a grid of 2^-40 of their extent and triangulate.c makes the exact hull of the grid points.
+ * The points are put on a grid of 2^-40 of their extent, and the hull is the exact one of the grid points.
  * The grid is finer than TL_POLY_ON by 10^3 and coarser than the rounding of coordinates by 10^3, so neither
  * shows. Triangles within TL_POLY_FLAT times the extent of one plane then become one face, the largest first, so
  * that a sliver between two faces joins one of them: else the corners of a face, rounded in a file, would make
@@ -15,19 +15,49 @@
 #include "geometry/flatten.h"
 #include "geometry/make.h"
 #include "geometry/measure.h"
-#include "geometry/triangulate.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/vmath.h>
 
 #define NO_FACE UINT32_MAX
 
-/* Tolerance: faces fitted to vertices within the tolerance leave others this many tolerances off at most. */
+/* Grid coordinates lie in [0, 2^GRID_BITS]. */
+#define GRID_BITS 40
+
+/* Faces fitted to vertices within the tolerance leave others this many tolerances off at most. */
 #define SOUND 4
 /* Tolerance: a tolerance this much wider is given to a hull whose noise is about as large as the tolerance. Such noise
  * makes the border of two nearly coplanar faces zigzag, so that they are no convex polygons. */
 #define WIDER 8
+
+typedef struct hull_triangle {
+    uint32_t vertex[3];   /* counter-clockwise from outside */
+    uint32_t adjacent[3]; /* triangle across the side from vertex i to the next */
+    double normal[3];     /* area vector in grid units, rounded */
+    uint32_t face;        /* for the caller */
+    bool alive, visible;
+} hull_triangle;
+
+typedef struct hull_edge {
+    uint32_t a, b;     /* as the triangle taken away had it */
+    uint32_t beyond;   /* triangle on the other side ... */
+    int side;          /* ... and its side along this edge */
+    uint32_t triangle; /* the new one on this side */
+} hull_edge;
+
+/* Working space; the caller provides the arrays. */
+typedef struct hull {
+    uint32_t count;          /* points */
+    int64_t (*grid)[3];      /* [count] */
+    bool *duplicate;         /* [count] points to leave out */
+    hull_triangle *triangle; /* [2 count] */
+    uint32_t *free;          /* [2 count] dead triangles */
+    hull_edge *horizon;      /* [count] */
+    uint32_t *at;            /* [count] horizon edge that starts in a point */
+    uint32_t triangle_count, free_count;
+} hull;
 
 typedef struct builder {
     const tl_vec3 *point;
@@ -35,7 +65,7 @@ typedef struct builder {
     double tolerance; /* lengths that do not count */
     double unit;      /* grid units per length */
     bool any;         /* points inside are left out, not refused */
-    tl_hull hull;
+    hull hull;
     uint32_t face_count;
     uint32_t *sectors; /* [count] faces that meet in a point */
     uint16_t *number;  /* [count] vertex number of a corner */
@@ -51,19 +81,19 @@ typedef struct builder {
 static bool allocate(builder *b, const tl_vec3 *points, size_t count)
 {
     /* Arrays by falling alignment out of one block of zeros. */
-    size_t per_point = sizeof(int64_t[3]) + sizeof(tl_vec3) + 2 * sizeof(tl_hull_triangle) +
-                       sizeof(tl_hull_edge) + 10 * sizeof(uint32_t) + 7 * sizeof(uint16_t) +
+    size_t per_point = sizeof(int64_t[3]) + sizeof(tl_vec3) + 2 * sizeof(hull_triangle) +
+                       sizeof(hull_edge) + 10 * sizeof(uint32_t) + 7 * sizeof(uint16_t) +
                        sizeof(bool);
     b->memory = calloc(count + 1, per_point);
     if (!b->memory)
         return false;
-    tl_hull *h = &b->hull;
+    hull *h = &b->hull;
     b->point = points;
     h->count = (uint32_t)count;
     h->grid = b->memory;
     b->vertex = (tl_vec3 *)(h->grid + count);
-    h->triangle = (tl_hull_triangle *)(b->vertex + count);
-    h->horizon = (tl_hull_edge *)(h->triangle + 2 * count);
+    h->triangle = (hull_triangle *)(b->vertex + count);
+    h->horizon = (hull_edge *)(h->triangle + 2 * count);
     h->free = (uint32_t *)(h->horizon + count);
     h->at = h->free + 2 * count;
     b->sectors = h->at + count;
@@ -74,6 +104,149 @@ static bool allocate(builder *b, const tl_vec3 *points, size_t count)
     b->loop = b->number + count;
     h->duplicate = (bool *)(b->loop + 6 * count);
     return true;
+}
+
+/* ---- the triangulated hull ----
+ *
+ * Incremental: each point outside takes away the triangles that see it and is joined to their
+ * horizon. Which side of a plane a point is on is decided in exact integer arithmetic (a double
+ * product decides first where its rounding cannot matter), so the result is a closed convex surface
+ * whatever the points, coplanar ones included.
+ *
+ * Needs a compiler with 128-bit integers (gcc and clang on 64-bit machines): a height is at most
+ * 6 (2^41)^3 < 2^126. The work is proportional to points times triangles. */
+
+__extension__ typedef __int128 wide_int;
+
+/* A double product of two cross product components and a difference is off by a few roundings of
+ * the sum of magnitudes; beyond this bound its sign is right. */
+#define SIGN_BOUND (8 * DBL_EPSILON)
+
+static wide_int wide(int64_t a)
+{
+    return (wide_int)a;
+}
+
+/* Twice the area vector of the grid triangle, exact. */
+static void area_vector(const hull *h, const uint32_t v[3], wide_int n[3])
+{
+    const int64_t *a = h->grid[v[0]], *b = h->grid[v[1]], *c = h->grid[v[2]];
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        n[i] = wide(b[j] - a[j]) * wide(c[k] - a[k]) - wide(b[k] - a[k]) * wide(c[j] - a[j]);
+    }
+}
+
+/* The sign of the height of point p over the triangle's plane. */
+static int height_sign(const hull *h, const hull_triangle *t, uint32_t p)
+{
+    const int64_t *a = h->grid[t->vertex[0]], *x = h->grid[p];
+    int64_t d[3] = {x[0] - a[0], x[1] - a[1], x[2] - a[2]};
+    double px = t->normal[0] * (double)d[0], py = t->normal[1] * (double)d[1];
+    double pz = t->normal[2] * (double)d[2];
+    double height = px + py + pz;
+    if (fabs(height) > SIGN_BOUND * (fabs(px) + fabs(py) + fabs(pz)))
+        return height > 0 ? 1 : -1;
+    wide_int n[3];
+    area_vector(h, t->vertex, n);
+    wide_int exact = n[0] * wide(d[0]) + n[1] * wide(d[1]) + n[2] * wide(d[2]);
+    return (exact > 0) - (exact < 0);
+}
+
+/* Room for one more triangle, a dead one's where there is one. */
+static hull_triangle *new_triangle(hull *h, uint32_t a, uint32_t b, uint32_t c, uint32_t *index)
+{
+    *index = h->free_count ? h->free[--h->free_count] : h->triangle_count++;
+    hull_triangle *t = &h->triangle[*index];
+    *t = (hull_triangle){.vertex = {a, b, c}, .alive = true};
+    wide_int n[3];
+    area_vector(h, t->vertex, n);
+    for (int i = 0; i < 3; i++)
+        t->normal[i] = (double)n[i];
+    return t;
+}
+
+/* Makes the tetrahedron of four points that span a volume. */
+static void start_tetrahedron(hull *h, const uint32_t corner[4])
+{
+    uint32_t v[4] = {corner[0], corner[1], corner[2], corner[3]}, index;
+    hull_triangle probe = {.vertex = {v[0], v[1], v[2]}};
+    if (height_sign(h, &probe, v[3]) > 0) {
+        v[1] = corner[2];
+        v[2] = corner[1];
+    }
+    /* Below the first face lies v[3]; side i of a triangle runs from vertex i to the next. */
+    hull_triangle *t = new_triangle(h, v[0], v[1], v[2], &index);
+    memcpy(t->adjacent, (uint32_t[]){1, 2, 3}, sizeof t->adjacent);
+    t = new_triangle(h, v[1], v[0], v[3], &index);
+    memcpy(t->adjacent, (uint32_t[]){0, 3, 2}, sizeof t->adjacent);
+    t = new_triangle(h, v[2], v[1], v[3], &index);
+    memcpy(t->adjacent, (uint32_t[]){0, 1, 3}, sizeof t->adjacent);
+    t = new_triangle(h, v[0], v[2], v[3], &index);
+    memcpy(t->adjacent, (uint32_t[]){0, 2, 1}, sizeof t->adjacent);
+}
+
+/* The side of a triangle towards a neighbour. */
+static int side_towards(const hull_triangle *t, uint32_t neighbour)
+{
+    return t->adjacent[0] == neighbour ? 0 : t->adjacent[1] == neighbour ? 1 : 2;
+}
+
+/* Marks the triangles that see point p; whether there are any. */
+static bool mark_visible(hull *h, uint32_t p)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < h->triangle_count; i++) {
+        hull_triangle *t = &h->triangle[i];
+        t->visible = t->alive && height_sign(h, t, p) > 0;
+        any = any || t->visible;
+    }
+    return any;
+}
+
+/* Adds point p: the triangles that see it give way to a fan from p to their horizon. */
+static void add_point(hull *h, uint32_t p)
+{
+    if (!mark_visible(h, p))
+        return;
+    /* Horizon edges, each kept with the triangle beyond it; `at[a]` is the one that starts in a. */
+    uint32_t edges = 0, before = h->triangle_count;
+    for (uint32_t i = 0; i < before; i++) {
+        hull_triangle *t = &h->triangle[i];
+        for (int side = 0; t->visible && side < 3; side++) {
+            const hull_triangle *beyond = &h->triangle[t->adjacent[side]];
+            if (beyond->visible)
+                continue;
+            uint32_t a = t->vertex[side], b = t->vertex[(side + 1) % 3];
+            h->horizon[edges++] = (hull_edge){a, b, t->adjacent[side], side_towards(beyond, i), 0};
+        }
+    }
+    for (uint32_t i = 0; i < before; i++)
+        if (h->triangle[i].visible) {
+            h->triangle[i].alive = h->triangle[i].visible = false;
+            h->free[h->free_count++] = i;
+        }
+    for (uint32_t e = 0; e < edges; e++) {
+        hull_edge *edge = &h->horizon[e];
+        hull_triangle *t = new_triangle(h, edge->a, edge->b, p, &edge->triangle);
+        t->adjacent[0] = edge->beyond;
+        h->triangle[edge->beyond].adjacent[edge->side] = edge->triangle;
+        h->at[edge->a] = e;
+    }
+    for (uint32_t e = 0; e < edges; e++) {
+        uint32_t here = h->horizon[e].triangle, next = h->horizon[h->at[h->horizon[e].b]].triangle;
+        h->triangle[here].adjacent[1] = next;
+        h->triangle[next].adjacent[2] = here;
+    }
+}
+
+/* The hull of the points that are no duplicates. `corner` are four points that span a volume. */
+static void triangulate(hull *h, const uint32_t corner[4])
+{
+    start_tetrahedron(h, corner);
+    for (uint32_t p = 0; p < h->count; p++)
+        if (!h->duplicate[p])
+            add_point(h, p);
 }
 
 /* ---- points ---- */
@@ -102,7 +275,7 @@ static tl_status check_points(const tl_vec3 *points, size_t count, tl_error *err
 /* Puts the points on the grid and marks those that repeat an earlier one within the tolerance. */
 static tl_status place_on_grid(builder *b, tl_error *error)
 {
-    tl_hull *h = &b->hull;
+    hull *h = &b->hull;
     tl_vec3 low = b->point[0], high = b->point[0];
     for (uint32_t i = 1; i < h->count; i++) {
         low = tl_v3_min(low, b->point[i]);
@@ -129,7 +302,7 @@ static tl_status place_on_grid(builder *b, tl_error *error)
                        longest, reach);
     int exponent;
     (void)frexp(longest, &exponent);
-    b->unit = ldexp(1, TL_HULL_BITS - exponent);
+    b->unit = ldexp(1, GRID_BITS - exponent);
     for (uint32_t i = 0; i < h->count; i++) {
         tl_vec3 x = tl_v3_scale(b->unit, tl_v3_sub(b->point[i], low));
         h->grid[i][0] = llround(x.x);
@@ -209,7 +382,7 @@ static int by_area(const void *left, const void *right)
 
 static bool order_by_area(builder *b)
 {
-    const tl_hull *h = &b->hull;
+    const hull *h = &b->hull;
     area_rank *rank = malloc(h->triangle_count * sizeof *rank);
     if (!rank)
         return false;
@@ -228,9 +401,9 @@ static bool order_by_area(builder *b)
 }
 
 /* Whether all of a triangle lies within the tolerance of the seed's plane and faces its way. */
-static bool joins(const builder *b, const tl_hull_triangle *seed, const tl_hull_triangle *t)
+static bool joins(const builder *b, const hull_triangle *seed, const hull_triangle *t)
 {
-    const tl_hull *h = &b->hull;
+    const hull *h = &b->hull;
     const double *n = seed->normal, *m = t->normal;
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     const int64_t *a = h->grid[seed->vertex[0]];
@@ -247,23 +420,23 @@ static bool joins(const builder *b, const tl_hull_triangle *seed, const tl_hull_
 /* Gives every triangle a face. */
 static bool group_triangles(builder *b)
 {
-    tl_hull *h = &b->hull;
+    hull *h = &b->hull;
     if (!order_by_area(b))
         return false;
     uint32_t alive = b->pending[0];
     for (uint32_t t = 0; t < h->triangle_count; t++)
         h->triangle[t].face = NO_FACE;
     for (uint32_t i = 0; i < alive; i++) {
-        tl_hull_triangle *seed = &h->triangle[b->order[i]];
+        hull_triangle *seed = &h->triangle[b->order[i]];
         if (seed->face != NO_FACE)
             continue;
         uint32_t face = b->face_count++, waiting = 0;
         seed->face = face;
         b->pending[waiting++] = b->order[i];
         while (waiting) {
-            const tl_hull_triangle *t = &h->triangle[b->pending[--waiting]];
+            const hull_triangle *t = &h->triangle[b->pending[--waiting]];
             for (int side = 0; side < 3; side++) {
-                tl_hull_triangle *next = &h->triangle[t->adjacent[side]];
+                hull_triangle *next = &h->triangle[t->adjacent[side]];
                 if (next->face != NO_FACE || !joins(b, seed, next))
                     continue;
                 next->face = face;
@@ -274,7 +447,7 @@ static bool group_triangles(builder *b)
     return true;
 }
 
-static bool is_border(const tl_hull *h, uint32_t t, int side)
+static bool is_border(const hull *h, uint32_t t, int side)
 {
     return h->triangle[t].face != h->triangle[h->triangle[t].adjacent[side]].face;
 }
@@ -282,7 +455,7 @@ static bool is_border(const tl_hull *h, uint32_t t, int side)
 /* Counts the faces that meet in every point. */
 static void count_sectors(builder *b)
 {
-    const tl_hull *h = &b->hull;
+    const hull *h = &b->hull;
     memset(b->sectors, 0, h->count * sizeof *b->sectors);
     for (uint32_t t = 0; t < h->triangle_count; t++)
         for (int side = 0; h->triangle[t].alive && side < 3; side++)
@@ -291,15 +464,13 @@ static void count_sectors(builder *b)
 }
 
 /* Moves from a border side to the next one counter-clockwise around the same face. */
-static void next_border(const tl_hull *h, uint32_t *t, int *side)
+static void next_border(const hull *h, uint32_t *t, int *side)
 {
     *side = (*side + 1) % 3;
     while (!is_border(h, *t, *side)) {
         uint32_t to = h->triangle[*t].adjacent[*side];
-        const uint32_t *adjacent = h->triangle[to].adjacent;
-        int back = adjacent[0] == *t ? 0 : adjacent[1] == *t ? 1 : 2;
+        *side = (side_towards(&h->triangle[to], *t) + 1) % 3;
         *t = to;
-        *side = (back + 1) % 3;
     }
 }
 
@@ -325,7 +496,7 @@ static uint32_t trace_face(const builder *b, uint32_t t, int side, uint16_t *loo
  * counted in pending[face]. */
 static void find_borders(builder *b)
 {
-    const tl_hull *h = &b->hull;
+    const hull *h = &b->hull;
     for (uint32_t f = 0; f < b->face_count; f++) {
         b->order[f] = NO_FACE;
         b->pending[f] = 0;
@@ -343,7 +514,7 @@ static void find_borders(builder *b)
 /* Gives the triangles of face `from` to the face beyond its border side. */
 static void absorb(builder *b, uint32_t from, uint32_t border)
 {
-    tl_hull *h = &b->hull;
+    hull *h = &b->hull;
     uint32_t to = h->triangle[h->triangle[border / 3].adjacent[border % 3]].face;
     for (uint32_t t = 0; t < h->triangle_count; t++)
         if (h->triangle[t].face == from)
@@ -515,7 +686,7 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
         status = choose_corners(b, corner, error);
     if (status)
         return status;
-    tl_hull_triangulate(&b->hull, corner);
+    triangulate(&b->hull, corner);
     tl_poly *p = NULL;
     double fine = b->tolerance / WIDER;
     b->tolerance = fmax(TL_POLY_FLAT * b->extent, b->tolerance);

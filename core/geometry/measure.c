@@ -229,20 +229,6 @@ double tl_poly_thickness(const tl_poly *p)
     return thinnest;
 }
 
-uint32_t tl_poly_support(const tl_poly *p, tl_vec3 direction)
-{
-    uint32_t best = 0;
-    double farthest = tl_v3_dot(direction, p->vertex[0]);
-    for (uint32_t v = 1; v < p->vertex_count; v++) {
-        double reach = tl_v3_dot(direction, p->vertex[v]);
-        if (reach > farthest) {
-            farthest = reach;
-            best = v;
-        }
-    }
-    return best;
-}
-
 bool tl_poly_contains(const tl_poly *p, tl_vec3 point, double tolerance)
 {
     for (uint32_t f = 0; f < p->face_count; f++)

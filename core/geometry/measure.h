@@ -27,8 +27,6 @@ double tl_poly_diameter(const tl_poly *poly);
 /* Smallest extent along the normal of a face. (Between two crossing edges it may be less, 0.87 of this
  * in a regular tetrahedron; but what is thin is thin along a face.) */
 double tl_poly_thickness(const tl_poly *poly);
-/* Vertex farthest in a direction (the lowest index among equals). */
-uint32_t tl_poly_support(const tl_poly *poly, tl_vec3 direction);
 /* Within `tolerance` (a length) of the inside. */
 bool tl_poly_contains(const tl_poly *poly, tl_vec3 point, double tolerance);
 

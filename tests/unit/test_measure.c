@@ -174,18 +174,6 @@ TEST(centroid_of_a_face_is_that_of_its_area)
     tl_poly_free(p);
 }
 
-TEST(support_is_the_farthest_vertex_lowest_index_first)
-{
-    tl_poly *p = unit_box();
-    tl_vec3 corner = p->vertex[tl_poly_support(p, tl_v3(1, 1, 1))];
-    CHECK(corner.x == 1 && corner.y == 2 && corner.z == 3);
-    corner = p->vertex[tl_poly_support(p, tl_v3(-1, 0.1, -0.1))];
-    CHECK(corner.x == 0 && corner.y == 2 && corner.z == 0);
-    CHECK_INT(tl_poly_support(p, tl_v3(0, 0, 1)), 4);
-    CHECK_INT(tl_poly_support(p, tl_v3(0, 0, 0)), 0);
-    tl_poly_free(p);
-}
-
 TEST(contains_up_to_the_tolerance)
 {
     tl_poly *p = unit_box();
@@ -201,4 +189,4 @@ TEST(contains_up_to_the_tolerance)
 TEST_MAIN(RUN(mass_of_exact_cases), RUN(mass_far_from_zero),
           RUN(volume_of_a_needle_keeps_all_digits), RUN(inertia_turns_with_the_body),
           RUN(faces_and_edges), RUN(centroid_of_a_face_is_that_of_its_area),
-          RUN(support_is_the_farthest_vertex_lowest_index_first), RUN(contains_up_to_the_tolerance))
+          RUN(contains_up_to_the_tolerance))
