@@ -21,8 +21,9 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "model/joints.h"
+#include "narrow/narrow.h"
 #include "narrow/place.h"
-#include "narrow/scratch.h"
+#include "staged.h"
 
 #define SCENE_UNUSED __attribute__((unused))
 
@@ -200,7 +201,7 @@ static inline int scene_ok(tl_model *m, tl_status status)
 SCENE_UNUSED static void scene_box(tl_model *m, tl_vec3 min, tl_vec3 max)
 {
     tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     scene_ok(m, tl_stage_add_box(&stage, min, max, 2000, "box"));
     scene_ok(m, tl_stage_commit(&stage));
 }
@@ -212,7 +213,7 @@ SCENE_UNUSED static void scene_block(tl_model *m, tl_poly *p, tl_quat turn, tl_v
     for (uint32_t i = 0; i < p->vertex_count; i++)
         points[i] = tl_v3_add(tl_q_rotate(turn, p->vertex[i]), shift);
     tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     scene_ok(m, tl_stage_add_hull(&stage, points, p->vertex_count, 2000, "hull"));
     scene_ok(m, tl_stage_commit(&stage));
     free(points);
@@ -316,10 +317,10 @@ static inline tl_vec3 scene_arm(const tl_model *m, size_t point)
 SCENE_UNUSED static void scene_cut(tl_model *m, const char *joint, tl_vec3 normal, tl_vec3 point)
 {
     tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     uint32_t number = tl_joint_intern(m, joint);
     tl_tag tag = {number, ++m->joints[number - 1].planes};
-    scene_ok(m, tl_stage_cut(&stage, tl_v3_unit(normal), point, tag, 1));
+    scene_ok(m, stage_cut(&stage, tl_v3_unit(normal), point, tag, 1));
     scene_ok(m, tl_stage_commit(&stage));
 }
 

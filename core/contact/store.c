@@ -6,7 +6,6 @@
 #include "contact/estate.h"
 #include "contact/index.h"
 #include "contact/walk.h"
-#include "narrow/scratch.h"
 
 #include <stdlib.h>
 

@@ -3,14 +3,14 @@
 #define TL_NARROW_COMMON_POLYGON_H
 
 #include "narrow/frame2.h"
-#include "narrow/polygon.h"
+#include "narrow/narrow.h"
 
 /* In A's frame. The corners, and the outlines they come from, are in the thread's scratch until another is found. */
 typedef struct tl_common_polygon {
     tl_frame2 frame; /* in the middle between the faces at the centroid */
     tl_plane a, b;
     uint32_t na, nb; /* corners of the faces */
-    const struct tl_polygon *outlines;
+    const tl_outlines *outlines;
     tl_corner *corner; /* counter-clockwise */
     size_t count;      /* 0: the faces have no area in common */
     double area;       /* in the plane of the frame */

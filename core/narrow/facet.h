@@ -2,10 +2,7 @@
 #ifndef TL_NARROW_FACET_H
 #define TL_NARROW_FACET_H
 
-#include "geometry/polyhedron.h"
 #include "narrow/view.h"
-
-#include <talus/vmath.h>
 
 typedef enum tl_facet_kind {
     TL_FACET_PATCH, /* face on face */

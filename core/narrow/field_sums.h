@@ -1,8 +1,80 @@
-/* field_sums.h - what is integrated over a pressure field (field.h), and what counts as one plane there. */
+/* field_sums.h - the planes of two blocks that a pressure field is integrated between (field.h), and what is integrated. */
 #ifndef TL_NARROW_FIELD_SUMS_H
 #define TL_NARROW_FIELD_SUMS_H
 
-#include "narrow/field_faces.h"
+#include <stdbool.h>
+#include <stdint.h>
+#include <talus/plugin.h>
+
+/* Faces of which it can be kept that they bounded K. */
+#define TL_FIELD_KNOWN 64
+
+/* Corners, polygons and their sides that a mesh has room for; corners of one block in the other. */
+#define TL_MESH_CORNERS 64
+#define TL_MESH_POLYGONS 48
+#define TL_MESH_SIDES 192
+#define TL_MESH_INNER 8
+/* The number of d = 0 among planes. */
+#define TL_MESH_ZERO TL_FIELD_KNOWN
+
+/* Corners of one block that lie in the other: three faces each that meet there. */
+typedef struct tl_mesh_inner {
+    uint32_t count; /* TL_MESH_INNER + 1: more than there is room for */
+    uint8_t face[TL_MESH_INNER][3];
+} tl_mesh_inner;
+
+/* Faces that may pass by the point in which the others of a block meet: field.h. */
+#define TL_APEX_STRAYS 2
+
+/* The apex of some faces of a block: up to three of them hold it, and some pass by. */
+typedef struct tl_apex_faces {
+    bool known;
+    uint8_t holds, strays, held[3], stray[TL_APEX_STRAYS];
+} tl_apex_faces;
+
+/* What is known of the field of two blocks at some place: the faces that bounded K, and its polygons. At a corner the same d
+ * belongs to four planes, of which d = 0 may be one. field_mesh.c */
+typedef struct tl_field_mesh {
+    uint64_t bounding;         /* a bit for each face that bounded K; 0: not known */
+    tl_vec3 origin;            /* a point near K, about which its faces are to be given */
+    uint8_t corners, polygons; /* 0: not known */
+    tl_apex_faces apex[2];     /* of A and of B */
+    uint8_t plane[4][TL_MESH_CORNERS];
+    uint8_t own[TL_MESH_POLYGONS][2]; /* the polygon's two planes */
+    uint8_t sides[TL_MESH_POLYGONS];
+    uint8_t loop[TL_MESH_SIDES]; /* its corners, one polygon after the other */
+} tl_field_mesh;
+
+/* Corners of a mesh with those that fill up the last lanes. */
+static inline uint32_t tl_mesh_lanes(const tl_field_mesh *mesh)
+{
+    return (mesh->corners + TL_LANES - 1) / TL_LANES * TL_LANES;
+}
+
+/* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. Of
+ * blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a border all faces
+ * are needed, for beyond it the nearest need not bound K. Of blocks that are apart the faces left may still enclose
+ * something: the deepest point is then not in both blocks. */
+typedef struct tl_field_faces {
+    uint32_t a, b, border_a, border_b; /* how many of each */
+    uint32_t seam_a,
+        seam_b;       /* so many borders, the last of A's and of B's, are seams to other parts */
+    double *n[3], *c; /* [all of them]; with a mesh there is room for TL_FIELD_KNOWN + 1 */
+    /* What is known of another place; NULL: nobody keeps it. It is of use for up to TL_FIELD_KNOWN planes.
+     * The bits must be of all faces that bounded K, and must be forgotten when a corner of one block has come to lie in the other
+     * and on or beyond a face that is not among them. The function leaves what it finds here. */
+    tl_field_mesh *mesh;
+    const tl_mesh_inner
+        *inner;  /* corners of one block in the other, for a new mesh; NULL: make none */
+    bool seamed; /* the nearest face need not bound K: there are borders, or faces of other parts */
+    bool energy_only; /* the volume is not wanted, nor found where it costs more */
+    bool powers;      /* int d^2 dV and int d^3 dV are wanted, too */
+} tl_field_faces;
+
+static inline tl_vec3 tl_field_normal(const tl_field_faces *f, uint32_t face)
+{
+    return (tl_vec3){f->n[0][face], f->n[1][face], f->n[2][face]};
+}
 
 /* An integral over K, and minus its gradient, borders included. */
 typedef struct tl_field_power {

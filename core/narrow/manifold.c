@@ -9,7 +9,6 @@
 #include "narrow/flush.h"
 #include "narrow/patch.h"
 #include "narrow/press.h"
-#include "narrow/scratch.h"
 
 /* Tolerance: share of the limits of a patch within which a field contact becomes one: so none changes to and fro.
  * Without it a cube in a groove takes 36000 steps to rest, not 3300. */
@@ -158,20 +157,21 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
 
 /* ---------------------------------------------------------------- joint ------------------ */
 
-/* The face whose outward normal is nearest a direction, among those that reach to within `slack` of the
+/* The face whose outward normal is nearest a direction, among those that reach to within the contact tolerance of the
  * block's end in that direction, and the cosine between them. A face can be nearer still and lie
  * elsewhere. */
-static uint32_t touching_face(const tl_poly *p, const tl_vec3 *vertex, const tl_vec3 *normals,
-                              size_t stride, tl_vec3 direction, double slack, double *cosine)
+static uint16_t touching_face(const tl_pair_view *view, bool of_b, tl_vec3 direction,
+                              double *cosine)
 {
-    double end = -INFINITY;
+    const tl_poly *p = of_b ? view->b : view->a;
+    const tl_vec3 *vertex = of_b ? view->vertex_b : p->vertex;
+    double slack = TL_CONTACT_TOLERANCE * view->size, end = -INFINITY;
     for (uint32_t i = 0; i < p->vertex_count; i++)
         end = fmax(end, tl_v3_dot(direction, vertex[i]));
-    uint32_t best = 0;
+    uint16_t best = 0;
     *cosine = -2;
-    for (uint32_t i = 0; i < p->face_count; i++) {
-        tl_vec3 n = *(const tl_vec3 *)(const void *)((const char *)normals + i * stride);
-        double c = tl_v3_dot(n, direction);
+    for (uint16_t i = 0; i < p->face_count; i++) {
+        double c = tl_v3_dot(of_b ? view->normal_b[i] : p->plane[i].normal, direction);
         if (c <= *cosine || p->covered[i])
             continue;
         bool touches = false;
@@ -196,12 +196,8 @@ static bool has_joint(const tl_poly *p)
 /* The faces that touch along a direction from A to B, with the cosines between it and their normals. */
 static tl_face_pair touching_faces(const tl_pair_view *view, tl_vec3 n, double *ca, double *cb)
 {
-    double slack = TL_CONTACT_TOLERANCE * view->size;
-    uint32_t fa = touching_face(view->a, view->a->vertex, &view->a->plane[0].normal,
-                                sizeof(tl_plane), n, slack, ca);
-    uint32_t fb = touching_face(view->b, view->vertex_b, view->normal_b, sizeof(tl_vec3),
-                                tl_v3_neg(n), slack, cb);
-    return (tl_face_pair){(uint16_t)fa, (uint16_t)fb};
+    uint16_t fa = touching_face(view, false, n, ca);
+    return (tl_face_pair){fa, touching_face(view, true, tl_v3_neg(n), cb)};
 }
 
 tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n)

@@ -2,8 +2,8 @@
 #ifndef TL_NARROW_MESH_DRAFT_H
 #define TL_NARROW_MESH_DRAFT_H
 
-#include "narrow/field_faces.h"
 #include "narrow/field_lanes.h"
+#include "narrow/field_sums.h"
 
 /* Polygons as they are found, before they are put together. */
 typedef struct tl_mesh_draft {

@@ -2,6 +2,7 @@
 #ifndef TL_NARROW_NARROW_H
 #define TL_NARROW_NARROW_H
 
+#include "narrow/corner.h"
 #include "narrow/facet.h"
 #include "narrow/field.h"
 
@@ -50,13 +51,22 @@ typedef struct tl_manifold {
     bool failed;  /* out of memory */
 } tl_manifold;
 
+/* The outlines of two faces in the plane of their patch, and the polygon that one clips from the other. */
+typedef struct tl_outlines {
+    tl_point2 *face, *clip; /* of A's face and of B's, counter-clockwise; one allocation */
+    tl_corner *corner;      /* memory of both lists */
+    tl_corner *now, *next;  /* the polygon's corners; and where the next cut puts them */
+    size_t corner_capacity, face_capacity;
+} tl_outlines;
+
 /* Scratch memory of a thread for the narrow phase. */
 typedef struct tl_narrow_scratch {
     tl_vec3 *vertex_b, *normal_b;
     size_t vertex_capacity, normal_capacity;
     double *corner; /* corner_sums.c */
     size_t corner_capacity;
-    struct tl_polygon *polygon; /* patch.c */
+    tl_outlines outlines;         /* common_polygon.c */
+    struct tl_patch_batch *batch; /* patch_batch.c */
     tl_patch_points patch;
     tl_manifold manifold;
     tl_press found; /* of a pair that is looked at alone */
@@ -81,5 +91,10 @@ typedef struct tl_touch_rule {
     bool volumes, opens; /* of field contacts: see tl_press_query */
     double reach;        /* patches with every gap beyond this are left out */
 } tl_touch_rule;
+
+/* Frees what the scratch memory holds, not the struct. */
+void tl_narrow_scratch_free(tl_narrow_scratch *scratch);
+/* Makes room for `count` points more; false when out of memory. */
+bool tl_manifold_reserve(tl_manifold *m, size_t count);
 
 #endif

@@ -17,8 +17,6 @@
 #include "base/columns.h"
 #include "narrow/common_polygon.h"
 #include "narrow/flush.h"
-#include "narrow/polygon.h"
-#include "narrow/scratch.h"
 
 #include <stdlib.h>
 
@@ -100,7 +98,7 @@ static double least_gap(const tl_common_polygon *of)
 }
 
 /* Adds the points at the corners, with the areas they have there. */
-static void add_corners(const patch *one, struct tl_polygon *p)
+static void add_corners(const patch *one, tl_outlines *p)
 {
     const tl_common_polygon *of = one->of;
     double *fan = (double *)(void *)p->next, *area = fan + of->count; /* the clipping is over */
@@ -138,7 +136,7 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
         return 0;
     }
     if (corners) {
-        add_corners(&one, scratch->polygon);
+        add_corners(&one, &scratch->outlines);
     } else {
         add_edges(&one, common.corner, common.count);
         add_point(&one, common.centroid, one.rule.centroid * common.area,

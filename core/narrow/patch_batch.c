@@ -11,7 +11,6 @@
 #include "narrow/common_polygon.h"
 #include "narrow/corner.h"
 #include "narrow/frame2.h"
-#include "narrow/polygon.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -224,17 +223,16 @@ const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uin
 
 tl_patch_batch *tl_batch_begin(tl_narrow_scratch *scratch, bool corners, double steep)
 {
-    struct tl_polygon *p = tl_polygon_reserve(scratch, CORNERS, CORNERS);
-    if (!p)
-        return NULL;
-    if (!p->batch && (p->batch = aligned_alloc(64, (sizeof *p->batch + 63) / 64 * 64)))
-        memset(p->batch, 0, sizeof *p->batch);
-    if (!p->batch)
-        return NULL;
-    p->batch->used = 0;
-    p->batch->rule = tl_point_rule_of(corners);
-    p->batch->steep = steep;
-    return p->batch;
+    if (!scratch->batch) {
+        scratch->batch = aligned_alloc(64, (sizeof *scratch->batch + 63) / 64 * 64);
+        if (!scratch->batch)
+            return NULL;
+        memset(scratch->batch, 0, sizeof *scratch->batch);
+    }
+    scratch->batch->used = 0;
+    scratch->batch->rule = tl_point_rule_of(corners);
+    scratch->batch->steep = steep;
+    return scratch->batch;
 }
 
 static void take_face(tl_lanes3 *corner, uint32_t lane, const tl_poly *p, uint32_t face,

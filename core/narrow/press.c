@@ -23,12 +23,11 @@
  * follows from the gradients of all. */
 #include "narrow/press.h"
 
-#include "base/columns.h"
+#include "base/table.h"
 #include "narrow/corner_sums.h"
 #include "narrow/field.h"
 #include "narrow/field_mesh.h"
 #include "narrow/flush.h"
-#include "narrow/scratch.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -56,13 +55,8 @@ static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query
         faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
         all += faces[k];
     }
-    if (4 * all > scratch->press_capacity) {
-        double *press = realloc(scratch->press, 8 * all * sizeof *press);
-        if (!press)
-            return false;
-        scratch->press = press;
-        scratch->press_capacity = 8 * all;
-    }
+    if (!tl_grow(&scratch->press, &scratch->press_capacity, 4 * all, sizeof(double)))
+        return false;
     double *at = scratch->press;
     for (uint32_t k = 0; k < count; k++) {
         for (uint32_t axis = 0; axis < 3; axis++, at += faces[k])
@@ -71,22 +65,6 @@ static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query
         at += faces[k];
     }
     return true;
-}
-
-static tl_plane plane_of(const tl_pair_view *view, bool of_b, uint32_t face)
-{
-    if (!of_b)
-        return view->a->plane[face];
-    return (tl_plane){view->normal_b[face],
-                      view->b->plane[face].offset + tl_v3_dot(view->normal_b[face], view->shift)};
-}
-
-static void add(tl_press_planes *p, tl_plane plane)
-{
-    p->faces.n[0][p->count] = plane.normal.x;
-    p->faces.n[1][p->count] = plane.normal.y;
-    p->faces.n[2][p->count] = plane.normal.z;
-    p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
 }
 
 /* How far a face is moved out. */
@@ -103,7 +81,7 @@ static bool is_moved(const tl_press_query *of, bool of_b, uint32_t face)
 /* Where a face of the two that are moved is. */
 static tl_plane moved_plane(const tl_press_query *of, bool of_b)
 {
-    tl_plane plane = plane_of(of->view, of_b, of_b ? of->shifted.b : of->shifted.a);
+    tl_plane plane = tl_view_plane(of->view, of_b, of_b ? of->shifted.b : of->shifted.a);
     if (of->lean) {
         plane = of->lean[of_b];
         plane.normal = of_b ? tl_m3_mul(&of->view->turn, plane.normal) : plane.normal;
@@ -116,19 +94,19 @@ static tl_plane moved_plane(const tl_press_query *of, bool of_b)
 /* Where a face presses, in A's frame. */
 static tl_plane pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
 {
-    return is_moved(of, of_b, face) ? moved_plane(of, of_b) : plane_of(of->view, of_b, face);
-}
-
-static void add_face(tl_press_planes *p, const tl_press_query *of, bool of_b, uint32_t face)
-{
-    add(p, pressing_plane(of, of_b, face));
+    return is_moved(of, of_b, face) ? moved_plane(of, of_b) : tl_view_plane(of->view, of_b, face);
 }
 
 static uint32_t add_faces(tl_press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
                           uint32_t count)
 {
-    for (uint32_t k = begin; k < begin + count; k++)
-        add_face(p, of, of_b, of->region->face[k]);
+    for (uint32_t k = begin; k < begin + count; k++) {
+        tl_plane plane = pressing_plane(of, of_b, of->region->face[k]);
+        p->faces.n[0][p->count] = plane.normal.x;
+        p->faces.n[1][p->count] = plane.normal.y;
+        p->faces.n[2][p->count] = plane.normal.z;
+        p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
+    }
     return count;
 }
 
@@ -143,32 +121,19 @@ static uint32_t add_covered(tl_press_planes *p, const tl_press_query *of, bool o
     return add_faces(p, of, of_b, begin, count);
 }
 
-/* The faces that count for the field, or for the patch of the flush ones, with their borders. */
-static void press_list_field(tl_press_planes *p, const tl_press_query *of)
+/* Lists the planes where the first `a` listed faces of A and `b` of B press and the others are borders. */
+static void list_planes(tl_press_planes *p, const tl_press_query *of, uint32_t a, uint32_t b)
 {
     const tl_region *r = of->region;
+    const uint32_t covered_a = r->a + r->b, covered_b = covered_a + r->border_a;
+    tl_field_faces *f = &p->faces;
     p->count = 0;
-    p->faces.a = add_faces(p, of, false, 0, r->a);
-    p->faces.b = add_faces(p, of, true, r->a, r->b);
-    uint32_t covered = r->a + r->b;
-    p->faces.border_a = add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
-    p->faces.border_b =
-        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
-}
-
-static void press_list_patch(tl_press_planes *p, const tl_press_query *of)
-{
-    const tl_region *r = of->region;
-    uint32_t more_a = r->a - r->blunt_a, more_b = r->b - r->blunt_b;
-    p->count = 0;
-    p->faces.a = add_faces(p, of, false, 0, r->blunt_a);
-    p->faces.b = add_faces(p, of, true, r->a, r->blunt_b);
-    uint32_t covered = r->a + r->b;
-    p->faces.border_a = add_faces(p, of, false, r->blunt_a, more_a);
-    p->faces.border_a += add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
-    p->faces.border_b = add_faces(p, of, true, r->a + r->blunt_b, more_b);
-    p->faces.border_b +=
-        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
+    f->a = add_faces(p, of, false, 0, a);
+    f->b = add_faces(p, of, true, r->a, b);
+    f->border_a = add_faces(p, of, false, a, r->a - a);
+    f->border_a += add_covered(p, of, false, covered_a, r->border_a, &f->seam_a);
+    f->border_b = add_faces(p, of, true, r->a + b, r->b - b);
+    f->border_b += add_covered(p, of, true, covered_b, r->border_b, &f->seam_b);
 }
 
 /* ---------------------------------------------------------------- shares of corners -------
@@ -303,13 +268,20 @@ typedef struct patches {
     uint32_t count;
 } patches;
 
+/* What the patches leave to the field. */
+static double field_share(const patches *p)
+{
+    double w = 1;
+    for (uint32_t k = 0; k < p->count; k++)
+        w -= p->of[k].by.share;
+    return w;
+}
+
 /* Blends an integral over the field with those over the patches. */
 static void blend(const patches *p, const tl_field_power flat[], tl_field_power *field)
 {
     const tl_field_power all = *field;
-    double w = 1;
-    for (uint32_t k = 0; k < p->count; k++)
-        w -= p->of[k].by.share;
+    const double w = field_share(p);
     *field = (tl_field_power){w * all.whole, tl_v3_scale(w, all.force), tl_v3_scale(w, all.moment)};
     for (uint32_t k = 0; k < p->count; k++) {
         const tl_patch_share *by = &p->of[k].by;
@@ -346,7 +318,7 @@ static void blend_powers(const patches *p, tl_field_power field[TL_PRESS_POWERS]
 static bool sum_patch(const tl_press_query *of, tl_press_planes *p, tl_narrow_scratch *scratch,
                       tl_field_sums *out)
 {
-    press_list_patch(p, of);
+    list_planes(p, of, of->region->blunt_a, of->region->blunt_b);
     p->faces.mesh = NULL;
     p->faces.energy_only = false;
     p->faces.powers = of->volumes;
@@ -391,9 +363,7 @@ static bool no_press(const tl_region *region)
 /* The integrals that tell where and on what area something presses, of a field of which shares are those of patches. */
 static void mix_places(tl_field_sums *field, const patches *p)
 {
-    double w = 1;
-    for (uint32_t k = 0; k < p->count; k++)
-        w -= p->of[k].by.share;
+    const double w = field_share(p);
     field->area = tl_v3_scale(w, field->area);
     field->pressure *= w;
     field->pressed = tl_v3_scale(w, field->pressed);
@@ -581,7 +551,7 @@ static bool press_of(const tl_press_query *of, tl_press_planes *p, tl_field_sums
 static void begin(const tl_press_query *of, tl_vec3 origin, tl_press_planes *p)
 {
     p->origin = origin;
-    press_list_field(p, of);
+    list_planes(p, of, of->region->a, of->region->b);
     p->faces.energy_only = !(of->min_area > 0 || of->volumes);
     p->faces.powers = of->volumes;
     p->faces.mesh = of->region->mesh;

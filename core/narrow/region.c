@@ -9,6 +9,8 @@
  * overlap: a face is left out if it is farther away than that from the whole of the other block. */
 #include "narrow/region.h"
 
+#include "base/table.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <talus/plugin.h>
@@ -40,18 +42,6 @@ static size_t padded(size_t faces)
     return (faces + TL_LANES - 1) / TL_LANES * TL_LANES;
 }
 
-static void set_columns(planes *p, double *at)
-{
-    size_t step = padded(p->count);
-    p->x = at;
-    p->y = at + step;
-    p->z = at + 2 * step;
-    p->c = at + 3 * step;
-    p->low = at + 4 * step;
-    p->high = at + 5 * step;
-    p->outside = at + 6 * step;
-}
-
 static bool reserve(tl_narrow_scratch *scratch, size_t doubles, size_t faces)
 {
     if (doubles > scratch->plane_capacity) {
@@ -62,37 +52,40 @@ static bool reserve(tl_narrow_scratch *scratch, size_t doubles, size_t faces)
         scratch->plane = plane;
         scratch->plane_capacity = 2 * doubles;
     }
-    if (faces > scratch->face_capacity) {
-        uint16_t *face = realloc(scratch->face, 2 * faces * sizeof *face);
-        if (!face)
-            return false;
-        scratch->face = face;
-        scratch->face_capacity = 2 * faces;
-    }
-    return true;
+    return tl_grow(&scratch->face, &scratch->face_capacity, faces, sizeof *scratch->face);
 }
 
-static void fill(planes *p, size_t f, tl_vec3 n, double c)
+static void fill(planes *p, size_t f, tl_plane plane)
 {
-    p->x[f] = n.x;
-    p->y[f] = n.y;
-    p->z[f] = n.z;
-    p->c[f] = c;
+    p->x[f] = plane.normal.x;
+    p->y[f] = plane.normal.y;
+    p->z[f] = plane.normal.z;
+    p->c[f] = plane.offset;
     p->low[f] = INFINITY;
     p->high[f] = -INFINITY;
 }
 
-static void fill_columns(planes *a, planes *b, const tl_pair_view *view)
+/* The columns of a block, in memory from `at` on. */
+static planes columns_of(const tl_pair_view *view, bool of_b, double *at)
 {
-    for (size_t f = 0; f < a->count; f++)
-        fill(a, f, view->a->plane[f].normal, view->a->plane[f].offset);
-    for (size_t f = 0; f < b->count; f++)
-        fill(b, f, view->normal_b[f],
-             view->b->plane[f].offset + tl_v3_dot(view->normal_b[f], view->shift));
-    for (size_t f = a->count; f < padded(a->count); f++)
-        fill(a, f, tl_v3(0, 0, 0), INFINITY);
-    for (size_t f = b->count; f < padded(b->count); f++)
-        fill(b, f, tl_v3(0, 0, 0), INFINITY);
+    const tl_poly *poly = of_b ? view->b : view->a;
+    const size_t step = padded(poly->plane_count);
+    planes p = {.poly = poly,
+                .vertex = of_b ? view->vertex_b : poly->vertex,
+                .count = poly->plane_count,
+                .faces = poly->face_count,
+                .x = at,
+                .y = at + step,
+                .z = at + 2 * step,
+                .c = at + 3 * step,
+                .low = at + 4 * step,
+                .high = at + 5 * step,
+                .outside = at + 6 * step};
+    for (size_t f = 0; f < p.count; f++)
+        fill(&p, f, tl_view_plane(view, of_b, (uint32_t)f));
+    for (size_t f = p.count; f < step; f++)
+        fill(&p, f, (tl_plane){{0, 0, 0}, INFINITY});
+    return p;
 }
 
 /* How high the vertices of a block lie over eight planes, from number g on, of the other block. */
@@ -270,20 +263,16 @@ static void find_leads(const planes *a, const planes *b, tl_region *out, uint16_
 bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch,
                     tl_region *out)
 {
-    planes a = {.poly = view->a, .vertex = view->a->vertex, .count = view->a->plane_count};
-    planes b = {.poly = view->b, .vertex = view->vertex_b, .count = view->b->plane_count};
-    a.faces = view->a->face_count;
-    b.faces = view->b->face_count;
-    size_t rows_a = padded(a.count), rows_b = padded(b.count);
+    const size_t count_a = view->a->plane_count, count_b = view->b->plane_count;
+    const size_t rows_a = padded(count_a), rows_b = padded(count_b);
     *out = (tl_region){0};
     uint32_t vertices = view->a->vertex_count > view->b->vertex_count ? view->a->vertex_count
                                                                       : view->b->vertex_count;
-    if (!reserve(scratch, 7 * (rows_a + rows_b) + TL_LANES * (size_t)vertices, a.count + b.count))
+    if (!reserve(scratch, 7 * (rows_a + rows_b) + TL_LANES * (size_t)vertices, count_a + count_b))
         return false;
-    set_columns(&a, scratch->plane);
-    set_columns(&b, scratch->plane + 7 * rows_a);
+    const planes a = columns_of(view, false, scratch->plane);
+    const planes b = columns_of(view, true, scratch->plane + 7 * rows_a);
     double(*height)[TL_LANES] = (double(*)[TL_LANES])(scratch->plane + 7 * (rows_a + rows_b));
-    fill_columns(&a, &b, view);
     find_heights(&a, &b, height);
     find_heights(&b, &a, height);
     find_gap(&a, &b, out);
@@ -333,11 +322,7 @@ static void split(const tl_pair_view *view, const tl_region *r, bool of_b, sides
         uint32_t at = r->mesh->bounding >> k & 1 ? s->bounding++ : --s->other;
         uint16_t f = r->face[k];
         s->face[at] = f;
-        s->plane[at] = of_b ? view->b->plane[f] : view->a->plane[f];
-        if (of_b) {
-            s->plane[at].normal = view->normal_b[f];
-            s->plane[at].offset += tl_v3_dot(view->normal_b[f], view->shift);
-        }
+        s->plane[at] = tl_view_plane(view, of_b, f);
     }
 }
 
@@ -377,16 +362,17 @@ bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region)
 }
 
 /* Of the listed faces of a block that meet in a vertex the three that do so at the sharpest. false: there are no three. */
-static bool faces_at(const tl_poly *p, const tl_vec3 *normals, size_t stride, const tl_region *r,
-                     uint32_t begin, uint32_t end, uint32_t vertex, uint8_t face[3])
+static bool faces_at(const tl_pair_view *view, const tl_region *r, bool of_b, uint32_t vertex,
+                     uint8_t face[3])
 {
+    const tl_poly *p = of_b ? view->b : view->a;
+    uint32_t begin = of_b ? r->a : 0, end = begin + (of_b ? r->b : r->a);
     uint32_t at[TL_FIELD_KNOWN], count = 0;
     tl_vec3 n[TL_FIELD_KNOWN];
     for (uint32_t k = begin; k < end; k++)
         for (uint32_t h = p->start[r->face[k]]; h < p->start[r->face[k] + 1u]; h++)
             if (p->loop[h] == vertex) {
-                n[count] =
-                    *(const tl_vec3 *)(const void *)((const char *)normals + r->face[k] * stride);
+                n[count] = of_b ? view->normal_b[r->face[k]] : p->plane[r->face[k]].normal;
                 at[count++] = k;
             }
     double most = 0;
@@ -410,29 +396,19 @@ void tl_region_inner_corners(const tl_pair_view *view, const tl_region *r, tl_me
     for (int of_b = 0; of_b < 2; of_b++) {
         const tl_poly *p = of_b ? view->b : view->a;
         const tl_vec3 *vertex = of_b ? view->vertex_b : view->a->vertex;
-        uint32_t begin = of_b ? r->a : 0, end = of_b ? r->a + r->b : r->a;
-        uint32_t other = of_b ? 0 : r->a, other_end = of_b ? r->a : r->a + r->b;
+        uint32_t other = of_b ? 0 : r->a, end = of_b ? r->a : r->a + r->b;
         for (uint32_t i = 0; i < p->vertex_count && out->count <= TL_MESH_INNER; i++) {
             bool inside = true;
-            for (uint32_t k = other; k < other_end && inside; k++) {
-                uint16_t f = r->face[k];
-                tl_vec3 n = of_b ? view->a->plane[f].normal : view->normal_b[f];
-                double c = of_b ? view->a->plane[f].offset
-                                : view->b->plane[f].offset + tl_v3_dot(n, view->shift);
-                inside = tl_v3_dot(n, vertex[i]) <= c;
+            for (uint32_t k = other; k < end && inside; k++) {
+                tl_plane plane = tl_view_plane(view, !of_b, r->face[k]);
+                inside = tl_v3_dot(plane.normal, vertex[i]) <= plane.offset;
             }
             if (!inside)
                 continue;
-            uint8_t face[3];
-            bool found =
-                of_b ? faces_at(p, view->normal_b, sizeof(tl_vec3), r, begin, end, i, face)
-                     : faces_at(p, &p->plane[0].normal, sizeof(tl_plane), r, begin, end, i, face);
-            if (!found || out->count == TL_MESH_INNER) {
+            if (out->count == TL_MESH_INNER || !faces_at(view, r, of_b, i, out->face[out->count])) {
                 out->count = TL_MESH_INNER + 1;
                 return;
             }
-            for (int k = 0; k < 3; k++)
-                out->face[out->count][k] = face[k];
             out->count++;
         }
     }

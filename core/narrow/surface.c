@@ -5,10 +5,10 @@
  * out: polygons whose area is that of roundings. */
 #include "narrow/surface.h"
 
+#include "base/table.h"
+
 #include <stdlib.h>
 #include <string.h>
-#include <talus/plugin.h>
-#include <talus/vmath.h>
 
 /* Tolerance: area, over the square of the smaller block's size, of a polygon that is left out. */
 #define NO_AREA 1e-12
@@ -16,39 +16,11 @@
  * everywhere. */
 #define ONE_DIRECTION 1e-12
 
-/* The points x with n . x <= c. */
-typedef tl_plane half_space;
-
-static half_space face_of(const tl_pair_view *view, bool of_b, uint32_t face)
-{
-    if (!of_b)
-        return view->a->plane[face];
-    tl_vec3 n = view->normal_b[face];
-    return (half_space){n, view->b->plane[face].offset + tl_v3_dot(n, view->shift)};
-}
-
-/* ---------------------------------------------------------------- memory ----------------- */
-
-/* Room for `corners` more corners and one more polygon. */
+/* Makes room for `corners` more corners and one more polygon. */
 static bool reserve(tl_surface *s, size_t corners)
 {
-    if (s->corners + corners > s->corner_capacity) {
-        size_t capacity = 2 * (s->corners + corners);
-        tl_vec3 *corner = realloc(s->corner, capacity * sizeof *corner);
-        if (!corner)
-            return false;
-        s->corner = corner;
-        s->corner_capacity = capacity;
-    }
-    if (s->polygons == s->polygon_capacity) {
-        size_t capacity = 2 * s->polygon_capacity + 8;
-        uint32_t *size = realloc(s->size, capacity * sizeof *size);
-        if (!size)
-            return false;
-        s->size = size;
-        s->polygon_capacity = capacity;
-    }
-    return true;
+    return tl_grow(&s->corner, &s->corner_capacity, s->corners + corners, sizeof *s->corner) &&
+           tl_grow(&s->size, &s->polygon_capacity, s->polygons + 1, sizeof *s->size);
 }
 
 void tl_surface_free(tl_surface *surface)
@@ -66,8 +38,8 @@ typedef struct draft {
     size_t count;
 } draft;
 
-/* Cuts off what lies outside of a half-space. */
-static bool cut(draft *p, half_space h)
+/* Cuts off the side of a plane that its normal points to. */
+static bool cut(draft *p, tl_plane h)
 {
     tl_surface *s = p->surface;
     size_t count = p->count, kept = 0;
@@ -112,7 +84,7 @@ bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t fa
                           tl_surface *surface)
 {
     const tl_poly *a = view->a, *b = view->b;
-    half_space pa = face_of(view, false, face_a), pb = face_of(view, true, face_b);
+    tl_plane pa = tl_view_plane(view, false, face_a), pb = tl_view_plane(view, true, face_b);
     tl_vec3 n = tl_v3_sub(pa.normal, pb.normal); /* twice the bisector's, but for the tilt */
     draft p = {surface, tl_poly_face_size(a, face_a)};
     if (!reserve(surface, p.count))
@@ -124,7 +96,7 @@ bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t fa
         tl_vec3 y = view->vertex_b[b->loop[tl_poly_after(b, face_b, i)]];
         /* B's loop runs clockwise when seen as A's does */
         tl_vec3 out = tl_v3_cross(n, tl_v3_sub(y, x));
-        if (!cut(&p, (half_space){out, tl_v3_dot(out, x)}))
+        if (!cut(&p, (tl_plane){out, tl_v3_dot(out, x)}))
             return false;
     }
     for (size_t i = 0; i < p.count; i++) {
@@ -140,13 +112,13 @@ bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t fa
 /* ---------------------------------------------------------------- fields ----------------- */
 
 /* Where the depth under plane `other` is not less than under plane `nearest`. */
-static half_space deeper(half_space other, half_space nearest)
+static tl_plane deeper(tl_plane other, tl_plane nearest)
 {
-    return (half_space){tl_v3_sub(other.normal, nearest.normal), other.offset - nearest.offset};
+    return (tl_plane){tl_v3_sub(other.normal, nearest.normal), other.offset - nearest.offset};
 }
 
 /* A square in the plane of equal depths, larger than the smaller block. */
-static bool begin(draft *p, const tl_pair_view *view, half_space equal)
+static bool begin(draft *p, const tl_pair_view *view, tl_plane equal)
 {
     const tl_poly *small = view->a->size < view->b->size ? view->a : view->b;
     tl_vec3 middle = small == view->a ? small->vertex[0] : view->vertex_b[0];
@@ -172,18 +144,18 @@ static bool begin(draft *p, const tl_pair_view *view, half_space equal)
 }
 
 /* Where a face of a field is. */
-static half_space pressing_face(const tl_pair_view *view, const tl_moved_faces *moved, bool of_b,
-                                uint32_t face)
+static tl_plane pressing_face(const tl_pair_view *view, const tl_moved_faces *moved, bool of_b,
+                              uint32_t face)
 {
     if (!moved || face != (of_b ? moved->faces.b : moved->faces.a))
-        return face_of(view, of_b, face);
-    return (half_space){moved->plane[of_b].normal, moved->plane[of_b].offset};
+        return tl_view_plane(view, of_b, face);
+    return moved->plane[of_b];
 }
 
 static bool cut_by_depths(draft *p, const tl_pair_view *view, const tl_moved_faces *moved,
                           bool of_b, const uint16_t *faces, uint32_t count, uint32_t nearest)
 {
-    half_space near = pressing_face(view, moved, of_b, nearest);
+    tl_plane near = pressing_face(view, moved, of_b, nearest);
     for (uint32_t k = 0; k < count && p->count; k++)
         if (faces[k] != nearest &&
             !cut(p, deeper(pressing_face(view, moved, of_b, faces[k]), near)))
@@ -195,7 +167,7 @@ static bool cut_by_borders(draft *p, const tl_pair_view *view, bool of_b, const 
                            uint32_t count)
 {
     for (uint32_t k = 0; k < count && p->count; k++)
-        if (!cut(p, face_of(view, of_b, faces[k])))
+        if (!cut(p, tl_view_plane(view, of_b, faces[k])))
             return false;
     return true;
 }
@@ -213,7 +185,7 @@ static bool is_inside(const draft *p, const tl_pair_view *view, const tl_moved_f
     for (int side = 0; side < 2; side++) {
         const tl_poly *poly = side ? view->b : view->a;
         for (uint32_t f = 0; f < poly->face_count; f++) {
-            half_space h = pressing_face(view, moved, side, f);
+            tl_plane h = pressing_face(view, moved, side, f);
             outside = fmax(outside, tl_v3_dot(h.normal, middle) - h.offset);
         }
     }
@@ -227,9 +199,9 @@ bool tl_surface_add_field(const tl_pair_view *view, const tl_region *region,
     const uint16_t *border_a = in_b + region->b, *border_b = border_a + region->border_a;
     for (uint32_t i = 0; i < region->a; i++)
         for (uint32_t j = 0; j < region->b; j++) {
-            half_space a = pressing_face(view, moved, false, in_a[i]);
-            half_space b = pressing_face(view, moved, true, in_b[j]);
-            half_space equal = deeper(a, b);
+            tl_plane a = pressing_face(view, moved, false, in_a[i]);
+            tl_plane b = pressing_face(view, moved, true, in_b[j]);
+            tl_plane equal = deeper(a, b);
             draft p = {surface, 0};
             if (tl_v3_norm2(equal.normal) < ONE_DIRECTION)
                 continue;

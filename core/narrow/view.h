@@ -7,10 +7,11 @@
 
 #include "geometry/polyhedron.h"
 
-/* Tolerance: lengths below it, relative to the smaller block's size, make no difference. A pair without points
- * that has moved by less is not looked at again. A contact that moves by less in a step is calm, and walls with a
- * smaller gap are together. It is far above rounding of places and far below the contact tolerance. Test:
- * unit/test_contact. */
+#include <talus/vmath.h>
+
+/* Lengths below it, relative to the smaller block's size, make no difference: a motion within which a pair without points is
+ * not looked at again; a motion in a step with which a contact is calm; a gap of walls that are together. Far above rounding of
+ * places, far below the contact tolerance. */
 #define TL_STILL 1e-6
 
 /* Tolerance: gap at which two flush faces become a contact, relative to the smaller block's size. A contact ends at
@@ -34,5 +35,14 @@ typedef struct tl_pair_view {
     tl_vec3 *vertex_b; /* B's vertices and face normals in A's frame: filled by tl_pair_place */
     tl_vec3 *normal_b;
 } tl_pair_view;
+
+/* The plane of a face of A, or of B, in A's frame, of a pair that has been placed. */
+static inline tl_plane tl_view_plane(const tl_pair_view *view, bool of_b, uint32_t face)
+{
+    if (!of_b)
+        return view->a->plane[face];
+    tl_vec3 n = view->normal_b[face];
+    return (tl_plane){n, view->b->plane[face].offset + tl_v3_dot(n, view->shift)};
+}
 
 #endif

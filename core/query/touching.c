@@ -18,7 +18,6 @@
 #include "narrow/place.h"
 #include "narrow/press.h"
 #include "narrow/region.h"
-#include "narrow/scratch.h"
 
 #include <stdlib.h>
 #include <string.h>

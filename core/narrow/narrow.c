@@ -1,8 +1,6 @@
-/* scratch.c - the memory that the geometry of a pair works in. */
-#include "narrow/scratch.h"
+/* narrow.c - the memory that the geometry of a pair works in. */
+#include "narrow/narrow.h"
 
-#include "narrow/field.h"
-#include "narrow/polygon.h"
 
 #include <stdlib.h>
 
@@ -19,7 +17,10 @@ void tl_narrow_scratch_free(tl_narrow_scratch *n)
     free(n->press);
     free(n->face);
     tl_field_free(&n->field);
-    tl_polygon_free(n->polygon, &n->patch);
+    free(n->outlines.corner);
+    free(n->outlines.face);
+    free(n->batch);
+    free(n->patch.p[0]);
 }
 
 bool tl_manifold_reserve(tl_manifold *m, size_t count)
