@@ -356,7 +356,9 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
     return status;
 }
 
-tl_status tl_bodies_fall_apart(tl_model *m, const unsigned char *keep, uint32_t *group)
+/* Sets group[row] for the bodies that lose blocks (keep[row] is 0) or have lost some since they were
+ * measured: what is left of each falls into the groups that hang together over shared faces. */
+static tl_status find_groups(tl_model *m, const unsigned char *keep, uint32_t *group)
 {
     const tl_bodies *b = &m->bodies;
     size_t blocks = m->blocks.table.rows;
@@ -387,27 +389,32 @@ tl_status tl_bodies_fall_apart(tl_model *m, const unsigned char *keep, uint32_t 
     return status;
 }
 
-tl_status tl_bodies_mend(tl_model *m)
+tl_status tl_bodies_fall_apart(tl_model *m, const tl_id *ids, size_t count)
 {
-    bool whole = true;
-    for (uint32_t body = 0; body < m->bodies.table.rows && whole; body++)
-        whole = is_whole(m, body);
-    if (whole)
-        return TL_OK;
     size_t blocks = m->blocks.table.rows;
     unsigned char *keep = malloc(blocks + 1);
     uint32_t *group = malloc((blocks + 1) * sizeof *group);
     tl_status status = keep && group ? TL_OK : tl_fail_memory(&m->error);
     if (status == TL_OK) {
         memset(keep, 1, blocks);
+        for (size_t i = 0; i < count; i++)
+            keep[m->row_of[ids[i]]] = 0;
         tl_bodies_groups(m, group);
-        status = tl_bodies_fall_apart(m, keep, group);
+        status = find_groups(m, keep, group);
     }
     if (status == TL_OK)
         status = tl_bodies_regroup(m, group);
     free(keep);
     free(group);
     return status;
+}
+
+tl_status tl_bodies_mend(tl_model *m)
+{
+    bool whole = true;
+    for (uint32_t body = 0; body < m->bodies.table.rows && whole; body++)
+        whole = is_whole(m, body);
+    return whole ? TL_OK : tl_bodies_fall_apart(m, NULL, 0);
 }
 
 /* ---------------------------------------------------------------- verbs ------------------ */

@@ -24,9 +24,9 @@ void tl_rows_settle(tl_model *m, tl_aside *aside);
  * body. Bodies that stay as they are are not touched; others get the mass, momentum and angular
  * momentum of their parts. TL_E_MEMORY leaves the model as it was. */
 tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group);
-/* Sets group[row] for the bodies that lose blocks (keep[row] is 0) or have lost some since they were
- * measured: what is left of each falls into the groups that hang together over shared faces. */
-tl_status tl_bodies_fall_apart(tl_model *m, const unsigned char *keep, uint32_t *group);
+/* Makes the given blocks bodies by themselves. What is left of their bodies, and of others that have lost blocks since they were
+ * measured, falls into the groups that hang together over shared faces. */
+tl_status tl_bodies_fall_apart(tl_model *m, const tl_id *ids, size_t count);
 /* Makes bodies anew whose blocks were cut off or changed their mass. */
 tl_status tl_bodies_mend(tl_model *m);
 /* group[row] of the bodies as they are. */

@@ -31,13 +31,13 @@ tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidde
     return TL_OK;
 }
 
-/* Whether each of the blocks is a body by itself. */
-static bool are_single(const tl_model *m, const tl_id *ids, size_t count)
+/* Whether some of the blocks are parts of bodies of several. */
+static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (m->bodies.member_count[m->blocks.body[tl_block_row_quiet(m, ids[i])]] > 1)
-            return false;
-    return true;
+        if (m->bodies.member_count[m->blocks.body[m->row_of[ids[i]]]] > 1)
+            return true;
+    return false;
 }
 
 /* Deletes a block that has no part in a body of several. Its row goes with others. */
@@ -55,34 +55,15 @@ static void delete_block(tl_model *m, tl_id id)
     m->gone++;
 }
 
-/* Makes every block that is to go a body by itself: what is left of joined bodies goes on as the groups that hang together. */
-static tl_status part_blocks(tl_model *m, const tl_id *ids, size_t count)
-{
-    tl_rows_tidy(m);
-    unsigned char *keep = malloc(m->blocks.table.rows);
-    uint32_t *group = malloc(m->blocks.table.rows * sizeof *group);
-    tl_status status = keep && group ? TL_OK : tl_fail_memory(&m->error);
-    if (status == TL_OK) {
-        memset(keep, 1, m->blocks.table.rows);
-        for (size_t i = 0; i < count; i++)
-            keep[tl_block_row_quiet(m, ids[i])] = 0;
-        tl_bodies_groups(m, group);
-        status = tl_bodies_fall_apart(m, keep, group);
-    }
-    if (status == TL_OK)
-        status = tl_bodies_regroup(m, group);
-    free(keep);
-    free(group);
-    return status;
-}
-
 tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
 {
     tl_status status = tl_model_may_change(m, "delete blocks");
     if (status == TL_OK)
         status = check_ids(m, ids, count);
-    if (status == TL_OK && !are_single(m, ids, count))
-        status = part_blocks(m, ids, count);
+    if (status == TL_OK && some_joined(m, ids, count)) {
+        tl_rows_tidy(m);
+        status = tl_bodies_fall_apart(m, ids, count);
+    }
     for (size_t i = 0; i < count && status == TL_OK; i++)
         delete_block(m, ids[i]);
     return status;
@@ -109,50 +90,51 @@ static bool has_constraint(const tl_model *m, uint32_t body, constraint before)
     return now.fixed == before.fixed && now.drive == before.drive && faster == 0;
 }
 
-tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
+static void fix_body(tl_model *m, uint32_t body, unsigned what)
 {
-    tl_status status = tl_model_may_set(m, "fix blocks");
+    tl_vec3 *v = &m->bodies.v[body];
+    m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
+    v->x = what & TL_FIX_X ? 0 : v->x;
+    v->y = what & TL_FIX_Y ? 0 : v->y;
+    v->z = what & TL_FIX_Z ? 0 : v->z;
+    if (what & TL_FIX_ROTATION)
+        m->bodies.w[body] = tl_v3(0, 0, 0);
+}
+
+static void free_body(tl_model *m, uint32_t body, unsigned what)
+{
+    if (m->bodies.fixed[body] & what)
+        tl_load_begins_anew(m, body);
+    m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] & ~what);
+}
+
+/* Lets the bodies of blocks go from their drives, and changes in what way they are held. */
+static tl_status change_fixing(tl_model *m, const tl_id *ids, size_t count, const char *verb,
+                               void (*change)(tl_model *, uint32_t, unsigned), unsigned what)
+{
+    tl_status status = tl_model_may_set(m, verb);
     if (status == TL_OK)
         status = check_ids(m, ids, count);
-    if (status != TL_OK)
-        return status;
     bool changed = false;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
-        tl_vec3 *v = &m->bodies.v[body];
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
         constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
-        m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
-        v->x = what & TL_FIX_X ? 0 : v->x;
-        v->y = what & TL_FIX_Y ? 0 : v->y;
-        v->z = what & TL_FIX_Z ? 0 : v->z;
-        if (what & TL_FIX_ROTATION)
-            m->bodies.w[body] = tl_v3(0, 0, 0);
+        change(m, body, what);
         changed = changed || !has_constraint(m, body, before);
     }
     m->constraints += changed;
-    return TL_OK;
+    return status;
+}
+
+tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
+{
+    return change_fixing(m, ids, count, "fix blocks", fix_body, what);
 }
 
 tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
 {
-    tl_status status = tl_model_may_set(m, "free blocks");
-    if (status == TL_OK)
-        status = check_ids(m, ids, count);
-    if (status != TL_OK)
-        return status;
-    bool changed = false;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
-        constraint before = constraint_of(m, body);
-        tl_drive_leave(m, body);
-        if (m->bodies.fixed[body])
-            tl_load_begins_anew(m, body);
-        m->bodies.fixed[body] = 0;
-        changed = changed || !has_constraint(m, body, before);
-    }
-    m->constraints += changed;
-    return TL_OK;
+    return change_fixing(m, ids, count, "free blocks", free_body, TL_FIX_ALL);
 }
 
 static void displacement_from_now(tl_model *m, uint32_t row)
@@ -212,15 +194,6 @@ static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl
     const tl_vec3 none = {0, 0, 0};
     return tl_check_motion(&m->error, "set", given(set->velocity) ? set->velocity : none,
                            given(set->angular_velocity) ? set->angular_velocity : none);
-}
-
-/* Whether some of the blocks are parts of bodies of several. */
-static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (m->bodies.member_count[m->blocks.body[tl_block_row_quiet(m, ids[i])]] > 1)
-            return true;
-    return false;
 }
 
 /* Blocks of one body that are given a velocity: their mass, and its first moment about the body's centroid. */
