@@ -42,10 +42,8 @@ static tl_stage_ball ball_of(const tl_model *m, const tl_stage_block *block)
         r2 = d2 > r2 ? d2 : r2;
     }
     tl_stage_ball ball = {center, sqrt(r2) * (1 + BALL_MARGIN)};
-    if (block->source != TL_NO_ROW) {
-        uint32_t body = m->blocks.body[block->source];
-        ball.center = tl_body_point(&m->bodies, body, center);
-    }
+    if (block->source != TL_NO_ROW)
+        ball.center = tl_body_point(&m->bodies, m->blocks.body[block->source], center);
     ball.radius += BALL_ROUNDINGS * (tl_v3_norm(center) + tl_v3_norm(ball.center));
     return ball;
 }
@@ -107,11 +105,20 @@ tl_status tl_stage_begin_empty(tl_model *m, tl_stage *stage)
     return TL_OK;
 }
 
+static void empty_lists(tl_stage *stage)
+{
+    stage->blocks = NULL;
+    stage->balls = NULL;
+    stage->visible = NULL;
+    stage->count = stage->capacity = stage->visible_count = 0;
+}
+
 static void free_lists(tl_stage *stage)
 {
     free(stage->blocks);
     free(stage->balls);
     free(stage->visible);
+    empty_lists(stage);
 }
 
 tl_status tl_stage_open(tl_stage *stage)
@@ -121,8 +128,9 @@ tl_status tl_stage_open(tl_stage *stage)
     if (stage->opened)
         return TL_OK;
     tl_rows_tidy(m);
-    tl_stage fresh = {.model = m};
+    tl_stage added = *stage;
     bool enough = true;
+    empty_lists(stage);
     for (uint32_t row = 0; row < b->table.rows && enough; row++) {
         tl_stage_block block = {.shape = b->shape[row],
                                 .source = row,
@@ -134,35 +142,19 @@ tl_status tl_stage_open(tl_stage *stage)
                                 .detached_from = TL_NO_ROW,
                                 .multi_block = m->bodies.member_count[b->body[row]] > 1,
                                 .hidden = b->hidden[row] != 0};
-        enough = stage_push(&fresh, &block);
+        enough = stage_push(stage, &block);
     }
-    for (size_t i = 0; i < stage->count && enough; i++)
-        enough = stage_push(&fresh, &stage->blocks[i]);
+    for (size_t i = 0; i < added.count && enough; i++)
+        enough = stage_push(stage, &added.blocks[i]);
     if (!enough) {
-        free_lists(&fresh);
+        free_lists(stage);
+        *stage = added;
         return tl_fail_memory(&m->error);
     }
-    free_lists(stage);
-    stage->blocks = fresh.blocks;
-    stage->balls = fresh.balls;
-    stage->visible = fresh.visible;
-    stage->count = fresh.count;
-    stage->capacity = fresh.capacity;
-    stage->visible_count = fresh.visible_count;
+    free_lists(&added);
     stage->opened = true;
     key_bodies(stage);
     return TL_OK;
-}
-
-tl_status tl_stage_begin(tl_model *m, tl_stage *stage)
-{
-    tl_status status = tl_stage_begin_empty(m, stage);
-    if (status != TL_OK)
-        return status;
-    status = tl_stage_open(stage);
-    if (status != TL_OK)
-        tl_stage_drop(stage);
-    return status;
 }
 
 void tl_stage_end(tl_stage *stage)
@@ -170,12 +162,8 @@ void tl_stage_end(tl_stage *stage)
     free_lists(stage);
     free(stage->plane_count);
     free(stage->refused);
-    stage->blocks = NULL;
-    stage->balls = NULL;
-    stage->visible = NULL;
     stage->plane_count = NULL;
     stage->refused = NULL;
-    stage->count = stage->capacity = stage->visible_count = 0;
 }
 
 void tl_stage_drop(tl_stage *stage)
@@ -199,25 +187,42 @@ void tl_stage_drop(tl_stage *stage)
 
 /* ---------------------------------------------------------------- cutting ---------------- */
 
-/* The plane through `point` (relative to the origin) in the frame of a staged block. */
-static tl_plane plane_in_frame(const tl_model *m, const tl_stage_block *block, tl_vec3 normal,
-                               tl_vec3 point)
+/* The body in whose frame the shape of a staged block is; TL_NO_ROW: that of the model. */
+static uint32_t frame_of(const tl_model *m, const tl_stage_block *block)
 {
-    if (block->source == TL_NO_ROW)
-        return (tl_plane){normal, tl_v3_dot(normal, point)};
-    uint32_t body = m->blocks.body[block->source];
-    tl_vec3 relative =
-        tl_v3_sub(tl_v3_sub(point, m->bodies.pose[body].x_ref), m->bodies.pose[body].u);
-    return (tl_plane){tl_m3_tmul(&m->bodies.pose[body].r, normal), tl_v3_dot(normal, relative)};
+    return block->source == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[block->source];
 }
 
-/* The largest coordinate that plane_in_frame computes with. */
-static double plane_reach(const tl_model *m, const tl_stage_block *block, tl_vec3 point)
+/* A plane or disc as it meets one staged block. */
+typedef struct plane_in_block {
+    tl_plane plane; /* in the block's frame */
+    tl_vec3 center; /* of the disc */
+    double radius;  /* INFINITY: the whole plane */
+    double reach;   /* the largest coordinate that it was computed with */
+} plane_in_block;
+
+/* `point` is relative to the model's origin. */
+static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block,
+                                        tl_vec3 normal, tl_vec3 point, double radius)
 {
-    double reach = tl_v3_norm(point);
-    if (block->source == TL_NO_ROW)
-        return reach;
-    return fmax(reach, tl_v3_norm(tl_body_place(&m->bodies, m->blocks.body[block->source])));
+    plane_in_block x = {{normal, tl_v3_dot(normal, point)}, point, radius, tl_v3_norm(point)};
+    uint32_t body = frame_of(m, block);
+    if (body == TL_NO_ROW)
+        return x;
+    const tl_pose *pose = &m->bodies.pose[body];
+    tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, pose->x_ref), pose->u);
+    x.plane = (tl_plane){tl_m3_tmul(&pose->r, normal), tl_v3_dot(normal, relative)};
+    x.center = tl_m3_tmul(&pose->r, relative);
+    x.reach = fmax(x.reach, tl_v3_norm(tl_body_place(&m->bodies, body)));
+    return x;
+}
+
+/* Cuts a staged block by a plane through `point`, relative to the origin. */
+static tl_status cut_by(tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point,
+                        tl_cut *cut)
+{
+    plane_in_block x = plane_in_block_of(m, block, normal, point, (double)INFINITY);
+    return tl_poly_cut(block->shape, x.plane, x.reach, (tl_tag){0, 0}, cut, &m->error);
 }
 
 /* Gives a face a new tag; a shape of the model is copied first. */
@@ -270,26 +275,6 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
     }
     stage->summary.cuts++;
     return TL_OK;
-}
-
-/* A joint's plane, or disc, as it meets one staged block. */
-typedef struct plane_in_block {
-    tl_plane plane; /* in the block's frame */
-    tl_vec3 center; /* of the disc */
-    double radius;  /* INFINITY: the whole plane */
-} plane_in_block;
-
-static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block,
-                                        tl_vec3 normal, tl_vec3 point, double radius)
-{
-    plane_in_block x = {plane_in_frame(m, block, normal, point), point, radius};
-    if (block->source != TL_NO_ROW && !isinf(radius)) {
-        uint32_t body = m->blocks.body[block->source];
-        tl_vec3 relative =
-            tl_v3_sub(tl_v3_sub(point, m->bodies.pose[body].x_ref), m->bodies.pose[body].u);
-        x.center = tl_m3_tmul(&m->bodies.pose[body].r, relative);
-    }
-    return x;
 }
 
 /* False when the ball about a block shows that the plane or disc, relative to the model's origin, passes
@@ -353,7 +338,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
         tl_key_text(tl_key(0, (uint64_t)m->config.seed), m->joints[tag.joint - 1].name), tag.plane);
     bool coincident = false;
     size_t count = stage->count; /* children of this cut are not cut by it again */
-    const plane_in_block global = {{normal, tl_v3_dot(normal, local)}, local, radius};
+    const plane_in_block global = {{normal, tl_v3_dot(normal, local)}, local, radius, 0};
     for (size_t i = 0; i < count; i++) {
         if (!may_meet(&global, stage->balls[i]))
             continue;
@@ -362,8 +347,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
             continue;
         plane_in_block x = plane_in_block_of(m, block, normal, local, radius);
         tl_cut cut;
-        tl_status status =
-            tl_poly_cut(block->shape, x.plane, plane_reach(m, block, local), tag, &cut, &m->error);
+        tl_status status = tl_poly_cut(block->shape, x.plane, x.reach, tag, &cut, &m->error);
         if (status != TL_OK)
             return status;
         bool path = in_path(&x, block, &cut);
@@ -388,24 +372,14 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
     return TL_OK;
 }
 
-tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                       double persistence)
-{
-    size_t met = 0;
-    return tl_stage_cut_disc(stage, normal, point, (double)INFINITY, tag, persistence, &met);
-}
-
 tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_vec3 point,
                              size_t *above)
 {
     tl_model *m = stage->model;
     const tl_stage_block *block = &stage->blocks[index];
-    tl_vec3 local = tl_v3_sub(point, m->origin);
-    tl_plane plane = plane_in_frame(m, block, normal, local);
     tl_cut cut;
     *above = SIZE_MAX;
-    tl_status status = tl_poly_cut(block->shape, plane, plane_reach(m, block, local),
-                                   (tl_tag){0, 0}, &cut, &m->error);
+    tl_status status = cut_by(m, block, normal, tl_v3_sub(point, m->origin), &cut);
     if (status != TL_OK)
         return status;
     if (cut.result == TL_CUT_REFUSED)
@@ -434,10 +408,8 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
             *meets = distance < 0;
             continue;
         }
-        tl_plane plane = plane_in_frame(m, &rest, spaces[i].normal, point);
         tl_cut cut;
-        status = tl_poly_cut(rest.shape, plane, plane_reach(m, &rest, point), (tl_tag){0, 0}, &cut,
-                             &m->error);
+        status = cut_by(m, &rest, spaces[i].normal, point, &cut);
         if (status == TL_OK && cut.result == TL_CUT_MADE) {
             tl_poly_free(cut.above);
             if (owned)
@@ -446,6 +418,7 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
             owned = true;
         } else if (status == TL_OK) {
             /* all but a sliver lies on one side */
+            tl_plane plane = plane_in_block_of(m, &rest, spaces[i].normal, point, 0).plane;
             tl_vec3 c = tl_poly_mass(rest.shape).centroid;
             *meets = tl_v3_dot(plane.normal, c) < plane.offset;
         }
@@ -476,6 +449,16 @@ static void set_origin(tl_model *m, tl_vec3 min, tl_vec3 max)
     tl_vec3 center = tl_v3_scale(0.5, tl_v3_add(min, max));
     m->origin = tl_v3(unit * round(center.x / unit), unit * round(center.y / unit),
                       unit * round(center.z / unit));
+}
+
+static void set_origin_by(tl_model *m, const tl_vec3 *vertices, size_t count)
+{
+    tl_vec3 min = count ? vertices[0] : tl_v3(0, 0, 0), max = min;
+    for (size_t i = 0; i < count; i++) {
+        min = tl_v3_min(min, vertices[i]);
+        max = tl_v3_max(max, vertices[i]);
+    }
+    set_origin(m, min, max);
 }
 
 /* The key of a new block: of where its corners are, so that draws do not depend on what was made before. */
@@ -523,12 +506,7 @@ tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t cou
     tl_vec3 *local = malloc((count + 1) * sizeof *local);
     if (!local)
         return tl_fail_memory(&m->error);
-    tl_vec3 min = count ? vertices[0] : tl_v3(0, 0, 0), max = min;
-    for (size_t i = 0; i < count; i++) {
-        min = tl_v3_min(min, vertices[i]);
-        max = tl_v3_max(max, vertices[i]);
-    }
-    set_origin(m, min, max);
+    set_origin_by(m, vertices, count);
     for (size_t i = 0; i < count; i++)
         local[i] = tl_v3_sub(vertices[i], m->origin);
     tl_poly *shape;
@@ -551,12 +529,8 @@ tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double den
 /* The plane of a face, from the sum of its fan of triangles and its first corner. */
 static tl_plane face_plane(const tl_vec3 *vertex, const uint16_t *loop, size_t count)
 {
-    tl_vec3 zero = vertex[loop[0]], area = {0, 0, 0};
-    for (size_t i = 1; i + 1 < count; i++)
-        area = tl_v3_add(area, tl_v3_cross(tl_v3_sub(vertex[loop[i]], zero),
-                                           tl_v3_sub(vertex[loop[i + 1]], zero)));
-    tl_vec3 normal = tl_v3_unit(area);
-    return (tl_plane){normal, tl_v3_dot(normal, zero)};
+    tl_vec3 normal = tl_v3_unit(tl_poly_fan_area(vertex, loop, count));
+    return (tl_plane){normal, tl_v3_dot(normal, vertex[loop[0]])};
 }
 
 /* Copies of what tl_poly_make takes, one allocation each. */
@@ -591,12 +565,7 @@ static tl_status make_faces(tl_model *m, const tl_block_shape *given, const face
 tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given)
 {
     tl_model *m = stage->model;
-    tl_vec3 min = given->vertices[0], max = min;
-    for (size_t i = 0; i < given->vertex_count; i++) {
-        min = tl_v3_min(min, given->vertices[i]);
-        max = tl_v3_max(max, given->vertices[i]);
-    }
-    set_origin(m, min, max);
+    set_origin_by(m, given->vertices, given->vertex_count);
     face_list l = {malloc(given->vertex_count * sizeof *l.vertex),
                    malloc(given->start[given->face_count] * sizeof *l.loop),
                    malloc(given->face_count * sizeof *l.plane)};

@@ -8,8 +8,6 @@
 tl_status tl_stage_begin_empty(tl_model *m, tl_stage *stage);
 /* Puts the model's blocks into it, before those that were added. TL_E_MEMORY leaves it as it was. */
 tl_status tl_stage_open(tl_stage *stage);
-/* Begins a staging set with the model's blocks in it. */
-tl_status tl_stage_begin(tl_model *m, tl_stage *stage);
 /* Adds the convex hull of vertices, or a box, given in user coordinates. */
 tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t count, double density,
                             const char *group);
@@ -17,11 +15,8 @@ tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double den
                            const char *group);
 /* Adds a block given by its faces; see tl_host.create_block. */
 tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given);
-/* Cuts the visible blocks by a plane in user coordinates; see tl_host.cut. */
-tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                       double persistence);
-/* The same by a disc of `radius` about `point`; adds the blocks in its path to *met; see
- * tl_host.cut_disc. */
+/* Cuts the visible blocks by a disc of `radius` about `point` in user coordinates, INFINITY for a plane; adds the blocks in its
+ * path to *met; see tl_host.cut_disc. */
 tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius,
                             tl_tag tag, double persistence, size_t *met);
 /* Cuts block `index` (of all staged) without a joint: both sides stay one body. `above` is the new

@@ -16,6 +16,7 @@
 #include "geometry/polyhedron.h"
 #include "model/joints.h"
 #include "model/model.h"
+#include "staged.h"
 
 #include <float.h>
 #include <talus/vmath.h>
@@ -231,7 +232,7 @@ static tl_model *model_of_a_box(tl_vec3 min)
     tl_stage stage;
     tl_vec3 max = tl_v3_add(min, tl_v3(SIDE, SIDE, SIDE));
     if (!CHECK_INT(tl_model_create(&config, &m, &error), TL_OK) ||
-        !CHECK_INT(tl_stage_begin(m, &stage), TL_OK) ||
+        !CHECK_INT(stage_begin(m, &stage), TL_OK) ||
         !CHECK_INT(tl_stage_add_box(&stage, min, max, 2600, NULL), TL_OK) ||
         !CHECK_INT(tl_joint_intern(m, "J"), 1) || !CHECK_INT(tl_stage_commit(&stage), TL_OK))
         exit(1);
@@ -245,10 +246,10 @@ static void cut_in_model(tl_model *m, uint32_t row, tl_plane plane, double accur
     double whole = tl_poly_mass(b->shape[row]).volume;
     tl_vec3 point = tl_model_point(m, b->body[row], tl_v3_scale(plane.offset, plane.normal));
     tl_stage stage;
-    CHECK_INT(tl_stage_begin(m, &stage), TL_OK);
+    CHECK_INT(stage_begin(m, &stage), TL_OK);
     for (size_t i = 0; i < stage.count; i++)
         stage.blocks[i].hidden_by_generator = i != row;
-    CHECK_INT(tl_stage_cut(&stage, plane.normal, point, (tl_tag){1, 1}, 1), TL_OK);
+    CHECK_INT(stage_cut(&stage, plane.normal, point, (tl_tag){1, 1}, 1), TL_OK);
     CHECK_INT(tl_stage_commit(&stage), TL_OK);
     const tl_generate_summary *s = &stage.summary;
     count_result(t, s->cuts         ? TL_CUT_MADE

@@ -59,7 +59,7 @@ static void add_rock(tl_stage *stage, tl_model *m, uint64_t *seed, double size, 
         tl_vec3 at = {scene_between(seed, -h, h), scene_between(seed, -h, h),
                       scene_between(seed, -h, h)};
         tl_tag tag = {1, (uint32_t)i + 1};
-        scene_ok(m, tl_stage_cut(stage, scene_direction(seed), at, tag, 1));
+        scene_ok(m, stage_cut(stage, scene_direction(seed), at, tag, 1));
     }
 }
 
@@ -90,7 +90,7 @@ static tl_model *build(recipe r, scale s)
     tl_stage stage;
     m->config.rotation = r.rotation;
     tl_joint_intern(m, "J");
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     (r.rock ? add_rock : add_hulls)(&stage, m, &seed, size, density);
     scene_ok(m, tl_stage_commit(&stage));
     scene_law(m, "elastic", r.kn * s.stiffness, 0.5 * r.kn * s.stiffness, -1);

@@ -70,7 +70,7 @@ static size_t check_pairs(tl_model *m)
 static void random_boxes(tl_model *m, uint64_t *seed, int count, double extent, double decades)
 {
     tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     for (int i = 0; i < count; i++) {
         double size = pow(10, scene_between(seed, -decades, 0));
         tl_vec3 low = {scene_between(seed, 0, extent), scene_between(seed, 0, extent),
@@ -129,7 +129,7 @@ TEST(one_huge_block_does_not_multiply_the_pairs)
     tl_model *m = scene_model(1);
     scene_law(m, "coulomb", 1e9, 1e9, 30);
     tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     for (int i = 0; i < 1000; i++) {
         tl_vec3 low = {1.5 * (i % 32), 1.5 * (double)(i / 32), 0};
         scene_ok(m, tl_stage_add_box(&stage, low, tl_v3_add(low, tl_v3(1, 1, 1)), 2000, "box"));

@@ -338,10 +338,10 @@ TEST(eight_blocks_under_isotropic_stress)
     const tl_vec3 normals[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int k = 0; k < 3; k++) {
         tl_stage stage;
-        scene_ok(m, tl_stage_begin(m, &stage));
+        scene_ok(m, stage_begin(m, &stage));
         uint32_t number = tl_joint_intern(m, "J");
         tl_tag tag = {number, ++m->joints[number - 1].planes};
-        scene_ok(m, tl_stage_cut(&stage, normals[k], tl_v3(0, 0, 0), tag, 1));
+        scene_ok(m, stage_cut(&stage, normals[k], tl_v3(0, 0, 0), tag, 1));
         scene_ok(m, tl_stage_commit(&stage));
     }
     CHECK_INT(m->blocks.table.rows, 8);

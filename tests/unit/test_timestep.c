@@ -239,7 +239,7 @@ static tl_model *eight_cubes(double size, double share, remark_log *h)
 {
     tl_model *m = scene_model(1);
     tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     for (int i = 0; i < 8; i++) {
         tl_vec3 from = tl_v3_scale(size, tl_v3(i % 2, i / 2 % 2, i / 4)), to = from;
         to = tl_v3_add(to, tl_v3(size, size, size));
@@ -329,9 +329,9 @@ static int remarks_of_a_stiff_joint(void)
     tl_model *m = scene_model(1);
     tl_stage stage;
     tl_joint_intern(m, "stiff");
-    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, stage_begin(m, &stage));
     scene_ok(m, tl_stage_add_box(&stage, tl_v3(0, 0, 0), tl_v3(2, 1, 1), 2000, "rock"));
-    scene_ok(m, tl_stage_cut(&stage, tl_v3(1, 0, 0), tl_v3(1, 0.5, 0.5), (tl_tag){1, 1}, 1));
+    scene_ok(m, stage_cut(&stage, tl_v3(1, 0, 0), tl_v3(1, 0.5, 0.5), (tl_tag){1, 1}, 1));
     for (int i = 2; i < 8; i++)
         scene_ok(m, tl_stage_add_box(&stage, tl_v3(i, 0, 0), tl_v3(i + 1, 1, 1), 2000, "rock"));
     scene_ok(m, tl_stage_commit(&stage));
