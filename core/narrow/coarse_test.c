@@ -1,11 +1,13 @@
-/* coarse_test.c - the coarse test of a candidate pair, by libccd: is it near enough to be worth finding its region? Both
- * blocks are grown by a ball. Only the yes or no is used: libccd's depths, normals and positions are not reliable for
- * faces that nearly touch.
+/* coarse_test.c - the coarse test of a candidate pair, by libccd: is it near enough to be worth finding its region?
+ * Both blocks are grown by a ball. Only the yes or no is used: libccd's depths, normals and positions are not reliable
+ * for faces that nearly touch.
  *
- * Its portals may go round in a circle for ever where roundings decide. Nothing in libccd ends that, so a block that has been asked
- * for MOST_CALLS points answers from then on with one on the wrong side, which ends any search; what it gives counts for nothing
- * then, and the pair is near. */
+ * Its portals may go round in a circle for ever where roundings decide. Nothing in libccd ends that. A block that has
+ * been asked for MOST_CALLS points answers from then on with one on the wrong side: that ends any search. What it
+ * gives counts for nothing then, and the pair is near. */
 #include "narrow/coarse_test.h"
+
+#include "geometry/measure.h"
 
 #include <ccd/ccd.h>
 #include <talus/vmath.h>
@@ -52,21 +54,13 @@ static void center(const void *object, ccd_vec3_t *out)
     ccdVec3Set(out, g->center.x, g->center.y, g->center.z);
 }
 
-static tl_vec3 mean(const tl_vec3 *vertex, uint32_t count)
-{
-    tl_vec3 sum = {0, 0, 0};
-    for (uint32_t i = 0; i < count; i++)
-        sum = tl_v3_add(sum, vertex[i]);
-    return tl_v3_scale(1.0 / count, sum);
-}
-
 bool tl_coarse_test(const tl_pair_view *view, double reach)
 {
     grown_block a = {
         .vertex = view->a->vertex, .count = view->a->vertex_count, .ball = 0.5 * reach};
     grown_block b = {.vertex = view->vertex_b, .count = view->b->vertex_count, .ball = 0.5 * reach};
-    a.center = mean(a.vertex, a.count);
-    b.center = mean(b.vertex, b.count);
+    a.center = tl_points_mean(a.vertex, a.count);
+    b.center = tl_points_mean(b.vertex, b.count);
     a.far = b.far =
         1e3 * (tl_v3_norm(tl_v3_sub(b.center, a.center)) + view->a->size + view->b->size + reach);
     ccd_t ccd;

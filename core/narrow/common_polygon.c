@@ -1,8 +1,10 @@
-/* common_polygon.c - the common polygon of two faces on each other: its corners, what each edge belongs to, and the areas of corners.
+/* common_polygon.c - the common polygon of two faces on each other: its corners, what each edge belongs to, and the
+ * areas of corners.
  *
- * The two faces are projected along the bisector of their normals into the bisecting plane, where one clips the other. Corners
- * with a turning angle below TL_STRAIGHT may be left out. Between TL_STRAIGHT and TL_CORNER the areas are then a mixture of those with and
- * without the corner, so that a corner that comes or goes while blocks wobble does not change the force. */
+ * The two faces are projected along the bisector of their normals into the bisecting plane, where one clips the other.
+ * Corners with a turning angle below TL_STRAIGHT may be left out. Between TL_STRAIGHT and TL_CORNER the areas are then
+ * a mixture of those with and without the corner. So a corner that comes or goes while blocks wobble does not change
+ * the force. */
 #include "narrow/common_polygon.h"
 
 #include "base/table.h"
@@ -134,9 +136,9 @@ void tl_corner_areas_add(const tl_corner *c, const double *fan, const double *sh
 
 /* ---------------------------------------------------------------- clipping ----------------
  *
- * One face clips the other (Sutherland and Hodgman 1974). Where an edge of A crosses one of B, the place follows from the
- * corners of both faces, not from what earlier lines have left, so that it is the same to the bit however the crossing was found
- * (patch_batch.c). */
+ * One face clips the other (Sutherland and Hodgman 1974). Where an edge of A crosses one of B, the place follows from
+ * the corners of both faces, not from what earlier lines have left. So it is the same to the bit however the
+ * crossing was found (patch_batch.c). */
 
 /* Makes room for faces of `na` and `nb` corners; false when out of memory. */
 static bool reserve(tl_outlines *p, size_t na, size_t nb)

@@ -7,9 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Tolerance: corners nearer to each other than this times the size are one, and corners nearer to a line that clips
- * lie on it. A polygon as thin as that has no area worth a point. It is far below any length that matters and far
- * above rounding. Edges along each other would otherwise cross here and there, and points come and go. */
+/* Corners nearer to each other than this times the size are one. Corners nearer to a line that clips lie on it, and a
+ * polygon as thin as that has no area worth a point. It is far below any length that matters, far above rounding.
+ * Edges along each other would otherwise cross here and there, and points come and go. */
 #define TL_MERGE 1e-7
 
 /* Edges of A's face are 0, 1, ..., those of B's face TL_EDGE_B, TL_EDGE_B + 1, ... */
@@ -51,7 +51,7 @@ TL_INLINE bool tl_edges_coincide(tl_point2 from, tl_point2 to, tl_point2 o, tl_p
            (tl_on_line(from, to, o, near) && tl_on_line(from, to, q, near));
 }
 
-/* Share of an edge of the common polygon by which it is B's: an edge of A that has one of B along it is half B's. */
+/* Share of an edge of the common polygon by which it is B's. An edge of A that has one of B along it is half B's. */
 static inline double tl_edge_ride(bool of_b, bool coincides)
 {
     return coincides ? 0.5 : of_b;

@@ -4,13 +4,15 @@
  *
  *     G_p = 1/4 sum A_k o_k^2,    V_p = sum A_k o_k,    and so on,
  *
- * functions of where B is. As it moves, the overlaps change, and so does the common polygon with its corners and areas: over the edge of a
- * face that is pressed in one counts as much as the other. Force and moment are minus the gradient of all of that.
+ * functions of where B is. As it moves, the overlaps change, and so does the common polygon with its corners and
+ * areas. Over the edge of a face that is pressed in one counts as much as the other. Force and moment are minus the
+ * gradient of all of that.
  *
- * In the plane of the patch a point of A, at the height h_A over it, goes by v_A = -h_A dm as B moves, for the plane turns with half of B,
- * whose normal changes by dm; one of B goes by v_B, of its own motion less h_B dm. The edges of the polygon are lines of A, of B, or half of
- * each, which go so, and its corners are where they meet. That gives the rates of the corners, of the fan triangles about the centroid, of
- * the shares of corners that are almost straight, which go with their turning angles, and of the A_k. */
+ * In the plane of the patch a point of A, at the height h_A over it, goes by v_A = -h_A dm as B moves. For the plane
+ * turns with half of B, whose normal changes by dm. One of B goes by v_B, of its own motion less h_B dm. The edges of
+ * the polygon are lines of A, of B, or half of each, which go so, and its corners are where they meet. That gives the
+ * rates of the corners, of the fan triangles about the centroid, and of the A_k. The shares of corners that are almost
+ * straight go with their turning angles. */
 #include "narrow/corner_sums.h"
 
 #include "base/table.h"
@@ -36,7 +38,8 @@ typedef struct plane_rate {
     double secant;
 } plane_rate;
 
-/* What is known of the corners. Those that are almost straight are dropped: those that stay are the first ones of the polygon's. */
+/* What is known of the corners. Those that are almost straight are dropped: those that stay are the first ones of the
+ * polygon's. */
 typedef struct corners {
     tl_common_polygon polygon;
     size_t count;    /* before any was dropped */
@@ -156,7 +159,8 @@ static void find_rates(const tl_common_polygon *p, const motion *by, const plane
     *more = (tl_point2){way.x - b * plane->turn.x - of_a->x, way.y - b * plane->turn.y - of_a->y};
 }
 
-/* The rate of the corner where two edges of the directions u and v meet, which go with B by the shares `before` and `after`. */
+/* The rate of the corner where two edges of the directions u and v meet, which go with B by the shares `before` and
+ * `after`. */
 static tl_point2 rate_of_meeting(tl_point2 u, tl_point2 v, double before, double after,
                                  tl_point2 of_a, tl_point2 more)
 {
@@ -254,7 +258,7 @@ static void find_area_rates(const corners *c)
     for (size_t k = 0; k < p->count; k++)
         c->fan_rate[k] = 0;
     for (size_t i = 0; i < c->count; i++) {
-        const size_t next = i + 1 == c->count ? 0 : i + 1;
+        const size_t next = after(c, i);
         tl_point2 u = tl_from_to(p->centroid, c->at[i]), v = tl_from_to(p->centroid, c->at[next]);
         tl_point2 du = tl_from_to(moves, c->rate[i]), dv = tl_from_to(moves, c->rate[next]);
         c->fan_rate[c->from[i]] += 0.5 * (cross(du, v) + cross(u, dv));

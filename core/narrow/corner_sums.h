@@ -11,8 +11,8 @@ typedef struct tl_corner_faces {
     tl_plane a, b;
 } tl_corner_faces;
 
-/* The sums in the place of the integrals over the patch, about an origin, without gradients; 0 where no corner presses. false: out of
- * memory. */
+/* The sums in the place of the integrals over the patch, about an origin, without gradients; 0 where no corner
+ * presses. false: out of memory. */
 bool tl_corner_sums_find(const tl_pair_view *view, const tl_corner_faces *faces, tl_vec3 origin,
                          tl_narrow_scratch *scratch, tl_field_sums *out);
 /* Adds minus the gradients to sums whose energy is above 0. */

@@ -10,32 +10,22 @@ typedef enum tl_facet_kind {
     TL_FACET_KINDS
 } tl_facet_kind;
 
-/* What the contact points of a contact have in common: their normal, and the way to compute their gaps and places. A step reads the
- * doubles as one row. */
+/* What the contact points of a contact have in common: their normal, and the way to compute their gaps and places. A
+ * step reads the doubles as one row. */
 typedef struct tl_facet {
     tl_vec3 na, nb; /* outward normals of the faces, own frames; of a field its normal in A's */
     double offset;  /* sum of those of both faces, own frames; of a field its overlap */
     tl_vec3 last;   /* normal when last followed, model's axes */
-    /* of a patch: the share of B's motion against A that its points go along with, 0 where its edges are A's, 1 where they are
-     * B's; and where B was in A's frame when its points were laid */
+    /* of a patch: the share of B's motion against A that its points go along with. It is 0 where its edges are A's, 1
+     * where they are B's. And where B was in A's frame when its points were laid */
     double ride;
     tl_pair_pose laid;
     uint32_t kind;
     uint16_t ia, ib; /* faces */
 } tl_facet;
 
-static inline bool tl_facet_is_patch(const tl_facet *facet)
-{
-    return facet->kind == TL_FACET_PATCH;
-}
-
-static inline bool tl_facet_is_field(const tl_facet *facet)
-{
-    return facet->kind == TL_FACET_FIELD;
-}
-
-/* The points of a field contact, both at the centre of its pressure. The first carries the force and the shear, the second the
- * torsion. */
+/* The points of a field contact, both at the centre of its pressure. The first carries the force and the shear, the
+ * second the torsion. */
 enum { TL_FIELD_SHEAR, TL_FIELD_TORSION, TL_FIELD_POINTS };
 
 /* Doubles at the head of a facet that a step reads; even, for it reads them in pairs. */

@@ -1,20 +1,21 @@
 /* field.c - integrals of the pressure field of two blocks: field.h says what it is.
  *
- * On the part of S that belongs to the faces a and b, d_h >= d_a for all others h, and d_a >= 0: a polygon in a plane, bounded
- * by a line for each other face. Eight polygons are worked on side by side (field_lanes.c), of one pair or of several.
+ * On the part of S that belongs to the faces a and b, d_h >= d_a for all others h, and d_a >= 0. It is a polygon in a
+ * plane, bounded by a line for each other face. Eight polygons are worked on side by side (field_lanes.c), of one pair
+ * or of several.
  *
  * K consists of cells, one for each face, where that face is the nearest. The fields -n d^2 / 2 and -n d have the
- * divergences d and 1 in the cell of a face of normal n, and vanish on the face. So G and V are sums over the polygons
- * between two cells, G = sum |n_i - n_j| / 2 int d^2 dS and V = sum |n_i - n_j| int d dS, and over the borders. No term
- * between cells is negative.
+ * divergences d and 1 in the cell of a face of normal n. They vanish on the face. So G and V are sums over the
+ * polygons between two cells, and over the borders: G = sum |n_i - n_j| / 2 int d^2 dS and V = sum |n_i - n_j| int d
+ * dS. No term between cells is negative.
  *
  * Of a block whose faces that bound K meet in a point S alone tells the share in G.
  *
- * Without borders a face has a cell only if it bounds K: from any point of its cell the way along its normal stays in K to the
- * face. So the faces that bounded K at another time are enough for all polygons, while they still enclose K and nothing else:
- * while no corner of what they enclose lies beyond another face. Corners on faces of both blocks lie on S, where d = 0, and are
- * looked at here; the others are corners of one block (press.c). Otherwise the faces that bound K are found again, as
- * those of which the others leave some. */
+ * Without borders a face has a cell only if it bounds K. From any point of its cell the way along its normal stays in
+ * K to the face. So the faces that bounded K at another time are enough for all polygons, while they still enclose K
+ * and nothing else. They do while no corner of what they enclose lies beyond another face. Corners on faces of both
+ * blocks lie on S, where d = 0, and are looked at here; the others are corners of one block (press.c). Otherwise the
+ * faces that bound K are found again, as those of which the others leave some. */
 #include "narrow/field.h"
 
 #include "base/inline.h"
@@ -149,7 +150,8 @@ static void add_power_gradients(const work *w, int l, double sign)
     }
 }
 
-/* Adds the sides of cells to the integrals of the powers of d: -n d^3 / 3 and -n d^4 / 4 have the divergences d^2 and d^3. */
+/* Adds the sides of cells to the integrals of the powers of d. The fields -n d^3 / 3 and -n d^4 / 4 have the
+ * divergences d^2 and d^3. */
 static void add_power_sides(work *w, int l, double slope)
 {
     tl_field_power *to = w->of[l]->sums->powers;
@@ -219,8 +221,8 @@ static void add_surface(work *w, int l)
     }
 }
 
-/* What a polygon on a border adds. B's motion shifts K's border at a seam of A where A is deeper than B, and the other way
- * round. */
+/* What a polygon on a border adds. B's motion shifts K's border at a seam of A where A is deeper than B, and the other
+ * way round. */
 static void add_border(work *w, int l)
 {
     const tl_field_parts *o = &w->parts;
@@ -266,11 +268,12 @@ static void take(work *w, int l)
  *
  * The energy of a block's cells from the surface S alone.
  *
- * Mostly a corner, an edge or a face is pressed in, and all planes of a block that bound K meet in one point x_0, its apex.
- * There d is homogeneous about x_0 in the cells of this block: (x - x_0) d has the divergence 4 d, x - x_0 has 3, and on the
- * faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the polygons between its
- * cells are not needed. The same holds of d^n, with n + 3 for 4. A face q that passes by x_0 at the depth d_q adds d_q V_q / 4, with the volume V_q of its cell: for
- * that the polygons between this cell and the others are needed. */
+ * Mostly a corner, an edge or a face is pressed in. Then all planes of a block that bound K meet in one point x_0, its
+ * apex. There d is homogeneous about x_0 in the cells of this block. (x - x_0) d has the divergence 4 d, x - x_0 has
+ * 3, and on the faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the
+ * polygons between its cells are not needed. The same holds of d^n, with n + 3 for 4. A face q that passes by x_0 at
+ * the depth d_q adds d_q V_q / 4, with the volume V_q of its cell. For that the polygons between this cell and the
+ * others are needed. */
 
 /* What of a direction does not leave the planes that hold an apex. */
 static tl_vec3 within(const tl_apex *p, tl_vec3 way)
@@ -288,7 +291,8 @@ static bool holds(const tl_apex *p, const tl_field_faces *f, uint32_t face, doub
            (p->count == 3 || tl_v3_norm2(within(p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
 }
 
-/* From where it is, the point goes on to one plane more, along those before; false: the plane has nearly their directions. */
+/* From where it is, the point goes on to one plane more, along those before; false: the plane has nearly their
+ * directions. */
 static bool hold(tl_apex *p, const tl_field_faces *f, uint32_t face, double least2)
 {
     tl_vec3 n = tl_field_normal(f, face), way = within(p, n);
@@ -302,8 +306,8 @@ static bool hold(tl_apex *p, const tl_field_faces *f, uint32_t face, double leas
     return true;
 }
 
-/* Which of some faces of a block, all of which bound K, hold an apex. Planes are one within the offset `one_plane`. Faces that
- * pass by are allowed where the volume is not wanted. */
+/* Which of some faces of a block, all of which bound K, hold an apex. Planes are one within the offset `one_plane`.
+ * Faces that pass by are allowed where the volume is not wanted. */
 static tl_apex_faces apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count,
                                  double one_plane)
 {
@@ -352,8 +356,8 @@ void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec
             p->volume[k] += tl_v3_dot(n, tl_field_normal(f, face)) * d;
 }
 
-/* Of the points that an apex may be, that nearest the centre of pressure is taken: roundings of the force count by the way
- * from there. */
+/* Of the points that an apex may be, that nearest the centre of pressure is taken. Roundings of the force count by the
+ * way from there. */
 void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
                         double by_swept, const double by_power[TL_FIELD_POWERS],
                         tl_field_sums *sums)
@@ -422,7 +426,8 @@ static uint32_t bounds(const work *w, const pair *of)
     return of->planes.count - (w->flat ? 1 : 2);
 }
 
-/* The planes that bound a polygon in whose own two are the i-th and j-th of its pair: the last of all come in their place. */
+/* The planes that bound a polygon in whose own two are the i-th and j-th of its pair. The last of all come in their
+ * place. */
 static void list_bounds(const work *w, const pair *of, uint32_t i, uint32_t j, uint16_t in_place[2])
 {
     const uint32_t own[] = {i, j}, count = bounds(w, of);
@@ -505,7 +510,8 @@ static void integrate_batch(work *w)
     w->planes.most = w->others.most = 0;
 }
 
-/* Puts a polygon into the lanes: in a plane, of the depth of the pair's i-th plane, bounded by neither that nor the j-th. */
+/* Puts a polygon into the lanes: in a plane, of the depth of the pair's i-th plane, bounded by neither that nor the
+ * j-th. */
 static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, bool between,
                 double length)
 {

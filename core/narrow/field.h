@@ -13,12 +13,13 @@
  *
  * Two flush faces of common area A that overlap by o give U = kn A o^2 / 2 and the force kn A o.
  *
- * A *border* is a face that bounds K and does not count for the depth. The gradient then has a share on the borders, too.
- * At a seam, a border where the next part of a joined body begins, K gets in motion what the K of the next part loses: the
- * force of the pair is the gradient and what passes through, and the sum over the parts is the gradient of the body's energy.
+ * A *border* is a face that bounds K and does not count for the depth. The gradient then has a share on the borders,
+ * too. A seam is a border where the next part of a joined body begins. There K gets in motion what the K of the next
+ * part loses. The force of the pair is the gradient and what passes through. The sum over the parts is the gradient of
+ * the body's energy.
  *
  * Normals are unit vectors that point out of their block; a face's plane is n . x = c. All is in one frame, whose
- * origin should lie near K: the relative error of the sums is some roundings of the distance from it over the size of
+ * origin should lie near K. The relative error of the sums is some roundings of the distance from it over the size of
  * K. */
 #ifndef TL_NARROW_FIELD_H
 #define TL_NARROW_FIELD_H
@@ -61,8 +62,8 @@ typedef struct tl_apex {
 tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by);
 /* Adds a side of the cell of a face that passes by: int d dS over it, and its normal into the cell. */
 void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec3 n, double d);
-/* Adds what both blocks give by their apexes, of A and of B, to the energy and the volume, and to the powers of d where they are
- * wanted. Of S: int d x . n dS, int x . n dS, int d^2 x . n dS, int d^3 x . n dS. */
+/* Adds what both blocks give by their apexes to the energy, the volume and, where they are wanted, the powers of d. Of
+ * S: int d x . n dS, int x . n dS, int d^2 x . n dS, int d^3 x . n dS. */
 void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
                         double by_swept, const double by_power[TL_FIELD_POWERS],
                         tl_field_sums *sums);

@@ -1,11 +1,11 @@
 /* field_lanes.c - eight polygons of a pressure field side by side, one in a lane.
  *
- * Every polygon lies in a plane and is bounded by lines, one for each other plane. No polygon is ever clipped: a line bounds
- * the polygon between the crossings with all other lines, and the polygon's integrals are sums over its lines (Green's
- * theorem). So there are no corners to be kept, and no branches.
+ * Every polygon lies in a plane and is bounded by lines, one for each other plane. No polygon is ever clipped: a line
+ * bounds the polygon between the crossings with all other lines. The polygon's integrals are sums over its lines
+ * (Green's theorem). So there are no corners to be kept, and no branches.
  *
  * In a polygon's plane: axes t and s, origin where the plane is nearest to the frame's. A line is g . x <= c with a
- * unit normal g, its own points are c g + r (-g_s, g_t) with the place r along it. Integrals are about a corner of the
+ * unit normal g. Its own points are c g + r (-g_s, g_t) with the place r along it. Integrals are about a corner of the
  * polygon. */
 #include "narrow/field_lanes.h"
 
@@ -16,9 +16,8 @@
 
 #define LANES TL_LANES
 
-/* Tolerance: sine of the angle between two lines below which they do not cross. The error of a crossing's place, a
- * rounding over the sine, is then as large as what the wrong one of two such lines encloses. Test:
- * property/field_properties, property/press_properties. */
+/* Sine of the angle between two lines below which they do not cross. The error of a crossing's place, a rounding over
+ * the sine, then becomes as large as what the wrong one of two such lines encloses. */
 #define PARALLEL 1e-8
 /* Tolerance: length of a face's normal, within the polygon's plane, below which the face is parallel to the plane.
  * Test: property/field_properties, property/press_properties. */
@@ -30,8 +29,8 @@
 
 /* ---------------------------------------------------------------- lines ------------------ */
 
-/* Unit normals of the planes, and axes in them without a branch (Duff and others, "Building an orthonormal basis, revisited", 2017), and the
- * depth in them. */
+/* Unit normals of the planes, the depth in them, and axes without a branch (Duff and others, "Building an orthonormal
+ * basis, revisited", 2017). */
 TL_VECTORIZED static void place_axes(tl_field_lanes *restrict p)
 {
     double *restrict n0 = p->n[0], *restrict n1 = p->n[1], *restrict n2 = p->n[2];
@@ -102,8 +101,8 @@ TL_VECTORIZED static void draw_own_line(tl_field_lanes *restrict p, tl_field_lin
     }
 }
 
-/* Bounds each of two lines by the other. Parallel lines cross far away, on the side that leaves nothing of one that the
- * other excludes; of two lines in one place each bounds a half. */
+/* Bounds each of two lines by the other. Parallel lines cross far away, on the side that leaves nothing of one that
+ * the other excludes. Of two lines in one place each bounds a half. */
 TL_VECTORIZED static void cross_lines(tl_field_line *line, size_t count)
 {
     for (size_t a = 0; a < count; a++) {
@@ -182,7 +181,8 @@ uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *
 
 /* ---------------------------------------------------------------- integrals -------------- */
 
-/* Takes a corner of each polygon for the origin of its plane: far from it nothing would be left of small ones but roundings. */
+/* Takes a corner of each polygon for the origin of its plane: far from it nothing would be left of small ones but
+ * roundings. */
 TL_VECTORIZED static void place_origin(tl_field_lanes *restrict p,
                                        const tl_field_line *restrict line, size_t count)
 {
@@ -201,8 +201,9 @@ TL_VECTORIZED static void place_origin(tl_field_lanes *restrict p,
         p->d0[l] += p->dt[l] * p->origin_t[l] + p->ds[l] * p->origin_s[l];
 }
 
-/* The triangle between the origin of a polygon and the part of a line that bounds it: corners p and q, with their depths, its area, and
- * the slope of d across the line times the length of the part. Where the line bounds nothing, p and q are the origin. */
+/* The triangle between the origin of a polygon and the part of a line that bounds it. It has corners p and q, with
+ * their depths, its area, and the slope of d across the line times the length of the part. Where the line bounds
+ * nothing, p and q are the origin. */
 typedef struct triangle {
     double pt, ps, qt, qs, dp, dq, area, up;
     bool bounds;
@@ -244,7 +245,8 @@ TL_VECTORIZED static void add_lines(tl_field_lanes *restrict p, const tl_field_l
             p->itt[l] += w * (pt * pt + pt * qt + qt * qt) * (1.0 / 6);
             p->iss[l] += w * (ps * ps + ps * qs + qs * qs) * (1.0 / 6);
             p->its[l] += w * (2 * (pt * ps + qt * qs) + pt * qs + qt * ps) * (1.0 / 12);
-            /* by the divergence of d^2 grad d / 2 and d^3 grad d / 3: nothing cancels in thin slivers far from the origin */
+            /* by the divergence of d^2 grad d / 2 and d^3 grad d / 3: nothing cancels in thin slivers far from the
+             * origin */
             p->d1[l] += up * (dp * dp + dp * dq + dq * dq) * (1.0 / 6);
             p->d2[l] += up * (dp * dp + dq * dq) * (dp + dq) * (1.0 / 12);
             double d = dp > dq ? dp : dq, at_t = dp > dq ? pt : qt, at_s = dp > dq ? ps : qs;
@@ -309,9 +311,9 @@ void tl_field_share(const tl_field_lanes *p, tl_field_parts *out)
 
 /* ---------------------------------------------------------------- powers ----------------- */
 
-/* Sums of products of n numbers are those of all ways to choose n with repetition, h_n. Over a triangle of area w with the depths
- * a, b, c: int d^n dS = 2 w h_n(a, b, c) / ((n + 1) (n + 2)), and the integral of d^n x is the sum over its corners of
- * 2 w x_a h_n(a, b, c, a) / ((n + 1) (n + 2) (n + 3)). */
+/* Sums of products of n numbers are those of all ways to choose n with repetition, h_n. Over a triangle of area w with
+ * the depths a, b, c: int d^n dS = 2 w h_n(a, b, c) / ((n + 1) (n + 2)), and the integral of d^n x is the sum over its
+ * corners of 2 w x_a h_n(a, b, c, a) / ((n + 1) (n + 2) (n + 3)). */
 TL_VECTORIZED static void sum_powers(tl_field_lanes *restrict p, const tl_field_line *restrict line,
                                      size_t count)
 {

@@ -55,16 +55,16 @@ typedef struct tl_field_plane {
 /* Tolerance: length of n_a - n_b below which two directions are the same: such faces have no surface between them. */
 #define TL_FIELD_ALIKE 1e-7
 
-/* Tolerance: slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels
- * in thin slivers. */
+/* Slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels in thin
+ * slivers. */
 #define TL_FIELD_STEEP 0.1
 
 /* Constant: offset of a plane that is none: it lies behind everything. */
 #define TL_FIELD_FAR 1e290
 
-/* Draws the lines of some planes, the first of `line`, and finds between which places they bound the polygons; how many lines
- * there are. Polygons between cells lie where no face is nearer than theirs, and theirs is not passed: `line[0]` is that of
- * d = 0. Others, with `flat`, lie on a face and within all other planes. */
+/* Draws the lines of some planes, the first of `line`, and finds between which places they bound the polygons; how
+ * many lines there are. Polygons between cells lie where no face is nearer than theirs, and theirs is not passed:
+ * `line[0]` is that of d = 0. Others, with `flat`, lie on a face and within all other planes. */
 size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat,
                      tl_field_line *line);
 /* Lanes, a bit each, of which a corner with d = 0 lies beyond one of some planes. */

@@ -1,21 +1,23 @@
 /* field_mesh.c - the polygons of a pressure field from place to place.
  *
- * While two blocks move on, their field mostly keeps its polygons: a corner is where the same planes are nearest, and only its
- * place changes. So the planes of all corners are kept, the mesh. At a new place every corner is found from its planes, three
- * equations, and the mesh stands if no plane is nearer to any corner than its own are, and none is passed:
+ * While two blocks move on, their field mostly keeps its polygons: a corner is where the same planes are nearest, and
+ * only its place changes. So the planes of all corners are kept, the mesh. At a new place every corner is found from
+ * its planes, three equations. The mesh stands if no plane is nearer to any corner than its own are, and none is
+ * passed:
  *
  *     c_h - n_h . x >= d    for all faces h,        c_k - n_k . x >= 0    for all borders k.
  *
- * Then it is all of the field. A polygon is convex, and its sides lie between corners that belong to it, so it is whole, and
- * so is the part of S that it hangs together with. From a point where A is the nearer, the way out through its nearest face
- * stays where A is the nearer, for d_B grows no faster than d_A falls: so each part of S ends on the surface of K, where faces of
- * both blocks meet, and there all corners are known: K has no others than these and those of one block that lie in the
- * other, which are kept, too.
+ * Then it is all of the field. A polygon is convex, and its sides lie between corners that belong to it. So it is
+ * whole, and so is the part of S that it hangs together with. From a point where A is the nearer, the way out through
+ * its nearest face stays where A is the nearer. For d_B grows no faster than d_A falls. So each part of S ends on the
+ * surface of K, where faces of both blocks meet, and there all corners are known. K has no others than these and those
+ * of one block that lie in the other, which are kept, too.
  *
- * With borders, or faces of other parts, the nearest face need not bound K, and the mesh is that of all cells: the polygons between
- * any two of them, and those at borders. They are a subdivision of K, the upper side of the convex body 0 <= d <= c_h - n_h . x,
- * 0 <= c_k - n_k . x in four dimensions. Each polygon beside a side is there (mesh_draft.c), so all sides that a corner has lead to
- * corners that are known: the mesh is closed, and K hangs together.
+ * With borders, or faces of other parts, the nearest face need not bound K. Then the mesh is that of all cells: the
+ * polygons between any two of them, and those at borders. They are a subdivision of K, the upper side of the convex
+ * body 0 <= d <= c_h - n_h . x, 0 <= c_k - n_k . x in four dimensions. Each polygon beside a side is there
+ * (mesh_draft.c). So all sides that a corner has lead to corners that are known: the mesh is closed, and K hangs
+ * together.
  *
  * Polygons are summed by triangles from their first corner. */
 #include "narrow/field_mesh.h"
@@ -30,15 +32,14 @@
 
 #define LANES TL_LANES
 
-/* Cost only: determinant of a corner's three equations, with normals of length 1 and their differences, below which no
- * mesh stands. The corner's place would be lost in roundings, so all polygons are looked for. */
+/* Determinant of a corner's three equations, with normals of length 1 and their differences, below which its place is
+ * lost in roundings. */
 #define SHARP 1e-5
 
 /* Tolerance: roundings of the largest offset by which a corner may seem to lie outside. */
 #define SLACK (4 * TL_FIELD_ONE_PLANE)
 
-/* Tolerance: most by which that grows where planes meet at small angles: corners of one block need it, where more than
- * three do. */
+/* Most by which that grows where planes meet at small angles: corners of a block need it, where more than three do. */
 #define MOST_BLURRED 1e3
 
 /* ---------------------------------------------------------------- corners ---------------- */
@@ -48,8 +49,9 @@ typedef struct corners {
     double x[3][TL_MESH_CORNERS], d[TL_MESH_CORNERS];
 } corners;
 
-/* Places and depths of eight corners, and how much larger roundings of offsets are there; NaN where planes hardly meet. The first
- * plane of a corner is a face's. The others are as near, or are borders, numbers from `faces` on, and hold it. */
+/* Places and depths of eight corners, and how much larger roundings of offsets are there; NaN where planes hardly
+ * meet. The first plane of a corner is a face's. The others are as near, or are borders, numbers from `faces` on, and
+ * hold it. */
 TL_INLINE void place_corners(const tl_field_faces *restrict f, const uint8_t *restrict plane,
                              uint32_t faces, bool seamed, double *restrict x, double *restrict y,
                              double *restrict z, double *restrict d, double *restrict blur)
@@ -106,8 +108,8 @@ TL_VECTORIZED static void place_seamed_corners(const tl_field_faces *restrict f,
     place_corners(f, plane, f->a + f->b, true, x, y, z, d, blur);
 }
 
-/* Whether no plane of some, from `first` to before `end`, is nearer to any of eight corners than d, by more than a slack that grows
- * with the roundings. */
+/* Whether none of the planes from `first` to before `end` is nearer to any of eight corners than d. Allowed is a slack
+ * that grows with the roundings. */
 TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_t first,
                                        uint32_t end, const double *restrict x,
                                        const double *restrict y, const double *restrict z,
@@ -406,7 +408,8 @@ TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES],
     }
 }
 
-/* Loops and sides of the polygons from number `first` on, before `end`; how many they are. Those left over are the last again. */
+/* Loops and sides of the polygons from number `first` on, before `end`; how many they are. Those left over are the
+ * last again. */
 static uint32_t begin_loops(const tl_field_mesh *mesh, uint32_t first, uint32_t end,
                             const uint8_t **loop, polygons *p)
 {
@@ -442,8 +445,8 @@ static uint32_t begin_polygons(const tl_field_faces *f, const tl_apex apex[2], u
     return count;
 }
 
-/* The same of polygons at borders, and what they have instead of the length of n_i - n_j; with what sign they pass on through a seam
- * what presses, if they do (add_border of field.c). */
+/* The same of polygons at borders, and what they have instead of the length of n_i - n_j. With what sign they pass on
+ * through a seam what presses, if they do (add_border of field.c). */
 static void begin_borders(const tl_field_faces *f, uint32_t first, const uint8_t **loop,
                           polygons *p, double slope[LANES], double through[LANES])
 {

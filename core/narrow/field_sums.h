@@ -1,4 +1,5 @@
-/* field_sums.h - the planes of two blocks that a pressure field is integrated between (field.h), and what is integrated. */
+/* field_sums.h - the planes of two blocks that a pressure field is integrated between (field.h), and what is
+ * integrated. */
 #ifndef TL_NARROW_FIELD_SUMS_H
 #define TL_NARROW_FIELD_SUMS_H
 
@@ -32,8 +33,8 @@ typedef struct tl_apex_faces {
     uint8_t holds, strays, held[3], stray[TL_APEX_STRAYS];
 } tl_apex_faces;
 
-/* What is known of the field of two blocks at some place: the faces that bounded K, and its polygons. At a corner the same d
- * belongs to four planes, of which d = 0 may be one. field_mesh.c */
+/* What is known of the field of two blocks at some place: the faces that bounded K, and its polygons. At a corner the
+ * same d belongs to four planes, of which d = 0 may be one. field_mesh.c */
 typedef struct tl_field_mesh {
     uint64_t bounding;         /* a bit for each face that bounded K; 0: not known */
     tl_vec3 origin;            /* a point near K, about which its faces are to be given */
@@ -51,18 +52,18 @@ static inline uint32_t tl_mesh_lanes(const tl_field_mesh *mesh)
     return (mesh->corners + TL_LANES - 1) / TL_LANES * TL_LANES;
 }
 
-/* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. Of
- * blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a border all faces
- * are needed, for beyond it the nearest need not bound K. Of blocks that are apart the faces left may still enclose
- * something: the deepest point is then not in both blocks. */
+/* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among
+ * them. Of blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a
+ * border all faces are needed, for beyond it the nearest need not bound K. Of blocks that are apart the faces left may
+ * still enclose something: the deepest point is then not in both blocks. */
 typedef struct tl_field_faces {
     uint32_t a, b, border_a, border_b; /* how many of each */
     uint32_t seam_a,
         seam_b;       /* so many borders, the last of A's and of B's, are seams to other parts */
     double *n[3], *c; /* [all of them]; with a mesh there is room for TL_FIELD_KNOWN + 1 */
-    /* What is known of another place; NULL: nobody keeps it. It is of use for up to TL_FIELD_KNOWN planes.
-     * The bits must be of all faces that bounded K, and must be forgotten when a corner of one block has come to lie in the other
-     * and on or beyond a face that is not among them. The function leaves what it finds here. */
+    /* What is known of another place; NULL: nobody keeps it. It is of use for up to TL_FIELD_KNOWN planes. The bits
+     * must be of all faces that bounded K. They must be forgotten when a corner of one block lies in the other, and on
+     * or beyond a face that is not among them. The function leaves what it finds here. */
     tl_field_mesh *mesh;
     const tl_mesh_inner
         *inner;  /* corners of one block in the other, for a new mesh; NULL: make none */
@@ -91,7 +92,7 @@ typedef struct tl_field_sums {
     tl_vec3 force, moment; /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
     tl_vec3 swept,
         swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
-    /* int d n dS over the seams: what passes through them from one part of a body to the next, and into `force` of both */
+    /* int d n dS over the seams: what passes from one part of a body to the next, and into `force` of both */
     tl_vec3 through, through_moment;
     tl_vec3 area;     /* int n dS; m^2 */
     double pressure;  /* int d dS; m^3 */
@@ -108,8 +109,8 @@ typedef struct tl_field_sums {
 
 /* Tolerance: roundings of the largest offset within which two faces that look the same way are one plane. */
 #define TL_FIELD_ONE_PLANE (16 * 2.220446049250313e-16)
-/* Tolerance: length of n_a - n_b below which what is between two faces counts no more in the stiffness. They look so
- * much the same way that it bears nothing. */
+/* Length of n_a - n_b below which two faces look so much the same way that what is between them bears nothing. It
+ * counts no more in the stiffness. */
 #define TL_FIELD_SAME_WAY 0.5
 
 #endif

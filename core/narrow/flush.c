@@ -3,8 +3,8 @@
 
 #include <talus/vmath.h>
 
-/* Whether another outer face of a block, or of the body that it is a part of, meets a face at an angle below twice the tilt at
- * which springs at corners end. */
+/* Whether another outer face of a block or its body meets a face at less than twice the tilt at which springs at
+ * corners end. */
 static bool has_blunt_edge(const tl_poly *p, uint32_t face)
 {
     const double least = 1 - 2 * TL_CORNERS_FIELD_TILT * TL_CORNERS_FIELD_TILT;

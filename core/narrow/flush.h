@@ -5,9 +5,8 @@
 #include "base/inline.h"
 #include "geometry/polyhedron.h"
 
-/* Tolerance: tilt of two faces, as a sine, up to which only their patch counts, and from which only the field: 0.05
- * and 0.15 degrees. Joints of a rock mass under load stay below, at some 1e-5. Test: property/press_properties,
- * lua/test_common_volume. */
+/* Tilt of two faces, as a sine, up to which their patch is all there is, and from which on the field is all. They are
+ * 0.05 and 0.15 degrees. Joints of a rock mass under load stay below, at some 1e-5. */
 #define TL_FLUSH_TILT 8.7266e-4
 #define TL_FIELD_TILT 2.6180e-3
 /* Tolerance: the same of the overlap of the patch over the root of its area. Deep blocks have accidental flush faces.
@@ -20,14 +19,14 @@
 #define TL_CORNERS_FIELD_TILT 0.1736
 #define TL_CORNERS_DEPTH 0.1
 #define TL_CORNERS_FIELD_DEPTH 0.2
-/* Tolerance: of these, the tilt and the overlap up to which such a patch has points. Beyond, how the corners and their
- * areas go in a tilt and over an edge counts, and the press does all (corner_sums.c). The points' forces are off by
+/* Of these, the tilt and the overlap up to which such a patch has points. Beyond, it counts how the corners and their
+ * areas go in a tilt and over an edge, and all is done by the press (corner_sums.c). The points' forces are off by
  * about the tilt, and by the overlap. */
 #define TL_CORNERS_POINTS_TILT 2e-4
 #define TL_CORNERS_POINTS_DEPTH 1e-3
 
-/* Limits of a patch, and from where on there is nothing of it: of the tilt, and of the overlap over the root of the area; and of both up to
- * which it has points. */
+/* Limits of a patch, and from where on there is nothing of it. They are of the tilt, and of the overlap over the root
+ * of the area. And of both up to which it has points. */
 typedef struct tl_flush_limits {
     double tilt, field_tilt, depth, field_depth, points_tilt, points_depth;
 } tl_flush_limits;
@@ -41,9 +40,9 @@ TL_INLINE tl_flush_limits tl_flush_limits_of(bool corners)
                                        TL_FIELD_DEPTH, TL_FLUSH_TILT, TL_FLUSH_DEPTH};
 }
 
-/* Whether the points of a patch of two faces are to lie at its corners, where the model has them so: no other face meets either of
- * them so flat that it would be the next to touch within the tilt up to which springs at corners press. On a blunt edge, or a
- * round outline, the corners of one face would give way to those of the next at once. */
+/* Whether the points of a patch of two faces are to lie at its corners, where the model has them so. They do where no
+ * other face meets either of them so flat that it would touch next, within the tilt of springs at corners. On a blunt
+ * edge, or a round outline, the corners of one face would give way to those of the next at once. */
 bool tl_at_corners(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb);
 
 #endif

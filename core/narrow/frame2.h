@@ -85,8 +85,8 @@ TL_INLINE double tl_gap_at(tl_patch_gap gap, tl_point2 at)
     return gap.at + at.x * gap.x + at.y * gap.y;
 }
 
-/* Where the points of a patch lie, and their areas: of the fan triangle of an edge, the share of each end, of its middle
- * and of the centroid; corners lie at `reach` of the way out from the centroid, middles at `out`. */
+/* Where the points of a patch lie, and their areas. Of the fan triangle of an edge, the share of each end, of its
+ * middle and of the centroid. Corners lie at `reach` of the way out from the centroid, middles at `out`. */
 typedef struct tl_point_rule {
     double corner, middle, centroid, reach, out;
 } tl_point_rule;

@@ -1,6 +1,6 @@
 /* manifold.c - what touches: two flush faces make a patch (patch.c), all else a field contact (press.c).
  *
- * A patch is the fast form of the energy of press.c where that is the energy of the patch alone: the faces are nearly
+ * A patch is the fast form of the energy of press.c where that is the energy of the patch alone. The faces are nearly
  * parallel, overlap by little, and no other faces face each other nearby. A patch with a bond stays one up to a larger
  * tilt. A field contact has two points at the centre of its pressure (facet.h). */
 #include "narrow/manifold.h"
@@ -13,8 +13,8 @@
 /* Tolerance: share of the limits of a patch within which a field contact becomes one: so none changes to and fro.
  * Without it a cube in a groove takes 36000 steps to rest, not 3300. */
 #define BACK 0.5
-/* Tolerance: overlaps by which faces across a blunt edge must stay behind those of a patch. The blocks press on each
- * other over the edge, too: by this share of the patch's force. Test: unit/test_patch. */
+/* Overlaps by which faces across a blunt edge must stay behind those of a patch. For the blocks press on each other
+ * over it, too, by this share of the patch's force. */
 #define BLUNT 2000.0
 /* Tolerance: minimum area over that of a patch up to which it makes no difference: by less than 2e-3 of the force.
  * Test: unit/test_stored. */
@@ -157,9 +157,8 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
 
 /* ---------------------------------------------------------------- joint ------------------ */
 
-/* The face whose outward normal is nearest a direction, among those that reach to within the contact tolerance of the
- * block's end in that direction, and the cosine between them. A face can be nearer still and lie
- * elsewhere. */
+/* The face whose outward normal is nearest a direction, and the cosine between them. It must reach to within the
+ * contact tolerance of the block's end in that direction. A face can be nearer still and lie elsewhere. */
 static uint16_t touching_face(const tl_pair_view *view, bool of_b, tl_vec3 direction,
                               double *cosine)
 {

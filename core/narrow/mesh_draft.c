@@ -1,4 +1,5 @@
-/* mesh_draft.c - a new mesh of the polygons of a pressure field: their corners by the planes that meet there (field_mesh.c). */
+/* mesh_draft.c - a new mesh of the polygons of a pressure field: their corners by the planes that meet there
+ * (field_mesh.c). */
 #include "narrow/mesh_draft.h"
 
 #include <string.h>
@@ -84,24 +85,6 @@ static bool has_neighbour(const tl_field_mesh *mesh, const tl_field_faces *f, ui
     return false;
 }
 
-/* Whether each side of S that is not on the surface of K, with d = 0, belongs to two polygons. The label of a side is that
- * between its corner and the one before. */
-static bool hangs_together(const tl_field_mesh *mesh, const tl_mesh_draft *draft,
-                           const tl_field_faces *f)
-{
-    const uint8_t *loop = mesh->loop, *label = draft->label;
-    for (uint32_t k = 0; k < mesh->polygons; k++) {
-        uint32_t sides = mesh->sides[k];
-        for (uint32_t i = 0; i < sides && on_surface(mesh, f, k); i++)
-            if (label[i] != TL_MESH_ZERO &&
-                !has_neighbour(mesh, f, k, loop[i ? i - 1 : sides - 1], loop[i]))
-                return false;
-        loop += sides;
-        label += sides;
-    }
-    return true;
-}
-
 /* Whether the polygon of two planes has a side between two corners. */
 static bool has_side(const tl_field_mesh *mesh, uint8_t one, uint8_t other, uint8_t from,
                      uint8_t to)
@@ -120,20 +103,36 @@ static bool has_side(const tl_field_mesh *mesh, uint8_t one, uint8_t other, uint
     return false;
 }
 
-/* Whether all polygons are there that meet in a side: of three planes two by two, but for two borders. A side on the surface of
- * K, with d = 0, has one. */
-static bool is_whole(const tl_field_mesh *mesh, const tl_mesh_draft *draft, const tl_field_faces *f)
+/* Whether all polygons are there that meet in a side of a polygon: of its two planes and that of the label two by two,
+ * but for two borders. */
+static bool has_all(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon,
+                    uint8_t label, uint8_t from, uint8_t to)
+{
+    for (int own = 0; own < 2; own++) {
+        uint8_t by = mesh->own[polygon][own];
+        bool borders = by >= f->a + f->b && label >= f->a + f->b;
+        if (!borders && !has_side(mesh, by, label, from, to))
+            return false;
+    }
+    return true;
+}
+
+/* Whether the polygons hang together: with seams all of them, else those of S. A side on the surface of K, with d = 0,
+ * belongs to one only. The label of a side is that between its corner and the one before. */
+static bool hangs_together(const tl_field_mesh *mesh, const tl_mesh_draft *draft,
+                           const tl_field_faces *f)
 {
     const uint8_t *loop = mesh->loop, *label = draft->label;
     for (uint32_t k = 0; k < mesh->polygons; k++) {
         uint32_t sides = mesh->sides[k];
-        for (uint32_t i = 0; i < sides; i++)
-            for (int own = 0; own < 2 && label[i] != TL_MESH_ZERO; own++) {
-                uint8_t by = mesh->own[k][own], from = loop[i ? i - 1 : sides - 1];
-                bool borders = by >= f->a + f->b && label[i] >= f->a + f->b;
-                if (!borders && !has_side(mesh, by, label[i], from, loop[i]))
-                    return false;
-            }
+        for (uint32_t i = 0; i < sides; i++) {
+            uint8_t from = loop[i ? i - 1 : sides - 1], to = loop[i];
+            if (label[i] == TL_MESH_ZERO || !(f->seamed || on_surface(mesh, f, k)))
+                continue;
+            if (!(f->seamed ? has_all(mesh, f, k, label[i], from, to)
+                            : has_neighbour(mesh, f, k, from, to)))
+                return false;
+        }
         loop += sides;
         label += sides;
     }
@@ -171,7 +170,7 @@ void tl_mesh_make(const tl_mesh_draft *draft, const tl_field_faces *faces, tl_fi
         for (int k = 0; k < 4; k++)
             mesh->plane[k][i] = mesh->plane[k][0];
     mesh->polygons = draft->polygons;
-    if (!fits || !(faces->seamed ? is_whole : hangs_together)(mesh, draft, faces)) {
+    if (!fits || !hangs_together(mesh, draft, faces)) {
         memset(mesh, 0, sizeof *mesh);
         mesh->bounding = bounding;
     }

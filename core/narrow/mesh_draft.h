@@ -13,8 +13,8 @@ typedef struct tl_mesh_draft {
     uint8_t label[TL_MESH_SIDES]; /* the plane on the other side of each side; TL_MESH_ZERO: none */
 } tl_mesh_draft;
 
-/* Adds the polygon of a lane to a draft: `own` are its two, `bound` those whose lines come after the first one, which is
- * that of d = 0. */
+/* Adds the polygon of a lane to a draft. `own` are its two planes, `bound` those whose lines come after the first one,
+ * which is that of d = 0. */
 void tl_mesh_draw(tl_mesh_draft *draft, const uint16_t own[2], const uint16_t *bound,
                   const tl_field_line *line, size_t lines, unsigned lane);
 /* Makes a mesh of all polygons of a field. It has none when they do not fit together, or are too many. */

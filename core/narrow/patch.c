@@ -1,17 +1,17 @@
 /* patch.c - face on face: the contact points of the common polygon (common_polygon.c).
  *
- * Contact points lie at the polygon's area centroid, at 5/8 of the
- * way from there to its corners and at 5/6 of that to the middles of its edges; with a_i the area of the fan triangle of
- * edge i about the centroid, a corner's point has the area 16/75 (a_{i-1} + a_i), a middle's 12/25 a_i, the centroid
- * 7/75 of all. These points integrate every quadratic polynomial over each fan triangle exactly, so any linear gap and
- * its moments over the polygon. (For corners at the share s of the way out with the weight w and middles at t with v,
- * that asks for w s^2 = 1/12, v t^2 = 1/3 and w s + v t/2 = 1/3: t is free, and friction against a spin is right to 2 %
- * for squares, triangles and rectangles up to 1:5 with t = 5/6.) With points at the corners only, each takes half of
- * its two fan triangles: resultants are right, turning is 3 times too stiff for a rectangle, 4 times for a
- * triangle.
+ * Contact points lie at the area centroid, at 5/8 of the way to the corners, and at 5/6 of that to the middles of the
+ * edges. Let a_i be the area of the fan triangle of edge i about the centroid. A corner's point has the area 16/75
+ * (a_{i-1} + a_i), a middle's 12/25 a_i, the centroid 7/75 of all. These points integrate every quadratic polynomial
+ * over each fan triangle exactly, so any linear gap and its moments over the polygon. (Corners lie at the share s of
+ * the way out with the weight w, middles at t with v. That asks for w s^2 = 1/12, v t^2 = 1/3 and w s + v t/2 = 1/3.
+ * So t is free. Friction against a spin is right to 2 % for squares, triangles and rectangles up to 1:5 with t = 5/6).
  *
- * All points have one normal (contact/facing.h). Areas are those on the faces, not in the bisecting plane, so that the
- * area of a face that lies wholly on another does not change as it tilts. */
+ * With points at the corners only, each takes half of its two fan triangles:
+ * resultants are right, turning is 3 times too stiff for a rectangle, 4 times for a triangle.
+ *
+ * All points have one normal (contact/facing.h). Areas are those on the faces, not in the bisecting plane. So the area
+ * of a face that lies wholly on another does not change as it tilts. */
 #include "narrow/patch.h"
 
 #include "base/columns.h"

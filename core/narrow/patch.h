@@ -5,7 +5,7 @@
 #include "narrow/narrow.h"
 #include "narrow/view.h"
 
-/* The points of face `fa` of A on face `fb` of B, into scratch->patch; returns their area (0 when they do not overlap). */
+/* The points of face `fa` of A on face `fb` of B, into scratch->patch; returns their area, 0 for none. */
 double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl_touch_rule *rule,
                     tl_narrow_scratch *scratch);
 /* The same with its facet into scratch->manifold. */

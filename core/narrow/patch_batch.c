@@ -1,11 +1,10 @@
 /* patch_batch.c - face on face for several pairs at once: the patches of patch.c, a pair in each lane.
  *
- * One patch is a long chain of things that wait for each other; a lane for each of several pairs fills the
- * waiting, and the vectors. Heights of all corners over all lines of the other face tell by their signs which
- * polygon it is; its corners are then placed from those of the faces. Where corners stand clear of
- * each other and turn enough to be full, every point is what patch.c makes it, to the bit; the others are left
- * to it. A lane's patch does not depend on what is in other lanes: corners and edges beyond its last have no
- * length, and add nothing. */
+ * One patch is a long chain of things that wait for each other. A lane for each of several pairs fills the waiting,
+ * and the vectors. Heights of all corners over all lines of the other face tell by their signs which polygon it is.
+ * Its corners are then placed from those of the faces. Where corners stand clear of each other and turn enough to be
+ * full, every point is what patch.c makes it, to the bit. The others are left to it. A lane's patch does not depend on
+ * what is in other lanes: corners and edges beyond its last have no length, and add nothing. */
 #include "narrow/patch_batch.h"
 
 #include "narrow/common_polygon.h"
@@ -25,11 +24,11 @@ typedef struct tl_outline_shared {
  *
  * The corners of the common polygon of two convex faces, by which corners lie inside which lines.
  *
- * Which edges cross, which corners belong to the polygon and in which order follows from signs alone: an edge
- * of A crosses one of B when its ends lie on two sides of B's line and the other's ends on two sides of A's.
- * A corner of A on a line of B counts as inside, one of B on a line of A as outside, as if B were the larger by
- * a hair; edges along each other then do not cross. The same signs come again step after step, so what they
- * mean is kept in a table. Signs that fit no two convex faces, as rounding may make them, give no outline. */
+ * Which edges cross, which corners belong to the polygon and in which order follows from signs alone. An edge of A
+ * crosses one of B when the ends of each lie on two sides of the other's line. A corner of A on a line of B counts as
+ * inside, one of B on a line of A as outside. Edges along each other then do not cross. The same signs come again step
+ * after step, so what they mean is kept in a table. Signs that fit no two convex faces, as rounding may make them,
+ * give no outline. */
 
 typedef struct walk {
     tl_outline *o;
@@ -280,8 +279,8 @@ typedef struct corner_source {
     tl_batch1 px, py, qx, qy, h, g;
 } corner_source;
 
-/* What is computed on the way. Corners of A in the plane of the patch come first, then those of B; heights of
- * corner i of A over line j of B are in row CORNERS j + i. */
+/* What is computed on the way. Corners of A in the plane of the patch come first, then those of B. Heights of corner i
+ * of A over line j of B are in row CORNERS j + i. */
 typedef struct work {
     _Alignas(64) frames frame;
     tl_batch1 x[2 * CORNERS], y[2 * CORNERS]; /* of the faces */
@@ -389,8 +388,8 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
     }
 }
 
-/* Notes which corners of a face, from row `first` on, lie inside the line from row `from` to row `to`, and which on it, in
- * bit `bit` of each corner's byte; those on the line lie inside unless it is `strict`. */
+/* Notes which corners of a face, from row `first` on, lie inside or on the line from row `from` to row `to`. It does
+ * so in bit `bit` of each corner's byte. Those on the line lie inside unless it is `strict`. */
 TL_INLINE void note_inside(const tl_patch_batch *b, work *w, uint32_t first, uint32_t count,
                            uint32_t from, uint32_t to, uint32_t bit, bool strict)
 {

@@ -13,9 +13,9 @@
 #define TL_OUTLINE_CORNERS 8
 
 /* A corner of the common polygon of two faces, as its features tell. Corners of A's face have the numbers 0, 1, ...,
- * those of B's TL_OUTLINE_CORNERS, ...; the height of corner i of A over the line that begins at corner j of B has
- * number TL_OUTLINE_CORNERS j + i. A corner is one of a face, `from` and `to`, or lies between these two where
- * heights `over` and `under` meet 0. */
+ * those of B's TL_OUTLINE_CORNERS, .... The height of corner i of A over the line that begins at corner j of B has
+ * number TL_OUTLINE_CORNERS j + i. A corner is one of a face, `from` and `to`, or lies between these two where heights
+ * `over` and `under` meet 0. */
 typedef struct tl_outline_corner {
     uint8_t from, to, over, under;
 } tl_outline_corner;
@@ -91,8 +91,8 @@ void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32
                   const tl_poly *b, uint32_t fb, double size, double reach);
 /* Lays the patches of all lanes. */
 void tl_batch_lay(tl_patch_batch *batch);
-/* A lane that is laid has as many points as tl_patch_lay gives it, in the same order: `middles` middles (0 where
- * points are at corners only), `corners` corners, and the centroid if `centroid`. */
+/* A lane that is laid has as many points as tl_patch_lay gives it, in the same order. They are `middles` middles (0
+ * where points are at corners only), `corners` corners, and the centroid if `centroid`. */
 typedef struct tl_batch_counts {
     uint32_t middles, corners, all;
     bool centroid;

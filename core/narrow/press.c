@@ -1,14 +1,13 @@
 /* press.c - what two blocks press on each other with.
  *
  * The energy is that of the pressure field (field.h), U_f = 2 kn G_f. Where two faces a and b lie flush, it is that of
- * their patch, for which only the distances to these two count, and to others of nearly their direction, and all other
- * faces are borders, U_p = 2 kn G_p. Between
- * them one blend,
+ * their patch. For that only the distances to these two count, and to others of nearly their direction. All other
+ * faces are borders, and U_p = 2 kn G_p. Between them one blend,
  *
- *     G = w G_f + (1 - w) G_p
+ *     G = w G_f + (1 - w) G_p.
  *
- *. So a patch under an initial stress, or opened by slip, passes into its field without a jump. The force is the gradient of
- * all of it,
+ * So a patch under an initial stress, or opened by slip, passes into its field without a jump. The force is the
+ * gradient of all of it,
  *
  *     F = w F_f + (1 - w) F_p - (G_f - G_p) grad w.
  *
@@ -18,9 +17,9 @@
  *
  * which is G without A_m.
  *
- * A law whose stress is not proportional to the overlap is given the area A_e, or (A_e^2 + A_m^2)^(1/2), and the overlap s. Its
- * energy follows from the integrals of d^0 .. d^3 over K (force/field_press.c): so these are blended apart, without A_m, and the force
- * follows from the gradients of all. */
+ * A law whose stress is not proportional to the overlap is given the area A_e, or (A_e^2 + A_m^2)^(1/2), and the
+ * overlap s. Its energy follows from the integrals of d^0 .. d^3 over K (force/field_press.c). So these are blended
+ * apart, without A_m, and the force follows from the gradients of all. */
 #include "narrow/press.h"
 
 #include "base/table.h"
@@ -91,8 +90,7 @@ static tl_plane moved_plane(const tl_press_query *of, bool of_b)
     return plane;
 }
 
-/* Where a face presses, in A's frame. */
-static tl_plane pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
+tl_plane tl_pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
 {
     return is_moved(of, of_b, face) ? moved_plane(of, of_b) : tl_view_plane(of->view, of_b, face);
 }
@@ -101,7 +99,7 @@ static uint32_t add_faces(tl_press_planes *p, const tl_press_query *of, bool of_
                           uint32_t count)
 {
     for (uint32_t k = begin; k < begin + count; k++) {
-        tl_plane plane = pressing_plane(of, of_b, of->region->face[k]);
+        tl_plane plane = tl_pressing_plane(of, of_b, of->region->face[k]);
         p->faces.n[0][p->count] = plane.normal.x;
         p->faces.n[1][p->count] = plane.normal.y;
         p->faces.n[2][p->count] = plane.normal.z;
@@ -142,12 +140,12 @@ static void list_planes(tl_press_planes *p, const tl_press_query *of, uint32_t a
  *
  *     w = 1 - (1 - S(sin tilt)) (1 - S(q)) S(G_p / G_f),    q = (4 G_p)^(3/2) / V_p^2 - shift (4 G_p)^(1/2) / V_p
  *
- * with the smoothstep S. q is the overlap of the patch as it is, without the shift of moved faces, over the root of its area. Where the
- * patch has not nearly the energy of the field, other faces press: beside a seam it may be a sliver of next to nothing. */
+ * with the smoothstep S. q is the overlap of the patch as it is, without the shift of moved faces, over the root of
+ * its area. Where the patch has not nearly the energy of the field, other faces press. Beside a seam it may be a
+ * sliver of next to nothing. */
 
-/* Tolerance: energy of the patch over that of the field up to which there is no patch, and from which on there is all
- * of it. Patches have nearly that of their field, or more where springs are at corners. Test: unit/test_share,
- * verify/long/common_volume. */
+/* Energy of the patch over that of the field up to which there is no patch, and from which on there is all of it.
+ * Patches have nearly that of their field, or more where springs are at corners. */
 #define SLIVER 0.1
 #define WHOLE 0.5
 
@@ -205,8 +203,8 @@ tl_patch_share tl_patch_share_of(const tl_vec3 *na, const tl_vec3 *nb, bool corn
 /* Tolerance: sum over those of its parts that may be nothing but their roundings. A single corner has no radius, and
  * the root of a rounding would be 1e-8 m. Test: lua/test_law_rounding. */
 #define ROUNDED 1e-14
-/* Tolerance: volume between two faces, over what the blocks have in common, beyond which they are no patch. Of an edge
- * that is pressed into both it is 1. Test: lua/test_cut_corners. */
+/* Volume between two faces, over what the blocks have in common, beyond which they are no patch. Of an edge that is
+ * pressed into both it is 1. */
 #define FAR_APART 30
 
 /* ---------------------------------------------------------------- noise ------------------ */
@@ -217,7 +215,7 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? of->view->b : of->view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
-            tl_plane plane = pressing_plane(of, of_b, f);
+            tl_plane plane = tl_pressing_plane(of, of_b, f);
             if (tl_v3_dot(plane.normal, x) > plane.offset + INSIDE * depth)
                 return false;
         }
@@ -225,8 +223,8 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
     return true;
 }
 
-/* Whether the integrals of blocks that hardly overlap are no more than roundings: the centre of pressure lies in both blocks, and
- * with a minimum area their mean depth is no larger than the largest. */
+/* Whether the integrals of blocks that hardly overlap are no more than roundings. Otherwise the centre of pressure
+ * lies in both blocks, and with a minimum area their mean depth is no larger than the largest. */
 static bool is_noise(const tl_press_query *of, const tl_press_planes *p, const tl_field_sums *sums)
 {
     double size = of->view->size;
@@ -384,8 +382,8 @@ static void mix_places(tl_field_sums *field, const patches *p)
     }
 }
 
-/* Adds the patch of two faces, if it has a share. Faces that are not the flush ones may face each other far apart, with all of the blocks between
- * them. false: out of memory. */
+/* Adds the patch of two faces, if it has a share. Faces that are not the flush ones may face each other far apart,
+ * with all of the blocks between them. false: out of memory. */
 static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair faces,
                       bool corners, const tl_field_sums *field, tl_narrow_scratch *scratch,
                       patches *to)
@@ -394,7 +392,7 @@ static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair
     const uint32_t fa = faces.a, fb = faces.b;
     const tl_vec3 *na = &view->a->plane[fa].normal, *nb = &view->normal_b[fb];
     const tl_corner_faces at = {
-        .fa = fa, .fb = fb, .a = pressing_plane(of, 0, fa), .b = pressing_plane(of, 1, fb)};
+        .fa = fa, .fb = fb, .a = tl_pressing_plane(of, 0, fa), .b = tl_pressing_plane(of, 1, fb)};
     const double shift = press_shift_of(of, false, fa) + press_shift_of(of, true, fb);
     flush_patch *patch = &to->of[to->count];
     if (to->count == MOST_PATCHES)
@@ -419,8 +417,8 @@ static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair
     return true;
 }
 
-/* What is left of the shares s_k of patches where several have one: s_k times all other 1 - s_j. So it makes no difference which of them is
- * taken to be the flush one. */
+/* What is left of the shares s_k of patches where several have one: s_k times all other 1 - s_j. So it makes no
+ * difference which of them is taken to be the flush one. */
 static void part(patches *p)
 {
     tl_patch_share whole[MOST_PATCHES];
@@ -439,8 +437,8 @@ static void part(patches *p)
         }
 }
 
-/* The patches that have a share: that of the flush faces, and, at corners, those of others that face each other, for springs there press up to
- * tilts at which an edge may lie in both. false: out of memory. */
+/* The patches that have a share: that of the flush faces, and, at corners, those of others that face each other. For
+ * springs there press up to tilts at which an edge may lie in both. false: out of memory. */
 static bool find_patches(const tl_press_query *of, tl_press_planes *p, const tl_field_sums *field,
                          tl_narrow_scratch *scratch, patches *out)
 {
@@ -488,7 +486,8 @@ static void put_powers(const tl_press_query *of, tl_vec3 origin,
     press->overlap = 4 * press->energy / volume;
 }
 
-/* Radius of gyration of the area about a place: none where it is a rounding of what is subtracted, as at a single corner. */
+/* Radius of gyration of the area about a place: none where it is a rounding of what is subtracted, as at a single
+ * corner. */
 static double radius_of(const tl_field_sums *sums, tl_vec3 about)
 {
     double moved = tl_v3_norm2(about) * sums->extent, whole = sums->second + moved;
@@ -496,8 +495,8 @@ static double radius_of(const tl_field_sums *sums, tl_vec3 about)
     return second > ROUNDED * whole ? sqrt(second / sums->extent) : 0;
 }
 
-/* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. Nothing
- * presses where a part only passes on through its seams what the next parts press with, to the last digit. */
+/* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before.
+ * Nothing presses where a part only passes on through its seams what the next parts press with, to the last digit. */
 static bool press_of(const tl_press_query *of, tl_press_planes *p, tl_field_sums *sums, bool same,
                      tl_narrow_scratch *scratch, tl_press *press, tl_press_extra *extra)
 {

@@ -1,5 +1,5 @@
-/* press.h - what two blocks press on each other with: the pressure field and, where two faces lie flush, their patch, in
- * one energy. */
+/* press.h - what two blocks press on each other with: the pressure field and, where two faces lie flush, their patch,
+ * in one energy. */
 #ifndef TL_NARROW_PRESS_H
 #define TL_NARROW_PRESS_H
 
@@ -17,7 +17,8 @@ typedef struct tl_press_query {
     const tl_pair_view *view;
     const tl_region *region;
     double min_area; /* m^2 */
-    /* how far both faces `shifted` together are moved out by an initial stress and by slip, m: each goes half of the way */
+    /* how far both faces `shifted` together are moved out by an initial stress and by slip, m: each goes half of the
+     * way */
     double shift;
     tl_face_pair shifted;
     const tl_plane *
@@ -32,8 +33,10 @@ typedef struct tl_press_query {
 /* Tolerance: depth over the size of the smaller block up to which blocks only touch: roundings of places. */
 #define TL_TOUCHING 1e-12
 
-/* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common; and what those that have more have
- * besides. NULL: neither powers nor what slip has opened are wanted. false: out of memory. */
+/* Where a face presses, in A's frame: moved out and leaning, if it does. */
+tl_plane tl_pressing_plane(const tl_press_query *query, bool of_b, uint32_t face);
+/* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common; and what those that have
+ * more have besides. NULL: neither powers nor what slip has opened are wanted. false: out of memory. */
 bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
                    tl_press press[], tl_press_extra extra[]);
 
@@ -43,8 +46,8 @@ typedef struct tl_patch_share {
     tl_vec3 push, turn;
 } tl_patch_share;
 
-/* By the outward normals of both faces, their shift, and the sums of the patch, whose energy and volume are above 0, and of the
- * field. */
+/* By the outward normals of both faces, their shift, and the sums of the patch and of the field. Energy and volume of
+ * the patch are above 0. */
 tl_patch_share tl_patch_share_of(const tl_vec3 *na, const tl_vec3 *nb, bool corners, double shift,
                                  const tl_field_sums *patch, const tl_field_sums *field);
 

@@ -1,8 +1,8 @@
 /* press_slope.c - a press near a place where it was found: force and all else go on by their slopes there.
  *
- * Blocks at rest move by a small part of their overlap. There the energy is a quadratic of the motion: its force goes by the
- * slopes -d2G, which are symmetric, so that what swings within neither gains nor loses. The slopes are central differences
- * over the same way that they are used for. */
+ * Blocks at rest move by a small part of their overlap. There the energy is a quadratic of the motion. Its force goes
+ * by the slopes -d2G, which are symmetric, so that what swings within neither gains nor loses. The slopes are central
+ * differences over the same way that they are used for. */
 #include "narrow/press_slope.h"
 
 #include "narrow/place.h"

@@ -19,7 +19,7 @@ double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pai
 /* Slopes at a place where the press was found for a query. false: out of memory. */
 bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
                          tl_narrow_scratch *scratch, tl_press_slope *slope);
-/* The press when B has moved a little from where its slopes were found. false: it has moved by more than TL_PRESS_NEAR. */
+/* The press when B has moved a little from where its slopes were found. false: by more than TL_PRESS_NEAR. */
 bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
                    const tl_pair_pose *to, tl_press *out);
 

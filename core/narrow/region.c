@@ -1,12 +1,12 @@
 /* region.c - which faces of two blocks bound what they have in common.
  *
- * A face that lies wholly outside one face of the other block bounds nothing of the common volume K, and may be left out:
- * the faces that stay enclose K and nothing else, as long as there is a K. For, on the way from a point of K out of it
- * through a face that was left out, the point on that face would lie in the other block. By how far the face lies outside,
- * so far may the pair move and the face be left out still.
+ * A face that lies wholly outside one face of the other block bounds nothing of the common volume K, and may be left
+ * out. The faces that stay enclose K and nothing else, as long as there is a K. For the way from a point of K out of
+ * it may lead through a face that was left out. The point on that face would lie in the other block. By how far the
+ * face lies outside, so far may the pair move and the face be left out still.
  *
  * Where a block has seams, the nearest face of a point in K need not bound K. No point of K lies deeper than the least
- * overlap: a face is left out if it is farther away than that from the whole of the other block. */
+ * overlap. A face is left out if it is farther away than that from the whole of the other block. */
 #include "narrow/region.h"
 
 #include "base/table.h"
@@ -151,7 +151,8 @@ static double highest(const planes *p, bool borders, size_t *face)
     return gap;
 }
 
-/* The gap, with its normal: apart by any face, or overlapping by the least along a real one. Along a seam it may be less. */
+/* The gap, with its normal: apart by any face, or overlapping by the least along a real one. Along a seam it may be
+ * less. */
 static void find_gap(const planes *a, const planes *b, tl_region *out)
 {
     size_t face_a = 0, face_b = 0;
@@ -193,8 +194,9 @@ static double cosine(const planes *p, size_t i, const planes *q, size_t j)
     return p->x[i] * q->x[j] + p->y[i] * q->y[j] + p->z[i] * q->z[j];
 }
 
-/* The flush faces: of the two that overlap the least, the most parallel where several do, and those that meet them in blunt
- * edges the most parallel. So the choice changes where two tilts are the same. Planes of other parts count, but are not chosen. */
+/* The flush faces: of the two that overlap the least, the most parallel where several do. Those count as well that
+ * meet them in blunt edges: the most parallel of all are taken. So the choice changes where two tilts are the same.
+ * Planes of other parts count, but are not chosen. */
 static void find_flush(const planes *a, const planes *b, tl_region *out)
 {
     const uint16_t *of_a = out->face, *of_b = out->face + out->a;
@@ -226,8 +228,8 @@ static void find_flush(const planes *a, const planes *b, tl_region *out)
     out->flush_gap = fmax(a->low[out->flush_a], b->low[out->flush_b]);
 }
 
-/* Puts the faces that meet the flush one in blunt edges before the others of a block; how many they are, with it. The least
- * by which one falls behind it. */
+/* Puts the faces that meet the flush one in blunt edges before the others of a block; how many they are, with it. The
+ * least by which one falls behind it. */
 static uint32_t gather_blunt(const planes *p, uint16_t *face, uint32_t count, uint16_t flush,
                              double *lead)
 {
@@ -334,7 +336,8 @@ static bool lies_within(const sides *s, tl_vec3 v)
     return true;
 }
 
-/* Whether the corners of a block, of sides `own`, that lie in another, of sides `s`, lie on or beyond none of the others. */
+/* Whether the corners of a block, of sides `own`, that lie in another, of sides `s`, lie on or beyond none of the
+ * others. */
 static bool agree(const tl_poly *p, const tl_vec3 *vertex, const sides *own, const sides *s)
 {
     for (uint32_t m = own->other; m < TL_FIELD_KNOWN; m++)
@@ -361,7 +364,7 @@ bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region)
     return agree(view->a, view->a->vertex, &a, &b) && agree(view->b, view->vertex_b, &b, &a);
 }
 
-/* Of the listed faces of a block that meet in a vertex the three that do so at the sharpest. false: there are no three. */
+/* The three listed faces of a block that meet in a vertex at the sharpest. false: there are no three. */
 static bool faces_at(const tl_pair_view *view, const tl_region *r, bool of_b, uint32_t vertex,
                      uint8_t face[3])
 {

@@ -5,8 +5,8 @@
 #include "narrow/narrow.h"
 #include "narrow/view.h"
 
-/* Faces of two blocks near what they have in common. Among the listed faces of a part are planes of faces of other parts, whose
- * numbers begin with its face_count (seam.c). */
+/* Faces of two blocks near what they have in common. Among the listed faces of a part are planes of faces of other
+ * parts, whose numbers begin with its face_count (seam.c). */
 typedef struct tl_region {
     /* the listed faces of A, of B, the borders of A and of B: faces on other parts, the seams behind the others */
     uint32_t a, b, border_a, border_b;
@@ -28,16 +28,17 @@ typedef struct tl_region {
 } tl_region;
 
 /* Fills the region of a pair that has been placed. Faces that stay away from the other block while the pair moves by
- * `margin` are not listed; with a border all real faces are that may be the nearest to some point. false: out of memory. */
+ * `margin` are not listed. With a border all real faces are that may be the nearest to some point. false: out of
+ * memory. */
 bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch,
                     tl_region *region);
 /* Chooses the flush faces of a region anew, when the pair has moved. */
 void tl_region_choose_flush(const tl_pair_view *view, tl_region *region);
-/* Whether the faces marked in `bounding` are all that bound the common volume, as far as the corners of one block tell that lie
- * in the other. The pair has moved by less than its margin. */
+/* Whether the faces marked in `bounding` are all that bound the common volume. The corners of one block that lie in
+ * the other tell it. The pair has moved by less than its margin. */
 bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region);
-/* The corners of one block that lie in the other, as far as the listed faces tell; a corner has the numbers of three of them in
- * the list. */
+/* The corners of one block that lie in the other, as far as the listed faces tell. A corner has the numbers of three
+ * of them in the list. */
 void tl_region_inner_corners(const tl_pair_view *view, const tl_region *region, tl_mesh_inner *out);
 /* Sine of the angle between two faces, one of A and one of B. */
 double tl_region_tilt(const tl_pair_view *view, uint32_t face_a, uint32_t face_b);

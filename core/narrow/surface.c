@@ -1,11 +1,12 @@
 /* surface.c - the surface on which two blocks press each other.
  *
- * A polygon begins as a face, or as a large square in the plane on which two depths are equal, and is cut by half-spaces one after
- * the other (Sutherland and Hodgman 1974). The order of the cuts does not depend on where the blocks are, nor does what is left
- * out: polygons whose area is that of roundings. */
+ * A polygon begins as a face, or as a large square in the plane on which two depths are equal. It is cut by
+ * half-spaces one after the other (Sutherland and Hodgman 1974). The order of the cuts does not depend on where the
+ * blocks are. Nor does what is left out: polygons whose area is that of roundings. */
 #include "narrow/surface.h"
 
 #include "base/table.h"
+#include "geometry/measure.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -143,22 +144,12 @@ static bool begin(draft *p, const tl_pair_view *view, tl_plane equal)
     return true;
 }
 
-/* Where a face of a field is. */
-static tl_plane pressing_face(const tl_pair_view *view, const tl_moved_faces *moved, bool of_b,
-                              uint32_t face)
+static bool cut_by_depths(draft *p, const tl_press_query *of, bool of_b, const uint16_t *faces,
+                          uint32_t count, uint32_t nearest)
 {
-    if (!moved || face != (of_b ? moved->faces.b : moved->faces.a))
-        return tl_view_plane(view, of_b, face);
-    return moved->plane[of_b];
-}
-
-static bool cut_by_depths(draft *p, const tl_pair_view *view, const tl_moved_faces *moved,
-                          bool of_b, const uint16_t *faces, uint32_t count, uint32_t nearest)
-{
-    tl_plane near = pressing_face(view, moved, of_b, nearest);
+    tl_plane near = tl_pressing_plane(of, of_b, nearest);
     for (uint32_t k = 0; k < count && p->count; k++)
-        if (faces[k] != nearest &&
-            !cut(p, deeper(pressing_face(view, moved, of_b, faces[k]), near)))
+        if (faces[k] != nearest && !cut(p, deeper(tl_pressing_plane(of, of_b, faces[k]), near)))
             return false;
     return true;
 }
@@ -172,46 +163,44 @@ static bool cut_by_borders(draft *p, const tl_pair_view *view, bool of_b, const 
     return true;
 }
 
-/* Whether the polygon's middle lies in both blocks, but for rounding. It does unless the blocks are apart: then the listed faces
- * may still enclose something. */
-static bool is_inside(const draft *p, const tl_pair_view *view, const tl_moved_faces *moved)
+/* Whether the polygon's middle lies in both blocks, but for rounding. It does unless the blocks are apart: then the
+ * listed faces may still enclose something. */
+static bool is_inside(const draft *p, const tl_press_query *of)
 {
     const tl_vec3 *x = p->surface->corner + p->surface->corners;
-    tl_vec3 sum = {0, 0, 0};
-    for (size_t i = 0; i < p->count; i++)
-        sum = tl_v3_add(sum, x[i]);
-    tl_vec3 middle = tl_v3_scale(1 / (double)p->count, sum);
+    tl_vec3 middle = tl_points_mean(x, p->count);
     double outside = -INFINITY;
     for (int side = 0; side < 2; side++) {
-        const tl_poly *poly = side ? view->b : view->a;
+        const tl_poly *poly = side ? of->view->b : of->view->a;
         for (uint32_t f = 0; f < poly->face_count; f++) {
-            tl_plane h = pressing_face(view, moved, side, f);
+            tl_plane h = tl_pressing_plane(of, side, f);
             outside = fmax(outside, tl_v3_dot(h.normal, middle) - h.offset);
         }
     }
-    return outside < TL_POLY_ON * view->size;
+    return outside < TL_POLY_ON * of->view->size;
 }
 
-bool tl_surface_add_field(const tl_pair_view *view, const tl_region *region,
-                          const tl_moved_faces *moved, tl_surface *surface)
+bool tl_surface_add_field(const tl_press_query *of, tl_surface *surface)
 {
+    const tl_pair_view *view = of->view;
+    const tl_region *region = of->region;
     const uint16_t *in_a = region->face, *in_b = in_a + region->a;
     const uint16_t *border_a = in_b + region->b, *border_b = border_a + region->border_a;
     for (uint32_t i = 0; i < region->a; i++)
         for (uint32_t j = 0; j < region->b; j++) {
-            tl_plane a = pressing_face(view, moved, false, in_a[i]);
-            tl_plane b = pressing_face(view, moved, true, in_b[j]);
+            tl_plane a = tl_pressing_plane(of, false, in_a[i]);
+            tl_plane b = tl_pressing_plane(of, true, in_b[j]);
             tl_plane equal = deeper(a, b);
             draft p = {surface, 0};
             if (tl_v3_norm2(equal.normal) < ONE_DIRECTION)
                 continue;
             if (!begin(&p, view, equal) || !cut(&p, a) ||
-                !cut_by_depths(&p, view, moved, false, in_a, region->a, in_a[i]) ||
-                !cut_by_depths(&p, view, moved, true, in_b, region->b, in_b[j]) ||
+                !cut_by_depths(&p, of, false, in_a, region->a, in_a[i]) ||
+                !cut_by_depths(&p, of, true, in_b, region->b, in_b[j]) ||
                 !cut_by_borders(&p, view, false, border_a, region->border_a) ||
                 !cut_by_borders(&p, view, true, border_b, region->border_b))
                 return false;
-            if (has_area(&p, view->size) && is_inside(&p, view, moved))
+            if (has_area(&p, view->size) && is_inside(&p, of))
                 keep(&p);
         }
     return true;

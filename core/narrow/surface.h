@@ -3,8 +3,6 @@
 #define TL_NARROW_SURFACE_H
 
 #include "narrow/press.h"
-#include "narrow/region.h"
-#include "narrow/view.h"
 
 /* Polygons in A's frame, counter-clockwise seen against the normal from A to B. Zero at first. */
 typedef struct tl_surface {
@@ -16,16 +14,9 @@ typedef struct tl_surface {
 /* Adds the common polygon of two faces, halfway between them. false: out of memory, as below. */
 bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t face_b,
                           tl_surface *surface);
-/* Where two faces, of A and of B in A's frame, are that are moved out or lean (press.h). */
-typedef struct tl_moved_faces {
-    tl_face_pair faces;
-    tl_plane plane[2];
-} tl_moved_faces;
-
-/* Adds the polygons on which the depths in both blocks are equal (field.h): one for each face of A and face of B that are the
- * nearest there. `moved`: NULL where none are. */
-bool tl_surface_add_field(const tl_pair_view *view, const tl_region *region,
-                          const tl_moved_faces *moved, tl_surface *surface);
+/* Adds the polygons on which the depths in both blocks are equal (field.h), where their faces press. There is one for
+ * each face of A and face of B that are the nearest there. */
+bool tl_surface_add_field(const tl_press_query *query, tl_surface *surface);
 void tl_surface_free(tl_surface *surface);
 
 #endif

@@ -1,7 +1,7 @@
 /* view.h - two blocks as the geometry of a pair sees them, and the lengths that count there, over their size.
  *
- * The geometry is done in the frame of block A's body, where B's body is given by a rotation and a translation; A is the
- * block with the lower id. Normals point from A to B. Gap is positive between separate walls; overlap is -gap. */
+ * The geometry is done in the frame of block A's body, where B's body is given by a rotation and a translation. A is
+ * the block with the lower id. Normals point from A to B. Gap is positive between separate walls; overlap is -gap. */
 #ifndef TL_NARROW_VIEW_H
 #define TL_NARROW_VIEW_H
 
@@ -9,9 +9,9 @@
 
 #include <talus/vmath.h>
 
-/* Lengths below it, relative to the smaller block's size, make no difference: a motion within which a pair without points is
- * not looked at again; a motion in a step with which a contact is calm; a gap of walls that are together. Far above rounding of
- * places, far below the contact tolerance. */
+/* Lengths below it, relative to the smaller block's size, make no difference: a motion within which a pair without
+ * points is not looked at again. A motion in a step with which a contact is calm. A gap of walls that are together.
+ * Far above rounding of places, far below the contact tolerance. */
 #define TL_STILL 1e-6
 
 /* Tolerance: gap at which two flush faces become a contact, relative to the smaller block's size. A contact ends at

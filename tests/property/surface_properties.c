@@ -91,7 +91,7 @@ TEST(field_polygons_are_those_that_are_integrated)
         tl_surface surface = {0};
         tl_field_sums field;
         CHECK(tl_region_find(view, 0, &pair.scratch, &region));
-        CHECK(tl_surface_add_field(view, &region, NULL, &surface));
+        CHECK(tl_surface_add_field(&(tl_press_query){.view = view, .region = &region}, &surface));
         sums found = sums_of(&surface, view->a);
         integrate(view, &field);
         double size = view->size;
