@@ -1,7 +1,8 @@
 /* services.c - runs a generator plugin: reads its parameters, opens a staging set, lends it the host's
- * services (tl_host of plugin.h) and commits what it made, whole or not at all.
+ * services (tl_host of plugin.h) and commits what it made.
  *
- * What a plugin passes in is checked here, once, so that the geometry below may rely on it. */
+ * What it made is committed whole or not at all. What a plugin passes in is checked here, once, so that the geometry
+ * below may rely on it. */
 #include "base/inside.h"
 #include "base/names.h"
 #include "base/random.h"
@@ -215,9 +216,8 @@ static size_t block_count(const tl_host *host)
 /* A point of a staged block's shape in the user's coordinates. */
 static tl_vec3 user_point(const tl_model *m, const tl_stage_block *block, tl_vec3 local)
 {
-    if (block->source == TL_NO_ROW)
-        return tl_v3_add(m->origin, local);
-    return tl_model_point(m, m->blocks.body[block->source], local);
+    uint32_t body = tl_stage_frame(m, block);
+    return body == TL_NO_ROW ? tl_v3_add(m->origin, local) : tl_model_point(m, body, local);
 }
 
 static void block_info(const tl_host *host, size_t index, tl_block_info *info)
@@ -353,7 +353,7 @@ static tl_status hide(const tl_host *host, size_t index)
     if (status != TL_OK)
         return status;
     stage->blocks[stage->visible[index]].hidden_by_generator = true;
-    tl_stage_list_visible(stage);
+    tl_stage_list_visible(stage, 0);
     return TL_OK;
 }
 
@@ -362,7 +362,7 @@ static tl_status show(const tl_host *host)
     tl_stage *stage = &service_of(host)->stage;
     for (size_t i = 0; i < stage->count; i++)
         stage->blocks[i].hidden_by_generator = false;
-    tl_stage_list_visible(stage);
+    tl_stage_list_visible(stage, 0);
     return TL_OK;
 }
 

@@ -1,9 +1,8 @@
 /* stage.c - the staging set: where generators create and cut blocks. It becomes the model's blocks
  * as a whole when it is committed, or is dropped without a trace.
  *
- * A cut replaces a block by two children: the one below the plane takes its place in the list, the one
- * above goes to the end; both get new ids when committed. Children inherit group, density, velocity,
- * fixity and displacement. */
+ * A cut replaces a block by two children. The one below the plane takes its place in the list, the one above goes to
+ * the end. Both get new ids when committed. Children inherit group, density, velocity, fixity and displacement. */
 #include "generate/stage.h"
 
 #include "base/random.h"
@@ -22,28 +21,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: share of the size, and roundings of the coordinates, by which the ball about a block is too large. A cut
- * takes vertices within TL_POLY_ON for being on its plane, and centres of balls are rounded. */
+/* A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON). And centres of balls are
+ * known to some roundings of the coordinates. */
 #define BALL_MARGIN (2 * TL_POLY_ON)
 #define BALL_ROUNDINGS (32 * DBL_EPSILON)
 
-/* A ball about a shape: the mean of its vertices and the farthest from it, with what a cut takes for
+/* A ball about a shape, by the mean of its vertices and the farthest from it. It holds what a cut takes for
  * touching and what rounds in between. */
 static tl_stage_ball ball_of(const tl_model *m, const tl_stage_block *block)
 {
     const tl_poly *p = block->shape;
-    tl_vec3 sum = {0, 0, 0};
-    for (uint32_t i = 0; i < p->vertex_count; i++)
-        sum = tl_v3_add(sum, p->vertex[i]);
-    tl_vec3 center = tl_v3_scale(1.0 / p->vertex_count, sum);
+    tl_vec3 center = tl_points_mean(p->vertex, p->vertex_count);
     double r2 = 0;
     for (uint32_t i = 0; i < p->vertex_count; i++) {
         double d2 = tl_v3_norm2(tl_v3_sub(p->vertex[i], center));
         r2 = d2 > r2 ? d2 : r2;
     }
     tl_stage_ball ball = {center, sqrt(r2) * (1 + BALL_MARGIN)};
-    if (block->source != TL_NO_ROW)
-        ball.center = tl_body_point(&m->bodies, m->blocks.body[block->source], center);
+    uint32_t body = tl_stage_frame(m, block);
+    if (body != TL_NO_ROW)
+        ball.center = tl_body_point(&m->bodies, body, center);
     ball.radius += BALL_ROUNDINGS * (tl_v3_norm(center) + tl_v3_norm(ball.center));
     return ball;
 }
@@ -187,12 +184,6 @@ void tl_stage_drop(tl_stage *stage)
 
 /* ---------------------------------------------------------------- cutting ---------------- */
 
-/* The body in whose frame the shape of a staged block is; TL_NO_ROW: that of the model. */
-static uint32_t frame_of(const tl_model *m, const tl_stage_block *block)
-{
-    return block->source == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[block->source];
-}
-
 /* A plane or disc as it meets one staged block. */
 typedef struct plane_in_block {
     tl_plane plane; /* in the block's frame */
@@ -206,7 +197,7 @@ static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block 
                                         tl_vec3 normal, tl_vec3 point, double radius)
 {
     plane_in_block x = {{normal, tl_v3_dot(normal, point)}, point, radius, tl_v3_norm(point)};
-    uint32_t body = frame_of(m, block);
+    uint32_t body = tl_stage_frame(m, block);
     if (body == TL_NO_ROW)
         return x;
     const tl_pose *pose = &m->bodies.pose[body];
@@ -245,8 +236,8 @@ static tl_status retag(tl_stage *stage, tl_stage_block *block, uint32_t face, tl
     return TL_OK;
 }
 
-/* Puts the two sides of a cut in the place of block `index`. The sides of a single block are bodies of
- * their own when a joint runs between them; what becomes of a body of several is found out later. */
+/* Puts the two sides of a cut in the place of block `index`. The sides of a single block are bodies of their own when
+ * a joint runs between them. What becomes of a body of several is found out later. */
 static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint64_t key, bool joint)
 {
     tl_stage_block below = stage->blocks[index], above = below;
@@ -288,7 +279,7 @@ static bool may_meet(const plane_in_block *x, tl_stage_ball ball)
            tl_v3_norm(tl_v3_sub(ball.center, x->center)) <= x->radius + ball.radius + rounding;
 }
 
-/* Whether a block that the plane crosses is in the path of the disc: the disc reaches the section of the
+/* Whether a block that the plane crosses is in the path of the disc. The disc reaches the section of the
  * block with the plane, or the face that the plane falls on. */
 static bool in_path(const plane_in_block *x, const tl_stage_block *block, const tl_cut *cut)
 {
@@ -430,8 +421,8 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
 
 /* ---------------------------------------------------------------- new blocks -------------- */
 
-/* Tolerance: the origin is rounded to a power of two of at least this many sizes of the first block. So models near
- * zero keep the origin zero, and subtracting it from coordinates is exact. */
+/* The origin is rounded to a power of two of at least this many sizes of the first block. So models near zero keep the
+ * origin zero, and subtracting it from coordinates is exact. */
 #define ORIGIN_SIZES 8.0
 
 /* Fixes the model's origin from the extent of the first block made. */

@@ -15,8 +15,8 @@ tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double den
                            const char *group);
 /* Adds a block given by its faces; see tl_host.create_block. */
 tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given);
-/* Cuts the visible blocks by a disc of `radius` about `point` in user coordinates, INFINITY for a plane; adds the blocks in its
- * path to *met; see tl_host.cut_disc. */
+/* Cuts the visible blocks by a disc of `radius` about `point` in user coordinates, INFINITY for a plane. Adds the
+ * blocks in its path to *met. See tl_host.cut_disc. */
 tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius,
                             tl_tag tag, double persistence, size_t *met);
 /* Cuts block `index` (of all staged) without a joint: both sides stay one body. `above` is the new

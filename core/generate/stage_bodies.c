@@ -1,10 +1,9 @@
 /* stage_bodies.c - which staged blocks are one body.
  *
- * Every staged block bears the number of its body. A cut without a joint leaves both sides in the body.
- * A joint that cuts a body of several blocks or runs along a face between two of them, and a block taken
- * out of it, may divide the body: it falls into the parts that hang together over shared faces. Faces of
- * joints made before this staging set was begun still hold a body together, since its blocks were
- * joined across them. */
+ * Every staged block bears the number of its body. A cut without a joint leaves both sides in the body. A joint may
+ * divide a body of several blocks: it cuts it, or runs along a face between two of them. So may a block that is taken
+ * out of it. The body falls into the parts that hang together over shared faces. Faces of joints made before this
+ * staging set was begun still hold a body together, since its blocks were joined across them. */
 #include "generate/stage_bodies.h"
 
 #include "generate/staging.h"
@@ -38,19 +37,12 @@ static bool is_new_joint(const void *user, tl_tag tag)
            (tag.joint > 0 && tag.plane > stage->plane_count[tag.joint - 1]);
 }
 
-/* The body whose frame a shape is in, or TL_NO_ROW for that of the model. */
-static uint32_t frame_of(const tl_stage *stage, const member *block)
-{
-    uint32_t source = stage->blocks[block->index].source;
-    return source == TL_NO_ROW ? TL_NO_ROW : stage->model->blocks.body[source];
-}
-
 /* Replaces shapes by copies in the model's frame. */
 static tl_status copy_shapes(tl_stage *stage, const member *members, size_t count, tl_poly **shapes)
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < count; i++) {
-        uint32_t body = frame_of(stage, &members[i]);
+        uint32_t body = tl_stage_frame(m, &stage->blocks[members[i].index]);
         const tl_mat3 *turn = body == TL_NO_ROW ? NULL : &m->bodies.pose[body].r;
         tl_vec3 shift = body == TL_NO_ROW ? tl_v3(0, 0, 0) : tl_body_place(&m->bodies, body);
         tl_status status = tl_poly_transformed(shapes[i], turn, shift, &shapes[i], &m->error);
@@ -68,10 +60,12 @@ static tl_status copy_shapes(tl_stage *stage, const member *members, size_t coun
 static tl_status label_parts(tl_stage *stage, const member *members, size_t count, tl_poly **shapes,
                              uint32_t *label)
 {
+    const uint32_t frame = tl_stage_frame(stage->model, &stage->blocks[members[0].index]);
     bool one_frame = true;
     for (size_t i = 0; i < count; i++) {
-        shapes[i] = stage->blocks[members[i].index].shape;
-        one_frame = one_frame && frame_of(stage, &members[i]) == frame_of(stage, &members[0]);
+        const tl_stage_block *block = &stage->blocks[members[i].index];
+        shapes[i] = block->shape;
+        one_frame = one_frame && tl_stage_frame(stage->model, block) == frame;
     }
     tl_status status = one_frame ? TL_OK : copy_shapes(stage, members, count, shapes);
     if (status != TL_OK)
@@ -123,7 +117,8 @@ static int compare_body(const void *x, const void *y)
     return (a > b) - (a < b);
 }
 
-/* Lists the bodies with a block that needs reconnecting, and those from which one was detached, ascending; returns how many. */
+/* Lists the bodies with a block that needs reconnecting, and those from which one was detached, ascending; returns how
+ * many. */
 static size_t list_marked(const tl_stage *stage, uint32_t *bodies)
 {
     size_t count = 0, kept = 0;
@@ -244,8 +239,7 @@ static void forget_refused(tl_stage *stage, size_t index)
     stage->refused_listed = kept;
 }
 
-/* Lists the visible blocks again from one of them on. */
-static void list_visible(tl_stage *stage, size_t from)
+void tl_stage_list_visible(tl_stage *stage, size_t from)
 {
     while (stage->visible_count > 0 && stage->visible[stage->visible_count - 1] >= from)
         stage->visible_count--;
@@ -268,12 +262,7 @@ void tl_stage_delete(tl_stage *stage, size_t index)
     forget_refused(stage, index);
     if (gone.multi_block)
         mark_body(stage, gone.body);
-    list_visible(stage, index);
-}
-
-void tl_stage_list_visible(tl_stage *stage)
-{
-    list_visible(stage, 0);
+    tl_stage_list_visible(stage, index);
 }
 
 void tl_stage_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first, uint32_t *group)

@@ -1,6 +1,6 @@
 /* stage_commit.c - a staging set becomes the model's blocks: rows are written, blocks that were cut or
  * deleted go, and blocks that hang together become bodies. All memory is reserved before the model is
- * touched, but for that of the bodies of several blocks: where there are such, the rows as they were are set aside. */
+ * touched, but for that of the bodies of several blocks. Where there are such, the rows as they were are set aside. */
 #include "generate/stage_commit.h"
 
 #include "generate/stage.h"
@@ -16,29 +16,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct tl_cut_face tl_cut_face;
-
-typedef struct tl_cut_load tl_cut_load;
-
-typedef struct tl_cut_loads {
-    tl_cut_load *list;
-    size_t count;
-    tl_cut_face *faces; /* what is on faces of the bodies, by ascending row of their blocks */
-    size_t face_count;
-    uint32_t *of; /* [staged blocks] the load of the body that it comes from, or TL_NO_ROW */
-} tl_cut_loads;
-
 /* ---------------------------------------------------------------- loads of bodies that are cut ---
  *
  * Loads of bodies that a staging set cuts go to their parts.
  *
- * What tractions have put on a face goes to the parts of the face (loads.c). Of the rest, what has a point goes to the part that has
- * the point. What has none acts on the body as a whole, and its force F and moment M are spread over the parts as weight is: with the
- * mass m, the inertia I and the centroid r of the whole, each part p gets
+ * What tractions have put on a face goes to the parts of the face (loads.c). Of the rest, what has a point goes to the
+ * part that has the point. What has none acts on the body as a whole, and its force F and moment M are spread over the
+ * parts as weight is. With the mass m, the inertia I and the centroid r of the whole, each part p gets
  *
  *     F_p = m_p (F/m + alpha x (r_p - r)),    M_p = I_p alpha,    I alpha = M
  *
- * so that the parts go on as the whole, and what their joint carries stays. Sums of force and moment are those of the whole. */
+ * so that the parts go on as the whole, and what their joint carries stays. Sums of force and moment are those of the
+ * whole. */
 
 /* Tolerance: normals of a face and of its parts are off each other by rounding; so are places, over the size. */
 #define SAME_FACE 1e-9
@@ -46,7 +35,7 @@ typedef struct tl_cut_loads {
 /* Tolerance: share of what is on faces up to which what is left of a load is rounding. */
 #define NOTHING 1e-12
 
-struct tl_cut_load {
+typedef struct cut_load {
     tl_body_load load;
     tl_wrench before; /* of the last step, where loads have been set since */
     bool changed;     /* that was another */
@@ -58,38 +47,52 @@ struct tl_cut_load {
     tl_lump sum;
     uint32_t nearest; /* row of the block that has the point, or is nearest to it */
     double distance;
-};
+} cut_load;
 
 /* What is on a face of a block that may be cut. */
-struct tl_cut_face {
+typedef struct cut_face {
     tl_face_load load;
     uint32_t row; /* of the block before */
-    tl_cut_load *of;
+    cut_load *of;
     tl_vec3 normal;
     tl_lump plate, sum; /* of the face, and of its parts */
-};
+} cut_face;
+
+typedef struct cut_loads {
+    cut_load *list;
+    size_t count;
+    cut_face *faces; /* what is on faces of the bodies, by ascending row of their blocks */
+    size_t face_count;
+    uint32_t *of; /* [staged blocks] the load of the body that it comes from, or TL_NO_ROW */
+} cut_loads;
+
+/* A block that the commit gives a new row, and not one of the model as it was or with other tags. */
+static bool is_made(const tl_stage_block *block)
+{
+    return block->owned && !block->retagged;
+}
 
 static bool is_cut(const tl_stage_block *block)
 {
-    return block->source != TL_NO_ROW && block->owned && !block->retagged;
+    return block->source != TL_NO_ROW && is_made(block);
 }
 
-static tl_cut_load load_of(const tl_model *m, uint32_t body)
+static cut_load load_of(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
     tl_body_load load = b->load[body];
-    return (tl_cut_load){.load = load,
-                         .before = b->load_before[body],
-                         .changed = tl_load_changed(m, body),
-                         .rest = {load.force, load.moment},
-                         .placed = !tl_v3_is_zero(load.arm),
-                         .point = tl_body_point(b, body, load.arm),
-                         .nearest = TL_NO_ROW,
-                         .distance = INFINITY};
+    return (cut_load){.load = load,
+                      .before = b->load_before[body],
+                      .changed = tl_load_changed(m, body),
+                      .rest = {load.force, load.moment},
+                      .placed = !tl_v3_is_zero(load.arm),
+                      .point = tl_body_point(b, body, load.arm),
+                      .nearest = TL_NO_ROW,
+                      .distance = INFINITY};
 }
 
 /* What is on the faces of a block before, by its row: the first and the next. Faces ascend with their rows. */
-static tl_cut_face *faces_of(const tl_cut_loads *loads, uint32_t row)
+static cut_face *faces_of(const cut_loads *loads, uint32_t row)
 {
     size_t low = 0, high = loads->face_count;
     while (low < high) {
@@ -102,14 +105,14 @@ static tl_cut_face *faces_of(const tl_cut_loads *loads, uint32_t row)
     return low < loads->face_count && loads->faces[low].row == row ? &loads->faces[low] : NULL;
 }
 
-static tl_cut_face *next_of(const tl_cut_loads *loads, tl_cut_face *face)
+static cut_face *next_of(const cut_loads *loads, cut_face *face)
 {
-    tl_cut_face *next = face + 1;
+    cut_face *next = face + 1;
     return next < loads->faces + loads->face_count && next->row == face->row ? next : NULL;
 }
 
 /* Adds `sign` times what is on a face to the rest of the load. */
-static void add_to_rest(const tl_cut_face *face, double sign)
+static void add_to_rest(const cut_face *face, double sign)
 {
     tl_wrench *rest = &face->of->rest;
     tl_vec3 arm = tl_v3_sub(face->plate.place, face->of->point);
@@ -119,7 +122,7 @@ static void add_to_rest(const tl_cut_face *face, double sign)
 }
 
 /* Takes what is on faces of the bodies out of their loads; room for what their parts get of it. */
-static bool take_faces(const tl_stage *stage, const uint32_t *slot, tl_cut_loads *loads)
+static bool take_faces(const tl_stage *stage, const uint32_t *slot, cut_loads *loads)
 {
     tl_model *m = stage->model;
     size_t most = 0;
@@ -130,28 +133,28 @@ static bool take_faces(const tl_stage *stage, const uint32_t *slot, tl_cut_loads
         if (row == TL_NO_ROW || slot[m->blocks.body[row]] == TL_NO_ROW ||
             f->face >= m->blocks.shape[row]->face_count)
             continue;
-        tl_cut_load *of = &loads->list[slot[m->blocks.body[row]]];
-        tl_cut_face *face = &loads->faces[loads->face_count++];
+        cut_load *of = &loads->list[slot[m->blocks.body[row]]];
+        cut_face *face = &loads->faces[loads->face_count++];
         const tl_mat3 *r = &m->bodies.pose[m->blocks.body[row]].r;
-        *face = (tl_cut_face){
-            .load = *f, .row = row, .of = of, .plate = tl_face_plate(m, row, f->face)};
+        *face =
+            (cut_face){.load = *f, .row = row, .of = of, .plate = tl_face_plate(m, row, f->face)};
         face->normal = tl_m3_mul(r, m->blocks.shape[row]->plane[f->face].normal);
         add_to_rest(face, -1);
         of->on_faces += tl_v3_norm(f->force);
     }
     for (size_t i = 0; loads->faces && i < stage->count; i++)
-        for (tl_cut_face *f = faces_of(loads, stage->blocks[i].source); f; f = next_of(loads, f))
+        for (cut_face *f = faces_of(loads, stage->blocks[i].source); f; f = next_of(loads, f))
             most++;
     return loads->faces && tl_grow(&m->face_loads, &m->face_load_capacity,
                                    m->face_load_count + most, sizeof *m->face_loads);
 }
 
 /* Takes the loads of the bodies that a stage has cut; false when out of memory (they are to be freed all the same). */
-static bool cut_loads_take(const tl_stage *stage, tl_cut_loads *loads)
+static bool cut_loads_take(const tl_stage *stage, cut_loads *loads)
 {
     const tl_model *m = stage->model;
     size_t bodies = m->bodies.table.rows;
-    *loads = (tl_cut_loads){.count = 0};
+    *loads = (cut_loads){.count = 0};
     if (!m->bodies.load || !stage->opened)
         return true;
     uint32_t *slot = malloc((bodies + 1) * sizeof *slot);
@@ -178,10 +181,10 @@ static bool cut_loads_take(const tl_stage *stage, tl_cut_loads *loads)
 
 /* ---------------------------------------------------------------- given ------------------ */
 
-typedef void visit_fn(tl_model *m, uint32_t row, tl_cut_load *load);
+typedef void visit_fn(tl_model *m, uint32_t row, cut_load *load);
 
 /* Visits the blocks that bodies with loads have become, in their order. */
-static void visit(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads, visit_fn *each)
+static void visit(const tl_stage *stage, const tl_id *ids, cut_loads *loads, visit_fn *each)
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++)
@@ -207,7 +210,7 @@ static double distance_of(const tl_model *m, uint32_t row, tl_vec3 place)
 }
 
 /* Takes the load off the block's body, and adds its mass. */
-static void begin(tl_model *m, uint32_t row, tl_cut_load *of)
+static void begin(tl_model *m, uint32_t row, cut_load *of)
 {
     uint32_t body = m->blocks.body[row];
     double distance = distance_of(m, row, of->point);
@@ -221,14 +224,14 @@ static void begin(tl_model *m, uint32_t row, tl_cut_load *of)
     }
 }
 
-static void add_inertia(tl_model *m, uint32_t row, tl_cut_load *of)
+static void add_inertia(tl_model *m, uint32_t row, cut_load *of)
 {
     tl_lump lump = lump_of(m, row);
     tl_lump_add_inertia(&of->sum, &lump);
 }
 
 /* Whether there is something of a load beside what is on faces. */
-static bool has_rest(const tl_cut_load *of)
+static bool has_rest(const cut_load *of)
 {
     const tl_sym3 *i = &of->sum.inertia;
     double size = sqrt((i->xx + i->yy + i->zz) / of->sum.mass);
@@ -247,7 +250,7 @@ static void give_whole(tl_model *m, uint32_t body, tl_wrench part, tl_vec3 place
 }
 
 /* Gives a block's body the block's part of what is on no face. */
-static void give(tl_model *m, uint32_t row, tl_cut_load *of)
+static void give(tl_model *m, uint32_t row, cut_load *of)
 {
     uint32_t body = m->blocks.body[row];
     tl_lump lump = lump_of(m, row);
@@ -260,7 +263,7 @@ static void give(tl_model *m, uint32_t row, tl_cut_load *of)
 }
 
 /* What the block's body had of the load in the last step: as it has of it now, where that was the same. */
-static void give_before(tl_model *m, uint32_t row, tl_cut_load *of)
+static void give_before(tl_model *m, uint32_t row, cut_load *of)
 {
     uint32_t body = m->blocks.body[row];
     tl_wrench *before = &m->bodies.load_before[body];
@@ -281,7 +284,7 @@ static void give_before(tl_model *m, uint32_t row, tl_cut_load *of)
 /* ---------------------------------------------------------------- faces ------------------ */
 
 /* The face of a block that is a part of one; TL_NO_ROW: it has none. */
-static uint32_t part_of(const tl_model *m, uint32_t row, const tl_cut_face *face)
+static uint32_t part_of(const tl_model *m, uint32_t row, const cut_face *face)
 {
     const tl_poly *shape = m->blocks.shape[row];
     uint32_t body = m->blocks.body[row];
@@ -294,16 +297,16 @@ static uint32_t part_of(const tl_model *m, uint32_t row, const tl_cut_face *face
     return TL_NO_ROW;
 }
 
-typedef void visit_part_fn(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face);
+typedef void visit_part_fn(tl_model *m, uint32_t row, uint32_t part, cut_face *face);
 
 /* Visits the parts of faces, in the order of their blocks. */
-static void visit_parts(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads,
+static void visit_parts(const tl_stage *stage, const tl_id *ids, const cut_loads *loads,
                         visit_part_fn *each)
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++) {
-        uint32_t row = loads->of[i] == TL_NO_ROW ? TL_NO_ROW : tl_block_row_quiet(m, ids[i]);
-        tl_cut_face *f = row == TL_NO_ROW ? NULL : faces_of(loads, stage->blocks[i].source);
+        uint32_t row = loads->of[i] == TL_NO_ROW ? TL_NO_ROW : m->row_of[ids[i]];
+        cut_face *f = row == TL_NO_ROW ? NULL : faces_of(loads, stage->blocks[i].source);
         for (; f; f = next_of(loads, f)) {
             uint32_t part = part_of(m, row, f);
             if (part != TL_NO_ROW)
@@ -312,19 +315,19 @@ static void visit_parts(const tl_stage *stage, const tl_id *ids, const tl_cut_lo
     }
 }
 
-static void begin_face(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face)
+static void begin_face(tl_model *m, uint32_t row, uint32_t part, cut_face *face)
 {
     tl_lump plate = tl_face_plate(m, row, part);
     tl_lump_add(&face->sum, &plate);
 }
 
-static void add_face_inertia(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face)
+static void add_face_inertia(tl_model *m, uint32_t row, uint32_t part, cut_face *face)
 {
     tl_lump plate = tl_face_plate(m, row, part);
     tl_lump_add_inertia(&face->sum, &plate);
 }
 
-static void give_face(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face)
+static void give_face(tl_model *m, uint32_t row, uint32_t part, cut_face *face)
 {
     tl_lump plate = tl_face_plate(m, row, part);
     tl_wrench whole = {face->load.force, face->load.moment};
@@ -337,7 +340,7 @@ static void give_face(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *fac
 }
 
 /* Forgets what was on the faces of the bodies before: it has come off them. */
-static void drop_faces(tl_model *m, const tl_cut_loads *loads)
+static void drop_faces(tl_model *m, const cut_loads *loads)
 {
     size_t kept = 0, k = 0;
     for (size_t i = 0; i < m->face_load_count; i++) {
@@ -353,7 +356,7 @@ static void drop_faces(tl_model *m, const tl_cut_loads *loads)
 }
 
 /* Sums the parts of each face up. What is on one without parts goes as the rest does. */
-static void sum_faces(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads)
+static void sum_faces(const tl_stage *stage, const tl_id *ids, const cut_loads *loads)
 {
     visit_parts(stage, ids, loads, begin_face);
     for (size_t k = 0; k < loads->face_count; k++) {
@@ -364,7 +367,7 @@ static void sum_faces(const tl_stage *stage, const tl_id *ids, const tl_cut_load
     visit_parts(stage, ids, loads, add_face_inertia);
 }
 
-static void give_faces(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads)
+static void give_faces(const tl_stage *stage, const tl_id *ids, const cut_loads *loads)
 {
     tl_model *m = stage->model;
     if (loads->face_count == 0)
@@ -375,7 +378,7 @@ static void give_faces(const tl_stage *stage, const tl_id *ids, const tl_cut_loa
 }
 
 /* Gives them to the parts, when these have their bodies. `ids` are those of the staged blocks. */
-static void cut_loads_give(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads)
+static void cut_loads_give(const tl_stage *stage, const tl_id *ids, cut_loads *loads)
 {
     if (loads->count == 0)
         return;
@@ -389,19 +392,19 @@ static void cut_loads_give(const tl_stage *stage, const tl_id *ids, tl_cut_loads
     visit(stage, ids, loads, give_before);
 }
 
-static void cut_loads_free(tl_cut_loads *loads)
+static void cut_loads_free(cut_loads *loads)
 {
     free(loads->of);
     free(loads->list);
     free(loads->faces);
-    *loads = (tl_cut_loads){.count = 0};
+    *loads = (cut_loads){.count = 0};
 }
 
 /* ---------------------------------------------------------------- the commit -------------- */
 
-/* Moves a shape so that its centroid is the zero of its frame. Offsets follow from a vertex of the
- * face, which keeps the digits of a shape far from zero; its size is that of the vertices as they then are, which is found again of
- * them when they have been saved. */
+/* Moves a shape so that its centroid is the zero of its frame. Offsets follow from a vertex of the face, which keeps
+ * the digits of a shape far from zero. Its size is that of the vertices as they then are, which is found again of them
+ * when they have been saved. */
 static void centre_shape(tl_poly *shape, tl_vec3 centroid)
 {
     for (uint32_t i = 0; i < shape->vertex_count; i++)
@@ -438,7 +441,8 @@ static source source_of(const tl_model *m, uint32_t row)
                     .fixed = b->fixed[body]};
 }
 
-/* Where a block was, as far as the model has such a column: where its source was, about its own centroid `c`; NULL: here. */
+/* Where a block was, as far as the model has such a column: where its source was, about its own centroid `c`; NULL:
+ * here. */
 static void put_base(tl_base *column, uint32_t row, const tl_base *from, tl_vec3 c)
 {
     if (!column)
@@ -506,12 +510,6 @@ static void summarize(tl_stage *stage)
         s->volume_error = fabs(stage->changed_volume - stage->created_volume) / all.total;
 }
 
-/* A block that the commit gives a new row, and not one of the model as it was or with other tags. */
-static bool is_made(const tl_stage_block *block)
-{
-    return block->owned && !block->retagged;
-}
-
 /* Adds what the stage did to the model's record, whose list has room. `ids` are those of the staged blocks. */
 static void keep_record(const tl_stage *stage, const tl_id *ids)
 {
@@ -535,8 +533,8 @@ typedef struct commit_scratch {
     tl_id *ids;       /* [staged blocks] their ids in the model */
     tl_split *splits; /* [staged blocks] that were there before */
     size_t split_count;
-    tl_cut_loads loads; /* of the bodies that were cut */
-    tl_poly **gone;     /* [rows before] shapes that other shapes or blocks take the place of */
+    cut_loads loads; /* of the bodies that were cut */
+    tl_poly **gone;  /* [rows before] shapes that other shapes or blocks take the place of */
     size_t gone_count;
     tl_aside aside;  /* where there are bodies of several blocks */
     uint32_t *first; /* [staged bodies] */
@@ -555,7 +553,7 @@ static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count && has_contacts(m); i++) {
         const tl_stage_block *block = &stage->blocks[i];
-        if (!is_made(block) || block->source == TL_NO_ROW)
+        if (!is_cut(block))
             continue;
         const source *from = &scratch->sources[scratch->slot[block->source]];
         const tl_heir *known = tl_heir_of(m, from->id);
@@ -568,7 +566,7 @@ static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
     }
 }
 
-/* Whether parts of a body have to go on as it does: it has been in a step, or something has been put on its contacts. */
+/* Whether parts of a body have to go on as it does: after a step, or when something has been put on its contacts. */
 static bool goes_on(const tl_model *m)
 {
     return m->cycles > 0 || has_contacts(m);
@@ -601,7 +599,8 @@ static int compare_split(const void *x, const void *y)
     return (p->block > q->block) - (p->block < q->block);
 }
 
-/* Keeps the blocks of the bodies that are several now. The list takes the place of the model's: it has the blocks of that, too. */
+/* Keeps the blocks of the bodies that are several now. The list takes the place of the model's: it has the blocks of
+ * that, too. */
 static void keep_splits(tl_stage *stage, commit_scratch *scratch)
 {
     tl_model *m = stage->model;
@@ -769,7 +768,8 @@ static bool is_turned(const tl_model *m, uint32_t body)
     return drive->angular_velocity_at || !tl_v3_is_zero(drive->angular_velocity);
 }
 
-/* Refuses to part a body that is driven to turn: its parts would all have the velocity of its centroid, and turn about their own. */
+/* Refuses to part a body that is driven to turn: its parts would all have the velocity of its centroid, and turn about
+ * their own. */
 static tl_status check_turned(const tl_stage *stage)
 {
     tl_model *m = stage->model;
@@ -786,7 +786,7 @@ static tl_status check_turned(const tl_stage *stage)
     tl_status status = TL_OK;
     for (size_t i = 0; i < stage->count && status == TL_OK; i++) {
         const tl_stage_block *block = &stage->blocks[i];
-        uint32_t body = block->source == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[block->source];
+        uint32_t body = tl_stage_frame(m, block);
         if (body == TL_NO_ROW || !is_turned(m, body))
             continue;
         if (becomes[body] == TL_NO_ROW)

@@ -4,9 +4,9 @@
 
 #include "model/model.h"
 
-/* A block of the staging set: an untouched one of the model (source, shape not owned), the same with
- * new tags (retagged), a child of one (source), or a new one (source TL_NO_ROW, shape in coordinates
- * relative to the origin). Children's shapes are in the frame of their source's body. */
+/* A block of the staging set. It is an untouched one of the model (source, shape not owned) or the same with new tags
+ * (retagged). Or it is a child of one (source), or a new one (source TL_NO_ROW, shape in coordinates relative to the
+ * origin). Children's shapes are in the frame of their source's body. */
 typedef struct tl_stage_block {
     tl_poly *shape;
     uint32_t source;
@@ -24,6 +24,12 @@ typedef struct tl_stage_block {
     bool multi_block;         /* its body may have other blocks */
     bool needs_reconnect;     /* its body has been cut since it was last known to hang together */
 } tl_stage_block;
+
+/* The body in whose frame the shape of a staged block is; TL_NO_ROW: that of the model. */
+static inline uint32_t tl_stage_frame(const tl_model *m, const tl_stage_block *block)
+{
+    return block->source == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[block->source];
+}
 
 /* A ball about a staged block, relative to the model's origin: the coarse test of a cut. Kept apart from
  * the blocks, for a plane is tested against all of them and cuts few. */
