@@ -4,8 +4,8 @@
  *
  *     F = int t dS,    M = int r x t dS
  *
- * both exact. What all faces put on a body becomes one load: the force F acts at the mean place of the faces,
- * weighted by the lengths of their forces, and goes with the body; what is left of M is a constant moment. */
+ * both exact. What all faces put on a body becomes one load. The force F acts at the mean place of the faces, weighted
+ * by the lengths of their forces, and goes with the body. What is left of M is a constant moment. */
 #include "model/model.h"
 
 #include "base/error.h"
@@ -33,8 +33,8 @@ typedef struct tl_outer_face {
     tl_area_sums sums;
 } tl_outer_face;
 
-/* Tolerance: a corner is in a plane or box when it is off it by less than this times the block's size. Contacts take
- * that for touching (TL_CONTACT_TOLERANCE). */
+/* Off the plane, or out of the box, by less than this times the block's size a corner is in it. It is what contacts
+ * take for touching (TL_CONTACT_TOLERANCE). */
 #define TOLERANCE 1e-3
 /* Tolerance: largest component across an axis of the normal of a face whose roller is held along that axis. */
 #define ALONG 1e-2
@@ -71,9 +71,10 @@ typedef struct body_sum {
  *
  * The parts of faces that lie on no other block, and integrals over them.
  *
- * From a face's polygon the common parts with the faces that lie on it are taken away: those of contact patches, and those
- * of other blocks of the body. Blocks do not overlap, so neither do these parts. Each is a convex polygon,
- * over which polynomials of the second degree are integrated exactly: by triangles, at the middles of their edges. */
+ * From a face's polygon the common parts with the faces that lie on it are taken away. They are those of contact
+ * patches, and those of other blocks of the body. Blocks do not overlap, so neither do these parts. Each is a convex
+ * polygon, over which polynomials of the second degree are integrated exactly: by triangles, at the middles of their
+ * edges. */
 
 /* Share of a face that may be left bare for roundings. */
 #define UNCOVERED 1e-5
@@ -172,8 +173,8 @@ static tl_status take_members(tl_model *m, tl_outer_face *f, double *bare)
     return TL_OK;
 }
 
-/* Measures the outer part of a face of the block in a row, after a tl_detect_refresh. Its area is 0 where all of the face
- * but for roundings lies on others. */
+/* Measures the outer part of a face of the block in a row, after a tl_detect_refresh. Its area is 0 where all of the
+ * face but for roundings lies on others. */
 static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, tl_outer_face *out)
 {
     const tl_poly *shape = m->blocks.shape[row];

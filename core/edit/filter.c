@@ -1,12 +1,11 @@
 /* filter.c - slivers: bodies below the user's limits, which are reported, deleted, or joined. A body of
  * several parts is measured as the one body that it is (body_shape.c).
  *
- * Joining is the merge of a discontinuum: the sliver becomes one rigid body with the neighbour it
- * shares the largest face with. Its mass and shape stay exact, the face between the two no longer
- * moves, and its small mass no longer rules the time step. (A union of two convex blocks is in
- * general not convex; moving vertices would open gaps elsewhere.) Neighbours that are slivers
- * themselves are taken only when there is no other. A body that is held or driven differently is
- * never joined to.
+ * Joining is the merge of a discontinuum: the sliver becomes one rigid body with the neighbour it shares the largest
+ * face with. Its mass and shape stay exact, the face between the two no longer moves, and its small mass no longer
+ * rules the time step. A union of two convex blocks is in general not convex, and moving vertices would open gaps
+ * elsewhere. Neighbours that are slivers themselves are taken only when there is no other. A body that is held or
+ * driven differently is never joined to.
  *
  * Bodies of which a block is hidden are left alone. */
 
@@ -122,7 +121,8 @@ static uint32_t find_partner(filter *f, uint32_t body, bool any)
     return partner;
 }
 
-/* Joins the slivers that have a partner and are not joined yet; gives how many. Those that have one are sound from then on. */
+/* Joins the slivers that have a partner and are not joined yet; gives how many. Those that have one are sound from
+ * then on. */
 static size_t join_some(filter *f, tl_filter_result *result, bool any)
 {
     const tl_model *m = f->model;
@@ -144,7 +144,8 @@ static size_t join_some(filter *f, tl_filter_result *result, bool any)
     return joined;
 }
 
-/* Those beside sound bodies first, then those beside these, and so on; slivers that nothing sound is beside become one with each other. */
+/* Those beside sound bodies first, then those beside these, and so on; slivers that nothing sound is beside become one
+ * with each other. */
 static tl_status join_round(filter *f, tl_filter_result *result)
 {
     tl_model *m = f->model;
@@ -162,8 +163,8 @@ static tl_status join_round(filter *f, tl_filter_result *result)
     return result->joined ? tl_bodies_regroup(m, f->group) : TL_OK;
 }
 
-/* What is still a sliver as it has been joined to something small is joined on. The result is that of the first round; where there is no memory for
- * another one it stands. */
+/* What is still a sliver as it has been joined to something small is joined on. The result is that of the first round;
+ * where there is no memory for another one it stands. */
 static tl_status join(filter *f, tl_filter_result *result)
 {
     tl_status status = join_round(f, result);

@@ -1,14 +1,13 @@
 /* cut.c - cutting a convex polyhedron in two by a plane.
  *
- * Every vertex is put below (-1), on (0) or above (+1) the plane; this classification alone decides
- * the topology of both children. Edges from -1 to +1 get one new vertex. A face with vertices on
- * both sides is walked once and split into its part below and its part above; its cut from exit to
- * entry is a half-edge of the cap, as is every edge that lies on the plane between a lower and an
- * upper face. The cap's half-edges must chain into one cycle, and both children must satisfy
- * Euler's formula, or the cut is refused; with vertices exact to rounding this does not happen.
+ * Every vertex is put below (-1), on (0) or above (+1) the plane; this classification alone decides the topology of
+ * both children. Edges from -1 to +1 get one new vertex. A face with vertices on both sides is walked once and split
+ * into its part below and its part above. Its cut from exit to entry is a half-edge of the cap. So is every edge that
+ * lies on the plane between a lower and an upper face. The cap's half-edges must chain into one cycle, and both
+ * children must satisfy Euler's formula, or the cut is refused. With vertices exact to rounding this does not happen.
  *
- * A new vertex is computed from its edge's end points in lexicographic order, so blocks on either
- * side of a face, which list the edge in opposite directions, get the same bits. */
+ * A new vertex is computed from its edge's end points in lexicographic order. So blocks on either side of a face,
+ * which list the edge in opposite directions, get the same bits. */
 
 #include "geometry/cut.h"
 
@@ -23,8 +22,8 @@
 
 #define NONE UINT16_MAX
 
-/* Tolerance: a vertex this near the plane, relative to the farthest coordinate, is on it. A vertex made by a cut
- * misses its planes by one to three roundings, and a distance is computed to as many. */
+/* A vertex this near the plane, relative to the farthest coordinate, is on it. A vertex made by a cut misses its
+ * planes by one to three roundings, and a distance is computed to as many. */
 #define ON_ROUNDINGS (8 * DBL_EPSILON)
 
 /* One child while it is made. */
@@ -96,8 +95,8 @@ static void measure(cutter *c, double *low, double *high)
     c->reach = reach;
 }
 
-/* A vertex is on the plane only when rounding cannot tell on which side it is: it is not moved, so
- * one farther off would bend the cap, and the next cut through that cap would lose as much volume. */
+/* A vertex is on the plane only when rounding cannot tell on which side it is. It is not moved: one farther off would
+ * bend the cap, and the next cut through that cap would lose as much volume. */
 static void classify(cutter *c)
 {
     double on = ON_ROUNDINGS * c->reach;
@@ -105,8 +104,8 @@ static void classify(cutter *c)
         c->side[v] = (signed char)((c->distance[v] > on) - (c->distance[v] < -on));
 }
 
-/* A vertex on the plane is a corner of the cap only when edges leave it to both sides; one that the
- * plane merely brushes within rounding belongs to the side its edges are on. */
+/* A vertex on the plane is a corner of the cap only when edges leave it to both sides. One that the plane merely
+ * brushes within rounding belongs to the side its edges are on. */
 static void settle_brushed(cutter *c)
 {
     const tl_poly *p = c->poly;
@@ -127,8 +126,8 @@ static void settle_brushed(cutter *c)
     }
 }
 
-/* The face whose vertices all lie within `reach` of the plane and which faces along `sign` times
- * its normal, the best aligned of them; UINT32_MAX without one. */
+/* The face whose vertices all lie within `reach` of the plane and which faces along `sign` times its normal, the best
+ * aligned of them. UINT32_MAX without one. */
 static uint32_t face_along(const cutter *c, double reach, int sign)
 {
     const tl_poly *p = c->poly;
@@ -327,8 +326,8 @@ static bool split_faces(cutter *c)
     return true;
 }
 
-/* Chains the cap's half-edges and gives the loop to the lower child, and its reverse from the same
- * vertex, so that both make the same fan of triangles, to the upper one. */
+/* Chains the cap's half-edges and gives the loop to the lower child. The upper one gets its reverse from the same
+ * vertex: both make the same fan of triangles. */
 static bool close_cap(cutter *c)
 {
     uint32_t all = c->poly->vertex_count + c->cut_edge_count, v = 0, corners = 0;

@@ -20,12 +20,11 @@ typedef struct tl_cut {
     double thickness, limit;
 } tl_cut;
 
-/* Cuts by a plane. Vertices are never moved; each crossed edge gets one new vertex, shared bit for bit
- * by both sides; faces keep their planes; the cap gets the cutting plane and `tag`. `reach` is the
- * largest coordinate the plane's offset was computed from: a vertex within rounding of the plane is a
- * corner of the cap as it is (0: nothing larger than the offset and the vertices themselves).
- * The volume of both sides is that of the polyhedron to rounding, a few DBL_EPSILON of the farthest
- * coordinate times the surface. TL_E_MEMORY is the only failure. */
+/* Cuts by a plane. Vertices are never moved. Each crossed edge gets one new vertex, shared bit for bit by both sides.
+ * Faces keep their planes. The cap gets the cutting plane and `tag`. `reach` is the largest coordinate the plane's
+ * offset was computed from. A vertex within rounding of the plane is a corner of the cap as it is. 0: nothing is
+ * larger than the offset and the vertices. The volume of both sides is that of the polyhedron to rounding, a few
+ * DBL_EPSILON of the farthest coordinate times the surface. TL_E_MEMORY is the only failure. */
 tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, double reach, tl_tag tag, tl_cut *cut,
                       tl_error *error);
 

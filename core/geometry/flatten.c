@@ -1,14 +1,15 @@
 /* flatten.c - facets that lie in one plane become one face.
  *
- * Meshes give a face as triangles, and with corners that miss its plane by the digits of a file or by the warp of a grid. Two
- * faces are one when all their corners miss a plane by less than half of TL_POLY_BENT times the size of both together (twice the
- * distance of the farthest corner from their mean), and when what each has of area across that plane is less than TL_POLY_TILT of it all. So facets of equal areas may hardly tilt,
- * and a round surface stays one; a sliver knows its normal badly, and may tilt as it likes. Corners that miss a plane by
- * less than TL_POLY_FLAT times the size of the block miss it by nothing. Only facets with one tag are joined.
+ * Meshes give a face as triangles. Corners miss its plane by the digits of a file or by the warp of a grid. Two faces
+ * are one when all their corners miss a plane by less than half of TL_POLY_BENT times the size of both together. That
+ * size is twice the distance of the farthest corner from their mean. What each has of area across that plane must be
+ * less than TL_POLY_TILT of it all. So facets of equal areas may hardly tilt, and a round surface stays one. A sliver
+ * knows its normal badly, and may tilt as it likes. Corners that miss a plane by less than TL_POLY_FLAT times the size
+ * of the block miss it by nothing. Only facets with one tag are joined.
  *
- * Faces grow over the edges that turn least, so neither the order of facets nor place and attitude of a block decide. Corners
- * are not moved: blocks that share corners still do, and lie flush, for a face gets the plane fitted to its corners. A
- * vertex left with two faces is dropped. */
+ * Faces grow over the edges that turn least, so neither the order of facets nor place and attitude of a block decide.
+ * Corners are not moved: blocks that share corners still do, and lie flush, for a face gets the plane fitted to its
+ * corners. A vertex left with two faces is dropped. */
 
 #include "geometry/flatten.h"
 
@@ -19,8 +20,8 @@
 #include <string.h>
 #include <talus/vmath.h>
 
-/* Tolerance: a face turns clockwise at a corner by less than this times the square of the size: what rounding of six
- * digits leaves. */
+/* A face turns clockwise at a corner by less than this times the square of the size: what rounding of six digits
+ * leaves. */
 #define CLOCKWISE (4 * TL_POLY_FLAT)
 
 typedef struct flattener {
@@ -335,7 +336,8 @@ static double missed_by(const tl_poly *p, uint32_t face)
     return most;
 }
 
-/* Whether a facet has the direction of its face; those that tilt more are slivers, or the first faces of a rounded edge. */
+/* Whether a facet has the direction of its face; those that tilt more are slivers, or the first faces of a rounded
+ * edge. */
 static bool goes_along(const flattener *w, uint32_t facet, tl_vec3 n)
 {
     return tl_v3_norm2(tl_v3_cross(n, w->normal[facet])) <= 4 * TL_POLY_TILT * TL_POLY_TILT;
@@ -392,7 +394,8 @@ static bool faces_are_convex(const tl_poly *p)
     return true;
 }
 
-/* Whether what came out is a block, of the volume of what went in but for a layer as thick as what its faces were bent by. */
+/* Whether what came out is a block. Its volume is that of what went in, but for a layer as thick as its faces were
+ * bent. */
 static bool is_sound(const tl_poly *from, const tl_poly *to)
 {
     if (tl_poly_check(to, TL_POLY_BENT, NULL) != TL_OK || !faces_are_convex(to))

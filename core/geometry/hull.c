@@ -1,15 +1,14 @@
 /* hull.c - the convex hull of points as a polyhedron.
  *
- * The points are put on a grid of 2^-40 of their extent, and the hull is the exact one of the grid points.
- * The grid is finer than TL_POLY_ON by 10^3 and coarser than the rounding of coordinates by 10^3, so neither
- * shows. Triangles within TL_POLY_FLAT times the extent of one plane then become one face, the largest first, so
- * that a sliver between two faces joins one of them: else the corners of a face, rounded in a file, would make
- * several of it, which a joint could not bond. A vertex left with fewer than three faces lies on a face or an edge
- * and is dropped. Coordinates are never moved; planes are fitted to the coordinates given. Should that leave faces
- * that are no convex polygons, triangles are merged anew within TL_POLY_ON, or, when noise is as large as that,
- * with a wider tolerance up to TL_POLY_THIN. Faces that miss a plane by more, but are one to tl_poly_flatten, it
- * joins. Every loop starts at its lowest vertex and the faces are in the order of their loops, so that the result
- * depends on the points alone. */
+ * The points are put on a grid of 2^-40 of their extent, and the hull is the exact one of the grid points. The grid is
+ * finer than TL_POLY_ON by 10^3 and coarser than the rounding of coordinates by 10^3, so neither shows. Triangles
+ * within TL_POLY_FLAT times the extent of one plane then become one face, the largest first. So a sliver between two
+ * faces joins one of them. Else the corners of a face, rounded in a file, would make several of it, which a joint
+ * could not bond. A vertex left with fewer than three faces lies on a face or an edge and is dropped. Coordinates are
+ * never moved; planes are fitted to the coordinates given. Should that leave faces that are no convex polygons,
+ * triangles are merged anew within TL_POLY_ON. When noise is as large as that, they are merged with a wider tolerance
+ * up to TL_POLY_THIN. Faces that miss a plane by more, but are one to tl_poly_flatten, it joins. Every loop starts at
+ * its lowest vertex. The faces are in the order of their loops: the result depends on the points alone. */
 #include "geometry/hull.h"
 
 #include "geometry/flatten.h"
@@ -28,8 +27,8 @@
 
 /* Faces fitted to vertices within the tolerance leave others this many tolerances off at most. */
 #define SOUND 4
-/* Tolerance: a tolerance this much wider is given to a hull whose noise is about as large as the tolerance. Such noise
- * makes the border of two nearly coplanar faces zigzag, so that they are no convex polygons. */
+/* When noise about as large as the tolerance makes the border of two nearly coplanar faces zigzag, they are no convex
+ * polygons. A tolerance this much wider takes it in. */
 #define WIDER 8
 
 typedef struct hull_triangle {
@@ -108,18 +107,17 @@ static bool allocate(builder *b, const tl_vec3 *points, size_t count)
 
 /* ---- the triangulated hull ----
  *
- * Incremental: each point outside takes away the triangles that see it and is joined to their
- * horizon. Which side of a plane a point is on is decided in exact integer arithmetic (a double
- * product decides first where its rounding cannot matter), so the result is a closed convex surface
- * whatever the points, coplanar ones included.
+ * Incremental: each point outside takes away the triangles that see it and is joined to their horizon. Which side of a
+ * plane a point is on is decided in exact integer arithmetic; a double product decides first where its rounding cannot
+ * matter. So the result is a closed convex surface whatever the points, coplanar ones included.
  *
  * Needs a compiler with 128-bit integers (gcc and clang on 64-bit machines): a height is at most
  * 6 (2^41)^3 < 2^126. The work is proportional to points times triangles. */
 
 __extension__ typedef __int128 wide_int;
 
-/* A double product of two cross product components and a difference is off by a few roundings of
- * the sum of magnitudes; beyond this bound its sign is right. */
+/* A double product of two cross product components and a difference is off by a few roundings of the sum of
+ * magnitudes. Beyond this bound its sign is right. */
 #define SIGN_BOUND (8 * DBL_EPSILON)
 
 static wide_int wide(int64_t a)

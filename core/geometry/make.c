@@ -358,18 +358,14 @@ tl_poly *tl_poly_copy(const tl_poly *poly)
     memcpy(p->start, poly->start, (p->face_count + 1) * sizeof *p->start);
     memcpy(p->edge, poly->edge, p->edge_count * sizeof *p->edge);
     memcpy(p->loop, poly->loop, 2 * p->edge_count * sizeof *p->loop);
-    uint8_t *marks = NULL;
-    if (poly->seams && !(marks = tl_poly_open_seams(p))) {
-        tl_poly_free(p);
-        return NULL;
-    }
+    uint8_t *marks = poly->seams ? tl_poly_open_seams(p) : NULL;
     if (marks)
         memcpy(marks, poly->covered, p->face_count);
-    if (!tl_poly_add_planes(p, poly->plane + p->face_count, poly->plane_count - p->face_count)) {
-        tl_poly_free(p);
-        return NULL;
-    }
-    return p;
+    if ((marks || !poly->seams) &&
+        tl_poly_add_planes(p, poly->plane + p->face_count, poly->plane_count - p->face_count))
+        return p;
+    tl_poly_free(p);
+    return NULL;
 }
 
 tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation,

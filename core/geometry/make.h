@@ -10,12 +10,12 @@
 /* Euler's formula bounds the edges of a polyhedron within the limits on vertices and faces. */
 #define TL_POLY_MAX_EDGES (TL_POLY_MAX_VERTICES + TL_POLY_MAX_FACES - 2)
 
-/* Tolerance: least distance that means anything, over the coordinates. It replaces TL_POLY_ON times the size for a
- * small block far from zero. */
+/* Distances are known to a few roundings of the coordinates. For a small block far from zero that,
+ * and not TL_POLY_ON times its size, is the least distance that means anything. */
 #define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
-/* Tolerance: depth over the thickness of a block up to which nothing of it is changed. Faces may be bent, and points
- * be left out inside, by no more. */
+/* Depths below this times the thickness of a block change nothing of it. Faces may be bent, and points be left out
+ * inside, by no more. */
 #define TL_POLY_SHALLOW 1e-2
 
 /* One allocation with the counts set and its arrays laid out but empty; NULL without memory. */
@@ -29,7 +29,7 @@ tl_status tl_poly_link(tl_poly *poly, tl_error *error);
 /* Forgets the seams of a polyhedron; gives it marks of its own, where no face is covered yet; NULL without memory. */
 void tl_poly_clear_seams(tl_poly *poly);
 uint8_t *tl_poly_open_seams(tl_poly *poly);
-/* Puts planes of other parts behind those of the faces; false without memory. With none there is nothing to allocate. */
+/* Puts planes of other parts behind those of the faces; false without memory. With none nothing is allocated. */
 bool tl_poly_add_planes(tl_poly *poly, const tl_plane *planes, uint32_t count);
 
 /* Twice the vector area of a face, by its fan of triangles. */
@@ -41,7 +41,7 @@ tl_vec3 tl_poly_normal(tl_vec3 area);
 double tl_poly_midway(double low, double high);
 
 /* The plane of a face from its vertices: Newell's normal, and the offset midway between the
- * extremes of normal . x, so that a face normal to an axis gets exactly that axis and its
+ * extremes of normal . x. So a face normal to an axis gets exactly that axis and its
  * coordinate. */
 tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count);
 

@@ -2,11 +2,11 @@
  *
  * Volume integrals are sums over the tetrahedra from one vertex O to a fan of triangles (a, b, c)
  * of every face. With D = a . (b x c) relative to O and s = a + b + c, a tetrahedron has
- *     volume D / 6,   first moment D s / 24,   second moments D (s s' + a a' + b b' + c c') / 120,
- * exact for any position (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron inertia
- * tensor", eqs. 3-10). Second moments are moved to the centroid by the parallel axis theorem; about
- * a vertex of the body that costs a factor of 4 in rounding at most, wherever the body stands.
- * The volume of a block that is flat or long compared with its size is summed anew with twice the digits.
+ *     volume D / 6,   first moment D s / 24,   second moments D (s s' + a a' + b b' + c c') / 120.
+ * They are exact for any position (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron inertia tensor",
+ * eqs. 3-10). Second moments are moved to the centroid by the parallel axis theorem. About a vertex of the body that
+ * costs a factor of 4 in rounding at most, wherever the body stands. The volume of a block that is flat or long
+ * compared with its size is summed anew with twice the digits.
  * Products of inertia have the sign of the tensor: xy = -integral of x y. */
 #include "geometry/measure.h"
 
@@ -48,8 +48,8 @@ static void add_tetrahedron(moments *m, tl_vec3 a, tl_vec3 b, tl_vec3 c)
 
 /* ---- the volume of flat and long blocks ---- */
 
-/* Tolerance: volume over the cube of the size (a cube has 0.19) below which a volume is summed with twice the digits.
- * It is what is left of tetrahedra a thousand times and more as large. */
+/* Blocks of less than this times the cube of their size (a cube has 0.19). Their volume is what is
+ * left of tetrahedra a thousand times and more as large, and those are summed with twice the digits. */
 #define SLENDER 1e-3
 
 /* A sum with what rounding has left out of it so far. */
@@ -57,7 +57,7 @@ typedef struct long_sum {
     double high, low;
 } long_sum;
 
-/* Adds a b c: products exact but for the last digits of `low`, the sum without loss (Ogita, Rump
+/* Adds a b c. Products are exact but for the last digits of `low`, the sum is without loss. (Ogita, Rump
  * and Oishi 2005, "Accurate sum and dot product", algorithms 3.1, 3.5 and 5.3). */
 static void add_product(long_sum *s, double a, double b, double c)
 {
@@ -142,6 +142,14 @@ tl_mass tl_poly_mass(const tl_poly *p)
                              .yz = v * arm.y * arm.z - s.yz / 120,
                              .zx = v * arm.z * arm.x - s.zx / 120};
     return mass;
+}
+
+tl_vec3 tl_points_mean(const tl_vec3 *points, size_t count)
+{
+    tl_vec3 sum = {0, 0, 0};
+    for (size_t i = 0; i < count; i++)
+        sum = tl_v3_add(sum, points[i]);
+    return tl_v3_scale(1.0 / (double)count, sum);
 }
 
 tl_bounds tl_poly_bounds(const tl_poly *p)
@@ -239,8 +247,7 @@ bool tl_poly_contains(const tl_poly *p, tl_vec3 point, double tolerance)
 
 /* ---------------------------------------------------------------- a point from a face -----
  *
- * How far a point of a face's plane lies from the face: the look a joint of finite extent takes at
- * a section of a block.
+ * How far a point of a face's plane lies from the face. So a joint of finite extent meets a section of a block.
  *
  * A face is a convex polygon given counter-clockwise about its normal n. A point is over it when it lies
  * on the left of every edge, n x edge . (point - a) >= 0; otherwise the nearest point of the face is on one

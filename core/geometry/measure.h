@@ -4,8 +4,10 @@
 
 #include "geometry/polyhedron.h"
 
-/* Volume, centroid and inertia at density 1 about the centroid, exact up to rounding (sums over
- * tetrahedra, taken about a vertex so that an offset costs no digits). */
+#include <stddef.h>
+
+/* Volume, centroid and inertia at density 1 about the centroid, exact up to rounding. They are sums over tetrahedra
+ * about a vertex, so that an offset costs no digits. */
 typedef struct tl_mass {
     double volume;
     tl_vec3 centroid;
@@ -14,6 +16,7 @@ typedef struct tl_mass {
 
 tl_mass tl_poly_mass(const tl_poly *poly);
 
+tl_vec3 tl_points_mean(const tl_vec3 *points, size_t count);
 tl_bounds tl_poly_bounds(const tl_poly *poly);
 /* Sets `size` by the vertices as they are. */
 void tl_poly_find_size(tl_poly *poly);

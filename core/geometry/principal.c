@@ -1,8 +1,8 @@
 /* principal.c - principal moments and axes of a symmetric tensor by Jacobi's cyclic rotations
  * (Golub and Van Loan, Matrix Computations, section 8.5).
  *
- * Off-diagonal terms at the level of rounding are zero, so that the axes of a cube stay its own and
- * a diagonal tensor is only put in order: its moments are then the very numbers given. */
+ * Off-diagonal terms at the level of rounding are zero. So the axes of a cube stay its own, and a diagonal tensor is
+ * only put in order. Its moments are then the very numbers given. */
 #include "geometry/principal.h"
 
 #include "geometry/polyhedron.h"

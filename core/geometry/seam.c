@@ -1,9 +1,9 @@
 /* seam.c - a body made of several convex polyhedra: which of their faces are inside it.
  *
- * One rule tells whether faces of two parts lie on each other: they face each other, and have as little between them as blocks
- * that have settled. A face is covered when faces of other parts that fit it lie on all of its area. It is a seam when these are
- * covered as well; a smaller face on a larger one is none. Covered faces are no directions in which the body could part from another: a
- * block that slides over a seam must not feel it. */
+ * One rule tells whether faces of two parts lie on each other. They face each other, and have as little between them
+ * as blocks that have settled. A face is covered when faces of other parts that fit it lie on all of its area. It is a
+ * seam when these are covered as well; a smaller face on a larger one is none. Covered faces are no directions in
+ * which the body could part from another: a block that slides over a seam must not feel it. */
 #include "geometry/seam.h"
 
 #include "base/error.h"
@@ -18,11 +18,11 @@
 #include <string.h>
 #include <talus/vmath.h>
 
-/* Tolerance: parts fit when planes and corners agree within this times their size. Joined blocks were cut by one
+/* Parts fit when planes and corners agree within this times their size. Joined blocks were cut by one
  * plane, or were placed in contact by coordinates of six digits. */
 #define FIT 1e-6
-/* What parts of one body may have between them and lie on each other, over the smaller one's size: a gap, an overlap, and the sine of
- * the angle between their faces. They may have been joined after they had settled on each other. */
+/* What is between faces that lie on each other: at most this gap and overlap, over the size of the smaller part, and
+ * this sine of their angle. They may have been joined after they had settled on each other. */
 #define JOINED_GAP 1e-3
 #define JOINED_OVERLAP 1e-2
 #define JOINED_TILT 1e-2
@@ -324,13 +324,14 @@ tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn sev
  *
  * Planes of a body's surface that count for a part though they belong to faces of other parts.
  *
- * The depth of a point in a body is its distance from the body's surface. The nearest outer face may belong to another part than
- * the point does: where a seam meets an edge of the body, or where it runs close below a face. So a part is given the planes of
- * the other parts' outer faces behind which it lies as a whole. They bound nothing of it. A convex body lies behind all planes
- * of its outer faces, so the depth in its parts is that in the body, however it is cut.
+ * The depth of a point in a body is its distance from the body's surface. The nearest outer face may belong to another
+ * part than the point does. It does where a seam meets an edge of the body, or where it runs close below a face. So a
+ * part is given the planes of the other parts' outer faces behind which it lies as a whole. They bound nothing of it.
+ * A convex body lies behind all planes of its outer faces. So the depth in its parts is that in the body, however it
+ * is cut.
  *
- * Left out is a plane from which every corner of the part is at least as far as from one other: depths are linear, so no point
- * of the part is nearer to it. */
+ * Left out is a plane from which every corner of the part is at least as far as from one other. Depths are linear, so
+ * no point of the part is nearer to it. */
 
 /* Planes, of outer faces or of those that count for a part. */
 typedef struct planes {

@@ -1,8 +1,8 @@
 /* regroup.c - which blocks move as one: bodies made from parts and parted again.
  *
- * A new body has the mass, momentum and angular momentum of its parts; relative motion of the parts is
- * lost, as in a perfectly plastic meeting. Its frame has the attitude of its lowest block's old body, so
- * parting and joining without motion changes nothing but the last digits. */
+ * A new body has the mass, momentum and angular momentum of its parts. Relative motion of the parts is lost, as in a
+ * perfectly plastic meeting. Its frame has the attitude of its lowest block's old body, so parting and joining without
+ * motion changes nothing but the last digits. */
 #include "model/regroup.h"
 
 #include "geometry/make.h"
@@ -356,8 +356,8 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
     return status;
 }
 
-/* Sets group[row] for the bodies that lose blocks (keep[row] is 0) or have lost some since they were
- * measured: what is left of each falls into the groups that hang together over shared faces. */
+/* Sets group[row] for the bodies that lose blocks (keep[row] is 0) or have lost some since they were measured. What is
+ * left of each falls into the groups that hang together over shared faces. */
 static tl_status find_groups(tl_model *m, const unsigned char *keep, uint32_t *group)
 {
     const tl_bodies *b = &m->bodies;

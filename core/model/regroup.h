@@ -12,8 +12,8 @@ typedef struct tl_aside {
     uint64_t structure, constraints;
 } tl_aside;
 
-/* Sets copies aside; false when out of memory. Until the change is settled shapes of the rows must not be freed, and drives
- * are kept though no body follows them. */
+/* Sets copies aside; false when out of memory. Until the change is settled shapes of the rows must not be freed, and
+ * drives are kept though no body follows them. */
 bool tl_rows_set_aside(tl_model *m, tl_aside *aside);
 /* Takes them back: the model is as it was. */
 void tl_rows_take_back(tl_model *m, tl_aside *aside);
@@ -24,8 +24,8 @@ void tl_rows_settle(tl_model *m, tl_aside *aside);
  * body. Bodies that stay as they are are not touched; others get the mass, momentum and angular
  * momentum of their parts. TL_E_MEMORY leaves the model as it was. */
 tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group);
-/* Makes the given blocks bodies by themselves. What is left of their bodies, and of others that have lost blocks since they were
- * measured, falls into the groups that hang together over shared faces. */
+/* Makes the given blocks bodies by themselves. What is left of their bodies, and of others that lost blocks since they
+ * were measured, falls into groups that hang together over faces. */
 tl_status tl_bodies_fall_apart(tl_model *m, const tl_id *ids, size_t count);
 /* Makes bodies anew whose blocks were cut off or changed their mass. */
 tl_status tl_bodies_mend(tl_model *m);

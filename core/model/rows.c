@@ -1,7 +1,7 @@
 /* rows.c - rows of blocks and bodies, and what is derived from shapes: volume, mass, inertia.
  *
- * The paper's one moment of inertia (20) is printed without its coefficient: 0.4 m r^2, that of a
- * ball, with r the mean distance from centroid to vertices, is Talus's reading. */
+ * The paper's one moment of inertia (20) is printed without its coefficient. Talus takes 0.4 m r^2, that of a ball,
+ * with r the mean distance from centroid to vertices. */
 #include "model/rows.h"
 
 #include "geometry/measure.h"
@@ -183,7 +183,7 @@ void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass ma
 
 /* ---------------------------------------------------------------- the smallest of all -----
  *
- * The volume of all blocks, and the smallest volume, edge and face, kept while blocks come and go: a report on each
+ * The volume of all blocks, and the smallest volume, edge and face, kept while blocks come and go. A report on each
  * of many edits must not look at all blocks. They are found anew when a block goes that may have been the smallest. */
 
 /* Tolerance: a block this near to the smallest may be it: above the rounding of shapes that are turned. */

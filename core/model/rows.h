@@ -12,7 +12,7 @@ bool tl_rows_reserve(tl_model *m, size_t count);
 void tl_rows_refresh(tl_model *m);
 /* The same where single blocks, bodies of their own, have been added from row `first` on. */
 void tl_rows_added(tl_model *m, uint32_t first);
-/* Takes out the rows of blocks that have been deleted. Whoever goes through rows, and not from ids, calls this before. */
+/* Takes out the rows of blocks that have been deleted. Who goes through rows, and not from ids, calls this before. */
 void tl_rows_tidy(tl_model *m);
 /* Derives a block's size and mean face from its shape, whose volume is given. */
 void tl_block_measure(tl_model *m, uint32_t row, double volume);

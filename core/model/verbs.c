@@ -202,8 +202,8 @@ typedef struct moved_parts {
     tl_vec3 moment;
 } moved_parts;
 
-/* Gives the bodies of the blocks their motion. What gets the velocity is the common centroid of those of its blocks that are listed: of
- * one block its own. `moved`: [bodies], zeros, or NULL when all bodies are of one block. */
+/* Gives the bodies of the blocks their motion. What gets the velocity is the common centroid of those of its blocks
+ * that are listed: of one block its own. `moved`: [bodies], zeros, or NULL when all bodies are of one block. */
 static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set,
                        moved_parts *moved)
 {

@@ -244,7 +244,7 @@ static inline tl_vec3 tl_v3_turn(tl_vec3 v, tl_vec3 a, tl_vec3 b)
     return tl_v3_add(tl_v3_add(v, t), tl_v3_scale(1 / c, tl_v3_cross(w, t)));
 }
 
-/* Sine of (degrees + 90 quarter), exact at multiples of 90 degrees: the angle is brought within 45
+/* Sine of (degrees + 90 quarter), exact at multiples of 90 degrees. The angle is brought within 45
  * degrees of a multiple of 90 first, which rounds nothing. */
 static inline double tl_sin_quarter(double degrees, int quarter)
 {
@@ -271,9 +271,9 @@ static inline double tl_cos_degrees(double degrees)
     return tl_sin_quarter(degrees, 1);
 }
 
-/* Upward unit normal of a plane of this dip (0-90 below horizontal) and dip direction (clockwise from
- * north, +y), in degrees: (sin dip sin dd, sin dip cos dd, cos dip). Planes along the axes come out
- * exactly so, and no component is -0. */
+/* Upward unit normal of a plane of this dip (0-90 below horizontal) and dip direction (clockwise from north, +y), in
+ * degrees. It is (sin dip sin dd, sin dip cos dd, cos dip). Planes along the axes come out exactly so, and no
+ * component is -0. */
 static inline tl_vec3 tl_plane_normal(double dip, double dip_direction)
 {
     double s = tl_sin_degrees(dip);
