@@ -26,8 +26,7 @@ static const char *const key_names[] = {
 const tl_lua_key tl_lua_drive_keys[] = {
     {"velocity", "{x, y, z} or function(t)",
      "velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, "
-     "s: "
-     "the middle of each step. Zero when left out"},
+     "s: the middle of each step. Zero when left out"},
     {"angular_velocity", "{x, y, z} or function(t)", "angular velocity, rad/s, likewise"},
     {NULL, NULL, NULL},
 };
@@ -240,10 +239,9 @@ const tl_lua_topic tl_lua_action_topics[] = {
      .function = "load"},
     {.name = "drive",
      .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
-     .doc =
-         "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
-         "selection:free(). A function is called in the middle of a step: it may read the model, "
-         "but not change it. A body that is driven to turn is not cut in two.",
+     .doc = "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
+            "selection:free(). A function is called in the middle of a step: it may read the "
+            "model, but not change it. A body that is driven to turn is not cut in two.",
      .keys = tl_lua_drive_keys},
     {.name = NULL},
 };

@@ -296,10 +296,10 @@ static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_bou
     else if (strcmp(word, "fixed") == 0)
         a->fixed = true;
     else
-        tl_lua_fail(L,
-                    "boundary: %s must be \"roller\", \"fixed\" or a table of what is to be done, "
-                    "not %s",
-                    name, tl_lua_describe(L, -1));
+        tl_lua_fail(
+            L,
+            "boundary: %s must be \"roller\", \"fixed\" or a table of what is to be done, not %s",
+            name, tl_lua_describe(L, -1));
     a->where.side = side;
     if (isnan(a->where.tolerance))
         a->where.tolerance = tolerance;
@@ -346,8 +346,9 @@ static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
         tl_lua_fail(L, "boundary: with xmin and the like only tolerance and add are given beside; "
                        "what is to be done goes into their tables");
     if (!count && is_anywhere(&one.where))
-        tl_lua_fail(L, "boundary: say where: side, plane, box or facing, or sides as in "
-                       "{xmin = \"roller\"}");
+        tl_lua_fail(
+            L,
+            "boundary: say where: side, plane, box or facing, or sides as in {xmin = \"roller\"}");
     if (!count)
         actions[0] = one;
     return count;
@@ -416,13 +417,11 @@ const tl_lua_topic tl_lua_boundary_topics[] = {
     {.name = "boundary",
      .usage = "result = model:boundary{side = \"xmax\", stress = {xx = -1e6}}  or  "
               "model:boundary{xmin = \"roller\", zmin = \"fixed\", zmax = {pressure = 1e5}}",
-     .doc =
-         "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
-         "Holds their bodies, or puts a traction on them as a load: its force and moment about "
-         "each body's centroid take the place of the load the body had, keep their direction and "
-         "go with the body. What one call puts on a body adds up. When a face is cut, each part of "
-         "it "
-         "gets its share.",
+     .doc = "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
+            "Holds their bodies, or puts a traction on them as a load: its force and moment about "
+            "each body's centroid take the place of the load the body had, keep their direction "
+            "and go with the body. What one call puts on a body adds up. When a face is cut, each "
+            "part of it gets its share.",
      .spec = &boundary_spec,
      .title = "Fields of the result",
      .verbs = boundary_results,

@@ -49,16 +49,13 @@ static const tl_param history_params[] = {
 static const tl_lua_key history_keys[] = {
     {"value", "function(model) or text",
      "gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may "
-     "read the model, but "
-     "not change it. Or one of \"kinetic\", \"potential\", \"stored\", \"friction\", \"damping\", "
-     "\"external\" (J), "
-     "\"balance\", \"ratio\", \"ratio_maximum\", \"ratio_local\", \"max_velocity\" (m/s), "
-     "\"contacts\", \"slipping\", "
-     "\"open\" (numbers of contacts in the last step)"},
+     "read the model, but not change it. Or one of \"kinetic\", \"potential\", \"stored\", "
+     "\"friction\", \"damping\", \"external\" (J), \"balance\", \"ratio\", \"ratio_maximum\", "
+     "\"ratio_local\", \"max_velocity\" (m/s), \"contacts\", \"slipping\", \"open\" (numbers of "
+     "contacts in the last step)"},
     {"of", "block, contact or selection",
      "what the field is sampled of, in the place of `value`. Blocks and contacts that no longer "
-     "exist are left out; "
-     "where none is left the value is nan"},
+     "exist are left out; where none is left the value is nan"},
     {NULL, NULL, NULL},
 };
 
@@ -179,8 +176,7 @@ static void ask_function(lua_State *L, const tl_history *h, latest *now)
     if (count == 0 || count > TL_HISTORY_WIDEST)
         tl_lua_fail_in(
             L, AT_FUNCTION,
-            "history '%s': the function must give a number or a list of 1 to %d numbers, "
-            "not %s",
+            "history '%s': the function must give a number or a list of 1 to %d numbers, not %s",
             h->name, TL_HISTORY_WIDEST,
             count  ? lua_pushfstring(L, "%d of them", (int)count)
             : list ? "an empty list"
@@ -198,11 +194,10 @@ static void ask_function(lua_State *L, const tl_history *h, latest *now)
     now->width = count;
     now->list = list || given > 1;
     if (h->count && (count != h->width || now->list != h->list))
-        tl_lua_fail_in(
-            L, AT_FUNCTION,
-            "history '%s': the function gives %d numbers, before it gave %d: it must give "
-            "as many each time",
-            h->name, (int)count, (int)h->width);
+        tl_lua_fail_in(L, AT_FUNCTION,
+                       "history '%s': the function gives %d numbers, before it gave %d: it must "
+                       "give as many each time",
+                       h->name, (int)count, (int)h->width);
 }
 
 static void ask_model(lua_State *L, tl_model *model, const tl_history *h, latest *now)
@@ -835,10 +830,9 @@ const tl_lua_topic tl_lua_history_topics[] = {
     {.name = "write_histories",
      .usage = "model:write_histories(\"out/run.csv\")",
      .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one "
-            "for each history, in "
-            "the order in which they were made, or name.x, name.y and name.z. A cell is empty "
-            "where a history has no "
-            "sample of that cycle. Folders are made; the file is written whole or not at all.",
+            "for each history, in the order in which they were made, or name.x, name.y and name.z. "
+            "A cell is empty where a history has no sample of that cycle. Folders are made; the "
+            "file is written whole or not at all.",
      .of = TL_LUA_OF_MODEL,
      .call = model_write_histories},
     {.name = NULL},

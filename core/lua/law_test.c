@@ -14,9 +14,9 @@
 static const tl_lua_key law_test_keys[] = {
     {"params", "{NAME = value}", "parameters of the law, as for model:joint"},
     {"path", "list of numbers or legs",
-     "shear displacements, m, one after the other from 0; or legs, tables {shear = m, closure = "
-     "m, normal_stress = Pa, time = s, speed = m/s, steps =}: values at the end of the leg, what "
-     "is not named stays; a leg with only a time waits"},
+     "shear displacements, m, one after the other from 0; or legs, tables {shear = m, closure = m, "
+     "normal_stress = Pa, time = s, speed = m/s, steps =}: values at the end of the leg, what is "
+     "not named stays; a leg with only a time waits"},
     {NULL, NULL, NULL},
 };
 
@@ -28,8 +28,7 @@ static const tl_lua_key law_test_results[] = {
     {"work", "", "list, J/m2: work of the walls, and what was stored at the start"},
     {"stored, heat", "",
      "lists, J/m2: elastic energy, and energy turned to heat, as the law tells them. Work - stored "
-     "- "
-     "heat is the error of the law's energies and of the steps"},
+     "- heat is the error of the law's energies and of the steps"},
     {"slipping, open, failed", "", "lists of true and false, as the law flags the point"},
     {"states", "", "a list for each state of the law, by its name; of vectors where it is one"},
     {"ends", "", "for each leg, the place of its last point in the lists"},
@@ -66,9 +65,8 @@ static void read_path(lua_State *L, tl_law_test *test)
     for (lua_pushnil(L); lua_next(L, path); lua_pop(L, 1))
         if (!lua_isinteger(L, -2) || lua_tointeger(L, -2) < 1 ||
             lua_tointeger(L, -2) > (lua_Integer)test->count)
-            tl_lua_fail(L,
-                        "law_test: path must be a list of legs, without names and gaps: a single "
-                        "leg is {{shear = ...}}");
+            tl_lua_fail(L, "law_test: path must be a list of legs, without names and gaps: a "
+                           "single leg is {{shear = ...}}");
     tl_law_leg *legs = lua_newuserdatauv(L, test->count * sizeof *legs, 0);
     test->path = legs;
     for (size_t k = 0; k < test->count; k++) {

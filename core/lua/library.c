@@ -144,17 +144,14 @@ static const tl_lua_key plot_keys[] = {
     {"file", "text in quotes, required", "name of the SVG file; folders are made"},
     {"series", "list of {x =, y =, name =, style =, colour =}",
      "lines: lists of numbers x (1, 2, 3, ... when left out) and y; style is \"line\", \"points\" "
-     "or \"both\", colour "
-     "\"#0072b2\". Numbers that are not finite make a gap. Or {history =, component =, against =, "
-     "name =}: history is one "
-     "of model:histories(), component \"x\", \"y\", \"z\" or a number (all when left out), against "
-     "\"time\" or \"cycle\""},
+     "or \"both\", colour \"#0072b2\". Numbers that are not finite make a gap. Or {history =, "
+     "component =, against =, name =}: history is one of model:histories(), component \"x\", "
+     "\"y\", \"z\" or a number (all when left out), against \"time\" or \"cycle\""},
     {"model", "model", "draws histories of this model"},
     {"histories", "list of names", "which of them, in this order; all when left out"},
     {"x_axis, y_axis", "text or {name =, unit =, log =, range =}",
      "name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not "
-     "above 0; range = {from, "
-     "to} when left out takes in all"},
+     "above 0; range = {from, to} when left out takes in all"},
     {"title", "text in quotes, may be left out", "stands above the picture"},
     {"legend", "true or false",
      "whether a list of the lines stands beside; left out: when there are several, or names"},
@@ -256,8 +253,7 @@ void tl_lua_strict(lua_State *L)
 const tl_lua_topic tl_lua_library_topics[] = {
     {.name = "plot",
      .usage = "talus.plot{file = \"out/run.svg\", model = model, histories = {\"roof\"}, y_axis = "
-              "{name = \"subsidence\", unit = "
-              "\"m\"}}",
+              "{name = \"subsidence\", unit = \"m\"}}",
      .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
      .keys = plot_keys},
     {.name = "stereonet",

@@ -540,8 +540,7 @@ static const tl_lua_key parameters_fields[] = {
     {"gravity, seed", "", "and all others that talus.model{...} takes"},
     {"timestep", "",
      "rule and fraction; given: the step that was given, s, or nil; dt: the step the next cycle "
-     "will use, s, or message: "
-     "why it is not known"},
+     "will use, s, or message: why it is not known"},
     {"mass_scaling", "", "on; dt and most, where they were given"},
     {"damping", "", "name, nil where none was chosen; parameters: a table of them by name"},
     {"laws", "",
@@ -574,9 +573,8 @@ const tl_lua_topic tl_lua_lists_topics[] = {
      .of = TL_LUA_OF_MODEL,
      .call = model_groups},
     {.name = "kinds",
-     .usage =
-         "list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  "
-         "list = talus.screens()",
+     .usage = "list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or "
+              " list = talus.screens()",
      .doc = "Lists the laws, dampings, generators or screens that are loaded.",
      .title = "Fields of each kind",
      .verbs = kinds_results},

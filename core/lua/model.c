@@ -107,10 +107,10 @@ static size_t entry_count(lua_State *L, const char *generator)
         return 0;
     for (lua_pushnil(L); lua_next(L, 3); lua_pop(L, 1))
         if (!lua_isinteger(L, -2))
-            tl_lua_fail(L,
-                        "generate '%s': give a list of parameter tables, or parameters by name, "
-                        "not both",
-                        generator);
+            tl_lua_fail(
+                L,
+                "generate '%s': give a list of parameter tables, or parameters by name, not both",
+                generator);
     return lua_rawlen(L, 3);
 }
 
@@ -509,8 +509,8 @@ static int model_assign(lua_State *L)
         return tl_lua_fail(L, "model.%s can only be read%s", name,
                            strcmp(name, "dt") == 0 ? "; set it with model:timestep{dt = ...}" : "");
     else if (strcmp(name, "mass_scaled") == 0)
-        return tl_lua_fail(L, "model.mass_scaled can only be read; set it with "
-                              "model:mass_scaling(true)");
+        return tl_lua_fail(
+            L, "model.mass_scaled can only be read; set it with model:mass_scaling(true)");
     else
         return unknown_field(L, "a model has no field to set", name);
     return 0;
@@ -580,8 +580,7 @@ static const tl_lua_key mass_scaling_results[] = {
     {"bodies", "", "how many have got some"},
     {"worst", "",
      "{block =, factor =}: the number of the block with the highest factor, and its inertia over "
-     "its "
-     "own; nil when none has got any"},
+     "its own; nil when none has got any"},
     {NULL, NULL, NULL},
 };
 
@@ -617,9 +616,8 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .call = model_generate},
     {.name = "joint",
      .usage = "model:joint(\"J1\", \"LAW\", {...})  or  model:joint(\"J1\", {friction = 30})",
-     .doc =
-         "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every joint "
-         "not named otherwise (\"*\"); without a law's name it changes properties.",
+     .doc = "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every "
+            "joint not named otherwise (\"*\"); without a law's name it changes properties.",
      .has_type = true,
      .type = TL_KIND_LAW,
      .of = TL_LUA_OF_MODEL,
@@ -645,8 +643,8 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .of = TL_LUA_OF_MODEL,
      .call = model_timestep},
     {.name = "mass_scaling",
-     .usage = "model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  "
-              "added = model:mass_scaling()",
+     .usage = "model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  added = "
+              "model:mass_scaling()",
      .function = "mass_scaling",
      .title = "Fields of what it tells",
      .verbs = mass_scaling_results,

@@ -201,10 +201,10 @@ static void ask_field(lua_State *L, const request *r, tl_extra_field *field, con
     size_t width;
     tl_lua_ok(L, model, r->kind->values(model, NULL, 0, source, NULL, &width));
     if (width != 1)
-        tl_lua_fail(L,
-                    "%s: %s: the field '%s' of a %s has %d numbers; give a function(%s) that "
-                    "returns one",
-                    r->context, r->key, source, r->kind->item, (int)width, r->kind->item);
+        tl_lua_fail(
+            L,
+            "%s: %s: the field '%s' of a %s has %d numbers; give a function(%s) that returns one",
+            r->context, r->key, source, r->kind->item, (int)width, r->kind->item);
     tl_lua_ok(L, model,
               r->kind->values(model, r->items->ids, r->items->count, source, values, &width));
     field->unit = unit_of(r->kind, source);
@@ -328,8 +328,8 @@ const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *k
 
 const tl_lua_topic tl_lua_page_topics[] = {
     {.name = "write_html",
-     .usage = "model:write_html(\"out/run\", {title = \"Slope\", block_fields = "
-              "{\"kinetic_energy\"}})",
+     .usage =
+         "model:write_html(\"out/run\", {title = \"Slope\", block_fields = {\"kinetic_energy\"}})",
      .function = "write_html",
      .keys = page_keys,
      .of = TL_LUA_OF_MODEL,

@@ -76,8 +76,7 @@ static void push_reason(lua_State *L, tl_model *model, const tl_refused_cut *cut
     const char *joint = tl_tag_name(model, cut->joint);
     tl_text_print(
         text, sizeof text,
-        "%s%s%s does not cut block %u: a side would be %.3g m thick, less than the limit of "
-        "%.3g m",
+        "%s%s%s does not cut block %u: a side would be %.3g m thick, less than the limit of %.3g m",
         *joint ? "joint '" : "a plane without joint", joint, *joint ? "'" : "", cut->block,
         cut->thickness, cut->limit);
     lua_pushstring(L, text);
@@ -252,8 +251,8 @@ static int model_filter(lua_State *L)
 
 static const tl_lua_key keyblocks_keys[] = {
     {"friction", "number or {JOINT = number}",
-     "friction angle of the joints, degrees, in [0, 90): one for all, or by joint: "
-     "{[\"*\"] = 35, J1 = 30, [\"J1:3\"] = 25}; the closest name counts"},
+     "friction angle of the joints, degrees, in [0, 90): one for all, or by joint: {[\"*\"] = 35, "
+     "J1 = 30, [\"J1:3\"] = 25}; the closest name counts"},
     {"cohesion", "number or {JOINT = number}",
      "cohesion of the joints, Pa, likewise; 0 where none is given"},
     {NULL, NULL, NULL},
@@ -445,8 +444,7 @@ static const tl_lua_key verdict_fields[] = {
     {"standing", "",
      "\"at rest\" below the local ratio of the last solve, else below 1e-5; \"failed\" by the "
      "criterion of stop_at_failure in the last solve; \"accelerating\" where unbalanced forces "
-     "push "
-     "on; else \"moving\". \"unknown\" before the first step"},
+     "push on; else \"moving\". \"unknown\" before the first step"},
     {"text", "", "all of this as one line"},
     {"stage", "", "name given to model:stage, or \"\""},
     {"ratio", "", "the local unbalanced force ratio"},
@@ -459,8 +457,7 @@ static const tl_lua_key verdict_fields[] = {
     {"farthest, displacement", "", "id of the block that has moved the most, and how far, m"},
     {"slip, slipped", "",
      "how far two bodies have moved along each other since the stage began, the largest, m: the "
-     "mean, by area, of their "
-     "contacts on faces that look the same way; id of the first of these"},
+     "mean, by area, of their contacts on faces that look the same way; id of the first of these"},
     {"opening, opened", "", "the same apart, m; id of such a contact, 0: none"},
     {"contacts, slipping", "", "contacts there are, and those that slip"},
     {NULL, NULL, NULL},
@@ -605,9 +602,9 @@ const tl_lua_topic tl_lua_quality_topics[] = {
     {.name = "stage",
      .usage = "model:stage(\"excavated\")",
      .doc =
-         "Begins a stage: displacements of all blocks count from now, as after "
-         "reset_displacement, and so does what model:verdict and pages tell of slip and opening. "
-         "What laws keep stays. The name is at most 63 bytes; copies and files have it.",
+         "Begins a stage: displacements of all blocks count from now, as after reset_displacement, "
+         "and so does what model:verdict and pages tell of slip and opening. What laws keep stays. "
+         "The name is at most 63 bytes; copies and files have it.",
      .of = TL_LUA_OF_MODEL,
      .call = model_stage},
     {.name = "verdict",

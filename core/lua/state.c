@@ -286,37 +286,32 @@ void tl_lua_autosave(tl_lua_options *options, tl_model *model)
 const tl_lua_topic tl_lua_state_topics[] = {
     {.name = "copy",
      .usage = "twin = model:copy()",
-     .doc =
-         "The same model once more in memory: equal state, and equal bits after equal calls from "
-         "then on. The functions of drives are shared; frames of the copy begin with 0.",
+     .doc = "The same model once more in memory: equal state, and equal bits after equal calls "
+            "from then on. The functions of drives are shared; frames of the copy begin with 0.",
      .of = TL_LUA_OF_MODEL,
      .call = model_copy},
     {.name = "save",
      .usage = "model:save(\"out/run.talus\")",
-     .doc =
-         "Saves all that the next steps depend on, to the bit, compressed and with checksums. The "
-         "file appears whole or not at all, in the place of an older one, and outlives a crash "
-         "of the machine; folders are made. The model goes on as if it had not been saved. "
-         "Histories are saved with all their samples; functions of drives and histories are not. "
-         "Frames of files go on with the next number.",
+     .doc = "Saves all that the next steps depend on, to the bit, compressed and with checksums. "
+            "The file appears whole or not at all, in the place of an older one, and outlives a "
+            "crash of the machine; folders are made. The model goes on as if it had not been "
+            "saved. Histories are saved with all their samples; functions of drives and histories "
+            "are not. Frames of files go on with the next number.",
      .of = TL_LUA_OF_MODEL,
      .call = model_save},
     {.name = "restore",
      .usage = "model = talus.restore(\"out/run.talus\", {threads = 2})",
-     .doc =
-         "The model that a file holds: it goes on as the saved one does, to the bit, on any number "
-         "of threads. Laws and damping must be loaded in the version that it was saved with. A "
-         "damaged file, and one of another format, is refused.",
+     .doc = "The model that a file holds: it goes on as the saved one does, to the bit, on any "
+            "number of threads. Laws and damping must be loaded in the version that it was saved "
+            "with. A damaged file, and one of another format, is refused.",
      .keys = restore_keys,
      .of = TL_LUA_OF_MODULE,
      .call = module_restore},
     {.name = "resumed",
      .usage = "model = talus.resumed()",
-     .doc =
-         "The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run "
-         "--resume "
-         "SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of "
-         "talus.restore. The file lies beside the script: SCRIPT.autosave.talus.",
+     .doc = "The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run "
+            "--resume SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the "
+            "options of talus.restore. The file lies beside the script: SCRIPT.autosave.talus.",
      .of = TL_LUA_OF_MODULE,
      .call = module_resumed},
     {.name = NULL},
