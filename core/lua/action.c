@@ -149,17 +149,13 @@ void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive)
 
 /* ---------------------------------------------------------------- verbs ------------------ */
 
-int tl_lua_blocks_load(lua_State *L)
+tl_status tl_lua_blocks_load(lua_State *L, const tl_lua_selection *b)
 {
-    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "load");
-    tl_lua_spec spec = tl_lua_spec_of("load", NULL);
     tl_load load = tl_load_default();
-    tl_lua_read(L, 2, &spec, false, &load);
+    tl_lua_read_function(L, 2, "load", NULL, &load);
     if (!lua_istable(L, 2))
-        return tl_lua_fail(L,
-                           "load: give force, moment and at in a table; load{} takes the load off");
-    return tl_lua_blocks_acted(L, b, "load", "loaded",
-                               tl_blocks_load(b->owner->model, b->ids, b->count, &load));
+        tl_lua_fail(L, "load: give force, moment and at in a table; load{} takes the load off");
+    return tl_blocks_load(b->owner->model, b->ids, b->count, &load);
 }
 
 /* Reads one of the two velocities of the table at index 2; true when it is given. A function goes to
@@ -193,9 +189,8 @@ static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *f
     return type != LUA_TNIL;
 }
 
-int tl_lua_blocks_drive(lua_State *L)
+tl_status tl_lua_blocks_drive(lua_State *L, const tl_lua_selection *b)
 {
-    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "drive");
     tl_lua_spec spec = {"drive", NULL, 0, tl_lua_drive_keys};
     tl_lua_read(L, 2, &spec, false, NULL);
     lua_settop(L, 2);
@@ -211,26 +206,21 @@ int tl_lua_blocks_drive(lua_State *L)
                              &drive.angular_velocity_at, angular_velocity_at);
     }
     if (!moves)
-        return tl_lua_fail(L, "drive: give velocity, angular_velocity or both; to hold blocks use "
-                              "selection:fix(), to let them go selection:free()");
+        tl_lua_fail(L, "drive: give velocity, angular_velocity or both; to hold blocks use "
+                       "selection:fix(), to let them go selection:free()");
     tl_status status = tl_blocks_drive(b->owner->model, b->ids, b->count, &drive);
     if (status == TL_OK && b->count > 0)
         a->ended = false;
-    return tl_lua_blocks_acted(L, b, "drive", "driven", status);
+    return status;
 }
 
-int tl_lua_push_reaction(lua_State *L, const tl_lua_selection *blocks)
+int tl_lua_blocks_reaction(lua_State *L, const tl_lua_selection *blocks)
 {
     tl_model *model = tl_lua_living(L, blocks->owner);
     tl_vec3 force;
     tl_lua_ok(L, model, tl_blocks_reaction(model, blocks->ids, blocks->count, &force));
     tl_lua_push_vec3(L, force);
     return 1;
-}
-
-int tl_lua_blocks_reaction(lua_State *L)
-{
-    return tl_lua_push_reaction(L, tl_lua_blocks_self(L, 1, "reaction"));
 }
 
 const tl_lua_topic tl_lua_action_topics[] = {

@@ -5,11 +5,10 @@
 #include "lua/front.h"
 
 extern const tl_lua_key tl_lua_drive_keys[];
-int tl_lua_blocks_load(lua_State *L);
-int tl_lua_blocks_drive(lua_State *L);
-int tl_lua_blocks_reaction(lua_State *L);
-/* Pushes the reaction of a selection; 1. */
-int tl_lua_push_reaction(lua_State *L, const tl_lua_selection *blocks);
+/* What verbs of blocks do: load{...}, drive{...} and, which pushes a vector, reaction(). */
+tl_status tl_lua_blocks_load(lua_State *L, const tl_lua_selection *blocks);
+tl_status tl_lua_blocks_drive(lua_State *L, const tl_lua_selection *blocks);
+int tl_lua_blocks_reaction(lua_State *L, const tl_lua_selection *blocks);
 /* Pushes a new anchor and hangs it on the model at `model_index`; it counts as ended until the kernel has taken it. */
 tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index);
 /* The functions of a drive for the anchor `a`, which is at the top of the stack: those that it has. */

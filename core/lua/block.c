@@ -16,13 +16,19 @@
 #include <talus/boundary.h>
 #include <talus/fields.h>
 
-#define MESH_TYPE "talus.mesh"
+void tl_lua_set_block(lua_State *L, const char *name, tl_id id)
+{
+    if (id == TL_NO_ID)
+        return;
+    tl_lua_item_push(L, &tl_lua_block_kind, 1, id);
+    lua_setfield(L, -2, name);
+}
 
 /* ---------------------------------------------------------------- shape ------------------ */
 
-static int mesh_collect(lua_State *L)
+static int free_mesh(lua_State *L)
 {
-    tl_block_mesh *mesh = luaL_checkudata(L, 1, MESH_TYPE);
+    tl_block_mesh *mesh = lua_touserdata(L, 1);
     tl_block_mesh_free(mesh);
     *mesh = (tl_block_mesh){0};
     return 0;
@@ -31,14 +37,7 @@ static int mesh_collect(lua_State *L)
 /* Pushes an empty mesh that frees itself should an error be raised while it is in use. */
 static tl_block_mesh *mesh_push(lua_State *L)
 {
-    tl_block_mesh *mesh = lua_newuserdatauv(L, sizeof *mesh, 0);
-    *mesh = (tl_block_mesh){0};
-    if (luaL_newmetatable(L, MESH_TYPE)) {
-        lua_pushcfunction(L, mesh_collect);
-        lua_setfield(L, -2, "__gc");
-    }
-    lua_setmetatable(L, -2);
-    return mesh;
+    return tl_lua_hold(L, sizeof(tl_block_mesh), "talus.mesh", free_mesh);
 }
 
 static void push_vertices(lua_State *L, const tl_block_mesh *mesh)
@@ -61,13 +60,10 @@ static void push_faces(lua_State *L, tl_model *model, const tl_block_mesh *mesh)
             lua_rawseti(L, -2, (lua_Integer)(i - mesh->start[face]) + 1);
         }
         lua_setfield(L, -2, "vertices");
-        tl_lua_push_vec3(L, mesh->normals[face]);
-        lua_setfield(L, -2, "normal");
+        tl_lua_set_vec3(L, "normal", mesh->normals[face]);
         const char *joint = tl_tag_name(model, mesh->tags[face]);
-        if (joint && joint[0]) {
-            lua_pushstring(L, joint);
-            lua_setfield(L, -2, "joint");
-        }
+        if (joint && joint[0])
+            tl_lua_set_text(L, "joint", joint);
         lua_rawseti(L, -2, (lua_Integer)face + 1);
     }
 }
@@ -79,7 +75,7 @@ static void push_neighbours(lua_State *L, tl_model *model, tl_id id)
     tl_lua_ok(L, model, tl_block_neighbours(model, id, &found->ids, &found->count));
     lua_createtable(L, (int)found->count, 0);
     for (size_t i = 0; i < found->count; i++) {
-        tl_lua_item_push(L, TL_LUA_BLOCK, 3, found->ids[i]);
+        tl_lua_item_push(L, &tl_lua_block_kind, 3, found->ids[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
@@ -138,14 +134,8 @@ static const tl_lua_key block_keys[] = {
     {NULL, NULL, NULL},
 };
 
-#define COUNT(table) (sizeof(table) / sizeof(table)[0])
-
-static const tl_lua_spec blocks_spec = {"blocks", block_params, COUNT(block_params), block_keys};
-
-static const tl_param box_params[] = {
-    TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
-};
+static const tl_lua_spec blocks_spec = {"blocks", block_params, TL_LUA_COUNT(block_params),
+                                        block_keys};
 
 static const tl_param halfspace_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "angle below the horizontal",
@@ -167,20 +157,25 @@ static const tl_halfspace *read_halfspace(lua_State *L, const char *key, tl_half
     if (lua_getfield(L, 2, key) == LUA_TNIL)
         return NULL;
     tl_lua_spec spec = {lua_pushfstring(L, "blocks, %s", key), halfspace_params,
-                        COUNT(halfspace_params), NULL};
+                        TL_LUA_COUNT(halfspace_params), NULL};
     tl_lua_read(L, -2, &spec, false, out);
     return out;
 }
 
-static const tl_bounds *read_box(lua_State *L, tl_bounds *out)
+bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *key, tl_bounds *box)
 {
-    if (lua_getfield(L, 2, "inside") == LUA_TNIL)
-        return NULL;
-    tl_lua_spec spec = {"blocks, inside", box_params, COUNT(box_params), NULL};
-    tl_lua_read(L, -1, &spec, false, out);
-    if (out->min.x > out->max.x || out->min.y > out->max.y || out->min.z > out->max.z)
-        tl_lua_fail(L, "blocks, inside: every component of min must be at most that of max");
-    return out;
+    static const tl_param params[] = {
+        TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
+    };
+    if (lua_getfield(L, table, key) == LUA_TNIL)
+        return false;
+    tl_lua_spec spec = {lua_pushfstring(L, "%s, %s", function, key), params, TL_LUA_COUNT(params),
+                        NULL};
+    tl_lua_read(L, -2, &spec, false, box);
+    if (box->min.x > box->max.x || box->min.y > box->max.y || box->min.z > box->max.z)
+        tl_lua_fail(L, "%s: every component of min must be at most that of max", spec.context);
+    return true;
 }
 
 /* Ids that are asked for, ascending; `list` is NULL when any will do. */
@@ -272,7 +267,8 @@ static void read_filter(lua_State *L, block_args *args, block_nested *nested,
         filter->containing = &args->containing;
     if (!lua_istable(L, 2))
         return;
-    filter->inside = read_box(L, &nested->inside);
+    if (tl_lua_read_box(L, 2, "blocks", "inside", &nested->inside))
+        filter->inside = &nested->inside;
     filter->above = read_halfspace(L, "above", &nested->above);
     filter->below = read_halfspace(L, "below", &nested->below);
     filter->hidden = read_hidden(L);
@@ -307,11 +303,8 @@ static tl_status keep_on_side(tl_model *model, tl_lua_selection *found, int32_t 
     return TL_OK;
 }
 
-static int model_blocks(lua_State *L)
+static int model_blocks(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "blocks");
-    tl_lua_arity(L, 2, "blocks");
-    lua_settop(L, 2);
     block_args args = {.containing = {NAN, NAN, NAN}, .fixed = -1};
     block_nested nested;
     tl_block_filter filter;
@@ -323,21 +316,13 @@ static int model_blocks(lua_State *L)
     if (ids.list && ids.count == 1)
         filter.id = ids.list[0];
     int32_t side = args.boundary ? tl_lua_side(L, "blocks", args.boundary) : TL_SIDE_ANY;
-    int where = 0;
-    if (lua_istable(L, 2) && lua_getfield(L, 2, "where") != LUA_TNIL) {
-        where = lua_gettop(L);
-        if (lua_type(L, where) != LUA_TFUNCTION)
-            return tl_lua_fail(L, "blocks: where must be a function(block), not %s",
-                               tl_lua_describe(L, where));
-    }
+    int where = tl_lua_read_where(L, &tl_lua_block_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
     tl_lua_ok(L, model, tl_blocks_select(model, &filter, &found->ids, &found->count));
     if (ids.list)
         keep_ids(found, &ids);
-    if (side != TL_SIDE_ANY) {
-        tl_status status = keep_on_side(model, found, side);
-        tl_lua_ok(L, model, status);
-    }
+    if (side != TL_SIDE_ANY)
+        tl_lua_ok(L, model, keep_on_side(model, found, side));
     if (where)
         tl_lua_selection_filter(L, lua_gettop(L), where);
     return 1;
@@ -345,51 +330,14 @@ static int model_blocks(lua_State *L)
 
 /* ---------------------------------------------------------------- verbs ------------------ */
 
-static int blocks_hide(lua_State *L)
+static tl_status hide(tl_model *model, const tl_id *ids, size_t count)
 {
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "hide");
-    return tl_lua_blocks_acted(L, b, "hide", "hidden",
-                               tl_blocks_hide(b->owner->model, b->ids, b->count, true));
+    return tl_blocks_hide(model, ids, count, true);
 }
 
-static int blocks_show(lua_State *L)
+static tl_status show(tl_model *model, const tl_id *ids, size_t count)
 {
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "show");
-    return tl_lua_blocks_done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, false));
-}
-
-static int blocks_delete(lua_State *L)
-{
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "delete");
-    return tl_lua_blocks_acted(L, b, "delete", "deleted",
-                               tl_blocks_delete(b->owner->model, b->ids, b->count));
-}
-
-static int blocks_join(lua_State *L)
-{
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "join");
-    return tl_lua_blocks_acted(L, b, "join", "joined",
-                               tl_blocks_join(b->owner->model, b->ids, b->count));
-}
-
-static int blocks_unjoin(lua_State *L)
-{
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "unjoin");
-    return tl_lua_blocks_done(L, b, tl_blocks_unjoin(b->owner->model, b->ids, b->count));
-}
-
-static int blocks_free(lua_State *L)
-{
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "free");
-    return tl_lua_blocks_acted(L, b, "free", "set free",
-                               tl_blocks_free(b->owner->model, b->ids, b->count));
-}
-
-static int blocks_reset_displacement(lua_State *L)
-{
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "reset_displacement");
-    return tl_lua_blocks_done(L, b,
-                              tl_blocks_reset_displacement(b->owner->model, b->ids, b->count));
+    return tl_blocks_hide(model, ids, count, false);
 }
 
 typedef struct fix_args {
@@ -403,11 +351,10 @@ static const tl_param fix_params[] = {
     TL_PARAM(TL_PARAM_BOOL, fix_args, rotation, "", "hold the rotation", .def = {0.0}),
 };
 
-static const tl_lua_spec fix_spec = {"fix", fix_params, COUNT(fix_params), NULL};
+static const tl_lua_spec fix_spec = {"fix", fix_params, TL_LUA_COUNT(fix_params), NULL};
 
-static int blocks_fix(lua_State *L)
+static tl_status fix(lua_State *L, const tl_lua_selection *b)
 {
-    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "fix");
     fix_args args;
     tl_lua_read(L, 2, &fix_spec, false, &args);
     unsigned what = (args.x ? TL_FIX_X : 0u) | (args.y ? TL_FIX_Y : 0u) | (args.z ? TL_FIX_Z : 0u) |
@@ -416,9 +363,8 @@ static int blocks_fix(lua_State *L)
     if (!lua_istable(L, 2) || !lua_next(L, 2))
         what = TL_FIX_ALL;
     else if (what == 0)
-        return tl_lua_fail(L, "fix: nothing is to be held; to let blocks go use selection:free()");
-    return tl_lua_blocks_acted(L, b, "fix", "held",
-                               tl_blocks_fix(b->owner->model, b->ids, b->count, what));
+        tl_lua_fail(L, "fix: nothing is to be held; to let blocks go use selection:free()");
+    return tl_blocks_fix(b->owner->model, b->ids, b->count, what);
 }
 
 static const tl_param set_params[] = {
@@ -433,23 +379,21 @@ static const tl_param set_params[] = {
              .flags = TL_PARAM_OPTIONAL),
 };
 
-static const tl_lua_spec set_spec = {"set", set_params, COUNT(set_params), NULL};
+static const tl_lua_spec set_spec = {"set", set_params, TL_LUA_COUNT(set_params), NULL};
 
-static int blocks_set(lua_State *L)
+static tl_status set(lua_State *L, const tl_lua_selection *b)
 {
-    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "set");
-    tl_block_set set = tl_block_set_default();
-    tl_lua_read(L, 2, &set_spec, false, &set);
-    if (isnan(set.density) && !set.group && isnan(set.velocity.x) && isnan(set.angular_velocity.x))
-        return tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
-    return tl_lua_blocks_acted(L, b, "set", "changed",
-                               tl_blocks_set(b->owner->model, b->ids, b->count, &set));
+    tl_block_set wanted = tl_block_set_default();
+    tl_lua_read(L, 2, &set_spec, false, &wanted);
+    if (isnan(wanted.density) && !wanted.group && isnan(wanted.velocity.x) &&
+        isnan(wanted.angular_velocity.x))
+        tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
+    return tl_blocks_set(b->owner->model, b->ids, b->count, &wanted);
 }
 
 /* Bounds over all vertices of the blocks in their present place. */
-static int blocks_bounds(lua_State *L)
+static int bounds(lua_State *L, const tl_lua_selection *b)
 {
-    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "bounds");
     if (b->count == 0)
         return tl_lua_fail(L, "bounds: the selection is empty");
     tl_block_mesh *mesh = mesh_push(L);
@@ -465,28 +409,26 @@ static int blocks_bounds(lua_State *L)
         *mesh = (tl_block_mesh){0};
     }
     lua_createtable(L, 0, 2);
-    tl_lua_push_vec3(L, low);
-    lua_setfield(L, -2, "min");
-    tl_lua_push_vec3(L, high);
-    lua_setfield(L, -2, "max");
+    tl_lua_set_vec3(L, "min", low);
+    tl_lua_set_vec3(L, "max", high);
     return 1;
 }
 
-static const luaL_Reg block_verbs[] = {
-    {"hide", blocks_hide},
-    {"show", blocks_show},
-    {"delete", blocks_delete},
-    {"join", blocks_join},
-    {"unjoin", blocks_unjoin},
-    {"fix", blocks_fix},
-    {"free", blocks_free},
-    {"reset_displacement", blocks_reset_displacement},
-    {"set", blocks_set},
-    {"load", tl_lua_blocks_load},
-    {"drive", tl_lua_blocks_drive},
-    {"reaction", tl_lua_blocks_reaction},
-    {"bounds", blocks_bounds},
-    {NULL, NULL},
+static const tl_lua_verb block_verbs[] = {
+    {.name = "hide", .plain = hide, .done = "hidden"},
+    {.name = "show", .plain = show},
+    {.name = "delete", .plain = tl_blocks_delete, .done = "deleted"},
+    {.name = "join", .plain = tl_blocks_join, .done = "joined"},
+    {.name = "unjoin", .plain = tl_blocks_unjoin},
+    {.name = "fix", .arguments = 1, .act = fix, .done = "held"},
+    {.name = "free", .plain = tl_blocks_free, .done = "set free"},
+    {.name = "reset_displacement", .plain = tl_blocks_reset_displacement},
+    {.name = "set", .arguments = 1, .act = set, .done = "changed"},
+    {.name = "load", .arguments = 1, .act = tl_lua_blocks_load, .done = "loaded"},
+    {.name = "drive", .arguments = 1, .act = tl_lua_blocks_drive, .done = "driven"},
+    {.name = "reaction", .ask = tl_lua_blocks_reaction},
+    {.name = "bounds", .ask = bounds},
+    {.name = NULL},
 };
 
 static const tl_lua_key block_extra_keys[] = {
@@ -545,8 +487,8 @@ const tl_lua_topic tl_lua_block_topics[] = {
      .kind = &tl_lua_block_kind,
      .title = "Methods of the selection",
      .verbs = block_methods,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_blocks},
+     .arguments = 1,
+     .method = model_blocks},
     {.name = "fix",
      .usage = "selection:fix{x = true, rotation = true}  or  selection:fix()",
      .doc = "Holds components of the motion of the blocks' bodies, besides what is held already; "

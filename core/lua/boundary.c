@@ -14,8 +14,6 @@
 #include <string.h>
 #include <talus/boundary.h>
 
-#define COUNT(table) (sizeof(table) / sizeof(table)[0])
-#define HOLDER_TYPE "talus.boundary_holder"
 #define RESULT_TYPE "talus.boundary"
 #define SIDES 6
 
@@ -82,8 +80,8 @@ static const tl_lua_key table_keys[] = {
     {"zmin", "", ""},  {"zmax", "", ""}, {NULL, NULL, NULL},
 };
 
-static const tl_lua_spec boundary_spec = {"boundary", boundary_params, COUNT(boundary_params),
-                                          boundary_keys};
+static const tl_lua_spec boundary_spec = {"boundary", boundary_params,
+                                          TL_LUA_COUNT(boundary_params), boundary_keys};
 
 static const tl_lua_key boundary_results[] = {
     {"area", "", "of the outer faces, or their outer parts, m2; without any the call is refused"},
@@ -105,9 +103,9 @@ typedef struct holder {
     tl_boundary_result result[SIDES];
 } holder;
 
-static int holder_collect(lua_State *L)
+static int free_results(lua_State *L)
 {
-    holder *h = luaL_checkudata(L, 1, HOLDER_TYPE);
+    holder *h = lua_touserdata(L, 1);
     for (size_t i = 0; i < SIDES; i++)
         tl_boundary_free(&h->result[i]);
     return 0;
@@ -115,14 +113,7 @@ static int holder_collect(lua_State *L)
 
 static holder *push_holder(lua_State *L)
 {
-    holder *h = lua_newuserdatauv(L, sizeof *h, 0);
-    memset(h, 0, sizeof *h);
-    if (luaL_newmetatable(L, HOLDER_TYPE)) {
-        lua_pushcfunction(L, holder_collect);
-        lua_setfield(L, -2, "__gc");
-    }
-    lua_setmetatable(L, -2);
-    return h;
+    return tl_lua_hold(L, sizeof(holder), "talus.boundary_holder", free_results);
 }
 
 /* result.reaction, and names that a result does not have. */
@@ -139,15 +130,14 @@ static int result_index(lua_State *L)
     }
     lua_pushliteral(L, "blocks");
     lua_rawget(L, 1);
-    return tl_lua_push_reaction(L, luaL_checkudata(L, -1, TL_LUA_BLOCKS));
+    return tl_lua_blocks_reaction(L, luaL_checkudata(L, -1, TL_LUA_BLOCKS));
 }
 
 static void push_face(lua_State *L, const tl_boundary_face *face)
 {
     lua_createtable(L, 0, 5);
     tl_lua_set_block(L, "block", face->block);
-    lua_pushinteger(L, (lua_Integer)face->face + 1);
-    lua_setfield(L, -2, "face");
+    tl_lua_set_count(L, "face", face->face + 1);
     tl_lua_set_number(L, "area", face->area);
     tl_lua_set_vec3(L, "normal", face->normal);
     tl_lua_set_vec3(L, "centroid", face->centroid);
@@ -185,17 +175,6 @@ static const char *name_of(int32_t side)
     return tl_side_names()[side - TL_SIDE_XMIN];
 }
 
-/* Reads the tensor `key` of the table at `index`; true when it is given. */
-static bool read_tensor(lua_State *L, int index, const char *key, tl_sym3 *out)
-{
-    if (lua_getfield(L, index, key) == LUA_TNIL)
-        return false;
-    tl_lua_spec tensor = tl_lua_spec_of("tensor", NULL);
-    tensor.context = lua_pushfstring(L, "boundary, %s", key);
-    tl_lua_read(L, -2, &tensor, false, out);
-    return true;
-}
-
 typedef struct plane_args {
     tl_vec3 normal, at;
 } plane_args;
@@ -211,24 +190,10 @@ static void read_plane(lua_State *L, int index, tl_boundary_where *where)
     if (lua_getfield(L, index, "plane") == LUA_TNIL)
         return;
     plane_args plane;
-    tl_lua_spec spec = {"boundary, plane", params, COUNT(params), NULL};
+    tl_lua_spec spec = {"boundary, plane", params, TL_LUA_COUNT(params), NULL};
     tl_lua_read(L, -1, &spec, false, &plane);
     where->normal = plane.normal;
     where->at = plane.at;
-}
-
-static void read_box(lua_State *L, int index, tl_bounds *box)
-{
-    static const tl_param params[] = {
-        TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
-        TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
-    };
-    if (lua_getfield(L, index, "box") == LUA_TNIL)
-        return;
-    tl_lua_spec spec = {"boundary, box", params, COUNT(params), NULL};
-    tl_lua_read(L, -1, &spec, false, box);
-    if (box->min.x > box->max.x || box->min.y > box->max.y || box->min.z > box->max.z)
-        tl_lua_fail(L, "boundary, box: every component of min must be at most that of max");
 }
 
 /* What is to be done, of the table at `index` and the parameters read of it. */
@@ -240,8 +205,8 @@ static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_bo
     a->at = args->at;
     if (a->rotation && !a->roller)
         tl_lua_fail(L, "boundary: rotation is held with roller = true, or by fixed = true");
-    a->loads = read_tensor(L, index, "stress", &a->stress);
-    a->loads = read_tensor(L, index, "gradient", &a->gradient) || a->loads;
+    a->loads = tl_lua_read_tensor(L, index, "boundary", "stress", &a->stress);
+    a->loads = tl_lua_read_tensor(L, index, "boundary", "gradient", &a->gradient) || a->loads;
     if (!isnan(args->pressure)) {
         a->stress.xx -= args->pressure;
         a->stress.yy -= args->pressure;
@@ -264,7 +229,7 @@ static void read_action(lua_State *L, int index, boundary_args *args, tl_boundar
     if (args->side)
         a->where.side = tl_lua_side(L, "boundary", args->side);
     read_plane(L, index, &a->where);
-    read_box(L, index, &a->where.box);
+    tl_lua_read_box(L, index, "boundary", "box", &a->where.box);
     a->where.facing = args->facing;
     a->where.within = args->within;
     a->where.tolerance = args->tolerance;
@@ -382,11 +347,8 @@ static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions
     }
 }
 
-static int model_boundary(lua_State *L)
+static int model_boundary(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "boundary");
-    tl_lua_arity(L, 2, "boundary");
-    lua_settop(L, 2);
     luaL_checkstack(L, 64, "too many values");
     tl_boundary_action actions[SIDES];
     bool add;
@@ -425,7 +387,7 @@ const tl_lua_topic tl_lua_boundary_topics[] = {
      .spec = &boundary_spec,
      .title = "Fields of the result",
      .verbs = boundary_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_boundary},
+     .arguments = 1,
+     .method = model_boundary},
     {.name = NULL},
 };

@@ -1,6 +1,7 @@
 /* contact.c - selections of contacts and what a contact has beyond the kernel's fields. */
 #include "lua/contact.h"
 
+#include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
 #include "lua/front.h"
@@ -18,8 +19,6 @@
  *
  * They are copies of what is when they are asked for: points come and go with the polygon, so there is nothing that a
  * handle could stand for. Reading a name that is not there raises, as it does of a contact. */
-
-#define HOLDER_TYPE "talus.holder"
 
 /* ---------------------------------------------------------------- tables of names -------- */
 
@@ -70,24 +69,16 @@ typedef struct holder {
     size_t count;
 } holder;
 
-static int holder_collect(lua_State *L)
+static int free_states(lua_State *L)
 {
-    holder *h = luaL_checkudata(L, 1, HOLDER_TYPE);
-    free(h->list);
-    h->list = NULL;
+    free(((holder *)lua_touserdata(L, 1))->list);
     return 0;
 }
 
 /* Pushes the list of the states of a contact's law. */
 static const holder *push_states(lua_State *L, tl_model *model, tl_id contact)
 {
-    holder *h = lua_newuserdatauv(L, sizeof *h, 0);
-    *h = (holder){0};
-    if (luaL_newmetatable(L, HOLDER_TYPE)) {
-        lua_pushcfunction(L, holder_collect);
-        lua_setfield(L, -2, "__gc");
-    }
-    lua_setmetatable(L, -2);
+    holder *h = tl_lua_hold(L, sizeof *h, "talus.holder", free_states);
     tl_lua_ok(L, model, tl_states_list(model, contact, &h->list, &h->count));
     return h;
 }
@@ -177,8 +168,8 @@ static const tl_lua_key contact_keys[] = {
     {NULL, NULL, NULL},
 };
 
-static const tl_lua_spec contacts_spec = {
-    "contacts", contact_params, sizeof contact_params / sizeof contact_params[0], contact_keys};
+static const tl_lua_spec contacts_spec = {"contacts", contact_params, TL_LUA_COUNT(contact_params),
+                                          contact_keys};
 
 /* The ids meant by the selection of blocks or the block at the top of the stack. */
 static const tl_id *read_side(lua_State *L, const tl_lua_model *owner, int side, size_t *count)
@@ -216,25 +207,16 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
     filter->between_b = read_side(L, owner, 2, &filter->count_b);
 }
 
-static int model_contacts(lua_State *L)
+static int model_contacts(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "contacts");
-    tl_lua_arity(L, 2, "contacts");
-    lua_settop(L, 2);
     luaL_checkstack(L, 32, "too many values");
     contact_args args;
     tl_lua_read(L, 2, &contacts_spec, false, &args);
     tl_contact_filter filter = tl_contact_filter_default();
     filter.joint = args.joint;
-    int where = 0;
-    if (lua_istable(L, 2)) {
+    if (lua_istable(L, 2))
         read_between(L, &filter);
-        if (lua_getfield(L, 2, "where") != LUA_TNIL)
-            where = lua_gettop(L);
-    }
-    if (where && lua_type(L, where) != LUA_TFUNCTION)
-        return tl_lua_fail(L, "contacts: where must be a function(contact), not %s",
-                           tl_lua_describe(L, where));
+    int where = tl_lua_read_where(L, &tl_lua_contact_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_contact_kind, 1);
     tl_lua_ok(L, model, tl_contacts_select(model, &filter, &found->ids, &found->count));
     if (where)
@@ -255,21 +237,16 @@ static bool contact_extra(lua_State *L, tl_model *model, tl_id id, const char *n
     }
     if (strcmp(name, "blocks") != 0)
         return false;
-    size_t count;
-    const tl_field *fields = tl_contact_fields(&count);
-    for (size_t i = 0; i < count; i++) {
-        if (strcmp(fields[i].name, name) != 0)
-            continue;
-        tl_field_value value;
-        tl_lua_ok(L, model, tl_contact_field(model, id, i, &value));
-        lua_createtable(L, 2, 0);
-        for (int side = 0; side < 2; side++) {
-            tl_lua_item_push(L, TL_LUA_BLOCK, 3, (tl_id)value.number[side]);
-            lua_rawseti(L, -2, side + 1);
-        }
-        return true;
+    size_t index;
+    tl_lua_field_named(&tl_lua_contact_kind, name, &index);
+    tl_field_value value;
+    tl_lua_ok(L, model, tl_contact_field(model, id, index, &value));
+    lua_createtable(L, 2, 0);
+    for (int side = 0; side < 2; side++) {
+        tl_lua_item_push(L, &tl_lua_block_kind, 3, (tl_id)value.number[side]);
+        lua_rawseti(L, -2, side + 1);
     }
-    return false;
+    return true;
 }
 
 static const tl_lua_key contact_extra_keys[] = {
@@ -282,7 +259,7 @@ static const tl_lua_key contact_extra_keys[] = {
      "that goes with the area"},
     {NULL, NULL, NULL},
 };
-static const luaL_Reg contact_verbs[] = {{NULL, NULL}};
+static const tl_lua_verb contact_verbs[] = {{.name = NULL}};
 
 const tl_lua_kind tl_lua_contact_kind = {
     .item = "contact",
@@ -319,7 +296,7 @@ const tl_lua_topic tl_lua_contact_topics[] = {
      .kind = &tl_lua_contact_kind,
      .title = "Methods of the selection",
      .verbs = contact_methods,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_contacts},
+     .arguments = 1,
+     .method = model_contacts},
     {.name = NULL},
 };

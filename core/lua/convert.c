@@ -204,6 +204,16 @@ tl_lua_spec tl_lua_spec_of(const char *function, const tl_lua_key *keys)
     return spec;
 }
 
+const tl_param *tl_lua_param_named(const char *function, const char *name)
+{
+    size_t count;
+    const tl_param *params = tl_function_params(function, &count, NULL);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(params[i].name, name) == 0)
+            return &params[i];
+    return NULL;
+}
+
 /* Refuses keys that neither the parameters nor the further keys of `spec` know. The kernel would
  * too, but its hint could not name the further keys. */
 static void check_keys(lua_State *L, const tl_lua_spec *spec, const tl_args *args)
@@ -236,6 +246,24 @@ void tl_lua_read(lua_State *L, int index, const tl_lua_spec *spec, bool keep, vo
     if (tl_args_read(spec->params, spec->count, sizeof(tl_param), &args, keep, out, spec->context,
                      &error) != TL_OK)
         tl_lua_raise(L, &error);
+}
+
+void tl_lua_read_function(lua_State *L, int index, const char *function, const tl_lua_key *keys,
+                          void *out)
+{
+    tl_lua_spec spec = tl_lua_spec_of(function, keys);
+    tl_lua_read(L, index, &spec, false, out);
+}
+
+bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const char *key,
+                        tl_sym3 *out)
+{
+    if (lua_getfield(L, table, key) == LUA_TNIL)
+        return false;
+    tl_lua_spec tensor = tl_lua_spec_of("tensor", NULL);
+    tensor.context = lua_pushfstring(L, "%s, %s", function, key);
+    tl_lua_read(L, -2, &tensor, false, out);
+    return true;
 }
 
 void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const char *key, void *out)
@@ -314,9 +342,17 @@ const char *tl_lua_describe(lua_State *L, int index)
 
 void tl_lua_push_numbers(lua_State *L, const double *numbers, size_t count)
 {
+    tl_lua_push_rows(L, numbers, count, 1, 0);
+}
+
+void tl_lua_push_rows(lua_State *L, const double *first, size_t count, size_t step, size_t width)
+{
     lua_createtable(L, (int)count, 0);
-    for (size_t i = 0; i < count; i++) {
-        lua_pushnumber(L, numbers[i]);
+    for (size_t i = 0; i < count; i++, first += step) {
+        if (width)
+            tl_lua_push_numbers(L, first, width);
+        else
+            lua_pushnumber(L, *first);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
@@ -337,7 +373,7 @@ void tl_lua_push_vec3(lua_State *L, tl_vec3 v)
 
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value)
 {
-    static const char *const components[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+    const double *n = value->number;
     switch (kind) {
     case TL_FIELD_SCALAR: lua_pushnumber(L, value->number[0]); break;
     case TL_FIELD_COUNT: lua_pushinteger(L, (lua_Integer)value->number[0]); break;
@@ -346,10 +382,13 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
     case TL_FIELD_QUAT: tl_lua_push_numbers(L, value->number, 4); break;
     case TL_FIELD_SYM3:
         lua_createtable(L, 0, 6);
-        for (int i = 0; i < 6; i++) {
-            lua_pushnumber(L, value->number[i]);
-            lua_setfield(L, -2, components[i]);
-        }
+        tl_lua_set_numbers(L, (const tl_lua_number[]){{"xx", n[0]},
+                                                      {"yy", n[1]},
+                                                      {"zz", n[2]},
+                                                      {"xy", n[3]},
+                                                      {"yz", n[4]},
+                                                      {"zx", n[5]},
+                                                      {NULL, 0}});
         break;
     case TL_FIELD_TEXT: lua_pushstring(L, value->text); break;
     case TL_FIELD_IDS:
@@ -362,7 +401,54 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
     }
 }
 
+/* Texts and lists of points are the script's and may be gone. */
+void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params)
+{
+    const char *at = (const char *)params + param->offset;
+    double real[3];
+    int64_t whole;
+    int32_t small;
+    bool vector = param->type == TL_PARAM_VEC3;
+    switch (param->type) {
+    case TL_PARAM_REAL:
+    case TL_PARAM_VEC3:
+        memcpy(real, at, (vector ? 3 : 1) * sizeof *real);
+        if (isnan(real[0]))
+            lua_pushnil(L);
+        else if (vector)
+            tl_lua_push_numbers(L, real, 3);
+        else
+            lua_pushnumber(L, real[0]);
+        break;
+    case TL_PARAM_INT:
+        memcpy(&whole, at, sizeof whole);
+        lua_pushinteger(L, (lua_Integer)whole);
+        break;
+    case TL_PARAM_BOOL:
+        memcpy(&small, at, sizeof small);
+        lua_pushboolean(L, small);
+        break;
+    case TL_PARAM_ENUM:
+        memcpy(&small, at, sizeof small);
+        lua_pushstring(L, param->choices[small]);
+        break;
+    default: lua_pushnil(L);
+    }
+}
+
 /* ---------------------------------------------------------------- results ---------------- */
+
+void tl_lua_set_numbers(lua_State *L, const tl_lua_number *numbers)
+{
+    for (; numbers->name; numbers++)
+        tl_lua_set_number(L, numbers->name, numbers->number);
+}
+
+void tl_lua_set_counts(lua_State *L, const tl_lua_count *counts)
+{
+    for (; counts->name; counts++)
+        tl_lua_set_count(L, counts->name, counts->count);
+}
 
 void tl_lua_set_number(lua_State *L, const char *name, double number)
 {

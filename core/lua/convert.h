@@ -4,6 +4,19 @@
 
 #include "lua/front.h"
 
+/* A number and a count of a table of results. */
+typedef struct tl_lua_number {
+    const char *name;
+    double number;
+} tl_lua_number;
+
+typedef struct tl_lua_count {
+    const char *name;
+    size_t count;
+} tl_lua_count;
+
+/* The parameter of a kernel function that has that name, or NULL. */
+const tl_param *tl_lua_param_named(const char *function, const char *name);
 /* The spec of a kernel function. */
 tl_lua_spec tl_lua_spec_of(const char *function, const tl_lua_key *keys);
 /* Converts the table at `index` (nil or none: empty) for the kernel, and pushes one value that
@@ -13,7 +26,13 @@ void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key 
 /* Checks the table at `index` against `spec` and fills `out`; see tl_args_read. Pushes one value
  * that must stay on the stack as long as strings in `out` are used. */
 void tl_lua_read(lua_State *L, int index, const tl_lua_spec *spec, bool keep, void *out);
-/* The same for one value at `index`, given the name `key`. */
+/* The same with the parameters of a kernel function. */
+void tl_lua_read_function(lua_State *L, int index, const char *function, const tl_lua_key *keys,
+                          void *out);
+/* Reads the tensor `key` of the table at `table`; true when it is given. */
+bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const char *key,
+                        tl_sym3 *out);
+/* tl_lua_read for one value at `index`, given the name `key`. */
 void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const char *key, void *out);
 /* Raises unless the argument is a string without a zero byte. */
 const char *tl_lua_text(lua_State *L, int index, const char *function, const char *what);
@@ -23,15 +42,23 @@ void tl_lua_arity(lua_State *L, int most, const char *function);
 void tl_lua_push_number_text(lua_State *L, int index);
 /* "a number", "nil", "a selection of blocks": what the value at `index` is; may push a string. */
 const char *tl_lua_describe(lua_State *L, int index);
+/* Pushes a list of numbers. */
 void tl_lua_push_numbers(lua_State *L, const double *numbers, size_t count);
+/* Pushes a list of every `step`th number; with a width, of lists of so many numbers that begin there. */
+void tl_lua_push_rows(lua_State *L, const double *first, size_t count, size_t step, size_t width);
 void tl_lua_push_vec3(lua_State *L, tl_vec3 v);
 /* Set a field of the table at the top of the stack. */
 void tl_lua_set_number(lua_State *L, const char *name, double number);
 void tl_lua_set_count(lua_State *L, const char *name, size_t count);
 void tl_lua_set_text(lua_State *L, const char *name, const char *text);
+/* The same of several; a list ends with name = NULL. */
+void tl_lua_set_numbers(lua_State *L, const tl_lua_number *numbers);
+void tl_lua_set_counts(lua_State *L, const tl_lua_count *counts);
 void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);
 /* Adds the shortest text, of so many digits or more, that reads back as the same number. */
 void tl_lua_add_number(luaL_Buffer *to, double number, int digits);
+/* Pushes the value of a parameter; nil for a number that was left out, a text or a list of points. */
+void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params);
 /* Pushes a field's value as Lua sees it. */
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);
 

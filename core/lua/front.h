@@ -81,6 +81,22 @@ typedef struct tl_lua_running {
     bool failed; /* a function has; the run is to end */
 } tl_lua_running;
 
+struct tl_lua_selection;
+
+/* A method of selections of blocks: of `plain`, `act` and `ask` the one that is there. */
+typedef struct tl_lua_verb {
+    const char *name; /* a list ends with name = NULL */
+    int arguments;    /* after the selection, nil where none are given */
+    tl_status (*plain)(tl_model *model, const tl_id *ids, size_t count);
+    tl_status (*act)(lua_State *L, const struct tl_lua_selection *blocks);
+    const char *
+        done; /* "hidden": a remark says "no block was hidden" of an empty selection; NULL: none does */
+    int (*ask)(lua_State *L, const struct tl_lua_selection *blocks); /* pushes what it gives; 1 */
+} tl_lua_verb;
+
+/* Rows of a table. */
+#define TL_LUA_COUNT(table) (sizeof(table) / sizeof(table)[0])
+
 /* What differs between blocks and contacts. */
 typedef struct tl_lua_kind {
     const char *item, *items;               /* "block", "blocks": words in messages */
@@ -94,7 +110,7 @@ typedef struct tl_lua_kind {
      * at index 1 and its model's userdata at index 3. */
     bool (*extra)(lua_State *L, tl_model *model, tl_id id, const char *name);
     const tl_lua_key *extra_keys;
-    const luaL_Reg *verbs; /* methods of selections beyond those both types have */
+    const tl_lua_verb *verbs; /* methods of selections beyond those both types have */
 } tl_lua_kind;
 
 /* Types of items and selections. */
@@ -147,9 +163,6 @@ enum { TL_LUA_VELOCITY = 1, TL_LUA_ANGULAR_VELOCITY, TL_LUA_MOTIONS = 2 };
         "safety_limit", "number", "factor of safety that is asked for: the legend marks it"        \
     }
 
-/* Of what a function is one. */
-typedef enum tl_lua_of { TL_LUA_OF_OTHERS, TL_LUA_OF_MODEL, TL_LUA_OF_MODULE } tl_lua_of;
-
 /* A function: how it is called, and what the help tells of it. Its parameters are those of the table that checks them. */
 typedef struct tl_lua_topic {
     const char *name, *usage, *doc; /* a list ends with name = NULL */
@@ -161,8 +174,10 @@ typedef struct tl_lua_topic {
     const tl_lua_key *verbs;        /* methods or fields of what it gives; or NULL */
     bool has_type;
     tl_kind_type type; /* plugins it takes by name, if has_type */
-    tl_lua_of of;
-    lua_CFunction call; /* of those of a model or the module */
+    /* A method of models: the model is at index 1, and `arguments` values after it, nil where none is given. */
+    int (*method)(lua_State *L, tl_model *model);
+    int arguments;
+    lua_CFunction call; /* a function of the module */
 } tl_lua_topic;
 
 #endif

@@ -47,12 +47,17 @@ static void print_row(const char *name, const char *text)
     print_wrapped(text, NAME_COLUMNS + 2, at);
 }
 
-/* ---------------------------------------------------------------- parameters ------------- */
+/* ---------------------------------------------------------------- rows of a page ---------- */
 
-static const tl_param *param_at(const tl_param *params, size_t stride, size_t i)
-{
-    return (const tl_param *)(const void *)((const char *)params + i * stride);
-}
+/* A row of a page: a name, what it is, and what it is for. A heading has only itself. */
+typedef struct row {
+    const char *heading;
+    const char *name, *alias; /* alias: another name, or NULL */
+    const char *type, *doc;   /* type: "" where there is none */
+} row;
+
+/* What is done with each row of a page. */
+typedef void (*row_call)(const row *r, void *user);
 
 static void default_text(const tl_param *param, char *text, size_t size)
 {
@@ -93,26 +98,19 @@ static void type_text(const tl_param *param, char *text, size_t size)
                  given);
 }
 
-static void print_params(const tl_param *params, size_t count, size_t stride)
+static void walk_params(const tl_param *params, size_t count, row_call call, void *user)
 {
     for (size_t i = 0; i < count; i++) {
-        const tl_param *param = param_at(params, stride, i);
-        char name[80], text[400];
-        snprintf(name, sizeof name, "%s%s%s", param->name, param->alias ? ", " : "",
-                 param->alias ? param->alias : "");
-        type_text(param, text, sizeof text);
-        print_row(name, text);
-        print_wrapped(param->doc ? param->doc : "", NAME_COLUMNS + 2, 0);
+        char text[400];
+        type_text(&params[i], text, sizeof text);
+        call(&(row){NULL, params[i].name, params[i].alias, text, params[i].doc}, user);
     }
 }
 
-static void print_keys(const tl_lua_key *keys)
+static void walk_keys(const tl_lua_key *keys, row_call call, void *user)
 {
-    for (; keys && keys->name; keys++) {
-        print_row(keys->name, keys->type[0] ? keys->type : keys->doc);
-        if (keys->type[0])
-            print_wrapped(keys->doc, NAME_COLUMNS + 2, 0);
-    }
+    for (; keys && keys->name; keys++)
+        call(&(row){NULL, keys->name, NULL, keys->type, keys->doc}, user);
 }
 
 /* ---------------------------------------------------------------- functions -------------- */
@@ -123,13 +121,6 @@ static const char *topic_doc(const tl_lua_topic *topic)
     if (topic->function)
         tl_function_params(topic->function, NULL, &doc);
     return doc;
-}
-
-static void print_kinds(tl_kind_type type)
-{
-    const tl_kind *kind;
-    for (size_t i = 0; (kind = tl_plugin_kind(type, i)) != NULL; i++)
-        print_row(kind->name, kind->doc);
 }
 
 /* What a field is as Lua sees it: tl_lua_push_field. */
@@ -148,18 +139,19 @@ static const char *field_type(tl_field_kind kind)
     return "";
 }
 
-static void print_fields(const char *item, const tl_field *(*list)(size_t *count))
+static void walk_fields(const char *item, const tl_field *(*list)(size_t *count), row_call call,
+                        void *user)
 {
     size_t count;
     const tl_field *fields = list(&count);
-    printf("\nFields of a %s:\n", item);
+    char text[80];
+    snprintf(text, sizeof text, "Fields of a %s:", item);
+    call(&(row){.heading = text}, user);
     for (size_t i = 0; i < count; i++) {
-        char text[80];
         bool unit = fields[i].unit && fields[i].unit[0];
         snprintf(text, sizeof text, "%s%s%s", field_type(fields[i].kind), unit ? ", " : "",
                  unit ? fields[i].unit : "");
-        print_row(fields[i].name, text);
-        print_wrapped(fields[i].doc, NAME_COLUMNS + 2, 0);
+        call(&(row){NULL, fields[i].name, NULL, text, fields[i].doc}, user);
     }
 }
 
@@ -169,29 +161,71 @@ static const char *plugin_word(tl_kind_type type)
     return words[type];
 }
 
+/* The rows of the page of a function. */
+static void walk_topic(const tl_lua_topic *topic, row_call call, void *user)
+{
+    tl_lua_spec spec = tl_lua_topic_spec(topic);
+    if (spec.count || spec.keys)
+        call(&(row){.heading = "Parameters:"}, user);
+    walk_params(spec.params, spec.count, call, user);
+    walk_keys(spec.keys, call, user);
+    if (topic->kind) {
+        walk_fields(topic->kind->item, topic->kind->fields, call, user);
+        walk_keys(topic->kind->extra_keys, call, user);
+    }
+    if (topic->kind == &tl_lua_contact_kind)
+        walk_fields("contact point", tl_point_fields, call, user);
+    if (topic->verbs) {
+        char title[80];
+        snprintf(title, sizeof title, "%s:", topic->title);
+        call(&(row){.heading = title}, user);
+        walk_keys(topic->verbs, call, user);
+    }
+}
+
+/* The rows of the page of a plugin. */
+static void walk_kind(const tl_kind *kind, row_call call, void *user)
+{
+    if (kind->param_count)
+        call(&(row){.heading = "Parameters:"}, user);
+    walk_params(kind->params, kind->param_count, call, user);
+    if (kind->state_count)
+        call(
+            &(row){.heading = kind->type == TL_KIND_LAW ? "States of a contact point:" : "States:"},
+            user);
+    for (uint32_t i = 0; i < kind->state_count; i++)
+        call(&(row){NULL, kind->states[i].name, NULL, "", kind->states[i].doc}, user);
+}
+
+/* ---------------------------------------------------------------- printed pages ----------- */
+
+static void print_called(const row *r, void *user)
+{
+    (void)user;
+    if (r->heading) {
+        printf("\n%s\n", r->heading);
+        return;
+    }
+    char name[80];
+    const char *doc = r->doc ? r->doc : "";
+    snprintf(name, sizeof name, "%s%s%s", r->name, r->alias ? ", " : "", r->alias ? r->alias : "");
+    print_row(name, r->type[0] ? r->type : doc);
+    if (r->type[0])
+        print_wrapped(doc, NAME_COLUMNS + 2, 0);
+}
+
+static void print_kinds(tl_kind_type type)
+{
+    const tl_kind *kind;
+    for (size_t i = 0; (kind = tl_plugin_kind(type, i)) != NULL; i++)
+        print_row(kind->name, kind->doc);
+}
+
 static void print_topic(const tl_lua_topic *topic)
 {
     printf("%s\n", topic->usage);
     print_wrapped(topic_doc(topic), 2, 0);
-    size_t count = topic->spec ? topic->spec->count : 0;
-    const tl_param *params = topic->spec ? topic->spec->params : NULL;
-    if (topic->function)
-        params = tl_function_params(topic->function, &count, NULL);
-    const tl_lua_key *keys = topic->spec ? topic->spec->keys : topic->keys;
-    if (count || keys)
-        puts("\nParameters:");
-    print_params(params, count, sizeof(tl_param));
-    print_keys(keys);
-    if (topic->kind) {
-        print_fields(topic->kind->item, topic->kind->fields);
-        print_keys(topic->kind->extra_keys);
-    }
-    if (topic->kind == &tl_lua_contact_kind)
-        print_fields("contact point", tl_point_fields);
-    if (topic->verbs) {
-        printf("\n%s:\n", topic->title);
-        print_keys(topic->verbs);
-    }
+    walk_topic(topic, print_called, NULL);
     if (topic->has_type) {
         printf("\nThe %ss loaded (talus help NAME tells their parameters):\n",
                plugin_word(topic->type));
@@ -202,17 +236,8 @@ static void print_topic(const tl_lua_topic *topic)
 static void print_kind(const tl_kind *kind)
 {
     printf("%s '%s'\n", plugin_word((tl_kind_type)kind->type), kind->name);
-    print_wrapped(kind->doc ? kind->doc : "", 2, 0);
-    if (kind->param_count)
-        puts("\nParameters:");
-    print_params(kind->params, kind->param_count, kind->param_stride);
-    if (kind->state_count)
-        puts(kind->type == TL_KIND_LAW ? "\nStates of a contact point:" : "\nStates:");
-    for (uint32_t i = 0; i < kind->state_count; i++) {
-        const char *at = (const char *)kind->states + i * (size_t)kind->state_stride;
-        const tl_state *state = (const tl_state *)(const void *)at;
-        print_row(state->name, state->doc ? state->doc : "");
-    }
+    print_wrapped(kind->doc, 2, 0);
+    walk_kind(kind, print_called, NULL);
 }
 
 static void print_overview(void)
@@ -267,47 +292,30 @@ static bool says(const char *text, const char *word)
     return false;
 }
 
-static bool params_say(const tl_param *params, size_t count, size_t stride, const char *word)
-{
-    bool any = false;
-    for (size_t i = 0; i < count && !any; i++) {
-        const tl_param *param = (const tl_param *)(const void *)((const char *)params + i * stride);
-        any = says(param->name, word) || says(param->doc, word);
-    }
-    return any;
-}
+/* A word that is looked for, and whether a page has it. */
+typedef struct sought {
+    const char *word;
+    bool said;
+} sought;
 
-static bool keys_say(const tl_lua_key *keys, const char *word)
+static void seek_word(const row *r, void *user)
 {
-    bool any = false;
-    for (; keys && keys->name && !any; keys++)
-        any = says(keys->name, word) || says(keys->doc, word);
-    return any;
-}
-
-static bool fields_say(const tl_field *(*list)(size_t *count), const char *word)
-{
-    size_t count;
-    const tl_field *fields = list(&count);
-    bool any = false;
-    for (size_t i = 0; i < count && !any; i++)
-        any = says(fields[i].name, word) || says(fields[i].doc, word);
-    return any;
+    sought *s = user;
+    s->said = s->said || says(r->name, s->word) || says(r->doc, s->word);
 }
 
 static bool topic_says(const tl_lua_topic *topic, const char *word)
 {
-    size_t count = topic->spec ? topic->spec->count : 0;
-    const tl_param *params = topic->spec ? topic->spec->params : NULL;
-    const char *doc = topic->doc;
-    if (topic->function)
-        params = tl_function_params(topic->function, &count, &doc);
-    const tl_lua_key *keys = topic->spec ? topic->spec->keys : topic->keys;
-    return says(topic->usage, word) || says(doc, word) ||
-           params_say(params, count, sizeof(tl_param), word) || keys_say(keys, word) ||
-           keys_say(topic->verbs, word) ||
-           (topic->kind &&
-            (fields_say(topic->kind->fields, word) || keys_say(topic->kind->extra_keys, word)));
+    sought s = {word, says(topic->usage, word) || says(topic_doc(topic), word)};
+    walk_topic(topic, seek_word, &s);
+    return s.said;
+}
+
+static bool kind_says(const tl_kind *kind, const char *word)
+{
+    sought s = {word, says(kind->doc, word)};
+    walk_kind(kind, seek_word, &s);
+    return s.said;
 }
 
 /* Whether the word is a verb of what the page is of. */
@@ -320,18 +328,6 @@ static bool names_verb(const tl_lua_topic *topic, const char *word)
                 (at[1 + length] == '(' || at[1 + length] == '{'))
                 return true;
     return false;
-}
-
-static bool kind_says(const tl_kind *kind, const char *word)
-{
-    bool any = says(kind->doc, word) ||
-               params_say(kind->params, kind->param_count, kind->param_stride, word);
-    for (uint32_t i = 0; i < kind->state_count && !any; i++) {
-        const char *at = (const char *)kind->states + i * (size_t)kind->state_stride;
-        const tl_state *state = (const tl_state *)(const void *)at;
-        any = says(state->name, word) || says(state->doc, word);
-    }
-    return any;
 }
 
 /* ---------------------------------------------------------------- entry ------------------ */
@@ -427,9 +423,7 @@ void tl_lua_help_plugins(void)
         }
         printf("%s %s  %s\n", record.plugin->id, record.plugin->version, record.path);
         for (uint32_t k = 0; k < record.plugin->kind_count; k++) {
-            const char *at =
-                (const char *)record.plugin->kinds + k * (size_t)record.plugin->kind_stride;
-            const tl_kind *kind = (const tl_kind *)(const void *)at;
+            const tl_kind *kind = &record.plugin->kinds[k];
             printf("    %s '%s'\n", plugin_word((tl_kind_type)kind->type), kind->name);
         }
         if (record.note)

@@ -4,6 +4,8 @@
  * the kernel refuses whatever would change the model, so a run gives the same bits with histories and without. */
 #include "lua/history.h"
 
+#include "lua/block.h"
+#include "lua/contact.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
 #include "lua/front.h"
@@ -120,22 +122,16 @@ static const char *history_quantity(size_t i)
 
 /* ---------------------------------------------------------------- one sample ------------- */
 
-static const tl_lua_kind *history_kind(lua_State *L, const tl_history *h)
+static const tl_lua_kind *history_kind(const tl_history *h)
 {
-    return tl_lua_item_kind(L, h->source == TL_FROM_BLOCKS ? TL_LUA_BLOCK : TL_LUA_CONTACT);
+    return h->source == TL_FROM_BLOCKS ? &tl_lua_block_kind : &tl_lua_contact_kind;
 }
 
 /* Finds the field that a history of blocks or contacts asks for; NULL: they have none of numbers of that name. */
-static const tl_field *history_field(lua_State *L, const tl_history *h, size_t *index)
+static const tl_field *history_field(const tl_history *h, size_t *index)
 {
-    size_t count;
-    const tl_field *fields = history_kind(L, h)->fields(&count);
-    for (size_t i = 0; i < count; i++)
-        if (fields[i].kind <= TL_FIELD_VEC3 && strcmp(fields[i].name, h->asked) == 0) {
-            *index = i;
-            return &fields[i];
-        }
-    return NULL;
+    const tl_field *field = tl_lua_field_named(history_kind(h), h->asked, index);
+    return field && field->kind <= TL_FIELD_VEC3 ? field : NULL;
 }
 
 /* ---------------------------------------------------------------- one sample ------------- */
@@ -227,7 +223,7 @@ static void ask_model(lua_State *L, tl_model *model, const tl_history *h, latest
 /* Tells once that blocks of a history are no longer there: `gone` of `count`, the last of them `id`. */
 static void tell_lost(lua_State *L, tl_model *model, tl_history *h, tl_id id, size_t gone)
 {
-    const tl_lua_kind *kind = history_kind(L, h);
+    const tl_lua_kind *kind = history_kind(h);
     if (h->lost || h->source != TL_FROM_BLOCKS) /* contacts come and go */
         return;
     h->lost = true;
@@ -261,8 +257,8 @@ static void take_in(tl_history_take take, latest *now, const double *number, boo
 static void ask_items(lua_State *L, tl_model *model, tl_history *h, latest *now)
 {
     size_t index, gone = 0;
-    const tl_lua_kind *kind = history_kind(L, h);
-    bool vector = history_field(L, h, &index)->kind == TL_FIELD_VEC3;
+    const tl_lua_kind *kind = history_kind(h);
+    bool vector = history_field(h, &index)->kind == TL_FIELD_VEC3;
     tl_id lost = TL_NO_ID;
     now->width = vector ? 3 : 1;
     now->list = vector;
@@ -383,9 +379,9 @@ static void read_value(lua_State *L, tl_history *h)
 /* Raises unless the field that is asked for is one of numbers, and what is made of several can be made of it. */
 static void check_field(lua_State *L, const tl_history *h, const char *name)
 {
-    const tl_lua_kind *kind = history_kind(L, h);
+    const tl_lua_kind *kind = history_kind(h);
     size_t count, index;
-    const tl_field *fields = kind->fields(&count), *field = history_field(L, h, &index);
+    const tl_field *fields = kind->fields(&count), *field = history_field(h, &index);
     tl_lua_names names = {0};
     for (size_t i = 0; i < count; i++)
         if (fields[i].kind <= TL_FIELD_VEC3)
@@ -458,12 +454,9 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
     }
 }
 
-static int model_history(lua_State *L)
+static int model_history(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "history");
     const tl_lua_model *owner = lua_touserdata(L, 1);
-    tl_lua_arity(L, 2, "history");
-    lua_settop(L, 2);
     history_args args = {0};
     tl_lua_read(L, 2, &history_spec, false, &args);
     check_name(L, args.name);
@@ -571,7 +564,7 @@ void tl_lua_histories_given(lua_State *L)
 }
 
 /* Whether there is what a history of the model, blocks or contacts asks for, of as many numbers as its samples have. */
-static bool is_there(lua_State *L, const tl_history *h)
+static bool is_there(const tl_history *h)
 {
     size_t index = 0, width = 1;
     if (h->source == TL_FROM_MODEL) {
@@ -580,7 +573,7 @@ static bool is_there(lua_State *L, const tl_history *h)
             index++;
         return known && !h->list && h->count && h->width == width;
     }
-    const tl_field *field = history_field(L, h, &index);
+    const tl_field *field = history_field(h, &index);
     bool vector = field && field->kind == TL_FIELD_VEC3;
     width = vector ? 3 : 1;
     return field && !(vector && h->take >= TL_TAKE_MIN) && h->list == vector && h->count &&
@@ -618,7 +611,7 @@ static bool take_up(lua_State *L, const char *path, int model_index, int given, 
                     path, h->name, h->name);
     if (h->source == TL_FROM_FUNCTION)
         history_set_function(L, model_index, h->name);
-    else if (!is_there(L, h))
+    else if (!is_there(h))
         tl_lua_fail(L, "cannot restore '%s': history '%s' asks for '%s', which cannot be sampled",
                     path, h->name, h->asked);
     else
@@ -688,10 +681,8 @@ static void push_samples(lua_State *L, const tl_history *h)
     }
 }
 
-static int model_histories(lua_State *L)
+static int model_histories(lua_State *L, tl_model *model)
 {
-    const tl_model *model = tl_lua_model_of(L, "histories");
-    tl_lua_arity(L, 1, "histories");
     const tl_history *h;
     lua_newtable(L);
     for (size_t i = 0; (h = tl_history_at(model, i)) != NULL; i++) {
@@ -776,12 +767,9 @@ static bool add_line(luaL_Buffer *b, const tl_history *const *all, size_t *at, s
     return true;
 }
 
-static int model_write_histories(lua_State *L)
+static int model_write_histories(lua_State *L, tl_model *model)
 {
-    const tl_model *model = tl_lua_model_of(L, "write_histories");
-    tl_lua_arity(L, 2, "write_histories");
     const char *path = tl_lua_text(L, 2, "write_histories", "the file's name");
-    lua_settop(L, 2);
     size_t count = 0;
     while (tl_history_at(model, count))
         count++;
@@ -818,22 +806,21 @@ const tl_lua_topic tl_lua_history_topics[] = {
      .doc =
          "Samples a value at once and then every so many steps of all runs, until it is removed.",
      .spec = &history_spec,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_history},
+     .arguments = 1,
+     .method = model_history},
     {.name = "histories",
      .usage = "histories = model:histories()",
      .doc = "Gives a table with the samples of each history, by name: copies of them.",
      .title = "Fields of each history",
      .verbs = histories_fields,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_histories},
+     .method = model_histories},
     {.name = "write_histories",
      .usage = "model:write_histories(\"out/run.csv\")",
      .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one "
             "for each history, in the order in which they were made, or name.x, name.y and name.z. "
             "A cell is empty where a history has no sample of that cycle. Folders are made; the "
             "file is written whole or not at all.",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_write_histories},
+     .arguments = 1,
+     .method = model_write_histories},
     {.name = NULL},
 };

@@ -113,12 +113,14 @@ static void watch_end(const tl_lua_watch *watch)
     atomic_store(&listener, watch->outer);
 }
 
-void tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, const char *what,
-                      const char *outcome)
+tl_status tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, tl_status status,
+                           const char *what, const char *outcome)
 {
+    bool cancelled = status == TL_E_CANCELLED;
     watch_end(watch);
     if (atomic_load(&asked))
-        raise_interrupt(L, what, outcome);
+        raise_interrupt(L, cancelled ? what : "", cancelled ? outcome : "");
+    return status;
 }
 
 void tl_lua_watch_end_run(lua_State *L, const tl_lua_watch *watch, const char *what)

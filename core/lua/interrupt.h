@@ -5,9 +5,10 @@
 #include "lua/front.h"
 
 tl_lua_watch tl_lua_watch_begin(lua_State *L);
-/* Ends a watch of a call of the kernel. After a Ctrl-C raises "WHAT: stopped by Ctrl-C; OUTCOME", either of which may be "". */
-void tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, const char *what,
-                      const char *outcome);
+/* Ends a watch of a call of the kernel, whose status it gives back. After a Ctrl-C raises "stopped by Ctrl-C"; of a call that
+ * was cancelled "WHAT: stopped by Ctrl-C; OUTCOME", where OUTCOME may be "". */
+tl_status tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, tl_status status,
+                           const char *what, const char *outcome);
 /* The same of a run. But at the prompt it does not raise, so that the run's result is not lost: what comes next on the line
  * does. */
 void tl_lua_watch_end_run(lua_State *L, const tl_lua_watch *watch, const char *what);

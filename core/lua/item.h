@@ -6,12 +6,10 @@
 
 /* Makes the metatables of a kind's items and selections. */
 void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind);
-/* The kind of the items of an open type. */
-const tl_lua_kind *tl_lua_item_kind(lua_State *L, const char *type);
-/* Pushes an item of an open type; `model_index` is where the model's userdata is. */
-void tl_lua_item_push(lua_State *L, const char *type, int model_index, tl_id id);
-/* Sets a field of the table at the top of the stack to a block of the model at index 1; of TL_NO_ID there is none. */
-void tl_lua_set_block(lua_State *L, const char *name, tl_id id);
+/* The field of a kind that has that name, and its index; NULL: there is none. */
+const tl_field *tl_lua_field_named(const tl_lua_kind *kind, const char *name, size_t *index);
+/* Pushes an item; `model_index` is where the model's userdata is. */
+void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id);
 /* The table at the top of the stack has a block in the field `name`, pushed before a call: makes it the one of that id,
  * without needing memory; TL_NO_ID: takes it out. */
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id);

@@ -84,16 +84,13 @@ typedef struct curve {
     size_t count;
 } curve;
 
-/* Sets the table on the stack's top: a list of the doubles at `offset` in each point. */
-static void set_list(lua_State *L, const char *name, const curve *c, size_t offset)
+/* Distance of one point's numbers from those of the next. */
+#define STEP (sizeof(tl_law_point) / sizeof(double))
+
+/* Sets the table on the stack's top: a list of a number of each point, which is at `first` in the first one. */
+static void set_list(lua_State *L, const char *name, const curve *c, const double *first)
 {
-    lua_createtable(L, (int)c->count, 0);
-    for (size_t i = 0; i < c->count; i++) {
-        double value;
-        memcpy(&value, (const char *)&c->points[i] + offset, sizeof value);
-        lua_pushnumber(L, value);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
+    tl_lua_push_rows(L, first, c->count, STEP, 0);
     lua_setfield(L, -2, name);
 }
 
@@ -117,28 +114,16 @@ static void set_dilation(lua_State *L, const curve *c)
     lua_setfield(L, -2, "dilation");
 }
 
-static void set_vectors(lua_State *L, const char *name, const curve *c, size_t column)
-{
-    lua_createtable(L, (int)c->count, 0);
-    for (size_t i = 0; i < c->count; i++) {
-        tl_lua_push_numbers(L, c->points[i].state + column, 3);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-    lua_setfield(L, -2, name);
-}
-
 static void set_states(lua_State *L, const tl_kind *law, const curve *c)
 {
     size_t column = 0;
     lua_createtable(L, 0, (int)law->state_count);
     for (uint32_t k = 0; k < law->state_count; k++) {
-        const char *at = (const char *)law->states + k * (size_t)law->state_stride;
-        const tl_state *state = (const tl_state *)(const void *)at;
-        if (state->kind == TL_STATE_TANGENT)
-            set_vectors(L, state->name, c, column);
-        else
-            set_list(L, state->name, c, offsetof(tl_law_point, state) + column * sizeof(double));
-        column += state->kind == TL_STATE_TANGENT ? 3 : 1;
+        const tl_state *state = &law->states[k];
+        bool vector = state->kind == TL_STATE_TANGENT;
+        tl_lua_push_rows(L, c->points->state + column, c->count, STEP, vector ? 3 : 0);
+        lua_setfield(L, -2, state->name);
+        column += vector ? 3 : 1;
     }
     lua_setfield(L, -2, "states");
 }
@@ -147,15 +132,15 @@ static void push_curve(lua_State *L, const tl_kind *law, const curve *c, const s
                        size_t legs)
 {
     lua_createtable(L, 0, 16);
-    set_list(L, "time", c, offsetof(tl_law_point, time));
-    set_list(L, "shear", c, offsetof(tl_law_point, shear));
-    set_list(L, "shear_stress", c, offsetof(tl_law_point, shear_stress));
-    set_list(L, "normal_stress", c, offsetof(tl_law_point, normal_stress));
-    set_list(L, "closure", c, offsetof(tl_law_point, closure));
+    set_list(L, "time", c, &c->points->time);
+    set_list(L, "shear", c, &c->points->shear);
+    set_list(L, "shear_stress", c, &c->points->shear_stress);
+    set_list(L, "normal_stress", c, &c->points->normal_stress);
+    set_list(L, "closure", c, &c->points->closure);
     set_dilation(L, c);
-    set_list(L, "work", c, offsetof(tl_law_point, work));
-    set_list(L, "stored", c, offsetof(tl_law_point, stored));
-    set_list(L, "heat", c, offsetof(tl_law_point, heat));
+    set_list(L, "work", c, &c->points->work);
+    set_list(L, "stored", c, &c->points->stored);
+    set_list(L, "heat", c, &c->points->heat);
     set_flags(L, "slipping", c, TL_POINT_SLIPPING);
     set_flags(L, "open", c, TL_POINT_OPEN);
     set_flags(L, "failed", c, TL_POINT_FAILED);
@@ -174,8 +159,7 @@ static int module_law_test(lua_State *L)
     lua_settop(L, 1);
     tl_law_test test;
     tl_error error;
-    tl_lua_spec spec = tl_lua_spec_of("law_test", law_test_keys);
-    tl_lua_read(L, AT_TABLE, &spec, false, &test);
+    tl_lua_read_function(L, AT_TABLE, "law_test", law_test_keys, &test);
     read_path(L, &test);
     lua_getfield(L, AT_TABLE, "params");
     const char *context = lua_pushfstring(L, "law_test, law '%s'", test.law);
@@ -203,7 +187,6 @@ const tl_lua_topic tl_lua_law_test_topics[] = {
      .keys = law_test_keys,
      .title = "Fields of the curve",
      .verbs = law_test_results,
-     .of = TL_LUA_OF_MODULE,
      .call = module_law_test},
     {.name = NULL},
 };

@@ -266,7 +266,6 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .usage = "talus.write_file(\"out/table.csv\", text)",
      .doc = "Writes a text into a file, whole or not at all. Folders are made; only a regular file "
             "is replaced.",
-     .of = TL_LUA_OF_MODULE,
      .call = module_write_file},
     {.name = NULL},
 };

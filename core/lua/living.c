@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -59,6 +60,17 @@ void tl_lua_default_threads(lua_State *L, int64_t *threads)
                         text);
         *threads = number;
     }
+}
+
+void *tl_lua_hold(lua_State *L, size_t size, const char *type, lua_CFunction release)
+{
+    void *memory = memset(lua_newuserdatauv(L, size, 0), 0, size);
+    if (luaL_newmetatable(L, type)) {
+        lua_pushcfunction(L, release);
+        lua_setfield(L, -2, "__gc");
+    }
+    lua_setmetatable(L, -2);
+    return memory;
 }
 
 tl_lua_model *tl_lua_model_push(lua_State *L)

@@ -10,6 +10,8 @@ tl_lua_options *tl_lua_options_of(lua_State *L);
 void tl_lua_log(void *user, const char *text);
 /* Seconds of a clock that never goes back, from a start of its own: only differences mean something. */
 double tl_lua_clock(void);
+/* Pushes memory, all zero, with a metatable of that name, whose __gc is `release`. */
+void *tl_lua_hold(lua_State *L, size_t size, const char *type, lua_CFunction release);
 /* Pushes an object without a model yet; gives the model that has been put into it its log and its ear for Ctrl-C. */
 tl_lua_model *tl_lua_model_push(lua_State *L);
 void tl_lua_model_begin(lua_State *L, const tl_lua_model *object);

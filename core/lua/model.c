@@ -63,42 +63,23 @@ static int model_text(lua_State *L)
 /* ---------------------------------------------------------------- methods ---------------- */
 
 /* Writes a summary into the table at the top of the stack. */
-static void set_summary(lua_State *L, const tl_generate_summary *summary)
+static void set_summary(lua_State *L, const tl_generate_summary *s)
 {
-    const struct {
-        const char *name;
-        size_t count;
-    } counts[] = {{"before", summary->before},
-                  {"after", summary->after},
-                  {"cuts", summary->cuts},
-                  {"refused", summary->refused},
-                  {"coincident", summary->coincident}};
-    const struct {
-        const char *name;
-        double number;
-    } numbers[] = {{"smallest_volume", summary->smallest_volume},
-                   {"smallest_edge", summary->smallest_edge},
-                   {"smallest_face", summary->smallest_face},
-                   {"volume_error", summary->volume_error}};
-    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-        tl_lua_set_count(L, counts[i].name, counts[i].count);
-    }
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        tl_lua_set_number(L, numbers[i].name, numbers[i].number);
-    }
+    tl_lua_set_counts(L, (const tl_lua_count[]){{"before", s->before},
+                                                {"after", s->after},
+                                                {"cuts", s->cuts},
+                                                {"refused", s->refused},
+                                                {"coincident", s->coincident},
+                                                {NULL, 0}});
+    tl_lua_set_numbers(L, (const tl_lua_number[]){{"smallest_volume", s->smallest_volume},
+                                                  {"smallest_edge", s->smallest_edge},
+                                                  {"smallest_face", s->smallest_face},
+                                                  {"volume_error", s->volume_error},
+                                                  {NULL, 0}});
 }
 
 /* What a writer has done that was cancelled. */
 #define NO_FILE "no file was written"
-
-/* Ends the watch of a call that is done whole or not at all, and raises its error. */
-static void finish_call(lua_State *L, tl_model *model, const tl_lua_watch *watch, const char *what,
-                        const char *outcome, tl_status status)
-{
-    bool cancelled = status == TL_E_CANCELLED;
-    tl_lua_watch_end(L, watch, cancelled ? what : "", cancelled ? outcome : "");
-    tl_lua_ok(L, model, status);
-}
 
 /* The number of tables in the list at index 3; 0 when it is none. */
 static size_t entry_count(lua_State *L, const char *generator)
@@ -135,11 +116,8 @@ static const tl_args *read_entries(lua_State *L, const char *generator, size_t c
     return list;
 }
 
-static int model_generate(lua_State *L)
+static int model_generate(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "generate");
-    tl_lua_arity(L, 3, "generate");
-    lua_settop(L, 3);
     const char *generator = tl_lua_text(L, 2, "generate", "the generator's name");
     size_t count = entry_count(L, generator); /* of a list */
     lua_settop(L, 3);
@@ -152,9 +130,8 @@ static int model_generate(lua_State *L)
     const char *what = lua_pushfstring(L, "generator '%s'", generator);
     tl_generate_summary summary = {0};
     lua_newtable(L);
-    set_summary(
-        L,
-        &summary); /* all memory is had before blocks are made: a call that fails changes nothing */
+    /* All memory is had before blocks are made: a call that fails changes nothing. */
+    set_summary(L, &summary);
     tl_lua_progress progress;
     tl_lua_progress_begin(L, &progress, model);
     tl_model_watch_generate(model, tl_lua_progress_generate, &progress);
@@ -163,23 +140,20 @@ static int model_generate(lua_State *L)
                              : tl_generate(model, generator, args, &summary);
     tl_model_watch_generate(model, NULL, NULL);
     tl_lua_progress_clear(&progress);
-    finish_call(L, model, &watch, what, "the model is as it was", status);
+    tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, status, what, "the model is as it was"));
     set_summary(L, &summary);
     return 1;
 }
 
-static int model_joint(lua_State *L)
+static int model_joint(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "joint");
-    tl_lua_arity(L, 4, "joint");
     const char *joint = tl_lua_text(L, 2, "joint", "the joint's name");
     const char *law = NULL;
     int table = 3;
-    if (lua_gettop(L) >= 4 || lua_type(L, 3) == LUA_TSTRING) {
+    if (!lua_isnil(L, 4) || lua_type(L, 3) == LUA_TSTRING) {
         law = tl_lua_text(L, 3, "joint", "the law's name");
         table = 4;
     }
-    lua_settop(L, 4);
     const char *context = lua_pushfstring(L, "joint '%s'", joint);
     if (!law && !lua_istable(L, 3))
         tl_lua_fail(L, "%s: give a law's name, or a table of properties to change, not %s", context,
@@ -190,11 +164,8 @@ static int model_joint(lua_State *L)
     return 0;
 }
 
-static int model_damping(lua_State *L)
+static int model_damping(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "damping");
-    tl_lua_arity(L, 3, "damping");
-    lua_settop(L, 3);
     const char *damping = tl_lua_text(L, 2, "damping", "the damping's name");
     tl_args args;
     tl_lua_args(L, 3, lua_pushfstring(L, "damping '%s'", damping), NULL, &args);
@@ -211,36 +182,18 @@ static const tl_lua_key insitu_keys[] = {
     {NULL, NULL, NULL},
 };
 
-static int model_insitu(lua_State *L)
+static int model_insitu(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "insitu");
-    tl_lua_arity(L, 2, "insitu");
-    lua_settop(L, 2);
     tl_insitu insitu = tl_insitu_default();
-    tl_lua_spec spec = tl_lua_spec_of("insitu", insitu_keys);
-    tl_lua_read(L, 2, &spec, false, &insitu);
+    tl_lua_read_function(L, 2, "insitu", insitu_keys, &insitu);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L, "insitu: give the parameters in a table");
-    tl_lua_spec tensor = tl_lua_spec_of("tensor", NULL);
-    bool stress = lua_getfield(L, 2, "stress") != LUA_TNIL;
-    tensor.context = "insitu, stress";
-    tl_lua_read(L, -1, &tensor, false, &insitu.stress);
-    bool gradient = lua_getfield(L, 2, "gradient") != LUA_TNIL;
-    tensor.context = "insitu, gradient";
-    tl_lua_read(L, -1, &tensor, false, &insitu.gradient);
+    bool stress = tl_lua_read_tensor(L, 2, "insitu", "stress", &insitu.stress);
+    bool gradient = tl_lua_read_tensor(L, 2, "insitu", "gradient", &insitu.gradient);
     if (!stress && !gradient)
         return tl_lua_fail(L, "insitu: give stress = {xx = ...}, gradient = {zz = ...} or both");
     tl_lua_ok(L, model, tl_model_insitu(model, &insitu));
     return 0;
-}
-
-/* Pushes a block's handle, or nil for none; the model's userdata is at index 1. */
-static void push_block(lua_State *L, tl_id id)
-{
-    if (id == TL_NO_ID)
-        lua_pushnil(L);
-    else
-        tl_lua_item_push(L, TL_LUA_BLOCK, 1, id);
 }
 
 /* model:timestep(): where the step comes from. */
@@ -250,29 +203,23 @@ static int push_timestep_report(lua_State *L, tl_model *model)
     tl_lua_ok(L, model, tl_model_timestep_report(model, &report));
     lua_createtable(L, 0, 6);
     tl_lua_set_number(L, "dt", report.dt);
-    push_block(L, report.block);
-    lua_setfield(L, -2, "block");
-    push_block(L, report.partner);
-    lua_setfield(L, -2, "partner");
-    if (report.block != TL_NO_ID) {
-        tl_lua_set_number(L, "mass", report.mass);
-        tl_lua_set_number(L, "stiffness", report.stiffness);
-    }
+    tl_lua_set_block(L, "block", report.block);
+    tl_lua_set_block(L, "partner", report.partner);
+    if (report.block != TL_NO_ID)
+        tl_lua_set_numbers(L, (const tl_lua_number[]){{"mass", report.mass},
+                                                      {"stiffness", report.stiffness},
+                                                      {NULL, 0}});
     tl_lua_push_timestep(L, &report);
     lua_setfield(L, -2, "message");
     return 1;
 }
 
-static int model_timestep(lua_State *L)
+static int model_timestep(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "timestep");
-    tl_lua_arity(L, 2, "timestep");
-    lua_settop(L, 2);
     if (lua_isnil(L, 2))
         return push_timestep_report(L, model);
     tl_timestep timestep = tl_timestep_default();
-    tl_lua_spec spec = tl_lua_spec_of("timestep", NULL);
-    tl_lua_read(L, 2, &spec, false, &timestep);
+    tl_lua_read_function(L, 2, "timestep", NULL, &timestep);
     tl_lua_ok(L, model, tl_model_timestep(model, &timestep));
     return 0;
 }
@@ -286,29 +233,21 @@ static int push_mass_added(lua_State *L, const tl_model *model)
     lua_setfield(L, -2, "on");
     if (isnan(added.dt))
         return 1;
-    const struct {
-        const char *name;
-        double number;
-    } numbers[] = {{"dt", added.dt}, {"most", added.most}, {"added", added.share}};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        tl_lua_set_number(L, numbers[i].name, numbers[i].number);
-    }
+    tl_lua_set_numbers(
+        L, (const tl_lua_number[]){
+               {"dt", added.dt}, {"most", added.most}, {"added", added.share}, {NULL, 0}});
     tl_lua_set_count(L, "bodies", added.bodies);
     if (added.worst != TL_NO_ID) {
         lua_createtable(L, 0, 2);
-        lua_pushinteger(L, (lua_Integer)added.worst); /* it may have been deleted */
-        lua_setfield(L, -2, "block");
+        tl_lua_set_count(L, "block", added.worst); /* a number: it may have been deleted */
         tl_lua_set_number(L, "factor", added.factor);
         lua_setfield(L, -2, "worst");
     }
     return 1;
 }
 
-static int model_mass_scaling(lua_State *L)
+static int model_mass_scaling(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "mass_scaling");
-    tl_lua_arity(L, 2, "mass_scaling");
-    lua_settop(L, 2);
     if (lua_isnil(L, 2))
         return push_mass_added(L, model);
     tl_mass_scaling scaling = tl_mass_scaling_default();
@@ -321,86 +260,70 @@ static int model_mass_scaling(lua_State *L)
     return 0;
 }
 
-static int model_energy(lua_State *L)
+static int model_energy(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "energy");
-    tl_lua_arity(L, 1, "energy");
     tl_energy energy;
     tl_lua_ok(L, model, tl_model_energy(model, &energy));
-    const struct {
-        const char *name;
-        double number;
-    } terms[] = {{"kinetic", energy.kinetic}, {"potential", energy.potential},
-                 {"stored", energy.stored},   {"friction", energy.friction},
-                 {"damping", energy.damping}, {"external", energy.external},
-                 {"balance", energy.balance}};
     lua_createtable(L, 0, 7);
-    for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++) {
-        tl_lua_set_number(L, terms[i].name, terms[i].number);
-    }
+    tl_lua_set_numbers(L, (const tl_lua_number[]){{"kinetic", energy.kinetic},
+                                                  {"potential", energy.potential},
+                                                  {"stored", energy.stored},
+                                                  {"friction", energy.friction},
+                                                  {"damping", energy.damping},
+                                                  {"external", energy.external},
+                                                  {"balance", energy.balance},
+                                                  {NULL, 0}});
     return 1;
 }
 
-static int model_contact_area(lua_State *L)
+static int model_contact_area(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "contact_area");
-    tl_lua_arity(L, 2, "contact_area");
-    lua_settop(L, 2);
     tl_contact_area rule = tl_contact_area_default();
-    tl_lua_spec spec = tl_lua_spec_of("contact_area", NULL);
-    tl_lua_read(L, 2, &spec, false, &rule);
+    tl_lua_read_function(L, 2, "contact_area", NULL, &rule);
     tl_lua_ok(L, model, tl_model_contact_area(model, &rule));
     return 0;
 }
 
-static int model_write_vtk(lua_State *L)
+static int model_write_vtk(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "write_vtk");
-    tl_lua_arity(L, 3, "write_vtk");
-    lua_settop(L, 3);
     const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
     tl_vtk_parts parts = tl_vtk_parts_default();
-    tl_lua_spec spec = tl_lua_spec_of("write_vtk", tl_lua_field_keys);
-    tl_lua_read(L, 3, &spec, false, &parts);
+    tl_lua_read_function(L, 3, "write_vtk", tl_lua_field_keys, &parts);
     luaL_checkstack(L, 32, "too many values");
     parts.block_fields = tl_lua_extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind,
                                              &parts.block_field_count);
     parts.contact_fields = tl_lua_extra_fields(L, 3, "contact_fields", "write_vtk",
                                                &tl_lua_contact_kind, &parts.contact_field_count);
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    finish_call(L, model, &watch, "write_vtk", NO_FILE, tl_write_vtk(model, prefix, &parts));
+    tl_lua_ok(
+        L, model,
+        tl_lua_watch_end(L, &watch, tl_write_vtk(model, prefix, &parts), "write_vtk", NO_FILE));
     return 0;
 }
 
-static int model_write_blocks(lua_State *L)
+static int model_write_blocks(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "write_blocks");
-    tl_lua_arity(L, 2, "write_blocks");
     const char *path = tl_lua_text(L, 2, "write_blocks", "the file's name");
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    finish_call(L, model, &watch, "write_blocks", NO_FILE, tl_write_blocks(model, path));
+    tl_lua_ok(L, model,
+              tl_lua_watch_end(L, &watch, tl_write_blocks(model, path), "write_blocks", NO_FILE));
     return 0;
 }
 
-static int model_write_section(lua_State *L)
+static int model_write_section(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "write_section");
-    tl_lua_arity(L, 3, "write_section");
-    lua_settop(L, 3);
     const char *prefix = tl_lua_text(L, 2, "write_section", "the prefix");
     tl_halfspace plane;
-    tl_lua_spec spec = tl_lua_spec_of("write_section", NULL);
-    tl_lua_read(L, 3, &spec, false, &plane);
+    tl_lua_read_function(L, 3, "write_section", NULL, &plane);
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    finish_call(L, model, &watch, "write_section", NO_FILE,
-                tl_write_section(model, prefix, &plane));
+    tl_lua_ok(L, model,
+              tl_lua_watch_end(L, &watch, tl_write_section(model, prefix, &plane), "write_section",
+                               NO_FILE));
     return 0;
 }
 
-static int model_state_hash(lua_State *L)
+static int model_state_hash(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "state_hash");
-    tl_lua_arity(L, 1, "state_hash");
     char text[33];
     tl_lua_ok(L, model, tl_state_hash(model, text));
     lua_pushstring(L, text);
@@ -409,49 +332,33 @@ static int model_state_hash(lua_State *L)
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
-static const char *const model_fields[] = {
-    "gravity", "rotation", "reuse_geometry", "contact_points", "mass_scaled", "time",
-    "cycles",  "dt",       "threads",        "seed",           NULL};
+/* Why a field cannot be set; NULL: it can. */
+static const struct {
+    const char *name, *refusal;
+} model_fields[] = {
+    {"gravity", NULL},
+    {"rotation", NULL},
+    {"reuse_geometry", NULL},
+    {"contact_points", NULL},
+    {"mass_scaled", "can only be read; set it with model:mass_scaling(true)"},
+    {"time", "can only be read"},
+    {"cycles", "can only be read"},
+    {"dt", "can only be read; set it with model:timestep{dt = ...}"},
+    {"threads", "is chosen when the model is made: talus.model{threads = ...}"},
+    {"seed", "is chosen when the model is made: talus.model{seed = ...}"},
+};
+
+enum { FIELDS = sizeof model_fields / sizeof *model_fields };
 
 /* Upvalue 1 is the table of methods. */
 static int unknown_field(lua_State *L, const char *what, const char *name)
 {
     tl_lua_names names = {0};
-    tl_lua_names_list(&names, model_fields);
+    for (size_t i = 0; i < FIELDS; i++)
+        tl_lua_names_add(&names, model_fields[i].name);
     for (lua_pushnil(L); lua_next(L, lua_upvalueindex(1)); lua_pop(L, 1))
         tl_lua_names_add(&names, lua_tostring(L, -2));
     return tl_lua_unknown(L, what, name, &names);
-}
-
-/* The name of the choice that an enum parameter of talus.model has now. */
-static const char *choice_name(const char *param, int32_t choice)
-{
-    size_t count = 0;
-    const tl_param *params = tl_function_params("model", &count, NULL);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(params[i].name, param) == 0)
-            return params[i].choices[choice];
-    return NULL;
-}
-
-static bool push_setting(lua_State *L, tl_model *model, const char *name)
-{
-    tl_model_config config = tl_model_settings(model);
-    if (strcmp(name, "gravity") == 0)
-        tl_lua_push_vec3(L, config.gravity);
-    else if (strcmp(name, "rotation") == 0)
-        lua_pushstring(L, choice_name("rotation", config.rotation));
-    else if (strcmp(name, "contact_points") == 0)
-        lua_pushstring(L, choice_name("contact_points", config.contact_points));
-    else if (strcmp(name, "reuse_geometry") == 0)
-        lua_pushboolean(L, config.reuse_geometry);
-    else if (strcmp(name, "threads") == 0)
-        lua_pushinteger(L, (lua_Integer)config.threads);
-    else if (strcmp(name, "seed") == 0)
-        lua_pushinteger(L, (lua_Integer)config.seed);
-    else
-        return false;
-    return true;
 }
 
 /* Upvalue 1 is the table of methods. */
@@ -464,9 +371,11 @@ static int model_index(lua_State *L)
     if (lua_type(L, 2) != LUA_TSTRING)
         return tl_lua_fail(L, "a model has no field %s", tl_lua_describe(L, 2));
     const char *name = lua_tostring(L, 2);
-    if (push_setting(L, model, name))
-        return 1;
-    if (strcmp(name, "time") == 0)
+    const tl_param *setting = tl_lua_param_named("model", name);
+    if (setting) {
+        tl_model_config config = tl_model_settings(model);
+        tl_lua_push_param(L, setting, &config);
+    } else if (strcmp(name, "time") == 0)
         lua_pushnumber(L, tl_model_time(model));
     else if (strcmp(name, "cycles") == 0)
         lua_pushinteger(L, (lua_Integer)tl_model_cycles(model));
@@ -481,38 +390,34 @@ static int model_index(lua_State *L)
     return 1;
 }
 
+static tl_status set_field(tl_model *model, const char *name, const tl_model_config *config)
+{
+    if (strcmp(name, "gravity") == 0)
+        return tl_model_set_gravity(model, config->gravity);
+    if (strcmp(name, "rotation") == 0)
+        return tl_model_set_rotation(model, (tl_rotation_rule)config->rotation);
+    if (strcmp(name, "contact_points") == 0)
+        return tl_model_set_contact_points(model, (tl_contact_points)config->contact_points);
+    return tl_model_set_reuse_geometry(model, config->reuse_geometry);
+}
+
 static int model_assign(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "assignment");
     if (lua_type(L, 2) != LUA_TSTRING)
         return tl_lua_fail(L, "a model has no field %s", tl_lua_describe(L, 2));
     const char *name = lua_tostring(L, 2);
-    tl_lua_spec spec = tl_lua_spec_of("model", NULL);
-    tl_model_config config = tl_model_settings(model);
-    if (strcmp(name, "gravity") == 0) {
-        tl_lua_read_one(L, 3, &spec, name, &config);
-        tl_lua_ok(L, model, tl_model_set_gravity(model, config.gravity));
-    } else if (strcmp(name, "rotation") == 0) {
-        tl_lua_read_one(L, 3, &spec, name, &config);
-        tl_lua_ok(L, model, tl_model_set_rotation(model, (tl_rotation_rule)config.rotation));
-    } else if (strcmp(name, "contact_points") == 0) {
-        tl_lua_read_one(L, 3, &spec, name, &config);
-        tl_lua_ok(L, model,
-                  tl_model_set_contact_points(model, (tl_contact_points)config.contact_points));
-    } else if (strcmp(name, "reuse_geometry") == 0) {
-        tl_lua_read_one(L, 3, &spec, name, &config);
-        tl_lua_ok(L, model, tl_model_set_reuse_geometry(model, config.reuse_geometry));
-    } else if (strcmp(name, "threads") == 0 || strcmp(name, "seed") == 0)
-        return tl_lua_fail(L, "model.%s is chosen when the model is made: talus.model{%s = ...}",
-                           name, name);
-    else if (strcmp(name, "time") == 0 || strcmp(name, "cycles") == 0 || strcmp(name, "dt") == 0)
-        return tl_lua_fail(L, "model.%s can only be read%s", name,
-                           strcmp(name, "dt") == 0 ? "; set it with model:timestep{dt = ...}" : "");
-    else if (strcmp(name, "mass_scaled") == 0)
-        return tl_lua_fail(
-            L, "model.mass_scaled can only be read; set it with model:mass_scaling(true)");
-    else
+    size_t i = 0;
+    while (i < FIELDS && strcmp(model_fields[i].name, name) != 0)
+        i++;
+    if (i == FIELDS)
         return unknown_field(L, "a model has no field to set", name);
+    if (model_fields[i].refusal)
+        return tl_lua_fail(L, "model.%s %s", name, model_fields[i].refusal);
+    tl_lua_spec spec = tl_lua_spec_of("model", NULL);
+    tl_model_config config;
+    tl_lua_read_one(L, 3, &spec, name, &config);
+    tl_lua_ok(L, model, set_field(model, name, &config));
     return 0;
 }
 
@@ -612,80 +517,78 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .type = TL_KIND_GENERATOR,
      .title = "Fields of the summary",
      .verbs = generate_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_generate},
+     .arguments = 2,
+     .method = model_generate},
     {.name = "joint",
      .usage = "model:joint(\"J1\", \"LAW\", {...})  or  model:joint(\"J1\", {friction = 30})",
      .doc = "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every "
             "joint not named otherwise (\"*\"); without a law's name it changes properties.",
      .has_type = true,
      .type = TL_KIND_LAW,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_joint},
+     .arguments = 3,
+     .method = model_joint},
     {.name = "insitu",
      .usage = "model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}",
      .function = "insitu",
      .keys = insitu_keys,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_insitu},
+     .arguments = 1,
+     .method = model_insitu},
     {.name = "damping",
      .usage = "model:damping(\"DAMPING\", {...})",
      .doc = "Chooses how motion is damped; \"none\" is no damping, and the default.",
      .has_type = true,
      .type = TL_KIND_DAMPING,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_damping},
+     .arguments = 2,
+     .method = model_damping},
     {.name = "timestep",
      .usage = "model:timestep{fraction = 0.3}  or  report = model:timestep()",
      .function = "timestep",
      .title = "Fields of the report",
      .verbs = timestep_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_timestep},
+     .arguments = 1,
+     .method = model_timestep},
     {.name = "mass_scaling",
      .usage = "model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  added = "
               "model:mass_scaling()",
      .function = "mass_scaling",
      .title = "Fields of what it tells",
      .verbs = mass_scaling_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_mass_scaling},
+     .arguments = 1,
+     .method = model_mass_scaling},
     {.name = "contact_area",
      .usage = "model:contact_area{fraction = 0.01}",
      .function = "contact_area",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_contact_area},
+     .arguments = 1,
+     .method = model_contact_area},
     {.name = "energy",
      .usage = "energy = model:energy()",
      .doc = "The energy of the bodies that are free to move, at the last force evaluation, counted "
             "from the first step.",
      .title = "Fields of the energy",
      .verbs = energy_terms,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_energy},
+     .method = model_energy},
     {.name = "write_vtk",
      .usage = "model:write_vtk(\"out/run\", {contacts = false, block_fields = {height = "
               "function(b) return b.centroid[3] end}})",
      .function = "write_vtk",
      .keys = tl_lua_field_keys,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_write_vtk},
+     .arguments = 2,
+     .method = model_write_vtk},
     {.name = "write_section",
      .usage =
          "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
      .function = "write_section",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_write_section},
+     .arguments = 2,
+     .method = model_write_section},
     {.name = "write_blocks",
      .usage = "model:write_blocks(\"out/blocks.json\")",
      .function = "write_blocks",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_write_blocks},
+     .arguments = 1,
+     .method = model_write_blocks},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",
      .doc = "A digest of all that what comes next depends on, settings too: models with the same "
             "text go on alike, to the last bit. Takes about as long as a step.",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_state_hash},
+     .method = model_state_hash},
     {.name = NULL},
 };

@@ -8,6 +8,7 @@
 #include "lua/item.h"
 #include "lua/library.h"
 #include "lua/lists.h"
+#include "lua/living.h"
 #include "lua/model.h"
 #include "lua/selection.h"
 #include "lua/topics.h"
@@ -23,15 +24,29 @@ static int module_help(lua_State *L)
     return 0;
 }
 
-/* Puts the functions of a kind into the table at the top of the stack. */
-static void put_functions(lua_State *L, tl_lua_of of)
+/* Calls a method of models, of the topic that is upvalue 1. */
+static int call_method(lua_State *L)
+{
+    const tl_lua_topic *topic = lua_touserdata(L, lua_upvalueindex(1));
+    tl_model *model = tl_lua_model_of(L, topic->name);
+    tl_lua_arity(L, topic->arguments + 1, topic->name);
+    lua_settop(L, topic->arguments + 1);
+    return topic->method(L, model);
+}
+
+/* Puts functions into the module below the top of the stack, and methods of models into the table at the top. */
+static void put_functions(lua_State *L)
 {
     const tl_lua_topic *topic;
     for (size_t i = 0; (topic = tl_lua_topic_at(i)) != NULL; i++) {
-        if (topic->of != of)
-            continue;
-        lua_pushcfunction(L, topic->call);
-        lua_setfield(L, -2, topic->name);
+        if (topic->method) {
+            lua_pushlightuserdata(L, (void *)(uintptr_t)topic);
+            lua_pushcclosure(L, call_method, 1);
+            lua_setfield(L, -2, topic->name);
+        } else if (topic->call) {
+            lua_pushcfunction(L, topic->call);
+            lua_setfield(L, -3, topic->name);
+        }
     }
 }
 
@@ -45,10 +60,9 @@ int luaopen_talus(lua_State *L)
     tl_lua_selection_open(L, &tl_lua_contact_kind);
     lua_createtable(L, 0, 16);
     lua_newtable(L);
-    put_functions(L, TL_LUA_OF_MODEL);
+    put_functions(L);
     tl_lua_model_open(L);
     lua_setfield(L, -2, "model");
-    put_functions(L, TL_LUA_OF_MODULE);
     tl_lua_lists_open(L);
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");

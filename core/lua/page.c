@@ -82,22 +82,16 @@ void tl_lua_page_read(lua_State *L, int given, const char *context, tl_html *htm
                                                &tl_lua_contact_kind, &html->contact_field_count);
 }
 
-static int model_write_html(lua_State *L)
+static int model_write_html(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "write_html");
-    tl_lua_arity(L, 3, "write_html");
-    lua_settop(L, 3);
     const char *prefix = tl_lua_text(L, 2, "write_html", "the prefix");
     tl_html html = tl_html_default();
-    tl_lua_spec spec = tl_lua_spec_of("write_html", page_keys);
-    tl_lua_read(L, 3, &spec, false, &html);
+    tl_lua_read_function(L, 3, "write_html", page_keys, &html);
     tl_lua_page_read(L, 3, "write_html", &html);
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_status status = tl_write_html(model, prefix, &html);
-    bool cancelled = status == TL_E_CANCELLED;
-    tl_lua_watch_end(L, &watch, cancelled ? "write_html" : "",
-                     cancelled ? "no frame was written" : "");
-    tl_lua_ok(L, model, status);
+    tl_lua_ok(L, model,
+              tl_lua_watch_end(L, &watch, tl_write_html(model, prefix, &html), "write_html",
+                               "no frame was written"));
     return 0;
 }
 
@@ -182,17 +176,6 @@ static void take_names(lua_State *L, request *r)
 
 /* ---------------------------------------------------------------- values ----------------- */
 
-/* Names the unit of a field of numbers, if it is one. */
-static const char *unit_of(const tl_lua_kind *kind, const char *name)
-{
-    size_t count;
-    const tl_field *fields = kind->fields(&count);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(fields[i].name, name) == 0)
-            return fields[i].unit;
-    return "";
-}
-
 /* The values of the field of the model that has the name `source`. */
 static void ask_field(lua_State *L, const request *r, tl_extra_field *field, const char *source,
                       double *values)
@@ -207,7 +190,9 @@ static void ask_field(lua_State *L, const request *r, tl_extra_field *field, con
             r->context, r->key, source, r->kind->item, (int)width, r->kind->item);
     tl_lua_ok(L, model,
               r->kind->values(model, r->items->ids, r->items->count, source, values, &width));
-    field->unit = unit_of(r->kind, source);
+    size_t index;
+    const tl_field *known = tl_lua_field_named(r->kind, source, &index);
+    field->unit = known ? known->unit : "";
 }
 
 /* Places on the stack of `ask`. */
@@ -220,7 +205,7 @@ static int ask(lua_State *L)
     tl_extra_field *field = lua_touserdata(L, AT_FIELD);
     double *values = (double *)(uintptr_t)field->values;
     for (size_t i = 0; i < r->items->count; i++) {
-        tl_lua_item_push(L, r->kind->item_type, AT_OWNER, r->items->ids[i]);
+        tl_lua_item_push(L, r->kind, AT_OWNER, r->items->ids[i]);
         lua_pushvalue(L, AT_FUNCTION);
         lua_pushvalue(L, AT_ITEM);
         lua_call(L, 1, 1);
@@ -332,7 +317,7 @@ const tl_lua_topic tl_lua_page_topics[] = {
          "model:write_html(\"out/run\", {title = \"Slope\", block_fields = {\"kinetic_energy\"}})",
      .function = "write_html",
      .keys = page_keys,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_write_html},
+     .arguments = 2,
+     .method = model_write_html},
     {.name = NULL},
 };

@@ -2,6 +2,7 @@
  * model:keyblocks{...}. */
 #include "lua/quality.h"
 
+#include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
 #include "lua/front.h"
@@ -11,16 +12,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-/* Calls `push` (arguments: the model's userdata, `data`; one result) so that an error comes back here
- * and the caller can free what `data` refers to before it goes on. */
-static int push_protected(lua_State *L, lua_CFunction push, void *data)
-{
-    lua_pushcfunction(L, push);
-    lua_pushvalue(L, 1);
-    lua_pushlightuserdata(L, data);
-    return lua_pcall(L, 2, 1, 0);
-}
 
 void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
 {
@@ -89,12 +80,12 @@ static void set_refused_cuts(lua_State *L, tl_model *model, const tl_quality *q)
         const tl_refused_cut *cut = &q->refused_cuts[i];
         lua_createtable(L, 0, 7);
         tl_lua_set_text(L, "joint", tl_tag_name(model, cut->joint));
-        tl_lua_set_count(L, "block",
-                         cut->block); /* a number: the block may be cut or deleted since */
+        /* A number: the block may be cut or deleted since. */
+        tl_lua_set_count(L, "block", cut->block);
         tl_lua_set_vec3(L, "normal", cut->normal);
         tl_lua_set_vec3(L, "point", cut->point);
-        tl_lua_set_number(L, "thickness", cut->thickness);
-        tl_lua_set_number(L, "limit", cut->limit);
+        tl_lua_set_numbers(L, (const tl_lua_number[]){
+                                  {"thickness", cut->thickness}, {"limit", cut->limit}, {NULL, 0}});
         push_reason(L, model, cut);
         lua_setfield(L, -2, "reason");
         lua_rawseti(L, -2, (lua_Integer)i + 1);
@@ -154,18 +145,19 @@ static int module_report(lua_State *L)
     tl_quality q;
     tl_lua_ok(L, model, tl_model_quality(model, &q));
     lua_createtable(L, 0, 20);
-    tl_lua_set_count(L, "blocks", q.blocks);
-    tl_lua_set_count(L, "bodies", q.bodies);
-    tl_lua_set_number(L, "volume", q.volume);
-    tl_lua_set_number(L, "volume_error", q.volume_error);
+    tl_lua_set_counts(L, (const tl_lua_count[]){{"blocks", q.blocks},
+                                                {"bodies", q.bodies},
+                                                {"cuts", q.cuts},
+                                                {"refused", q.refused},
+                                                {"coincident", q.coincident},
+                                                {NULL, 0}});
+    tl_lua_set_numbers(L, (const tl_lua_number[]){
+                              {"volume", q.volume}, {"volume_error", q.volume_error}, {NULL, 0}});
     for (size_t i = 0; i < EXTREMES; i++) {
         tl_extreme e = extreme_of(&q, &extremes[i]);
         tl_lua_set_number(L, extremes[i].field, e.value);
         tl_lua_set_block(L, extremes[i].block_field, e.block);
     }
-    tl_lua_set_count(L, "cuts", q.cuts);
-    tl_lua_set_count(L, "refused", q.refused);
-    tl_lua_set_count(L, "coincident", q.coincident);
     set_refused_cuts(L, model, &q);
     set_timestep(L, model);
     if (!tl_lua_options_of(L)->quiet)
@@ -175,23 +167,28 @@ static int module_report(lua_State *L)
 
 /* ---------------------------------------------------------------- filter ----------------- */
 
-/* Each sliver gets a block it is joined to, which the action tells. */
-static int push_filter(lua_State *L)
+static int free_filter_result(lua_State *L)
 {
-    const tl_filter_result *r = lua_touserdata(L, 2);
+    free(((tl_filter_result *)lua_touserdata(L, 1))->slivers);
+    return 0;
+}
+
+/* Each sliver gets a block it is joined to, which the action tells. */
+static void push_filter_result(lua_State *L, const tl_filter_result *r)
+{
     lua_createtable(L, 0, 5);
-    tl_lua_set_count(L, "found", r->count);
-    tl_lua_set_count(L, "deleted", r->deleted);
-    tl_lua_set_count(L, "joined", r->joined);
+    tl_lua_set_counts(
+        L, (const tl_lua_count[]){
+               {"found", r->count}, {"deleted", r->deleted}, {"joined", r->joined}, {NULL, 0}});
     tl_lua_set_number(L, "volume", r->volume);
     lua_createtable(L, (int)r->count, 0);
     for (size_t i = 0; i < r->count; i++) {
         const tl_sliver *s = &r->slivers[i];
         lua_createtable(L, 0, 6);
         tl_lua_set_count(L, "block", s->block); /* a number: it may have been deleted */
-        tl_lua_set_number(L, "volume", s->volume);
-        tl_lua_set_number(L, "edge", s->edge);
-        tl_lua_set_number(L, "aspect", s->aspect);
+        tl_lua_set_numbers(
+            L, (const tl_lua_number[]){
+                   {"volume", s->volume}, {"edge", s->edge}, {"aspect", s->aspect}, {NULL, 0}});
         const char *which[] = {s->small ? "volume" : NULL, s->short_edge ? "edge" : NULL,
                                s->thin ? "aspect" : NULL};
         lua_createtable(L, 3, 0);
@@ -205,7 +202,6 @@ static int push_filter(lua_State *L)
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     lua_setfield(L, -2, "slivers");
-    return 1;
 }
 
 /* Writes what the action did into the table at the top of the stack, without needing memory. */
@@ -223,31 +219,22 @@ static void set_filtered(lua_State *L, const tl_filter_result *r)
 }
 
 /* First a report, for which there must be memory, and then the action: a call that fails changes nothing. */
-static int model_filter(lua_State *L)
+static int model_filter(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "filter");
-    tl_lua_arity(L, 2, "filter");
-    lua_settop(L, 2);
     tl_filter limits = tl_filter_default();
-    tl_lua_spec spec = tl_lua_spec_of("filter", NULL);
-    tl_lua_read(L, 2, &spec, false, &limits);
+    tl_lua_read_function(L, 2, "filter", NULL, &limits);
     tl_filter report = limits;
     report.action = TL_FILTER_REPORT;
-    tl_filter_result result;
-    tl_lua_ok(L, model, tl_model_filter(model, &report, &result));
-    int status = push_protected(L, push_filter, &result);
-    free(result.slivers);
-    if (status != LUA_OK)
-        return lua_error(L);
-    tl_lua_ok(L, model, tl_model_filter(model, &limits, &result));
-    set_filtered(L, &result);
-    free(result.slivers);
+    tl_filter_result *found = tl_lua_hold(L, sizeof *found, "talus.filter", free_filter_result);
+    tl_filter_result *done = tl_lua_hold(L, sizeof *done, "talus.filter", free_filter_result);
+    tl_lua_ok(L, model, tl_model_filter(model, &report, found));
+    push_filter_result(L, found);
+    tl_lua_ok(L, model, tl_model_filter(model, &limits, done));
+    set_filtered(L, done);
     return 1;
 }
 
 /* ---------------------------------------------------------------- keyblocks -------------- */
-
-#define KEYBLOCKS_TYPE "talus.keyblocks"
 
 static const tl_lua_key keyblocks_keys[] = {
     {"friction", "number or {JOINT = number}",
@@ -315,8 +302,9 @@ static void set_faces(lua_State *L, tl_model *model, const tl_keyblock *block)
         lua_createtable(L, 0, 4);
         tl_lua_set_text(L, "joint", tl_tag_name(model, face->joint));
         tl_lua_set_vec3(L, "normal", face->normal);
-        tl_lua_set_number(L, "area", face->area);
-        tl_lua_set_number(L, "normal_force", face->normal_force);
+        tl_lua_set_numbers(L, (const tl_lua_number[]){{"area", face->area},
+                                                      {"normal_force", face->normal_force},
+                                                      {NULL, 0}});
         lua_rawseti(L, -2, (lua_Integer)k + 1);
     }
     lua_setfield(L, -2, "faces");
@@ -335,11 +323,12 @@ static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *al
         lua_createtable(L, 0, 10);
         tl_lua_set_block(L, "block", block->block);
         tl_lua_set_text(L, "mode", modes[block->mode]);
-        tl_lua_set_number(L, "safety", block->safety);
-        tl_lua_set_number(L, "volume", block->volume);
-        tl_lua_set_number(L, "mass", block->mass);
+        tl_lua_set_numbers(L, (const tl_lua_number[]){{"safety", block->safety},
+                                                      {"volume", block->volume},
+                                                      {"mass", block->mass},
+                                                      {"driving_force", block->driving},
+                                                      {NULL, 0}});
         tl_lua_set_vec3(L, "force", block->force);
-        tl_lua_set_number(L, "driving_force", block->driving);
         if (block->mode != TL_KEYBLOCK_STABLE)
             tl_lua_set_vec3(L, "direction", block->direction);
         set_faces(L, model, block);
@@ -355,7 +344,7 @@ static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *al
 
 static int collect_keyblocks(lua_State *L)
 {
-    tl_keyblocks_free(luaL_checkudata(L, 1, KEYBLOCKS_TYPE));
+    tl_keyblocks_free(lua_touserdata(L, 1));
     return 0;
 }
 
@@ -365,8 +354,7 @@ int tl_lua_keyblocks_find(lua_State *L)
     tl_lua_arity(L, 2, "keyblocks");
     lua_settop(L, 2);
     tl_keyblock_query query = tl_keyblock_query_default();
-    tl_lua_spec spec = tl_lua_spec_of("keyblocks", keyblocks_keys);
-    tl_lua_read(L, 2, &spec, false, &query);
+    tl_lua_read_function(L, 2, "keyblocks", keyblocks_keys, &query);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L, "keyblocks: give the parameters in a table: {friction = 35}");
     size_t capacity = count_strength(L, "friction") + count_strength(L, "cohesion");
@@ -375,21 +363,15 @@ int tl_lua_keyblocks_find(lua_State *L)
     count = fill_strength(L, "cohesion", list, count);
     query.strength = list;
     query.count = count;
-    tl_keyblocks *all = lua_newuserdatauv(L, sizeof *all, 0);
-    *all = (tl_keyblocks){0};
-    if (luaL_newmetatable(L, KEYBLOCKS_TYPE)) {
-        lua_pushcfunction(L, collect_keyblocks);
-        lua_setfield(L, -2, "__gc");
-    }
-    lua_setmetatable(L, -2);
+    tl_keyblocks *all = tl_lua_hold(L, sizeof *all, "talus.keyblocks", collect_keyblocks);
     tl_lua_ok(L, model, tl_model_keyblocks(model, &query, all));
     return 1;
 }
 
-static int model_keyblocks(lua_State *L)
+static int model_keyblocks(lua_State *L, tl_model *model)
 {
     tl_lua_keyblocks_find(L);
-    push_keyblocks(L, tl_lua_model_of(L, "keyblocks"), lua_touserdata(L, -1));
+    push_keyblocks(L, model, lua_touserdata(L, -1));
     return 1;
 }
 
@@ -397,24 +379,14 @@ static int model_keyblocks(lua_State *L)
  *
  * How a model stands: model:stage and model:verdict. */
 
-static int model_stage(lua_State *L)
+static int model_stage(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "stage");
-    tl_lua_arity(L, 2, "stage");
     tl_lua_ok(L, model, tl_model_stage(model, tl_lua_text(L, 2, "stage", "the name")));
     return 0;
 }
 
-static void set_id(lua_State *L, const char *name, tl_id id)
+static int model_verdict(lua_State *L, tl_model *model)
 {
-    lua_pushinteger(L, (lua_Integer)id);
-    lua_setfield(L, -2, name);
-}
-
-static int model_verdict(lua_State *L)
-{
-    tl_model *model = tl_lua_model_of(L, "verdict");
-    tl_lua_arity(L, 1, "verdict");
     tl_verdict v;
     char text[512];
     tl_lua_ok(L, model, tl_model_verdict(model, &v));
@@ -423,20 +395,21 @@ static int model_verdict(lua_State *L)
     tl_lua_set_text(L, "standing", tl_standing_name(v.standing));
     tl_lua_set_text(L, "text", text);
     tl_lua_set_text(L, "stage", v.stage);
-    tl_lua_set_number(L, "ratio", v.ratio);
-    tl_lua_set_number(L, "closed", v.closed);
-    tl_lua_set_count(L, "moved", v.moved);
-    tl_lua_set_number(L, "volume", v.volume);
-    tl_lua_push_vec3(L, v.direction);
-    lua_setfield(L, -2, "direction");
-    set_id(L, "farthest", v.farthest);
-    tl_lua_set_number(L, "displacement", v.displacement);
-    tl_lua_set_number(L, "slip", v.slip);
-    set_id(L, "slipped", v.slipped);
-    tl_lua_set_number(L, "opening", v.opening);
-    set_id(L, "opened", v.opened);
-    tl_lua_set_count(L, "contacts", v.contacts);
-    tl_lua_set_count(L, "slipping", v.slipping);
+    tl_lua_set_vec3(L, "direction", v.direction);
+    tl_lua_set_numbers(L, (const tl_lua_number[]){{"ratio", v.ratio},
+                                                  {"closed", v.closed},
+                                                  {"volume", v.volume},
+                                                  {"displacement", v.displacement},
+                                                  {"slip", v.slip},
+                                                  {"opening", v.opening},
+                                                  {NULL, 0}});
+    tl_lua_set_counts(L, (const tl_lua_count[]){{"moved", v.moved},
+                                                {"farthest", v.farthest},
+                                                {"slipped", v.slipped},
+                                                {"opened", v.opened},
+                                                {"contacts", v.contacts},
+                                                {"slipping", v.slipping},
+                                                {NULL, 0}});
     return 1;
 }
 
@@ -468,11 +441,8 @@ static const tl_lua_key verdict_fields[] = {
  * What a model costs: model:profile() in time, model:memory() in bytes. */
 
 /* profile(true) begins, profile(false) ends, profile() gives the result so far. */
-static int model_profile(lua_State *L)
+static int model_profile(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "profile");
-    tl_lua_arity(L, 2, "profile");
-    lua_settop(L, 2);
     if (!lua_isnil(L, 2)) {
         int32_t on;
         tl_lua_spec spec = tl_lua_spec_of("profile", NULL);
@@ -489,18 +459,17 @@ static int model_profile(lua_State *L)
     TL_PHASES(SET)
 #undef SET
     lua_setfield(L, -2, "seconds");
-    tl_lua_set_count(L, "steps", (size_t)profile.steps);
-    tl_lua_set_count(L, "pairs", profile.pairs);
-    tl_lua_set_count(L, "contacts", profile.contacts);
-    tl_lua_set_count(L, "loaded", profile.loaded);
-    tl_lua_set_count(L, "points", profile.points);
+    tl_lua_set_counts(L, (const tl_lua_count[]){{"steps", (size_t)profile.steps},
+                                                {"pairs", profile.pairs},
+                                                {"contacts", profile.contacts},
+                                                {"loaded", profile.loaded},
+                                                {"points", profile.points},
+                                                {NULL, 0}});
     return 1;
 }
 
-static int model_memory(lua_State *L)
+static int model_memory(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "memory");
-    tl_lua_arity(L, 1, "memory");
     tl_memory memory = tl_model_memory(model);
     lua_createtable(L, 0, 13);
 #define SET(name, doc) tl_lua_set_count(L, #name, memory.name);
@@ -582,52 +551,49 @@ const tl_lua_topic tl_lua_quality_topics[] = {
             "--quiet).",
      .title = "Fields of the report",
      .verbs = report_results,
-     .of = TL_LUA_OF_MODULE,
      .call = module_report},
     {.name = "filter",
      .usage = "result = model:filter{volume = 1e-6, aspect = 100, action = \"join\"}",
      .function = "filter",
      .title = "Fields of the result",
      .verbs = filter_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_filter},
+     .arguments = 1,
+     .method = model_filter},
     {.name = "keyblocks",
      .usage = "list = model:keyblocks{friction = 35}",
      .function = "keyblocks",
      .keys = keyblocks_keys,
      .title = "Fields of each keyblock",
      .verbs = keyblock_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_keyblocks},
+     .arguments = 1,
+     .method = model_keyblocks},
     {.name = "stage",
      .usage = "model:stage(\"excavated\")",
      .doc =
          "Begins a stage: displacements of all blocks count from now, as after reset_displacement, "
          "and so does what model:verdict and pages tell of slip and opening. What laws keep stays. "
          "The name is at most 63 bytes; copies and files have it.",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_stage},
+     .arguments = 1,
+     .method = model_stage},
     {.name = "verdict",
      .usage = "verdict = model:verdict()",
      .doc = "Tells how the model stands as of its last step: at rest, moving, accelerating or "
             "failed, and what has moved since the stage began. Nothing changes by it.",
      .title = "Fields of the verdict",
      .verbs = verdict_fields,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_verdict},
+     .method = model_verdict},
     {.name = "profile",
      .usage = "model:profile(true); model:cycle(100); result = model:profile()",
      .function = "profile",
      .title = "Fields of the result",
      .verbs = profile_fields,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_profile},
+     .arguments = 1,
+     .method = model_profile},
     {.name = "memory",
      .usage = "bytes = model:memory()",
      .doc = "Bytes the model holds, by what they are for, room for growth included.",
      .title = "Fields of the result",
      .verbs = memory_fields,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_memory},
+     .method = model_memory},
     {.name = NULL},
 };

@@ -18,25 +18,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One open bracket. */
-typedef struct tl_scan_level {
-    char bracket;              /* ( { or [ */
-    char callee[TL_SCAN_NAME]; /* the name right before it: of the function that is called; or "" */
-    char quoted[TL_SCAN_NAME]; /* the last text in quotes inside it, of this level; or "" */
-    char of[TL_SCAN_NAME];     /* the key whose value it is: `of = {`; or "" */
-    char key[TL_SCAN_NAME];    /* the key inside it whose value is due: `key = CURSOR`; or "" */
-} tl_scan_level;
+#define NAME 64       /* longest name that is heeded, with its zero */
+#define LEVELS 32     /* of brackets; deeper ones are not told apart */
+#define LONGEST 16384 /* characters of a chunk, for `resolve` calls itself for each `.` of it */
 
-typedef struct tl_scan {
-    tl_scan_level levels[TL_SCAN_LEVELS]; /* levels[0] is no bracket but the whole chunk */
-    int depth;                            /* levels[depth] is the innermost */
+/* One open bracket. */
+typedef struct scan_level {
+    char bracket;      /* ( { or [ */
+    char callee[NAME]; /* the name right before it: of the function that is called; or "" */
+    char quoted[NAME]; /* the last text in quotes inside it, of this level; or "" */
+    char of[NAME];     /* the key whose value it is: `of = {`; or "" */
+    char key[NAME];    /* the key inside it whose value is due: `key = CURSOR`; or "" */
+} scan_level;
+
+typedef struct scan_state {
+    scan_level levels[LEVELS]; /* levels[0] is no bracket but the whole chunk */
+    int depth;                 /* levels[depth] is the innermost */
     char before; /* last character that counts: of a name 'a', of a text in quotes '"'; 0: none */
     /* the last name, when `before` is 'a'; in quotes: the name right before the quotes, or "" */
-    char name[TL_SCAN_NAME];
+    char name[NAME];
     bool in_quotes, in_comment;
-} tl_scan;
-
-#define LONGEST 16384 /* characters of a chunk, for `resolve` calls itself for each `.` of it */
+} scan_state;
 
 static struct {
     lua_State *L;
@@ -94,48 +96,21 @@ static const tl_lua_topic *find_topic(const char *name)
     return NULL;
 }
 
-typedef struct params {
-    const tl_param *first;
-    size_t count, stride;
-} params;
-
-static params params_of_topic(const tl_lua_topic *topic)
+static void add_params(const char *word, const tl_param *params, size_t count)
 {
-    params p = {NULL, 0, sizeof(tl_param)};
-    if (topic->function)
-        p.first = tl_function_params(topic->function, &p.count, NULL);
-    else if (topic->spec) {
-        p.first = topic->spec->params;
-        p.count = topic->spec->count;
-    }
-    return p;
-}
-
-static params params_of_kind(const tl_kind *kind)
-{
-    return (params){kind->params, kind->param_count, kind->param_stride};
-}
-
-static const tl_param *param_at(params p, size_t i)
-{
-    return (const tl_param *)(const void *)((const char *)p.first + i * p.stride);
-}
-
-static void add_params(const char *word, params p)
-{
-    for (size_t i = 0; i < p.count; i++) {
-        add(word, param_at(p, i)->name);
-        if (param_at(p, i)->alias)
-            add(word, param_at(p, i)->alias);
+    for (size_t i = 0; i < count; i++) {
+        add(word, params[i].name);
+        if (params[i].alias)
+            add(word, params[i].alias);
     }
 }
 
 /* The choices of the parameter of that name. */
-static void add_choices(const char *word, params p, const char *name)
+static void add_choices(const char *word, const tl_param *params, size_t count, const char *name)
 {
-    for (size_t i = 0; i < p.count; i++)
-        if (param_at(p, i)->type == TL_PARAM_ENUM && strcmp(param_at(p, i)->name, name) == 0)
-            for (const char *const *choice = param_at(p, i)->choices; *choice; choice++)
+    for (size_t i = 0; i < count; i++)
+        if (params[i].type == TL_PARAM_ENUM && strcmp(params[i].name, name) == 0)
+            for (const char *const *choice = params[i].choices; *choice; choice++)
                 add(word, *choice);
 }
 
@@ -143,7 +118,7 @@ static void add_choices(const char *word, params p, const char *name)
 static void add_quoted(const char *word, const char *text)
 {
     for (const char *at = text; (at = strchr(at, '"')) != NULL;) {
-        char name[TL_SCAN_NAME] = "";
+        char name[NAME] = "";
         size_t length = 0;
         for (at++; tl_scan_is_name(*at) && length + 1 < sizeof name; at++)
             name[length++] = *at;
@@ -195,7 +170,7 @@ static void add_model_fields(const char *word)
     const tl_lua_topic *topic = find_topic("model");
     for (const tl_lua_key *key = topic ? topic->verbs : NULL; key && key->name; key++)
         for (const char *at = key->name; (at = strstr(at, mark)) != NULL;) {
-            char name[TL_SCAN_NAME] = "";
+            char name[NAME] = "";
             at += sizeof mark - 1;
             for (size_t i = 0; tl_scan_is_name(*at) && i + 1 < sizeof name; at++)
                 name[i++] = *at;
@@ -215,17 +190,17 @@ bool tl_scan_is_name(char c)
 
 static void copy(char *name, const char *from, size_t length)
 {
-    length = length < TL_SCAN_NAME ? length : TL_SCAN_NAME - 1;
+    length = length < NAME ? length : NAME - 1;
     memcpy(name, from, length);
     name[length] = 0;
 }
 
-static void open_bracket(tl_scan *scan, char bracket)
+static void open_bracket(scan_state *scan, char bracket)
 {
-    if (scan->depth + 1 == TL_SCAN_LEVELS)
+    if (scan->depth + 1 == LEVELS)
         return;
-    tl_scan_level *outer = &scan->levels[scan->depth], *inner = outer + 1;
-    *inner = (tl_scan_level){.bracket = bracket};
+    scan_level *outer = &scan->levels[scan->depth], *inner = outer + 1;
+    *inner = (scan_level){.bracket = bracket};
     if (scan->before == 'a')
         copy(inner->callee, scan->name, strlen(scan->name));
     else if (scan->before == '=')
@@ -234,9 +209,9 @@ static void open_bracket(tl_scan *scan, char bracket)
 }
 
 /* A character that is no part of a name, of quotes or of a comment. */
-static void read_sign(tl_scan *scan, char c)
+static void read_sign(scan_state *scan, char c)
 {
-    tl_scan_level *level = &scan->levels[scan->depth];
+    scan_level *level = &scan->levels[scan->depth];
     if (c == '(' || c == '{' || c == '[')
         open_bracket(scan, c);
     else if ((c == ')' || c == '}' || c == ']') && scan->depth > 0)
@@ -258,9 +233,9 @@ static size_t end_of_quotes(const char *text, size_t at, size_t length)
 }
 
 /* Reads the first `length` characters of the text. */
-static void scan_text(const char *text, size_t length, tl_scan *scan)
+static void scan_text(const char *text, size_t length, scan_state *scan)
 {
-    *scan = (tl_scan){0};
+    *scan = (scan_state){0};
     for (size_t i = 0; i < length;) {
         char c = text[i];
         size_t end = i + 1;
@@ -373,7 +348,7 @@ static object_type resolve_name(lua_State *L, const char *text, size_t begin, si
  * the selection. */
 static object_type resolve_call(lua_State *L, const char *text, size_t begin)
 {
-    char name[TL_SCAN_NAME];
+    char name[NAME];
     while (begin > 0 && text[begin - 1] == ' ')
         begin--;
     size_t at = name_begin(text, begin);
@@ -482,10 +457,10 @@ static void complete_global(lua_State *L, const char *word)
 }
 
 /* The call in whose table of options the cursor is, directly or in a list of such tables, and the plugin it names. */
-static const tl_lua_topic *options_of(const tl_scan *scan, const tl_kind **kind)
+static const tl_lua_topic *options_of(const scan_state *scan, const tl_kind **kind)
 {
     int depth = scan->depth;
-    const tl_scan_level *level = &scan->levels[depth];
+    const scan_level *level = &scan->levels[depth];
     *kind = NULL;
     if (level->bracket != '{')
         return NULL;
@@ -498,20 +473,21 @@ static const tl_lua_topic *options_of(const tl_scan *scan, const tl_kind **kind)
 }
 
 /* A key of the options; false when the cursor is in none. */
-static bool complete_key(const char *word, const tl_scan *scan)
+static bool complete_key(const char *word, const scan_state *scan)
 {
     const tl_kind *kind;
     const tl_lua_topic *topic = options_of(scan, &kind);
     if (!topic || (scan->before != '{' && scan->before != ',' && scan->before != ';'))
         return false;
-    add_params(word, params_of_topic(topic));
-    add_keys(word, topic->spec ? topic->spec->keys : topic->keys);
+    tl_lua_spec spec = tl_lua_topic_spec(topic);
+    add_params(word, spec.params, spec.count);
+    add_keys(word, spec.keys);
     if (kind)
-        add_params(word, params_of_kind(kind));
+        add_params(word, kind->params, kind->param_count);
     const tl_kind *any;
     bool all = topic->has_type && !kind && topic->type == TL_KIND_LAW; /* joint("J1", {...}) */
     for (size_t i = 0; all && (any = tl_plugin_kind(topic->type, i)) != NULL; i++)
-        add_params(word, params_of_kind(any));
+        add_params(word, any->params, any->param_count);
     return true;
 }
 
@@ -521,18 +497,19 @@ static void add_all_fields(const char *word)
     add_fields(word, &tl_lua_contact_kind);
 }
 
-static void complete_quotes(const char *word, const tl_scan *scan)
+static void complete_quotes(const char *word, const scan_state *scan)
 {
-    const tl_scan_level *level = &scan->levels[scan->depth];
+    const scan_level *level = &scan->levels[scan->depth];
     const tl_kind *kind;
     const tl_lua_topic *topic = options_of(scan, &kind);
     if (topic && scan->before == '=') {
-        add_choices(word, params_of_topic(topic), level->key);
-        add_told(word, topic->spec ? topic->spec->keys : topic->keys, level->key);
+        tl_lua_spec spec = tl_lua_topic_spec(topic);
+        add_choices(word, spec.params, spec.count, level->key);
+        add_told(word, spec.keys, level->key);
         if (strcmp(level->key, "field") == 0)
             add_all_fields(word);
         if (kind)
-            add_choices(word, params_of_kind(kind), level->key);
+            add_choices(word, kind->params, kind->param_count, level->key);
         return;
     }
     static const char *const of_fields[] = {"sum", "max", "min", "values"};
@@ -556,9 +533,9 @@ static void complete_topic(const char *word)
 }
 
 /* Whether the line is `help WORD`, or talus.help "WORD". */
-static bool asks_help(const char *text, const tl_scan *scan)
+static bool asks_help(const char *text, const scan_state *scan)
 {
-    const tl_scan_level *level = &scan->levels[scan->depth];
+    const scan_level *level = &scan->levels[scan->depth];
     if (scan->in_quotes)
         return strcmp(scan->name[0] ? scan->name : level->callee, "help") == 0;
     return scan->depth == 0 && scan->before == 'a' && strcmp(scan->name, "help") == 0 &&
@@ -570,7 +547,7 @@ static int complete(lua_State *L)
 {
     size_t length;
     const char *text = lua_tolstring(L, 1, &length), *word = lua_tostring(L, 2);
-    tl_scan scan;
+    scan_state scan;
     if (length > LONGEST)
         return 0;
     scan_text(text, length, &scan);

@@ -4,6 +4,7 @@
  * on the stack, the run ends after the step, and only then is the error raised again, as it was. */
 #include "lua/run.h"
 
+#include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
 #include "lua/front.h"
@@ -194,20 +195,14 @@ static void run_end(run *r)
 /* Writes numbers into the table at the top of the stack. */
 static void set_numbers(lua_State *L, const tl_solve_result *result)
 {
-    const struct {
-        const char *name;
-        double number;
-    } numbers[] = {{"ratio", result->ratio},
-                   {"ratio_maximum", result->ratio_maximum},
-                   {"ratio_local", result->ratio_local},
-                   {"time", result->time},
-                   {"wall", result->wall},
-                   {"max_velocity", result->max_velocity}};
-    lua_pushinteger(L, (lua_Integer)result->cycles);
-    lua_setfield(L, -2, "cycles");
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        tl_lua_set_number(L, numbers[i].name, numbers[i].number);
-    }
+    tl_lua_set_count(L, "cycles", (size_t)result->cycles);
+    tl_lua_set_numbers(L, (const tl_lua_number[]){{"ratio", result->ratio},
+                                                  {"ratio_maximum", result->ratio_maximum},
+                                                  {"ratio_local", result->ratio_local},
+                                                  {"time", result->time},
+                                                  {"wall", result->wall},
+                                                  {"max_velocity", result->max_velocity},
+                                                  {NULL, 0}});
 }
 
 /* Fields of a result that are blocks. */
@@ -222,7 +217,7 @@ static void push_empty_result(lua_State *L, int model_index, int32_t measure)
     set_numbers(L, &none);
     tl_lua_set_text(L, "measure", tl_ratio_measure_name((tl_ratio_measure)measure));
     for (size_t i = 0; i < sizeof result_blocks / sizeof result_blocks[0]; i++) {
-        tl_lua_item_push(L, TL_LUA_BLOCK, model_index, TL_NO_ID);
+        tl_lua_item_push(L, &tl_lua_block_kind, model_index, TL_NO_ID);
         lua_setfield(L, -2, result_blocks[i]);
     }
 }
@@ -509,15 +504,11 @@ static int finish(lua_State *L, run *r, const char *what, tl_status status)
     return 1;
 }
 
-static int model_solve(lua_State *L)
+static int model_solve(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "solve");
-    tl_lua_arity(L, 2, "solve");
-    lua_settop(L, 2);
     luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_solve solve = tl_solve_default();
-    tl_lua_spec spec = tl_lua_spec_of("solve", solve_keys);
-    tl_lua_read(L, AT_ARGS, &spec, false, &solve);
+    tl_lua_read_function(L, AT_ARGS, "solve", solve_keys, &solve);
     lua_settop(L, AT_ANCHOR);
     bool stop = push_callback(L, "solve", "stop");
     bool progress = push_callback(L, "solve", "on_progress");
@@ -534,11 +525,8 @@ static int model_solve(lua_State *L)
 }
 
 /* cycle(cycles, {every =, on_progress =}) */
-static int model_cycle(lua_State *L)
+static int model_cycle(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "cycle");
-    tl_lua_arity(L, 3, "cycle");
-    lua_settop(L, 3);
     luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_cycle_args args;
     tl_lua_spec spec = tl_lua_spec_of("cycle", cycle_keys);
@@ -613,15 +601,15 @@ const tl_lua_topic tl_lua_run_topics[] = {
      .keys = cycle_keys,
      .title = "Fields of the result",
      .verbs = run_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_cycle},
+     .arguments = 2,
+     .method = model_cycle},
     {.name = "solve",
      .usage = "result = model:solve{ratio = 1e-5, ...}",
      .function = "solve",
      .keys = solve_keys,
      .title = "Fields of the result",
      .verbs = run_results,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_solve},
+     .arguments = 1,
+     .method = model_solve},
     {.name = NULL},
 };

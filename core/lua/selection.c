@@ -26,22 +26,15 @@ tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, i
     return selection;
 }
 
-/* The selection of a type at index 1, raising when it is something else. */
-static tl_lua_selection *selection_of(lua_State *L, const char *type, const char *items,
-                                      const char *method)
-{
-    tl_lua_selection *selection = luaL_testudata(L, 1, type);
-    if (!selection)
-        tl_lua_fail(L, "%s: called on %s, not on a selection of %s; write selection:%s(...)",
-                    method, tl_lua_describe(L, 1), items, method);
-    return selection;
-}
-
-/* The selection at index 1 of a method both types have; upvalue 1 is the kind. */
+/* The selection at index 1 of a method; upvalue 1 is the kind. */
 static tl_lua_selection *self(lua_State *L, const char *method)
 {
     const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
-    return selection_of(L, kind->selection_type, kind->items, method);
+    tl_lua_selection *selection = luaL_testudata(L, 1, kind->selection_type);
+    if (!selection)
+        tl_lua_fail(L, "%s: called on %s, not on a selection of %s; write selection:%s(...)",
+                    method, tl_lua_describe(L, 1), kind->items, method);
+    return selection;
 }
 
 static int selection_collect(lua_State *L)
@@ -85,17 +78,6 @@ static bool wants_flat(lua_State *L)
     return strcmp(how, "flat") == 0;
 }
 
-/* The field of a name, or NULL. */
-static const tl_field *field_named(const tl_lua_kind *kind, const char *name, size_t *index)
-{
-    size_t count;
-    const tl_field *fields = kind->fields(&count);
-    for (*index = 0; *index < count; (*index)++)
-        if (strcmp(fields[*index].name, name) == 0)
-            return &fields[*index];
-    return NULL;
-}
-
 /* Texts, truths, tensors and ids: as single items give them. */
 static void push_items(lua_State *L, const tl_lua_selection *selection, const tl_field *field,
                        size_t index)
@@ -123,23 +105,14 @@ static void push_flat(lua_State *L, const double *values, size_t count, bool who
     }
 }
 
-static void push_nested(lua_State *L, const double *values, size_t count, size_t width)
+static int selection_values(lua_State *L)
 {
-    lua_createtable(L, (int)count, 0);
-    for (size_t i = 0; i < count; i++) {
-        tl_lua_push_numbers(L, values + i * width, width);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-}
-
-/* selection:values(field) */
-static int tl_lua_selection_values(lua_State *L, const tl_lua_selection *selection)
-{
+    const tl_lua_selection *selection = self(L, "values");
     tl_lua_arity(L, 3, "values");
     const char *name = tl_lua_text(L, 2, "values", "the field's name");
     bool flat = wants_flat(L);
     size_t index;
-    const tl_field *field = field_named(selection->kind, name, &index);
+    const tl_field *field = tl_lua_field_named(selection->kind, name, &index);
     tl_field_kind kind = field ? field->kind : TL_FIELD_SCALAR;
     if (kind == TL_FIELD_TEXT || kind == TL_FIELD_BOOL || (kind == TL_FIELD_SYM3 && !flat)) {
         push_items(L, selection, field, index);
@@ -156,31 +129,30 @@ static int tl_lua_selection_values(lua_State *L, const tl_lua_selection *selecti
     else if (kind == TL_FIELD_IDS)
         push_items(L, selection, field, index);
     else
-        push_nested(L, values, count, width);
+        tl_lua_push_rows(L, values, count, width, width);
     return 1;
 }
 
 /* ---------------------------------------------------------------- sums and extremes ------ */
 
-/* Index of the field named at stack index 2, which must be of numbers. */
-static size_t number_field(lua_State *L, const tl_lua_kind *kind, const char *method)
+/* The field named at stack index 2, which must be of numbers, and its index. */
+static const tl_field *number_field(lua_State *L, const tl_lua_kind *kind, const char *method,
+                                    size_t *index)
 {
-    size_t count;
-    const tl_field *fields = kind->fields(&count);
     const char *name = tl_lua_text(L, 2, method, "the field's name");
     tl_lua_arity(L, 2, method);
-    for (size_t i = 0; i < count; i++) {
-        if (strcmp(fields[i].name, name) != 0)
-            continue;
-        if (fields[i].kind > TL_FIELD_VEC3)
-            tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
-        return i;
-    }
-    tl_lua_names names = {0};
-    tl_lua_names_fields(&names, fields, count);
-    tl_lua_unknown(L, lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item),
-                   name, &names);
-    return 0;
+    const tl_field *field = tl_lua_field_named(kind, name, index);
+    if (!field) {
+        tl_lua_names names = {0};
+        size_t count;
+        const tl_field *fields = kind->fields(&count);
+        tl_lua_names_fields(&names, fields, count);
+        tl_lua_unknown(L,
+                       lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item),
+                       name, &names);
+    } else if (field->kind > TL_FIELD_VEC3)
+        tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
+    return field;
 }
 
 static void field_value(lua_State *L, const tl_lua_selection *selection, size_t i, size_t field,
@@ -197,11 +169,9 @@ static const double *state_values(lua_State *L, const tl_lua_selection *selectio
 {
     const tl_lua_kind *kind = selection->kind;
     const char *name = tl_lua_text(L, 2, method, "the field's name");
-    size_t count;
-    const tl_field *fields = kind->fields(&count);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(fields[i].name, name) == 0)
-            return NULL;
+    size_t index;
+    if (tl_lua_field_named(kind, name, &index))
+        return NULL;
     tl_model *model = tl_lua_living(L, selection->owner);
     if (kind->values(model, NULL, 0, name, NULL, width) == TL_E_NOT_FOUND)
         return NULL;
@@ -251,11 +221,11 @@ static int selection_sum(lua_State *L)
     const double *values = state_values(L, selection, "sum", &width);
     if (values)
         return sum_states(L, values, selection->count, width);
-    size_t field = number_field(L, selection->kind, "sum"), count;
-    tl_field_kind kind = selection->kind->fields(&count)[field].kind;
+    size_t index;
+    tl_field_kind kind = number_field(L, selection->kind, "sum", &index)->kind;
     tl_field_value sum = {{0}, NULL}, value;
     for (size_t i = 0; i < selection->count; i++) {
-        field_value(L, selection, i, field, &value);
+        field_value(L, selection, i, index, &value);
         for (int k = 0; k < (kind == TL_FIELD_VEC3 ? 3 : 1); k++)
             sum.number[k] += value.number[k];
     }
@@ -271,17 +241,17 @@ static int extreme(lua_State *L, const char *method, double sign)
     const double *values = state_values(L, selection, method, &width);
     if (values)
         return extreme_state(L, method, sign, values, selection->count, width);
-    size_t field = number_field(L, selection->kind, method), count;
-    const tl_field *f = &selection->kind->fields(&count)[field];
+    size_t index;
+    const tl_field *f = number_field(L, selection->kind, method, &index);
     if (f->kind == TL_FIELD_VEC3 || f->kind == TL_FIELD_BOOL)
         tl_lua_fail(L, "%s: the field '%s' is %s; only single numbers are compared", method,
                     f->name, f->kind == TL_FIELD_VEC3 ? "a vector" : "true or false");
     if (selection->count == 0)
         tl_lua_fail(L, "%s: the selection is empty, so '%s' has no value", method, f->name);
     tl_field_value best, value;
-    field_value(L, selection, 0, field, &best);
+    field_value(L, selection, 0, index, &best);
     for (size_t i = 1; i < selection->count; i++) {
-        field_value(L, selection, i, field, &value);
+        field_value(L, selection, i, index, &value);
         if (sign * value.number[0] > sign * best.number[0])
             best = value;
     }
@@ -297,11 +267,6 @@ static int selection_max(lua_State *L)
 static int selection_min(lua_State *L)
 {
     return extreme(L, "min", -1.0);
-}
-
-static int selection_values(lua_State *L)
-{
-    return tl_lua_selection_values(L, self(L, "values"));
 }
 
 /* ---------------------------------------------------------------- verbs of blocks -------------------
@@ -323,15 +288,6 @@ static void sweep_drives(lua_State *L, int model_index)
     lua_pop(L, 1);
 }
 
-tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method)
-{
-    tl_lua_selection *blocks = selection_of(L, TL_LUA_BLOCKS, "blocks", method);
-    tl_lua_living(L, blocks->owner);
-    tl_lua_arity(L, most, method);
-    lua_settop(L, most);
-    return blocks;
-}
-
 /* Says once for each place in a script that a verb had nothing to act on. */
 static void remark_empty(lua_State *L, const char *verb, const char *done)
 {
@@ -351,17 +307,21 @@ static void remark_empty(lua_State *L, const char *verb, const char *done)
     lua_pop(L, 3);
 }
 
-int tl_lua_blocks_acted(lua_State *L, const tl_lua_selection *blocks, const char *verb,
-                        const char *done, tl_status status)
+/* Calls a verb, which is upvalue 2. */
+static int call_verb(lua_State *L)
 {
-    if (blocks->count == 0 && status == TL_OK)
-        remark_empty(L, verb, done);
-    return tl_lua_blocks_done(L, blocks, status);
-}
-
-int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status)
-{
-    tl_lua_ok(L, blocks->owner->model, status);
+    const tl_lua_verb *verb = lua_touserdata(L, lua_upvalueindex(2));
+    tl_lua_selection *blocks = self(L, verb->name);
+    tl_model *model = tl_lua_living(L, blocks->owner);
+    tl_lua_arity(L, verb->arguments + 1, verb->name);
+    lua_settop(L, verb->arguments + 1);
+    if (verb->ask)
+        return verb->ask(L, blocks);
+    tl_status status =
+        verb->plain ? verb->plain(model, blocks->ids, blocks->count) : verb->act(L, blocks);
+    if (verb->done && blocks->count == 0 && status == TL_OK)
+        remark_empty(L, verb->name, verb->done);
+    tl_lua_ok(L, model, status);
     lua_getiuservalue(L, 1, 1);
     sweep_drives(L, lua_gettop(L)); /* the verb may have ended a drive */
     lua_settop(L, 1);
@@ -379,7 +339,7 @@ void tl_lua_selection_filter(lua_State *L, int selection_index, int function_ind
     for (size_t i = 0; i < selection->count; i++) {
         tl_id id = selection->ids[i];
         lua_pushvalue(L, function_index);
-        tl_lua_item_push(L, selection->kind->item_type, model_index, id);
+        tl_lua_item_push(L, selection->kind, model_index, id);
         lua_call(L, 1, 1);
         if (lua_toboolean(L, -1))
             selection->ids[kept++] = id;
@@ -387,6 +347,16 @@ void tl_lua_selection_filter(lua_State *L, int selection_index, int function_ind
     }
     selection->count = kept;
     lua_pop(L, 1);
+}
+
+int tl_lua_read_where(lua_State *L, const tl_lua_kind *kind)
+{
+    if (!lua_istable(L, 2) || lua_getfield(L, 2, "where") == LUA_TNIL)
+        return 0;
+    if (lua_type(L, -1) != LUA_TFUNCTION)
+        tl_lua_fail(L, "%s: where must be a function(%s), not %s", kind->items, kind->item,
+                    tl_lua_describe(L, -1));
+    return lua_gettop(L);
 }
 
 static int selection_where(lua_State *L)
@@ -419,7 +389,7 @@ static int unknown_method(lua_State *L, const tl_lua_kind *kind, const char *nam
     tl_lua_names names = {0};
     for (const luaL_Reg *method = methods; method->name; method++)
         tl_lua_names_add(&names, method->name);
-    for (const luaL_Reg *verb = kind->verbs; verb->name; verb++)
+    for (const tl_lua_verb *verb = kind->verbs; verb->name; verb++)
         tl_lua_names_add(&names, verb->name);
     return tl_lua_unknown(L, lua_pushfstring(L, "a selection of %s has no method", kind->items),
                           name, &names);
@@ -434,7 +404,7 @@ static int selection_index(lua_State *L)
         if (i < 1 || (lua_Unsigned)i > selection->count)
             return 0;
         lua_getiuservalue(L, 1, 1);
-        tl_lua_item_push(L, selection->kind->item_type, 3, selection->ids[i - 1]);
+        tl_lua_item_push(L, selection->kind, 3, selection->ids[i - 1]);
         return 1;
     }
     lua_pushvalue(L, 2);
@@ -459,8 +429,12 @@ void tl_lua_selection_open(lua_State *L, const tl_lua_kind *kind)
         lua_newtable(L);
         lua_pushvalue(L, -2);
         luaL_setfuncs(L, methods, 1);
-        lua_pushvalue(L, -2);
-        luaL_setfuncs(L, kind->verbs, 1);
+        for (const tl_lua_verb *verb = kind->verbs; verb->name; verb++) {
+            lua_pushvalue(L, -2);
+            lua_pushlightuserdata(L, (void *)(uintptr_t)verb);
+            lua_pushcclosure(L, call_verb, 2);
+            lua_setfield(L, -2, verb->name);
+        }
         const luaL_Reg meta[] = {{"__index", selection_index}, {"__newindex", selection_assign},
                                  {"__len", selection_length},  {"__tostring", selection_text},
                                  {"__gc", selection_collect},  {NULL, NULL}};

@@ -11,12 +11,7 @@ tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, i
  * answers true. */
 void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index);
 
-/* The selection of blocks at index 1, of a verb that takes `most` arguments with it. */
-tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method);
-/* Raises on failure; otherwise answers with the selection itself. */
-int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status);
-/* The same of a verb that is of no use to an empty selection: a remark says so, "VERB: ...: no block was DONE". */
-int tl_lua_blocks_acted(lua_State *L, const tl_lua_selection *blocks, const char *verb,
-                        const char *done, tl_status status);
+/* The function that the table at index 2, if there is one, has under `where`: its place on the stack, or 0. */
+int tl_lua_read_where(lua_State *L, const tl_lua_kind *kind);
 
 #endif

@@ -99,10 +99,8 @@ static void tell_weight(lua_State *L, const tl_model *model)
     lua_gc(L, LUA_GCSTEP, kilobytes < INT_MAX / 2 ? (int)kilobytes : INT_MAX / 2);
 }
 
-static int model_copy(lua_State *L)
+static int model_copy(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "copy");
-    tl_lua_arity(L, 1, "copy");
     tl_lua_model *object = tl_lua_model_push(L);
     drive_bindings *all = push_twins(L, 1, 2);
     tl_lua_ok(L, model, tl_model_copy(model, give, all, &object->model));
@@ -116,10 +114,8 @@ static int model_copy(lua_State *L)
 
 /* ---------------------------------------------------------------- files ------------------ */
 
-static int model_save(lua_State *L)
+static int model_save(lua_State *L, tl_model *model)
 {
-    tl_model *model = tl_lua_model_of(L, "save");
-    tl_lua_arity(L, 2, "save");
     const char *path = tl_lua_text(L, 2, "save", "the file");
     tl_lua_ok(L, model, tl_model_save(model, path));
     return 0;
@@ -288,8 +284,7 @@ const tl_lua_topic tl_lua_state_topics[] = {
      .usage = "twin = model:copy()",
      .doc = "The same model once more in memory: equal state, and equal bits after equal calls "
             "from then on. The functions of drives are shared; frames of the copy begin with 0.",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_copy},
+     .method = model_copy},
     {.name = "save",
      .usage = "model:save(\"out/run.talus\")",
      .doc = "Saves all that the next steps depend on, to the bit, compressed and with checksums. "
@@ -297,22 +292,20 @@ const tl_lua_topic tl_lua_state_topics[] = {
             "crash of the machine; folders are made. The model goes on as if it had not been "
             "saved. Histories are saved with all their samples; functions of drives and histories "
             "are not. Frames of files go on with the next number.",
-     .of = TL_LUA_OF_MODEL,
-     .call = model_save},
+     .arguments = 1,
+     .method = model_save},
     {.name = "restore",
      .usage = "model = talus.restore(\"out/run.talus\", {threads = 2})",
      .doc = "The model that a file holds: it goes on as the saved one does, to the bit, on any "
             "number of threads. Laws and damping must be loaded in the version that it was saved "
             "with. A damaged file, and one of another format, is refused.",
      .keys = restore_keys,
-     .of = TL_LUA_OF_MODULE,
      .call = module_restore},
     {.name = "resumed",
      .usage = "model = talus.resumed()",
      .doc = "The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run "
             "--resume SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the "
             "options of talus.restore. The file lies beside the script: SCRIPT.autosave.talus.",
-     .of = TL_LUA_OF_MODULE,
      .call = module_resumed},
     {.name = NULL},
 };

@@ -24,9 +24,19 @@ static const tl_lua_topic *const lists[] = {
 
 const tl_lua_topic *tl_lua_topic_at(size_t i)
 {
-    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
+    for (size_t k = 0; k < TL_LUA_COUNT(lists); k++)
         for (const tl_lua_topic *topic = lists[k]; topic->name; topic++)
             if (i-- == 0)
                 return topic;
     return NULL;
+}
+
+tl_lua_spec tl_lua_topic_spec(const tl_lua_topic *topic)
+{
+    if (topic->spec)
+        return *topic->spec;
+    tl_lua_spec spec = {.keys = topic->keys};
+    if (topic->function)
+        spec.params = tl_function_params(topic->function, &spec.count, NULL);
+    return spec;
 }

@@ -6,5 +6,7 @@
 
 /* The topic number i, in the order of the help; NULL past the last. */
 const tl_lua_topic *tl_lua_topic_at(size_t i);
+/* The parameters and further keys of a topic. */
+tl_lua_spec tl_lua_topic_spec(const tl_lua_topic *topic);
 
 #endif

@@ -549,17 +549,15 @@ static void wait_for_go(lua_State *L, viewing *v)
     v->waits = v->paused = false;
     if (v->commanded)
         log_steps(L, v);
-    tl_lua_watch_end(L, &watch, "view", "");
+    tl_lua_watch_end(L, &watch, TL_E_CANCELLED, "view", "");
     if (!shown)
         lua_error(L);
 }
 
-static int model_view(lua_State *L)
+static int model_view(lua_State *L, tl_model *model)
 {
+    (void)model;
     tl_lua_model *owner = lua_touserdata(L, TL_LUA_AT_MODEL);
-    tl_lua_model_of(L, "view");
-    tl_lua_arity(L, 2, "view");
-    lua_settop(L, 2);
     luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_view_options options = tl_view_options_default();
     tl_lua_spec spec = tl_lua_spec_of("view", push_keys(L, tl_plugin_kind(TL_KIND_SCREEN, 0)));
@@ -600,7 +598,7 @@ const tl_lua_topic tl_lua_view_topics[] = {
      .keys = view_keys,
      .has_type = true,
      .type = TL_KIND_SCREEN,
-     .of = TL_LUA_OF_MODEL,
-     .call = model_view},
+     .arguments = 1,
+     .method = model_view},
     {.name = NULL},
 };
