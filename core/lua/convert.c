@@ -382,13 +382,8 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
     case TL_FIELD_QUAT: tl_lua_push_numbers(L, value->number, 4); break;
     case TL_FIELD_SYM3:
         lua_createtable(L, 0, 6);
-        tl_lua_set_numbers(L, (const tl_lua_number[]){{"xx", n[0]},
-                                                      {"yy", n[1]},
-                                                      {"zz", n[2]},
-                                                      {"xy", n[3]},
-                                                      {"yz", n[4]},
-                                                      {"zx", n[5]},
-                                                      {NULL, 0}});
+        TL_LUA_SET_NUMBERS(L, {"xx", n[0]}, {"yy", n[1]}, {"zz", n[2]}, {"xy", n[3]}, {"yz", n[4]},
+                           {"zx", n[5]});
         break;
     case TL_FIELD_TEXT: lua_pushstring(L, value->text); break;
     case TL_FIELD_IDS:

@@ -51,7 +51,11 @@ void tl_lua_push_vec3(lua_State *L, tl_vec3 v);
 void tl_lua_set_number(lua_State *L, const char *name, double number);
 void tl_lua_set_count(lua_State *L, const char *name, size_t count);
 void tl_lua_set_text(lua_State *L, const char *name, const char *text);
-/* The same of several; a list ends with name = NULL. */
+/* The same of several, {"volume", volume}, ...; a list ends with name = NULL. */
+#define TL_LUA_SET_NUMBERS(L, ...)                                                                 \
+    tl_lua_set_numbers(L, (const tl_lua_number[]){__VA_ARGS__, {NULL, 0}})
+#define TL_LUA_SET_COUNTS(L, ...)                                                                  \
+    tl_lua_set_counts(L, (const tl_lua_count[]){__VA_ARGS__, {NULL, 0}})
 void tl_lua_set_numbers(lua_State *L, const tl_lua_number *numbers);
 void tl_lua_set_counts(lua_State *L, const tl_lua_count *counts);
 void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);

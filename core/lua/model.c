@@ -65,17 +65,11 @@ static int model_text(lua_State *L)
 /* Writes a summary into the table at the top of the stack. */
 static void set_summary(lua_State *L, const tl_generate_summary *s)
 {
-    tl_lua_set_counts(L, (const tl_lua_count[]){{"before", s->before},
-                                                {"after", s->after},
-                                                {"cuts", s->cuts},
-                                                {"refused", s->refused},
-                                                {"coincident", s->coincident},
-                                                {NULL, 0}});
-    tl_lua_set_numbers(L, (const tl_lua_number[]){{"smallest_volume", s->smallest_volume},
-                                                  {"smallest_edge", s->smallest_edge},
-                                                  {"smallest_face", s->smallest_face},
-                                                  {"volume_error", s->volume_error},
-                                                  {NULL, 0}});
+    TL_LUA_SET_COUNTS(L, {"before", s->before}, {"after", s->after}, {"cuts", s->cuts},
+                      {"refused", s->refused}, {"coincident", s->coincident});
+    TL_LUA_SET_NUMBERS(L, {"smallest_volume", s->smallest_volume},
+                       {"smallest_edge", s->smallest_edge}, {"smallest_face", s->smallest_face},
+                       {"volume_error", s->volume_error});
 }
 
 /* What a writer has done that was cancelled. */
@@ -206,9 +200,7 @@ static int push_timestep_report(lua_State *L, tl_model *model)
     tl_lua_set_block(L, "block", report.block);
     tl_lua_set_block(L, "partner", report.partner);
     if (report.block != TL_NO_ID)
-        tl_lua_set_numbers(L, (const tl_lua_number[]){{"mass", report.mass},
-                                                      {"stiffness", report.stiffness},
-                                                      {NULL, 0}});
+        TL_LUA_SET_NUMBERS(L, {"mass", report.mass}, {"stiffness", report.stiffness});
     tl_lua_push_timestep(L, &report);
     lua_setfield(L, -2, "message");
     return 1;
@@ -233,9 +225,7 @@ static int push_mass_added(lua_State *L, const tl_model *model)
     lua_setfield(L, -2, "on");
     if (isnan(added.dt))
         return 1;
-    tl_lua_set_numbers(
-        L, (const tl_lua_number[]){
-               {"dt", added.dt}, {"most", added.most}, {"added", added.share}, {NULL, 0}});
+    TL_LUA_SET_NUMBERS(L, {"dt", added.dt}, {"most", added.most}, {"added", added.share});
     tl_lua_set_count(L, "bodies", added.bodies);
     if (added.worst != TL_NO_ID) {
         lua_createtable(L, 0, 2);
@@ -265,14 +255,10 @@ static int model_energy(lua_State *L, tl_model *model)
     tl_energy energy;
     tl_lua_ok(L, model, tl_model_energy(model, &energy));
     lua_createtable(L, 0, 7);
-    tl_lua_set_numbers(L, (const tl_lua_number[]){{"kinetic", energy.kinetic},
-                                                  {"potential", energy.potential},
-                                                  {"stored", energy.stored},
-                                                  {"friction", energy.friction},
-                                                  {"damping", energy.damping},
-                                                  {"external", energy.external},
-                                                  {"balance", energy.balance},
-                                                  {NULL, 0}});
+    TL_LUA_SET_NUMBERS(L, {"kinetic", energy.kinetic}, {"potential", energy.potential},
+                       {"stored", energy.stored}, {"friction", energy.friction},
+                       {"damping", energy.damping}, {"external", energy.external},
+                       {"balance", energy.balance});
     return 1;
 }
 

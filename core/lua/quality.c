@@ -84,8 +84,7 @@ static void set_refused_cuts(lua_State *L, tl_model *model, const tl_quality *q)
         tl_lua_set_count(L, "block", cut->block);
         tl_lua_set_vec3(L, "normal", cut->normal);
         tl_lua_set_vec3(L, "point", cut->point);
-        tl_lua_set_numbers(L, (const tl_lua_number[]){
-                                  {"thickness", cut->thickness}, {"limit", cut->limit}, {NULL, 0}});
+        TL_LUA_SET_NUMBERS(L, {"thickness", cut->thickness}, {"limit", cut->limit});
         push_reason(L, model, cut);
         lua_setfield(L, -2, "reason");
         lua_rawseti(L, -2, (lua_Integer)i + 1);
@@ -145,14 +144,9 @@ static int module_report(lua_State *L)
     tl_quality q;
     tl_lua_ok(L, model, tl_model_quality(model, &q));
     lua_createtable(L, 0, 20);
-    tl_lua_set_counts(L, (const tl_lua_count[]){{"blocks", q.blocks},
-                                                {"bodies", q.bodies},
-                                                {"cuts", q.cuts},
-                                                {"refused", q.refused},
-                                                {"coincident", q.coincident},
-                                                {NULL, 0}});
-    tl_lua_set_numbers(L, (const tl_lua_number[]){
-                              {"volume", q.volume}, {"volume_error", q.volume_error}, {NULL, 0}});
+    TL_LUA_SET_COUNTS(L, {"blocks", q.blocks}, {"bodies", q.bodies}, {"cuts", q.cuts},
+                      {"refused", q.refused}, {"coincident", q.coincident});
+    TL_LUA_SET_NUMBERS(L, {"volume", q.volume}, {"volume_error", q.volume_error});
     for (size_t i = 0; i < EXTREMES; i++) {
         tl_extreme e = extreme_of(&q, &extremes[i]);
         tl_lua_set_number(L, extremes[i].field, e.value);
@@ -177,18 +171,14 @@ static int free_filter_result(lua_State *L)
 static void push_filter_result(lua_State *L, const tl_filter_result *r)
 {
     lua_createtable(L, 0, 5);
-    tl_lua_set_counts(
-        L, (const tl_lua_count[]){
-               {"found", r->count}, {"deleted", r->deleted}, {"joined", r->joined}, {NULL, 0}});
+    TL_LUA_SET_COUNTS(L, {"found", r->count}, {"deleted", r->deleted}, {"joined", r->joined});
     tl_lua_set_number(L, "volume", r->volume);
     lua_createtable(L, (int)r->count, 0);
     for (size_t i = 0; i < r->count; i++) {
         const tl_sliver *s = &r->slivers[i];
         lua_createtable(L, 0, 6);
         tl_lua_set_count(L, "block", s->block); /* a number: it may have been deleted */
-        tl_lua_set_numbers(
-            L, (const tl_lua_number[]){
-                   {"volume", s->volume}, {"edge", s->edge}, {"aspect", s->aspect}, {NULL, 0}});
+        TL_LUA_SET_NUMBERS(L, {"volume", s->volume}, {"edge", s->edge}, {"aspect", s->aspect});
         const char *which[] = {s->small ? "volume" : NULL, s->short_edge ? "edge" : NULL,
                                s->thin ? "aspect" : NULL};
         lua_createtable(L, 3, 0);
@@ -302,9 +292,7 @@ static void set_faces(lua_State *L, tl_model *model, const tl_keyblock *block)
         lua_createtable(L, 0, 4);
         tl_lua_set_text(L, "joint", tl_tag_name(model, face->joint));
         tl_lua_set_vec3(L, "normal", face->normal);
-        tl_lua_set_numbers(L, (const tl_lua_number[]){{"area", face->area},
-                                                      {"normal_force", face->normal_force},
-                                                      {NULL, 0}});
+        TL_LUA_SET_NUMBERS(L, {"area", face->area}, {"normal_force", face->normal_force});
         lua_rawseti(L, -2, (lua_Integer)k + 1);
     }
     lua_setfield(L, -2, "faces");
@@ -323,11 +311,8 @@ static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *al
         lua_createtable(L, 0, 10);
         tl_lua_set_block(L, "block", block->block);
         tl_lua_set_text(L, "mode", modes[block->mode]);
-        tl_lua_set_numbers(L, (const tl_lua_number[]){{"safety", block->safety},
-                                                      {"volume", block->volume},
-                                                      {"mass", block->mass},
-                                                      {"driving_force", block->driving},
-                                                      {NULL, 0}});
+        TL_LUA_SET_NUMBERS(L, {"safety", block->safety}, {"volume", block->volume},
+                           {"mass", block->mass}, {"driving_force", block->driving});
         tl_lua_set_vec3(L, "force", block->force);
         if (block->mode != TL_KEYBLOCK_STABLE)
             tl_lua_set_vec3(L, "direction", block->direction);
@@ -396,20 +381,10 @@ static int model_verdict(lua_State *L, tl_model *model)
     tl_lua_set_text(L, "text", text);
     tl_lua_set_text(L, "stage", v.stage);
     tl_lua_set_vec3(L, "direction", v.direction);
-    tl_lua_set_numbers(L, (const tl_lua_number[]){{"ratio", v.ratio},
-                                                  {"closed", v.closed},
-                                                  {"volume", v.volume},
-                                                  {"displacement", v.displacement},
-                                                  {"slip", v.slip},
-                                                  {"opening", v.opening},
-                                                  {NULL, 0}});
-    tl_lua_set_counts(L, (const tl_lua_count[]){{"moved", v.moved},
-                                                {"farthest", v.farthest},
-                                                {"slipped", v.slipped},
-                                                {"opened", v.opened},
-                                                {"contacts", v.contacts},
-                                                {"slipping", v.slipping},
-                                                {NULL, 0}});
+    TL_LUA_SET_NUMBERS(L, {"ratio", v.ratio}, {"closed", v.closed}, {"volume", v.volume},
+                       {"displacement", v.displacement}, {"slip", v.slip}, {"opening", v.opening});
+    TL_LUA_SET_COUNTS(L, {"moved", v.moved}, {"farthest", v.farthest}, {"slipped", v.slipped},
+                      {"opened", v.opened}, {"contacts", v.contacts}, {"slipping", v.slipping});
     return 1;
 }
 
@@ -459,12 +434,9 @@ static int model_profile(lua_State *L, tl_model *model)
     TL_PHASES(SET)
 #undef SET
     lua_setfield(L, -2, "seconds");
-    tl_lua_set_counts(L, (const tl_lua_count[]){{"steps", (size_t)profile.steps},
-                                                {"pairs", profile.pairs},
-                                                {"contacts", profile.contacts},
-                                                {"loaded", profile.loaded},
-                                                {"points", profile.points},
-                                                {NULL, 0}});
+    TL_LUA_SET_COUNTS(L, {"steps", (size_t)profile.steps}, {"pairs", profile.pairs},
+                      {"contacts", profile.contacts}, {"loaded", profile.loaded},
+                      {"points", profile.points});
     return 1;
 }
 

@@ -196,13 +196,9 @@ static void run_end(run *r)
 static void set_numbers(lua_State *L, const tl_solve_result *result)
 {
     tl_lua_set_count(L, "cycles", (size_t)result->cycles);
-    tl_lua_set_numbers(L, (const tl_lua_number[]){{"ratio", result->ratio},
-                                                  {"ratio_maximum", result->ratio_maximum},
-                                                  {"ratio_local", result->ratio_local},
-                                                  {"time", result->time},
-                                                  {"wall", result->wall},
-                                                  {"max_velocity", result->max_velocity},
-                                                  {NULL, 0}});
+    TL_LUA_SET_NUMBERS(L, {"ratio", result->ratio}, {"ratio_maximum", result->ratio_maximum},
+                       {"ratio_local", result->ratio_local}, {"time", result->time},
+                       {"wall", result->wall}, {"max_velocity", result->max_velocity});
 }
 
 /* Fields of a result that are blocks. */
