@@ -39,13 +39,11 @@ static size_t read_numbers(const char *text, double *numbers)
     return 0;
 }
 
-static int read_word(const char *text, word *w, tl_value *value)
+static bool read_word(const char *text, word *w, tl_value *value)
 {
     const char *equals = strchr(text, '=');
-    if (!equals || equals == text || (size_t)(equals - text) >= sizeof w->key) {
-        tl_command_fail("check: '%s' is not NAME=VALUE", text);
-        return 0;
-    }
+    if (!equals || equals == text || (size_t)(equals - text) >= sizeof w->key)
+        return tl_command_fail("check: '%s' is not NAME=VALUE", text);
     memcpy(w->key, text, (size_t)(equals - text));
     w->key[equals - text] = '\0';
     size_t count = read_numbers(equals + 1, w->numbers);
@@ -60,7 +58,7 @@ static int read_word(const char *text, word *w, tl_value *value)
         *value = tl_arg_bool(w->key, equals[1] == 't');
     else
         *value = tl_arg_text(w->key, equals + 1);
-    return 1;
+    return true;
 }
 
 typedef struct listing {
@@ -94,7 +92,7 @@ int tl_command_check(int argc, char **argv)
     int given = argc - 1;
     word *words = calloc((size_t)given + 1, sizeof *words);
     tl_value *values = calloc((size_t)given + 1, sizeof *values);
-    int readable = words && values;
+    bool readable = words && values;
     for (int i = 0; i < given && readable; i++)
         readable = read_word(argv[i + 1], &words[i], &values[i]);
     tl_error error = {TL_OK, "out of memory"};

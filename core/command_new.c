@@ -35,55 +35,50 @@ typedef struct project {
     char prefix[PATH_MAX];    /* where Talus is installed; "": not installed */
 } project;
 
-static int fail(const char *format, const char *a, const char *b)
-{
-    char text[2 * PATH_MAX];
-    snprintf(text, sizeof text, format, a, b); /* formats are of this file */
-    tl_command_fail("new: %s", text);
-    return 0;
-}
-
 /* ---------------------------------------------------------------- what is asked for ------ */
 
-static int read_type(const char *word, tl_kind_type *type)
+static bool read_type(const char *word, tl_kind_type *type)
 {
     for (int i = 0; i < 3; i++)
         if (strcmp(word, types[i]) == 0) {
             *type = (tl_kind_type)i;
-            return 1;
+            return true;
         }
-    return fail("'%s' is not law, damping or generator%s", word, "");
+    return tl_command_fail("new: '%s' is not law, damping or generator", word);
 }
 
 /* A name of a kind, that no kind has, and that CMake lets a target have. */
-static int check_name(tl_kind_type type, const char *name)
+static bool check_name(tl_kind_type type, const char *name)
 {
     static const char *const taken[] = {"all",           "test",    "help",  "clean",
                                         "install",       "package", "check", "edit_cache",
                                         "rebuild_cache", "m"};
     size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789_");
     if (!islower((unsigned char)name[0]) || name[length] || length > MOST_NAME)
-        return fail("the name '%s' must be small letters, digits and _, up to 60, and begin with a "
-                    "letter%s",
-                    name, "");
+        return tl_command_fail(
+            "new: the name '%s' must be small letters, digits and _, up to 60, and begin with a "
+            "letter",
+            name);
     for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
         if (strcmp(name, taken[i]) == 0)
-            return fail("the name '%s' means something else to CMake or to the plugin%s", name, "");
+            return tl_command_fail(
+                "new: the name '%s' means something else to CMake or to the plugin", name);
     if (tl_plugins_load_default() != TL_OK)
-        return fail("out of memory while the plugins are loaded%s%s", "", "");
+        return tl_command_fail("new: out of memory while the plugins are loaded");
     if (tl_plugin_find(type, name))
-        return fail("a %s '%s' is there already; take another name", types[type], name);
-    return 1;
+        return tl_command_fail("new: a %s '%s' is there already; take another name", types[type],
+                               name);
+    return true;
 }
 
-static int is_folder(const char *path)
+static bool is_folder(const char *path)
 {
     struct stat info;
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
 /* Where the templates are, seen from the program's own file. */
-static int find_templates(project *p)
+static bool find_templates(project *p)
 {
     static const char *const places[] = {"/templates", "/../share/talus/templates"};
     char here[PATH_MAX], file[PATH_MAX + 64];
@@ -105,10 +100,10 @@ static int find_templates(project *p)
             if (!realpath(file, p->prefix))
                 p->prefix[0] = '\0';
         }
-        return 1;
+        return true;
     }
-    return fail("the templates are in none of the places known from %s%s",
-                slash ? here : "the program", "");
+    return tl_command_fail("new: the templates are in none of the places known from %s",
+                           slash ? here : "the program");
 }
 
 /* ---------------------------------------------------------------- writing ---------------- */
@@ -137,7 +132,7 @@ static void place_of(const char *folder, const char *pattern, const char *name,
 }
 
 /* talus.write_file(path, text) */
-static int write_file(const project *p, const char *pattern)
+static bool write_file(const project *p, const char *pattern)
 {
     char from[PATH_MAX + 128], to[PATH_MAX + 128];
     char *text = calloc(1, MOST_TEXT);
@@ -150,40 +145,40 @@ static int write_file(const project *p, const char *pattern)
         fclose(in);
     if (!whole) {
         free(text);
-        return fail("the template %s cannot be read%s", from, "");
+        return tl_command_fail("new: the template %s cannot be read", from);
     }
     FILE *out = fopen(to, "wbx");
     if (!out) {
         free(text);
-        return fail("%s cannot be written: %s", to, strerror(errno));
+        return tl_command_fail("new: %s cannot be written: %s", to, strerror(errno));
     }
     write_filled(p, text, out);
     free(text);
     int written = !ferror(out);
     written = fclose(out) == 0 && written;
-    return written ? 1 : fail("%s cannot be written%s", to, "");
+    return written || tl_command_fail("new: %s cannot be written", to);
 }
 
 static const char *const patterns[] = {"CMakeLists.txt", "%s.c", "test_%s.lua", "README.md"};
 enum { FILES = sizeof patterns / sizeof *patterns };
 
 /* All files or none. */
-static int write_project(const project *p)
+static bool write_project(const project *p)
 {
     char path[PATH_MAX + 128];
     if (mkdir(p->folder, 0777) != 0)
-        return fail("the folder %s cannot be made: %s", p->folder, strerror(errno));
+        return tl_command_fail("new: the folder %s cannot be made: %s", p->folder, strerror(errno));
     int written = 0;
     while (written < FILES && write_file(p, patterns[written]))
         written++;
     if (written == FILES)
-        return 1;
+        return true;
     for (int i = 0; i <= written; i++) {
         place_of(p->folder, patterns[i], p->name, path);
         unlink(path);
     }
     rmdir(p->folder);
-    return 0;
+    return false;
 }
 
 /* A name as a shell takes it for one word. */
@@ -243,7 +238,7 @@ int tl_command_new(int argc, char **argv)
     if (!read_type(argv[0], &p.type) || !check_name(p.type, p.name))
         return EXIT_FAILURE;
     if (strlen(p.folder) >= PATH_MAX || p.folder[0] == '\0') {
-        fail("the name of the folder is %s%s", p.folder[0] ? "too long" : "empty", "");
+        tl_command_fail("new: the name of the folder is %s", p.folder[0] ? "too long" : "empty");
         return EXIT_FAILURE;
     }
     snprintf(p.word, sizeof p.word, "my_%s", types[p.type]);

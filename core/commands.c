@@ -4,11 +4,10 @@
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <talus/number.h>
 #include <talus/text.h>
 
-int tl_command_fail(const char *format, ...)
+bool tl_command_fail(const char *format, ...)
 {
     char sentence[3 * PATH_MAX];
     va_list arguments;
@@ -17,5 +16,5 @@ int tl_command_fail(const char *format, ...)
     va_end(arguments);
     tl_text_clean(sentence, sizeof sentence);
     fprintf(stderr, "talus: %s\n", sentence);
-    return EXIT_FAILURE;
+    return false;
 }

@@ -55,6 +55,11 @@ static void close_output(void)
     _exit(EXIT_FAILURE);
 }
 
+static int exit_of(bool success)
+{
+    return success ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
 static int print_version(void)
 {
     printf("Talus %s\nplugin interface %u.%u\n%s\ncompiler: %s\nbuild: %s\n", TALUS_VERSION,
@@ -69,10 +74,8 @@ static bool read_threads(const char *text, int64_t *threads)
     char *end;
     errno = 0;
     long number = strtol(text, &end, 10);
-    if (errno || end == text || *end || number < 1 || number > 256) {
-        tl_command_fail("--threads: '%s' is not a whole number in [1, 256]", text);
-        return false;
-    }
+    if (errno || end == text || *end || number < 1 || number > 256)
+        return tl_command_fail("--threads: '%s' is not a whole number in [1, 256]", text);
     *threads = number;
     return true;
 }
@@ -82,10 +85,8 @@ static bool read_minutes(const char *text, double *seconds)
 {
     const char *end;
     double minutes = tl_number_read(text, &end);
-    if (end == text || *end || !(minutes > 0 && minutes <= 1e6)) {
-        tl_command_fail("--autosave: '%s' is not a number of minutes in (0, 1e6]", text);
-        return false;
-    }
+    if (end == text || *end || !(minutes > 0 && minutes <= 1e6))
+        return tl_command_fail("--autosave: '%s' is not a number of minutes in (0, 1e6]", text);
     *seconds = 60 * minutes;
     return true;
 }
@@ -95,8 +96,7 @@ static bool load_plugins(void)
 {
     if (tl_plugins_load_default() == TL_OK)
         return true;
-    tl_command_fail("out of memory while the plugins are loaded");
-    return false;
+    return tl_command_fail("out of memory while the plugins are loaded");
 }
 
 static bool load_plugin(const char *path)
@@ -106,8 +106,7 @@ static bool load_plugin(const char *path)
         return false;
     if (tl_plugin_load(path, &error) == TL_OK)
         return true;
-    tl_command_fail("%s", error.text);
-    return false;
+    return tl_command_fail("%s", error.text);
 }
 
 static bool unknown_option(const char *word)
@@ -116,10 +115,8 @@ static bool unknown_option(const char *word)
                                         "-v",        "-e",      "--autosave", "--resume"};
     const char *nearest = tl_nearest_name(word, known, sizeof known / sizeof known[0]);
     if (nearest)
-        tl_command_fail("unknown option '%s'; did you mean '%s'?", word, nearest);
-    else
-        tl_command_fail("unknown option '%s'; `talus help` lists them", word);
-    return false;
+        return tl_command_fail("unknown option '%s'; did you mean '%s'?", word, nearest);
+    return tl_command_fail("unknown option '%s'; `talus help` lists them", word);
 }
 
 /* Reads the option at argv[o->next] and goes past it; false after a message. */
@@ -136,10 +133,9 @@ static bool read_option(int argc, char **argv, options *o)
         o->verbose = true;
     else if (!takes_value)
         return unknown_option(word);
-    else if (o->next == argc) {
-        tl_command_fail("the option %s needs a value", word);
-        return false;
-    } else if (strcmp(word, "--threads") == 0)
+    else if (o->next == argc)
+        return tl_command_fail("the option %s needs a value", word);
+    else if (strcmp(word, "--threads") == 0)
         return read_threads(argv[o->next++], &o->lua.threads);
     else if (strcmp(word, "--autosave") == 0)
         return read_minutes(argv[o->next++], &o->lua.autosave);
@@ -183,7 +179,7 @@ static int run_script(lua_State *L, int argc, char **argv, const options *o)
     const char *script = argv[o->next];
     bool standard_input = strcmp(script, "-") == 0;
     if (!standard_input && access(script, R_OK) != 0)
-        return tl_command_fail("cannot read the script '%s': %s", script, strerror(errno));
+        return exit_of(tl_command_fail("cannot read the script '%s': %s", script, strerror(errno)));
     int status = luaL_loadfile(L, standard_input ? NULL : script);
     return run_chunk(L, status, argc, argv, o->next + 1, o);
 }
@@ -248,7 +244,7 @@ static int help(const char *topic)
     tl_error error;
     if (!load_plugins())
         return EXIT_FAILURE;
-    return tl_lua_help(topic, &error) ? EXIT_SUCCESS : tl_command_fail("%s", error.text);
+    return exit_of(tl_lua_help(topic, &error) || tl_command_fail("%s", error.text));
 }
 
 /* Reads the options that come next. false: the program ends, with that status. */
@@ -272,20 +268,14 @@ static bool read_options(int argc, char **argv, options *o, int *status)
 static bool prepare_saves(int argc, char **argv, options *o, bool runs)
 {
     bool script = o->next < argc && !o->chunk && strcmp(argv[o->next], "-") != 0;
-    if (runs && !script) {
-        tl_command_fail(
+    if (runs && !script)
+        return tl_command_fail(
             "%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
-        return false;
-    }
-    if (!script && (o->lua.autosave > 0 || o->lua.resume)) {
-        tl_command_fail(
+    if (!script && (o->lua.autosave > 0 || o->lua.resume))
+        return tl_command_fail(
             "%s", "--autosave and --resume are for a script in a file, beside which it saves");
-        return false;
-    }
-    if (script && !(o->lua.save_path = tl_lua_autosave_path(argv[o->next]))) {
-        tl_command_fail("%s", "not enough memory");
-        return false;
-    }
+    if (script && !(o->lua.save_path = tl_lua_autosave_path(argv[o->next])))
+        return tl_command_fail("%s", "not enough memory");
     return true;
 }
 
@@ -319,7 +309,7 @@ int main(int argc, char **argv)
         return EXIT_FAILURE;
     lua_State *L = luaL_newstate();
     if (!L)
-        return tl_command_fail("%s", "not enough memory to start Lua");
+        return exit_of(tl_command_fail("not enough memory to start Lua"));
     int exit_status = run(L, argc, argv, &o);
     lua_close(L);
     free((char *)(uintptr_t)o.lua.save_path);

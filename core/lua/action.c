@@ -11,7 +11,6 @@
 
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/living.h"
 #include "lua/selection.h"
 

@@ -5,7 +5,6 @@
 #include "lua/action.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/item.h"
 #include "lua/living.h"
 #include "lua/selection.h"
@@ -154,7 +153,7 @@ typedef struct block_nested {
 
 static const tl_halfspace *read_halfspace(lua_State *L, const char *key, tl_halfspace *out)
 {
-    if (lua_getfield(L, 2, key) == LUA_TNIL)
+    if (tl_lua_option(L, 2, key) == LUA_TNIL)
         return NULL;
     tl_lua_spec spec = {lua_pushfstring(L, "blocks, %s", key), halfspace_params,
                         TL_LUA_COUNT(halfspace_params), NULL};
@@ -168,7 +167,7 @@ bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *
         TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
         TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
     };
-    if (lua_getfield(L, table, key) == LUA_TNIL)
+    if (tl_lua_option(L, table, key) == LUA_TNIL)
         return false;
     tl_lua_spec spec = {lua_pushfstring(L, "%s, %s", function, key), params, TL_LUA_COUNT(params),
                         NULL};
@@ -211,7 +210,7 @@ static tl_id read_id(lua_State *L, int index)
 static block_ids read_ids(lua_State *L)
 {
     block_ids ids = {NULL, 0};
-    if (lua_getfield(L, 2, "id") == LUA_TNIL)
+    if (tl_lua_option(L, 2, "id") == LUA_TNIL)
         return ids;
     int given = lua_gettop(L);
     bool many = lua_istable(L, given);
@@ -243,7 +242,7 @@ static void keep_ids(tl_lua_selection *found, const block_ids *ids)
 /* The filter's `hidden`: -1 any, 0 visible, 1 hidden ones. */
 static int read_hidden(lua_State *L)
 {
-    int type = lua_getfield(L, 2, "hidden");
+    int type = tl_lua_option(L, 2, "hidden");
     if (type == LUA_TNIL)
         return 0;
     if (type == LUA_TBOOLEAN)
@@ -265,8 +264,6 @@ static void read_filter(lua_State *L, block_args *args, block_nested *nested,
     filter->fixed = args->fixed;
     if (!isnan(args->containing.x))
         filter->containing = &args->containing;
-    if (!lua_istable(L, 2))
-        return;
     if (tl_lua_read_box(L, 2, "blocks", "inside", &nested->inside))
         filter->inside = &nested->inside;
     filter->above = read_halfspace(L, "above", &nested->above);
@@ -310,9 +307,7 @@ static int model_blocks(lua_State *L, tl_model *model)
     tl_block_filter filter;
     luaL_checkstack(L, 32, "too many values");
     read_filter(L, &args, &nested, &filter);
-    block_ids ids = {NULL, 0};
-    if (lua_istable(L, 2))
-        ids = read_ids(L);
+    block_ids ids = read_ids(L);
     if (ids.list && ids.count == 1)
         filter.id = ids.list[0];
     int32_t side = args.boundary ? tl_lua_side(L, "blocks", args.boundary) : TL_SIDE_ANY;

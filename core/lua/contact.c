@@ -4,7 +4,6 @@
 #include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/item.h"
 #include "lua/living.h"
 #include "lua/selection.h"
@@ -192,7 +191,7 @@ static const tl_id *read_side(lua_State *L, const tl_lua_model *owner, int side,
 
 static void read_between(lua_State *L, tl_contact_filter *filter)
 {
-    if (lua_getfield(L, 2, "between") == LUA_TNIL)
+    if (tl_lua_option(L, 2, "between") == LUA_TNIL)
         return;
     if (!lua_istable(L, -1) || lua_rawlen(L, -1) != 2)
         tl_lua_fail(L, "contacts: between must be a list of two selections of blocks, not %s",
@@ -214,8 +213,7 @@ static int model_contacts(lua_State *L, tl_model *model)
     tl_lua_read(L, 2, &contacts_spec, false, &args);
     tl_contact_filter filter = tl_contact_filter_default();
     filter.joint = args.joint;
-    if (lua_istable(L, 2))
-        read_between(L, &filter);
+    read_between(L, &filter);
     int where = tl_lua_read_where(L, &tl_lua_contact_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_contact_kind, 1);
     tl_lua_ok(L, model, tl_contacts_select(model, &filter, &found->ids, &found->count));

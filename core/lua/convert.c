@@ -6,7 +6,6 @@
 #include "lua/convert.h"
 
 #include "lua/fail.h"
-#include "lua/front.h"
 
 #include <float.h>
 #include <math.h>
@@ -258,7 +257,7 @@ void tl_lua_read_function(lua_State *L, int index, const char *function, const t
 bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const char *key,
                         tl_sym3 *out)
 {
-    if (lua_getfield(L, table, key) == LUA_TNIL)
+    if (tl_lua_option(L, table, key) == LUA_TNIL)
         return false;
     tl_lua_spec tensor = tl_lua_spec_of("tensor", NULL);
     tensor.context = lua_pushfstring(L, "%s, %s", function, key);
@@ -283,6 +282,14 @@ void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const cha
     param->flags |= TL_PARAM_REQUIRED;
     tl_lua_spec one = {.context = spec->context, .params = param, .count = 1};
     tl_lua_read(L, -2, &one, false, out);
+}
+
+int tl_lua_option(lua_State *L, int table, const char *key)
+{
+    if (lua_istable(L, table))
+        return lua_getfield(L, table, key);
+    lua_pushnil(L);
+    return LUA_TNIL;
 }
 
 const char *tl_lua_text(lua_State *L, int index, const char *function, const char *what)

@@ -34,6 +34,8 @@ bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const cha
                         tl_sym3 *out);
 /* tl_lua_read for one value at `index`, given the name `key`. */
 void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const char *key, void *out);
+/* Pushes what the table at `table` has under a key, nil when there is no table; gives its type. */
+int tl_lua_option(lua_State *L, int table, const char *key);
 /* Raises unless the argument is a string without a zero byte. */
 const char *tl_lua_text(lua_State *L, int index, const char *function, const char *what);
 /* Raises when more than `most` arguments were given (the object itself counted). */

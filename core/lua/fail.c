@@ -1,8 +1,6 @@
 /* fail.c - how the front end raises errors: "file:line: " of the script, then one sentence. */
 #include "lua/fail.h"
 
-#include "lua/front.h"
-
 #include <string.h>
 
 /* Pushes "file:line: " of the nearest Lua code up the stack, so that a call through pcall or a

@@ -4,7 +4,6 @@
 
 #include "lua/contact.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/topics.h"
 
 #include <ctype.h>

@@ -8,7 +8,6 @@
 #include "lua/contact.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/item.h"
 #include "lua/living.h"
 
@@ -114,13 +113,14 @@ static const struct {
 
 enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 
-/* Names a quantity that a model can be asked for, from 0; NULL past the last one. */
-static const char *history_quantity(size_t i)
+/* The place of a quantity in the table; QUANTITIES: it has none of that name. */
+static size_t quantity_named(const char *name)
 {
-    return i < QUANTITIES ? quantities[i].name : NULL;
+    size_t i = 0;
+    while (i < QUANTITIES && strcmp(quantities[i].name, name) != 0)
+        i++;
+    return i;
 }
-
-/* ---------------------------------------------------------------- one sample ------------- */
 
 static const tl_lua_kind *history_kind(const tl_history *h)
 {
@@ -133,8 +133,6 @@ static const tl_field *history_field(const tl_history *h, size_t *index)
     const tl_field *field = tl_lua_field_named(history_kind(h), h->asked, index);
     return field && field->kind <= TL_FIELD_VEC3 ? field : NULL;
 }
-
-/* ---------------------------------------------------------------- one sample ------------- */
 
 /* Places on the stack while the function of a history is called. */
 enum { AT_MODEL = 1, AT_HISTORY, AT_FUNCTION, AT_VALUES };
@@ -178,14 +176,10 @@ static void ask_function(lua_State *L, const tl_history *h, latest *now)
             : list ? "an empty list"
                    : "nothing");
     for (size_t i = 0; i < count; i++) {
-        int index = AT_VALUES + (int)i;
-        if (list) {
-            lua_rawgeti(L, AT_VALUES, (lua_Integer)i + 1);
-            index = lua_gettop(L);
-        }
-        now->number[i] = read_number(L, h, index);
         if (list)
-            lua_pop(L, 1);
+            lua_rawgeti(L, AT_VALUES, (lua_Integer)i + 1);
+        now->number[i] = read_number(L, h, list ? -1 : AT_VALUES + (int)i);
+        lua_settop(L, AT_FUNCTION + given);
     }
     now->width = count;
     now->list = list || given > 1;
@@ -198,9 +192,7 @@ static void ask_function(lua_State *L, const tl_history *h, latest *now)
 
 static void ask_model(lua_State *L, tl_model *model, const tl_history *h, latest *now)
 {
-    size_t index = 0;
-    while (strcmp(quantities[index].name, h->asked) != 0)
-        index++;
+    size_t index = quantity_named(h->asked);
     size_t offset = quantities[index].offset;
     now->width = 1;
     if (quantities[index].origin == OF_CONTACTS) {
@@ -227,17 +219,12 @@ static void tell_lost(lua_State *L, tl_model *model, tl_history *h, tl_id id, si
     if (h->lost || h->source != TL_FROM_BLOCKS) /* contacts come and go */
         return;
     h->lost = true;
-    char text[300];
-    long long cycle = tl_model_cycles(model);
+    char text[300], left[60] = "nan";
     if (gone < h->id_count)
-        snprintf(text, sizeof text,
-                 "history '%s': %s %u no longer exists; from cycle %lld on its values are of the "
-                 "%s that are left",
-                 h->name, kind->item, id, cycle, kind->items);
-    else
-        snprintf(text, sizeof text,
-                 "history '%s': %s %u no longer exists; from cycle %lld on its values are nan",
-                 h->name, kind->item, id, cycle);
+        snprintf(left, sizeof left, "of the %s that are left", kind->items);
+    snprintf(text, sizeof text,
+             "history '%s': %s %u no longer exists; from cycle %lld on its values are %s", h->name,
+             kind->item, id, (long long)tl_model_cycles(model), left);
     tl_lua_log(tl_lua_options_of(L), text);
 }
 
@@ -364,15 +351,13 @@ static void read_value(lua_State *L, tl_history *h)
             h->name, tl_lua_describe(L, -1));
     h->source = TL_FROM_MODEL;
     const char *name = tl_lua_text(L, -1, "history", "value");
-    tl_lua_names names = {0};
-    const char *known;
-    for (size_t i = 0; (known = history_quantity(i)) != NULL; i++) {
-        if (strcmp(known, name) == 0) {
-            strcpy(h->asked, name);
-            return;
-        }
-        tl_lua_names_add(&names, known);
+    if (quantity_named(name) < QUANTITIES) {
+        strcpy(h->asked, name);
+        return;
     }
+    tl_lua_names names = {0};
+    for (size_t i = 0; i < QUANTITIES; i++)
+        tl_lua_names_add(&names, quantities[i].name);
     tl_lua_unknown(L, lua_pushfstring(L, "history '%s': there is no value", h->name), name, &names);
 }
 
@@ -544,7 +529,7 @@ void tl_lua_histories_share(lua_State *L, int from, int to)
 void tl_lua_histories_given(lua_State *L)
 {
     int top = lua_gettop(L);
-    if (!lua_istable(L, 2) || lua_getfield(L, 2, "histories") == LUA_TNIL) {
+    if (tl_lua_option(L, 2, "histories") == LUA_TNIL) {
         lua_settop(L, top);
         return;
     }
@@ -566,28 +551,13 @@ void tl_lua_histories_given(lua_State *L)
 /* Whether there is what a history of the model, blocks or contacts asks for, of as many numbers as its samples have. */
 static bool is_there(const tl_history *h)
 {
-    size_t index = 0, width = 1;
-    if (h->source == TL_FROM_MODEL) {
-        const char *known;
-        while ((known = history_quantity(index)) != NULL && strcmp(known, h->asked) != 0)
-            index++;
-        return known && !h->list && h->count && h->width == width;
-    }
+    if (h->source == TL_FROM_MODEL)
+        return quantity_named(h->asked) < QUANTITIES && !h->list && h->count && h->width == 1;
+    size_t index;
     const tl_field *field = history_field(h, &index);
     bool vector = field && field->kind == TL_FIELD_VEC3;
-    width = vector ? 3 : 1;
     return field && !(vector && h->take >= TL_TAKE_MIN) && h->list == vector && h->count &&
-           h->width == width;
-}
-
-/* Looks for what is given for a history, in the table at `given` or nil, and leaves it on the stack: a function, or false. */
-static bool find_given(lua_State *L, int given, const char *name)
-{
-    if (lua_istable(L, given))
-        lua_getfield(L, given, name);
-    else
-        lua_pushnil(L);
-    return !lua_isnil(L, -1);
+           h->width == (vector ? 3 : 1);
 }
 
 /* Takes up history `i`, or ends it; true: it is still there. */
@@ -595,7 +565,7 @@ static bool take_up(lua_State *L, const char *path, int model_index, int given, 
 {
     tl_model *model = ((tl_lua_model *)lua_touserdata(L, model_index))->model;
     const tl_history *h = tl_history_at(model, i);
-    bool found = find_given(L, given, h->name);
+    bool found = tl_lua_option(L, given, h->name) != LUA_TNIL;
     if (found && !lua_toboolean(L, -1)) {
         tl_history_end(model, i);
         lua_pop(L, 1);
@@ -623,10 +593,7 @@ void tl_lua_histories_again(lua_State *L, const char *path, int model_index)
 {
     tl_model *model = ((tl_lua_model *)lua_touserdata(L, model_index))->model;
     int top = lua_gettop(L), given = top + 1;
-    if (lua_istable(L, 2))
-        lua_getfield(L, 2, "histories");
-    else
-        lua_pushnil(L);
+    tl_lua_option(L, 2, "histories");
     if (lua_istable(L, given))
         for (lua_pushnil(L); lua_next(L, given); lua_pop(L, 1))
             if (!tl_history_at(model, history_find(model, lua_tostring(L, -2))))
@@ -637,26 +604,9 @@ void tl_lua_histories_again(lua_State *L, const char *path, int model_index)
     lua_settop(L, top);
 }
 
-/* ---------------------------------------------------------------- what was sampled --------
- *
- * What histories have sampled: model:histories(), model:write_histories(path). */
-
 /* ---------------------------------------------------------------- model:histories -------- */
 
 static const char *const axes[] = {"x", "y", "z"};
-
-/* Pushes the list of values of a history: of numbers, or of lists. */
-static void push_values(lua_State *L, const tl_history *h)
-{
-    lua_createtable(L, (int)h->count, 0);
-    for (size_t i = 0; i < h->count; i++) {
-        if (h->list)
-            tl_lua_push_numbers(L, h->values + i * h->width, h->width);
-        else
-            lua_pushnumber(L, h->values[i]);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-}
 
 static void push_samples(lua_State *L, const tl_history *h)
 {
@@ -669,14 +619,10 @@ static void push_samples(lua_State *L, const tl_history *h)
     lua_setfield(L, -2, "cycle");
     tl_lua_push_numbers(L, h->times, h->count);
     lua_setfield(L, -2, "time");
-    push_values(L, h);
+    tl_lua_push_rows(L, h->values, h->count, h->width, h->list ? h->width : 0);
     lua_setfield(L, -2, "value");
     for (size_t k = 0; h->list && h->width == 3 && k < 3; k++) {
-        lua_createtable(L, (int)h->count, 0);
-        for (size_t i = 0; i < h->count; i++) {
-            lua_pushnumber(L, h->values[3 * i + k]);
-            lua_rawseti(L, -2, (lua_Integer)i + 1);
-        }
+        tl_lua_push_rows(L, h->values + k, h->count, 3, 0);
         lua_setfield(L, -2, axes[k]);
     }
 }

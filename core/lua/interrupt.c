@@ -12,7 +12,6 @@
 #include "lua/interrupt.h"
 
 #include "lua/fail.h"
-#include "lua/front.h"
 
 #include <signal.h>
 #include <stdatomic.h>

@@ -6,7 +6,6 @@
 
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/living.h"
 
 #include <string.h>

@@ -7,7 +7,6 @@
 
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 
 #include <limits.h>
 #include <string.h>

@@ -2,7 +2,6 @@
 #include "lua/lists.h"
 
 #include "lua/convert.h"
-#include "lua/front.h"
 #include "lua/living.h"
 
 #include <math.h>

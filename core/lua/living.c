@@ -3,7 +3,6 @@
 
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/interrupt.h"
 
 #include <stdio.h>

@@ -6,7 +6,6 @@
 #include "lua/contact.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/history.h"
 #include "lua/interrupt.h"
 #include "lua/item.h"
@@ -33,7 +32,7 @@ static int model_create(lua_State *L)
     spec.context = "talus.model";
     tl_model_config config = tl_model_config_default();
     tl_lua_read(L, 1, &spec, false, &config);
-    if (!lua_istable(L, 1) || lua_getfield(L, 1, "threads") == LUA_TNIL)
+    if (tl_lua_option(L, 1, "threads") == LUA_TNIL)
         tl_lua_default_threads(L, &config.threads);
     tl_lua_model *object = tl_lua_model_push(L);
     tl_error error;

@@ -3,7 +3,6 @@
 #include "lua/contact.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/help.h"
 #include "lua/item.h"
 #include "lua/library.h"

@@ -5,7 +5,6 @@
 #include "lua/contact.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/interrupt.h"
 #include "lua/item.h"
 #include "lua/living.h"
@@ -23,9 +22,7 @@ static const tl_lua_key page_keys[] = {
 
 static int32_t read_contacts(lua_State *L, int table, const char *context)
 {
-    if (!lua_istable(L, table))
-        return TL_HTML_CONTACTS_FEW;
-    int type = lua_getfield(L, table, "contacts");
+    int type = tl_lua_option(L, table, "contacts");
     int32_t choice = TL_HTML_CONTACTS_FEW;
     if (type == LUA_TBOOLEAN)
         choice = lua_toboolean(L, -1) ? TL_HTML_CONTACTS_ALL : TL_HTML_CONTACTS_NONE;
@@ -41,11 +38,8 @@ static int32_t read_contacts(lua_State *L, int table, const char *context)
 /* Pushes the keyblocks that are asked for, or nil. */
 static const tl_keyblocks *push_keyblocks(lua_State *L, int table)
 {
-    if (!lua_istable(L, table) || lua_getfield(L, table, "keyblocks") == LUA_TNIL) {
-        lua_settop(L, table);
-        lua_pushnil(L);
+    if (tl_lua_option(L, table, "keyblocks") == LUA_TNIL)
         return NULL;
-    }
     lua_pushcfunction(L, tl_lua_keyblocks_find);
     lua_pushvalue(L, 1);
     lua_pushvalue(L, -3);
@@ -58,7 +52,7 @@ static const tl_keyblocks *push_keyblocks(lua_State *L, int table)
 static double read_limit(lua_State *L, int table, const char *context)
 {
     double limit = 0;
-    if (lua_istable(L, table) && lua_getfield(L, table, "safety_limit") != LUA_TNIL) {
+    if (tl_lua_option(L, table, "safety_limit") != LUA_TNIL) {
         limit = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
         if (!(limit > 0) || !isfinite(limit))
             tl_lua_fail(L, "%s: safety_limit must be a number above 0, not %s", context,
@@ -286,7 +280,7 @@ const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *k
     *count = 0;
     lua_newtable(L);
     request r = {.key = key, .context = context, .kind = kind, .anchor = lua_gettop(L)};
-    if (!lua_istable(L, table) || lua_getfield(L, table, key) == LUA_TNIL) {
+    if (tl_lua_option(L, table, key) == LUA_TNIL) {
         lua_settop(L, r.anchor);
         return NULL;
     }

@@ -2,7 +2,6 @@
  * quit, as long as no global variable has that name. */
 #include "lua/repl.h"
 
-#include "lua/front.h"
 #include "lua/help.h"
 #include "lua/interrupt.h"
 #include "lua/living.h"

@@ -11,7 +11,6 @@
 
 #include "lua/block.h"
 #include "lua/contact.h"
-#include "lua/front.h"
 #include "lua/topics.h"
 
 #include <editline/readline.h>
@@ -114,21 +113,37 @@ static void add_choices(const char *word, const tl_param *params, size_t count, 
                 add(word, *choice);
 }
 
-/* The names that a text has in quotes: "one of \"line\", \"points\"". */
+static size_t name_length(const char *text)
+{
+    size_t length = 0;
+    while (tl_scan_is_name(text[length]))
+        length++;
+    return length;
+}
+
+static void copy(char *name, const char *from, size_t length)
+{
+    length = length < NAME ? length : NAME - 1;
+    memcpy(name, from, length);
+    name[length] = 0;
+}
+
+/* The name with which a text begins. */
+static void add_first(const char *word, const char *text)
+{
+    char name[NAME];
+    copy(name, text, name_length(text));
+    if (name[0])
+        add(word, name);
+}
+
+/* The texts in quotes that a text has: "one of \"line\", \"points\"". */
 static void add_quoted(const char *word, const char *text)
 {
-    for (const char *at = text; (at = strchr(at, '"')) != NULL;) {
-        char name[NAME] = "";
-        size_t length = 0;
-        for (at++; tl_scan_is_name(*at) && length + 1 < sizeof name; at++)
-            name[length++] = *at;
-        if (*at == '"' && length > 0)
-            add(word, name);
-        at = strchr(at, '"');
-        if (!at)
-            return;
-        at++;
-    }
+    const char *begin = strchr(text, '"'), *end;
+    for (; begin && (end = strchr(begin + 1, '"')) != NULL; begin = strchr(end + 1, '"'))
+        if (end == begin + 1 + name_length(begin + 1))
+            add_first(word, begin + 1);
 }
 
 /* The choices of a key, which its type or description tells. */
@@ -169,13 +184,8 @@ static void add_model_fields(const char *word)
     static const char mark[] = "model.";
     const tl_lua_topic *topic = find_topic("model");
     for (const tl_lua_key *key = topic ? topic->verbs : NULL; key && key->name; key++)
-        for (const char *at = key->name; (at = strstr(at, mark)) != NULL;) {
-            char name[NAME] = "";
-            at += sizeof mark - 1;
-            for (size_t i = 0; tl_scan_is_name(*at) && i + 1 < sizeof name; at++)
-                name[i++] = *at;
-            add(word, name);
-        }
+        for (const char *at = key->name; (at = strstr(at, mark)) != NULL;)
+            add_first(word, at += sizeof mark - 1);
 }
 
 /* ---------------------------------------------------------------- the line before the cursor ---
@@ -186,13 +196,6 @@ static void add_model_fields(const char *word)
 bool tl_scan_is_name(char c)
 {
     return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-}
-
-static void copy(char *name, const char *from, size_t length)
-{
-    length = length < NAME ? length : NAME - 1;
-    memcpy(name, from, length);
-    name[length] = 0;
 }
 
 static void open_bracket(scan_state *scan, char bracket)
@@ -255,8 +258,7 @@ static void scan_text(const char *text, size_t length, scan_state *scan)
             scan->before = '"';
             end++;
         } else if (tl_scan_is_name(c)) {
-            while (end < length && tl_scan_is_name(text[end]))
-                end++;
+            end = i + name_length(text + i);
             copy(scan->name, text + i, end - i);
             scan->before = 'a';
         } else if (c != ' ' && c != '\t' && c != '\n')
@@ -294,9 +296,9 @@ typedef enum object_type { UNKNOWN, VALUE, MODEL, BLOCKS, CONTACTS, BLOCK, CONTA
 
 static const char *const type_names[] = {[MODEL] = TL_LUA_MODEL_TYPE,
                                          [BLOCKS] = TL_LUA_BLOCKS,
-                                         [CONTACTS] = "talus.contacts",
+                                         [CONTACTS] = TL_LUA_CONTACTS,
                                          [BLOCK] = TL_LUA_BLOCK,
-                                         [CONTACT] = "talus.contact"};
+                                         [CONTACT] = TL_LUA_CONTACT};
 
 static object_type resolve(lua_State *L, const char *text, size_t end);
 
@@ -354,8 +356,7 @@ static object_type resolve_call(lua_State *L, const char *text, size_t begin)
     size_t at = name_begin(text, begin);
     if (at == begin || begin - at >= sizeof name)
         return UNKNOWN;
-    memcpy(name, text + at, begin - at);
-    name[begin - at] = 0;
+    copy(name, text + at, begin - at);
     const tl_lua_topic *topic = find_topic(name);
     if (topic && topic->kind)
         return topic->kind == &tl_lua_block_kind ? BLOCKS : CONTACTS;

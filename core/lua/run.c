@@ -7,7 +7,6 @@
 #include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/history.h"
 #include "lua/interrupt.h"
 #include "lua/item.h"
@@ -386,6 +385,14 @@ static int call_progress(lua_State *L)
     return 0;
 }
 
+/* Ends the run: with the error on the top of the stack, when it has failed. */
+static tl_status status_of(bool good)
+{
+    if (!good)
+        tl_lua_run_keep_error();
+    return good ? TL_OK : TL_E_CANCELLED;
+}
+
 /* After every step: the line, the samples that are due, and then a save, which has them. */
 static tl_status on_each(void *user, tl_model *model)
 {
@@ -393,18 +400,11 @@ static tl_status on_each(void *user, tl_model *model)
     if (r->running.failed) /* a drive's function */
         return TL_E_CANCELLED;
     progress_run(&r->line, model, &r->limits, &r->result);
-    if (tl_model_cycles(model) >= r->owner->next_sample &&
-        !tl_lua_histories_sample(r->L, AT_MODEL)) {
-        tl_lua_run_keep_error();
-        return TL_E_CANCELLED;
-    }
+    if (tl_model_cycles(model) >= r->owner->next_sample && !tl_lua_histories_sample(r->L, AT_MODEL))
+        return status_of(false);
     if (!r->owner->probe)
         tl_lua_autosave(r->options, model);
-    if (r->owner->view && !tl_lua_view_step(r->L, 0)) {
-        tl_lua_run_keep_error();
-        return TL_E_CANCELLED;
-    }
-    return TL_OK;
+    return status_of(!r->owner->view || tl_lua_view_step(r->L, 0));
 }
 
 /* Before every step: those who look at the model, if it is seen, may want something. */
@@ -414,10 +414,7 @@ static tl_status on_between(void *user, tl_model *model)
     run *r = user;
     if (r->running.failed)
         return TL_E_CANCELLED;
-    if (tl_lua_view_between(r->L))
-        return TL_OK;
-    tl_lua_run_keep_error();
-    return TL_E_CANCELLED;
+    return status_of(tl_lua_view_between(r->L));
 }
 
 static tl_status on_progress(void *user, tl_model *model)
@@ -432,10 +429,7 @@ static tl_status on_progress(void *user, tl_model *model)
     lua_pushvalue(L, AT_PROGRESS);
     lua_pushvalue(L, AT_MODEL);
     lua_pushlightuserdata(L, r);
-    if (lua_pcall(L, 3, 0, 0) == LUA_OK)
-        return TL_OK;
-    tl_lua_run_keep_error();
-    return TL_E_CANCELLED;
+    return status_of(lua_pcall(L, 3, 0, 0) == LUA_OK);
 }
 
 static bool on_stop(void *user, tl_model *model)
@@ -472,11 +466,7 @@ static const tl_lua_key solve_keys[] = {
 /* Pushes the function of that key, or nil; true when there is one. */
 static bool push_callback(lua_State *L, const char *what, const char *key)
 {
-    if (!lua_istable(L, AT_ARGS)) {
-        lua_pushnil(L);
-        return false;
-    }
-    int type = lua_getfield(L, AT_ARGS, key);
+    int type = tl_lua_option(L, AT_ARGS, key);
     if (type != LUA_TNIL && type != LUA_TFUNCTION)
         tl_lua_fail(L, "%s: %s must be a function, not %s", what, key, tl_lua_describe(L, -1));
     return type == LUA_TFUNCTION;

@@ -6,7 +6,6 @@
 
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/item.h"
 #include "lua/living.h"
 
@@ -351,7 +350,7 @@ void tl_lua_selection_filter(lua_State *L, int selection_index, int function_ind
 
 int tl_lua_read_where(lua_State *L, const tl_lua_kind *kind)
 {
-    if (!lua_istable(L, 2) || lua_getfield(L, 2, "where") == LUA_TNIL)
+    if (tl_lua_option(L, 2, "where") == LUA_TNIL)
         return 0;
     if (lua_type(L, -1) != LUA_TFUNCTION)
         tl_lua_fail(L, "%s: where must be a function(%s), not %s", kind->items, kind->item,

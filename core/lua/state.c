@@ -7,7 +7,6 @@
 #include "lua/action.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/history.h"
 #include "lua/living.h"
 
@@ -151,7 +150,7 @@ static void take_functions(lua_State *L, int value)
 /* Anchors, hanging on the model at `to`, of what the option `drives` of the table at index 2 gives. */
 static drive_bindings *push_block_bindings(lua_State *L, int to)
 {
-    if (!lua_istable(L, 2) || lua_getfield(L, 2, "drives") == LUA_TNIL)
+    if (tl_lua_option(L, 2, "drives") == LUA_TNIL)
         lua_newtable(L);
     int drives = lua_gettop(L);
     if (!lua_istable(L, drives))
@@ -178,7 +177,7 @@ static void read_threads(lua_State *L, int64_t *threads)
 {
     *threads = 1;
     tl_lua_default_threads(L, threads);
-    if (!lua_istable(L, 2) || lua_getfield(L, 2, "threads") == LUA_TNIL)
+    if (tl_lua_option(L, 2, "threads") == LUA_TNIL)
         return;
     if (!lua_isinteger(L, -1) || lua_tointeger(L, -1) < 1 || lua_tointeger(L, -1) > 256)
         tl_lua_fail(L, "talus.restore: threads = %s is not a whole number in [1, 256]",

@@ -9,7 +9,6 @@
 
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/front.h"
 #include "lua/interrupt.h"
 #include "lua/living.h"
 #include "lua/page.h"
@@ -440,21 +439,17 @@ void tl_lua_view_end(lua_State *L, tl_lua_model *owner)
 /* Reads a key of the table at index 2 that is a text; NULL when it is left out. The text lives as long as the table. */
 static const char *read_text(lua_State *L, const char *key)
 {
-    const char *text = NULL;
-    if (lua_istable(L, 2) && lua_getfield(L, 2, key) != LUA_TNIL) {
-        text = tl_lua_text(L, -1, "view", key);
-        if (!text[0])
-            tl_lua_fail(L, "view: %s must not be empty", key);
-        lua_pop(L, 1);
-    } else {
-        lua_settop(L, 2);
-    }
+    const char *text =
+        tl_lua_option(L, 2, key) == LUA_TNIL ? NULL : tl_lua_text(L, -1, "view", key);
+    if (text && !text[0])
+        tl_lua_fail(L, "view: %s must not be empty", key);
+    lua_settop(L, 2);
     return text;
 }
 
 static bool read_wait(lua_State *L)
 {
-    int type = lua_istable(L, 2) ? lua_getfield(L, 2, "wait") : LUA_TNIL;
+    int type = tl_lua_option(L, 2, "wait");
     bool wait = type == LUA_TBOOLEAN && lua_toboolean(L, -1);
     if (type != LUA_TNIL && type != LUA_TBOOLEAN)
         tl_lua_fail(L, "view: wait must be true or false, not %s", tl_lua_describe(L, -1));
