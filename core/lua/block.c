@@ -39,15 +39,6 @@ static tl_block_mesh *mesh_push(lua_State *L)
     return tl_lua_hold(L, sizeof(tl_block_mesh), "talus.mesh", free_mesh);
 }
 
-static void push_vertices(lua_State *L, const tl_block_mesh *mesh)
-{
-    lua_createtable(L, (int)mesh->vertex_count, 0);
-    for (size_t i = 0; i < mesh->vertex_count; i++) {
-        tl_lua_push_vec3(L, mesh->vertices[i]);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-}
-
 static void push_faces(lua_State *L, tl_model *model, const tl_block_mesh *mesh)
 {
     lua_createtable(L, (int)mesh->face_count, 0);
@@ -91,7 +82,7 @@ static bool block_extra(lua_State *L, tl_model *model, tl_id id, const char *nam
     tl_block_mesh *mesh = mesh_push(L);
     tl_lua_ok(L, model, tl_block_mesh_get(model, id, mesh));
     if (vertices)
-        push_vertices(L, mesh);
+        tl_lua_push_rows(L, &mesh->vertices->x, mesh->vertex_count, 3, 3);
     else
         push_faces(L, model, mesh);
     tl_block_mesh_free(mesh);

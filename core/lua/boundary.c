@@ -321,7 +321,7 @@ static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
 /* Writes a vector over the one in the field `name` of the table at the top of the stack; needs no memory. */
 static void rewrite(lua_State *L, const char *name, tl_vec3 v)
 {
-    const double number[3] = {v.x, v.y, v.z};
+    const double *number = &v.x;
     lua_getfield(L, -1, name);
     for (int k = 0; k < 3; k++) {
         lua_pushnumber(L, number[k]);

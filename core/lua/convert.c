@@ -375,7 +375,7 @@ void tl_lua_add_number(luaL_Buffer *to, double number, int digits)
 
 void tl_lua_push_vec3(lua_State *L, tl_vec3 v)
 {
-    tl_lua_push_numbers(L, (const double[]){v.x, v.y, v.z}, 3);
+    tl_lua_push_numbers(L, &v.x, 3);
 }
 
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value)

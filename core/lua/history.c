@@ -295,12 +295,7 @@ static int history_take(lua_State *L, int model_index, tl_history *h)
     lua_pushvalue(L, model_index);
     lua_pushlightuserdata(L, h);
     lua_pushnil(L);
-    owner->sampling = true;
-    tl_model_only_read(owner->model, true);
-    int status = lua_pcall(L, 3, 0, 0);
-    tl_model_only_read(owner->model, false);
-    owner->sampling = false;
-    return status;
+    return tl_lua_call_reading(L, owner, 3);
 }
 
 /* ---------------------------------------------------------------- model:history ---------- */

@@ -114,6 +114,17 @@ void tl_lua_ok(lua_State *L, tl_model *model, tl_status status)
         tl_lua_raise(L, tl_model_error(model));
 }
 
+int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments)
+{
+    bool outer = owner->sampling;
+    owner->sampling = true;
+    tl_model_only_read(owner->model, true);
+    int status = lua_pcall(L, arguments, 0, 0);
+    tl_model_only_read(owner->model, outer);
+    owner->sampling = outer;
+    return status;
+}
+
 /* ---------------------------------------------------------------- runs --------------------
  *
  * The run whose step is being made, for functions of the script that are called in it (run.c, action.c). */

@@ -24,6 +24,9 @@ tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner);
 /* Raises the model's error unless `status` is TL_OK. */
 void tl_lua_ok(lua_State *L, tl_model *model, tl_status status);
 
+/* lua_pcall of a function of the script, without results, while the model may only be read. */
+int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments);
+
 void tl_lua_running_begin(tl_lua_running *run, lua_State *L);
 void tl_lua_running_end(const tl_lua_running *run);
 /* The Lua state of the run whose step is being made. */

@@ -215,19 +215,12 @@ static int ask(lua_State *L)
 /* The values that the function at the top of the stack gives, which it pops. */
 static void ask_function(lua_State *L, request *r, tl_extra_field *field)
 {
-    tl_lua_model *owner = r->items->owner;
-    bool outer = owner->sampling;
     lua_pushcfunction(L, ask);
     lua_insert(L, -2);
     lua_pushlightuserdata(L, r);
     lua_pushlightuserdata(L, field);
     lua_pushvalue(L, 1);
-    owner->sampling = true;
-    tl_model_only_read(owner->model, true);
-    int status = lua_pcall(L, 4, 0, 0);
-    tl_model_only_read(owner->model, outer);
-    owner->sampling = outer;
-    if (status != LUA_OK)
+    if (tl_lua_call_reading(L, r->items->owner, 4) != LUA_OK)
         tl_lua_fail(L, "%s: %s: '%s': %s", r->context, r->key, field->name,
                     luaL_tolstring(L, -1, NULL));
 }

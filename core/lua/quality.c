@@ -234,24 +234,6 @@ static const tl_lua_key keyblocks_keys[] = {
     {NULL, NULL, NULL},
 };
 
-/* Number of entries of the strength named `key` in the table at index 2. */
-static size_t count_strength(lua_State *L, const char *key)
-{
-    size_t count = 0;
-    int type = lua_getfield(L, 2, key);
-    if (type == LUA_TTABLE) {
-        for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
-            count++;
-    } else if (type == LUA_TNUMBER) {
-        count = 1;
-    } else if (type != LUA_TNIL) {
-        tl_lua_fail(L, "keyblocks: %s must be a number or a table {JOINT = number}, not %s", key,
-                    tl_lua_describe(L, -1));
-    }
-    lua_pop(L, 1);
-    return count;
-}
-
 static tl_joint_strength read_strength(lua_State *L, const char *key, const char *joint)
 {
     if (lua_type(L, -1) != LUA_TNUMBER)
@@ -264,21 +246,29 @@ static tl_joint_strength read_strength(lua_State *L, const char *key, const char
     return (tl_joint_strength){joint, friction ? number : NAN, friction ? NAN : number};
 }
 
-/* Puts the entries of a strength behind those that are there. */
-static size_t fill_strength(lua_State *L, const char *key, tl_joint_strength *list, size_t count)
+/* Reads the entries of the strength `key` of the table at index 2 into the list, unless it is NULL; returns their number. */
+static size_t read_strengths(lua_State *L, const char *key, tl_joint_strength *list)
 {
+    size_t count = 0;
     int type = lua_getfield(L, 2, key);
-    if (type == LUA_TNUMBER)
-        list[count++] = read_strength(L, key, "*");
-    if (type == LUA_TTABLE)
-        for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1)) {
+    if (type == LUA_TNUMBER) {
+        if (list)
+            list[0] = read_strength(L, key, "*");
+        count = 1;
+    } else if (type == LUA_TTABLE) {
+        for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1), count++) {
+            if (!list)
+                continue;
             if (lua_type(L, -2) != LUA_TSTRING)
                 tl_lua_fail(L, "keyblocks: %s: the joints are named by text, not by %s", key,
                             tl_lua_describe(L, -2));
             list[count] =
                 read_strength(L, key, tl_lua_text(L, -2, "keyblocks", "the name of a joint"));
-            count++;
         }
+    } else if (type != LUA_TNIL) {
+        tl_lua_fail(L, "keyblocks: %s must be a number or a table {JOINT = number}, not %s", key,
+                    tl_lua_describe(L, -1));
+    }
     lua_pop(L, 1);
     return count;
 }
@@ -316,11 +306,8 @@ static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *al
         if (block->mode != TL_KEYBLOCK_STABLE)
             tl_lua_set_vec3(L, "direction", block->direction);
         set_faces(L, model, block);
-        lua_createtable(L, (int)block->edge_count, 0);
-        for (size_t k = 0; k < block->edge_count; k++) {
-            tl_lua_push_vec3(L, all->edges[block->edge_start + k]);
-            lua_rawseti(L, -2, (lua_Integer)k + 1);
-        }
+        const double *edges = (const double *)(all->edges + block->edge_start);
+        tl_lua_push_rows(L, edges, block->edge_count, 3, 3);
         lua_setfield(L, -2, "pyramid");
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
@@ -341,12 +328,11 @@ int tl_lua_keyblocks_find(lua_State *L)
     tl_lua_read_function(L, 2, "keyblocks", keyblocks_keys, &query);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L, "keyblocks: give the parameters in a table: {friction = 35}");
-    size_t capacity = count_strength(L, "friction") + count_strength(L, "cohesion");
-    tl_joint_strength *list = lua_newuserdatauv(L, (capacity + 1) * sizeof *list, 0);
-    size_t count = fill_strength(L, "friction", list, 0);
-    count = fill_strength(L, "cohesion", list, count);
+    query.count = read_strengths(L, "friction", NULL) + read_strengths(L, "cohesion", NULL);
+    tl_joint_strength *list = lua_newuserdatauv(L, (query.count + 1) * sizeof *list, 0);
+    size_t frictions = read_strengths(L, "friction", list);
+    read_strengths(L, "cohesion", list + frictions);
     query.strength = list;
-    query.count = count;
     tl_keyblocks *all = tl_lua_hold(L, sizeof *all, "talus.keyblocks", collect_keyblocks);
     tl_lua_ok(L, model, tl_model_keyblocks(model, &query, all));
     return 1;

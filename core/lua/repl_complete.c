@@ -543,11 +543,16 @@ static bool asks_help(const char *text, const scan_state *scan)
            strncmp(text, "help ", 5) == 0;
 }
 
-/* Runs protected. Arguments: the text before the word, the word. */
+/* Runs protected. Argument: the word, as a light userdata, with which the line ends that is typed. */
 static int complete(lua_State *L)
 {
     size_t length;
-    const char *text = lua_tolstring(L, 1, &length), *word = lua_tostring(L, 2);
+    const char *word = lua_touserdata(L, 1), *above = completion.above;
+    lua_pushstring(L, above ? above : "");
+    lua_pushstring(L, above ? "\n" : "");
+    lua_pushlstring(L, rl_line_buffer, (size_t)(rl_point - (int)strlen(word)));
+    lua_concat(L, 3);
+    const char *text = lua_tolstring(L, -1, &length);
     scan_state scan;
     if (length > LONGEST)
         return 0;
@@ -567,20 +572,6 @@ static int complete(lua_State *L)
 
 /* ---------------------------------------------------------------- libedit ---------------- */
 
-/* Pushes the arguments of `complete` and calls it; runs protected. Argument: the word, as a light userdata. */
-static int complete_line(lua_State *L)
-{
-    const char *word = lua_touserdata(L, 1);
-    lua_pushcfunction(L, complete);
-    lua_pushstring(L, completion.above ? completion.above : "");
-    lua_pushstring(L, completion.above ? "\n" : "");
-    lua_pushlstring(L, rl_line_buffer, (size_t)(rl_point - (int)strlen(word)));
-    lua_concat(L, 3);
-    lua_pushstring(L, word);
-    lua_call(L, 2, 0);
-    return 0;
-}
-
 static char **on_tabulator(const char *word, int start, int end)
 {
     (void)start;
@@ -590,7 +581,7 @@ static char **on_tabulator(const char *word, int start, int end)
     forget_matches();
     if (!lua_checkstack(L, 8))
         return NULL;
-    lua_pushcfunction(L, complete_line);
+    lua_pushcfunction(L, complete);
     lua_pushlightuserdata(L, (void *)(uintptr_t)word);
     lua_pcall(L, 1, 0, 0); /* for want of memory there are fewer names */
     lua_settop(L, top);

@@ -163,7 +163,6 @@ enum {
 typedef struct run {
     tl_lua_running running;
     lua_State *L;
-    tl_model *model;
     const tl_lua_model *owner;
     tl_lua_options *options;
     tl_lua_watch watch;
@@ -171,23 +170,6 @@ typedef struct run {
     tl_lua_progress line;
     tl_solve_result result;
 } run;
-
-static void run_begin(run *r, lua_State *L, tl_model *model)
-{
-    *r = (run){.L = L, .model = model};
-    r->owner = lua_touserdata(L, AT_MODEL);
-    r->options = tl_lua_options_of(L);
-    tl_lua_histories_due(L, AT_MODEL);
-    tl_lua_progress_begin(L, &r->line, model);
-    r->watch = tl_lua_watch_begin(L);
-    tl_lua_running_begin(&r->running, L);
-}
-
-static void run_end(run *r)
-{
-    tl_lua_running_end(&r->running);
-    tl_lua_progress_clear(&r->line);
-}
 
 /* ---------------------------------------------------------------- results ---------------- */
 
@@ -472,20 +454,38 @@ static bool push_callback(lua_State *L, const char *what, const char *key)
     return type == LUA_TFUNCTION;
 }
 
-static int finish(lua_State *L, run *r, const char *what, tl_status status)
+/* Makes a run, or with `steps` its steps only, and pushes its result. The table of arguments is at AT_ARGS. */
+static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, bool steps)
 {
-    if (r->owner->view && !r->running.failed && !tl_lua_view_step(L, r->result.wall))
+    run r = {.L = L, .owner = lua_touserdata(L, AT_MODEL)};
+    lua_settop(L, AT_ANCHOR);
+    solve->stop = push_callback(L, what, "stop") ? on_stop : NULL;
+    solve->progress = push_callback(L, what, "on_progress") ? on_progress : NULL;
+    push_empty_answer(L, steps ? TL_RATIO_LOCAL : solve->measure);
+    solve->each = on_each;
+    solve->between = on_between;
+    solve->user = &r;
+    r.limits = *solve;
+    r.options = tl_lua_options_of(L);
+    tl_lua_histories_due(L, AT_MODEL);
+    tl_lua_progress_begin(L, &r.line, model);
+    r.watch = tl_lua_watch_begin(L);
+    tl_lua_running_begin(&r.running, L);
+    tl_status status = steps ? tl_model_cycle_calling(model, solve->max_cycles, solve, &r.result)
+                             : tl_model_solve(model, solve, &r.result);
+    if (r.owner->view && !r.running.failed && !tl_lua_view_step(L, r.result.wall))
         tl_lua_run_keep_error();
-    run_end(r);
-    tl_lua_watch_end_run(L, &r->watch, what);
-    if (r->running.failed) {
+    tl_lua_running_end(&r.running);
+    tl_lua_progress_clear(&r.line);
+    tl_lua_watch_end_run(L, &r.watch, what);
+    if (r.running.failed) {
         lua_settop(L, AT_ERROR);
         return lua_error(L);
     }
-    tl_lua_ok(L, r->model, status);
+    tl_lua_ok(L, model, status);
     lua_settop(L, AT_RESULT);
-    set_result(L, &r->result);
-    lua_rawgeti(L, AT_REASONS, (int)r->result.reason + 1);
+    set_result(L, &r.result);
+    lua_rawgeti(L, AT_REASONS, (int)r.result.reason + 1);
     lua_setfield(L, AT_RESULT, "reason");
     return 1;
 }
@@ -495,19 +495,7 @@ static int model_solve(lua_State *L, tl_model *model)
     luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_solve solve = tl_solve_default();
     tl_lua_read_function(L, AT_ARGS, "solve", solve_keys, &solve);
-    lua_settop(L, AT_ANCHOR);
-    bool stop = push_callback(L, "solve", "stop");
-    bool progress = push_callback(L, "solve", "on_progress");
-    push_empty_answer(L, solve.measure);
-    run r;
-    run_begin(&r, L, model);
-    solve.each = on_each;
-    solve.between = on_between;
-    solve.progress = progress ? on_progress : NULL;
-    solve.stop = stop ? on_stop : NULL;
-    solve.user = &r;
-    r.limits = solve;
-    return finish(L, &r, "solve", tl_model_solve(model, &solve, &r.result));
+    return make_run(L, model, "solve", &solve, false);
 }
 
 /* cycle(cycles, {every =, on_progress =}) */
@@ -522,17 +510,8 @@ static int model_cycle(lua_State *L, tl_model *model)
     spec.params++;    /* besides the first, which was given alone */
     spec.count--;
     tl_lua_read(L, AT_ARGS, &spec, false, &args);
-    tl_solve calls = {.each = on_each, .every = args.every, .max_cycles = args.cycles};
-    lua_settop(L, AT_ANCHOR);
-    push_callback(L, "cycle", "stop"); /* nil: it takes none */
-    calls.progress = push_callback(L, "cycle", "on_progress") ? on_progress : NULL;
-    push_empty_answer(L, TL_RATIO_LOCAL);
-    run r;
-    run_begin(&r, L, model);
-    calls.user = &r;
-    calls.between = on_between;
-    r.limits = calls;
-    return finish(L, &r, "cycle", tl_model_cycle_calling(model, args.cycles, &calls, &r.result));
+    tl_solve steps = {.every = args.every, .max_cycles = args.cycles};
+    return make_run(L, model, "cycle", &steps, true);
 }
 
 /* ---------------------------------------------------------------- a generator ------------ */

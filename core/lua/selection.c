@@ -134,128 +134,78 @@ static int selection_values(lua_State *L)
 
 /* ---------------------------------------------------------------- sums and extremes ------ */
 
-/* The field named at stack index 2, which must be of numbers, and its index. */
-static const tl_field *number_field(lua_State *L, const tl_lua_kind *kind, const char *method,
-                                    size_t *index)
+/* What sum, max and min work on: a field of numbers, or a state of laws, NaN of contacts whose law has none of that name. */
+typedef struct column {
+    const tl_field *field; /* NULL: a state */
+    const double *values;  /* of each item as many as the width */
+    size_t width;
+} column;
+
+/* The column named at stack index 2; pushes its values. */
+static column read_column(lua_State *L, const tl_lua_selection *selection, const char *method)
 {
+    const tl_lua_kind *kind = selection->kind;
     const char *name = tl_lua_text(L, 2, method, "the field's name");
     tl_lua_arity(L, 2, method);
-    const tl_field *field = tl_lua_field_named(kind, name, index);
-    if (!field) {
+    tl_model *model = tl_lua_living(L, selection->owner);
+    size_t index, width;
+    const tl_field *field = tl_lua_field_named(kind, name, &index);
+    if (field && field->kind > TL_FIELD_VEC3)
+        tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
+    if (kind->values(model, NULL, 0, name, NULL, &width) == TL_E_NOT_FOUND) {
         tl_lua_names names = {0};
         size_t count;
         const tl_field *fields = kind->fields(&count);
         tl_lua_names_fields(&names, fields, count);
-        tl_lua_unknown(L,
-                       lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item),
-                       name, &names);
-    } else if (field->kind > TL_FIELD_VEC3)
-        tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
-    return field;
+        lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item);
+        tl_lua_unknown(L, lua_tostring(L, -1), name, &names);
+    }
+    double *values = lua_newuserdatauv(L, (selection->count * width + 1) * sizeof *values, 0);
+    tl_lua_ok(L, model,
+              kind->values(model, selection->ids, selection->count, name, values, &width));
+    return (column){field, values, width};
 }
 
-static void field_value(lua_State *L, const tl_lua_selection *selection, size_t i, size_t field,
-                        tl_field_value *value)
+/* Pushes a sum or an extreme of a column. */
+static int push_of_column(lua_State *L, const column *c, const tl_field_value *value)
 {
-    tl_model *model = tl_lua_living(L, selection->owner);
-    tl_lua_ok(L, model, selection->kind->field(model, selection->ids[i], field, value));
-}
-
-/* Values of the state of a law named at stack index 2, which it pushes in their order, NaN where a law has none of that name;
- * NULL when it is no state. */
-static const double *state_values(lua_State *L, const tl_lua_selection *selection,
-                                  const char *method, size_t *width)
-{
-    const tl_lua_kind *kind = selection->kind;
-    const char *name = tl_lua_text(L, 2, method, "the field's name");
-    size_t index;
-    if (tl_lua_field_named(kind, name, &index))
-        return NULL;
-    tl_model *model = tl_lua_living(L, selection->owner);
-    if (kind->values(model, NULL, 0, name, NULL, width) == TL_E_NOT_FOUND)
-        return NULL;
-    tl_lua_arity(L, 2, method);
-    double *values = lua_newuserdatauv(L, (selection->count * *width + 1) * sizeof *values, 0);
-    tl_lua_ok(L, model, kind->values(model, selection->ids, selection->count, name, values, width));
-    return values;
-}
-
-/* Pushes the sum of a state over the items that have it. */
-static int sum_states(lua_State *L, const double *values, size_t count, size_t width)
-{
-    double sum[3] = {0, 0, 0};
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < width; k++)
-            sum[k] += isnan(values[i * width]) ? 0 : values[i * width + k];
-    if (width == 1)
-        lua_pushnumber(L, sum[0]);
-    else
-        tl_lua_push_numbers(L, sum, width);
-    return 1;
-}
-
-/* Pushes the largest (sign 1) or smallest (sign -1) value of a state. */
-static int extreme_state(lua_State *L, const char *method, double sign, const double *values,
-                         size_t count, size_t width)
-{
-    const char *name = lua_tostring(L, 2);
-    if (width > 1)
-        tl_lua_fail(L, "%s: the state '%s' is a vector; only single numbers are compared", method,
-                    name);
-    double best = NAN;
-    for (size_t i = 0; i < count; i++)
-        if (!isnan(values[i]) && !(sign * values[i] <= sign * best))
-            best = values[i];
-    if (isnan(best))
-        tl_lua_fail(L, "%s: no contact of the selection has a law with the state '%s'", method,
-                    name);
-    lua_pushnumber(L, best);
+    tl_field_kind kind = c->field ? c->field->kind : c->width > 1 ? TL_FIELD_VEC3 : TL_FIELD_SCALAR;
+    tl_lua_push_field(L, kind == TL_FIELD_BOOL ? TL_FIELD_COUNT : kind, value);
     return 1;
 }
 
 static int selection_sum(lua_State *L)
 {
     tl_lua_selection *selection = self(L, "sum");
-    size_t width;
-    const double *values = state_values(L, selection, "sum", &width);
-    if (values)
-        return sum_states(L, values, selection->count, width);
-    size_t index;
-    tl_field_kind kind = number_field(L, selection->kind, "sum", &index)->kind;
-    tl_field_value sum = {{0}, NULL}, value;
-    for (size_t i = 0; i < selection->count; i++) {
-        field_value(L, selection, i, index, &value);
-        for (int k = 0; k < (kind == TL_FIELD_VEC3 ? 3 : 1); k++)
-            sum.number[k] += value.number[k];
-    }
-    tl_lua_push_field(L, kind == TL_FIELD_BOOL ? TL_FIELD_COUNT : kind, &sum);
-    return 1;
+    column c = read_column(L, selection, "sum");
+    tl_field_value sum = {{0}, NULL};
+    for (size_t i = 0; i < selection->count; i++)
+        for (size_t k = 0; k < c.width; k++)
+            if (c.field || !isnan(c.values[i * c.width]))
+                sum.number[k] += c.values[i * c.width + k];
+    return push_of_column(L, &c, &sum);
 }
 
-/* The largest (sign 1) or smallest (sign -1) value of a field of single numbers. */
+/* The largest (sign 1) or smallest (sign -1) value of a column of single numbers. */
 static int extreme(lua_State *L, const char *method, double sign)
 {
     tl_lua_selection *selection = self(L, method);
-    size_t width;
-    const double *values = state_values(L, selection, method, &width);
-    if (values)
-        return extreme_state(L, method, sign, values, selection->count, width);
-    size_t index;
-    const tl_field *f = number_field(L, selection->kind, method, &index);
-    if (f->kind == TL_FIELD_VEC3 || f->kind == TL_FIELD_BOOL)
-        tl_lua_fail(L, "%s: the field '%s' is %s; only single numbers are compared", method,
-                    f->name, f->kind == TL_FIELD_VEC3 ? "a vector" : "true or false");
-    if (selection->count == 0)
-        tl_lua_fail(L, "%s: the selection is empty, so '%s' has no value", method, f->name);
-    tl_field_value best, value;
-    field_value(L, selection, 0, index, &best);
-    for (size_t i = 1; i < selection->count; i++) {
-        field_value(L, selection, i, index, &value);
-        if (sign * value.number[0] > sign * best.number[0])
-            best = value;
-    }
-    tl_lua_push_field(L, f->kind, &best);
-    return 1;
+    column c = read_column(L, selection, method);
+    const char *name = lua_tostring(L, 2);
+    bool truth = c.field && c.field->kind == TL_FIELD_BOOL;
+    if (c.width > 1 || truth)
+        tl_lua_fail(L, "%s: the %s '%s' is %s; only single numbers are compared", method,
+                    c.field ? "field" : "state", name, truth ? "true or false" : "a vector");
+    if (c.field && selection->count == 0)
+        tl_lua_fail(L, "%s: the selection is empty, so '%s' has no value", method, name);
+    double best = c.field ? c.values[0] : NAN;
+    for (size_t i = 0; i < selection->count; i++)
+        if (sign * c.values[i] > sign * best || (!c.field && isnan(best)))
+            best = c.values[i];
+    if (!c.field && isnan(best))
+        tl_lua_fail(L, "%s: no contact of the selection has a law with the state '%s'", method,
+                    name);
+    return push_of_column(L, &c, &(tl_field_value){{best}, NULL});
 }
 
 static int selection_max(lua_State *L)
