@@ -1,7 +1,7 @@
 /* command_new.c - `talus new law|damping|generator NAME [FOLDER]`: a folder with a plugin that builds and works.
  *
- * The files are those of share/talus/templates/TYPE, of an installation, or templates/TYPE beside the program of a build, with
- * NAME in the place of my_TYPE in names and texts. */
+ * The files are those of share/talus/templates/TYPE of an installation, or of templates/TYPE beside the program of a
+ * build. NAME stands in the place of my_TYPE in names and texts. */
 #define _GNU_SOURCE /* realpath */
 #include "commands.h"
 

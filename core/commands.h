@@ -1,4 +1,4 @@
-/* commands.h - sub-commands of the program that need no Lua. Each gets the words after its name and gives the exit status. */
+/* commands.h - sub-commands of the program that need no Lua. Each gets the words after its name, returns the status. */
 #ifndef TL_COMMANDS_H
 #define TL_COMMANDS_H
 

@@ -37,7 +37,7 @@ typedef struct options {
     int next;          /* first argument that is not an option */
 } options;
 
-/* At the end of the program, however it comes: what was printed and cannot be written, to a full disk say, is an error. */
+/* At the end of the program, however it comes: that not all could be printed, to a full disk say, is an error. */
 static void close_output(void)
 {
     bool lost = ferror(stdout) != 0;
@@ -201,7 +201,7 @@ static int prepare(lua_State *L)
     return 0;
 }
 
-/* What is typed at the prompt or after -e has the module at hand without require; a script has not,
+/* What is typed at the prompt or after -e has the module at hand without require. A script has not,
  * for it should run in a stock Lua too. */
 static int give_module(lua_State *L, const options *o)
 {

@@ -1,12 +1,12 @@
 /* action.c - what acts on blocks from outside: selection:load{...}, selection:drive{...} and selection:reaction().
  *
- * A drive given by functions of the script is kept as an *anchor*: a userdata in a table that is the
- * user value of the model's userdata, with the functions as its own user values. So a function that
- * refers to its model does not keep it alive, and the kernel's word that a drive has ended need not
- * touch a Lua state: it marks the anchor, which goes with the next verb.
+ * A drive given by functions of the script is kept as an *anchor*: a userdata whose user values are the
+ * functions. Anchors are in a table that is a user value of the model's userdata. So a function that refers
+ * to its model does not keep it alive. When a drive ends the kernel touches no Lua state: it marks the
+ * anchor, which goes with the next verb.
  *
- * The functions are called in a step, on the thread and in the frame of the run: in protected calls,
- * whose error ends the run and is then raised as it was. */
+ * The functions are called in a step, on the thread and in the frame of the run, in protected calls. An
+ * error ends the run and is then raised as it was. */
 #include "lua/action.h"
 
 #include "lua/convert.h"

@@ -330,8 +330,8 @@ static void rewrite(lua_State *L, const char *name, tl_vec3 v)
     lua_pop(L, 1);
 }
 
-/* Does what is to be done, now that the tables of the results are made: a call that fails changes nothing. They are at the top
- * of the stack, one or, of sides, a table of them. */
+/* Does what is to be done, after the tables of the results are made: a call that fails changes nothing. At the top of
+ * the stack is one table or, of sides, a table of them. */
 static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions, size_t sides,
                 bool add, holder *done)
 {

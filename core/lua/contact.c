@@ -16,8 +16,8 @@
  *
  * Contact.points and contact.states: the points of a contact and the states of its law, as tables.
  *
- * They are copies of what is when they are asked for: points come and go with the polygon, so there is nothing that a
- * handle could stand for. Reading a name that is not there raises, as it does of a contact. */
+ * They are copies of what is when they are asked for. Points come and go with the polygon, so no handle could stand
+ * for one. Reading a name that is not there raises, as it does of a contact. */
 
 /* ---------------------------------------------------------------- tables of names -------- */
 

@@ -364,13 +364,12 @@ void tl_lua_push_rows(lua_State *L, const double *first, size_t count, size_t st
     }
 }
 
-void tl_lua_add_number(luaL_Buffer *to, double number, int digits)
+const char *tl_lua_number_text(double number, int digits, char text[TL_LUA_NUMBER])
 {
-    char text[40];
     do
-        tl_text_print(text, sizeof text, "%.*g", digits, number);
+        tl_text_print(text, TL_LUA_NUMBER, "%.*g", digits, number);
     while (tl_number_read(text, NULL) != number && digits++ < DBL_DECIMAL_DIG);
-    luaL_addstring(to, text);
+    return text;
 }
 
 void tl_lua_push_vec3(lua_State *L, tl_vec3 v)

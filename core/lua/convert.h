@@ -19,8 +19,8 @@ typedef struct tl_lua_count {
 const tl_param *tl_lua_param_named(const char *function, const char *name);
 /* The spec of a kernel function. */
 tl_lua_spec tl_lua_spec_of(const char *function, const tl_lua_key *keys);
-/* Converts the table at `index` (nil or none: empty) for the kernel, and pushes one value that
- * must stay on the stack as long as `args` is used. Keys listed in `skip` are left out. */
+/* Converts the table at `index` (nil or none: empty) for the kernel. Pushes one value, which must
+ * stay on the stack as long as `args` is used. Keys listed in `skip` are left out. */
 void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key *skip,
                  tl_args *args);
 /* Checks the table at `index` against `spec` and fills `out`; see tl_args_read. Pushes one value
@@ -61,8 +61,9 @@ void tl_lua_set_text(lua_State *L, const char *name, const char *text);
 void tl_lua_set_numbers(lua_State *L, const tl_lua_number *numbers);
 void tl_lua_set_counts(lua_State *L, const tl_lua_count *counts);
 void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);
-/* Adds the shortest text, of so many digits or more, that reads back as the same number. */
-void tl_lua_add_number(luaL_Buffer *to, double number, int digits);
+/* The shortest text, of so many digits or more, that reads back as the same number. */
+#define TL_LUA_NUMBER 40
+const char *tl_lua_number_text(double number, int digits, char text[TL_LUA_NUMBER]);
 /* Pushes the value of a parameter; nil for a number that was left out, a text or a list of points. */
 void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params);
 /* Pushes a field's value as Lua sees it. */

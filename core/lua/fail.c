@@ -22,7 +22,8 @@ void tl_lua_push_where(lua_State *L)
 #define LONGEST 2000
 #define KEPT 900
 
-/* Raises "file:line: " and the sentence, the two texts on the top of the stack. Line ends in names are shown escaped, long ones cut. */
+/* Raises "file:line: " and the sentence, the two texts on the top of the stack. Line ends in names are shown escaped,
+ * long names cut. */
 static int raise_sentence(lua_State *L)
 {
     const size_t length = lua_rawlen(L, -1);

@@ -1,12 +1,12 @@
 /* front.h - what the parts of the Lua front end share.
  *
  * Objects. A model is a userdata that owns a tl_model. A block or a contact is an *item*: a userdata
- * with the model's userdata as its user value (so the model outlives it) and an id. A selection is
+ * with an id. Its user value is the model's userdata, so the model outlives it. A selection is
  * a userdata with a list of ids, likewise. Items of either type share one implementation, driven
  * by a tl_lua_kind.
  *
- * Errors. Everything here may raise a Lua error, so nothing is held in a local variable that only
- * C could free: memory that must survive a call is a userdata on the stack or owned by one. */
+ * Errors. Everything here may raise a Lua error, so no local variable holds what only C could free.
+ * Memory that must survive a call is a userdata on the stack or owned by one. */
 #ifndef TL_LUA_FRONT_H
 #define TL_LUA_FRONT_H
 
@@ -62,8 +62,8 @@ typedef struct tl_lua_model {
     struct tl_lua_viewing *view; /* while it is shown: view.c */
 } tl_lua_model;
 
-/* User values of a model's userdata: the functions of drives (action.c), those of histories by their names (history.c), what a
- * view shows (view.c). */
+/* User values of a model's userdata: functions of drives (action.c) and, by their names, of histories (history.c), and
+ * what a view shows (view.c). */
 enum { TL_LUA_DRIVES = 1, TL_LUA_HISTORIES, TL_LUA_VIEW, TL_LUA_USER_VALUES = 3 };
 
 /* A stretch of time in which Ctrl-C raises an error. Watches may nest. */
@@ -163,7 +163,7 @@ enum { TL_LUA_VELOCITY = 1, TL_LUA_ANGULAR_VELOCITY, TL_LUA_MOTIONS = 2 };
         "safety_limit", "number", "factor of safety that is asked for: the legend marks it"        \
     }
 
-/* A function: how it is called, and what the help tells of it. Its parameters are those of the table that checks them. */
+/* A function: how it is called, and what the help tells of it. Its parameters are of the table that checks them. */
 typedef struct tl_lua_topic {
     const char *name, *usage, *doc; /* a list ends with name = NULL */
     const char *function;           /* of the kernel, whose parameters it takes; or NULL */

@@ -1,5 +1,5 @@
-/* help.c - `talus help` and `talus plugins`: printed from the tables that check what a script gives,
- * so that the help cannot say otherwise than the check. */
+/* help.c - `talus help` and `talus plugins`. They are printed from the tables that check what a script gives,
+ * so the help cannot say otherwise than the check. */
 #include "lua/help.h"
 
 #include "lua/contact.h"

@@ -1,7 +1,7 @@
 /* history.c - values of a model that runs sample: model:history{...}.
  *
- * run.c asks after every step whether a sample is due, and takes it in a protected call. While a history's function runs
- * the kernel refuses whatever would change the model, so a run gives the same bits with histories and without. */
+ * After every step run.c asks whether a sample is due, and takes it in a protected call. While a history's function
+ * runs the kernel refuses whatever would change the model. So a run gives the same bits with histories and without. */
 #include "lua/history.h"
 
 #include "lua/block.h"
@@ -646,10 +646,8 @@ static const tl_lua_key histories_fields[] = {
 /* Numbers, nan and inf as programs read them. */
 static void add_number(luaL_Buffer *b, double value)
 {
-    if (isnan(value))
-        luaL_addstring(b, "nan");
-    else
-        tl_lua_add_number(b, value, DBL_DIG);
+    char text[TL_LUA_NUMBER];
+    luaL_addstring(b, isnan(value) ? "nan" : tl_lua_number_text(value, DBL_DIG, text));
 }
 
 /* Names with a comma or a quotation mark are quoted. */

@@ -1,6 +1,6 @@
 /* history.h - histories: samples of a model as it runs.
  *
- * The kernel keeps histories (talus/history.h); the functions of those that sample one are in a table by name, a user value of
+ * The kernel keeps histories (talus/history.h). The functions that they sample are in a table by name, a user value of
  * the model's userdata. */
 #ifndef TL_LUA_HISTORY_H
 #define TL_LUA_HISTORY_H
@@ -16,7 +16,7 @@ bool tl_lua_histories_sample(lua_State *L, int model_index);
 void tl_lua_histories_share(lua_State *L, int from, int to);
 /* Checks the option `histories` of the table at index 2, if there is one: functions by name. */
 void tl_lua_histories_given(lua_State *L);
-/* Gives the histories of the restored model at `model_index` their functions, of that option, or raises: what a history asks
+/* Gives the histories of the restored model at `model_index` their functions, of that option. Raises when what one asks
  * for is not there. */
 void tl_lua_histories_again(lua_State *L, const char *path, int model_index);
 

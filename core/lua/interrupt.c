@@ -1,14 +1,15 @@
 /* interrupt.c - Ctrl-C (SIGINT) as a Lua error.
  *
- * A *watch* is held while a script or a long call of the kernel runs. The first Ctrl-C is noted, which ends a run of the kernel
- * after its step and cancels a generator or a file, and it sets a hook on the Lua state that runs, so that Lua code ends at its
- * next instruction. Whichever comes first raises the error: once for each Ctrl-C. A second Ctrl-C before that ends the program.
+ * A *watch* is held while a script or a long call of the kernel runs. The first Ctrl-C is noted, which ends a run of
+ * the kernel after its step and cancels a generator or a file. It also sets a hook on the Lua state that runs, so that
+ * Lua code ends at its next instruction. Whichever comes first raises the error: once for each Ctrl-C. A second Ctrl-C
+ * before that ends the program.
  *
- * The program watches as long as a script runs. In a stock interpreter only calls of the kernel are watched; outside of them
- * its own handler is in force, as it was.
+ * The program watches as long as a script runs. In a stock interpreter only calls of the kernel are watched. Outside of
+ * them its own handler is in force, as it was.
  *
- * Limit: Lua has no way to find the coroutine that runs. One that neither yields nor uses a model is ended by the second
- * Ctrl-C only. */
+ * Limit: Lua has no way to find the coroutine that runs. One that neither yields nor uses a model is ended by the
+ * second Ctrl-C only. */
 #include "lua/interrupt.h"
 
 #include "lua/fail.h"

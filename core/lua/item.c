@@ -1,6 +1,6 @@
 /* item.c - one block or one contact as a Lua object: fields by name, equality, text.
  *
- * An item is no pointer into the kernel but a number that is looked up at every access, so one that
+ * An item is no pointer into the kernel but a number that is looked up at every access. So one that
  * was deleted raises and never crashes. */
 #include "lua/item.h"
 

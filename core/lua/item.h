@@ -10,8 +10,8 @@ void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind);
 const tl_field *tl_lua_field_named(const tl_lua_kind *kind, const char *name, size_t *index);
 /* Pushes an item; `model_index` is where the model's userdata is. */
 void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id);
-/* The table at the top of the stack has a block in the field `name`, pushed before a call: makes it the one of that id,
- * without needing memory; TL_NO_ID: takes it out. */
+/* Makes the block in the field `name` of the table at the top of the stack the one of that id, without needing memory.
+ * TL_NO_ID: takes it out. */
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id);
 
 #endif

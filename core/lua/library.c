@@ -1,7 +1,7 @@
 /* library.c - the modules of Talus that are written in Lua (scripts/lib/talus), and files for them.
  *
- * `require "talus.plot"` finds them beside the program or the library talus.so, wherever these lie: by a searcher of its
- * own, which comes before the search path of scripts, so that the modules are of the same Talus. Where talus.so has not
+ * `require "talus.plot"` finds them beside the program or the library talus.so, wherever these lie. A searcher of its
+ * own comes before the search path of scripts, so the modules are of the same Talus. Where talus.so has not
  * been loaded yet, Lua's search for C modules loads it for its function luaopen_talus_NAME. */
 #include "lua/library.h"
 

@@ -1,4 +1,4 @@
-/* lists.c - what there is: model:joints(), model:laws(), model:groups(); talus.laws(), talus.dampings(), talus.generators(). */
+/* lists.c - what there is: model:joints(), laws(), groups(), parameters(); talus.laws(), dampings(), generators(). */
 #include "lua/lists.h"
 
 #include "lua/convert.h"
@@ -170,7 +170,7 @@ void tl_lua_lists_open(lua_State *L)
 
 /* ---------------------------------------------------------------- parameters in force -----
  *
- * Model:parameters(): all parameters that a model has now, with those the script has left out. */
+ * model:parameters(): all parameters that a model has now, with those the script has left out. */
 
 #define NAME_COLUMNS 20
 

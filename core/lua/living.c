@@ -1,4 +1,4 @@
-/* living.c - what all of the front end asks of a Lua state: its options, the model behind an object, its errors and remarks, the clock. */
+/* living.c - what all of the front end asks of a Lua state: its options, the model behind an object, and remarks. */
 #include "lua/living.h"
 
 #include "lua/convert.h"

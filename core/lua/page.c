@@ -91,12 +91,12 @@ static int model_write_html(lua_State *L, tl_model *model)
 
 /* ---------------------------------------------------------------- extra fields ------------
  *
- * Numbers that a script adds to the blocks or contacts of a file or page: fields by name, and functions.
+ * Numbers that a script adds to the blocks or contacts of a file or page: fields by name, and functions. As in
  *
  *     block_fields = {"kinetic_energy", safety = function(block) return factor[block.id] end}
  *
- * All are found before anything is written, in an order that does not depend on the table's: those of the list, then those
- * with a name, by their names. While a function runs the model may only be read. */
+ * All are found before anything is written, in an order that does not depend on the table's: those of the list first,
+ * then the others by their names. While a function runs the model may only be read. */
 
 const tl_lua_key tl_lua_field_keys[] = {
     TL_LUA_FIELD_KEYS,

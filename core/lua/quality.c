@@ -246,7 +246,7 @@ static tl_joint_strength read_strength(lua_State *L, const char *key, const char
     return (tl_joint_strength){joint, friction ? number : NAN, friction ? NAN : number};
 }
 
-/* Reads the entries of the strength `key` of the table at index 2 into the list, unless it is NULL; returns their number. */
+/* Reads the entries of the strength `key` of the table at index 2 into the list, if there is one. Returns how many. */
 static size_t read_strengths(lua_State *L, const char *key, tl_joint_strength *list)
 {
     size_t count = 0;

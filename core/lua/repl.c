@@ -1,5 +1,5 @@
-/* repl.c - the read-eval-print loop, on libedit's line editing. Besides Lua it knows the words help, help TOPIC, exit and
- * quit, as long as no global variable has that name. */
+/* repl.c - the read-eval-print loop, on libedit's line editing. Besides Lua it knows the words help, help TOPIC, exit
+ * and quit, as long as no global variable has that name. */
 #include "lua/repl.h"
 
 #include "lua/help.h"
@@ -102,12 +102,11 @@ static word_kind obey_word(lua_State *L, const char *text)
 
 /* ---------------------------------------------------------------- lines of before ---------
  *
- * The lines typed at the prompt: $XDG_STATE_HOME/talus/history, or ~/.local/state/talus/history, a text of
- * a line each.
+ * The lines typed at the prompt are in $XDG_STATE_HOME/talus/history, or ~/.local/state/talus/history.
  *
  * A line is appended when it is typed, so that sessions side by side lose nothing of each other. A file with more than
- * twice MOST lines is cut to the last MOST when a session begins. Only the user can read it. Whatever fails, the prompt goes
- * on without the file. */
+ * twice MOST lines is cut to the last MOST when a session begins. Only the user can read it. Whatever fails, the prompt
+ * goes on without the file. */
 
 #define MOST 1000 /* lines that are kept */
 
@@ -267,8 +266,8 @@ static void on_stop(int signal_number)
     line.stopped = 1;
 }
 
-/* Feeds what is typed to the editor until the line is there, input ends or Ctrl-C is pressed, which is let through only
- * while nothing is done. */
+/* Feeds what is typed to the editor until the line is there, input ends or Ctrl-C is pressed. Ctrl-C is let through
+ * only while nothing is done. */
 static void edit_line(const sigset_t *waiting)
 {
     while (!line.done && !line.stopped) {
@@ -324,8 +323,8 @@ static bool is_incomplete(lua_State *L)
     return length >= sizeof mark - 1 && strcmp(message + length - (sizeof mark - 1), mark) == 0;
 }
 
-/* Compiles the text at index `text`, as an expression, so that `return` may be left out, or as it is. Leaves the function or
- * the error; `more` tells whether the chunk goes on in the next line. */
+/* Compiles the text at index `text`, as an expression, so that `return` may be left out, or as it is. Leaves the
+ * function or the error; `more` tells whether the chunk goes on in the next line. */
 static int load_chunk(lua_State *L, int text, bool *more)
 {
     const char *chunk = lua_pushfstring(L, "return %s", lua_tostring(L, text));
@@ -345,8 +344,8 @@ static int load_chunk(lua_State *L, int text, bool *more)
 
 /* ---------------------------------------------------------------- chunks ----------------- */
 
-/* Reads one chunk of as many lines as it takes and leaves its function on the stack, or the error, with the status of the
- * loading in `status`. */
+/* Reads one chunk of as many lines as it takes. Leaves its function on the stack, or the error; `status` is that of the
+ * loading. */
 static line_end read_chunk(lua_State *L, int *status)
 {
     lua_settop(L, 0);

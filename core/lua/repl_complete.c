@@ -1,12 +1,13 @@
 /* repl_complete.c - completion of names at the prompt.
  *
- * What may stand at the cursor follows from what stands before it:
+ * What may stand at the cursor follows from what stands before it.
  *   after `x.` or `x:`     fields and methods of what x is
  *   in `f{`, `f("..", {`   keys of the table of options of f, or parameters of the plugin that is named
  *   in quotes              plugins of generate, joint and damping, choices of an option, fields for sum and the like
  *   else                   globals and Lua's words
- * Names come from the tables that check a script. Nothing of the script is run for it: x is found by looking up names
- * without metamethods, and what a call gives by the name of its function. */
+ *
+ * Names come from the tables that check a script. Nothing of the script is run: x is found by looking up names
+ * without metamethods. What a call gives follows from the name of its function. */
 #include "lua/repl_complete.h"
 
 #include "lua/block.h"
@@ -190,8 +191,8 @@ static void add_model_fields(const char *word)
 
 /* ---------------------------------------------------------------- the line before the cursor ---
  *
- * Reads an unfinished piece of Lua up to the cursor: which brackets are open, who is called with them, and
- * whether the cursor is in quotes. It need not judge what it reads; text in long brackets is taken for code. */
+ * Reads an unfinished piece of Lua up to the cursor: which brackets are open, what is called with them, whether
+ * the cursor is in quotes. It need not judge what it reads; text in long brackets is taken for code. */
 
 bool tl_scan_is_name(char c)
 {
@@ -346,8 +347,8 @@ static object_type resolve_name(lua_State *L, const char *text, size_t begin, si
     return look_up(L);
 }
 
-/* The call whose brackets begin at `begin`: by the function's name. A method of a selection that is no topic of its own gives
- * the selection. */
+/* The call whose brackets begin at `begin`: by the function's name. A method of a selection that is no topic of its own
+ * gives the selection. */
 static object_type resolve_call(lua_State *L, const char *text, size_t begin)
 {
     char name[NAME];

@@ -1,7 +1,7 @@
 /* run.c - cycle and solve: callbacks into Lua.
  *
- * No Lua error may jump over the kernel's frames: callbacks run in protected calls, an error is kept
- * on the stack, the run ends after the step, and only then is the error raised again, as it was. */
+ * No Lua error may jump over the kernel's frames. Callbacks run in protected calls, and an error is kept
+ * on the stack. The run ends after the step, and only then is the error raised again, as it was. */
 #include "lua/run.h"
 
 #include "lua/block.h"
@@ -27,8 +27,8 @@
  *
  * How a run or a generator goes: one line on a terminal that is written anew, in a log a line now and then.
  *
- * It goes to standard error, and asks nothing that could make the kernel compute: a run gives the same bits with it and
- * without. So dt is the mean step since the last line. Limit: the time that is left is guessed from the trend so far. */
+ * It goes to standard error, and asks nothing that could make the kernel compute: a run gives the same bits with it
+ * and without. So dt is the mean step since the last line. Limit: the time left is guessed from the trend so far. */
 
 /* Constant: seconds between two lines on a terminal and in a log, unless TALUS_PROGRESS says. */
 #define TERMINAL_PERIOD 0.1
@@ -207,7 +207,7 @@ static void set_result(lua_State *L, const tl_solve_result *result)
     tl_lua_item_rename(L, result_blocks[1], result->worst);
 }
 
-/* All memory for what a run will answer is had before the first step: a call that fails for want of it has made none. */
+/* All memory for what a run will answer is had before the first step: a call that fails for want of it makes none. */
 static void push_empty_answer(lua_State *L, int32_t measure)
 {
     lua_settop(L, AT_ERROR);

@@ -61,7 +61,7 @@ static int selection_text(lua_State *L)
 
 /* ---------------------------------------------------------------- one field of all --------
  *
- * Selection:values(field): one field of all blocks or contacts of a selection, as a list. */
+ * selection:values(field): one field of all blocks or contacts of a selection, as a list. */
 
 /* Whether the second argument of `values` asks for a flat list. */
 static bool wants_flat(lua_State *L)
@@ -134,7 +134,7 @@ static int selection_values(lua_State *L)
 
 /* ---------------------------------------------------------------- sums and extremes ------ */
 
-/* What sum, max and min work on: a field of numbers, or a state of laws, NaN of contacts whose law has none of that name. */
+/* What sum, max and min work on: a field of numbers, or a state of laws, NaN of contacts whose law has it not. */
 typedef struct column {
     const tl_field *field; /* NULL: a state */
     const double *values;  /* of each item as many as the width */

@@ -1,7 +1,8 @@
 /* state.c - a model once more: model:copy(), model:save(path), talus.restore(path).
  *
- * The functions of drives and histories belong to the script. A copy shares them; no file keeps them, so they are given again to
- * restore (those of histories: history.c). Either way the anchors they hang on (action.c) are made before the kernel asks for them, for it must not be left by a Lua error. */
+ * The functions of drives and histories belong to the script. A copy shares them. No file keeps them, so they are given
+ * again to restore (those of histories: history.c). The anchors they hang on (action.c) are made before the kernel asks
+ * for them, for no Lua error may leave it. */
 #include "lua/state.h"
 
 #include "lua/action.h"
@@ -220,7 +221,7 @@ static int module_restore(lua_State *L)
     return 1;
 }
 
-/* talus.resumed(options): as talus.restore of the script's last save; nil without --resume, or when nothing was saved. */
+/* talus.resumed(options): as talus.restore of the script's last save; nil without --resume, or when there is none. */
 static int module_resumed(lua_State *L)
 {
     tl_lua_arity(L, 1, "talus.resumed");
@@ -245,9 +246,9 @@ static int module_resumed(lua_State *L)
 
 /* ---------------------------------------------------------------- runs that are saved as they go ---
  *
- * Runs that are saved as they go: `talus run --autosave MINUTES SCRIPT` saves the model that runs, from time to time, in a
- * file beside the script, and after `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the
- * clock, which is no harm: saving does not change a run. */
+ * `talus run --autosave MINUTES SCRIPT` saves the model that runs, from time to time, in a file beside the script.
+ * After `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the clock, which is no harm:
+ * saving does not change a run. */
 
 #define ENDING ".autosave.talus"
 

@@ -1,8 +1,8 @@
 /* view.c - model:view{...}: a model that is seen, and worked on, while it runs.
  *
- * Frames are shown after steps, commands are done between two steps, and a run that is paused waits there. What is done is a line
- * of Lua, which is logged: on standard error, on the page and, with `log`, in a file. In front of each line stand the
- * steps made since the line before, so the lines one after the other repeat the work.
+ * Frames are shown after steps, commands are done between two steps, and a run that is paused waits there. What is done
+ * is a line of Lua, which is logged: on standard error, on the page and, with `log`, in a file. In front of each line
+ * stand the steps made since the line before, so the lines one after the other repeat the work.
  *
  * What goes wrong in a command is told to those who look, and ends nothing. */
 #include "lua/view.h"
@@ -161,81 +161,46 @@ bool tl_lua_view_step(lua_State *L, double worth)
 /* Digits of a number at least. */
 #define DIGITS 6
 
+/* The following push a piece of a line. A number: */
+static const char *number(lua_State *L, double value)
+{
+    char text[TL_LUA_NUMBER];
+    return lua_pushstring(L, tl_lua_number_text(value, DIGITS, text));
+}
+
 /* A text in quotes, with what could end it or its line as numbers. */
-static void add_text(luaL_Buffer *line, const char *text)
+static const char *quoted(lua_State *L, const char *text)
 {
-    luaL_addchar(line, '"');
+    luaL_Buffer piece;
+    luaL_buffinit(L, &piece);
+    luaL_addchar(&piece, '"');
     for (; *text; text++) {
-        char number[8];
+        char code[8];
         unsigned char letter = (unsigned char)*text;
-        if (letter == '"' || letter == '\\') {
-            luaL_addchar(line, '\\');
-            luaL_addchar(line, *text);
-        } else if (letter < ' ' || letter == 127) {
-            snprintf(number, sizeof number, "\\%03u", letter);
-            luaL_addstring(line, number);
-        } else {
-            luaL_addchar(line, *text);
-        }
+        bool control = letter < ' ' || letter == 127;
+        if (letter == '"' || letter == '\\')
+            luaL_addchar(&piece, '\\');
+        snprintf(code, sizeof code, control ? "\\%03u" : "%c", letter);
+        luaL_addstring(&piece, code);
     }
-    luaL_addchar(line, '"');
+    luaL_addchar(&piece, '"');
+    luaL_pushresult(&piece);
+    return lua_tostring(L, -1);
 }
 
-static void add_numbers(luaL_Buffer *line, const double *values, size_t count)
+/* { 3, 5 } */
+static const char *list(lua_State *L, const double *values, size_t count)
 {
-    luaL_addstring(line, "{ ");
+    char text[TL_LUA_NUMBER];
+    luaL_Buffer piece;
+    luaL_buffinit(L, &piece);
     for (size_t i = 0; i < count; i++) {
-        luaL_addstring(line, i ? ", " : "");
-        tl_lua_add_number(line, values[i], DIGITS);
+        luaL_addstring(&piece, i ? ", " : "{ ");
+        luaL_addstring(&piece, tl_lua_number_text(values[i], DIGITS, text));
     }
-    luaL_addstring(line, " }");
-}
-
-/* model:blocks { id = { 3, 5 } } */
-static void add_blocks(luaL_Buffer *line, const tl_view_command *command, bool hidden)
-{
-    double ids[TL_VIEW_BLOCKS];
-    for (size_t i = 0; i < command->block_count; i++)
-        ids[i] = command->blocks[i];
-    luaL_addstring(line, "model:blocks { id = ");
-    if (command->block_count == 1)
-        tl_lua_add_number(line, ids[0], DIGITS);
-    else
-        add_numbers(line, ids, command->block_count);
-    luaL_addstring(line, hidden ? ", hidden = \"any\" }" : " }");
-}
-
-static void add_cut(luaL_Buffer *line, const tl_view_command *command)
-{
-    const double origin[] = {command->origin.x, command->origin.y, command->origin.z};
-    luaL_addstring(line, "model:generate(\"joint\", { joint = ");
-    add_text(line, command->joint);
-    luaL_addstring(line, ", dip = ");
-    tl_lua_add_number(line, command->dip, DIGITS);
-    luaL_addstring(line, ", dip_direction = ");
-    tl_lua_add_number(line, command->dip_direction, DIGITS);
-    luaL_addstring(line, ", origin = ");
-    add_numbers(line, origin, 3);
-    luaL_addstring(line, " })");
-}
-
-static void add_friction(luaL_Buffer *line, const tl_view_command *command)
-{
-    luaL_addstring(line, "model:joint(");
-    add_text(line, command->joint);
-    luaL_addstring(line, ", { friction = ");
-    tl_lua_add_number(line, command->value, DIGITS);
-    luaL_addstring(line, " })");
-}
-
-/* model:METHOD("PREFIX" and the rest of the name) */
-static void add_file(luaL_Buffer *line, const char *method, const char *name)
-{
-    luaL_addstring(line, "model:");
-    luaL_addstring(line, method);
-    luaL_addchar(line, '(');
-    add_text(line, name);
-    luaL_addchar(line, ')');
+    luaL_addstring(&piece, " }");
+    luaL_pushresult(&piece);
+    return lua_tostring(L, -1);
 }
 
 /* Whether a block of the command is hidden: a selection then has to ask for it. */
@@ -256,66 +221,67 @@ static bool any_hidden(tl_model *model, const tl_view_command *command)
     return hidden;
 }
 
-/* Pushes the line that does the command to `model`, or nil for one that only concerns the run (pause, go, step). False, with a
- * sentence on the top of the stack in its place, when a block is not there. */
-static bool view_line(lua_State *L, tl_model *model, const tl_view_command *command,
+/* model:blocks { id = { 3, 5 } }:VERB() */
+static void push_verb_line(lua_State *L, tl_model *model, const tl_view_command *command)
+{
+    const char *verb = tl_view_op_name(command->op);
+    double ids[TL_VIEW_BLOCKS];
+    for (size_t i = 0; i < command->block_count; i++)
+        ids[i] = command->blocks[i];
+    if (command->block_count == 0)
+        lua_pushfstring(L, "model:blocks { hidden = true }:%s()", verb);
+    else
+        lua_pushfstring(L, "model:blocks { id = %s%s }:%s()",
+                        command->block_count == 1 ? number(L, ids[0])
+                                                  : list(L, ids, command->block_count),
+                        any_hidden(model, command) ? ", hidden = \"any\"" : "", verb);
+}
+
+/* Pushes the line that does the command, which is not pause, go or step; raises when a block is not there. */
+static void push_line(lua_State *L, tl_model *model, const tl_view_command *command,
                       const char *prefix)
 {
-    luaL_Buffer line;
-    for (size_t i = 0; i < command->block_count; i++) {
+    for (size_t i = 0; i < command->block_count; i++)
         if (tl_block_check(model, command->blocks[i]) != TL_OK) {
             lua_pushfstring(L, "%s: %s", tl_view_op_name(command->op), tl_model_error(model)->text);
-            return false;
+            lua_error(L);
         }
-    }
-    bool hidden = any_hidden(model, command);
+    const double origin[] = {command->origin.x, command->origin.y, command->origin.z};
     char cycle[32];
     snprintf(cycle, sizeof cycle, "_%09lld.talus", (long long)tl_model_cycles(model));
-    const char *name = lua_pushfstring(L, "%s%s", prefix, command->op == TL_VIEW_VTK ? "" : cycle);
-    luaL_buffinit(L, &line);
     switch (command->op) {
-    case TL_VIEW_PAUSE:
-    case TL_VIEW_GO:
-    case TL_VIEW_STEP: break;
-    case TL_VIEW_CUT: add_cut(&line, command); break;
-    case TL_VIEW_FRICTION: add_friction(&line, command); break;
-    case TL_VIEW_VTK: add_file(&line, "write_vtk", name); break;
-    case TL_VIEW_SNAPSHOT: add_file(&line, "save", name); break;
-    default:
-        if (command->block_count > 0)
-            add_blocks(&line, command, hidden);
-        else
-            luaL_addstring(&line, "model:blocks { hidden = true }");
-        luaL_addchar(&line, ':');
-        luaL_addstring(&line, tl_view_op_name(command->op));
-        luaL_addstring(&line, "()");
+    case TL_VIEW_CUT:
+        lua_pushfstring(L,
+                        "model:generate(\"joint\", { joint = %s, dip = %s, dip_direction = %s, "
+                        "origin = %s })",
+                        quoted(L, command->joint), number(L, command->dip),
+                        number(L, command->dip_direction), list(L, origin, 3));
+        break;
+    case TL_VIEW_FRICTION:
+        lua_pushfstring(L, "model:joint(%s, { friction = %s })", quoted(L, command->joint),
+                        number(L, command->value));
+        break;
+    case TL_VIEW_VTK: lua_pushfstring(L, "model:write_vtk(%s)", quoted(L, prefix)); break;
+    case TL_VIEW_SNAPSHOT:
+        lua_pushfstring(L, "model:save(%s)", quoted(L, lua_pushfstring(L, "%s%s", prefix, cycle)));
+        break;
+    default: push_verb_line(L, model, command);
     }
-    luaL_pushresult(&line);
-    lua_remove(L, -2);
-    if (lua_rawlen(L, -1) == 0) {
-        lua_pop(L, 1);
-        lua_pushnil(L);
-    }
-    return true;
 }
 
 /* ---------------------------------------------------------------- commands --------------- */
 
-/* Runs protected: finds the line of a command and does it. Arguments: the model, the command. Gives the line, nil when there is
- * nothing to do. */
+/* Runs protected: finds the line of a command, does it and gives it. Arguments: the model, the command. */
 static int do_line(lua_State *L)
 {
-    const tl_view_command *command = lua_touserdata(L, 2);
-    if (!view_line(L, model_of(L), command, view_of(L)->prefix))
-        return lua_error(L);
-    if (lua_isnil(L, -1))
-        return 1;
-    const char *text = lua_pushfstring(L, "local model = ... %s", lua_tostring(L, -1));
+    push_line(L, model_of(L), lua_touserdata(L, 2), view_of(L)->prefix);
+    int line = lua_gettop(L);
+    const char *text = lua_pushfstring(L, "local model = ... %s", lua_tostring(L, line));
     if (luaL_loadbuffer(L, text, strlen(text), "=" CHUNK) != LUA_OK)
         return lua_error(L);
     lua_pushvalue(L, TL_LUA_AT_MODEL);
     lua_call(L, 1, 0);
-    lua_pop(L, 1);
+    lua_settop(L, line);
     return 1;
 }
 
@@ -329,7 +295,7 @@ static int do_steps(lua_State *L)
     return 0;
 }
 
-/* Calls a function with the model and the command. What it gives is then on the top of the stack, or the error that it raised. */
+/* Calls a function with the model and the command. What it gives is then on the top of the stack, or its error. */
 static bool call(lua_State *L, lua_CFunction function, const tl_view_command *command, int results)
 {
     lua_pushcfunction(L, function);
@@ -356,8 +322,7 @@ static bool do_and_log(lua_State *L, viewing *v, const tl_view_command *command)
     log_steps(L, v);
     if (!call(L, do_line, command, 1))
         return false;
-    if (!lua_isnil(L, -1))
-        log_line(L, v, lua_tostring(L, -1));
+    log_line(L, v, lua_tostring(L, -1));
     lua_pop(L, 1);
     return true;
 }
@@ -382,8 +347,8 @@ static bool do_command(lua_State *L, viewing *v, const tl_view_command *command)
     return true;
 }
 
-/* Does commands while there are any, or as long as the model waits: in a run until it may go on. False, with the error on the top
- * of the stack, after a Ctrl-C, or when a frame cannot be shown. */
+/* Does commands while there are any, or as long as the model waits: in a run until it may go on. False, with the error
+ * on the top of the stack, after a Ctrl-C, or when a frame cannot be shown. */
 static bool serve(lua_State *L, viewing *v)
 {
     double patience = 0;
