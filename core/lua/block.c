@@ -296,7 +296,6 @@ static int model_blocks(lua_State *L, tl_model *model)
     block_args args = {.containing = {NAN, NAN, NAN}, .fixed = -1};
     block_nested nested;
     tl_block_filter filter;
-    luaL_checkstack(L, 32, "too many values");
     read_filter(L, &args, &nested, &filter);
     block_ids ids = read_ids(L);
     if (ids.list && ids.count == 1)

@@ -348,7 +348,6 @@ static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions
 
 static int model_boundary(lua_State *L, tl_model *model)
 {
-    luaL_checkstack(L, 64, "too many values");
     tl_boundary_action actions[SIDES];
     bool add;
     size_t sides = read_call(L, actions, &add);

@@ -208,7 +208,6 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
 
 static int model_contacts(lua_State *L, tl_model *model)
 {
-    luaL_checkstack(L, 32, "too many values");
     contact_args args;
     tl_lua_read(L, 2, &contacts_spec, false, &args);
     tl_contact_filter filter = tl_contact_filter_default();

@@ -1,12 +1,12 @@
 /* help.c - `talus help` and `talus plugins`. They are printed from the tables that check what a script gives,
  * so the help cannot say otherwise than the check. */
+#define _GNU_SOURCE /* strcasestr */
 #include "lua/help.h"
 
 #include "lua/contact.h"
 #include "lua/fail.h"
 #include "lua/topics.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <talus/fields.h>
@@ -123,20 +123,14 @@ static const char *topic_doc(const tl_lua_topic *topic)
 }
 
 /* What a field is as Lua sees it: tl_lua_push_field. */
-static const char *field_type(tl_field_kind kind)
-{
-    switch (kind) {
-    case TL_FIELD_SCALAR: return "number";
-    case TL_FIELD_COUNT: return "whole number";
-    case TL_FIELD_BOOL: return "true or false";
-    case TL_FIELD_VEC3: return "vector";
-    case TL_FIELD_QUAT: return "list of 4 numbers";
-    case TL_FIELD_SYM3: return "{xx =, yy =, zz =, xy =, yz =, zx =}";
-    case TL_FIELD_TEXT: return "text";
-    case TL_FIELD_IDS: return "list of 2 blocks";
-    }
-    return "";
-}
+static const char *const field_types[] = {[TL_FIELD_SCALAR] = "number",
+                                          [TL_FIELD_COUNT] = "whole number",
+                                          [TL_FIELD_BOOL] = "true or false",
+                                          [TL_FIELD_VEC3] = "vector",
+                                          [TL_FIELD_QUAT] = "list of 4 numbers",
+                                          [TL_FIELD_SYM3] = "{xx =, yy =, zz =, xy =, yz =, zx =}",
+                                          [TL_FIELD_TEXT] = "text",
+                                          [TL_FIELD_IDS] = "list of 2 blocks"};
 
 static void walk_fields(const char *item, const tl_field *(*list)(size_t *count), row_call call,
                         void *user)
@@ -148,7 +142,7 @@ static void walk_fields(const char *item, const tl_field *(*list)(size_t *count)
     call(&(row){.heading = text}, user);
     for (size_t i = 0; i < count; i++) {
         bool unit = fields[i].unit && fields[i].unit[0];
-        snprintf(text, sizeof text, "%s%s%s", field_type(fields[i].kind), unit ? ", " : "",
+        snprintf(text, sizeof text, "%s%s%s", field_types[fields[i].kind], unit ? ", " : "",
                  unit ? fields[i].unit : "");
         call(&(row){NULL, fields[i].name, NULL, text, fields[i].doc}, user);
     }
@@ -279,16 +273,7 @@ static void print_overview(void)
 /* Whether a text has the word, in any letters. */
 static bool says(const char *text, const char *word)
 {
-    size_t length = strlen(word);
-    for (; text && *text; text++) {
-        size_t same = 0;
-        while (same < length &&
-               tolower((unsigned char)text[same]) == tolower((unsigned char)word[same]))
-            same++;
-        if (same == length)
-            return true;
-    }
-    return false;
+    return text && strcasestr(text, word);
 }
 
 /* A word that is looked for, and whether a page has it. */

@@ -34,12 +34,6 @@ static const tl_lua_key kinds_results[] = {
 
 /* ---------------------------------------------------------------- parameters ------------- */
 
-/* Texts and lists of points are the script's and may be gone. */
-static bool is_told(const tl_param *param)
-{
-    return param->type != TL_PARAM_STRING && param->type != TL_PARAM_POINTS;
-}
-
 /* Sets `parameters` of the table at the top of the stack: those of a plugin in use, by name. */
 static void set_params(lua_State *L, const tl_kind *kind, const void *params)
 {
@@ -68,28 +62,16 @@ static int model_joints(lua_State *L, tl_model *model)
     return 1;
 }
 
-/* Pushes "*", "J1" or "J1:3". */
-static void push_pattern(lua_State *L, tl_model *model, tl_tag joint)
-{
-    if (joint.joint == 0)
-        lua_pushliteral(L, "*");
-    else if (joint.plane == 0)
-        lua_pushstring(L, tl_joint_at(model, joint.joint - 1).name);
-    else
-        lua_pushstring(L, tl_tag_name(model, joint));
-}
-
 static int model_laws(lua_State *L, tl_model *model)
 {
-    size_t count = tl_law_count(model);
-    lua_createtable(L, (int)count, 0);
-    for (size_t i = 0; i < count; i++) {
-        tl_law_info law = tl_law_at(model, i);
+    const char *joint;
+    tl_plugin_setting law;
+    lua_newtable(L);
+    for (size_t i = 0; tl_model_law_at(model, i, &joint, &law); i++) {
         lua_createtable(L, 0, 3);
-        push_pattern(L, model, law.joint);
-        lua_setfield(L, -2, "joint");
-        tl_lua_set_text(L, "law", law.law->name);
-        set_params(L, law.law, law.params);
+        tl_lua_set_text(L, "joint", joint);
+        tl_lua_set_text(L, "law", law.kind->name);
+        set_params(L, law.kind, law.params);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     return 1;
@@ -160,7 +142,7 @@ void tl_lua_lists_open(lua_State *L)
                  {"dampings", TL_KIND_DAMPING},
                  {"generators", TL_KIND_GENERATOR},
                  {"screens", TL_KIND_SCREEN}};
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+    for (size_t i = 0; i < TL_LUA_COUNT(lists); i++) {
         lua_pushinteger(L, lists[i].type);
         lua_pushfstring(L, "talus.%s", lists[i].name);
         lua_pushcclosure(L, module_kinds, 2);
@@ -242,8 +224,8 @@ static void print_params(FILE *page, const tl_kind *kind, const void *params)
 {
     for (uint32_t i = 0; i < kind->param_count; i++) {
         char name[80], text[VALUE_TEXT];
-        if (!is_told(&kind->params[i]))
-            continue;
+        if (kind->params[i].type == TL_PARAM_STRING || kind->params[i].type == TL_PARAM_POINTS)
+            continue; /* the script's, and may be gone */
         snprintf(name, sizeof name, "  %s", kind->params[i].name);
         value_text(&kind->params[i], params, text);
         print_row(page, name, text);

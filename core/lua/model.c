@@ -274,7 +274,6 @@ static int model_write_vtk(lua_State *L, tl_model *model)
     const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
     tl_vtk_parts parts = tl_vtk_parts_default();
     tl_lua_read_function(L, 3, "write_vtk", tl_lua_field_keys, &parts);
-    luaL_checkstack(L, 32, "too many values");
     parts.block_fields = tl_lua_extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind,
                                              &parts.block_field_count);
     parts.contact_fields = tl_lua_extra_fields(L, 3, "contact_fields", "write_vtk",

@@ -30,6 +30,7 @@ static int call_method(lua_State *L)
     tl_model *model = tl_lua_model_of(L, topic->name);
     tl_lua_arity(L, topic->arguments + 1, topic->name);
     lua_settop(L, topic->arguments + 1);
+    luaL_checkstack(L, 64, "too many values");
     return topic->method(L, model);
 }
 

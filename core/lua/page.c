@@ -91,7 +91,7 @@ static int model_write_html(lua_State *L, tl_model *model)
 
 /* ---------------------------------------------------------------- extra fields ------------
  *
- * Numbers that a script adds to the blocks or contacts of a file or page: fields by name, and functions. As in
+ * Numbers that a script adds to the blocks or contacts of a file or page: fields by name, and functions.
  *
  *     block_fields = {"kinetic_energy", safety = function(block) return factor[block.id] end}
  *

@@ -492,7 +492,6 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
 
 static int model_solve(lua_State *L, tl_model *model)
 {
-    luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_solve solve = tl_solve_default();
     tl_lua_read_function(L, AT_ARGS, "solve", solve_keys, &solve);
     return make_run(L, model, "solve", &solve, false);
@@ -501,7 +500,6 @@ static int model_solve(lua_State *L, tl_model *model)
 /* cycle(cycles, {every =, on_progress =}) */
 static int model_cycle(lua_State *L, tl_model *model)
 {
-    luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_cycle_args args;
     tl_lua_spec spec = tl_lua_spec_of("cycle", cycle_keys);
     tl_lua_read_one(L, 2, &spec, "cycles", &args);

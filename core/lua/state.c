@@ -247,8 +247,8 @@ static int module_resumed(lua_State *L)
 /* ---------------------------------------------------------------- runs that are saved as they go ---
  *
  * `talus run --autosave MINUTES SCRIPT` saves the model that runs, from time to time, in a file beside the script.
- * After `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the clock, which is no harm:
- * saving does not change a run. */
+ * After `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the clock. That is no
+ * harm: saving does not change a run. */
 
 #define ENDING ".autosave.talus"
 

@@ -518,7 +518,6 @@ static int model_view(lua_State *L, tl_model *model)
 {
     (void)model;
     tl_lua_model *owner = lua_touserdata(L, TL_LUA_AT_MODEL);
-    luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_view_options options = tl_view_options_default();
     tl_lua_spec spec = tl_lua_spec_of("view", push_keys(L, tl_plugin_kind(TL_KIND_SCREEN, 0)));
     tl_lua_read(L, 2, &spec, false, &options); /* texts stay with the table */
