@@ -14,12 +14,10 @@
 
 /* ---------------------------------------------------------------- points and states -------
  *
- * Contact.points and contact.states: the points of a contact and the states of its law, as tables.
+ * contact.points and contact.states: the points of a contact and the states of its law, as tables.
  *
  * They are copies of what is when they are asked for. Points come and go with the polygon, so no handle could stand
  * for one. Reading a name that is not there raises, as it does of a contact. */
-
-/* ---------------------------------------------------------------- tables of names -------- */
 
 static int compare_names(const void *a, const void *b)
 {
@@ -51,11 +49,10 @@ static int record_assign(lua_State *L)
 static void set_record(lua_State *L, const char *type, const char *what)
 {
     if (luaL_newmetatable(L, type)) {
+        const luaL_Reg meta[] = {
+            {"__index", record_index}, {"__newindex", record_assign}, {NULL, NULL}};
         lua_pushstring(L, what);
-        lua_pushcclosure(L, record_index, 1);
-        lua_setfield(L, -2, "__index");
-        lua_pushcfunction(L, record_assign);
-        lua_setfield(L, -2, "__newindex");
+        luaL_setfuncs(L, meta, 1);
     }
     lua_setmetatable(L, -2);
 }
@@ -116,11 +113,12 @@ static void set_value(lua_State *L, tl_model *model, tl_id contact, size_t count
     tl_lua_ok(L, model, tl_points_values(model, &contact, 1, name, values, &width));
     for (size_t k = 0; k < count; k++) {
         lua_rawgeti(L, -1, (lua_Integer)k + 1);
+        lua_pushstring(L, name);
         if (strcmp(name, "state") == 0)
             lua_pushstring(L, tl_state_name((size_t)values[k]));
         else
             push_value(L, values + k * width, width);
-        lua_setfield(L, -2, name);
+        lua_rawset(L, -3);
         lua_pop(L, 1);
     }
 }
@@ -136,17 +134,13 @@ static void push_contact_points(lua_State *L, tl_model *model, tl_id contact)
     lua_createtable(L, (int)start[1], 0);
     for (size_t k = 0; k < start[1]; k++) {
         lua_createtable(L, 0, (int)(fields + states->count));
+        set_record(L, "talus.contact_point", "a contact point has no field");
         lua_rawseti(L, -2, (lua_Integer)k + 1);
     }
     for (size_t i = 0; i < fields; i++)
         set_value(L, model, contact, start[1], field[i].name, values);
     for (size_t i = 0; i < states->count; i++)
         set_value(L, model, contact, start[1], states->list[i].name, values);
-    for (size_t k = 0; k < start[1]; k++) {
-        lua_rawgeti(L, -1, (lua_Integer)k + 1);
-        set_record(L, "talus.contact_point", "a contact point has no field");
-        lua_pop(L, 1);
-    }
 }
 
 /* ---------------------------------------------------------------- contacts ---------------- */

@@ -240,11 +240,8 @@ void tl_lua_strict(lua_State *L)
     lua_pushglobaltable(L);
     lua_createtable(L, 0, 2);
     lua_newtable(L);
-    lua_pushvalue(L, -1);
-    lua_pushcclosure(L, global_read, 1);
-    lua_setfield(L, -3, "__index");
-    lua_pushcclosure(L, global_write, 1);
-    lua_setfield(L, -2, "__newindex");
+    const luaL_Reg meta[] = {{"__index", global_read}, {"__newindex", global_write}, {NULL, NULL}};
+    luaL_setfuncs(L, meta, 1);
     lua_setmetatable(L, -2);
     lua_pop(L, 1);
 }

@@ -408,17 +408,11 @@ static int model_assign(lua_State *L)
 void tl_lua_model_open(lua_State *L)
 {
     if (luaL_newmetatable(L, TL_LUA_MODEL_TYPE)) {
-        lua_pushvalue(L, -2);
-        lua_pushcclosure(L, model_index, 1);
-        lua_setfield(L, -2, "__index");
-        lua_pushvalue(L, -2);
-        lua_pushcclosure(L, model_assign, 1);
-        lua_setfield(L, -2, "__newindex");
-        const luaL_Reg meta[] = {{"__gc", model_collect},
-                                 {"__close", model_collect},
-                                 {"__tostring", model_text},
-                                 {NULL, NULL}};
-        luaL_setfuncs(L, meta, 0);
+        lua_pushvalue(L, -2); /* the methods */
+        const luaL_Reg meta[] = {{"__index", model_index},   {"__newindex", model_assign},
+                                 {"__gc", model_collect},    {"__close", model_collect},
+                                 {"__tostring", model_text}, {NULL, NULL}};
+        luaL_setfuncs(L, meta, 1);
         lua_pushliteral(L, "a model");
         lua_setfield(L, -2, "__metatable");
     }
