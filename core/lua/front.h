@@ -89,8 +89,8 @@ typedef struct tl_lua_verb {
     int arguments;    /* after the selection, nil where none are given */
     tl_status (*plain)(tl_model *model, const tl_id *ids, size_t count);
     tl_status (*act)(lua_State *L, const struct tl_lua_selection *blocks);
-    const char *
-        done; /* "hidden": a remark says "no block was hidden" of an empty selection; NULL: none does */
+    /* "hidden": a remark says "no block was hidden" of an empty selection; NULL: none does. */
+    const char *done;
     int (*ask)(lua_State *L, const struct tl_lua_selection *blocks); /* pushes what it gives; 1 */
 } tl_lua_verb;
 

@@ -113,8 +113,7 @@ typedef struct request {
     const tl_lua_selection *items; /* all of them */
     tl_extra_field *fields;
     size_t count;
-    int given, anchor,
-        items_at; /* stack indices: of the table, of what keeps texts and values, of the selection */
+    int given, anchor; /* stack indices: of the table, of what keeps texts and values */
 } request;
 
 /* Letters, digits and underscores, beginning with a letter: names of arrays in files. */

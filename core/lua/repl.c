@@ -427,8 +427,8 @@ void tl_repl_run(lua_State *L, bool verbose)
 {
     int status;
     line_end end;
-    setlocale(LC_CTYPE,
-              ""); /* so that letters beyond ASCII can be typed; numbers stay as they are */
+    /* So that letters beyond ASCII can be typed; numbers stay as they are. */
+    setlocale(LC_CTYPE, "");
     repl_history_open(tl_lua_options_of(L)->quiet);
     tl_repl_complete_with(L);
     while ((end = read_chunk(L, &status)) != LINE_END_OF_INPUT) {

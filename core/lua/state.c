@@ -271,8 +271,8 @@ void tl_lua_autosave(tl_lua_options *options, tl_model *model)
     if (now < options->save_due)
         return;
     options->save_due = now + options->autosave;
-    if (tl_model_save(model, options->save_path) !=
-        TL_OK) { /* the run is worth more than its save */
+    /* The run is worth more than its save: a failure is told only. */
+    if (tl_model_save(model, options->save_path) != TL_OK) {
         char text[TL_ERROR_TEXT + 32];
         snprintf(text, sizeof text, "autosave: %s", tl_model_error(model)->text);
         tl_lua_log(options, text);
