@@ -61,82 +61,8 @@ static int model_text(lua_State *L)
 
 /* ---------------------------------------------------------------- methods ---------------- */
 
-/* Writes a summary into the table at the top of the stack. */
-static void set_summary(lua_State *L, const tl_generate_summary *s)
-{
-    TL_LUA_SET_COUNTS(L, {"before", s->before}, {"after", s->after}, {"cuts", s->cuts},
-                      {"refused", s->refused}, {"coincident", s->coincident});
-    TL_LUA_SET_NUMBERS(L, {"smallest_volume", s->smallest_volume},
-                       {"smallest_edge", s->smallest_edge}, {"smallest_face", s->smallest_face},
-                       {"volume_error", s->volume_error});
-}
-
 /* What a writer has done that was cancelled. */
 #define NO_FILE "no file was written"
-
-/* The number of tables in the list at index 3; 0 when it is none. */
-static size_t entry_count(lua_State *L, const char *generator)
-{
-    if (!lua_istable(L, 3) || lua_rawgeti(L, 3, 1) != LUA_TTABLE)
-        return 0;
-    for (lua_pushnil(L); lua_next(L, 3); lua_pop(L, 1))
-        if (!lua_isinteger(L, -2))
-            tl_lua_fail(
-                L,
-                "generate '%s': give a list of parameter tables, or parameters by name, not both",
-                generator);
-    return lua_rawlen(L, 3);
-}
-
-/* Reads the list of parameter tables at index 3; what they point to hangs on a table that is pushed. */
-static const tl_args *read_entries(lua_State *L, const char *generator, size_t count)
-{
-    lua_newtable(L);
-    int anchor = lua_gettop(L);
-    tl_args *list = lua_newuserdatauv(L, count * sizeof *list, 0);
-    lua_rawseti(L, anchor, 0);
-    for (size_t i = 0; i < count; i++) {
-        const char *context =
-            lua_pushfstring(L, "generate '%s', entry %I", generator, (lua_Integer)i + 1);
-        lua_rawgeti(L, 3, (lua_Integer)i + 1);
-        if (!lua_istable(L, -1))
-            tl_lua_fail(L, "%s: the parameters must be a table, not %s", context,
-                        tl_lua_describe(L, -1));
-        tl_lua_args(L, -1, context, NULL, &list[i]);
-        lua_rawseti(L, anchor, (lua_Integer)i + 1);
-        lua_settop(L, anchor);
-    }
-    return list;
-}
-
-static int model_generate(lua_State *L, tl_model *model)
-{
-    const char *generator = tl_lua_text(L, 2, "generate", "the generator's name");
-    size_t count = entry_count(L, generator); /* of a list */
-    lua_settop(L, 3);
-    tl_args one;
-    const tl_args *args = &one;
-    if (count)
-        args = read_entries(L, generator, count);
-    else
-        tl_lua_args(L, 3, lua_pushfstring(L, "generate '%s'", generator), NULL, &one);
-    const char *what = lua_pushfstring(L, "generator '%s'", generator);
-    tl_generate_summary summary = {0};
-    lua_newtable(L);
-    /* All memory is had before blocks are made: a call that fails changes nothing. */
-    set_summary(L, &summary);
-    tl_lua_progress progress;
-    tl_lua_progress_begin(L, &progress, model);
-    tl_model_watch_generate(model, tl_lua_progress_generate, &progress);
-    tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_status status = count ? tl_generate_list(model, generator, args, count, &summary)
-                             : tl_generate(model, generator, args, &summary);
-    tl_model_watch_generate(model, NULL, NULL);
-    tl_lua_progress_clear(&progress);
-    tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, status, what, "the model is as it was"));
-    set_summary(L, &summary);
-    return 1;
-}
 
 static int model_joint(lua_State *L, tl_model *model)
 {
@@ -496,7 +422,7 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .title = "Fields of the summary",
      .verbs = generate_results,
      .arguments = 2,
-     .method = model_generate},
+     .method = tl_lua_model_generate},
     {.name = "joint",
      .usage = "model:joint(\"J1\", \"LAW\", {...})  or  model:joint(\"J1\", {friction = 30})",
      .doc = "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every "

@@ -1,4 +1,4 @@
-/* run.c - cycle and solve: callbacks into Lua.
+/* run.c - cycle, solve and generate: callbacks into Lua, and the line that tells how it goes.
  *
  * No Lua error may jump over the kernel's frames. Callbacks run in protected calls, and an error is kept
  * on the stack. The run ends after the step, and only then is the error raised again, as it was. */
@@ -40,6 +40,20 @@
 /* Tolerance: a trend of the logarithm of the ratio that is less than this in the time looked at is none. */
 #define TREND 0.1
 
+/* Ratios kept for their trend. */
+#define KEPT 64
+
+typedef struct progress {
+    bool on, terminal;
+    bool drawn;                              /* a line stands on the terminal */
+    double period, began, shown, next_count; /* s, of the clock */
+    int64_t shown_cycle;                     /* when the line was last written */
+    double first_time, shown_time;           /* s, of the model */
+    tl_contact_counts counts;
+    double at[KEPT], log_ratio[KEPT];
+    int kept;
+} progress;
+
 /* The period that the environment asks for, s, or NaN. */
 static double read_period(lua_State *L)
 {
@@ -54,20 +68,20 @@ static double read_period(lua_State *L)
     return period;
 }
 
-void tl_lua_progress_begin(lua_State *L, tl_lua_progress *p, const tl_model *model)
+static void progress_begin(lua_State *L, progress *p, const tl_model *model)
 {
-    *p = (tl_lua_progress){.on = !tl_lua_options_of(L)->quiet};
+    *p = (progress){.on = !tl_lua_options_of(L)->quiet};
     if (!p->on)
         return;
     p->terminal = isatty(STDERR_FILENO) == 1;
     double period = read_period(L);
     p->period = !isnan(period) ? period : p->terminal ? TERMINAL_PERIOD : LOG_PERIOD;
     p->began = p->shown = tl_lua_clock();
-    p->first_cycle = p->shown_cycle = tl_model_cycles(model);
+    p->shown_cycle = tl_model_cycles(model);
     p->first_time = p->shown_time = tl_model_time(model);
 }
 
-void tl_lua_progress_clear(tl_lua_progress *p)
+static void progress_clear(progress *p)
 {
     if (p->drawn)
         fputs("\r\033[K", stderr);
@@ -94,7 +108,7 @@ static void add(line *l, int rank, const char *format, ...)
     l->rank[l->count++] = rank;
 }
 
-static int columns(const tl_lua_progress *p)
+static int columns(const progress *p)
 {
     struct winsize size;
     if (!p->terminal)
@@ -113,7 +127,7 @@ static size_t length_of(const line *l, int least)
     return length;
 }
 
-static void write_line(tl_lua_progress *p, const line *l)
+static void write_line(progress *p, const line *l)
 {
     char text[PARTS * (PART_TEXT + 2)] = "";
     int width = columns(p), least = PARTS;
@@ -167,7 +181,7 @@ typedef struct run {
     tl_lua_options *options;
     tl_lua_watch watch;
     tl_solve limits; /* what is run */
-    tl_lua_progress line;
+    progress line;
     tl_solve_result result;
 } run;
 
@@ -232,11 +246,11 @@ static double logarithm(double x)
 }
 
 /* Keeps the ratio; of many, fewer and fewer. */
-static void keep_ratio(tl_lua_progress *p, double at, double ratio)
+static void keep_ratio(progress *p, double at, double ratio)
 {
     if (!(ratio > 0) || !isfinite(ratio))
         return;
-    if (p->kept == TL_LUA_TREND) {
+    if (p->kept == KEPT) {
         p->kept /= 2;
         for (int i = 0; i < p->kept; i++) {
             p->at[i] = p->at[2 * i + 1];
@@ -254,7 +268,7 @@ typedef struct trend {
 } trend;
 
 /* The line through the later half of the ratios. */
-static trend trend_of(const tl_lua_progress *p)
+static trend trend_of(const progress *p)
 {
     int first = p->kept / 2, n = p->kept - first;
     double x = 0, y = 0, xx = 0, xy = 0;
@@ -285,8 +299,7 @@ static double ratio_of(const tl_solve_result *r)
 }
 
 /* The share of the run that is done by its limits of steps and of time. */
-static double share_done(const tl_lua_progress *p, const tl_solve *limits,
-                         const tl_solve_result *result)
+static double share_done(const progress *p, const tl_solve *limits, const tl_solve_result *result)
 {
     double share = limits->max_cycles > 0 ? (double)result->cycles / (double)limits->max_cycles : 1;
     if (limits->max_time > 0)
@@ -294,8 +307,8 @@ static double share_done(const tl_lua_progress *p, const tl_solve *limits,
     return fmin(share, 1);
 }
 
-static void add_goal(line *l, tl_lua_progress *p, const tl_solve *limits,
-                     const tl_solve_result *result, double t)
+static void add_goal(line *l, progress *p, const tl_solve *limits, const tl_solve_result *result,
+                     double t)
 {
     double ratio = ratio_of(result), share = share_done(p, limits, result);
     double left = share > 0 ? (t - p->began) * (1 - share) / share : INFINITY;
@@ -318,7 +331,7 @@ static void add_goal(line *l, tl_lua_progress *p, const tl_solve *limits,
             l, fmin(left, fmax(0, (logarithm(limits->ratio) - now_is.value) / now_is.slope)));
 }
 
-static void count_contacts(tl_lua_progress *p, const tl_model *model, double t)
+static void count_contacts(progress *p, const tl_model *model, double t)
 {
     if (p->period > 0 && t < p->next_count)
         return;
@@ -328,7 +341,7 @@ static void count_contacts(tl_lua_progress *p, const tl_model *model, double t)
 }
 
 /* After a step: writes the line when it is time to. `limits`: what ends the run. */
-static void progress_run(tl_lua_progress *p, const tl_model *model, const tl_solve *limits,
+static void progress_run(progress *p, const tl_model *model, const tl_solve *limits,
                          const tl_solve_result *result)
 {
     if (!p->on)
@@ -406,7 +419,7 @@ static tl_status on_progress(void *user, tl_model *model)
     lua_State *L = r->L;
     if (r->running.failed)
         return TL_E_CANCELLED;
-    tl_lua_progress_clear(&r->line); /* the function may print */
+    progress_clear(&r->line); /* the function may print */
     lua_pushcfunction(L, call_progress);
     lua_pushvalue(L, AT_PROGRESS);
     lua_pushvalue(L, AT_MODEL);
@@ -468,7 +481,7 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     r.limits = *solve;
     r.options = tl_lua_options_of(L);
     tl_lua_histories_due(L, AT_MODEL);
-    tl_lua_progress_begin(L, &r.line, model);
+    progress_begin(L, &r.line, model);
     r.watch = tl_lua_watch_begin(L);
     tl_lua_running_begin(&r.running, L);
     tl_status status = steps ? tl_model_cycle_calling(model, solve->max_cycles, solve, &r.result)
@@ -476,7 +489,7 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     if (r.owner->view && !r.running.failed && !tl_lua_view_step(L, r.result.wall))
         tl_lua_run_keep_error();
     tl_lua_running_end(&r.running);
-    tl_lua_progress_clear(&r.line);
+    progress_clear(&r.line);
     tl_lua_watch_end_run(L, &r.watch, what);
     if (r.running.failed) {
         lua_settop(L, AT_ERROR);
@@ -514,9 +527,9 @@ static int model_cycle(lua_State *L, tl_model *model)
 
 /* ---------------------------------------------------------------- a generator ------------ */
 
-void tl_lua_progress_generate(void *user, const tl_generate_progress *done)
+static void progress_generate(void *user, const tl_generate_progress *done)
 {
-    tl_lua_progress *p = user;
+    progress *p = user;
     double t = p->on ? tl_lua_clock() : 0;
     if (!p->on || t - p->shown < p->period)
         return;
@@ -531,6 +544,80 @@ void tl_lua_progress_generate(void *user, const tl_generate_progress *done)
     if (done->share > 0 && done->share <= 1)
         add_time_left(&l, (t - p->began) * (1 - done->share) / done->share);
     write_line(p, &l);
+}
+
+/* Writes a summary into the table at the top of the stack. */
+static void set_summary(lua_State *L, const tl_generate_summary *s)
+{
+    TL_LUA_SET_COUNTS(L, {"before", s->before}, {"after", s->after}, {"cuts", s->cuts},
+                      {"refused", s->refused}, {"coincident", s->coincident});
+    TL_LUA_SET_NUMBERS(L, {"smallest_volume", s->smallest_volume},
+                       {"smallest_edge", s->smallest_edge}, {"smallest_face", s->smallest_face},
+                       {"volume_error", s->volume_error});
+}
+
+/* The number of tables in the list at index 3; 0 when it is none. */
+static size_t entry_count(lua_State *L, const char *generator)
+{
+    if (!lua_istable(L, 3) || lua_rawgeti(L, 3, 1) != LUA_TTABLE)
+        return 0;
+    for (lua_pushnil(L); lua_next(L, 3); lua_pop(L, 1))
+        if (!lua_isinteger(L, -2))
+            tl_lua_fail(
+                L,
+                "generate '%s': give a list of parameter tables, or parameters by name, not both",
+                generator);
+    return lua_rawlen(L, 3);
+}
+
+/* Reads the list of parameter tables at index 3; what they point to hangs on a table that is pushed. */
+static const tl_args *read_entries(lua_State *L, const char *generator, size_t count)
+{
+    lua_newtable(L);
+    int anchor = lua_gettop(L);
+    tl_args *list = lua_newuserdatauv(L, count * sizeof *list, 0);
+    lua_rawseti(L, anchor, 0);
+    for (size_t i = 0; i < count; i++) {
+        const char *context =
+            lua_pushfstring(L, "generate '%s', entry %I", generator, (lua_Integer)i + 1);
+        lua_rawgeti(L, 3, (lua_Integer)i + 1);
+        if (!lua_istable(L, -1))
+            tl_lua_fail(L, "%s: the parameters must be a table, not %s", context,
+                        tl_lua_describe(L, -1));
+        tl_lua_args(L, -1, context, NULL, &list[i]);
+        lua_rawseti(L, anchor, (lua_Integer)i + 1);
+        lua_settop(L, anchor);
+    }
+    return list;
+}
+
+int tl_lua_model_generate(lua_State *L, tl_model *model)
+{
+    const char *generator = tl_lua_text(L, 2, "generate", "the generator's name");
+    size_t count = entry_count(L, generator); /* of a list */
+    lua_settop(L, 3);
+    tl_args one;
+    const tl_args *args = &one;
+    if (count)
+        args = read_entries(L, generator, count);
+    else
+        tl_lua_args(L, 3, lua_pushfstring(L, "generate '%s'", generator), NULL, &one);
+    const char *what = lua_pushfstring(L, "generator '%s'", generator);
+    tl_generate_summary summary = {0};
+    lua_newtable(L);
+    /* All memory is had before blocks are made: a call that fails changes nothing. */
+    set_summary(L, &summary);
+    progress p;
+    progress_begin(L, &p, model);
+    tl_model_watch_generate(model, progress_generate, &p);
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    tl_status status = count ? tl_generate_list(model, generator, args, count, &summary)
+                             : tl_generate(model, generator, args, &summary);
+    tl_model_watch_generate(model, NULL, NULL);
+    progress_clear(&p);
+    tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, status, what, "the model is as it was"));
+    set_summary(L, &summary);
+    return 1;
 }
 
 static const tl_lua_key run_results[] = {
