@@ -8,7 +8,6 @@
 #include "lua/state.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <lualib.h>
 #include <signal.h>
 #include <stdarg.h>

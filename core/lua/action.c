@@ -12,7 +12,6 @@
 #include "lua/convert.h"
 #include "lua/fail.h"
 #include "lua/living.h"
-#include "lua/selection.h"
 
 #include <math.h>
 #include <talus/boundary.h>

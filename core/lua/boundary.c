@@ -5,7 +5,6 @@
 #include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/item.h"
 #include "lua/living.h"
 #include "lua/selection.h"
 

@@ -2,23 +2,17 @@
 #include "lua/model.h"
 
 #include "lua/block.h"
-#include "lua/boundary.h"
 #include "lua/contact.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/history.h"
 #include "lua/interrupt.h"
-#include "lua/item.h"
-#include "lua/lists.h"
 #include "lua/living.h"
 #include "lua/page.h"
 #include "lua/quality.h"
 #include "lua/run.h"
-#include "lua/state.h"
 #include "lua/view.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

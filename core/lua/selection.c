@@ -12,7 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/fields.h>
 
 tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, int model_index)
 {
