@@ -13,7 +13,6 @@
 #include "lua/view.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------- life ------------------- */
