@@ -1,5 +1,4 @@
 /* check.c - the conformance check of a plugin's file: each of its kinds, each check of its type. */
-#include "check/checker.h"
 #include "check/damping.h"
 #include "check/generator.h"
 #include "check/law.h"

@@ -1,4 +1,4 @@
-/* checker.h - what the conformance checks of the four types of plugins share. */
+/* checker.h - what the conformance checks of the four types of plugins share: parameters, faults found, and random numbers. */
 #ifndef TL_CHECK_CHECKER_H
 #define TL_CHECK_CHECKER_H
 
@@ -13,6 +13,10 @@
 #define TL_CHECK_SETS 20
 /* Checks of one type of kind, at most. */
 #define TL_CHECK_MOST 32
+/* Contact points or bodies that a law or a damping is tried with at once. */
+#define TL_CHECK_POINTS 64
+/* Parameters of a law or a damping whose effect is looked for, at most. */
+#define TL_CHECK_PARAMS 64
 
 /* A check by its name, and what it asks. */
 typedef struct tl_check_rule {
@@ -29,6 +33,25 @@ typedef struct tl_checker {
     char fault[TL_CHECK_MOST][TL_ERROR_TEXT];
 } tl_checker;
 
+/* A set of parameters as values. Set 0 has the given ones, and a plausible one of each that is required; later sets draw what
+ * is not given. `*values`, and `*held`, in which vectors are, are to be freed after the last use, on failure too. */
+tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held);
+/* The same, read into `params`, of the kind's params_size bytes; `*held` likewise. */
+tl_status tl_check_params(tl_checker *c, int set, void *params, void **held);
+/* The same with another value of one parameter. */
+tl_status tl_check_varied(tl_checker *c, int set, uint32_t param, void *params, void **held);
+/* Whether an effect of that parameter is asked for: of those that are given, or of all when none is. */
+bool tl_check_asked(const tl_checker *c, uint32_t param);
+/* What a kind's `create` makes of parameters; the parameters themselves where it is NULL. */
+tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void **, tl_report *),
+                          void *params, void **self);
+/* Calls `try_set` with one set of parameters after another, until TL_CHECK_SETS have been tried. It gives TL_E_MEMORY, or
+ * another failure where the kind refuses the set. Fails where the given ones are refused, or all. */
+tl_status tl_check_sets(tl_checker *c,
+                        tl_status (*try_set)(tl_checker *c, void *params, void *user), void *user);
+
+/* Keeps the first fault that a check finds, with the parameters it was found with. */
+void tl_check_note(tl_checker *c, int check, const char *format, ...) TL_PRINTF(3, 4);
 /* Whether that check has found a fault already. */
 static inline bool tl_check_failed(const tl_checker *c, int check)
 {
@@ -39,6 +62,25 @@ static inline bool tl_check_failed(const tl_checker *c, int check)
 static inline double tl_check_between(uint64_t key, double low, double high)
 {
     return low + tl_uniform(key) * (high - low);
+}
+/* 10 to a power in [low, high), for scales. */
+double tl_check_scale(uint64_t key, double low, double high);
+/* A unit vector of a key. */
+tl_vec3 tl_check_direction(uint64_t key);
+/* A number that fills what belongs to nobody, of a size that goes with the column; `other`: another one. */
+double tl_check_nobodys(int column, bool other);
+
+/* A vector in `column` and the two columns behind it, of TL_CHECK_POINTS numbers each. */
+static inline tl_vec3 tl_check_vec(const double *column, size_t i)
+{
+    return tl_v3(column[i], column[TL_CHECK_POINTS + i], column[2 * TL_CHECK_POINTS + i]);
+}
+
+static inline void tl_check_put(double *column, size_t i, tl_vec3 v)
+{
+    column[i] = v.x;
+    column[TL_CHECK_POINTS + i] = v.y;
+    column[2 * TL_CHECK_POINTS + i] = v.z;
 }
 
 #endif

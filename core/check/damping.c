@@ -5,15 +5,12 @@
 #include "check/damping.h"
 
 #include "base/inside.h"
-#include "check/checker.h"
-#include "check/params.h"
-#include "check/points.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define BODIES 64
+#define BODIES TL_CHECK_POINTS
 /* Bodies behind the batch that nobody may write to. */
 #define GUARD TL_LANES
 #define MOST (BODIES + TL_LANES + GUARD)
@@ -92,13 +89,10 @@ typedef struct buffer {
     _Alignas(TL_ALIGN) double c[COLUMNS][MOST];
 } buffer;
 
-/* Parameters whose effect is looked for, at most. */
-#define PARAMS_MOST 64
-
 typedef struct trial {
     tl_checker *c;
     const tl_damping_ops *ops;
-    const void *self;
+    void *self;
     uint32_t columns;
     double state[STATES_MOST]; /* those behind the declared ones are nobody's */
     double *at[STATES_MOST];
@@ -109,20 +103,8 @@ typedef struct trial {
     bool other;       /* what is nobody's holds other numbers than usually */
     bool looks_back;  /* at the forces of the step before */
     uint32_t written, read; /* bit k: state k has been */
-    bool matters[PARAMS_MOST];
+    bool matters[TL_CHECK_PARAMS];
 } trial;
-
-static tl_vec3 vec(const bodies *b, int column, size_t i)
-{
-    return tl_v3(b->c[column][i], b->c[column + 1][i], b->c[column + 2][i]);
-}
-
-static void put(bodies *b, int column, size_t i, tl_vec3 v)
-{
-    b->c[column][i] = v.x;
-    b->c[column + 1][i] = v.y;
-    b->c[column + 2][i] = v.z;
-}
 
 /* Random bodies in random motion; every eighth rests. */
 static void next_motion(trial *t, int step)
@@ -136,8 +118,8 @@ static void next_motion(trial *t, int step)
             uint64_t own = tl_key(key, (uint64_t)k);
             double size = tl_check_scale(tl_key(own, 9), low[k], high[k]);
             bool rests = k < 2 && i % 8 == 7;
-            put(&t->in, VELOCITY + 3 * k, i,
-                tl_v3_scale(rests ? 0 : size, tl_check_direction(own)));
+            tl_check_put(t->in.c[VELOCITY + 3 * k], i,
+                         tl_v3_scale(rests ? 0 : size, tl_check_direction(own)));
         }
         for (int k = 0; k < 6; k++)
             t->in.c[FORCE_BEFORE + k][i] = step ? before.c[FORCE + k][i] : 0;
@@ -256,10 +238,11 @@ static void begin_step(trial *t, int step)
     memcpy(before, t->state, sizeof before);
     memcpy(t->began, t->state, sizeof t->began);
     for (size_t i = 0; i < BODIES; i++) {
-        tl_vec3 v = vec(&t->in, VELOCITY, i), w = vec(&t->in, SPIN, i);
+        tl_vec3 v = tl_check_vec(t->in.c[VELOCITY], i), w = tl_check_vec(t->in.c[SPIN], i);
         totals.power_unit +=
             t->in.c[MASS][i] * tl_v3_dot(v, v) + t->in.c[INERTIA][i] * tl_v3_dot(w, w);
-        totals.power += tl_v3_dot(v, vec(&t->in, FORCE, i)) + tl_v3_dot(w, vec(&t->in, MOMENT, i));
+        totals.power += tl_v3_dot(v, tl_check_vec(t->in.c[FORCE], i)) +
+                        tl_v3_dot(w, tl_check_vec(t->in.c[MOMENT], i));
     }
     totals.kinetic = 0.5 * totals.power_unit;
     totals.kinetic_rate =
@@ -280,8 +263,8 @@ static void begin_step(trial *t, int step)
 static void check_numbers(trial *t)
 {
     for (size_t i = 0; i < BODIES; i++) {
-        tl_vec3 v = vec(&t->in, VELOCITY, i), f = vec(&t->out, OUT_FORCE, i);
-        tl_vec3 w = vec(&t->in, SPIN, i), m = vec(&t->out, OUT_MOMENT, i);
+        tl_vec3 v = tl_check_vec(t->in.c[VELOCITY], i), f = tl_check_vec(t->out.c[OUT_FORCE], i);
+        tl_vec3 w = tl_check_vec(t->in.c[SPIN], i), m = tl_check_vec(t->out.c[OUT_MOMENT], i);
         double alpha = t->out.c[OUT_ALPHA][i], power = tl_v3_dot(v, f), turning = tl_v3_dot(w, m);
         bool rests = tl_v3_norm(v) == 0 && tl_v3_norm(w) == 0;
         for (int k = OUT; k < COLUMNS; k++)
@@ -324,7 +307,8 @@ static void expect(trial *t, int check, const bodies *expected, const bodies *is
     for (size_t i = 0; i < BODIES; i++)
         for (int k = OUT; k < COLUMNS; k++) {
             int first = k < OUT_ALPHA ? k - (k - OUT) % 3 : k;
-            double size = k < OUT_ALPHA ? tl_v3_norm(vec(expected, first, i)) : expected->c[k][i];
+            double size =
+                k < OUT_ALPHA ? tl_v3_norm(tl_check_vec(expected->c[first], i)) : expected->c[k][i];
             if (fabs(expected->c[k][i] - is->c[k][i]) > SAME * (fabs(size) + fabs(is->c[k][i])))
                 tl_check_note(t->c, check, "%s is %g, not %g, %s",
                               k == OUT_ALPHA ? "alpha" : "a damping force", is->c[k][i],
@@ -356,8 +340,8 @@ static void check_masses(trial *t)
 static double share_of(const trial *t, const bodies *in, const bodies *out, int given, int made,
                        size_t i)
 {
-    tl_vec3 more = tl_v3_sub(vec(in, given, i), vec(&t->in, given, i));
-    tl_vec3 adds = tl_v3_sub(vec(out, made, i), vec(&t->out, made, i));
+    tl_vec3 more = tl_v3_sub(tl_check_vec(in->c[given], i), tl_check_vec(t->in.c[given], i));
+    tl_vec3 adds = tl_v3_sub(tl_check_vec(out->c[made], i), tl_check_vec(t->out.c[made], i));
     double size = tl_v3_norm(more);
     return size > 0 ? tl_v3_norm(adds) / size : 0;
 }
@@ -384,18 +368,24 @@ static void check_factor(trial *t, double factor)
             factor, t->amplified, t->amplified, most);
 }
 
+/* Whether the step gives other forces than it did, from such bodies and the present states. */
+static bool gives_other_forces(trial *t, const bodies *in)
+{
+    bodies out;
+    return run(t, in, &out, NULL, 0, BODIES) &&
+           memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
+}
+
 /* Goes from states before begin() through the step once more; whether it gave something else. The states are then what they were
  * after the step. */
 static bool gives_other(trial *t, const double began[STATES_MOST])
 {
     double after[STATES_MOST];
-    bodies out;
     memcpy(after, t->state, sizeof after);
     memcpy(t->state, began, sizeof after);
     call_begin(t);
     bool other = memcmp(after, t->state, t->columns * sizeof after[0]) != 0;
-    other |= run(t, &t->in, &out, NULL, 0, BODIES) &&
-             memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
+    other |= gives_other_forces(t, &t->in);
     memcpy(t->state, after, sizeof after);
     return other;
 }
@@ -421,15 +411,13 @@ static void see_states(trial *t)
 {
     for (uint32_t k = 0; k < t->columns; k++) {
         double began[STATES_MOST], is = t->state[k];
-        bodies out;
         if (t->read >> k & 1)
             continue;
         memcpy(began, t->began, sizeof began);
         began[k] = 1.5 * began[k] + 0.25;
         bool other = gives_other(t, began);
         t->state[k] = 1.5 * is + 0.25;
-        other |= run(t, &t->in, &out, NULL, 0, BODIES) &&
-                 memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
+        other |= gives_other_forces(t, &t->in);
         t->state[k] = is;
         t->read |= other ? 1u << k : 0;
     }
@@ -438,17 +426,14 @@ static void see_states(trial *t)
 /* The same step of a damping with another value of one parameter. */
 static void see_param(trial *t, uint32_t k, void *params)
 {
-    void *held = NULL, *self = params;
-    const void *own = t->self;
+    void *held = NULL, *own = t->self;
     char text[sizeof t->c->params_text];
-    tl_report report = {.size = sizeof report};
     memcpy(text, t->c->params_text, sizeof text);
     if (tl_check_varied(t->c, t->c->set, k, params, &held) == TL_OK &&
-        (!t->ops->create || t->ops->create(params, &self, &report) == TL_OK)) {
-        t->self = self;
+        tl_check_create(t->c, t->ops->create, params, &t->self) == TL_OK) {
         t->matters[k] = gives_other(t, t->began);
         if (t->ops->destroy)
-            t->ops->destroy(self);
+            t->ops->destroy(t->self);
     }
     t->self = own;
     memcpy(t->c->params_text, text, sizeof text);
@@ -458,18 +443,17 @@ static void see_param(trial *t, uint32_t k, void *params)
 /* Force and moment of the step before, which are only there for those that ask. */
 static void see_before(trial *t)
 {
-    bodies in = t->in, out;
+    bodies in = t->in;
     for (int k = FORCE_BEFORE; k < MASS; k++)
         for (size_t i = 0; i < BODIES; i++)
             in.c[k][i] = t->in.c[k][(i + 1) % BODIES];
-    t->looks_back |= run(t, &in, &out, NULL, 0, BODIES) &&
-                     memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
+    t->looks_back |= gives_other_forces(t, &in);
 }
 
 static void see_params(trial *t)
 {
     void *params = malloc(t->c->kind->params_size + 1);
-    for (uint32_t k = 0; params && k < t->c->kind->param_count && k < PARAMS_MOST; k++)
+    for (uint32_t k = 0; params && k < t->c->kind->param_count && k < TL_CHECK_PARAMS; k++)
         if (!t->matters[k])
             see_param(t, k, params);
     free(params);
@@ -509,29 +493,6 @@ static void run_trial(trial *t)
     }
 }
 
-static tl_status open_damping(trial *t, tl_checker *c, void *params)
-{
-    tl_report report = {.size = sizeof report};
-    t->c = c;
-    t->ops = c->kind->ops;
-    t->self = params;
-    t->columns = c->kind->state_count;
-    t->amplified = 0;
-    for (uint32_t k = 0; k < STATES_MOST; k++) {
-        t->state[k] = k < t->columns ? c->kind->states[k].initial : tl_check_nobodys((int)k, false);
-        t->at[k] = &t->state[k];
-    }
-    if (!t->ops->create)
-        return TL_OK;
-    void *self = NULL;
-    tl_status status = t->ops->create(params, &self, &report);
-    if (status != TL_OK)
-        return tl_fail(c->error, status, "'%s' cannot be tried: %s", c->kind->name,
-                       tl_report_text(&report, status));
-    t->self = self;
-    return TL_OK;
-}
-
 static void tell_unseen(const trial *t)
 {
     tl_checker *c = t->c;
@@ -546,7 +507,7 @@ static void tell_unseen(const trial *t)
     if (t->ops->before && !t->looks_back)
         tl_check_note(c, READS,
                       "before is set, but nothing depends on the forces of the step before");
-    for (uint32_t k = 0; k < c->kind->param_count && k < PARAMS_MOST; k++)
+    for (uint32_t k = 0; k < c->kind->param_count && k < TL_CHECK_PARAMS; k++)
         if (!t->matters[k] && tl_check_asked(c, k))
             tl_check_note(c, PARAMETERS,
                           "parameter '%s' has no effect: another value gives the same forces, "
@@ -555,29 +516,34 @@ static void tell_unseen(const trial *t)
                           c->kind->params[k].name, TL_CHECK_SETS);
 }
 
+static tl_status try_set(tl_checker *c, void *params, void *user)
+{
+    trial *t = user;
+    tl_status status = tl_check_create(c, t->ops->create, params, &t->self);
+    if (status != TL_OK)
+        return status;
+    t->amplified = 0;
+    for (uint32_t k = 0; k < STATES_MOST; k++) {
+        t->state[k] = k < t->columns ? c->kind->states[k].initial : tl_check_nobodys((int)k, false);
+        t->at[k] = &t->state[k];
+    }
+    run_trial(t);
+    if (t->ops->destroy)
+        t->ops->destroy(t->self);
+    return TL_OK;
+}
+
 tl_status tl_check_damping_kind(tl_checker *c)
 {
     trial *t = calloc(1, sizeof *t);
-    void *params = malloc(c->kind->params_size + 1), *held;
-    int tried = 0, most = 8 * TL_CHECK_SETS;
-    tl_status status = t && params ? TL_OK : tl_fail_memory(c->error);
-    for (int set = 0; status == TL_OK && set < most && tried < TL_CHECK_SETS; set++) {
-        tl_status read = tl_check_params(c, set, params, &held);
-        if (read == TL_OK && (read = open_damping(t, c, params)) == TL_OK) {
-            run_trial(t);
-            if (t->ops->destroy)
-                t->ops->destroy((void *)(uintptr_t)t->self);
-            tried++;
-        }
-        free(held);
-        if (set == 0 && c->args && c->args->count > 0)
-            status = read;
-    }
-    if (status == TL_OK && tried == 0)
-        status = TL_E_ARGUMENT; /* with the sentence of the last attempt */
-    else if (status == TL_OK && !tl_check_failed(c, RUNS))
+    if (!t)
+        return tl_fail_memory(c->error);
+    t->c = c;
+    t->ops = c->kind->ops;
+    t->columns = c->kind->state_count;
+    tl_status status = tl_check_sets(c, try_set, t);
+    if (status == TL_OK && !tl_check_failed(c, RUNS))
         tell_unseen(t);
     free(t);
-    free(params);
     return status;
 }

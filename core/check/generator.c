@@ -1,18 +1,13 @@
 /* generator.c - the conformance check of generators.
  *
- * A generator is run on a cube of 10 m, or in an empty model where it does not work on that. It runs with the host's services
- * and watched ones alike: each call goes through a function here, which counts it and can let it fail. */
+ * A generator is run on a cube of 10 m, or in an empty model where it does not work on that. Each call of a service that can fail
+ * goes through a function here, which counts it and can let it fail. */
 #include "check/generator.h"
 
-#include "check/checker.h"
-#include "check/params.h"
-
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/number.h>
 
 /* Calls that are let fail, one in each run: the first ones, and then ever fewer. */
 #define FIRST_CALLS 40
@@ -26,7 +21,7 @@ const tl_check_rule tl_check_generator_rules[] = {
     {NULL, NULL},
 };
 
-/* What one run is to do and has done. The functions of a tl_host know it by `impl`. */
+/* What one run is to do and has done. */
 typedef struct watch {
     const tl_host *host;
     const tl_generator_ops *ops;
@@ -36,89 +31,55 @@ typedef struct watch {
     size_t calls;   /* of services that can fail */
     size_t after;   /* calls after the one that failed */
     bool wrote;     /* to its parameters */
-    tl_status gave; /* of the generator */
 } watch;
 
-/* The generator being watched by this thread: the function in the place of its own has no other way to know. */
+/* The generator being watched by this thread, for functions that have no other way to know. */
 static _Thread_local watch *current;
 
-static watch *watch_of(const tl_host *h)
-{
-    return h->impl;
-}
-
 /* Counts a call; not TL_OK when it is to fail. */
-static tl_status count(const tl_host *h)
+static tl_status count(void)
 {
-    watch *w = watch_of(h);
+    watch *w = current;
     w->after += w->fail_at > 0 && w->calls >= w->fail_at;
     if (++w->calls == w->fail_at)
         return w->host->fail(w->host, TL_E_MEMORY, "let fail by the check");
     return TL_OK;
 }
 
-#define FORWARD(h, name, ...)                                                                      \
-    tl_status status = count(h);                                                                   \
-    return status != TL_OK ? status : watch_of(h)->host->name(watch_of(h)->host, __VA_ARGS__)
+/* Defines watched_SERVICE with these parameters, in brackets: it counts the call and hands the arguments on to the host. */
+#define WATCHED(service, parameters, ...)                                                          \
+    static tl_status watched_##service parameters                                                  \
+    {                                                                                              \
+        tl_status status = count();                                                                \
+        return status != TL_OK ? status : current->host->service(__VA_ARGS__);                     \
+    }                                                                                              \
+    _Static_assert(sizeof(watch) > 0, "a struct")
 
-static tl_status create_hull(const tl_host *h, const tl_vec3 *vertices, size_t n, double density,
-                             const char *group)
-{
-    FORWARD(h, create_hull, vertices, n, density, group);
-}
-
-static tl_status create_box(const tl_host *h, tl_vec3 min, tl_vec3 max, double density,
-                            const char *group)
-{
-    FORWARD(h, create_box, min, max, density, group);
-}
-
-static tl_status create_block(const tl_host *h, const tl_block_shape *shape)
-{
-    FORWARD(h, create_block, shape);
-}
-
-static tl_status joint(const tl_host *h, const char *name, uint32_t *number)
-{
-    FORWARD(h, joint, name, number);
-}
-
-static uint32_t next_plane(const tl_host *h, uint32_t number)
-{
-    return watch_of(h)->host->next_plane(watch_of(h)->host, number);
-}
-
-static tl_status cut(const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                     double persistence)
-{
-    FORWARD(h, cut, normal, point, tag, persistence);
-}
-
-static tl_status cut_disc(const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius,
-                          tl_tag tag, double persistence, size_t *met)
-{
-    FORWARD(h, cut_disc, normal, point, radius, tag, persistence, met);
-}
-
-static size_t block_count(const tl_host *h)
-{
-    return watch_of(h)->host->block_count(watch_of(h)->host);
-}
-
-static void block_info(const tl_host *h, size_t index, tl_block_info *info)
-{
-    watch_of(h)->host->block_info(watch_of(h)->host, index, info);
-}
-
-static double uniform(const tl_host *h, uint32_t number, int64_t plane, uint32_t draw)
-{
-    return watch_of(h)->host->random(watch_of(h)->host, number, plane, draw);
-}
-
-static tl_status progress(const tl_host *h, double fraction)
-{
-    FORWARD(h, progress, fraction);
-}
+WATCHED(create_hull,
+        (const tl_host *h, const tl_vec3 *vertices, size_t n, double density, const char *group), h,
+        vertices, n, density, group);
+WATCHED(create_box, (const tl_host *h, tl_vec3 min, tl_vec3 max, double density, const char *group),
+        h, min, max, density, group);
+WATCHED(create_block, (const tl_host *h, const tl_block_shape *shape), h, shape);
+WATCHED(joint, (const tl_host *h, const char *name, uint32_t *number), h, name, number);
+WATCHED(cut, (const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence), h,
+        normal, point, tag, persistence);
+WATCHED(cut_disc,
+        (const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
+         double persistence, size_t *met),
+        h, normal, point, radius, tag, persistence, met);
+WATCHED(progress, (const tl_host *h, double fraction), h, fraction);
+WATCHED(meets,
+        (const tl_host *h, size_t index, const tl_half_space *spaces, size_t n, bool *answer), h,
+        index, spaces, n, answer);
+WATCHED(cut_block, (const tl_host *h, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above),
+        h, index, normal, point, above);
+WATCHED(set_group, (const tl_host *h, size_t index, const char *group), h, index, group);
+WATCHED(part, (const tl_host *h, const size_t *indices, size_t n), h, indices, n);
+WATCHED(join, (const tl_host *h, const size_t *indices, size_t n), h, indices, n);
+WATCHED(remove, (const tl_host *h, size_t index), h, index);
+WATCHED(hide, (const tl_host *h, size_t index), h, index);
+WATCHED(show, (const tl_host *h), h);
 
 static void say(const tl_host *h, const char *format, ...)
 {
@@ -126,87 +87,27 @@ static void say(const tl_host *h, const char *format, ...)
     (void)format;
 }
 
-static tl_status fail(const tl_host *h, tl_status status, const char *format, ...)
-{
-    char text[TL_ERROR_TEXT];
-    va_list list;
-    va_start(list, format);
-    tl_text_vprint(text, sizeof text, format, list);
-    va_end(list);
-    return watch_of(h)->host->fail(watch_of(h)->host, status, "%s", text);
-}
-
-static tl_status meets(const tl_host *h, size_t index, const tl_half_space *spaces, size_t n,
-                       bool *answer)
-{
-    FORWARD(h, meets, index, spaces, n, answer);
-}
-
-static tl_status cut_block(const tl_host *h, size_t index, tl_vec3 normal, tl_vec3 point,
-                           size_t *above)
-{
-    FORWARD(h, cut_block, index, normal, point, above);
-}
-
-static tl_status set_group(const tl_host *h, size_t index, const char *group)
-{
-    FORWARD(h, set_group, index, group);
-}
-
-static tl_status part(const tl_host *h, const size_t *indices, size_t n)
-{
-    FORWARD(h, part, indices, n);
-}
-
-static tl_status join(const tl_host *h, const size_t *indices, size_t n)
-{
-    FORWARD(h, join, indices, n);
-}
-
-static tl_status remove_block(const tl_host *h, size_t index)
-{
-    FORWARD(h, remove, index);
-}
-
-static tl_status hide(const tl_host *h, size_t index)
-{
-    FORWARD(h, hide, index);
-}
-
-static tl_status show(const tl_host *h)
-{
-    tl_status status = count(h);
-    return status != TL_OK ? status : watch_of(h)->host->show(watch_of(h)->host);
-}
-
 /* In the place of the generator's own function. */
-static tl_status watched(const tl_host *host, const void *params)
+static tl_status generate_watched(const tl_host *host, const void *params)
 {
     watch *w = current;
-    tl_host own = {.size = sizeof own,
-                   .impl = w,
-                   .seed = host->seed,
-                   .create_hull = create_hull,
-                   .create_box = create_box,
-                   .joint = joint,
-                   .next_plane = next_plane,
-                   .cut = cut,
-                   .block_count = block_count,
-                   .block_info = block_info,
-                   .random = uniform,
-                   .progress = progress,
-                   .log = say,
-                   .fail = fail,
-                   .cut_disc = cut_disc,
-                   .meets = meets,
-                   .cut_block = cut_block,
-                   .set_group = set_group,
-                   .part = part,
-                   .join = join,
-                   .remove = remove_block,
-                   .hide = hide,
-                   .show = show,
-                   .create_block = create_block};
+    tl_host own = *host;
+    own.create_hull = watched_create_hull;
+    own.create_box = watched_create_box;
+    own.create_block = watched_create_block;
+    own.joint = watched_joint;
+    own.cut = watched_cut;
+    own.cut_disc = watched_cut_disc;
+    own.progress = watched_progress;
+    own.meets = watched_meets;
+    own.cut_block = watched_cut_block;
+    own.set_group = watched_set_group;
+    own.part = watched_part;
+    own.join = watched_join;
+    own.remove = watched_remove;
+    own.hide = watched_hide;
+    own.show = watched_show;
+    own.log = say;
     w->host = host;
     if (w->prepare)
         return host->create_box(host, tl_v3(-5, -5, -5), tl_v3(5, 5, 5), 2500, NULL);
@@ -214,10 +115,10 @@ static tl_status watched(const tl_host *host, const void *params)
     if (!copy)
         return host->fail(host, TL_E_MEMORY, "out of memory");
     memcpy(copy, params, w->params_size);
-    w->gave = w->ops->generate(&own, params);
+    tl_status status = w->ops->generate(&own, params);
     w->wrote = memcmp(copy, params, w->params_size) != 0;
     free(copy);
-    return w->gave;
+    return status;
 }
 
 /* ---------------------------------------------------------------- runs ------------------- */
@@ -302,7 +203,7 @@ tl_status tl_check_generator_kind(tl_checker *c)
     trial t = {.c = c};
     tl_kind *kind =
         (tl_kind *)(uintptr_t)c->kind; /* the host's copy, which no other thread uses here */
-    tl_generator_ops own = {.size = sizeof own, .generate = watched};
+    tl_generator_ops own = {.size = sizeof own, .generate = generate_watched};
     const void *ops = kind->ops;
     void *held;
     tl_value *values;

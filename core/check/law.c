@@ -2,21 +2,16 @@
  *
  * With each set of parameters 64 points of random areas and directions go through random motions: closing and opening,
  * shear that sticks and shear that slips. Every step is computed as a whole, in parts, point by point and turned in space;
- * from the place it leads to, the points are moved a little for the stiffness, and not at all. The normal force is looked at in
- * law_normal.c, work and energies on longer paths in law_energy.c. Forces are compared relative to those that the point has, or had on average. */
+ * from the place it leads to, the points are moved a little for the stiffness, and not at all. A state is given another value, that of
+ * another point, and a parameter another one of its range: the result must be another one to the bit, with some set of parameters,
+ * at some point of some step. The normal force is looked at in law_normal.c, work and energies on longer paths in law_paths.c.
+ * Forces are compared relative to those that the point has, or had on average. */
 #include "check/law.h"
 
-#include "check/checker.h"
-#include "check/law_energy.h"
 #include "check/law_normal.h"
-#include "check/law_reads.h"
-#include "check/law_steps.h"
-#include "check/law_trial.h"
-#include "check/params.h"
-#include "check/points.h"
+#include "check/law_paths.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,11 +74,10 @@ static uint64_t key_of(const trial *t, uint64_t step, uint64_t point)
     return tl_key(tl_key(tl_key(1988, (uint64_t)t->c->set), step), point);
 }
 
-/* A vector in the common plane. */
-static tl_vec3 tangent(uint64_t key, tl_vec3 normal, double size)
+/* How many columns a state has. */
+static uint32_t width_of(const tl_kind *kind, uint32_t state)
 {
-    tl_vec3 any = tl_check_direction(key);
-    return tl_v3_scale(size, tl_v3_sub(any, tl_v3_scale(tl_v3_dot(any, normal), normal)));
+    return kind->states[state].kind == TL_STATE_TANGENT ? 3 : 1;
 }
 
 /* The axis that the normal of a point is, for a few: zeros in two components of it, and of its shear; -1 of the others. */
@@ -104,14 +98,11 @@ static void begin_points(trial *t)
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         uint64_t key = key_of(t, 0, i);
         double area = tl_check_scale(tl_key(key, 1), -2, 1);
-        p->c[TL_AT_AREA][i] = area;
+        int axis = axis_of(i);
+        tl_law_begin(&t->law, p, i, area,
+                     axis < 0 ? tl_check_direction(tl_key(key, 3)) : unit(axis));
         p->c[TL_AT_F_N0][i] =
             i % 8 % 7 % 2 ? 0 : area * t->law.stress * tl_check_between(tl_key(key, 2), 0, 1);
-        int axis = axis_of(i);
-        tl_check_put(p, TL_AT_NORMAL, i,
-                     axis < 0 ? tl_check_direction(tl_key(key, 3)) : unit(axis));
-        for (uint32_t k = 0; k < t->law.of.columns; k++)
-            p->c[TL_AT_STATE + k][i] = t->law.of.initial[k];
         if (i % 4 == 3) { /* made while the walls were apart */
             p->flags[i] = TL_POINT_APART;
             p->c[TL_AT_CLOSURE][i] = -t->law.closure;
@@ -131,7 +122,7 @@ static void next_motion(trial *t, int step)
     tl_law_gaps(&t->law, &t->now, &gaps);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         uint64_t key = key_of(t, (uint64_t)step + 1, i);
-        tl_vec3 normal = tl_check_vec(in, TL_AT_NORMAL, i);
+        tl_vec3 normal = tl_check_vec(in->c[TL_AT_NORMAL], i);
         bool rests = step == 0 || tl_uniform(tl_key(key, 1)) < 0.2;
         double soft = step < GENTLE ? 0.02 : 1;
         double size = soft * tl_check_scale(tl_key(key, 2), -1, 1.5);
@@ -150,20 +141,31 @@ static void next_motion(trial *t, int step)
         in->c[TL_AT_DU_N][i] = before - (closure - apart);
         double way = rests ? 0 : size * t->law.slide;
         tl_vec3 slide = axis_of(i) < 0
-                            ? tangent(tl_key(key, 4), normal, way)
+                            ? tl_law_tangent(tl_key(key, 4), normal, way)
                             : tl_v3_scale(tl_uniform(key) < 0.5 ? way : -way, unit(axis_of(i) + 1));
-        tl_check_put(in, TL_AT_DU_S, i, slide);
+        tl_check_put(in->c[TL_AT_DU_S], i, slide);
     }
 }
 
 /* ---------------------------------------------------------------- what a call gave ------- */
 
+/* Whether two calls gave the point the same, to the bit. */
+static bool same(const tl_check_points *a, const tl_check_points *b, size_t i, bool energies)
+{
+    for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
+        if ((energies || (k != TL_AT_STORED && k != TL_AT_DISSIPATED)) &&
+            memcmp(&a->c[k][i], &b->c[k][i], sizeof a->c[k][i]) != 0)
+            return false;
+    return a->flags[i] == b->flags[i];
+}
+
 static void compare_bits(trial *t, int check, const tl_check_points *other, bool energies,
                          const char *how)
 {
     for (size_t i = 0; i < TL_CHECK_POINTS; i++)
-        if (!tl_law_same(&t->out, other, i, energies)) {
-            tl_vec3 a = tl_check_vec(&t->out, TL_AT_F_S, i), b = tl_check_vec(other, TL_AT_F_S, i);
+        if (!same(&t->out, other, i, energies)) {
+            tl_vec3 a = tl_check_vec(t->out.c[TL_AT_F_S], i),
+                    b = tl_check_vec(other->c[TL_AT_F_S], i);
             tl_check_note(
                 t->c, check,
                 "f_n = %.17g N, |f_s| = %.17g N, flags %u in a batch of 64 points; %.17g, "
@@ -174,18 +176,41 @@ static void compare_bits(trial *t, int check, const tl_check_points *other, bool
         }
 }
 
-static bool call_law(trial *t, const tl_check_points *in, tl_check_points *out, const size_t *order,
-                     size_t begin, size_t count, bool energies)
+/* Calls the law on some points and notes what every call must keep to; false when it failed. `call`: what is asked. */
+static bool call_some(trial *t, const tl_check_points *in, tl_check_points *out,
+                      const size_t *order, size_t begin, size_t count, tl_check_call call)
 {
-    tl_check_call call = {.no_energies = !energies};
-    return tl_law_call(t, in, out, order, begin, count, &call);
+    tl_law_call(&t->law, in, out, order, begin, count, &call);
+    if (call.overwrote)
+        tl_check_note(t->c, TL_LAW_WRITES, "update() writes to %s", call.overwrote);
+    if (call.padding)
+        tl_check_note(t->c, TL_LAW_PADDING, "a lane of no area has a force or an energy");
+    if (call.status != TL_OK)
+        tl_check_note(t->c, TL_LAW_RUNS, "update() fails%s: %s",
+                      t->law.ops->never_fails ? ", though never_fails is set" : "",
+                      tl_report_text(&call.report, call.status));
+    return call.status == TL_OK;
 }
 
-static bool call_in_parts(trial *t, tl_check_points *out, const size_t *order, const size_t *parts)
+/* The same with all points, in one batch. */
+static bool call_all(trial *t, const tl_check_points *in, tl_check_points *out, tl_check_call call)
+{
+    *out = *in;
+    return call_some(t, in, out, NULL, 0, TL_CHECK_POINTS, call);
+}
+
+static bool call_law(trial *t, const tl_check_points *in, tl_check_points *out)
+{
+    return call_all(t, in, out, (tl_check_call){0});
+}
+
+/* The step in batches of so many points, in turn. */
+static bool call_in_parts(trial *t, tl_check_points *out, const size_t *order, const size_t *parts,
+                          size_t most)
 {
     size_t begin = 0;
-    for (size_t k = 0; begin < TL_CHECK_POINTS; begin += parts[k++])
-        if (!call_law(t, &t->in, out, order, begin, parts[k], true))
+    for (size_t k = 0; begin < TL_CHECK_POINTS; begin += parts[k++ % most])
+        if (!call_some(t, &t->in, out, order, begin, parts[k % most], (tl_check_call){0}))
             return false;
     return true;
 }
@@ -193,30 +218,25 @@ static bool call_in_parts(trial *t, tl_check_points *out, const size_t *order, c
 /* The step as a whole, again, point by point, in parts of another order, without energies. */
 static bool compare_batches(trial *t, int step)
 {
-    static const size_t ones[TL_CHECK_POINTS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
-                                                 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
-                                                 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
-                                                 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-    static const size_t parts[] = {8, 3, 40, 13};
+    static const size_t one[] = {1}, parts[] = {8, 3, 40, 13};
     tl_check_points other = t->in;
     size_t order[TL_CHECK_POINTS], twice[TL_CHECK_LANES];
     for (size_t i = 0; i < TL_CHECK_LANES; i++)
         twice[i] = (i + i / TL_CHECK_POINTS * 5) % TL_CHECK_POINTS;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) /* a step that 64 has no factor of */
         order[i] = (i * 37 + (size_t)step) % TL_CHECK_POINTS;
-    t->out = t->in;
-    if (!call_law(t, &t->in, &t->out, NULL, 0, TL_CHECK_POINTS, true))
+    if (!call_law(t, &t->in, &t->out))
         return false;
-    if (call_in_parts(t, &other, NULL, ones))
+    if (call_in_parts(t, &other, NULL, one, 1))
         compare_bits(t, TL_LAW_ALONE, &other, true, "alone");
-    if (call_in_parts(t, &other, order, parts))
+    if (call_in_parts(t, &other, order, parts, sizeof parts / sizeof *parts))
         compare_bits(t, TL_LAW_SPLIT, &other, true,
                      "in batches of 8, 3, 40 and 13 in another order");
-    if (call_law(t, &t->in, &other, twice, 0, TL_CHECK_LANES, true))
+    if (call_some(t, &t->in, &other, twice, 0, TL_CHECK_LANES, (tl_check_call){0}))
         compare_bits(t, TL_LAW_SPLIT, &other, true, "in the second half of a batch of 136");
-    if (call_law(t, &t->in, &other, NULL, 0, TL_CHECK_POINTS, false))
+    if (call_all(t, &t->in, &other, (tl_check_call){.no_energies = true}))
         compare_bits(t, TL_LAW_ENERGIES, &other, false, "without energies");
-    if (call_law(t, &t->in, &other, NULL, 0, TL_CHECK_POINTS, true))
+    if (call_law(t, &t->in, &other))
         compare_bits(t, TL_LAW_REPEATS, &other, true, "when called again");
     return true;
 }
@@ -224,7 +244,8 @@ static bool compare_batches(trial *t, int step)
 static void check_numbers(trial *t)
 {
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        tl_vec3 n = tl_check_vec(&t->out, TL_AT_NORMAL, i), f = tl_check_vec(&t->out, TL_AT_F_S, i);
+        tl_vec3 n = tl_check_vec(t->out.c[TL_AT_NORMAL], i),
+                f = tl_check_vec(t->out.c[TL_AT_F_S], i);
         for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
             if (!isfinite(t->out.c[k][i]))
                 tl_check_note(t->c, TL_LAW_FINITE, "%s is %g at a closure of %g m, dt = %g s",
@@ -239,15 +260,19 @@ static void check_numbers(trial *t)
     }
 }
 
+static bool is_stateless(const tl_check_law *law)
+{
+    return law->ops->stateless && law->ops->stateless(law->self);
+}
+
 static void check_states(trial *t)
 {
-    const tl_law_ops *ops = t->law.of.ops;
-    bool stateless = ops->stateless && ops->stateless(t->law.of.self);
-    for (uint32_t k = 0; k < t->law.of.columns; k++)
+    bool stateless = is_stateless(&t->law);
+    for (uint32_t k = 0; k < t->law.columns; k++)
         for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
             if (t->out.c[TL_AT_STATE + k][i] == t->in.c[TL_AT_STATE + k][i])
                 continue;
-            t->seen->written |= 1u << k;
+            t->seen.written |= 1u << k;
             if (stateless)
                 tl_check_note(t->c, TL_LAW_STATES,
                               "state column %u is written, though stateless() is 1", k + 1);
@@ -262,11 +287,11 @@ static void turn_points(const trial *t, tl_mat3 r, tl_check_points *p)
     static const int vectors[] = {TL_AT_NORMAL, TL_AT_DU_S, TL_AT_F_S};
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++)
-            tl_check_put(p, vectors[k], i, tl_m3_mul(&r, tl_check_vec(p, vectors[k], i)));
-        for (uint32_t k = 0; k < t->law.of.columns; k++)
-            if (t->law.of.tangent[k])
-                tl_check_put(p, TL_AT_STATE + (int)k, i,
-                             tl_m3_mul(&r, tl_check_vec(p, TL_AT_STATE + (int)k, i)));
+            tl_check_put(p->c[vectors[k]], i, tl_m3_mul(&r, tl_check_vec(p->c[vectors[k]], i)));
+        for (uint32_t k = 0; k < t->law.columns; k++)
+            if (t->law.tangent[k])
+                tl_check_put(p->c[TL_AT_STATE + (int)k], i,
+                             tl_m3_mul(&r, tl_check_vec(p->c[TL_AT_STATE + (int)k], i)));
     }
 }
 
@@ -276,8 +301,8 @@ static const char *column_name(const tl_kind *kind, uint32_t column)
     if (column < TL_AT_STATE)
         return column == TL_AT_STORED ? "stored" : "dissipated";
     uint32_t first = TL_AT_STATE, i = 0;
-    while (first + (kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1) <= column)
-        first += kind->states[i++].kind == TL_STATE_TANGENT ? 3 : 1;
+    while (first + width_of(kind, i) <= column)
+        first += width_of(kind, i++);
     return kind->states[i].name;
 }
 
@@ -285,8 +310,8 @@ static const char *column_name(const tl_kind *kind, uint32_t column)
 static void check_turned_columns(trial *t, const tl_check_points *out,
                                  const tl_check_points *expected)
 {
-    for (uint32_t k = TL_AT_STORED; k < TL_AT_STATE + t->law.of.columns; k++) {
-        const bool vector = k >= TL_AT_STATE && t->law.of.tangent[k - TL_AT_STATE];
+    for (uint32_t k = TL_AT_STORED; k < TL_AT_STATE + t->law.columns; k++) {
+        const bool vector = k >= TL_AT_STATE && t->law.tangent[k - TL_AT_STATE];
         const uint32_t last = k + (vector ? 2 : 0);
         double most = 0, error = 0;
         for (uint32_t j = k; j <= last; j++)
@@ -297,8 +322,8 @@ static void check_turned_columns(trial *t, const tl_check_points *out,
         /* an opening may be what rounding of the slide leaves */
         if (error > 1e3 * ROUNDING * most && error > ROUNDING * t->law.slide)
             tl_check_note(t->c, TL_LAW_TURNED, "%s '%s' of a turned point differs by %g of %g",
-                          k < TL_AT_STATE ? "the energy" : "the state",
-                          column_name(t->law.of.kind, k), error, most);
+                          k < TL_AT_STATE ? "the energy" : "the state", column_name(t->law.kind, k),
+                          error, most);
         k = last;
     }
 }
@@ -309,12 +334,11 @@ static void check_turned(trial *t, int step)
     tl_mat3 r = tl_q_matrix((tl_quat){0.6, 0.8 * axis.x, 0.8 * axis.y, 0.8 * axis.z});
     tl_check_points in = t->in, out, expected = t->out;
     turn_points(t, r, &in);
-    out = in;
-    if (!call_law(t, &in, &out, NULL, 0, TL_CHECK_POINTS, true))
+    if (!call_law(t, &in, &out))
         return;
     turn_points(t, r, &expected);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        tl_vec3 a = tl_check_vec(&out, TL_AT_F_S, i), b = tl_check_vec(&expected, TL_AT_F_S, i);
+        tl_vec3 a = tl_check_vec(out.c[TL_AT_F_S], i), b = tl_check_vec(expected.c[TL_AT_F_S], i);
         double error =
             fmax(tl_v3_norm(tl_v3_sub(a, b)), fabs(out.c[TL_AT_F_N][i] - expected.c[TL_AT_F_N][i]));
         if (error > 1e3 * ROUNDING * (t->scale[i] + tl_v3_norm(b)))
@@ -331,7 +355,7 @@ static tl_check_points rest_of(const trial *t)
     tl_check_points rest = t->out;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         rest.c[TL_AT_DU_N][i] = 0;
-        tl_check_put(&rest, TL_AT_DU_S, i, tl_v3(0, 0, 0));
+        tl_check_put(rest.c[TL_AT_DU_S], i, tl_v3(0, 0, 0));
     }
     return rest;
 }
@@ -343,12 +367,11 @@ static void check_settled(trial *t, const tl_check_points *rested)
     bool settled[TL_CHECK_POINTS];
     for (int k = 0; k < SETTLES; k++) {
         bool all = true;
-        out = rest;
         rest.dt = 0;
-        if (!call_law(t, &rest, &out, NULL, 0, TL_CHECK_POINTS, true))
+        if (!call_law(t, &rest, &out))
             return;
         for (size_t i = 0; i < TL_CHECK_POINTS; i++)
-            all &= settled[i] = tl_law_same(&rest, &out, i, false);
+            all &= settled[i] = same(&rest, &out, i, false);
         if (all)
             break;
         rest = out;
@@ -373,12 +396,12 @@ static void check_settled(trial *t, const tl_check_points *rested)
 
 static void check_still(trial *t)
 {
-    tl_check_points rest = rest_of(t), out = rest;
+    tl_check_points rest = rest_of(t), out;
     rest.dt = 0;
-    if (!call_law(t, &rest, &out, NULL, 0, TL_CHECK_POINTS, true))
+    if (!call_law(t, &rest, &out))
         return;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        tl_vec3 a = tl_check_vec(&rest, TL_AT_F_S, i), b = tl_check_vec(&out, TL_AT_F_S, i);
+        tl_vec3 a = tl_check_vec(rest.c[TL_AT_F_S], i), b = tl_check_vec(out.c[TL_AT_F_S], i);
         double before = rest.c[TL_AT_F_N][i], after = out.c[TL_AT_F_N][i];
         double error = fmax(fabs(before - after), tl_v3_norm(tl_v3_sub(a, b)));
         if (error > ROUNDING * (t->scale[i] + tl_v3_norm(a)))
@@ -398,21 +421,20 @@ static void check_stiffness(trial *t, int step, bool along)
         uint64_t key = key_of(t, (uint64_t)step, 1000 + i);
         double move = SMALL * t->law.closure * tl_check_between(key, -1, 1);
         if (along) {
-            tl_vec3 n = tl_check_vec(&rest, TL_AT_NORMAL, i);
-            tl_check_put(&rest, TL_AT_DU_S, i, tangent(key, n, SMALL * t->law.slide));
+            tl_vec3 n = tl_check_vec(rest.c[TL_AT_NORMAL], i);
+            tl_check_put(rest.c[TL_AT_DU_S], i, tl_law_tangent(key, n, SMALL * t->law.slide));
         } else {
             rest.c[TL_AT_CLOSURE][i] += move;
             rest.c[TL_AT_EDGE][i] += move;
             rest.c[TL_AT_DU_N][i] = -move;
         }
     }
-    out = rest;
-    if (!call_law(t, &rest, &out, NULL, 0, TL_CHECK_POINTS, true))
+    if (!call_law(t, &rest, &out))
         return;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        tl_vec3 slide = tl_check_vec(&rest, TL_AT_DU_S, i);
+        tl_vec3 slide = tl_check_vec(rest.c[TL_AT_DU_S], i);
         tl_vec3 change =
-            tl_v3_sub(tl_check_vec(&out, TL_AT_F_S, i), tl_check_vec(&rest, TL_AT_F_S, i));
+            tl_v3_sub(tl_check_vec(out.c[TL_AT_F_S], i), tl_check_vec(rest.c[TL_AT_F_S], i));
         double area = rest.c[TL_AT_AREA][i], closing = -rest.c[TL_AT_DU_N][i];
         double moved = along ? tl_v3_norm(slide) : fabs(closing);
         double rise = along ? -tl_v3_dot(change, slide) / (moved > 0 ? moved : 1)
@@ -420,8 +442,8 @@ static void check_stiffness(trial *t, int step, bool along)
         double bound = along ? t->law.ks : t->law.kn;
         /* what falls: friction does at any rate, and a bond, which breaks or softens in the part that is apart; walls that
          * meet are where the closure says */
-        bool falls = along ? tl_v3_norm(tl_check_vec(&out, TL_AT_F_S, i)) <
-                                 tl_v3_norm(tl_check_vec(&rest, TL_AT_F_S, i))
+        bool falls = along ? tl_v3_norm(tl_check_vec(out.c[TL_AT_F_S], i)) <
+                                 tl_v3_norm(tl_check_vec(rest.c[TL_AT_F_S], i))
                            : rest.c[TL_AT_APART][i] > 0;
         uint32_t changed = out.flags[i] ^ rest.flags[i];
         if (falls || changed & (TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART))
@@ -440,29 +462,29 @@ static void check_stiffness(trial *t, int step, bool along)
 #define ERROR 1e-8
 
 /* How a column goes with the area. */
-static double power_of(const tl_law_trial *t, int column)
+static double power_of(const trial *t, int column)
 {
     if (column >= TL_AT_STATE)
-        return t->law.of.extensive[column - TL_AT_STATE] ? 2 : 1;
+        return t->law.extensive[column - TL_AT_STATE] ? 2 : 1;
     bool goes = column == TL_AT_AREA || column == TL_AT_F_N0 || column >= TL_AT_F_N;
     return goes ? 2 : 1;
 }
 
 /* Points whose states begin anew, where they do so when areas change; and their twins of twice the area. */
-static void make_twins(const tl_law_trial *t, tl_check_points *one, tl_check_points *two)
+static void make_twins(const trial *t, tl_check_points *one, tl_check_points *two)
 {
-    const int last = TL_AT_STATE + (int)t->law.of.columns;
+    const int last = TL_AT_STATE + (int)t->law.columns;
     *one = t->in;
     for (int k = TL_AT_STATE; k < last; k++)
-        for (size_t i = 0; i < TL_CHECK_POINTS && t->law.of.resets[k - TL_AT_STATE]; i++)
-            one->c[k][i] = t->law.of.initial[k - TL_AT_STATE];
+        for (size_t i = 0; i < TL_CHECK_POINTS && t->law.resets[k - TL_AT_STATE]; i++)
+            one->c[k][i] = t->law.initial[k - TL_AT_STATE];
     *two = *one;
     for (int k = 0; k < last; k++)
         for (size_t i = 0; i < TL_CHECK_POINTS; i++)
             two->c[k][i] *= power_of(t, k);
 }
 
-static void compare(tl_law_trial *t, int column, size_t i, double one, double is)
+static void compare(trial *t, int column, size_t i, double one, double is)
 {
     bool force = column < TL_AT_STORED, energy = column < TL_AT_STATE;
     double expected = power_of(t, column) * one;
@@ -477,24 +499,147 @@ static void compare(tl_law_trial *t, int column, size_t i, double one, double is
 }
 
 /* What goes with the area. */
-static void law_check_area(tl_law_trial *t)
+static void check_area(trial *t)
 {
     tl_check_points one, two, out_one, out_two;
-    tl_check_call call = {0};
     if (tl_check_failed(t->c, TL_LAW_AREA))
         return;
     make_twins(t, &one, &two);
-    out_one = one;
-    out_two = two;
-    if (!tl_law_call(t, &one, &out_one, NULL, 0, TL_CHECK_POINTS, &call) ||
-        !tl_law_call(t, &two, &out_two, NULL, 0, TL_CHECK_POINTS, &call))
+    if (!call_law(t, &one, &out_one) || !call_law(t, &two, &out_two))
         return;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++)
-        for (int k = TL_AT_F_N; k < TL_AT_STATE + (int)t->law.of.columns; k++)
-            if (k < TL_AT_STATE || !t->law.of.resets[k - TL_AT_STATE])
+        for (int k = TL_AT_F_N; k < TL_AT_STATE + (int)t->law.columns; k++)
+            if (k < TL_AT_STATE || !t->law.resets[k - TL_AT_STATE])
                 compare(t, k, i, out_one.c[k][i], out_two.c[k][i]);
 }
 
+/* ---------------------------------------------------------------- what depends on what --- */
+
+static void check_reads(trial *t)
+{
+    static const struct {
+        uint32_t what;
+        const char *text;
+    } places[] = {{TL_OTHER_STATES, "a state that it does not declare"},
+                  {TL_OTHER_BEHIND, "what lies behind the batch"},
+                  {TL_OTHER_ENERGIES, "what the columns of energies held before, which are to be "
+                                      "written"}};
+    if (tl_check_failed(t->c, TL_LAW_READS))
+        return;
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+        tl_check_points out;
+        if (!call_all(t, &t->in, &out, (tl_check_call){.other = places[k].what}))
+            return;
+        for (size_t i = 0; i < TL_CHECK_POINTS; i++)
+            if (!same(&t->out, &out, i, true))
+                tl_check_note(t->c, TL_LAW_READS, "what update() gives depends on %s",
+                              places[k].text);
+    }
+}
+
+/* Where the next point's value of a state takes the place of each point's: what depends on it. */
+static void see_state(trial *t, uint32_t first, uint32_t width)
+{
+    const uint32_t bits = ((1u << width) - 1) << first;
+    tl_check_points in = t->in, out, a, b;
+    tl_check_gaps gaps, others;
+    bool moved[TL_CHECK_POINTS];
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        moved[i] = false;
+        for (uint32_t k = first; k < first + width; k++) {
+            const double *state = t->in.c[TL_AT_STATE + k];
+            in.c[TL_AT_STATE + k][i] =
+                width > 1 ? -0.5 * state[i] : state[(i + 1) % TL_CHECK_POINTS];
+            moved[i] |= in.c[TL_AT_STATE + k][i] != state[i];
+        }
+    }
+    if (!call_law(t, &in, &out))
+        return;
+    tl_law_gaps(&t->law, &t->in, &gaps);
+    tl_law_gaps(&t->law, &in, &others);
+    a = t->out;
+    b = out;
+    for (uint32_t k = first; k < first + width; k++) /* all but the state itself */
+        memcpy(a.c[TL_AT_STATE + k], b.c[TL_AT_STATE + k], sizeof a.c[0]);
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        if (!moved[i])
+            continue;
+        bool gap = gaps.lift[i] != others.lift[i] || gaps.hold[i] != others.hold[i];
+        if (gap || !same(&a, &b, i, true))
+            t->seen.read |= bits;
+        if (!same(&t->out, &out, i, true))
+            t->seen.kept |= bits;
+    }
+}
+
+static void see_states(trial *t)
+{
+    uint32_t first = 0;
+    if (is_stateless(&t->law))
+        return;
+    for (uint32_t i = 0; i < t->c->kind->state_count; i++) {
+        uint32_t width = width_of(t->c->kind, i);
+        if (!(t->seen.read >> first & 1))
+            see_state(t, first, width);
+        first += width;
+    }
+}
+
+static void see_params(trial *t, tl_check_law varied[], const bool open[])
+{
+    for (uint32_t k = 0; k < t->c->kind->param_count && k < TL_CHECK_PARAMS; k++) {
+        if (!open[k] || t->seen.matters[k])
+            continue;
+        tl_check_points out;
+        tl_check_gaps gaps, others;
+        tl_status status = tl_law_call_all(&varied[k], &t->in, &out);
+        tl_law_gaps(&t->law, &t->out, &gaps);
+        tl_law_gaps(&varied[k], &t->out, &others);
+        bool other = status != TL_OK || memcmp(&gaps, &others, sizeof gaps) != 0;
+        for (size_t i = 0; i < TL_CHECK_POINTS && !other; i++)
+            other = !same(&t->out, &out, i, true);
+        t->seen.matters[k] |= other;
+    }
+}
+
+static void tell_unseen(tl_checker *c, const tl_check_seen *seen)
+{
+    const tl_kind *kind = c->kind;
+    uint32_t column = 0;
+    c->params_text[0] = '\0';
+    for (uint32_t i = 0; i < kind->state_count; i++) {
+        const tl_state *state = &kind->states[i];
+        uint32_t width = width_of(kind, i), bits = (1u << width) - 1;
+        if (!(seen->written >> column & bits))
+            tl_check_note(c, TL_LAW_STATES,
+                          "state '%s' is declared and was never written, with any of %d sets of "
+                          "parameters",
+                          state->name, TL_CHECK_SETS);
+        else if (!(seen->kept >> column & bits) && state->transfer != TL_TRANSFER_RESET)
+            tl_check_note(c, TL_LAW_STATES,
+                          "state '%s' is written and never read: nothing depends on what it was. "
+                          "Where that is meant, "
+                          "declare it as TL_TRANSFER_RESET",
+                          state->name);
+        else if (!(seen->read >> column & bits) && state->transfer != TL_TRANSFER_RESET)
+            tl_check_note(
+                c, TL_LAW_STATES,
+                "state '%s' is written, but no force, energy, flag or other state depends on "
+                "it. Where that is meant, declare it as TL_TRANSFER_RESET",
+                state->name);
+        column += width;
+    }
+    for (uint32_t k = 0; k < kind->param_count && k < TL_CHECK_PARAMS; k++)
+        if (!seen->matters[k] && tl_check_asked(c, k))
+            tl_check_note(c, TL_LAW_PARAMETERS,
+                          "parameter '%s' has no effect: another value gives the same forces, "
+                          "energies, states and "
+                          "stiffness with all of %d sets of parameters",
+                          kind->params[k].name, TL_CHECK_SETS);
+    if (seen->heats && !seen->slips)
+        tl_check_note(c, TL_LAW_FLAGS,
+                      "shear is turned to heat, but no point is ever flagged as slipping");
+}
 /* ---------------------------------------------------------------- all of it -------------- */
 
 static void run_trial(trial *t, tl_check_law varied[], const bool open[])
@@ -510,10 +655,10 @@ static void run_trial(trial *t, tl_check_law varied[], const bool open[])
         tl_law_check_normal(t, step);
         tl_law_check_flags(t);
         check_states(t);
-        tl_law_check_reads(t);
-        law_check_area(t);
-        tl_law_see_states(t);
-        tl_law_see_params(t, varied, open);
+        check_reads(t);
+        check_area(t);
+        see_states(t);
+        see_params(t, varied, open);
         check_turned(t, step);
         check_still(t);
         check_stiffness(t, step, false);
@@ -525,17 +670,16 @@ static void run_trial(trial *t, tl_check_law varied[], const bool open[])
 }
 
 /* Columns of the declared states. */
-static void read_states(const tl_kind *kind, tl_check_law_of *of)
+static void read_states(tl_check_law *law)
 {
-    for (uint32_t i = 0; i < kind->state_count; i++) {
-        const tl_state *state = &kind->states[i];
-        bool turns = state->kind == TL_STATE_TANGENT;
-        of->tangent[of->columns] = turns;
-        for (int k = 0; k < (turns ? 3 : 1) && of->columns < TL_STATE_COLUMNS; k++) {
-            of->extensive[of->columns] =
+    for (uint32_t i = 0; i < law->kind->state_count; i++) {
+        const tl_state *state = &law->kind->states[i];
+        law->tangent[law->columns] = state->kind == TL_STATE_TANGENT;
+        for (uint32_t k = 0; k < width_of(law->kind, i) && law->columns < TL_STATE_COLUMNS; k++) {
+            law->extensive[law->columns] =
                 state->transfer == TL_TRANSFER_SPLIT || state->transfer == TL_TRANSFER_ENERGY;
-            of->resets[of->columns] = state->transfer == TL_TRANSFER_RESET;
-            of->initial[of->columns++] = state->initial;
+            law->resets[law->columns] = state->transfer == TL_TRANSFER_RESET;
+            law->initial[law->columns++] = state->initial;
         }
     }
 }
@@ -544,19 +688,13 @@ static void read_states(const tl_kind *kind, tl_check_law_of *of)
 static tl_status open_law(tl_checker *c, void *params, tl_check_law *law)
 {
     const tl_law_ops *ops = c->kind->ops;
-    tl_report report = {.size = sizeof report};
-    *law = (tl_check_law){.of = {.kind = c->kind, .ops = ops, .self = params}};
-    read_states(c->kind, &law->of);
-    if (ops->create) {
-        void *self = NULL;
-        tl_status status = ops->create(params, &self, &report);
-        if (status != TL_OK)
-            return tl_fail(c->error, status, "'%s' cannot be tried: %s", c->kind->name,
-                           tl_report_text(&report, status));
-        law->of.self = self;
-    }
+    *law = (tl_check_law){.kind = c->kind, .ops = ops};
+    read_states(law);
+    tl_status status = tl_check_create(c, ops->create, params, &law->self);
+    if (status != TL_OK)
+        return status;
     law->kn = law->ks = NAN;
-    ops->stiffness(law->of.self, &law->kn, &law->ks);
+    ops->stiffness(law->self, &law->kn, &law->ks);
     if (!(law->kn >= 0 && law->ks >= 0 && isfinite(law->kn) && isfinite(law->ks)))
         tl_check_note(c, TL_LAW_STIFFNESS,
                       "stiffness() says kn = %g, ks = %g Pa/m: both must be finite and >= 0",
@@ -570,12 +708,12 @@ static tl_status open_law(tl_checker *c, void *params, tl_check_law *law)
 
 static void close_law(tl_check_law *law)
 {
-    if (law->of.ops->destroy)
-        law->of.ops->destroy((void *)(uintptr_t)law->of.self);
+    if (law->ops->destroy)
+        law->ops->destroy(law->self);
 }
 
 /* Laws that each have one parameter changed, of those whose effect has not been seen; and a trial with them. */
-static tl_status try_set(trial *t, int set)
+static tl_status try_varied(trial *t)
 {
     tl_checker *c = t->c;
     const uint32_t count = c->kind->param_count;
@@ -586,15 +724,15 @@ static tl_status try_set(trial *t, int set)
     memcpy(text, c->params_text, sizeof text);
     tl_status status = TL_OK;
     for (uint32_t k = 0; k < count && k < TL_CHECK_PARAMS && status == TL_OK; k++) {
-        if (t->seen->matters[k])
+        if (t->seen.matters[k])
             continue;
         params[k] = malloc(c->kind->params_size + 1);
         if (!params[k])
             status = tl_fail_memory(c->error);
-        else if (tl_check_varied(c, set, k, params[k], &held[k]) == TL_OK)
+        else if (tl_check_varied(c, c->set, k, params[k], &held[k]) == TL_OK)
             open[k] = open_law(c, params[k], &varied[k]) == TL_OK;
         if (open[k] && (varied[k].kn != t->law.kn || varied[k].ks != t->law.ks))
-            t->seen->matters[k] = true;
+            t->seen.matters[k] = true;
     }
     memcpy(c->params_text, text, sizeof text);
     if (status == TL_OK)
@@ -608,32 +746,27 @@ static tl_status try_set(trial *t, int set)
     return status;
 }
 
+static tl_status try_set(tl_checker *c, void *params, void *user)
+{
+    trial *t = user;
+    tl_status status = open_law(c, params, &t->law);
+    if (status != TL_OK)
+        return status;
+    if (!tl_check_failed(c, TL_LAW_STIFFNESS) || isfinite(t->law.kn + t->law.ks))
+        status = try_varied(t);
+    close_law(&t->law);
+    return status;
+}
+
 tl_status tl_check_law_kind(tl_checker *c)
 {
-    trial *t = malloc(sizeof *t);
-    void *params = malloc(c->kind->params_size + 1), *held;
-    tl_check_seen seen = {0};
-    int tried = 0, most = 20 * TL_CHECK_SETS; /* laws refuse some drawn sets */
-    tl_status status = t && params ? TL_OK : tl_fail_memory(c->error);
-    for (int set = 0; status == TL_OK && set < most && tried < TL_CHECK_SETS; set++) {
-        tl_status read = tl_check_params(c, set, params, &held);
-        if (read == TL_OK && (read = open_law(c, params, &t->law)) == TL_OK) {
-            t->c = c;
-            t->seen = &seen;
-            if (!tl_check_failed(c, TL_LAW_STIFFNESS) || isfinite(t->law.kn + t->law.ks))
-                status = try_set(t, set);
-            close_law(&t->law);
-            tried++;
-        }
-        free(held);
-        if (set == 0 && c->args && c->args->count > 0 && status == TL_OK)
-            status = read; /* given by the user: what is wrong with them is to be told */
-    }
-    if (status == TL_OK && tried == 0)
-        status = TL_E_ARGUMENT; /* with the sentence of the last attempt */
-    else if (status == TL_OK && !tl_check_failed(c, TL_LAW_RUNS))
-        tl_law_tell_unseen(c, &seen);
+    trial *t = calloc(1, sizeof *t);
+    if (!t)
+        return tl_fail_memory(c->error);
+    t->c = c;
+    tl_status status = tl_check_sets(c, try_set, t);
+    if (status == TL_OK && !tl_check_failed(c, TL_LAW_RUNS))
+        tell_unseen(c, &t->seen);
     free(t);
-    free(params);
     return status;
 }

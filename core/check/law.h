@@ -3,7 +3,6 @@
 #define TL_CHECK_LAW_H
 
 #include "check/checker.h"
-#include "check/law_trial.h"
 
 extern const tl_check_rule tl_check_law_rules[];
 tl_status tl_check_law_kind(tl_checker *c);

@@ -7,11 +7,6 @@
  *     stored >= what the normal force holds, and at the beginning no more than that. */
 #include "check/law_normal.h"
 
-#include "base/inside.h"
-#include "check/law_trial.h"
-#include "check/params.h"
-#include "check/points.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -22,73 +17,6 @@
 /* Tolerance: the same of forces and energies that are compared, which differ by roundings of closures. Test:
  * unit/test_check. */
 #define ERROR 1e-7
-
-/* A batch of what the functions besides update() are given. */
-static tl_law_batch batch_of(tl_check_points *p, double *state[2 * TL_STATE_COLUMNS],
-                             double nobodys[TL_CHECK_POINTS])
-{
-    for (size_t i = 0; i < TL_CHECK_POINTS; i++)
-        nobodys[i] = tl_check_nobodys(0, false);
-    for (int k = 0; k < 2 * TL_STATE_COLUMNS; k++)
-        state[k] = k < TL_STATE_COLUMNS ? p->c[TL_AT_STATE + k] : nobodys;
-    return (tl_law_batch){.size = sizeof(tl_law_batch),
-                          .count = TL_CHECK_POINTS,
-                          .area = p->c[TL_AT_AREA],
-                          .f_n0 = p->c[TL_AT_F_N0],
-                          .state = state,
-                          .flags = p->flags};
-}
-
-void tl_law_gaps(const tl_check_law *law, const tl_check_points *given, tl_check_gaps *gaps)
-{
-    const tl_law_ops *ops = law->of.ops;
-    _Alignas(TL_ALIGN) double nobodys[TL_CHECK_POINTS];
-    double *state[2 * TL_STATE_COLUMNS];
-    tl_check_points p = *given;
-    uint32_t pulls = ops->pulls ? ops->pulls(law->of.self) : TL_PULL_ANY;
-    const tl_law_batch batch = batch_of(&p, state, nobodys);
-    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        bool lost = pulls == TL_PULL_BONDED && p.flags[i] & TL_POINT_FAILED;
-        double spring = law->kn * p.c[TL_AT_AREA][i];
-        gaps->lift[i] = p.c[TL_AT_F_N0][i] / (spring > 0 ? spring : 1);
-        gaps->hold[i] = 0;
-        gaps->bond[i] = pulls == TL_PULL_NONE || lost || p.flags[i] & TL_POINT_APART ? 0 : 1;
-    }
-    if (!ops->across_gap)
-        return;
-    for (size_t i = 0; i < TL_CHECK_POINTS; i++) /* the law is to write all of them */
-        gaps->lift[i] = gaps->hold[i] = NAN;
-    tl_enter(law->of.kind, "across_gap");
-    ops->across_gap(law->of.self, &batch, gaps->lift, gaps->hold);
-    tl_leave();
-    memcpy(gaps->bond, gaps->hold, sizeof gaps->bond);
-}
-
-double tl_law_edge(double closure, double apart, double lift, double below)
-{
-    /* o from -e to f in a line: the means of its parts are f^2 / (2 (e + f)) and e^2 / (2 (e + f)) */
-    double u = fmax(0, closure + lift);
-    return apart > 0 ? -lift - 2 * (apart + sqrt(u * apart)) : closure - below;
-}
-
-/* What `pressed` tells at the points' closures moved by `move`: energies, and forces or not-a-number. */
-static void energies_at(const tl_check_law *law, const tl_check_points *given, double move,
-                        double energy[TL_CHECK_POINTS], double force[TL_CHECK_POINTS])
-{
-    _Alignas(TL_ALIGN) double nobodys[TL_CHECK_POINTS];
-    double *state[2 * TL_STATE_COLUMNS];
-    tl_check_points p = *given;
-    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        p.c[TL_AT_CLOSURE][i] += move;
-        force[i] = NAN;
-    }
-    tl_law_batch batch = batch_of(&p, state, nobodys);
-    batch.closure = p.c[TL_AT_CLOSURE];
-    batch.f_n = force;
-    tl_enter(law->of.kind, "pressed");
-    law->of.ops->pressed(law->of.self, &batch, energy);
-    tl_leave();
-}
 
 /* A point and what is known of it. */
 typedef struct point {
@@ -103,7 +31,7 @@ static point point_at(const tl_law_trial *t, const tl_check_gaps *gaps, size_t i
     double spring = t->law.kn * t->out.c[TL_AT_AREA][i];
     double lift = gaps->lift[i], u = t->in.c[TL_AT_CLOSURE][i] + lift;
     double size = fabs(lift) + fabs(t->in.c[TL_AT_CLOSURE][i]) + t->law.closure;
-    tl_vec3 shear = tl_check_vec(&t->out, TL_AT_F_S, i);
+    tl_vec3 shear = tl_check_vec(t->out.c[TL_AT_F_S], i);
     return (point){.lift = lift,
                    .u = u,
                    .apart = t->in.c[TL_AT_APART][i],
@@ -121,7 +49,7 @@ static void check_linear(tl_law_trial *t, const point *p)
 {
     double pull = p->u > 0 ? p->hold * p->apart : 0, u = p->u > 0 ? p->u : p->hold * p->u;
     double expected = p->spring * (u - pull);
-    bool told = t->law.of.ops->across_gap != NULL;
+    bool told = t->law.ops->across_gap != NULL;
     bool none = p->f_n == 0 && p->u <= 0 && !told; /* those that may pull need not */
     if (!none && fabs(p->f_n - expected) > p->error)
         tl_check_note(
@@ -191,8 +119,8 @@ static void check_initial(tl_law_trial *t, const point *p, size_t i)
 
 static void check_gap(tl_law_trial *t, const point *p, size_t i)
 {
-    const tl_law_ops *ops = t->law.of.ops;
-    uint32_t pulls = ops->pulls ? ops->pulls(t->law.of.self) : TL_PULL_ANY;
+    const tl_law_ops *ops = t->law.ops;
+    uint32_t pulls = ops->pulls ? ops->pulls(t->law.self) : TL_PULL_ANY;
     bool failed = (t->out.flags[i] & TL_POINT_FAILED) != 0;
     bool may = pulls == TL_PULL_ANY || (pulls == TL_PULL_BONDED && !failed);
     if (!may && p->u < -p->rounding && p->f_n != 0)
@@ -225,14 +153,14 @@ static void check_gap(tl_law_trial *t, const point *p, size_t i)
 
 void tl_law_check_normal(tl_law_trial *t, int step)
 {
-    const tl_law_ops *ops = t->law.of.ops;
+    const tl_law_ops *ops = t->law.ops;
     tl_check_gaps gaps;
     tl_check_points at = t->out;
     double energy[3][TL_CHECK_POINTS], force[3][TL_CHECK_POINTS];
     tl_law_gaps(&t->law, &t->out, &gaps);
     memcpy(at.c[TL_AT_CLOSURE], t->in.c[TL_AT_CLOSURE], sizeof at.c[TL_AT_CLOSURE]);
     for (int k = 0; k < 3 && !ops->linear && ops->pressed; k++)
-        energies_at(&t->law, &at, (k - 1) * SMALL * t->law.closure, energy[k], force[k]);
+        tl_law_pressed(&t->law, &at, (k - 1) * SMALL * t->law.closure, energy[k], force[k]);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         point p = point_at(t, &gaps, i, step);
         check_gap(t, &p, i);
@@ -253,7 +181,7 @@ void tl_law_check_flags(tl_law_trial *t)
     const uint32_t known = TL_POINT_SLIPPING | TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         uint32_t was = t->in.flags[i], is = t->out.flags[i];
-        double shear = tl_v3_norm(tl_check_vec(&t->out, TL_AT_F_S, i)),
+        double shear = tl_v3_norm(tl_check_vec(t->out.c[TL_AT_F_S], i)),
                f_n = t->out.c[TL_AT_F_N][i];
         if (is & ~known)
             tl_check_note(t->c, TL_LAW_FLAGS, "flags are %u, of which only %u have a meaning", is,
@@ -265,6 +193,6 @@ void tl_law_check_flags(tl_law_trial *t)
         if (was & ~is & TL_POINT_FAILED)
             tl_check_note(t->c, TL_LAW_FLAGS,
                           "a point that had failed is whole again: the flag is to stay");
-        t->seen->slips |= (is & TL_POINT_SLIPPING) != 0;
+        t->seen.slips |= (is & TL_POINT_SLIPPING) != 0;
     }
 }

@@ -6,8 +6,6 @@
 
 #include "base/clock.h"
 #include "base/inside.h"
-#include "check/checker.h"
-#include "check/params.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,6 +7,7 @@
  *
  * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work is summed by the trapezoidal rule. */
 #include "base/inside.h"
+#include "base/law_columns.h"
 #include "contact/contacts.h"
 #include "force/joint_laws.h"
 #include "model/joints.h"
@@ -19,11 +20,7 @@
 
 /* The first point of a batch of padding. */
 typedef struct sample {
-    _Alignas(TL_ALIGN) double area[TL_LANES];
-    double closure[TL_LANES], f_n0[TL_LANES], normal[3][TL_LANES];
-    double du_n[TL_LANES], du_s[3][TL_LANES], f_n[TL_LANES], f_s[3][TL_LANES];
-    double state[TL_STATE_COLUMNS][TL_LANES], stored[TL_LANES], heat[TL_LANES];
-    double apart[TL_LANES]; /* 0 */
+    _Alignas(TL_ALIGN) double c[TL_AT_COUNT][TL_LANES];
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } sample;
 
@@ -63,29 +60,13 @@ static tl_status try_closure(const bench *b, const motion *by, double closure, s
     double *state[TL_STATE_COLUMNS];
     char where[40];
     *out = b->now;
-    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
-        state[k] = out->state[k];
-    out->du_n[0] = out->closure[0] - closure;
-    out->closure[0] = closure;
-    out->du_s[0][0] = by->du;
-    out->stored[0] = out->heat[0] = 0;
-    tl_law_batch batch = {.size = sizeof batch,
-                          .count = TL_LANES,
-                          .dt = by->dt,
-                          .area = out->area,
-                          .closure = out->closure,
-                          .f_n0 = out->f_n0,
-                          .normal = {out->normal[0], out->normal[1], out->normal[2]},
-                          .du_n = out->du_n,
-                          .du_s = {out->du_s[0], out->du_s[1], out->du_s[2]},
-                          .f_n = out->f_n,
-                          .f_s = {out->f_s[0], out->f_s[1], out->f_s[2]},
-                          .state = state,
-                          .flags = out->flags,
-                          .stored = out->stored,
-                          .dissipated = out->heat,
-                          .closure_edge = out->closure,
-                          .closure_apart = out->apart};
+    out->c[TL_AT_DU_N][0] = out->c[TL_AT_CLOSURE][0] - closure;
+    out->c[TL_AT_CLOSURE][0] = out->c[TL_AT_EDGE][0] = closure;
+    out->c[TL_AT_DU_S][0] = by->du;
+    out->c[TL_AT_STORED][0] = out->c[TL_AT_DISSIPATED][0] = 0;
+    tl_law_batch batch = tl_law_batch_of(out->c[0], TL_LANES, out->flags, state, TL_STATE_COLUMNS);
+    batch.count = TL_LANES;
+    batch.dt = by->dt;
     tl_report report = {.size = sizeof report};
     tl_enter(b->law.kind, "update");
     tl_status status = ops->update(b->law.self, &batch, &report);
@@ -93,9 +74,9 @@ static tl_status try_closure(const bench *b, const motion *by, double closure, s
     if (status != TL_OK)
         return tl_fail(b->error, status, "law_test, %s: law '%s': %s", place(b, where),
                        b->law.kind->name, tl_report_text(&report, status));
-    double sum = out->f_n[0] + out->f_s[0][0] + out->f_s[1][0] + out->stored[0] + out->heat[0];
-    for (uint32_t k = 0; k < b->law.columns; k++)
-        sum += 0 * out->state[k][0];
+    double sum = 0;
+    for (uint32_t k = TL_AT_F_N; k < TL_AT_STATE + b->law.columns; k++)
+        sum += 0 * out->c[k][0];
     if (!isfinite(sum))
         return tl_fail(b->error, TL_E_NUMERIC,
                        "law_test, %s: law '%s' gives a force, state or energy that is not a "
@@ -131,7 +112,8 @@ static tl_status evaluate(const closure_search *s, double closure, side *at)
 {
     const bench *b = s->b;
     tl_status status = try_closure(b, s->by, closure, s->out);
-    *at = (side){closure, s->out->f_n[0] - b->stress + b->stiffness * (closure - b->start)};
+    *at =
+        (side){closure, s->out->c[TL_AT_F_N][0] - b->stress + b->stiffness * (closure - b->start)};
     return status;
 }
 
@@ -182,7 +164,7 @@ static tl_status balance(const bench *b, const motion *by, sample *out)
     double kn = b->law.kn + b->stiffness;
     const closure_search s = {b, by, STRESS_ERROR * fabs(b->stress) + CLOSURE_ERROR * kn, out};
     side from, to;
-    tl_status status = evaluate(&s, b->now.closure[0], &from);
+    tl_status status = evaluate(&s, b->now.c[TL_AT_CLOSURE][0], &from);
     if (status != TL_OK || fabs(from.excess) <= s.enough)
         return status;
     /* the stiffness is the law's largest, so this goes no farther than the closure that is sought */
@@ -261,15 +243,15 @@ static void note(const bench *b, tl_law_point *out)
     const sample *now = &b->now;
     *out = (tl_law_point){.time = b->time,
                           .shear = b->shear,
-                          .shear_stress = 0 - now->f_s[0][0], /* and not -0 */
-                          .normal_stress = now->f_n[0],
-                          .closure = now->closure[0],
+                          .shear_stress = 0 - now->c[TL_AT_F_S][0], /* and not -0 */
+                          .normal_stress = now->c[TL_AT_F_N][0],
+                          .closure = now->c[TL_AT_CLOSURE][0],
                           .work = b->work,
-                          .stored = now->stored[0],
+                          .stored = now->c[TL_AT_STORED][0],
                           .heat = b->heat,
                           .flags = now->flags[0]};
     for (uint32_t k = 0; k < b->law.columns; k++)
-        out->state[k] = now->state[k][0];
+        out->state[k] = now->c[TL_AT_STATE + k][0];
 }
 
 /* A step to a closure, or to that of the wanted stress. */
@@ -281,9 +263,10 @@ static tl_status make_step(bench *b, const motion *by, double closure)
         by_stress(b->test) ? balance(b, by, &next) : try_closure(b, by, closure, &next);
     if (status != TL_OK)
         return status;
-    b->work += 0.5 * (now->f_n[0] + next.f_n[0]) * (next.closure[0] - now->closure[0]);
-    b->work -= 0.5 * (now->f_s[0][0] + next.f_s[0][0]) * by->du;
-    b->heat += next.heat[0];
+    b->work += 0.5 * (now->c[TL_AT_F_N][0] + next.c[TL_AT_F_N][0]) *
+               (next.c[TL_AT_CLOSURE][0] - now->c[TL_AT_CLOSURE][0]);
+    b->work -= 0.5 * (now->c[TL_AT_F_S][0] + next.c[TL_AT_F_S][0]) * by->du;
+    b->heat += next.c[TL_AT_DISSIPATED][0];
     b->time += by->dt;
     b->now = next;
     return TL_OK;
@@ -309,7 +292,7 @@ static double time_of(const tl_law_test *test, const tl_law_leg *leg, double sli
 static tl_status walk(bench *b, const tl_law_leg *leg, tl_law_point **points)
 {
     int64_t steps = steps_of(b->test, leg);
-    double slide = b->shear, close = b->now.closure[0], press = b->stress;
+    double slide = b->shear, close = b->now.c[TL_AT_CLOSURE][0], press = b->stress;
     double slid = isnan(leg->shear) ? slide : leg->shear;
     double closed = isnan(leg->closure) ? close : leg->closure;
     double pressed = isnan(leg->normal_stress) ? press : leg->normal_stress;
@@ -338,20 +321,20 @@ static tl_status walk(bench *b, const tl_law_leg *leg, tl_law_point **points)
 static tl_status begin(bench *b)
 {
     sample *now = &b->now;
-    now->area[0] = 1;
+    now->c[TL_AT_AREA][0] = 1;
     for (size_t l = 0; l < TL_LANES; l++)
-        now->normal[2][l] = 1;
+        now->c[TL_AT_NORMAL + 2][l] = 1;
     uint32_t column = 0;
     for (uint32_t k = 0; k < b->law.kind->state_count && b->law.columns > 0; k++) {
         const tl_state *state = tl_kind_state(b->law.kind, k);
         for (uint32_t c = state->kind == TL_STATE_TANGENT ? 3 : 1; c > 0; c--)
-            now->state[column++][0] = state->initial;
+            now->c[TL_AT_STATE + column++][0] = state->initial;
     }
     b->stress = by_stress(b->test) ? b->test->normal_stress : 0;
     tl_status status = make_step(b, &(motion){0, 0}, 0);
-    b->start = now->closure[0];
+    b->start = now->c[TL_AT_CLOSURE][0];
     b->stiffness = b->test->stiffness > 0 ? b->test->stiffness : 0;
-    b->work = now->stored[0];
+    b->work = now->c[TL_AT_STORED][0];
     b->heat = 0;
     return status;
 }

@@ -1,4 +1,4 @@
-/* law_energy.c - paths of closure and shear: what the walls' work puts into a point is stored or turned to heat, and a closed
+/* law_paths.c - paths of closure and shear: what the walls' work puts into a point is stored or turned to heat, and a closed
  * path gives no energy.
  *
  *     W = sum of (f_n + f_n')/2 d(closure) - (f_s + f_s')/2 . du_s
@@ -7,14 +7,11 @@
  * Every point begins and ends at the same place, on a path of straight parts of its own: closing, opening, small and large shear,
  * out of the plane of those before as well. Of eight points one is pressed by an initial force, one is made while its walls are
  * apart, and of one a part is apart, which does work of its own. The work is a sum of means, so where a force bends it is wrong by
- * its change within a small step; the bound allows for that. */
-#include "check/law_energy.h"
-
-#include "check/checker.h"
-#include "check/law_normal.h"
-#include "check/law_trial.h"
-#include "check/params.h"
-#include "check/points.h"
+ * its change within a small step; the bound allows for that.
+ *
+ * Shear of one direction, at a constant closure, leads to the same force whether it is made in a few steps or in many. A law that
+ * forgets a state between the steps, or finds the wrong slip of a step, does not keep to this. */
+#include "check/law_paths.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,11 +63,9 @@ static place corner_of(const tl_checker *c, const tl_check_law *law, size_t poin
     if (corner == 0 || corner == CORNERS)
         return at;
     uint64_t key = tl_key(tl_key(tl_key(1971, (uint64_t)c->set), point), (uint64_t)corner);
-    tl_vec3 any = tl_check_direction(tl_key(key, 1));
     double size = law->slide * tl_check_scale(tl_key(key, 2), -1.5, 1);
     bool opens = point % 2 && point % SORTS != PRESSED_SHUT;
-    any = tl_v3_sub(any, tl_v3_scale(tl_v3_dot(any, normal), normal));
-    at.slide = tl_v3_scale(size, any);
+    at.slide = tl_law_tangent(tl_key(key, 1), normal, size);
     if (!partly)
         at.closure = law->closure * tl_check_between(tl_key(key, 3), opens ? -0.3 : 0.05, 1);
     else if (corner > 1 && corner < CORNERS - 1)
@@ -88,8 +83,7 @@ static void begin(const tl_checker *c, walk *w)
         uint64_t key = tl_key(tl_key(1976, (uint64_t)c->set), i);
         size_t sort = i % SORTS;
         double area = tl_check_scale(tl_key(key, 1), -1, 1);
-        p->c[TL_AT_AREA][i] = area;
-        tl_check_put(p, TL_AT_NORMAL, i, tl_check_direction(tl_key(key, 2)));
+        tl_law_begin(law, p, i, area, tl_check_direction(tl_key(key, 2)));
         if (sort == PRESSED || sort == PRESSED_SHUT)
             p->c[TL_AT_F_N0][i] = area * law->stress * tl_check_between(tl_key(key, 3), 0, 1);
         if (sort == APART)
@@ -97,8 +91,6 @@ static void begin(const tl_checker *c, walk *w)
         w->begins[i] = sort == APART ? -0.3 * law->closure : 0;
         w->fibre[i] = i % 3 ? 0 : 0.05 * law->closure;
         p->c[TL_AT_CLOSURE][i] = w->begins[i];
-        for (uint32_t k = 0; k < law->of.columns; k++)
-            p->c[TL_AT_STATE + k][i] = law->of.initial[k];
     }
 }
 
@@ -117,7 +109,7 @@ static void move(const walk *w, double share, double before, tl_check_points *in
         in->c[TL_AT_CLOSURE][i] = closure;
         in->c[TL_AT_APART][i] = apart;
         in->c[TL_AT_EDGE][i] = tl_law_edge(closure, apart, gaps.lift[i], w->fibre[i]);
-        tl_check_put(in, TL_AT_DU_S, i, du);
+        tl_check_put(in->c[TL_AT_DU_S], i, du);
     }
 }
 
@@ -137,8 +129,9 @@ static void add_up(walk *w, const tl_check_points *was, const tl_check_points *i
         double closing = in->c[TL_AT_CLOSURE][i] - was->c[TL_AT_CLOSURE][i];
         double presses = in->c[TL_AT_F_N][i] + pull0 + out->c[TL_AT_F_N][i] + pull1;
         double across = 0.5 * (presses * closing + (pull0 + pull1) * (apart1 - apart0));
-        tl_vec3 shear = tl_v3_add(tl_check_vec(in, TL_AT_F_S, i), tl_check_vec(out, TL_AT_F_S, i));
-        double along = -0.5 * tl_v3_dot(shear, tl_check_vec(in, TL_AT_DU_S, i));
+        tl_vec3 shear =
+            tl_v3_add(tl_check_vec(in->c[TL_AT_F_S], i), tl_check_vec(out->c[TL_AT_F_S], i));
+        double along = -0.5 * tl_v3_dot(shear, tl_check_vec(in->c[TL_AT_DU_S], i));
         double stored = out->c[TL_AT_STORED][i], heat = out->c[TL_AT_DISSIPATED][i];
         double left = across + along - heat - (stored - s->stored),
                size = fabs(across) + fabs(along);
@@ -156,32 +149,27 @@ static void add_up(walk *w, const tl_check_points *was, const tl_check_points *i
 }
 
 /* A step to `share` of the way between the corners. */
-static bool step(tl_law_trial *t, walk *w, int number)
+static bool step(walk *w, int number)
 {
     tl_check_points in = w->at, out;
-    tl_check_call call = {0};
     move(w, (double)(number + 1) / STEPS, (double)number / STEPS, &in);
-    out = in;
-    tl_check_call_law(&t->law.of, &in, &out, NULL, 0, TL_CHECK_POINTS, &call);
+    tl_status status = tl_law_call_all(w->law, &in, &out);
     add_up(w, &w->at, &in, &out);
     w->at = out;
-    return call.status == TL_OK;
+    return status == TL_OK;
 }
 
 /* What is stored before the first step. */
-static bool rest(tl_law_trial *t, walk *w)
+static bool rest(walk *w)
 {
-    tl_check_call call = {0};
-    tl_check_points in = w->at, out;
+    tl_check_points in = w->at;
     in.dt = 0;
     move(w, 0, 0, &in);
-    out = in;
-    tl_check_call_law(&t->law.of, &in, &out, NULL, 0, TL_CHECK_POINTS, &call);
+    tl_status status = tl_law_call_all(w->law, &in, &w->at);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++)
-        w->of[i].stored = out.c[TL_AT_STORED][i];
-    w->at = out;
+        w->of[i].stored = w->at.c[TL_AT_STORED][i];
     w->at.dt = TL_CHECK_DT;
-    return call.status == TL_OK;
+    return status == TL_OK;
 }
 
 static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_POINTS])
@@ -216,22 +204,107 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
 
 void tl_law_check_energy(tl_law_trial *t)
 {
-    walk w = {.law = &t->law, .seen = t->seen};
+    walk w = {.law = &t->law, .seen = &t->seen};
     double stored[TL_CHECK_POINTS];
     begin(t->c, &w);
     for (int corner = 0; corner < CORNERS; corner++) {
         for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-            tl_vec3 normal = tl_check_vec(&w.at, TL_AT_NORMAL, i);
+            tl_vec3 normal = tl_check_vec(w.at.c[TL_AT_NORMAL], i);
             w.from[i] = corner_of(t->c, &t->law, i, corner, normal);
             w.to[i] = corner_of(t->c, &t->law, i, corner + 1, normal);
         }
-        if (corner == 0 && !rest(t, &w))
+        if (corner == 0 && !rest(&w))
             return;
         for (size_t i = 0; i < TL_CHECK_POINTS && corner == 0; i++)
             stored[i] = w.of[i].stored;
         for (int number = 0; number < STEPS; number++)
-            if (!step(t, &w, number))
+            if (!step(&w, number))
                 return;
     }
     judge(t, &w, stored);
+}
+
+/* ---------------------------------------------------------------- few steps or many ------ */
+
+/* Steps of the coarse path and of the fine one; both take the same time, s. */
+#define COARSE 12
+#define FINE 96
+#define TIME (FINE * TL_CHECK_DT)
+/* Share of the force by which the two may differ, for the path in few steps is not exact. Where a joint jumps they differ by more,
+ * so that most points that slip must, and some number of them. */
+#define DIFFERENCE 0.1
+#define SOME 12
+/* Share of the stress that the path leads to below which a stress is none. */
+#define FAINT 1e-3
+
+static void begin_shear(const tl_law_trial *t, tl_check_points *p, tl_vec3 slide[TL_CHECK_POINTS])
+{
+    memset(p, 0, sizeof *p);
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        uint64_t key = tl_key(tl_key(2001, (uint64_t)t->c->set), i);
+        double area = tl_check_scale(tl_key(key, 1), -1, 1);
+        tl_vec3 normal = tl_check_direction(tl_key(key, 2));
+        double size = t->law.slide * tl_check_scale(tl_key(key, 4), -1, 2.5);
+        slide[i] = tl_law_tangent(tl_key(key, 3), normal, size);
+        tl_law_begin(&t->law, p, i, area, normal);
+        p->c[TL_AT_CLOSURE][i] = p->c[TL_AT_EDGE][i] =
+            t->law.closure * tl_check_between(tl_key(key, 5), 0.2, 1);
+        p->c[TL_AT_DU_N][i] = -p->c[TL_AT_CLOSURE][i];
+    }
+}
+
+/* `pressed`: normal forces before the shear. */
+static bool shear_in(tl_law_trial *t, int steps, tl_check_points *p,
+                     double pressed[TL_CHECK_POINTS])
+{
+    tl_vec3 slide[TL_CHECK_POINTS];
+    begin_shear(t, p, slide);
+    for (int k = 0; k <= steps; k++) { /* the first closes the joint */
+        tl_check_points in = *p;
+        in.dt = k > 0 ? TIME / steps : 0;
+        for (size_t i = 0; i < TL_CHECK_POINTS && k > 0; i++) {
+            in.c[TL_AT_DU_N][i] = 0;
+            tl_check_put(in.c[TL_AT_DU_S], i, tl_v3_scale(1.0 / steps, slide[i]));
+        }
+        if (tl_law_call_all(&t->law, &in, p) != TL_OK)
+            return false;
+        if (k == 0)
+            memcpy(pressed, p->c[TL_AT_F_N], sizeof p->c[TL_AT_F_N]);
+    }
+    return true;
+}
+
+void tl_law_check_steps(tl_law_trial *t)
+{
+    tl_check_points coarse, fine;
+    double before[TL_CHECK_POINTS];
+    int differ = 0, slip = 0;
+    size_t worst = 0;
+    double most = 0;
+    if (tl_check_failed(t->c, TL_LAW_STEPS) || !shear_in(t, COARSE, &coarse, before) ||
+        !shear_in(t, FINE, &fine, before))
+        return;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        tl_vec3 a = tl_check_vec(coarse.c[TL_AT_F_S], i), b = tl_check_vec(fine.c[TL_AT_F_S], i);
+        double pressed = coarse.c[TL_AT_F_N][i], presses = fine.c[TL_AT_F_N][i];
+        double error = fmax(tl_v3_norm(tl_v3_sub(a, b)), fabs(pressed - presses));
+        double size = tl_v3_norm(b) + fabs(presses);
+        double faint = FAINT * t->law.stress * fine.c[TL_AT_AREA][i];
+        /* dilation that changes the pressure itself may follow from that of the beginning of a step */
+        if (fabs(presses - before[i]) > DIFFERENCE * before[i])
+            continue;
+        double share = error / (DIFFERENCE * size + faint);
+        differ += share > 1;
+        slip += share > 1 || fine.flags[i] & TL_POINT_SLIPPING;
+        worst = share > most ? i : worst;
+        most = fmax(most, share);
+    }
+    if (differ >= SOME && 2 * differ > slip)
+        tl_check_note(t->c, TL_LAW_STEPS,
+                      "the same shear, made in %d steps, leads to |f_s| = %.5g N, f_n = %.5g N, "
+                      "and in %d steps "
+                      "to %.5g N, %.5g N",
+                      COARSE, tl_v3_norm(tl_check_vec(coarse.c[TL_AT_F_S], worst)),
+                      coarse.c[TL_AT_F_N][worst], FINE,
+                      tl_v3_norm(tl_check_vec(fine.c[TL_AT_F_S], worst)), fine.c[TL_AT_F_N][worst]);
 }
