@@ -6,6 +6,7 @@
 #define TALUS_KIT_H
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,39 @@
 #pragma GCC diagnostic ignored "-Wunknown-pragmas"
 #endif
 
+/* ---------------------------------------------------------------- parameters ------------- */
+
+/* Rows of the table of parameters of a struct `owner`: reals of the unit `unit`. The sentence follows, and what else a tl_param has.
+ *
+ *     TL_PARAM_POSITIVE(params, distance, "m", "slip over which the friction falls", .alias = "dc"),
+ *
+ * > 0, and must be given. */
+#define TL_PARAM_POSITIVE(owner, member, unit, ...)                                                \
+    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__,                                      \
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
+/* > 0, and NaN where it is not given. */
+#define TL_PARAM_POSITIVE_OR_NONE(owner, member, unit, ...)                                        \
+    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__,                                      \
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
+/* >= 0, and 0 where it is not given. */
+#define TL_PARAM_NOT_NEGATIVE(owner, member, unit, ...)                                            \
+    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__, .min = 0, .max = INFINITY)
+/* An angle in [0, 90) deg. `more`: TL_PARAM_REQUIRED or the like, or 0. */
+#define TL_PARAM_ANGLE(owner, member, more, ...)                                                   \
+    TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__,                                     \
+             .flags = TL_PARAM_MAX_OPEN | (more), .min = 0, .max = 90)
+
 /* ---------------------------------------------------------------- create ----------------- */
+
+/* Puts a sentence into the report of a `create` that refuses its parameters, and gives TL_E_ARGUMENT. */
+static inline TL_PRINTF(2, 3) tl_status tl_refuse(tl_report *report, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    tl_text_vprint(report->text, sizeof report->text, format, arguments);
+    va_end(arguments);
+    return TL_E_ARGUMENT;
+}
 
 /* The end of a `create`: *self is a copy of `size` bytes, which C's `free` destroys. */
 static inline tl_status tl_keep(const void *made, size_t size, void **self, tl_report *report)
@@ -54,12 +87,8 @@ static inline tl_status tl_keep(const void *made, size_t size, void **self, tl_r
 /* ---------------------------------------------------------------- joint laws ------------- */
 
 /* Rows of the table of parameters of a struct `owner` with the members kn and ks. */
-#define TL_PARAM_KN(owner)                                                                         \
-    TL_PARAM(TL_PARAM_REAL, owner, kn, "Pa/m", "normal stiffness of the joint",                    \
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
-#define TL_PARAM_KS(owner)                                                                         \
-    TL_PARAM(TL_PARAM_REAL, owner, ks, "Pa/m", "shear stiffness of the joint",                     \
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
+#define TL_PARAM_KN(owner) TL_PARAM_POSITIVE(owner, kn, "Pa/m", "normal stiffness of the joint")
+#define TL_PARAM_KS(owner) TL_PARAM_POSITIVE(owner, ks, "Pa/m", "shear stiffness of the joint")
 
 /* Defines `stiffness`, for which the members kn_ and ks_ of the struct `type` are the bounds. */
 #define TL_LAW_STIFFNESS(type, kn_, ks_)                                                           \
@@ -141,6 +170,8 @@ TL_IN_LOOP tl_law_columns tl_law_columns_from(const tl_law_batch *batch, uint32_
 
 /* Shear force of a point, N, on block B. */
 #define TL_SHEAR_AT(c, i) tl_v3((c).f_x[i], (c).f_y[i], (c).f_z[i])
+/* Motion of the step along the joint, m. */
+#define TL_SLIDE_AT(c, i) tl_v3((c).du_x[i], (c).du_y[i], (c).du_z[i])
 /* The same after the motion of the step, if nothing slips: f_s - spring du_s, eq. (7). `spring`: ks A, N/m. */
 #define TL_TRIAL_AT(c, i, spring)                                                                  \
     tl_v3((c).f_x[i] - (spring) * (c).du_x[i], (c).f_y[i] - (spring) * (c).du_y[i],                \
@@ -150,12 +181,67 @@ TL_IN_LOOP tl_law_columns tl_law_columns_from(const tl_law_batch *batch, uint32_
     ((c).f_x[i] = (scale) * (force).x, (c).f_y[i] = (scale) * (force).y,                           \
      (c).f_z[i] = (scale) * (force).z)
 
+/* Lanes worked on at a time by a law that notes much of each, and a number of each of them: both stay in the nearest cache. */
+#define TL_LAW_STRIDE 64u
+typedef double tl_law_scratch[TL_LAW_STRIDE];
+/* Scaling a force down to its limit leaves it within 2 roundings of it. Without this margin a point at rest would be scaled
+ * down by a rounding in every step. */
+#define TL_LAW_ROUNDING 1e-15
+
+/* The largest shear force, N, that does not slip at that limit. */
+#define TL_LAW_MOST(limit) ((limit) * (1 + TL_LAW_ROUNDING))
+
+/* The factor that brings a shear force `trial` down to its limit; 1 where it does not slip. */
+TL_IN_LOOP double tl_law_scale(double trial, double limit)
+{
+    double most = TL_LAW_MOST(limit), beyond = trial > most ? trial : 1;
+    return trial > most ? limit / beyond : 1;
+}
+
+/* Slip opens a joint by `tangent` times its length, and not beyond the opening `most`, m. */
+typedef struct tl_law_dilation {
+    double tangent, most;
+} tl_law_dilation;
+
+/* Of an angle, deg, that ends after a slip of the length `limit`, m; NaN: it never does. */
+static inline tl_law_dilation tl_law_dilation_of(double angle, double limit)
+{
+    double tangent = tl_tan(angle * TL_DEGREE);
+    return (tl_law_dilation){tangent, isnan(limit) ? INFINITY : tangent * limit};
+}
+
+/* By how much the slip of a step opens a joint of linear springs, m. The slip adds to the pressure and so to the strength:
+ * it is (trial - strength) / (ks A + kn A tangent(dilation) tangent(friction)). `total`: normal force, N; none opens under
+ * tension. `friction`: its tangent; `opened`: so far, m. */
+TL_IN_LOOP double tl_law_lift_of_slip(tl_law_dilation by, double trial, double strength,
+                                      double total, double spring_n, double spring_s,
+                                      double friction, double opened)
+{
+    double yield = spring_s + spring_n * by.tangent * friction;
+    double grown = by.tangent * (trial - strength) / (yield > 0 ? yield : 1);
+    double headroom = by.most > opened ? by.most - opened : 0;
+    grown = grown < headroom ? grown : headroom;
+    grown = total < 0 ? 0 : grown;
+    return trial > TL_LAW_MOST(strength) ? grown : 0;
+}
+
 /* Work of slip, J, of a spring that would be at the force `trial`, of size `size`, and is brought down to `limit`: the mean
  * of the forces before (`along`: their product with the trial) and after, times the slip. `spring`: ks A. */
 TL_IN_LOOP double tl_law_slip_work(double along, double size, double limit, double spring)
 {
     double mean = 0.5 * (along / size + limit);
     return mean * ((size - limit) / (spring > 0 ? spring : 1));
+}
+
+/* Heat of slip, J: that work less what it `pays` for opening the joint; 0 where nothing slips or there is no spring. */
+TL_IN_LOOP double tl_law_slip_heat(double along, double trial, double limit, double spring,
+                                   double pays)
+{
+    double most = TL_LAW_MOST(limit);
+    double work = tl_law_slip_work(along, trial > most ? trial : 1, limit, spring);
+    work = (trial > most ? work : 0) - pays;
+    work = work > 0 ? work : 0;
+    return spring > 0 ? work : 0;
 }
 
 /* What slip pays, J, for opening a joint by `lift`, where that stores `rise`. The walls' motion of the step, which brings the normal
@@ -228,8 +314,7 @@ static inline tl_status tl_update_alpha_state(const void *self, const tl_damping
 
 /* Rows of the table of parameters of a struct `owner` with the members density and group, of "block" or "blocks". */
 #define TL_PARAMS_ROCK(owner, made)                                                                \
-    TL_PARAM(TL_PARAM_REAL, owner, density, "kg/m3", "density of the " made,                       \
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),           \
+    TL_PARAM_POSITIVE(owner, density, "kg/m3", "density of the " made),                            \
         TL_PARAM(TL_PARAM_STRING, owner, group, "", "group of the " made, .def_text = "rock")
 
 /* A tl_kind, as TL_KIND, of a generator that is the function `generate_`. */

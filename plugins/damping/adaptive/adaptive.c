@@ -28,13 +28,12 @@ static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_REAL, params, target, "",
              "share of the rate of kinetic energy that damping absorbs",
              .flags = TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN, .def = {0.5}, .min = 0, .max = 1),
-    TL_PARAM(TL_PARAM_REAL, params, start, "1/s", "first coefficient; not given: 0.01 / time step",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, minimum, "1/s",
-             "smallest coefficient; not given: 1e-8 / time step",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, maximum, "1/s", "largest coefficient; not given: 1 / time step",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE_OR_NONE(params, start, "1/s",
+                              "first coefficient; not given: 0.01 / time step"),
+    TL_PARAM_POSITIVE_OR_NONE(params, minimum, "1/s",
+                              "smallest coefficient; not given: 1e-8 / time step"),
+    TL_PARAM_POSITIVE_OR_NONE(params, maximum, "1/s",
+                              "largest coefficient; not given: 1 / time step"),
     TL_PARAM(TL_PARAM_REAL, params, factor, "", "largest change of the coefficient in one step",
              .flags = TL_PARAM_MIN_OPEN, .def = {1.1}, .min = 1, .max = 10),
 };
@@ -46,11 +45,9 @@ static const tl_state state_table[] = {
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
-    if (p->minimum > p->maximum) {
-        tl_text_print(report->text, sizeof report->text,
-                      "minimum = %g 1/s must be <= maximum = %g 1/s", p->minimum, p->maximum);
-        return TL_E_ARGUMENT;
-    }
+    if (p->minimum > p->maximum)
+        return tl_refuse(report, "minimum = %g 1/s must be <= maximum = %g 1/s", p->minimum,
+                         p->maximum);
     return tl_keep(p, sizeof *p, self, report);
 }
 

@@ -25,11 +25,10 @@ static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point on the plane", .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "",
              "probability that a block in the plane's path is cut", .def = {1}, .min = 0, .max = 1),
-    TL_PARAM(
-        TL_PARAM_REAL, params, radius, "m",
+    TL_PARAM_POSITIVE_OR_NONE(
+        params, radius, "m",
         "of a disc about the origin in the place of the plane: a block is in its path when the "
-        "disc meets its section",
-        .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+        "disc meets its section"),
 };
 
 static tl_status generate(const tl_host *host, const void *given)

@@ -49,10 +49,9 @@ static const tl_param param_table[] = {
              .max = 360),
     TL_PARAM(TL_PARAM_REAL, params, dip_direction_dev, "deg", "deviation of the dip direction",
              .min = 0, .max = 180),
-    TL_PARAM(TL_PARAM_REAL, params, spacing, "m", "mean distance between planes",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, spacing_dev, "m",
-             "deviation of the spacing; less than the spacing", .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE(params, spacing, "m", "mean distance between planes"),
+    TL_PARAM_NOT_NEGATIVE(params, spacing_dev, "m",
+                          "deviation of the spacing; less than the spacing"),
     TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1,
              .max = 1e4),
     TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about",
@@ -65,10 +64,10 @@ static const tl_param param_table[] = {
              .def = {UNIFORM}, .choices = distributions),
     TL_PARAM(TL_PARAM_REAL, params, fisher_k, "", "concentration of the poles by fisher",
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = 1e9),
-    TL_PARAM(TL_PARAM_REAL, params, radius, "m",
-             "of discs in the place of planes: a block is in a disc's path when the disc meets its "
-             "section",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE_OR_NONE(
+        params, radius, "m",
+        "of discs in the place of planes: a block is in a disc's path when the disc meets its "
+        "section"),
 };
 
 /* Deviation of a plane's dip or dip direction, in units of the one given. */

@@ -21,8 +21,6 @@
 #include <talus/version.h>
 
 #define LN10 2.30258509299404568402
-/* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
-#define STRIDE 64u
 /* Scaling a force down to its limit, and the slip that follows from it, leave it within some roundings of the limit; without
  * this margin a point at rest would be scaled down by them in every step. */
 #define ROUNDING 1e-14
@@ -48,28 +46,23 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_REAL, params, jrc, "", "joint roughness coefficient of the length lab_length",
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 30),
-    TL_PARAM(TL_PARAM_REAL, params, jcs, "Pa",
-             "joint wall compressive strength of the length lab_length",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE(params, jcs, "Pa",
+                      "joint wall compressive strength of the length lab_length"),
     TL_PARAM(TL_PARAM_REAL, params, phi_r, "deg", "residual angle of friction",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = STEEPEST),
     TL_PARAM(TL_PARAM_REAL, params, lab_length, "m", "length L0 of the specimen of jrc and jcs",
              .def = {0.1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, length, "m",
-             "length L of the joint between crossings, in metres whatever the other units, for the "
-             "peak's slip is an empirical formula; not given: lab_length",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, kni, "Pa/m", "normal stiffness of the unloaded joint",
-             .alias = "kn", .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0,
-             .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, vm, "m", "largest closure, from the unloaded joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness where nothing slips",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, linear_from, "Pa",
-             "normal stress beyond which closure is linear; a smaller one allows a longer time "
-             "step; not given: the wall strength of the joint's length",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE_OR_NONE(
+        params, length, "m",
+        "length L of the joint between crossings, in metres whatever the other units, for the "
+        "peak's slip is an empirical formula; not given: lab_length"),
+    TL_PARAM_POSITIVE(params, kni, "Pa/m", "normal stiffness of the unloaded joint", .alias = "kn"),
+    TL_PARAM_POSITIVE(params, vm, "m", "largest closure, from the unloaded joint"),
+    TL_PARAM_POSITIVE(params, ks, "Pa/m", "shear stiffness where nothing slips"),
+    TL_PARAM_POSITIVE_OR_NONE(
+        params, linear_from, "Pa",
+        "normal stress beyond which closure is linear; a smaller one allows a longer time "
+        "step; not given: the wall strength of the joint's length"),
     TL_PARAM(TL_PARAM_REAL, params, reduction, "", "the shear strength is divided by it",
              .def = {1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_BOOL, params, dilation, "", "whether slip opens the joint", .def = {1}),
@@ -105,14 +98,12 @@ static tl_status create(const void *given, void **self, tl_report *report)
     double linear = isnan(p->linear_from) ? jcs : p->linear_from, unit = p->kni * p->vm;
     double k = p->kni * (1 + linear / unit) * (1 + linear / unit);
     double peak = length / 500 * power(jrc / length, 0.33);
-    if (!isfinite(k)) {
-        tl_text_print(
-            report->text, sizeof report->text,
+    if (!isfinite(k))
+        return tl_refuse(
+            report,
             "linear_from = %g Pa is too much for kni vm = %g Pa: the stiffness there, kni (1 + "
             "linear_from / (kni vm))^2, is no number",
             linear, unit);
-        return TL_E_ARGUMENT;
-    }
     const rough law = {.kni = p->kni,
                        .vm = p->vm,
                        .ks = p->ks,
@@ -219,9 +210,9 @@ TL_IN_LOOP double rise_at(const rough *law, double stress, double m, double base
 
 /* What a step comes to: stresses are those of the area. */
 typedef struct trial {
-    double walls[STRIDE], opening[STRIDE]; /* closure v is their sum */
-    double v[STRIDE], x[STRIDE], y[STRIDE], z[STRIDE], shear[STRIDE], stress[STRIDE];
-    double before[STRIDE], m[STRIDE], base[STRIDE], limit[STRIDE], slip[STRIDE], lift[STRIDE];
+    tl_law_scratch walls, opening; /* closure v is their sum */
+    tl_law_scratch v, x, y, z, shear, stress;
+    tl_law_scratch before, m, base, limit, slip, lift;
 } trial;
 
 /* Stresses as if nothing slipped; whether some lane might be beyond its strength, of which this is the part without
@@ -305,7 +296,7 @@ TL_IN_LOOP double pass(const rough *given, uint32_t lanes, const trial *restrict
 TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
 {
     const rough law = *given;
-    double opens[STRIDE], slip[STRIDE], found[STRIDE];
+    tl_law_scratch opens, slip, found;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         /* walls that were pressed ride up from there, those that meet now, or hardly met, from what presses them now */
@@ -381,10 +372,10 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
                                       tl_report *report)
 {
     (void)report;
-    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
+    tl_law_scratch mark, stored, dissipated;
     trial t;
-    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
-        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+    for (uint32_t begin = 0; begin < batch->count; begin += TL_LAW_STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < TL_LAW_STRIDE ? left : TL_LAW_STRIDE;
         double *held = batch->stored ? batch->stored + begin : stored;
         double *heat = batch->dissipated ? batch->dissipated + begin : dissipated;
         bool near = press(self, batch, begin, lanes, &t) > 0;

@@ -41,18 +41,13 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM(TL_PARAM_REAL, params, tension, "Pa", "tensile strength of the bond",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength of the bond",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, energy_tension, "J/m2",
-             "work of fracture in tension, more than tension^2 / (2 kn)", .alias = "gi",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, energy_shear, "J/m2",
-             "work of fracture in shear, more than cohesion^2 / (2 ks)", .alias = "gii",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction of what is broken",
-             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM_POSITIVE(params, tension, "Pa", "tensile strength of the bond"),
+    TL_PARAM_POSITIVE(params, cohesion, "Pa", "shear strength of the bond"),
+    TL_PARAM_POSITIVE(params, energy_tension, "J/m2",
+                      "work of fracture in tension, more than tension^2 / (2 kn)", .alias = "gi"),
+    TL_PARAM_POSITIVE(params, energy_shear, "J/m2",
+                      "work of fracture in shear, more than cohesion^2 / (2 ks)", .alias = "gii"),
+    TL_PARAM_ANGLE(params, friction, 0, "angle of friction of what is broken"),
 };
 
 static const tl_state state_table[] = {
@@ -74,11 +69,10 @@ static bool snaps(const char *energy, double given, const char *strength, double
     double least = 0.5 * stress * stress / k;
     if (given > least)
         return false;
-    tl_text_print(
-        report->text, sizeof report->text,
-        "%s = %g J/m2 must be > %s^2 / (2 k) = %g J/m2, what the spring holds when damage "
-        "begins",
-        energy, given, strength, least);
+    tl_refuse(report,
+              "%s = %g J/m2 must be > %s^2 / (2 k) = %g J/m2, what the spring holds when damage "
+              "begins",
+              energy, given, strength, least);
     return true;
 }
 
@@ -122,9 +116,15 @@ TL_IN_LOOP double damage_of(const cohesive *law, double tension2, double shear2)
     return e > 1 ? damage : 0;
 }
 
-TL_IN_LOOP double dot(double ax, double ay, double az, double bx, double by, double bz)
+TL_IN_LOOP tl_vec3 either(double first, tl_vec3 a, tl_vec3 b)
 {
-    return ax * bx + ay * by + az * bz;
+    return tl_v3(first > 0 ? a.x : b.x, first > 0 ? a.y : b.y, first > 0 ? a.z : b.z);
+}
+
+/* a u + b v */
+TL_IN_LOOP tl_vec3 mix(double a, tl_vec3 u, double b, tl_vec3 v)
+{
+    return tl_v3_add(tl_v3_scale(a, u), tl_v3_scale(b, v));
 }
 
 /* What the broken share carries: what it did, if that is `then` as it is `now`. */
@@ -176,60 +176,51 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
         double beside = kn * apart[i], pull1 = (stress < 0 ? -stress : 0) + beside;
         double pull0 = pull1 > kn * c.du_n[i] ? pull1 - kn * c.du_n[i] : 0;
         double was = told(damage[i]), left = 1 - was, has = left > 0 ? 1 : 0;
-        double dx = c.du_x[i], dy = c.du_y[i], dz = c.du_z[i];
+        tl_vec3 d = TL_SLIDE_AT(c, i), f = TL_SHEAR_AT(c, i), before = tl_v3_scale(per, f);
+        tl_vec3 carries = {rub_x[i], rub_y[i], rub_z[i]};
         /* a bond that is lost has all of its stress from friction, whatever the state says */
         double each = was > 0 ? 1 / (was > 0 ? was : 1) : 0;
-        double qx = left > 0 ? rub_x[i] * each : c.f_x[i] * per;
-        double qy = left > 0 ? rub_y[i] * each : c.f_y[i] * per;
-        double qz = left > 0 ? rub_z[i] * each : c.f_z[i] * per;
+        tl_vec3 q = either(left, tl_v3_scale(each, carries), before);
         /* shear of the bonded share, before and now */
         double inverse = has / (left > 0 ? left : 1), spring = has * ks;
-        double ax = (c.f_x[i] * per - was * qx) * inverse, bx = ax - spring * dx;
-        double ay = (c.f_y[i] * per - was * qy) * inverse, by = ay - spring * dy;
-        double az = (c.f_z[i] * per - was * qz) * inverse, bz = az - spring * dz;
-        double shear2 = dot(bx, by, bz, bx, by, bz);
+        tl_vec3 a = tl_v3_scale(inverse, mix(1, before, -was, q)), b = mix(1, a, -spring, d);
+        double shear2 = tl_v3_norm2(b);
         double most = most_pulled(kn, edge[i], c.f_n0[i] * per, pull1);
         double found = damage_of(&law, most * most, shear2);
         double is = found - was > NOISE ? found : was, right = 1 - is, broken = is - was;
         /* friction of what was broken, and of what breaks now */
         double limit = stress > 0 ? law.tangent * stress : 0, glide = was > 0 ? ks : 0;
-        double tx = qx - glide * dx, ty = qy - glide * dy, tz = qz - glide * dz;
-        double trial = sqrt(dot(tx, ty, tz, tx, ty, tz));
+        tl_vec3 t = mix(1, q, -glide, d);
+        double trial = tl_v3_norm(t);
         double by_old = down_to(trial, limit), by_new = down_to(sqrt(shear2), limit);
         double share = broken > 0 ? broken / is : 0, o = (1 - share) * by_old, n = share * by_new;
-        double rx = o * tx + n * bx, ry = o * ty + n * by, rz = o * tz + n * bz;
-        double rub2 = dot(rx, ry, rz, rx, ry, rz);
+        tl_vec3 r = mix(o, t, n, b);
+        double rub2 = tl_v3_norm2(r);
         /* heat: of the bond and of new friction, or of slip alone */
-        double bond = broken * (half_n * pull0 * pull1 + half_s * dot(ax, ay, az, bx, by, bz));
-        double work =
-            0.5 * was * dot(qx, qy, qz, dx, dy, dz) + 0.5 * is * dot(rx, ry, rz, dx, dy, dz);
-        double kept = half_s * (is * rub2 - was * dot(qx, qy, qz, qx, qy, qz));
+        double bond = broken * (half_n * pull0 * pull1 + half_s * tl_v3_dot(a, b));
+        double work = 0.5 * was * tl_v3_dot(q, d) + 0.5 * is * tl_v3_dot(r, d);
+        double kept = half_s * (is * rub2 - was * tl_v3_norm2(q));
         double slides = trial > limit * (1 + ROUNDING) ? 1 : 0;
-        double sliding = slides * was * slip_heat(dot(qx, qy, qz, tx, ty, tz), trial, limit) / ks;
+        double sliding = slides * was * slip_heat(tl_v3_dot(q, t), trial, limit) / ks;
         double heat = broken > 0 ? bond - work - kept : sliding;
         dissipated[i] = heat > 0 ? c.area[i] * heat : 0;
         /* changes, so that a point at rest keeps its force to the bit */
-        double cx = c.f_x[i] + c.area[i] * ((right * bx - left * ax) + (is * rx - was * qx));
-        double cy = c.f_y[i] + c.area[i] * ((right * by - left * ay) + (is * ry - was * qy));
-        double cz = c.f_z[i] + c.area[i] * ((right * bz - left * az) + (is * rz - was * qz));
+        tl_vec3 change = tl_v3_add(mix(right, b, -left, a), mix(is, r, -was, q));
+        tl_vec3 after = mix(1, f, c.area[i], change);
         double breaks = broken > 0 ? 1 : 0, lost = right > 0 ? 0 : 1;
         /* 0 is added, for -0 would become 0 in the next step */
         double anew = lost * (breaks + slides);
-        cx = anew > 0 ? 0 + c.area[i] * rx : cx;
-        cy = anew > 0 ? 0 + c.area[i] * ry : cy;
-        cz = anew > 0 ? 0 + c.area[i] * rz : cz;
+        after = either(anew, tl_v3_add(tl_v3(0, 0, 0), tl_v3_scale(c.area[i], r)), after);
         mark[i] = flag_of(total, lost, anew, breaks);
         double press = stress > 0 ? stress : 0;
         double held = right * (half_n * pull1 * pull1 + half_s * shear2);
         stored[i] = c.area[i] * (held + half_n * press * press + is * half_s * rub2);
         c.f_n[i] = total < 0 ? right * total : total - right * (c.area[i] * beside);
-        c.f_x[i] = cx;
-        c.f_y[i] = cy;
-        c.f_z[i] = cz;
+        TL_PUT_SHEAR(c, i, 1, after);
         damage[i] = is;
-        rub_x[i] = right > 0 ? carried(rub_x[i], was * qx, is * rx) : cx * per;
-        rub_y[i] = right > 0 ? carried(rub_y[i], was * qy, is * ry) : cy * per;
-        rub_z[i] = right > 0 ? carried(rub_z[i], was * qz, is * rz) : cz * per;
+        rub_x[i] = right > 0 ? carried(carries.x, was * q.x, is * r.x) : after.x * per;
+        rub_y[i] = right > 0 ? carried(carries.y, was * q.y, is * r.y) : after.y * per;
+        rub_z[i] = right > 0 ? carried(carries.z, was * q.z, is * r.z) : after.z * per;
     }
 }
 
@@ -255,20 +246,19 @@ TL_IN_LOOP bool hold(const cohesive *given, const tl_law_batch *batch, uint32_t 
         double beside = kn * apart[i];
         double pull = (stress < 0 ? -stress : 0) + beside, press = stress > 0 ? stress : 0;
         double most = most_pulled(kn, edge[i], c.f_n0[i] * per, pull);
-        double ax = c.f_x[i] * per, bx = ax - ks * c.du_x[i];
-        double ay = c.f_y[i] * per, by = ay - ks * c.du_y[i];
-        double az = c.f_z[i] * per, bz = az - ks * c.du_z[i];
-        double shear2 = dot(bx, by, bz, bx, by, bz),
-               rub2 = dot(rub_x[i], rub_y[i], rub_z[i], rub_x[i], rub_y[i], rub_z[i]);
+        tl_vec3 f = TL_SHEAR_AT(c, i), a = tl_v3_scale(per, f);
+        tl_vec3 b = mix(1, a, -ks, TL_SLIDE_AT(c, i));
+        double shear2 = tl_v3_norm2(b), rub2 = tl_v3_norm2(tl_v3(rub_x[i], rub_y[i], rub_z[i]));
         double e2 = most * most * law.per_tension2 + shear2 * law.per_cohesion2;
         double beyond = e2 > 1 ? 1 : 0, was = damage[i] + rub2;
         /* not-a-number is for `move` */
         broken += was == 0 ? beyond : 1;
         broken += e2 >= 0 ? 0 : 1;
         force[i] = total - c.area[i] * beside;
-        x[i] = c.f_x[i] + c.area[i] * (bx - ax);
-        y[i] = c.f_y[i] + c.area[i] * (by - ay);
-        z[i] = c.f_z[i] + c.area[i] * (bz - az);
+        tl_vec3 after = mix(1, f, c.area[i], tl_v3_sub(b, a));
+        x[i] = after.x;
+        y[i] = after.y;
+        z[i] = after.z;
         held[i] = c.area[i] * (half_n * pull * pull + half_s * shear2 + half_n * press * press);
     }
     if (broken > 0)

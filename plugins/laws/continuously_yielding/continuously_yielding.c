@@ -29,8 +29,6 @@
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
-#define STRIDE 64u
 /* Scaling a stress down to its limit leaves it within some roundings of it. */
 #define ROUNDING 1e-14
 /* The largest r at a reversal. */
@@ -49,31 +47,22 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, an, "Pa^(1-en)/m",
-             "normal stiffness at a normal stress of 1 Pa",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE(params, an, "Pa^(1-en)/m", "normal stiffness at a normal stress of 1 Pa"),
     TL_PARAM(TL_PARAM_REAL, params, en, "", "exponent of the normal stress in it",
              .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 1),
-    TL_PARAM(TL_PARAM_REAL, params, as, "Pa^(1-es)/m", "shear stiffness at a normal stress of 1 Pa",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE(params, as, "Pa^(1-es)/m", "shear stiffness at a normal stress of 1 Pa"),
     TL_PARAM(TL_PARAM_REAL, params, es, "", "exponent of the normal stress in it", .min = 0,
              .max = 1),
-    TL_PARAM(TL_PARAM_REAL, params, kn_max, "Pa/m",
-             "largest normal stiffness, for the time step; needed with en > 0",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks_max, "Pa/m",
-             "largest shear stiffness, for the time step; needed with es > 0",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, phi_i, "deg", "angle of friction of the fresh joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN, .min = 0,
-             .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, phi, "deg",
-             "angle of friction of the worn joint, at most phi_i", .alias = "friction",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN, .min = 0,
-             .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, roughness, "m",
-             "slip R in which all but 1/e of the difference wears off",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE_OR_NONE(params, kn_max, "Pa/m",
+                              "largest normal stiffness, for the time step; needed with en > 0"),
+    TL_PARAM_POSITIVE_OR_NONE(params, ks_max, "Pa/m",
+                              "largest shear stiffness, for the time step; needed with es > 0"),
+    TL_PARAM_ANGLE(params, phi_i, TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN,
+                   "angle of friction of the fresh joint"),
+    TL_PARAM_ANGLE(params, phi, TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN,
+                   "angle of friction of the worn joint, at most phi_i", .alias = "friction"),
+    TL_PARAM_POSITIVE(params, roughness, "m",
+                      "slip R in which all but 1/e of the difference wears off"),
     TL_PARAM(TL_PARAM_BOOL, params, softening, "",
              "whether the stress falls after the strength that wears", .def = {1}),
     TL_PARAM(TL_PARAM_BOOL, params, dilation, "", "whether slip opens the joint", .def = {1}),
@@ -155,27 +144,18 @@ TL_IN_LOOP double shear_stiffness(const int curved, const yielding *law, double 
     return stress > 0 ? power : 0;
 }
 
-static tl_status fail(tl_report *report, const char *text)
-{
-    snprintf(report->text, sizeof report->text, "%s", text);
-    return TL_E_ARGUMENT;
-}
-
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
-    if (p->phi > p->phi_i) {
-        tl_text_print(report->text, sizeof report->text, "phi = %g deg must be <= phi_i = %g deg",
-                      p->phi, p->phi_i);
-        return TL_E_ARGUMENT;
-    }
+    if (p->phi > p->phi_i)
+        return tl_refuse(report, "phi = %g deg must be <= phi_i = %g deg", p->phi, p->phi_i);
     if (p->en > 0 && isnan(p->kn_max))
-        return fail(report,
-                    "en > 0 needs kn_max, the largest normal stiffness, Pa/m, which the time step "
+        return tl_refuse(
+            report, "en > 0 needs kn_max, the largest normal stiffness, Pa/m, which the time step "
                     "follows from");
     if (p->es > 0 && isnan(p->ks_max))
-        return fail(report,
-                    "es > 0 needs ks_max, the largest shear stiffness, Pa/m, which the time step "
+        return tl_refuse(
+            report, "es > 0 needs ks_max, the largest shear stiffness, Pa/m, which the time step "
                     "follows from");
     yielding law = {.an = p->an,
                     .en = p->en,
@@ -204,16 +184,15 @@ static tl_status create(const void *given, void **self, tl_report *report)
 
 /* A point after a step, in stresses; x, y, z is the stress on B. */
 typedef struct trial {
-    double walls[STRIDE], v[STRIDE], spring[STRIDE];
-    double x[STRIDE], y[STRIDE], z[STRIDE], size[STRIDE], before[STRIDE];
-    double begins[STRIDE],
-        ends[STRIDE]; /* work of half of the stress before the step, and after it */
+    tl_law_scratch walls, v, spring;
+    tl_law_scratch x, y, z, size, before;
+    tl_law_scratch begins, ends; /* work of half of the stress before the step, and after it */
     /* beyond a spring of ks_max: before, after; in that spring; share of the stress that can be paid for */
-    double had[STRIDE], kept[STRIDE], elastic[STRIDE], share[STRIDE];
-    double angle[STRIDE], ratio[STRIDE], wear[STRIDE], lift[STRIDE], slides[STRIDE];
-    double way_x[STRIDE], way_y[STRIDE], way_z[STRIDE];
-    double moved[STRIDE]; /* 0: the force stays, to the bit */
-    double pressed[STRIDE], held[STRIDE], bound[STRIDE];
+    tl_law_scratch had, kept, elastic, share;
+    tl_law_scratch angle, ratio, wear, lift, slides;
+    tl_law_scratch way_x, way_y, way_z;
+    tl_law_scratch moved; /* 0: the force stays, to the bit */
+    tl_law_scratch pressed, held, bound;
 } trial;
 
 /* Rise of the stress `t` along the way `d`, when the strength is `most`. */
@@ -318,22 +297,21 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
         double walls = t->walls[i] + c.closure[i], v = walls + opened[i];
         double stress = stress_at(curved, &law, v), ks = shear_stiffness(curved, &law, stress);
-        double d = sqrt(c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i]);
-        double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0;
-        double ex = c.du_x[i] * per_way, ey = c.du_y[i] * per_way, ez = c.du_z[i] * per_way;
-        double before = sqrt(c.f_x[i] * c.f_x[i] + c.f_y[i] * c.f_y[i] + c.f_z[i] * c.f_z[i]) * per;
-        double along = -(c.f_x[i] * ex + c.f_y[i] * ey + c.f_z[i] * ez) * per;
+        tl_vec3 du = TL_SLIDE_AT(c, i), force = TL_SHEAR_AT(c, i);
+        tl_vec3 way = {way_x[i], way_y[i], way_z[i]};
+        double d = tl_v3_norm(du), per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0;
+        tl_vec3 e = tl_v3_scale(per_way, du);
+        double before = tl_v3_norm(force) * per, along = -tl_v3_dot(force, e) * per;
         double angle = law.initial - worn[i] * TL_DEGREE,
                most = moves ? stress * tl_lane_tan(angle) : 0;
-        double toward = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
+        double toward = tl_v3_dot(e, way);
         double was = worn[i], ratio = last[i] + (toward < 0 ? toward : 0);
         wearing w = {.left = 1};
         if (moves)
             w = wear_off(&law, along, angle, v, stress, most, ratio, ks, d);
         double up = w.up, slip = w.slip, after = law.residual + (angle - law.residual) * w.left;
-        double x = c.f_x[i] * per - up * ex, y = c.f_y[i] * per - up * ey,
-               z = c.f_z[i] * per - up * ez;
-        double size = sqrt(x * x + y * y + z * z), bound = before > most ? before : most;
+        tl_vec3 f = tl_v3_sub(tl_v3_scale(per, force), tl_v3_scale(up, e));
+        double size = tl_v3_norm(f), bound = before > most ? before : most;
         double peak = stress * law.tangent_i;
         bound = bound < peak ? bound : peak;
         double yields = slip > 0.5 * d ? 1 : 0, changes = up < 0 ? 1 : up;
@@ -344,28 +322,26 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double slope = stress > FAINT ? scale * size / (stress > FAINT ? stress : 1) : 0;
         double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
         tangent = tangent > 0 ? law.dilation * tangent : 0;
-        double first = c.f_x[i] * c.du_x[i] + c.f_y[i] * c.du_y[i] + c.f_z[i] * c.du_z[i];
-        double second = x * c.du_x[i] + y * c.du_y[i] + z * c.du_z[i];
-        double share = -scale * (x * ex + y * ey + z * ez) / (most > FAINT ? most : 1);
+        double share = -scale * tl_v3_dot(f, e) / (most > FAINT ? most : 1);
         double memory = (ks > 0 ? MEMORY * most / (ks > 0 ? ks : 1) : 0) + law.least_memory;
         turning turned = remember(last[i], toward, most > FAINT ? share : 0, ratio, d, memory);
         t->walls[i] = walls;
         t->v[i] = v;
         t->spring[i] = ks;
         t->pressed[i] = stress;
-        t->x[i] = scale * x;
-        t->y[i] = scale * y;
-        t->z[i] = scale * z;
+        t->x[i] = scale * f.x;
+        t->y[i] = scale * f.y;
+        t->z[i] = scale * f.z;
         t->size[i] = scale * size;
         t->moved[i] = over + changes == 0 ? 0 : 1; /* not-a-number has moved */
         t->before[i] = before;
-        t->begins[i] = -0.5 * first * per;
-        t->ends[i] = -0.5 * scale * second;
+        t->begins[i] = -0.5 * tl_v3_dot(force, du) * per;
+        t->ends[i] = -0.5 * scale * tl_v3_dot(f, du);
         t->angle[i] = after;
         t->ratio[i] = turned.ratio;
-        t->way_x[i] = d > 0 ? turned.across * way_x[i] + turned.along * ex : way_x[i];
-        t->way_y[i] = d > 0 ? turned.across * way_y[i] + turned.along * ey : way_y[i];
-        t->way_z[i] = d > 0 ? turned.across * way_z[i] + turned.along * ez : way_z[i];
+        t->way_x[i] = d > 0 ? turned.across * way.x + turned.along * e.x : way.x;
+        t->way_y[i] = d > 0 ? turned.across * way.y + turned.along * e.y : way.y;
+        t->way_z[i] = d > 0 ? turned.across * way.z + turned.along * e.z : way.z;
         t->wear[i] = slip > 0 ? (law.initial - after) / TL_DEGREE : was;
         t->lift[i] = tangent * slip;
         opens += t->lift[i] == 0 ? 0 : 1;
@@ -493,7 +469,7 @@ TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes
 TL_IN_LOOP void update_lanes(const yielding *law, const tl_law_batch *batch, uint32_t begin,
                              uint32_t lanes, const int curved)
 {
-    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
+    tl_law_scratch mark, stored, dissipated;
     trial t;
     press(law, batch, begin, lanes, &t, curved);
     double opens = moving(batch, begin, lanes) > 0 ? slide(law, batch, begin, lanes, &t, curved, 1)
@@ -512,8 +488,8 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 {
     (void)report;
     const yielding *law = self;
-    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
-        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+    for (uint32_t begin = 0; begin < batch->count; begin += TL_LAW_STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < TL_LAW_STRIDE ? left : TL_LAW_STRIDE;
         if (law->en > 0 || law->es > 0)
             update_lanes(law, batch, begin, lanes, 1);
         else

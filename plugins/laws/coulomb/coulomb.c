@@ -30,9 +30,6 @@
 
 /* Lanes worked on at a time: none of them slips, or all are looked at for slip. */
 #define STRIDE TL_LANES
-/* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
- * rest would be scaled down by a rounding in every step. */
-#define ROUNDING 1e-15
 
 typedef struct params {
     double kn, ks, friction, cohesion, dilation, dilation_limit;
@@ -41,13 +38,10 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction",
-             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength at zero normal stress",
-             .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, dilation, "deg",
-             "angle of dilation: slip opens the joint; at most the friction",
-             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM_ANGLE(params, friction, 0, "angle of friction"),
+    TL_PARAM_NOT_NEGATIVE(params, cohesion, "Pa", "shear strength at zero normal stress"),
+    TL_PARAM_ANGLE(params, dilation, 0,
+                   "angle of dilation: slip opens the joint; at most the friction"),
     TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends",
              .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
 };
@@ -59,27 +53,22 @@ static const tl_state state_table[] = {
 
 typedef struct coulomb {
     double kn, ks, tangent, cohesion;
-    double dilation, most_opening; /* tangent; m */
+    tl_law_dilation dilation;
 } coulomb;
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
-    if (p->dilation > p->friction) {
-        tl_text_print(report->text, sizeof report->text,
-                      "dilation = %g deg must be <= friction = %g deg, or slip would make energy",
-                      p->dilation, p->friction);
-        return TL_E_ARGUMENT;
-    }
+    if (p->dilation > p->friction)
+        return tl_refuse(
+            report, "dilation = %g deg must be <= friction = %g deg, or slip would make energy",
+            p->dilation, p->friction);
     const coulomb law = {
         .kn = p->kn,
         .ks = p->ks,
         .tangent = tl_tan(p->friction * TL_DEGREE),
         .cohesion = p->cohesion,
-        .dilation = tl_tan(p->dilation * TL_DEGREE),
-        .most_opening = isnan(p->dilation_limit)
-                            ? INFINITY
-                            : tl_tan(p->dilation * TL_DEGREE) * p->dilation_limit,
+        .dilation = tl_law_dilation_of(p->dilation, p->dilation_limit),
     };
     return tl_keep(&law, sizeof law, self, report);
 }
@@ -139,7 +128,7 @@ TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t beg
     double *restrict opening = batch->state[0] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
-    const double dilation = law->dilation, most_opening = law->most_opening;
+    const tl_law_dilation dilation = law->dilation;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double stiffness = ks * c.area[i], opened = opening[i], lift = 0;
@@ -148,31 +137,21 @@ TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t beg
         double trial = tl_v3_norm(f);
         if (dilates) {
             double strength = cohesion * c.area[i] + total * tangent;
-            double yield = stiffness + kn * c.area[i] * dilation * tangent;
-            double grown = dilation * (trial - strength) / (yield > 0 ? yield : 1);
-            double headroom = most_opening > opened ? most_opening - opened : 0;
-            grown = grown < headroom ? grown : headroom;
-            grown = total < 0 ? 0 : grown;
-            lift = trial > strength * (1 + ROUNDING) ? grown : 0;
+            lift = tl_law_lift_of_slip(dilation, trial, strength, total, kn * c.area[i], stiffness,
+                                       tangent, opened);
             opened = opened + lift;
             opening[i] = opened;
             total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
         }
         double normal = total < 0 ? 0 : total;
         double limit = total < 0 ? 0 : cohesion * c.area[i] + normal * tangent;
-        double most = limit * (1 + ROUNDING);
-        double whole = trial > most ? trial : 1;
-        double scale = trial > most ? limit / whole : 1;
+        double scale = tl_law_scale(trial, limit);
         if (heat) {
             double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
-            double work = tl_law_slip_work(along, whole, limit, stiffness);
-            work = trial > most ? work : 0;
-            if (dilates)
-                work = work - 0.5 * (c.f_n[i] + normal) * lift;
-            work = work > 0 ? work : 0;
-            dissipated[i] = stiffness > 0 ? work : 0;
+            double pays = dilates ? 0.5 * (c.f_n[i] + normal) * lift : 0;
+            dissipated[i] = tl_law_slip_heat(along, trial, limit, stiffness, pays);
         }
-        double flag = trial > most ? TL_POINT_SLIPPING : 0;
+        double flag = trial > TL_LAW_MOST(limit) ? TL_POINT_SLIPPING : 0;
         mark[i] = total < 0 ? TL_POINT_OPEN : flag;
         c.f_n[i] = normal;
         TL_PUT_SHEAR(c, i, scale, f);
@@ -184,9 +163,9 @@ TL_IN_LOOP void update_lanes(const coulomb *law, const tl_law_batch *batch, uint
                              uint32_t lanes)
 {
     double mark[STRIDE];
-    if (law->dilation > 0 && batch->dissipated)
+    if (law->dilation.tangent > 0 && batch->dissipated)
         move(law, batch, begin, lanes, mark, 1, 1);
-    else if (law->dilation > 0)
+    else if (law->dilation.tangent > 0)
         move(law, batch, begin, lanes, mark, 0, 1);
     else if (batch->dissipated)
         move(law, batch, begin, lanes, mark, 1, 0);
@@ -218,7 +197,7 @@ TL_LAW_STIFFNESS(coulomb, kn, ks);
 
 static int stateless(const void *self)
 {
-    return ((const coulomb *)self)->dilation == 0;
+    return ((const coulomb *)self)->dilation.tangent == 0;
 }
 
 static void across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)

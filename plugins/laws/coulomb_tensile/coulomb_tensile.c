@@ -28,12 +28,6 @@
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Lanes worked on at a time: their flags stay in the nearest cache. */
-#define STRIDE 64u
-/* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
- * rest would be scaled down by a rounding in every step. */
-#define ROUNDING 1e-15
-
 typedef struct params {
     double kn, ks, friction, cohesion, tension;
     double residual_friction, residual_cohesion, residual_tension;
@@ -43,22 +37,17 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction",
-             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion of the bond", .min = 0,
-             .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, tension, "Pa", "tensile strength of the bond", .min = 0,
-             .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, residual_friction, "deg",
-             "angle of friction after the bond is lost; not given: friction",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, residual_cohesion, "Pa", "cohesion after the bond is lost",
-             .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, residual_tension, "Pa",
-             "tensile strength after the bond is lost", .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, dilation, "deg",
-             "angle of dilation: slip opens the joint; at most the friction, whole and residual",
-             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM_ANGLE(params, friction, 0, "angle of friction"),
+    TL_PARAM_NOT_NEGATIVE(params, cohesion, "Pa", "cohesion of the bond"),
+    TL_PARAM_NOT_NEGATIVE(params, tension, "Pa", "tensile strength of the bond"),
+    TL_PARAM_ANGLE(params, residual_friction, TL_PARAM_OPTIONAL,
+                   "angle of friction after the bond is lost; not given: friction"),
+    TL_PARAM_NOT_NEGATIVE(params, residual_cohesion, "Pa", "cohesion after the bond is lost"),
+    TL_PARAM_NOT_NEGATIVE(params, residual_tension, "Pa",
+                          "tensile strength after the bond is lost"),
+    TL_PARAM_ANGLE(
+        params, dilation, 0,
+        "angle of dilation: slip opens the joint; at most the friction, whole and residual"),
     TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends",
              .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
 };
@@ -78,7 +67,7 @@ typedef struct strength {
 typedef struct bonded {
     double kn, ks;
     strength peak, residual;
-    double dilation, most_opening; /* tangent; m */
+    tl_law_dilation dilation;
 } bonded;
 
 static tl_status create(const void *given, void **self, tl_report *report)
@@ -86,21 +75,16 @@ static tl_status create(const void *given, void **self, tl_report *report)
     const params *p = given;
     double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
     double least = residual < p->friction ? residual : p->friction;
-    if (p->dilation > least) {
-        tl_text_print(report->text, sizeof report->text,
-                      "dilation = %g deg must be <= %s = %g deg, or slip would make energy",
-                      p->dilation, least < p->friction ? "residual_friction" : "friction", least);
-        return TL_E_ARGUMENT;
-    }
+    if (p->dilation > least)
+        return tl_refuse(
+            report, "dilation = %g deg must be <= %s = %g deg, or slip would make energy",
+            p->dilation, least < p->friction ? "residual_friction" : "friction", least);
     const bonded law = {
         .kn = p->kn,
         .ks = p->ks,
         .peak = {tl_tan(p->friction * TL_DEGREE), p->cohesion, p->tension},
         .residual = {tl_tan(residual * TL_DEGREE), p->residual_cohesion, p->residual_tension},
-        .dilation = tl_tan(p->dilation * TL_DEGREE),
-        .most_opening = isnan(p->dilation_limit)
-                            ? INFINITY
-                            : tl_tan(p->dilation * TL_DEGREE) * p->dilation_limit,
+        .dilation = tl_law_dilation_of(p->dilation, p->dilation_limit),
     };
     return tl_keep(&law, sizeof law, self, report);
 }
@@ -124,7 +108,7 @@ TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, doub
                       after * peak->cohesion + rest * residual->cohesion};
 }
 
-/* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
+/* The law itself, for up to TL_LAW_STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
  * so that the loop exists once for each and none has a branch in it; without dilation the opening of
  * slip in the past still counts. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` is given 1 of walls that were apart and have not met since, else 0,
@@ -140,7 +124,7 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
     double *restrict bond = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double kn = law->kn, ks = law->ks;
-    const double dilation = law->dilation, most_opening = law->most_opening;
+    const tl_law_dilation dilation = law->dilation;
     const strength peak = law->peak, residual = law->residual;
     /* without tensile strength nothing pulls */
     const double grips = peak.tension > 0 ? 1 : 0, grips_on = residual.tension > 0 ? 1 : 0;
@@ -164,12 +148,8 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         double pulls = holds * grip, total = pressed - pulls;
         if (dilates) {
             double strong = cohesion * c.area[i] + total * tangent;
-            double yield = stiffness + kn * c.area[i] * dilation * tangent;
-            double grown = dilation * (trial - strong) / (yield > 0 ? yield : 1);
-            double headroom = most_opening > opened ? most_opening - opened : 0;
-            grown = grown < headroom ? grown : headroom;
-            grown = total < 0 ? 0 : grown;
-            lift = trial > strong * (1 + ROUNDING) ? grown : 0;
+            lift = tl_law_lift_of_slip(dilation, trial, strong, total, kn * c.area[i], stiffness,
+                                       tangent, opened);
             opened = opened + lift;
             opening[i] = opened;
             pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
@@ -179,16 +159,11 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         total = pressed < 0 ? -(holds * stretched) - pulls : total;
         double limit = (cohesion - parted * residual.cohesion) * c.area[i] + total * tangent;
         limit = ((limit < 0) | !(parted < 1)) ? 0 : limit;
-        double most = limit * (1 + ROUNDING);
-        double beyond = trial > most ? trial : 1;
-        double scale = trial > most ? limit / beyond : 1;
+        double scale = tl_law_scale(trial, limit);
         if (heat) {
             double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
-            double work = tl_law_slip_work(along, beyond, limit, stiffness);
-            work = trial > most ? work : 0;
-            if (dilates)
-                work = work - 0.5 * (c.f_n[i] + total) * lift;
-            work = work > 0 && stiffness > 0 ? work : 0;
+            double pays = dilates ? 0.5 * (c.f_n[i] + total) * lift : 0;
+            double work = tl_law_slip_heat(along, trial, limit, stiffness, pays);
             /* What lets go gives up its tensile spring. */
             dissipated[i] = work + (held - holds) * tl_law_snap_work(grip + stretched,
                                                                      kn * c.area[i], c.du_n[i]);
@@ -196,7 +171,8 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         double let_go = ((pressed > 0) & !(apart[i] > 0)) ? 0 : grips_on * (1 - holds);
         double lost = TL_POINT_FAILED + let_go * TL_POINT_APART;
         mark[i] = after > 0 ? 0 : lost;
-        mark[i] += !(parted < 1) ? TL_POINT_OPEN : trial > most ? TL_POINT_SLIPPING : 0;
+        double flag = trial > TL_LAW_MOST(limit) ? TL_POINT_SLIPPING : 0;
+        mark[i] += !(parted < 1) ? TL_POINT_OPEN : flag;
         c.f_n[i] = !(parted < 1) ? 0 : total;
         double alone = 0.5 * holds * (1 - holds) * (stretched * stretched + grip * grip);
         more[i] = (pulls * (pressed < 0 ? -(holds * stretched) : pressed) + alone) /
@@ -211,17 +187,17 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 {
     (void)report;
     const bonded *law = self;
-    double mark[STRIDE], more[STRIDE];
-    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
-        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+    tl_law_scratch mark, more;
+    for (uint32_t begin = 0; begin < batch->count; begin += TL_LAW_STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < TL_LAW_STRIDE ? left : TL_LAW_STRIDE;
         /* walls that came near from afar were never bonded */
         for (uint32_t i = 0; i < lanes; i++) {
             mark[i] = batch->flags[begin + i] & TL_POINT_APART ? 1 : 0;
             batch->state[0][begin + i] = mark[i] > 0 ? 0 : batch->state[0][begin + i];
         }
-        if (law->dilation > 0 && batch->dissipated)
+        if (law->dilation.tangent > 0 && batch->dissipated)
             move(law, batch, begin, lanes, mark, more, 1, 1);
-        else if (law->dilation > 0)
+        else if (law->dilation.tangent > 0)
             move(law, batch, begin, lanes, mark, more, 0, 1);
         else if (batch->dissipated)
             move(law, batch, begin, lanes, mark, more, 1, 0);

@@ -21,8 +21,6 @@
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
-#define STRIDE 64u
 /* Newton's passes at most: 4 do in steady slip, and some 50 halve the bounds to nothing. A lane that has found its root stays
  * there, so that it does not matter which others it is with. */
 #define PASSES 60
@@ -52,18 +50,17 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = 1),
     TL_PARAM(TL_PARAM_REAL, params, b, "", "effect of the state; b > a weakens with the rate",
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 1),
-    TL_PARAM(TL_PARAM_REAL, params, distance, "m", "slip D_c over which the state changes",
-             .alias = "dc", .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0,
-             .max = INFINITY),
+    TL_PARAM_POSITIVE(params, distance, "m", "slip D_c over which the state changes",
+                      .alias = "dc"),
     TL_PARAM(TL_PARAM_REAL, params, velocity, "m/s", "reference rate V0", .alias = "v0",
              .def = {1e-6}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, damping, "Pa s/m",
-             "viscous part eta: shear modulus over twice the speed of shear waves, where blocks do "
-             "not radiate themselves",
-             .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, theta, "s",
-             "state of a new contact; not given: distance / velocity, that of steady slip",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_NOT_NEGATIVE(
+        params, damping, "Pa s/m",
+        "viscous part eta: shear modulus over twice the speed of shear waves, where blocks do "
+        "not radiate themselves"),
+    TL_PARAM_POSITIVE_OR_NONE(
+        params, theta, "s",
+        "state of a new contact; not given: distance / velocity, that of steady slip"),
     TL_PARAM(TL_PARAM_ENUM, params, evolution, "",
              "how the state changes: it also ages at rest, or with slip only", .def = {AGING},
              .choices = evolutions),
@@ -118,9 +115,9 @@ TL_IN_LOOP double answer(const int evolution, double distance, double theta, dou
 
 /* What a step comes to before slip; stresses are those of the area. */
 typedef struct trial {
-    double total[STRIDE], x[STRIDE], y[STRIDE], z[STRIDE], shear[STRIDE];
-    double theta[STRIDE], effect[STRIDE], exponent[STRIDE], rate[STRIDE];
-    double root[STRIDE], low[STRIDE], high[STRIDE], found[STRIDE];
+    tl_law_scratch total, x, y, z, shear;
+    tl_law_scratch theta, effect, exponent, rate;
+    tl_law_scratch root, low, high, found;
 } trial;
 
 /* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. How many lanes carry shear. */
@@ -265,7 +262,7 @@ TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t 
 TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint32_t begin,
                              uint32_t lanes, const int evolution)
 {
-    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
+    tl_law_scratch mark, stored, dissipated;
     trial t;
     double left = press(law, batch, begin, lanes, &t);
     for (int k = 0; k < PASSES && batch->dt > 0 && left > 0; k++)
@@ -281,8 +278,8 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 {
     (void)report;
     const params *law = self;
-    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
-        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+    for (uint32_t begin = 0; begin < batch->count; begin += TL_LAW_STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < TL_LAW_STRIDE ? left : TL_LAW_STRIDE;
         if (law->evolution == AGING)
             update_lanes(law, batch, begin, lanes, AGING);
         else

@@ -18,11 +18,6 @@
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
-#define STRIDE 64u
-/* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
- * rest would be scaled down by a rounding in every step. */
-#define ROUNDING 1e-15
 /* Share of the strength that a bound of it is trusted by: their roundings differ. */
 #define SURE (1 - 1e-12)
 /* Step of Newton's search, over D_c, that is no step: the error is squared in each. */
@@ -47,27 +42,23 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction before slip",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion before slip", .min = 0,
-             .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, residual_friction, "deg",
-             "angle of friction after slip, at most friction; not given: friction",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, residual_cohesion, "Pa",
-             "cohesion after slip, at most cohesion", .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, distance, "m",
-             "slip D_c over which the strength falls: all of it, or in the exponential form all "
-             "but 1/e",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_ANGLE(params, friction, TL_PARAM_REQUIRED, "angle of friction before slip"),
+    TL_PARAM_NOT_NEGATIVE(params, cohesion, "Pa", "cohesion before slip"),
+    TL_PARAM_ANGLE(params, residual_friction, TL_PARAM_OPTIONAL,
+                   "angle of friction after slip, at most friction; not given: friction"),
+    TL_PARAM_NOT_NEGATIVE(params, residual_cohesion, "Pa", "cohesion after slip, at most cohesion"),
+    TL_PARAM_POSITIVE(
+        params, distance, "m",
+        "slip D_c over which the strength falls: all of it, or in the exponential form all "
+        "but 1/e"),
     TL_PARAM(TL_PARAM_ENUM, params, form, "", "how the strength falls with slip", .def = {LINEAR},
              .choices = forms),
     TL_PARAM(TL_PARAM_ENUM, params, healing, "",
              "whether strength comes back where slip has ended: never, at once, or in time",
              .def = {HEAL_NONE}, .choices = healings),
-    TL_PARAM(TL_PARAM_REAL, params, healing_time, "s",
-             "for healing = \"time\": time in which all but 1/e of the lost strength comes back",
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE_OR_NONE(
+        params, healing_time, "s",
+        "for healing = \"time\": time in which all but 1/e of the lost strength comes back"),
 };
 
 static const tl_state state_table[] = {
@@ -86,22 +77,17 @@ static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
     double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
-    if (residual > p->friction || p->residual_cohesion > p->cohesion) {
-        int angle = residual > p->friction;
-        tl_text_print(report->text, sizeof report->text,
-                      "residual_%s = %g %s must be <= %s = %g %s", angle ? "friction" : "cohesion",
-                      angle ? residual : p->residual_cohesion, angle ? "deg" : "Pa",
-                      angle ? "friction" : "cohesion", angle ? p->friction : p->cohesion,
-                      angle ? "deg" : "Pa");
-        return TL_E_ARGUMENT;
-    }
-    if ((p->healing == HEAL_TIME) == (isnan(p->healing_time) != 0)) {
-        snprintf(report->text, sizeof report->text,
-                 p->healing == HEAL_TIME ? "healing = \"time\" needs healing_time, in s"
-                                         : "healing_time is given, but healing is \"%s\"",
-                 healings[p->healing]);
-        return TL_E_ARGUMENT;
-    }
+    if (residual > p->friction)
+        return tl_refuse(report, "residual_friction = %g deg must be <= friction = %g deg",
+                         residual, p->friction);
+    if (p->residual_cohesion > p->cohesion)
+        return tl_refuse(report, "residual_cohesion = %g Pa must be <= cohesion = %g Pa",
+                         p->residual_cohesion, p->cohesion);
+    if (p->healing == HEAL_TIME && isnan(p->healing_time))
+        return tl_refuse(report, "healing = \"time\" needs healing_time, in s");
+    if (p->healing != HEAL_TIME && !isnan(p->healing_time))
+        return tl_refuse(report, "healing_time is given, but healing is \"%s\"",
+                         healings[p->healing]);
     double tangent = tl_tan(residual * TL_DEGREE);
     const weakening law = {.kn = p->kn,
                            .ks = p->ks,
@@ -172,8 +158,8 @@ TL_IN_LOOP double exponential_pass(const double *restrict above, const double *r
 
 /* What a step comes to before slip is looked at. */
 typedef struct trial {
-    double total[STRIDE], x[STRIDE], y[STRIDE], z[STRIDE], shear[STRIDE];
-    double residual[STRIDE], drop[STRIDE], limit[STRIDE], slip[STRIDE];
+    tl_law_scratch total, x, y, z, shear;
+    tl_law_scratch residual, drop, limit, slip;
 } trial;
 
 /* Share of the drop that is left, or less: exp(-x) >= 1 - x needs no exponential. */
@@ -202,7 +188,7 @@ TL_IN_LOOP double press(const weakening *law, const tl_law_batch *batch, uint32_
         double residual = total < 0 ? 0 : cohesion * c.area[i] + normal * tangent;
         double drop = total < 0 ? 0 : cohesion_drop * c.area[i] + normal * tangent_drop;
         double limit = residual + least_left_of(form, per_distance, slip[i]) * drop;
-        beyond += shear > limit * (1 + ROUNDING) ? 1 : 0;
+        beyond += shear > TL_LAW_MOST(limit) ? 1 : 0;
         t->total[i] = total;
         t->x[i] = f.x;
         t->y[i] = f.y;
@@ -224,7 +210,7 @@ TL_IN_LOOP double resist(const weakening *law, uint32_t lanes, trial *restrict t
 #pragma omp simd reduction(+ : beyond)
     for (uint32_t i = 0; i < lanes; i++) {
         double limit = t->residual[i] + left_of(EXPONENTIAL, per_distance, t->slip[i]) * t->drop[i];
-        beyond += t->shear[i] > limit * (1 + ROUNDING) ? 1 : 0;
+        beyond += t->shear[i] > TL_LAW_MOST(limit) ? 1 : 0;
         t->limit[i] = limit;
     }
     return beyond;
@@ -235,7 +221,7 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
                     trial *restrict t, const int form)
 {
     const double distance = law->distance, per_distance = 1 / law->distance, ks = law->ks;
-    double above[STRIDE], drop[STRIDE], grown[STRIDE], found[STRIDE];
+    tl_law_scratch above, drop, grown, found;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double spring = ks * area[i] * distance,
@@ -245,7 +231,7 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
         drop[i] = most * left;
         grown[i] = form == EXPONENTIAL ? exponential_start(above[i], drop[i])
                                        : linear_slip(above[i], drop[i], left, left > 0 ? most : 0);
-        found[i] = t->shear[i] > t->limit[i] * (1 + ROUNDING) ? 0 : 1;
+        found[i] = t->shear[i] > TL_LAW_MOST(t->limit[i]) ? 0 : 1;
     }
     for (int k = 0; form == EXPONENTIAL && k < PASSES; k++)
         if (!(exponential_pass(above, drop, grown, found, lanes) > 0))
@@ -255,7 +241,7 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
         double limit = t->limit[i], slip = t->slip[i] + grown[i] * distance;
         double after = t->residual[i] + left_of(form, per_distance, slip) * t->drop[i];
         double slips = t->total[i] >= 0 ? 1 : 0;
-        slips = t->shear[i] > limit * (1 + ROUNDING) ? slips : 0;
+        slips = t->shear[i] > TL_LAW_MOST(limit) ? slips : 0;
         t->slip[i] = slips > 0 ? slip : t->slip[i];
         t->limit[i] = slips > 0 ? after : limit;
     }
@@ -273,12 +259,13 @@ TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t
     const double ks = law->ks;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double limit = t->limit[i], shear = t->shear[i], most = limit * (1 + ROUNDING);
-        double whole = shear > most ? shear : 1, scale = shear > most ? limit / whole : 1;
+        double limit = t->limit[i], shear = t->shear[i], most = TL_LAW_MOST(limit);
+        double scale = tl_law_scale(shear, limit);
         tl_vec3 f = {t->x[i], t->y[i], t->z[i]};
         if (heat) {
             double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
-            double mean = 0.5 * (along / whole + limit), stiffness = ks * c.area[i];
+            double mean = 0.5 * (along / (shear > most ? shear : 1) + limit),
+                   stiffness = ks * c.area[i];
             double work = mean * (shear - limit) / (stiffness > 0 ? stiffness : 1);
             work = stiffness > 0 ? work : 0;
             work = shear > most ? work : 0;
@@ -314,7 +301,7 @@ TL_IN_LOOP void update_lanes(const weakening *law, const tl_law_batch *batch, ui
                              uint32_t lanes, const int form)
 {
     trial t;
-    double mark[STRIDE];
+    tl_law_scratch mark;
     bool near = press(law, batch, begin, lanes, &t, form) > 0;
     if (near && (form == LINEAR || resist(law, lanes, &t) > 0))
         rub(law, batch->area + begin, lanes, &t, form);
@@ -332,8 +319,8 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 {
     (void)report;
     const weakening *law = self;
-    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
-        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+    for (uint32_t begin = 0; begin < batch->count; begin += TL_LAW_STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < TL_LAW_STRIDE ? left : TL_LAW_STRIDE;
         if (law->form == EXPONENTIAL)
             update_lanes(law, batch, begin, lanes, EXPONENTIAL);
         else
