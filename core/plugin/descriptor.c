@@ -26,21 +26,51 @@ enum {
     FIRST_PLUGIN_SIZE = sizeof(tl_plugin),
     FIRST_KIND_SIZE = sizeof(tl_kind),
     FIRST_PARAM_SIZE = sizeof(tl_param),
-    FIRST_STATE_SIZE = sizeof(tl_state),
-    FIRST_LAW_SIZE = offsetof(tl_law_ops, stateless),
-    FIRST_DAMPING_SIZE = offsetof(tl_damping_ops, before),
-    FIRST_GENERATOR_SIZE = sizeof(tl_generator_ops),
-    FIRST_SCREEN_SIZE = sizeof(tl_screen_ops)
+    FIRST_STATE_SIZE = sizeof(tl_state)
 };
 
-/* Room for the operations of any type of kind. */
-typedef union any_ops {
-    uint32_t size;
-    tl_law_ops law;
-    tl_damping_ops damping;
-    tl_generator_ops generator;
-    tl_screen_ops screen;
-} any_ops;
+/* An operation, and where it lies in its struct. */
+typedef struct operation {
+    const char *name;
+    size_t at;
+} operation;
+
+#define OPERATION(ops, name)                                                                       \
+    {                                                                                              \
+#name, offsetof(ops, name)                                                                 \
+    }
+
+/* The types of kinds: sizes of their operations in version 1.0 and here, what must be there, and what comes in pairs or
+ * not at all. */
+static const struct {
+    const char *name;
+    size_t first, ours;
+    operation needs[6], pair[2];
+} types[] = {
+    [TL_KIND_LAW] = {"law",
+                     offsetof(tl_law_ops, stateless),
+                     sizeof(tl_law_ops),
+                     {OPERATION(tl_law_ops, update), OPERATION(tl_law_ops, stiffness)},
+                     {OPERATION(tl_law_ops, create), OPERATION(tl_law_ops, destroy)}},
+    [TL_KIND_DAMPING] = {"damping",
+                         offsetof(tl_damping_ops, before),
+                         sizeof(tl_damping_ops),
+                         {OPERATION(tl_damping_ops, update),
+                          OPERATION(tl_damping_ops, step_factor)},
+                         {OPERATION(tl_damping_ops, create), OPERATION(tl_damping_ops, destroy)}},
+    [TL_KIND_GENERATOR] = {"generator",
+                           sizeof(tl_generator_ops),
+                           sizeof(tl_generator_ops),
+                           {OPERATION(tl_generator_ops, generate)},
+                           {{0}}},
+    [TL_KIND_SCREEN] = {"screen",
+                        sizeof(tl_screen_ops),
+                        sizeof(tl_screen_ops),
+                        {OPERATION(tl_screen_ops, open), OPERATION(tl_screen_ops, address),
+                         OPERATION(tl_screen_ops, watchers), OPERATION(tl_screen_ops, put),
+                         OPERATION(tl_screen_ops, take), OPERATION(tl_screen_ops, close)},
+                        {{0}}},
+};
 
 /* A plugin's headers, as it states them. */
 typedef struct version {
@@ -50,8 +80,7 @@ typedef struct version {
 
 const char *tl_kind_type_name(uint32_t type)
 {
-    static const char *const names[] = {"law", "damping", "generator", "screen"};
-    return type < sizeof names / sizeof *names ? names[type] : "kind of unknown type";
+    return type < sizeof types / sizeof *types ? types[type].name : "kind of unknown type";
 }
 
 static uint32_t size_of(const void *structure)
@@ -245,69 +274,45 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
     return TL_OK;
 }
 
-static tl_status missing(tl_error *error, const char *name)
+static bool is_there(const void *ops, const operation *o)
 {
-    return tl_fail(error, TL_E_PLUGIN, "its operation '%s' is missing", name);
+    void (*function)(void);
+    memcpy(&function, (const char *)ops + o->at, sizeof function);
+    return o->name && function;
 }
 
-/* create and destroy come together or not at all. */
-static tl_status check_pair(bool create, bool destroy, tl_error *error)
+static tl_status check_ops(uint32_t type, const void *ops, tl_error *error)
 {
-    return create == destroy ? TL_OK : missing(error, create ? "destroy" : "create");
-}
-
-static tl_status check_screen_ops(const tl_screen_ops *ops, tl_error *error)
-{
-    const struct {
-        bool there;
-        const char *name;
-    } all[] = {{ops->open, "open"}, {ops->address, "address"}, {ops->watchers, "watchers"},
-               {ops->put, "put"},   {ops->take, "take"},       {ops->close, "close"}};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (!all[i].there)
-            return missing(error, all[i].name);
-    return TL_OK;
-}
-
-static tl_status check_ops(uint32_t type, const any_ops *ops, tl_error *error)
-{
-    switch (type) {
-    case TL_KIND_LAW:
-        if (!ops->law.update || !ops->law.stiffness)
-            return missing(error, ops->law.update ? "stiffness" : "update");
-        return check_pair(ops->law.create != NULL, ops->law.destroy != NULL, error);
-    case TL_KIND_DAMPING:
-        if (!ops->damping.update || !ops->damping.step_factor)
-            return missing(error, ops->damping.update ? "step_factor" : "update");
-        return check_pair(ops->damping.create != NULL, ops->damping.destroy != NULL, error);
-    case TL_KIND_GENERATOR: return ops->generator.generate ? TL_OK : missing(error, "generate");
-    default: return check_screen_ops(&ops->screen, error);
-    }
+    const operation *missing = NULL, *pair = types[type].pair;
+    for (const operation *o = types[type].needs; o < types[type].needs + 6 && o->name; o++)
+        missing = missing || is_there(ops, o) ? missing : o;
+    if (!missing && is_there(ops, &pair[0]) != is_there(ops, &pair[1]))
+        missing = is_there(ops, &pair[0]) ? &pair[1] : &pair[0];
+    return missing ? tl_fail(error, TL_E_PLUGIN, "its operation '%s' is missing", missing->name)
+                   : TL_OK;
 }
 
 /* Copies the operations into a block of their own. */
 static tl_status copy_ops(const version *v, tl_kind *kind)
 {
-    static const size_t first[] = {FIRST_LAW_SIZE, FIRST_DAMPING_SIZE, FIRST_GENERATOR_SIZE,
-                                   FIRST_SCREEN_SIZE};
-    static const size_t ours[] = {sizeof(tl_law_ops), sizeof(tl_damping_ops),
-                                  sizeof(tl_generator_ops), sizeof(tl_screen_ops)};
     const void *given = kind->ops;
+    const size_t ours = types[kind->type].ours;
     kind->ops = NULL;
     if (!given)
         return tl_fail(v->error, TL_E_PLUGIN, "it has no operations");
     uint32_t size = size_of(given);
-    tl_status status = check_size(v, "ops", size, first[kind->type], ours[kind->type]);
+    tl_status status = check_size(v, "ops", size, types[kind->type].first, ours);
     if (status != TL_OK)
         return status;
-    any_ops *ops = calloc(1, sizeof *ops);
+    void *ops = calloc(1, ours);
     if (!ops)
         return tl_fail_memory(v->error);
-    memcpy(ops, given, size < ours[kind->type] ? size : ours[kind->type]);
-    if (kind->type == TL_KIND_DAMPING && size == FIRST_DAMPING_SIZE) /* cannot say so */
-        ops->damping.before = v->minor == 1;
-    if (kind->type == TL_KIND_DAMPING && v->minor < 3) /* what it has there is padding */
-        ops->damping.never_fails = false;
+    memcpy(ops, given, size < ours ? size : ours);
+    tl_damping_ops *damping = kind->type == TL_KIND_DAMPING ? ops : NULL;
+    if (damping && size == types[TL_KIND_DAMPING].first) /* cannot say so */
+        damping->before = v->minor == 1;
+    if (damping && v->minor < 3) /* what it has there is padding */
+        damping->never_fails = false;
     kind->ops = ops;
     return check_ops(kind->type, ops, v->error);
 }
@@ -316,22 +321,21 @@ static tl_status copy_ops(const version *v, tl_kind *kind)
 
 static tl_status check_rows(const tl_kind *kind, tl_error *error)
 {
-    for (uint32_t i = 0; i < kind->param_count; i++) {
-        tl_status status = check_param(kind, i, error);
-        if (status != TL_OK)
-            return status;
-    }
+    tl_status status = TL_OK;
+    uint32_t columns = 0;
+    for (uint32_t i = 0; i < kind->param_count && status == TL_OK; i++)
+        status = check_param(kind, i, error);
+    if (status != TL_OK)
+        return status;
     if (kind->type >= TL_KIND_GENERATOR && kind->state_count > 0)
         return tl_fail(error, TL_E_PLUGIN, "a %s has no states, this one declares %u",
                        tl_kind_type_name(kind->type), kind->state_count);
-    for (uint32_t i = 0; i < kind->state_count; i++) {
-        tl_status status = check_state(kind, i, error);
-        if (status != TL_OK)
-            return status;
-    }
-    uint32_t columns = 0;
-    for (uint32_t i = 0; i < kind->state_count; i++)
+    for (uint32_t i = 0; i < kind->state_count && status == TL_OK; i++) {
+        status = check_state(kind, i, error);
         columns += kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1;
+    }
+    if (status != TL_OK)
+        return status;
     if (columns > TL_STATE_COLUMNS)
         return tl_fail(error, TL_E_PLUGIN,
                        "its states take %u columns (a scalar 1, a tangent 3); %d at the most",

@@ -8,8 +8,8 @@
  *     HERE/../../talus/plugins-MAJOR      installed lib/lua/5.4/talus.so
  *     HERE/talus/plugins-MAJOR            installed lib/libtalus.so
  *
- * The file that holds this function is asked for its place (dladdr), so that a moved install still
- * works and a stock Lua that loads the module finds the module's plugins, not its own.
+ * The file that holds this function is asked for its place (dladdr), so that a moved install still works. A stock Lua
+ * that loads the module then finds the module's plugins, not its own.
  *
  * A plugin of an id that is loaded already is refused, so the first found wins.
  *
@@ -131,34 +131,39 @@ static const record *next_record(const record *r)
     return atomic_load(&((record *)(uintptr_t)r)->next);
 }
 
+/* Where a walk over the kinds of all plugins is. */
+typedef struct place {
+    const record *at;
+    uint32_t next; /* kind of its plugin */
+} place;
+
+/* The next kind of a walk, that of p->at; NULL at the end. */
+static const tl_kind *next_kind(place *p)
+{
+    for (; p->at; p->at = next_record(p->at), p->next = 0)
+        if (p->at->plugin && p->next < p->at->plugin->kind_count)
+            return &p->at->plugin->kinds[p->next++];
+    return NULL;
+}
+
 /* The record whose plugin offers this kind, or NULL; the lock is held. */
 static const record *provider(uint32_t type, const char *name, const tl_kind **kind)
 {
-    for (const record *r = first_record(); r; r = next_record(r)) {
-        const tl_plugin *plugin = r->plugin;
-        for (uint32_t k = 0; plugin && k < plugin->kind_count; k++) {
-            if (plugin->kinds[k].type == type && strcmp(plugin->kinds[k].name, name) == 0) {
-                *kind = &plugin->kinds[k];
-                return r;
-            }
-        }
-    }
-    return NULL;
+    place p = {first_record(), 0};
+    do
+        *kind = next_kind(&p);
+    while (*kind && ((*kind)->type != type || strcmp((*kind)->name, name) != 0));
+    return p.at;
 }
 
 const tl_plugin *tl_plugin_of(const tl_kind *kind, const char **path)
 {
-    for (const record *r = first_record(); r; r = next_record(r)) {
-        const tl_plugin *plugin = r->plugin;
-        for (uint32_t k = 0; plugin && k < plugin->kind_count; k++) {
-            if (&plugin->kinds[k] == kind) {
-                if (path)
-                    *path = r->path;
-                return plugin;
-            }
-        }
-    }
-    return NULL;
+    place p = {first_record(), 0};
+    for (const tl_kind *of; (of = next_kind(&p)) && of != kind;)
+        continue;
+    if (p.at && path)
+        *path = p.at->path;
+    return p.at ? p.at->plugin : NULL;
 }
 
 static tl_status check_new(const tl_plugin *plugin, tl_error *error)
@@ -188,24 +193,13 @@ tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note,
     return status;
 }
 
-static bool append_locked(const char *path, const char *reason, const char *note)
+/* Keeps the reason why a file or folder was refused, or a remark on it; false when out of memory. */
+static bool keep(const char *path, const char *reason, const char *note)
 {
     pthread_mutex_lock(&registry.lock);
     bool done = append(path, reason, note, NULL);
     pthread_mutex_unlock(&registry.lock);
     return done;
-}
-
-/* Keeps a failed attempt and its reason for the list of records; false when out of memory. */
-static bool registry_refused(const char *path, const char *reason)
-{
-    return append_locked(path, reason, NULL);
-}
-
-/* Keeps a remark on a folder; false when out of memory. */
-static bool registry_noted(const char *path, const char *note)
-{
-    return append_locked(path, NULL, note);
 }
 
 /* Whether there is a record of that file or folder. */
@@ -219,12 +213,12 @@ static bool registry_has(const char *path)
 
 const tl_kind *tl_plugin_kind(tl_kind_type type, size_t index)
 {
-    const tl_kind *found = NULL;
+    const tl_kind *found;
     pthread_mutex_lock(&registry.lock);
-    for (const record *r = first_record(); r && !found; r = next_record(r))
-        for (uint32_t k = 0; r->plugin && k < r->plugin->kind_count && !found; k++)
-            if (r->plugin->kinds[k].type == (uint32_t)type && index-- == 0)
-                found = &r->plugin->kinds[k];
+    place p = {first_record(), 0};
+    do
+        found = next_kind(&p);
+    while (found && (found->type != (uint32_t)type || index-- > 0));
     pthread_mutex_unlock(&registry.lock);
     return found;
 }
@@ -403,7 +397,7 @@ tl_status tl_plugin_load(const char *path, tl_error *error)
     tl_error *told = error ? error : &own;
     tl_status status = open_and_take_in(path, told);
     /* A plugin for which there was no memory may be tried again: it is not refused. */
-    if (status != TL_OK && status != TL_E_MEMORY && !registry_refused(path, told->text))
+    if (status != TL_OK && status != TL_E_MEMORY && !keep(path, told->text, NULL))
         status = tl_fail_memory(told);
     if (status != TL_OK)
         tl_error_prefix(told, "plugin %s: ", path);
@@ -458,7 +452,7 @@ static void load_found(search *s, const char *path, const char *program)
         return;
     }
     snprintf(text, sizeof text, UNTRUSTED, why);
-    s->short_of_memory |= !registry_refused(path, text);
+    s->short_of_memory |= !keep(path, text, NULL);
 }
 
 /* `program`: the file whose owner is trusted, or NULL where the user has named the folder. */
@@ -474,7 +468,7 @@ static void load_folder(search *s, const char *folder, const char *program)
                            "names it",
                  why);
         if (!s->again || !registry_has(folder))
-            s->short_of_memory |= !(program ? registry_refused : registry_noted)(folder, text);
+            s->short_of_memory |= !keep(folder, program ? text : NULL, program ? NULL : text);
         if (program)
             return;
     }

@@ -1,10 +1,11 @@
-/* trust.c - where the program lies, and whether a folder or file that the user has not named is a place to load code from.
+/* trust.c - where the program lies, and whether a folder or file that the user has not named is a place to load code
+ * from.
  *
- * It is when nobody can have put anything there but root, the user who runs Talus and the owner of the program, who
- * could have put it into the program. So for the folder and the file: they belong to one of these, and others may
+ * It is when nobody can have put anything there but root, the user who runs Talus and the owner of the program. That
+ * owner could have put it into the program. So for the folder and the file: they belong to one of these, and others may
  * not write them. A group may, when it is the owner's private group or root's. For the folders above: they belong to
- * one of these, and who may write them may not rename what is in them (the sticky bit); a group that root
- * lets write is root's choice.
+ * one of these, and who may write them may not rename what is in them (the sticky bit); a group that root lets write is
+ * root's choice.
  *
  * Limit: lists of access rights (ACL) are looked at only as far as the mode tells of them. */
 #define _GNU_SOURCE /* dladdr; realpath with stat of POSIX, getgrgid_r */
