@@ -21,81 +21,82 @@ static size_t whole(uint64_t *seed, size_t low, size_t high)
 /* ---------------------------------------------------------------- polygons --------------- */
 
 /* Corners at rising angles about the middle. */
-static size_t star(uint64_t *seed, flat *at)
+static size_t star(uint64_t *seed, tl_flat *at)
 {
     size_t n = whole(seed, 3, 60);
     for (size_t i = 0; i < n; i++) {
         double angle = TWO_PI * ((double)i + between(seed, 0, 0.8)) / (double)n;
         double r = between(seed, 0.05, 1);
-        at[i] = (flat){r * cos(angle), r * sin(angle)};
+        at[i] = (tl_flat){r * cos(angle), r * sin(angle)};
     }
     return n;
 }
 
 /* A terrain profile over a flat base: heights at rising places, some repeated so that edges are level. */
-static size_t profile(uint64_t *seed, flat *at)
+static size_t profile(uint64_t *seed, tl_flat *at)
 {
     size_t n = whole(seed, 2, 50);
     double x = 0, z = 1;
-    at[0] = (flat){0, 0};
+    at[0] = (tl_flat){0, 0};
     for (size_t i = 0; i < n; i++) {
         if (check_random(seed) < 0.6)
             z = between(seed, 0.2, 3);
-        at[n - i] = (flat){x, z};
+        at[n - i] = (tl_flat){x, z};
         x += between(seed, 0.1, 1);
     }
     at[n + 1] = at[0];
-    at[0] = (flat){at[1].x, 0};
+    at[0] = (tl_flat){at[1].x, 0};
     return n + 2;
 }
 
 /* A comb: teeth of a grid, all corners square and many in line. */
-static size_t comb(uint64_t *seed, flat *at)
+static size_t comb(uint64_t *seed, tl_flat *at)
 {
     size_t teeth = whole(seed, 1, 12), n = 0;
-    at[n++] = (flat){0, 0};
-    at[n++] = (flat){2.0 * (double)teeth - 1, 0};
+    at[n++] = (tl_flat){0, 0};
+    at[n++] = (tl_flat){2.0 * (double)teeth - 1, 0};
     for (size_t k = teeth; k-- > 0;) {
         double top = (double)whole(seed, 2, 4), x = 2.0 * (double)k;
-        at[n++] = (flat){x + 1, top};
-        at[n++] = (flat){x, top};
+        at[n++] = (tl_flat){x + 1, top};
+        at[n++] = (tl_flat){x, top};
         if (k) {
-            at[n++] = (flat){x, 1};
-            at[n++] = (flat){x - 1, 1};
+            at[n++] = (tl_flat){x, 1};
+            at[n++] = (tl_flat){x - 1, 1};
         }
     }
     return n;
 }
 
 /* A strip that winds inward. */
-static size_t spiral(uint64_t *seed, flat *at)
+static size_t spiral(uint64_t *seed, tl_flat *at)
 {
     size_t n = whole(seed, 6, 50);
     double turn = between(seed, 0.2, 0.5), width = between(seed, 0.2, 0.6);
     for (size_t i = 0; i < n; i++) {
         double angle = turn * (double)i, r = 1 + angle / TWO_PI;
-        at[i] = (flat){r * cos(angle), r * sin(angle)};
-        at[2 * n - 1 - i] = (flat){(r + width) * cos(angle), (r + width) * sin(angle)};
+        at[i] = (tl_flat){r * cos(angle), r * sin(angle)};
+        at[2 * n - 1 - i] = (tl_flat){(r + width) * cos(angle), (r + width) * sin(angle)};
     }
     return 2 * n;
 }
 
 /* Random points made simple by turning round the stretch between two edges that cross, until none do. */
-static size_t tangle(uint64_t *seed, flat *at)
+static size_t tangle(uint64_t *seed, tl_flat *at)
 {
     size_t n = whole(seed, 4, 20);
     for (size_t i = 0; i < n; i++)
-        at[i] = (flat){between(seed, 0, 1), between(seed, 0, 1)};
+        at[i] = (tl_flat){between(seed, 0, 1), between(seed, 0, 1)};
     for (bool crossed = true; crossed;) {
         crossed = false;
         for (size_t i = 0; i + 2 < n; i++)
             for (size_t j = i + 2; j < n; j++) {
-                flat a = at[i], b = at[i + 1], c = at[j], d = at[(j + 1) % n];
-                if ((i == 0 && j == n - 1) || (cross(a, b, c) > 0) == (cross(a, b, d) > 0) ||
-                    (cross(c, d, a) > 0) == (cross(c, d, b) > 0))
+                tl_flat a = at[i], b = at[i + 1], c = at[j], d = at[(j + 1) % n];
+                if ((i == 0 && j == n - 1) ||
+                    (tl_flat_cross(a, b, c) > 0) == (tl_flat_cross(a, b, d) > 0) ||
+                    (tl_flat_cross(c, d, a) > 0) == (tl_flat_cross(c, d, b) > 0))
                     continue;
                 for (size_t p = i + 1, q = j; p < q; p++, q--) {
-                    flat keep = at[p];
+                    tl_flat keep = at[p];
                     at[p] = at[q];
                     at[q] = keep;
                 }
@@ -105,42 +106,42 @@ static size_t tangle(uint64_t *seed, flat *at)
     return n;
 }
 
-static size_t (*const kinds[])(uint64_t *, flat *) = {star, profile, comb, spiral, tangle};
+static size_t (*const kinds[])(uint64_t *, tl_flat *) = {star, profile, comb, spiral, tangle};
 
-static size_t make(uint64_t *seed, size_t kind, flat *at)
+static size_t make(uint64_t *seed, size_t kind, tl_flat *at)
 {
     size_t n = kinds[kind % 5](seed, at);
     double angle = check_random(seed) < 0.5 ? 0 : between(seed, 0, TWO_PI);
     double scale = check_random(seed) < 0.5 ? 1 : between(seed, 1e-3, 1e3);
-    flat to = {between(seed, -1e3, 1e3), between(seed, -1e3, 1e3)};
+    tl_flat to = {between(seed, -1e3, 1e3), between(seed, -1e3, 1e3)};
     for (size_t i = 0; i < n; i++) {
-        flat p = at[i];
-        at[i] = (flat){scale * (cos(angle) * p.x - sin(angle) * p.y + to.x),
-                       scale * (sin(angle) * p.x + cos(angle) * p.y + to.y)};
+        tl_flat p = at[i];
+        at[i] = (tl_flat){scale * (cos(angle) * p.x - sin(angle) * p.y + to.x),
+                          scale * (sin(angle) * p.x + cos(angle) * p.y + to.y)};
     }
     return n;
 }
 
-static double twice_area(const flat *at, size_t n)
+static double twice_area(const tl_flat *at, size_t n)
 {
     double sum = 0;
     for (size_t i = 2; i < n; i++)
-        sum += cross(at[0], at[i - 1], at[i]);
+        sum += tl_flat_cross(at[0], at[i - 1], at[i]);
     return sum;
 }
 
-static double extent_of(const flat *at, size_t n)
+static double extent_of(const tl_flat *at, size_t n)
 {
     double extent = 0;
     for (size_t i = 1; i < n; i++)
-        extent = fmax(extent, apart(at[0], at[i]));
+        extent = fmax(extent, tl_flat_apart(at[0], at[i]));
     return extent;
 }
 
 /* ---------------------------------------------------------------- properties ------------- */
 
 /* How many parts hold a point. */
-static int parts_with(const flat *at, const convex_parts *parts, flat p)
+static int parts_with(const tl_flat *at, const convex_parts *parts, tl_flat p)
 {
     int holding = 0;
     for (size_t k = 0; k < parts->parts; k++) {
@@ -148,14 +149,14 @@ static int parts_with(const flat *at, const convex_parts *parts, flat p)
         size_t n = parts->start[k + 1] - parts->start[k];
         bool inside = true;
         for (size_t i = 0; i < n && inside; i++)
-            inside = cross(at[c[i]], at[c[(i + 1) % n]], p) > 0;
+            inside = tl_flat_cross(at[c[i]], at[c[(i + 1) % n]], p) > 0;
         holding += inside;
     }
     return holding;
 }
 
 /* By the number of edges that a ray from it crosses. */
-static bool is_inside(const flat *at, size_t n, flat p)
+static bool is_inside(const tl_flat *at, size_t n, tl_flat p)
 {
     bool inside = false;
     for (size_t i = 0, j = n - 1; i < n; j = i++)
@@ -165,21 +166,22 @@ static bool is_inside(const flat *at, size_t n, flat p)
     return inside;
 }
 
-static double off_edges(const flat *at, const size_t *corner, size_t n, flat p)
+static double off_edges(const tl_flat *at, const size_t *corner, size_t n, tl_flat p)
 {
     double least = INFINITY;
     for (size_t i = 0; i < n; i++)
-        least = fmin(least, off_segment(at[corner[i]], at[corner[(i + 1) % n]], p));
+        least = fmin(least, tl_flat_off_segment(at[corner[i]], at[corner[(i + 1) % n]], p));
     return least;
 }
 
 /* Points that are not on the border of a part are in one part when in the polygon, else in none. */
-static int misplaced(uint64_t *seed, const flat *at, size_t n, const convex_parts *parts)
+static int misplaced(uint64_t *seed, const tl_flat *at, size_t n, const convex_parts *parts)
 {
     int wrong = 0;
     double extent = extent_of(at, n);
     for (int k = 0; k < 60; k++) {
-        flat p = {at[0].x + extent * between(seed, -1, 1), at[0].y + extent * between(seed, -1, 1)};
+        tl_flat p = {at[0].x + extent * between(seed, -1, 1),
+                     at[0].y + extent * between(seed, -1, 1)};
         double near = INFINITY;
         for (size_t q = 0; q < parts->parts; q++)
             near = fmin(near, off_edges(at, parts->corner + parts->start[q],
@@ -191,16 +193,17 @@ static int misplaced(uint64_t *seed, const flat *at, size_t n, const convex_part
 }
 
 /* Corners that turn inward, of a polygon that may be given clockwise. */
-static size_t reflex(const flat *at, size_t n)
+static size_t reflex(const tl_flat *at, size_t n)
 {
     size_t count = 0;
     double sign = twice_area(at, n) > 0 ? 1 : -1;
     for (size_t i = 0; i < n; i++)
-        count += sign * height(at[i], at[(i + 1) % n], at[(i + 2) % n]) < -1e-9 * extent_of(at, n);
+        count += sign * tl_flat_height(at[i], at[(i + 1) % n], at[(i + 2) % n]) <
+                 -1e-9 * extent_of(at, n);
     return count;
 }
 
-static int convex_corners(const flat *at, const convex_parts *parts)
+static int convex_corners(const tl_flat *at, const convex_parts *parts)
 {
     int wrong = 0;
     for (size_t p = 0; p < parts->parts; p++) {
@@ -208,13 +211,13 @@ static int convex_corners(const flat *at, const convex_parts *parts)
         size_t n = parts->start[p + 1] - parts->start[p];
         wrong += n < 3;
         for (size_t i = 0; i < n; i++)
-            wrong += !(cross(at[c[i]], at[c[(i + 1) % n]], at[c[(i + 2) % n]]) > 0);
+            wrong += !(tl_flat_cross(at[c[i]], at[c[(i + 1) % n]], at[c[(i + 2) % n]]) > 0);
     }
     return wrong;
 }
 
 /* Thinnest part: least extent along the normal of an edge, over the polygon's extent. */
-static double check_parts(uint64_t *seed, const flat *at, size_t n, const convex_parts *parts)
+static double check_parts(uint64_t *seed, const tl_flat *at, size_t n, const convex_parts *parts)
 {
     double sum = 0, extent = extent_of(at, n), thinnest = INFINITY;
     for (size_t p = 0; p < parts->parts; p++) {
@@ -222,9 +225,10 @@ static double check_parts(uint64_t *seed, const flat *at, size_t n, const convex
         size_t count = parts->start[p + 1] - parts->start[p];
         sum += area_of(at, c, count);
         for (size_t i = 0; i < count; i++) {
-            double farthest = 0, length = apart(at[c[i]], at[c[(i + 1) % count]]);
+            double farthest = 0, length = tl_flat_apart(at[c[i]], at[c[(i + 1) % count]]);
             for (size_t j = 0; j < count; j++)
-                farthest = fmax(farthest, cross(at[c[i]], at[c[(i + 1) % count]], at[c[j]]));
+                farthest =
+                    fmax(farthest, tl_flat_cross(at[c[i]], at[c[(i + 1) % count]], at[c[j]]));
             thinnest = fmin(thinnest, farthest / length / extent);
         }
     }
@@ -242,7 +246,7 @@ TEST(parts_make_up_the_polygon)
     uint64_t seed = 20261123;
     size_t divided = 0, refused = 0;
     for (size_t k = 0; k < 6000; k++) {
-        flat at[MOST], turned[MOST];
+        tl_flat at[MOST], turned[MOST];
         size_t n = make(&seed, k, at), one, other;
         convex_parts parts;
         convex_status status = convex_divide(at, n, &parts, &one, &other);
@@ -274,13 +278,13 @@ TEST(corners_on_lines_do_not_count)
 {
     uint64_t seed = 7;
     for (size_t k = 0; k < 2000; k++) {
-        flat at[MOST], more[2 * MOST];
+        tl_flat at[MOST], more[2 * MOST];
         size_t n = make(&seed, k, at), m = 0, one, other;
         for (size_t i = 0; i < n; i++) {
-            flat b = at[(i + 1) % n];
+            tl_flat b = at[(i + 1) % n];
             double t = between(&seed, 0.2, 0.8);
             more[m++] = at[i];
-            more[m++] = (flat){at[i].x + t * (b.x - at[i].x), at[i].y + t * (b.y - at[i].y)};
+            more[m++] = (tl_flat){at[i].x + t * (b.x - at[i].x), at[i].y + t * (b.y - at[i].y)};
         }
         convex_parts plain, rich;
         if (convex_divide(at, n, &plain, &one, &other) != CONVEX_DONE)
@@ -302,13 +306,14 @@ TEST(corners_on_lines_do_not_count)
 }
 
 /* Whether two edges without a common corner cross, by the signs of triangles alone. */
-static bool crosses(const flat *at, size_t n)
+static bool crosses(const tl_flat *at, size_t n)
 {
     for (size_t i = 0; i + 2 < n; i++)
         for (size_t j = i + 2; j < n; j++) {
-            flat a = at[i], b = at[i + 1], c = at[j], d = at[(j + 1) % n];
-            if ((i != 0 || j != n - 1) && (cross(a, b, c) > 0) != (cross(a, b, d) > 0) &&
-                (cross(c, d, a) > 0) != (cross(c, d, b) > 0))
+            tl_flat a = at[i], b = at[i + 1], c = at[j], d = at[(j + 1) % n];
+            if ((i != 0 || j != n - 1) &&
+                (tl_flat_cross(a, b, c) > 0) != (tl_flat_cross(a, b, d) > 0) &&
+                (tl_flat_cross(c, d, a) > 0) != (tl_flat_cross(c, d, b) > 0))
                 return true;
         }
     return false;
@@ -320,10 +325,10 @@ TEST(what_crosses_itself_is_refused)
     uint64_t seed = 99;
     size_t crossing = 0, simple = 0;
     for (size_t k = 0; k < 4000; k++) {
-        flat at[MOST];
+        tl_flat at[MOST];
         size_t n = make(&seed, k, at), one = SIZE_MAX, other = SIZE_MAX;
         size_t i = whole(&seed, 0, n - 1), j = whole(&seed, 0, n - 1);
-        flat keep = at[i];
+        tl_flat keep = at[i];
         at[i] = at[j];
         at[j] = keep;
         convex_parts parts;
@@ -348,19 +353,19 @@ TEST(touching_folded_and_flat_ones_are_refused)
     convex_parts parts;
     size_t one, other;
     /* a square with a square hole, joined by a cut there and back */
-    const flat keyhole[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0},
-                            {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}};
+    const tl_flat keyhole[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0},
+                               {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}};
     CHECK_INT(convex_divide(keyhole, 10, &parts, &one, &other), CONVEX_CROSSES);
-    const flat spike[] = {{0, 0}, {2, 0}, {1, 0}, {1, 1}};
+    const tl_flat spike[] = {{0, 0}, {2, 0}, {1, 0}, {1, 1}};
     CHECK_INT(convex_divide(spike, 4, &parts, &one, &other), CONVEX_CROSSES);
-    const flat pinched[] = {{0, 0}, {2, 0}, {1, 1}, {2, 2}, {0, 2}, {1, 1}};
+    const tl_flat pinched[] = {{0, 0}, {2, 0}, {1, 1}, {2, 2}, {0, 2}, {1, 1}};
     CHECK_INT(convex_divide(pinched, 6, &parts, &one, &other), CONVEX_CROSSES);
-    const flat twice[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+    const tl_flat twice[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     CHECK_INT(convex_divide(twice, 5, &parts, &one, &other), CONVEX_COINCIDE);
     CHECK(one == 4 && other == 0);
-    const flat line[] = {{0, 0}, {1, 0}, {2, 0}};
+    const tl_flat line[] = {{0, 0}, {1, 0}, {2, 0}};
     CHECK(convex_divide(line, 3, &parts, &one, &other) != CONVEX_DONE);
-    const flat thin[] = {{0, 0}, {1, 0}, {1, 1e-7}, {0, 1e-7}};
+    const tl_flat thin[] = {{0, 0}, {1, 0}, {1, 1e-7}, {0, 1e-7}};
     CHECK_INT(convex_divide(thin, 4, &parts, &one, &other), CONVEX_COINCIDE);
     CHECK_INT(convex_divide(line, 2, &parts, &one, &other), CONVEX_EMPTY);
 }
@@ -370,13 +375,13 @@ TEST(few_parts)
 {
     convex_parts parts;
     size_t one, other;
-    const flat letter[] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+    const tl_flat letter[] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
     CHECK_INT(convex_divide(letter, 6, &parts, &one, &other), CONVEX_DONE);
     CHECK_INT(parts.parts, 2);
     free(parts.corner);
     free(parts.start);
-    const flat slope[] = {{0, 0},   {100, 0}, {100, 20}, {70, 20},
-                          {60, 40}, {50, 40}, {40, 60},  {0, 60}};
+    const tl_flat slope[] = {{0, 0},   {100, 0}, {100, 20}, {70, 20},
+                             {60, 40}, {50, 40}, {40, 60},  {0, 60}};
     CHECK_INT(convex_divide(slope, 8, &parts, &one, &other), CONVEX_DONE);
     CHECK_INT(parts.parts, 3);
     free(parts.corner);

@@ -1,7 +1,7 @@
 /* kit.h - what contact laws, dampings and generators have in common, for whoever writes one.
  *
- * A plugin can do without: everything here is made of what plugin.h declares. Functions over columns take `lanes` points
- * from `begin` on; a loop with a constant number of them is vectorised best. */
+ * A plugin can do without: everything here is made of what plugin.h declares. Functions over columns take `lanes`
+ * points from `begin` on; a loop with a constant number of them is vectorised best. */
 #ifndef TALUS_KIT_H
 #define TALUS_KIT_H
 
@@ -18,8 +18,8 @@
 /* rad */
 #define TL_DEGREE (3.14159265358979323846 / 180)
 
-/* Before a function that a loop over columns calls: it becomes part of the loop, in each of the forms that TL_VECTORIZED
- * makes of it. */
+/* Before a function that a loop over columns calls: it becomes part of the loop, in each of the forms that
+ * TL_VECTORIZED makes of it. */
 #if defined(__GNUC__)
 #define TL_IN_LOOP static inline __attribute__((always_inline))
 #else
@@ -39,7 +39,8 @@
 
 /* ---------------------------------------------------------------- parameters ------------- */
 
-/* Rows of the table of parameters of a struct `owner`: reals of the unit `unit`. The sentence follows, and what else a tl_param has.
+/* Rows of the table of parameters of a struct `owner`: reals of the unit `unit`. The sentence follows, and what else a
+ * tl_param has.
  *
  *     TL_PARAM_POSITIVE(params, distance, "m", "slip over which the friction falls", .alias = "dc"),
  *
@@ -84,6 +85,19 @@ static inline tl_status tl_keep(const void *made, size_t size, void **self, tl_r
     return TL_OK;
 }
 
+/* A list that grows: `items`, or where they have moved to, with room for `needed` of `each` bytes. NULL without memory,
+ * and then they are where they were. */
+static inline void *tl_grown(void *items, size_t *capacity, size_t needed, size_t each)
+{
+    if (needed <= *capacity)
+        return items;
+    size_t more = *capacity ? 2 * *capacity : 64;
+    more = more < needed ? needed : more;
+    void *moved = realloc(items, more * each);
+    *capacity = moved ? more : *capacity;
+    return moved;
+}
+
 /* ---------------------------------------------------------------- joint laws ------------- */
 
 /* Rows of the table of parameters of a struct `owner` with the members kn and ks. */
@@ -118,7 +132,8 @@ static inline uint32_t tl_pulls_none(const void *self)
     return TL_PULL_NONE;
 }
 
-/* For `across_gap`: the lift of points with linear springs kn whose slip has opened the joint by `opening`, m (NULL: it never does). */
+/* For `across_gap`: the lift of points with linear springs kn whose slip has opened the joint by `opening`, m (NULL: it
+ * never does). */
 TL_IN_LOOP void tl_law_lift(const tl_law_batch *batch, double kn, const double *opening,
                             double *lift)
 {
@@ -165,8 +180,8 @@ TL_IN_LOOP tl_law_columns tl_law_columns_from(const tl_law_batch *batch, uint32_
     return c;
 }
 
-/* Reading and writing columns. Macros, not functions: what `omp simd` says of a loop holds, for clang, of accesses that stand
- * in the loop itself. */
+/* Reading and writing columns. Macros, not functions: what `omp simd` says of a loop holds, for clang, of accesses that
+ * stand in the loop itself. */
 
 /* Shear force of a point, N, on block B. */
 #define TL_SHEAR_AT(c, i) tl_v3((c).f_x[i], (c).f_y[i], (c).f_z[i])
@@ -181,11 +196,12 @@ TL_IN_LOOP tl_law_columns tl_law_columns_from(const tl_law_batch *batch, uint32_
     ((c).f_x[i] = (scale) * (force).x, (c).f_y[i] = (scale) * (force).y,                           \
      (c).f_z[i] = (scale) * (force).z)
 
-/* Lanes worked on at a time by a law that notes much of each, and a number of each of them: both stay in the nearest cache. */
+/* Lanes worked on at a time by a law that notes much of each, and a number of each of them: both stay in the nearest
+ * cache. */
 #define TL_LAW_STRIDE 64u
 typedef double tl_law_scratch[TL_LAW_STRIDE];
-/* Scaling a force down to its limit leaves it within 2 roundings of it. Without this margin a point at rest would be scaled
- * down by a rounding in every step. */
+/* Scaling a force down to its limit leaves it within 2 roundings of it. Without this margin a point at rest would be
+ * scaled down by a rounding in every step. */
 #define TL_LAW_ROUNDING 1e-15
 
 /* The largest shear force, N, that does not slip at that limit. */
@@ -210,9 +226,9 @@ static inline tl_law_dilation tl_law_dilation_of(double angle, double limit)
     return (tl_law_dilation){tangent, isnan(limit) ? INFINITY : tangent * limit};
 }
 
-/* By how much the slip of a step opens a joint of linear springs, m. The slip adds to the pressure and so to the strength:
- * it is (trial - strength) / (ks A + kn A tangent(dilation) tangent(friction)). `total`: normal force, N; none opens under
- * tension. `friction`: its tangent; `opened`: so far, m. */
+/* By how much the slip of a step opens a joint of linear springs, m. The slip adds to the pressure and so to the
+ * strength: it is (trial - strength) / (ks A + kn A tangent(dilation) tangent(friction)). `total`: normal force, N;
+ * none opens under tension. `friction`: its tangent; `opened`: so far, m. */
 TL_IN_LOOP double tl_law_lift_of_slip(tl_law_dilation by, double trial, double strength,
                                       double total, double spring_n, double spring_s,
                                       double friction, double opened)
@@ -225,8 +241,8 @@ TL_IN_LOOP double tl_law_lift_of_slip(tl_law_dilation by, double trial, double s
     return trial > TL_LAW_MOST(strength) ? grown : 0;
 }
 
-/* Work of slip, J, of a spring that would be at the force `trial`, of size `size`, and is brought down to `limit`: the mean
- * of the forces before (`along`: their product with the trial) and after, times the slip. `spring`: ks A. */
+/* Work of slip, J, of a spring that would be at the force `trial`, of size `size`, and is brought down to `limit`: the
+ * mean of the forces before (`along`: their product with the trial) and after, times the slip. `spring`: ks A. */
 TL_IN_LOOP double tl_law_slip_work(double along, double size, double limit, double spring)
 {
     double mean = 0.5 * (along / size + limit);
@@ -244,17 +260,19 @@ TL_IN_LOOP double tl_law_slip_heat(double along, double trial, double limit, dou
     return spring > 0 ? work : 0;
 }
 
-/* What slip pays, J, for opening a joint by `lift`, where that stores `rise`. The walls' motion of the step, which brings the normal
- * force from `before` to `from`, is booked with the mean of the forces of its ends, lift and all: half of it is met by the joint as it
- * was. For a linear spring this is the mean of the normal forces before the step and after it, times the lift. */
+/* What slip pays, J, for opening a joint by `lift`, where that stores `rise`. The walls' motion of the step brings the
+ * normal force from `before` to `from`. It is booked with the mean of the forces of its ends, lift and all: half of it
+ * is met by the joint as it was. For a linear spring this is the mean of the normal forces before the step and after
+ * it, times the lift. */
 TL_IN_LOOP double tl_law_lift_work(double rise, double before, double from, double lift)
 {
     return rise + 0.5 * (before - from) * lift;
 }
 
-/* Heat, J, of a tensile spring that is let go in this step, where it would pull with the force `gone`: what it held before, and the
- * work of half its force, for the walls' motion du_n of the step is booked with the mean of the forces of its ends. With stretches x0
- * and x1 before and after, spring x0^2 / 2 + spring x0 (x1 - x0) / 2 = spring x0 x1 / 2. `spring`: kn A. */
+/* Heat, J, of a tensile spring that is let go in this step, where it would pull with the force `gone`: what it held
+ * before, and the work of half its force: the walls' motion du_n of the step is booked with the mean of the forces
+ * of its ends. With stretches x0 and x1 before and after, spring x0^2 / 2 + spring x0 (x1 - x0) / 2 = spring x0 x1 / 2.
+ * `spring`: kn A. */
 TL_IN_LOOP double tl_law_snap_work(double gone, double spring, double du_n)
 {
     double held = gone - spring * du_n;
@@ -270,9 +288,9 @@ TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint
         batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
 }
 
-/* Puts the elastic energy, J, of linear springs kn and ks into the batch, if it is asked for; 0 for a lane of no area. It is
- * that of a law without tension: where one part of a point presses and another pulls, with the forces P and Q, the springs hold
- * (P^2 + Q^2) / (2 kn A), which is P Q / (kn A) more. */
+/* Puts the elastic energy, J, of linear springs kn and ks into the batch, if it is asked for; 0 for a lane of no area.
+ * It is that of a law without tension: where one part of a point presses and another pulls, with the forces P and Q,
+ * the springs hold more. That is (P^2 + Q^2) / (2 kn A), by P Q / (kn A) more. */
 TL_IN_LOOP void tl_law_store_energy(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                                     double kn, double ks)
 {
@@ -290,6 +308,12 @@ TL_IN_LOOP void tl_law_store_energy(const tl_law_batch *batch, uint32_t begin, u
 }
 
 /* ---------------------------------------------------------------- dampings --------------- */
+
+/* Operations of a damping that never fails: `update` and what is given. */
+#define TL_DAMPING_OPS(...)                                                                        \
+    {                                                                                              \
+        .size = sizeof(tl_damping_ops), .update = update, .never_fails = 1, __VA_ARGS__            \
+    }
 
 /* `step_factor` of a damping that leaves the stable time step as it is. */
 static inline double tl_step_factor_one(const void *self)
@@ -322,6 +346,105 @@ static inline tl_status tl_update_alpha_state(const void *self, const tl_damping
     TL_KIND(TL_KIND_GENERATOR,                                                                     \
             ((const tl_generator_ops){.size = sizeof(tl_generator_ops), .generate = generate_}),   \
             __VA_ARGS__)
+
+/* ---------------------------------------------------------------- plane polygons --------- */
+
+typedef struct tl_flat {
+    double x, y;
+} tl_flat;
+
+/* Twice the area of the triangle oab; negative when it is clockwise. */
+static inline double tl_flat_cross(tl_flat o, tl_flat a, tl_flat b)
+{
+    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+static inline double tl_flat_apart(tl_flat a, tl_flat b)
+{
+    return sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+}
+
+/* Height of the triangle abc over its longest side; negative when it is clockwise. */
+static inline double tl_flat_height(tl_flat a, tl_flat b, tl_flat c)
+{
+    double longest = fmax(tl_flat_apart(a, b), fmax(tl_flat_apart(b, c), tl_flat_apart(c, a)));
+    return longest > 0 ? tl_flat_cross(a, b, c) / longest : 0;
+}
+
+/* Distance of p from the segment ab. */
+static inline double tl_flat_off_segment(tl_flat a, tl_flat b, tl_flat p)
+{
+    double x = b.x - a.x, y = b.y - a.y, length2 = x * x + y * y;
+    double t = length2 > 0 ? (x * (p.x - a.x) + y * (p.y - a.y)) / length2 : 0;
+    t = fmin(1, fmax(0, t));
+    return tl_flat_apart((tl_flat){a.x + t * x, a.y + t * y}, p);
+}
+
+static inline int tl_flat_segments_meet(tl_flat a, tl_flat b, tl_flat c, tl_flat d, double near)
+{
+    if (fmin(a.x, b.x) > fmax(c.x, d.x) + near || fmin(c.x, d.x) > fmax(a.x, b.x) + near ||
+        fmin(a.y, b.y) > fmax(c.y, d.y) + near || fmin(c.y, d.y) > fmax(a.y, b.y) + near)
+        return 0;
+    if ((tl_flat_cross(a, b, c) > 0) != (tl_flat_cross(a, b, d) > 0) &&
+        (tl_flat_cross(c, d, a) > 0) != (tl_flat_cross(c, d, b) > 0))
+        return 1;
+    return tl_flat_off_segment(a, b, c) <= near || tl_flat_off_segment(a, b, d) <= near ||
+           tl_flat_off_segment(c, d, a) <= near || tl_flat_off_segment(c, d, b) <= near;
+}
+
+/* Whether two edges of a polygon of n corners come as close as `near` without sharing a corner, or fold back on each
+ * other. They are the first such, and begin at the corners *one and *other. */
+static inline int tl_polygon_crosses(const tl_flat *at, size_t n, double near, size_t *one,
+                                     size_t *other)
+{
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = i + 1; j < n; j++) {
+            tl_flat a = at[i], b = at[(i + 1) % n], c = at[j], d = at[(j + 1) % n];
+            int meet;
+            /* neighbours share a corner; the far ends must keep off the other edge */
+            if (j == i + 1)
+                meet = tl_flat_off_segment(c, d, a) <= near || tl_flat_off_segment(a, b, d) <= near;
+            else if (i == 0 && j == n - 1)
+                meet = tl_flat_off_segment(c, d, b) <= near || tl_flat_off_segment(a, b, c) <= near;
+            else
+                meet = tl_flat_segments_meet(a, b, c, d, near);
+            if (meet) {
+                *one = i;
+                *other = j;
+                return 1;
+            }
+        }
+    return 0;
+}
+
+/* An ear of a polygon whose corners are at[corner[0]], at[corner[1]], ..., counter-clockwise: a place in `corner` where
+ * it turns left, by a height of more than `near`. No other corner is in its triangle with its neighbours. Where there
+ * is none, *height is at most `near`, and the place that of the flattest corner. */
+static inline size_t tl_polygon_ear(const tl_flat *at, const size_t *corner, size_t count,
+                                    double near, double *height)
+{
+    size_t flattest = 0;
+    double least = INFINITY;
+    for (size_t k = 0; k < count; k++) {
+        size_t i = corner[(k + count - 1) % count], j = corner[k], l = corner[(k + 1) % count];
+        tl_flat a = at[i], b = at[j], c = at[l];
+        *height = tl_flat_height(a, b, c);
+        int inside = 0; /* some other corner is */
+        for (size_t q = 0; q<count && * height> near && !inside; q++) {
+            size_t o = corner[q];
+            inside = o != i && o != j && o != l && tl_flat_cross(a, b, at[o]) >= 0 &&
+                     tl_flat_cross(b, c, at[o]) >= 0 && tl_flat_cross(c, a, at[o]) >= 0;
+        }
+        if (*height > near && !inside)
+            return k;
+        if (fabs(*height) < least) {
+            least = fabs(*height);
+            flattest = k;
+        }
+    }
+    *height = 0;
+    return flattest;
+}
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop

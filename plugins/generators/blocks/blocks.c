@@ -15,6 +15,8 @@
 #define MOST_PLANES 1e6
 #define MOST_CORNERS 4096
 #define MOST_LOOPS (4 * MOST_CORNERS)
+/* Bytes of a sentence. */
+#define WRONG_TEXT 256
 
 typedef struct params {
     const char *file;
@@ -53,52 +55,59 @@ typedef struct reader {
 static const char *const type_names[] = {"null",   "true or false", "a number", "a text in quotes",
                                          "a list", "an object"};
 
-static tl_status wrong(const reader *r, const json *at, const char *what)
+/* Refuses the file, with a sentence on one of its lines. */
+static TL_PRINTF(3, 4) tl_status wrong(const reader *r, size_t line, const char *format, ...)
 {
-    return r->host->fail(r->host, TL_E_GEOMETRY, "file '%.200s', line %zu: %s", r->tree.file,
-                         at->line, what);
+    char text[WRONG_TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    tl_text_vprint(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return r->host->fail(r->host, TL_E_GEOMETRY, "file '%.200s', line %zu: %s", r->tree.file, line,
+                         text);
 }
 
-/* The item `key` of an object, which must be there and of this type. */
+/* The item `key` of an object, which is of this type if it is there; NULL where it is not. */
+static tl_status look_for(const reader *r, const json *object, const char *key, json_type type,
+                          const json **item)
+{
+    *item = json_get(&r->tree, object, key);
+    if (!*item || (*item)->type == type)
+        return TL_OK;
+    return wrong(r, (*item)->line, "'%s' must be %s", key, type_names[type]);
+}
+
+/* The same of one that must be there. */
 static tl_status take(const reader *r, const json *object, const char *key, json_type type,
                       const json **item)
 {
-    *item = json_get(&r->tree, object, key);
-    if (*item && (*item)->type == type)
-        return TL_OK;
-    return r->host->fail(r->host, TL_E_GEOMETRY, "file '%.200s', line %zu: '%s' %s %s",
-                         r->tree.file, *item ? (*item)->line : object->line, key,
-                         *item ? "must be" : "is missing; it is", type_names[type]);
+    tl_status status = look_for(r, object, key, type, item);
+    if (status == TL_OK && !*item)
+        return wrong(r, object->line, "'%s' is missing; it is %s", key, type_names[type]);
+    return status;
 }
 
 /* A whole number in [low, high], or `fallback` when it is not there and there is a fallback >= low. */
 static tl_status take_whole(const reader *r, const json *object, const char *key, double low,
                             double high, double fallback, double *number)
 {
-    const json *item = json_get(&r->tree, object, key);
-    *number = fallback;
-    if (!item && fallback >= low)
-        return TL_OK;
-    tl_status status = take(r, object, key, JSON_NUMBER, &item);
-    if (status != TL_OK)
+    const json *item;
+    tl_status status = (fallback >= low ? look_for : take)(r, object, key, JSON_NUMBER, &item);
+    *number = status == TL_OK && item ? item->number : fallback;
+    if (status != TL_OK || !item ||
+        (*number >= low && *number <= high && !(floor(*number) < *number)))
         return status;
-    *number = item->number;
-    if (item->number >= low && item->number <= high && !(floor(item->number) < item->number))
-        return TL_OK;
-    return r->host->fail(r->host, TL_E_GEOMETRY,
-                         "file '%.200s', line %zu: %s = %g is not a whole number in [%g, %g]",
-                         r->tree.file, item->line, key, item->number, low, high);
+    return wrong(r, item->line, "%s = %g is not a whole number in [%g, %g]", key, *number, low,
+                 high);
 }
 
 /* ---------------------------------------------------------------- joints ----------------- */
 
 static tl_status read_joints(reader *r, const json *root)
 {
-    const json *list = json_get(&r->tree, root, "joints");
-    if (!list)
-        return TL_OK;
-    tl_status status = take(r, root, "joints", JSON_LIST, &list);
-    if (status != TL_OK)
+    const json *list;
+    tl_status status = look_for(r, root, "joints", JSON_LIST, &list);
+    if (status != TL_OK || !list)
         return status;
     r->joints = calloc(list->count + 1, sizeof *r->joints);
     if (!r->joints)
@@ -124,11 +133,9 @@ static tl_status read_joints(reader *r, const json *root)
 static tl_status read_tag(const reader *r, const json *face, tl_tag *tag)
 {
     *tag = (tl_tag){0, 0};
-    const json *name = json_get(&r->tree, face, "joint");
-    if (!name)
-        return TL_OK;
-    tl_status status = take(r, face, "joint", JSON_TEXT, &name);
-    if (status != TL_OK)
+    const json *name;
+    tl_status status = look_for(r, face, "joint", JSON_TEXT, &name);
+    if (status != TL_OK || !name)
         return status;
     for (size_t i = 0; i < r->joint_count; i++) {
         if (strcmp(r->joints[i].name, name->text) != 0)
@@ -139,9 +146,7 @@ static tl_status read_tag(const reader *r, const json *face, tl_tag *tag)
             *tag = (tl_tag){r->joints[i].number, (uint32_t)plane};
         return status;
     }
-    return r->host->fail(r->host, TL_E_GEOMETRY,
-                         "file '%.200s', line %zu: joint '%.80s' is not among the file's joints",
-                         r->tree.file, name->line, name->text);
+    return wrong(r, name->line, "joint '%.80s' is not among the file's joints", name->text);
 }
 
 /* ---------------------------------------------------------------- blocks ----------------- */
@@ -153,7 +158,7 @@ static tl_status read_vertices(reader *r, const json *block, tl_block_shape *sha
     if (status != TL_OK)
         return status;
     if (list->count > MOST_CORNERS)
-        return wrong(r, list, "a block has more than 4096 vertices");
+        return wrong(r, list->line, "a block has more than 4096 vertices");
     for (const json *item = json_first(&r->tree, list); item; item = json_next(&r->tree, item)) {
         double at[3];
         int count = 0;
@@ -162,7 +167,7 @@ static tl_status read_vertices(reader *r, const json *block, tl_block_shape *sha
                 if (x->type == JSON_NUMBER)
                     at[count++] = x->number;
         if (count != 3)
-            return wrong(r, item, "a vertex must be a list of three numbers");
+            return wrong(r, item->line, "a vertex must be a list of three numbers");
         r->vertex[shape->vertex_count++] = (tl_vec3){at[0], at[1], at[2]};
     }
     shape->vertices = r->vertex;
@@ -179,11 +184,11 @@ static tl_status read_face(reader *r, const json *face, tl_block_shape *shape)
         return status;
     uint32_t end = r->start[shape->face_count];
     if (list->count > MOST_LOOPS - end)
-        return wrong(r, list, "the faces of a block have too many corners");
+        return wrong(r, list->line, "the faces of a block have too many corners");
     for (const json *item = json_first(&r->tree, list); item; item = json_next(&r->tree, item)) {
         double v = item->type == JSON_NUMBER ? item->number : -1;
         if (!(v >= 0 && v < (double)shape->vertex_count) || floor(v) < v)
-            return wrong(r, item,
+            return wrong(r, item->line,
                          "a corner must be the number of one of the block's vertices, from 0");
         r->loop[end++] = (uint32_t)v;
     }
@@ -198,7 +203,7 @@ static tl_status read_faces(reader *r, const json *block, tl_block_shape *shape)
     if (status != TL_OK)
         return status;
     if (list->count > MOST_CORNERS)
-        return wrong(r, list, "a block has more than 4096 faces");
+        return wrong(r, list->line, "a block has more than 4096 faces");
     for (const json *item = json_first(&r->tree, list); item && status == TL_OK;
          item = json_next(&r->tree, item))
         status = read_face(r, item, shape);
@@ -211,18 +216,17 @@ static tl_status read_faces(reader *r, const json *block, tl_block_shape *shape)
 static tl_status read_fixed(const reader *r, const json *block, uint32_t *fixed)
 {
     static const char *const names[] = {"x", "y", "z", "rotation"};
-    const json *list = json_get(&r->tree, block, "fixed");
-    if (!list)
-        return TL_OK;
-    tl_status status = take(r, block, "fixed", JSON_LIST, &list);
-    if (status != TL_OK)
+    const json *list;
+    tl_status status = look_for(r, block, "fixed", JSON_LIST, &list);
+    if (status != TL_OK || !list)
         return status;
     for (const json *item = json_first(&r->tree, list); item; item = json_next(&r->tree, item)) {
         uint32_t bit = 0;
         for (uint32_t i = 0; i < 4 && item->type == JSON_TEXT; i++)
             bit |= strcmp(item->text, names[i]) == 0 ? 1u << i : 0;
         if (!bit)
-            return wrong(r, item, "'fixed' lists some of \"x\", \"y\", \"z\" and \"rotation\"");
+            return wrong(r, item->line,
+                         "'fixed' lists some of \"x\", \"y\", \"z\" and \"rotation\"");
         *fixed |= bit;
     }
     return TL_OK;
@@ -230,18 +234,14 @@ static tl_status read_fixed(const reader *r, const json *block, uint32_t *fixed)
 
 static tl_status read_block(reader *r, const json *block)
 {
-    tl_block_shape shape = {.size = sizeof shape, .group = ""};
+    tl_block_shape shape = {.size = sizeof shape};
     member *m = &r->members[r->block_count];
-    const json *density, *item;
+    const json *density, *group = NULL, *hidden = NULL;
     tl_status status = take(r, block, "density", JSON_NUMBER, &density);
-    if (status == TL_OK && json_get(&r->tree, block, "group")) {
-        status = take(r, block, "group", JSON_TEXT, &item);
-        shape.group = status == TL_OK ? item->text : "";
-    }
-    if (status == TL_OK && json_get(&r->tree, block, "hidden")) {
-        status = take(r, block, "hidden", JSON_BOOL, &item);
-        shape.hidden = status == TL_OK && item->number > 0;
-    }
+    if (status == TL_OK)
+        status = look_for(r, block, "group", JSON_TEXT, &group);
+    if (status == TL_OK)
+        status = look_for(r, block, "hidden", JSON_BOOL, &hidden);
     if (status == TL_OK)
         status = take_whole(r, block, "body", 0, 1e15, 0, &m->body);
     if (status == TL_OK)
@@ -253,10 +253,11 @@ static tl_status read_block(reader *r, const json *block)
     if (status != TL_OK)
         return status;
     shape.density = density->number;
+    shape.group = group ? group->text : "";
+    shape.hidden = hidden && hidden->number > 0;
     m->index = r->host->block_count(r->host);
     r->block_count++;
-    status = r->host->create_block(r->host, &shape);
-    return status;
+    return r->host->create_block(r->host, &shape);
 }
 
 /* ---------------------------------------------------------------- bodies ----------------- */
@@ -297,10 +298,11 @@ static tl_status check_head(const reader *r, const json *root)
     const json *format = json_get(&r->tree, root, "format");
     const json *version = json_get(&r->tree, root, "version");
     if (!format || format->type != JSON_TEXT || strcmp(format->text, FORMAT) != 0)
-        return wrong(r, root, "the file is no block model: it lacks \"format\": \"" FORMAT "\"");
+        return wrong(r, root->line,
+                     "the file is no block model: it lacks \"format\": \"" FORMAT "\"");
     if (!version || version->type != JSON_NUMBER || version->number < VERSION ||
         version->number > VERSION)
-        return wrong(r, root, "the block model is not of version 1, which alone can be read");
+        return wrong(r, root->line, "the block model is not of version 1, which alone can be read");
     return TL_OK;
 }
 

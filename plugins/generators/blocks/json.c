@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/number.h>
+#include <talus/kit.h>
 
 /* Lists within lists: more is no block model, and would exhaust the stack. */
 #define MOST_DEPTH 16
@@ -49,14 +49,10 @@ static void skip_space(parser *p)
 static size_t add_node(parser *p)
 {
     json_tree *t = p->tree;
-    if (t->count + 1 >= t->capacity) {
-        size_t capacity = t->capacity ? 2 * t->capacity : 1024;
-        json *nodes = realloc(t->nodes, capacity * sizeof *nodes);
-        if (!nodes)
-            return 0;
-        t->nodes = nodes;
-        t->capacity = capacity;
-    }
+    json *nodes = tl_grown(t->nodes, &t->capacity, t->count + 2, sizeof *nodes);
+    if (!nodes)
+        return 0;
+    t->nodes = nodes;
     t->nodes[++t->count] = (json){.line = p->line};
     return t->count;
 }

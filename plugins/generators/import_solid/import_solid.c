@@ -1,12 +1,8 @@
 /* import_solid.c - generator "import": a block of each closed convex solid in an STL or OBJ file. */
 #include "mesh.h"
-#include "text.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <talus/kit.h>
 #include <talus/version.h>
-#include <talus/vmath.h>
 
 typedef struct params {
     const char *file;
@@ -26,32 +22,11 @@ static const tl_param param_table[] = {
     TL_PARAMS_ROCK(params, "blocks"),
 };
 
-/* Whether a file's name ends in `ending`, in letters of any case. */
-static bool ends_in(const char *file, const char *ending)
-{
-    size_t length = strlen(file), tail = strlen(ending);
-    if (length < tail)
-        return false;
-    for (size_t i = 0; i < tail; i++)
-        if (text_small(file[length - tail + i]) != ending[i])
-            return false;
-    return true;
-}
-
 static tl_status generate(const tl_host *host, const void *given)
 {
     const params *p = given;
-    bool stl = ends_in(p->file, ".stl");
-    if (!stl && !ends_in(p->file, ".obj"))
-        return host->fail(host, TL_E_ARGUMENT, "file '%.200s' does not end in .stl or .obj",
-                          p->file);
-    bytes data;
-    tl_status status = file_read(host, p->file, &data);
-    if (status != TL_OK)
-        return status;
     mesh m = {.host = host, .file = p->file};
-    status = stl ? stl_read(&m, &data) : obj_read(&m, &data);
-    free(data.at);
+    tl_status status = mesh_read(&m);
     if (status == TL_OK)
         status = mesh_close(&m);
     if (status == TL_OK)

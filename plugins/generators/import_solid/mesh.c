@@ -1,19 +1,19 @@
 /* mesh.c - from loose faces to closed solids.
  *
- * Vertices at one place become one. Every edge must then be run through as often one way as the other. Where
- * solids touch along an edge, several faces meet there; a half-edge belongs with that of the face which is
- * met first when turning from its own face through the inside, for that is where its solid ends. */
+ * Vertices at one place become one. Every edge must then be run through as often one way as the other. Where solids
+ * touch along an edge, several faces meet there; a half-edge belongs with that of the face which is met first when
+ * turning from its own face through the inside. That is where its solid ends. */
 #include "mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <talus/vmath.h>
+#include <talus/kit.h>
 
 /* A face whose height over its longest edge is below this times that edge has no area: what floats leave
  * of three points in a line. */
 #define SLENDER 1e-7
-/* Corners of a face may miss the plane through one of them by this times its longest edge: 1e-4 to either side of a plane
- * between them. */
+/* Corners of a face may miss the plane through one of them by this times its longest edge: 1e-4 to either side of a
+ * plane between them. */
 #define FLAT 2e-4
 /* Faces along each other are a full turn apart, not none: less than this, in radians, is none. */
 #define SAME_SIDE 1e-6
@@ -21,21 +21,6 @@
 tl_status mesh_no_memory(const mesh *m)
 {
     return m->host->fail(m->host, TL_E_MEMORY, "file '%.200s': out of memory", m->file);
-}
-
-/* Makes room for one more item. */
-static bool grow(void **items, size_t *capacity, size_t needed, size_t bytes_each)
-{
-    if (needed <= *capacity)
-        return true;
-    size_t more = *capacity ? 2 * *capacity : 1024;
-    more = more < needed ? needed : more;
-    void *moved = realloc(*items, more * bytes_each);
-    if (!moved)
-        return false;
-    *items = moved;
-    *capacity = more;
-    return true;
 }
 
 tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number)
@@ -47,12 +32,12 @@ tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number)
             "file '%.200s', %s %zu: the corner {%g, %g, %g} is not finite or beyond "
             "%g; the file is damaged",
             m->file, place, number, at.x, at.y, at.z, LARGEST_COORDINATE);
-    void *items = m->vertex;
-    bool enough = m->vertices < MOST_CORNERS &&
-                  grow(&items, &m->vertex_capacity, m->vertices + 1, sizeof *m->vertex);
-    m->vertex = items;
-    if (!enough)
+    tl_vec3 *vertex = m->vertices < MOST_CORNERS ? tl_grown(m->vertex, &m->vertex_capacity,
+                                                            m->vertices + 1, sizeof *vertex)
+                                                 : NULL;
+    if (!vertex)
         return mesh_no_memory(m);
+    m->vertex = vertex;
     m->vertex[m->vertices++] = at;
     m->reach = fmax(m->reach, largest);
     return TL_OK;
@@ -60,17 +45,18 @@ tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number)
 
 tl_status mesh_add_face(mesh *m, const uint32_t *corner, size_t count)
 {
-    void *corners = m->corner, *starts = m->start;
-    bool enough = m->corners + count < MOST_CORNERS &&
-                  grow(&corners, &m->corner_capacity, m->corners + count, sizeof *m->corner);
-    m->corner = corners;
-    enough = enough && grow(&starts, &m->face_capacity, m->faces + 2, sizeof *m->start);
-    m->start = starts;
-    if (!enough)
+    size_t corners = m->corners + count;
+    uint32_t *all = corners < MOST_CORNERS
+                        ? tl_grown(m->corner, &m->corner_capacity, corners, sizeof *all)
+                        : NULL;
+    m->corner = all ? all : m->corner;
+    uint32_t *start = tl_grown(m->start, &m->face_capacity, m->faces + 2, sizeof *start);
+    m->start = start ? start : m->start;
+    if (!all || !start)
         return mesh_no_memory(m);
     memcpy(m->corner + m->corners, corner, count * sizeof *corner);
     m->start[m->faces++] = (uint32_t)m->corners;
-    m->corners += count;
+    m->corners = corners;
     m->start[m->faces] = (uint32_t)m->corners;
     return TL_OK;
 }
@@ -142,8 +128,8 @@ static tl_status weld(mesh *m)
 static tl_status face_fault(const mesh *m, uint32_t face, const char *what, const char *remedy)
 {
     tl_vec3 at = m->vertex[m->corner[m->start[face]]];
-    return m->host->fail(m->host, TL_E_GEOMETRY, "file '%.200s': face %u, at {%g, %g, %g}, %s; %s",
-                         m->file, face + 1, at.x, at.y, at.z, what, remedy);
+    return MESH_FAULT(m, ": face %u, at {%g, %g, %g}, %s; %s", face + 1, at.x, at.y, at.z, what,
+                      remedy);
 }
 
 /* Normal, longest edge and height of a face; refuses one without area or not flat. */
@@ -236,10 +222,17 @@ static bool pair_edge(mesh *m, const side *sides, size_t count)
     return true;
 }
 
-/* What is wrong with the edges of the surface. */
+/* What may be wrong with the edges of the surface, the worst first; at how many, and the first of them. */
+enum { OPEN, TURNED, DOUBLED, FAULTS };
+static const char *const faults_text[FAULTS][2] = {
+    [OPEN] = {"the surface is open", "close it, so that every edge belongs to two faces"},
+    [TURNED] = {"faces are turned against each other",
+                "give the corners of all faces counter-clockwise as seen from outside"},
+    [DOUBLED] = {"faces lie on each other", "remove faces that are there twice"}};
+
 typedef struct faults {
-    size_t open, turned, doubled;
-    side first_open, first_turned, first_doubled;
+    size_t count[FAULTS];
+    side first[FAULTS];
 } faults;
 
 static void look_at_edge(mesh *m, const side *sides, size_t count, faults *f)
@@ -247,26 +240,12 @@ static void look_at_edge(mesh *m, const side *sides, size_t count, faults *f)
     size_t up = 0;
     for (size_t i = 0; i < count; i++)
         up += sides[i].up;
-    if (2 * up == count) {
-        if (!pair_edge(m, sides, count) && f->doubled++ == 0)
-            f->first_doubled = sides[0];
-    } else if (count % 2 == 0) {
-        if (f->turned++ == 0)
-            f->first_turned = sides[0];
-    } else if (f->open++ == 0) {
-        f->first_open = sides[0];
-    }
-}
-
-static tl_status edge_fault(const mesh *m, const side *s, size_t count, const char *what,
-                            const char *remedy)
-{
-    tl_vec3 a = m->vertex[s->low], b = m->vertex[s->high];
-    return m->host->fail(m->host, TL_E_GEOMETRY,
-                         "file '%.200s': %s at %zu edge%s, the first from {%g, %g, %g} to {%g, %g, "
-                         "%g} of face %u; %s",
-                         m->file, what, count, count == 1 ? "" : "s", a.x, a.y, a.z, b.x, b.y, b.z,
-                         m->face_of[s->half] + 1, remedy);
+    bool even = 2 * up == count;
+    int fault = even ? DOUBLED : count % 2 == 0 ? TURNED : OPEN;
+    if (even && pair_edge(m, sides, count))
+        return;
+    if (f->count[fault]++ == 0)
+        f->first[fault] = sides[0];
 }
 
 static tl_status pair_edges(mesh *m)
@@ -288,15 +267,14 @@ static tl_status pair_edges(mesh *m)
         look_at_edge(m, sides + from, to - from, &f);
     }
     free(sides);
-    if (f.open)
-        return edge_fault(m, &f.first_open, f.open, "the surface is open",
-                          "close it, so that every edge belongs to two faces");
-    if (f.turned)
-        return edge_fault(m, &f.first_turned, f.turned, "faces are turned against each other",
-                          "give the corners of all faces counter-clockwise as seen from outside");
-    if (f.doubled)
-        return edge_fault(m, &f.first_doubled, f.doubled, "faces lie on each other",
-                          "remove faces that are there twice");
+    for (int k = 0; k < FAULTS; k++) {
+        tl_vec3 p = m->vertex[f.first[k].low], q = m->vertex[f.first[k].high];
+        if (f.count[k] > 0)
+            return MESH_FAULT(
+                m, ": %s at %zu edge%s, the first from {%g, %g, %g} to {%g, %g, %g} of face %u; %s",
+                faults_text[k][0], f.count[k], f.count[k] == 1 ? "" : "s", p.x, p.y, p.z, q.x, q.y,
+                q.z, m->face_of[f.first[k].half] + 1, faults_text[k][1]);
+    }
     return TL_OK;
 }
 

@@ -1,4 +1,4 @@
-/* mesh.h - the surface in a file: read (text.c, stl.c, obj.c), closed and divided into solids (mesh.c), and
+/* mesh.h - the surface in a file: read (read.c), closed and divided into solids (mesh.c), and
  * checked solid by solid (solid.c). */
 #ifndef IMPORT_SOLID_MESH_H
 #define IMPORT_SOLID_MESH_H
@@ -35,13 +35,9 @@ typedef struct mesh {
     size_t solids;
 } mesh;
 
-/* A whole file, followed by a zero byte. */
-typedef struct bytes {
-    char *at;
-    size_t count;
-} bytes;
-
-tl_status file_read(const tl_host *host, const char *file, bytes *data);
+/* Refuses the file, with a sentence that goes on behind its name. */
+#define MESH_FAULT(m, text, ...)                                                                   \
+    (m)->host->fail((m)->host, TL_E_GEOMETRY, "file '%.200s'" text, (m)->file, __VA_ARGS__)
 
 /* Adds a vertex; an unusable coordinate is refused with the place (a line or triangle) it stands at. */
 tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number);
@@ -50,8 +46,8 @@ tl_status mesh_add_face(mesh *m, const uint32_t *corner, size_t count);
 tl_status mesh_no_memory(const mesh *m);
 void mesh_free(mesh *m);
 
-tl_status stl_read(mesh *m, const bytes *data);
-tl_status obj_read(mesh *m, const bytes *data);
+/* Reads m->file, an STL or OBJ as its name ends. */
+tl_status mesh_read(mesh *m);
 
 /* Makes one vertex of those at one place, pairs the half-edges and numbers the solids. Refuses faces
  * without area or not flat, open edges, and faces turned against their neighbours. */

@@ -1,9 +1,9 @@
 /* solid.c - creates a block of each closed surface of a file.
  *
- * A closed surface bounds a convex solid when it bends outward at every edge and goes round once: the hull of
- * its corners has then its volume. Faces that lie along each other, as the triangles of a flat side do, are
- * one side; a vertex where fewer than three sides meet is no corner and is left out, for rounding may have
- * put it inside the hull of the others. */
+ * A closed surface bounds a convex solid when it bends outward at every edge and goes round once: the hull of its
+ * corners has then its volume. Faces that lie along each other, as the triangles of a flat side do, are one side; a
+ * vertex where fewer than three sides meet is no corner and is left out. Rounding may have put it inside the hull of
+ * the others. */
 #include "mesh.h"
 
 #include <stdlib.h>
@@ -14,8 +14,8 @@
 /* Faces that bend by more than this, over the longest edge, always bend: far from zero the rounding of the
  * coordinates cannot be told from a bend any more. */
 #define BEND 1e-3
-/* The surface may bend inward by less than this over the longest edge: so far the fourth corner of a face is above the plane
- * of the others when all miss the plane of the face by 1e-4. */
+/* The surface may bend inward by less than this over the longest edge: so far the fourth corner of a face is above the
+ * plane of the others when all miss the plane of the face by 1e-4. */
 #define INWARD 4e-4
 /* Relative difference of the volumes of a surface and of the hull of its corners: what bends within the
  * tolerances above may add up to. */
@@ -68,9 +68,8 @@ static tl_status fault(const solids *s, size_t solid, const char *what, const ch
     const mesh *m = s->m;
     uint32_t face = s->face[s->first[solid]];
     tl_vec3 at = m->vertex[m->corner[m->start[face]]];
-    return m->host->fail(m->host, TL_E_GEOMETRY,
-                         "file '%.200s': solid %zu, from face %u at {%g, %g, %g} on, %s; %s",
-                         m->file, solid + 1, face + 1, at.x, at.y, at.z, what, remedy);
+    return MESH_FAULT(m, ": solid %zu, from face %u at {%g, %g, %g} on, %s; %s", solid + 1,
+                      face + 1, at.x, at.y, at.z, what, remedy);
 }
 
 /* ---------------------------------------------------------------- volume ----------------- */
@@ -146,12 +145,11 @@ static tl_status find_sides(const solids *s, size_t solid)
         for (uint32_t h = m->start[face]; h < m->start[face + 1]; h++) {
             if (h < m->mate[h] && !look_at_bend(s, h)) {
                 tl_vec3 p = m->vertex[m->corner[h]], q = m->vertex[m->corner[mesh_next(m, h)]];
-                return m->host->fail(
-                    m->host, TL_E_GEOMETRY,
-                    "file '%.200s': solid %zu is not convex: it bends inward at the "
-                    "edge from {%g, %g, %g} to {%g, %g, %g} of face %u; divide it "
-                    "into convex solids",
-                    m->file, solid + 1, p.x, p.y, p.z, q.x, q.y, q.z, face + 1);
+                return MESH_FAULT(m,
+                                  ": solid %zu is not convex: it bends inward at the "
+                                  "edge from {%g, %g, %g} to {%g, %g, %g} of face %u; divide it "
+                                  "into convex solids",
+                                  solid + 1, p.x, p.y, p.z, q.x, q.y, q.z, face + 1);
             }
         }
     }

@@ -12,17 +12,25 @@
  * off, on both sides alike, so that it stays positive. By "fisher" the pole of a plane is distributed
  * about the mean pole with the concentration fisher_k, and gaps are uniform.
  *
+ * Normal: Box and Muller's transform of two uniform numbers, drawn again while it falls beyond the limit (at 3 standard
+ * deviations that is one in 370). Fisher (Proc. R. Soc. Lond. A 217 (1953) 295-305): with density proportional to
+ * exp(k cos t) on the sphere,
+ *
+ *     1 - cos t = -ln(1 - u (1 - exp(-2 k))) / k,   azimuth = 360 deg v,   u, v uniform in [0, 1).
+ *
  * A gap belongs to the plane on its far side from the middle; the middle gap of an even set to the
  * plane above. Draws are keyed by model seed, set and plane number (Hart, Cundall and Lemos, Int. J.
  * Rock Mech. Min. Sci. 25 (1988) 117-125, section on model generation, for the six parameters). */
-#include "draw.h"
-
 #include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
 
 /* Normal deviations end here, in standard deviations, so that a rare draw cannot turn a plane over. */
 #define NORMAL_LIMIT 3.0
+
+/* After so many draws beyond the limit the number is taken as the mean: with limit >= 1 that has a
+ * chance of 1e-32. */
+#define MOST_ATTEMPTS 64
 
 enum { UNIFORM, NORMAL, FISHER };
 static const char *const distributions[] = {"uniform", "normal", "fisher", NULL};
@@ -69,6 +77,51 @@ static const tl_param param_table[] = {
         "of discs in the place of planes: a block is in a disc's path when the disc meets its "
         "section"),
 };
+
+/* Where the draws of one call are found: planes of an earlier call of the same set come first. */
+typedef struct draws {
+    const tl_host *host;
+    uint32_t joint, first;
+} draws;
+
+/* The quantities a plane draws. */
+enum { DRAW_DIP, DRAW_DIRECTION, DRAW_GAP, DRAW_KINDS };
+
+static double draw_one(const draws *d, int64_t index, uint32_t draw)
+{
+    return d->host->random(d->host, d->joint, d->first + index, draw);
+}
+
+/* Uniform in [-1, 1) for plane `index` (from 0) of this call. */
+static double draw_even(const draws *d, int64_t index, uint32_t kind)
+{
+    return 2 * draw_one(d, index, kind) - 1;
+}
+
+/* Normal with mean 0 and standard deviation 1, cut off at +-limit; limit >= 1. */
+static double draw_normal(const draws *d, int64_t index, uint32_t kind, double limit)
+{
+    for (uint32_t attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
+        uint32_t draw = kind + 2 * DRAW_KINDS * attempt;
+        double u = draw_one(d, index, draw), v = draw_one(d, index, draw + DRAW_KINDS);
+        /* 1 - u is in (0, 1], so the logarithm is finite */
+        double z = sqrt(-2 * tl_log1p(-u)) * tl_cos_degrees(360 * v);
+        if (fabs(z) < limit)
+            return z;
+    }
+    return 0;
+}
+
+/* The pole of plane `index`: distributed after Fisher about the unit vector `mean`, concentration k > 0. */
+static tl_vec3 draw_fisher(const draws *d, int64_t index, tl_vec3 mean, double k)
+{
+    double u = draw_one(d, index, DRAW_DIP), azimuth = 360 * draw_one(d, index, DRAW_DIRECTION);
+    double drop = fmin(-tl_log1p(u * tl_expm1(-2 * k)) / k, 2);
+    double sine = sqrt(drop * (2 - drop));
+    tl_vec3 e = tl_v3_perpendicular(mean), f = tl_v3_cross(mean, e);
+    tl_vec3 side = tl_v3_madd(tl_v3_scale(tl_cos_degrees(azimuth), e), tl_sin_degrees(azimuth), f);
+    return tl_v3_unit(tl_v3_madd(tl_v3_scale(1 - drop, mean), sine, side));
+}
 
 /* Deviation of a plane's dip or dip direction, in units of the one given. */
 static double deviation(const draws *d, const params *p, int64_t index, uint32_t kind)

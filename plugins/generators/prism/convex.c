@@ -1,21 +1,19 @@
 /* convex.c - a plane polygon divided into convex parts.
  *
- * Ears (triangles of three corners in a row that hold no other corner; G. H. Meisters, Am. Math. Monthly 82 (1975) 648-651)
- * are clipped until nothing is left. Diagonals are then flipped to those of the constrained Delaunay triangulation (C. L.
- * Lawson, in Mathematical Software III, 1977), which has no thinner triangles than it must. Last, diagonals are taken out as
- * long as what they part is convex together (S. Hertel and K. Mehlhorn, Lect. Notes Comput. Sci. 158 (1983) 207-218): at
- * most four times the least number of parts. Diagonals of the thinnest triangles go first.
+ * Ears (triangles of three corners in a row that hold no other corner; G. H. Meisters, Am. Math. Monthly 82 (1975)
+ * 648-651) are clipped until nothing is left. Diagonals are then flipped to those of the constrained Delaunay
+ * triangulation (C. L. Lawson, in Mathematical Software III, 1977), which has no thinner triangles than it must. Last,
+ * diagonals are taken out as long as what they part is convex together (S. Hertel and K. Mehlhorn, Lect. Notes Comput.
+ * Sci. 158 (1983) 207-218): at most four times the least number of parts. Diagonals of the thinnest triangles go first.
  *
- * Polygons that cross or touch themselves are refused before, and corners on a straight line are left out, so that what is
- * left is simple by a margin far above roundings. The parts are checked in the end: each is convex, and their areas add up.
+ * Polygons that cross or touch themselves are refused before, and corners on a straight line are left out. What is left
+ * is simple by a margin far above roundings. The parts are checked in the end: each is convex, and their areas add up.
  * Work grows with the square of the number of corners. */
 #include "convex.h"
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include <talus/kit.h>
 
 /* Corners that lie off the line of their neighbours by less than this times the extent are on it. */
 #define STRAIGHT 1e-9
@@ -26,7 +24,7 @@
 
 /* The triangulation as half-edges: three to a triangle, each from a corner to that of the next one. */
 typedef struct mesh {
-    const flat *at;
+    const tl_flat *at;
     size_t count;  /* half-edges */
     size_t *from;  /* corner */
     size_t *next;  /* around the triangle, later around the part */
@@ -36,78 +34,22 @@ typedef struct mesh {
     double near;   /* lengths that do not count */
 } mesh;
 
-static double cross(flat o, flat a, flat b)
-{
-    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
-
-static double dot(flat o, flat a, flat b)
+static double dot(tl_flat o, tl_flat a, tl_flat b)
 {
     return (a.x - o.x) * (b.x - o.x) + (a.y - o.y) * (b.y - o.y);
 }
 
-static double apart(flat a, flat b)
-{
-    return sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-}
-
-/* Height of the triangle abc over its longest side; negative when it is clockwise. */
-static double height(flat a, flat b, flat c)
-{
-    double longest = fmax(apart(a, b), fmax(apart(b, c), apart(c, a)));
-    return longest > 0 ? cross(a, b, c) / longest : 0;
-}
-
-/* ---------------------------------------------------------------- is it simple? ---------- */
-
-static double off_segment(flat a, flat b, flat p)
-{
-    double length2 = dot(a, b, b), t = length2 > 0 ? dot(a, b, p) / length2 : 0;
-    t = fmin(1, fmax(0, t));
-    return apart((flat){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}, p);
-}
-
-static bool segments_meet(flat a, flat b, flat c, flat d, double near)
-{
-    if (fmin(a.x, b.x) > fmax(c.x, d.x) + near || fmin(c.x, d.x) > fmax(a.x, b.x) + near ||
-        fmin(a.y, b.y) > fmax(c.y, d.y) + near || fmin(c.y, d.y) > fmax(a.y, b.y) + near)
-        return false;
-    if ((cross(a, b, c) > 0) != (cross(a, b, d) > 0) &&
-        (cross(c, d, a) > 0) != (cross(c, d, b) > 0))
-        return true;
-    return off_segment(a, b, c) <= near || off_segment(a, b, d) <= near ||
-           off_segment(c, d, a) <= near || off_segment(c, d, b) <= near;
-}
-
-/* Whether edges i < j come together where they should not. Neighbours share a corner; the far ends must keep off. */
-static bool edges_meet(const flat *at, size_t n, size_t i, size_t j, double near)
-{
-    flat a = at[i], b = at[(i + 1) % n], c = at[j], d = at[(j + 1) % n];
-    if (j == i + 1)
-        return off_segment(c, d, a) <= near || off_segment(a, b, d) <= near;
-    if (i == 0 && j == n - 1)
-        return off_segment(c, d, b) <= near || off_segment(a, b, c) <= near;
-    return segments_meet(a, b, c, d, near);
-}
-
-static convex_status check_simple(const flat *at, size_t n, double extent, size_t *one,
+static convex_status check_simple(const tl_flat *at, size_t n, double extent, size_t *one,
                                   size_t *other)
 {
     double near = CONVEX_FIT * extent;
     for (size_t i = 0; i < n; i++)
-        if (apart(at[i], at[(i + 1) % n]) <= near) {
+        if (tl_flat_apart(at[i], at[(i + 1) % n]) <= near) {
             *one = i;
             *other = (i + 1) % n;
             return CONVEX_COINCIDE;
         }
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = i + 1; j < n; j++)
-            if (edges_meet(at, n, i, j, near)) {
-                *one = i;
-                *other = j;
-                return CONVEX_CROSSES;
-            }
-    return CONVEX_DONE;
+    return tl_polygon_crosses(at, n, near, one, other) ? CONVEX_CROSSES : CONVEX_DONE;
 }
 
 /* ---------------------------------------------------------------- triangles -------------- */
@@ -116,41 +58,6 @@ static convex_status check_simple(const flat *at, size_t n, double extent, size_
 typedef struct ring {
     size_t *corner, *beyond, count;
 } ring;
-
-/* Whether place k is a corner that turns left, by enough to count, and no other corner lies in its triangle. */
-static bool is_ear(const mesh *m, const ring *r, size_t k)
-{
-    size_t i = r->corner[(k + r->count - 1) % r->count], j = r->corner[k],
-           l = r->corner[(k + 1) % r->count];
-    flat a = m->at[i], b = m->at[j], c = m->at[l];
-    if (height(a, b, c) <= m->near)
-        return false;
-    for (size_t q = 0; q < r->count; q++) {
-        size_t p = r->corner[q];
-        if (p != i && p != j && p != l && cross(a, b, m->at[p]) >= 0 &&
-            cross(b, c, m->at[p]) >= 0 && cross(c, a, m->at[p]) >= 0)
-            return false;
-    }
-    return true;
-}
-
-/* The place of an ear, or of the corner that is nearest to a straight line: its triangle has no area, and a flip mends that. */
-static size_t find_ear(const mesh *m, const ring *r)
-{
-    size_t flattest = 0;
-    double least = INFINITY;
-    for (size_t k = 0; k < r->count; k++) {
-        if (is_ear(m, r, k))
-            return k;
-        double h = fabs(height(m->at[r->corner[(k + r->count - 1) % r->count]], m->at[r->corner[k]],
-                               m->at[r->corner[(k + 1) % r->count]]));
-        if (h < least) {
-            least = h;
-            flattest = k;
-        }
-    }
-    return flattest;
-}
 
 static void set_twins(mesh *m, size_t edge, size_t beyond)
 {
@@ -189,12 +96,13 @@ static bool flip(mesh *m, size_t h)
     if (t == NONE)
         return false;
     size_t hn = m->next[h], hp = m->next[hn], tn = m->next[t], tp = m->next[tn];
-    flat a = m->at[m->from[h]], b = m->at[m->from[t]];
-    flat c = m->at[m->from[hp]], d = m->at[m->from[tp]];
-    double here = dot(c, a, b) * cross(d, b, a), there = dot(d, b, a) * cross(c, a, b);
+    tl_flat a = m->at[m->from[h]], b = m->at[m->from[t]];
+    tl_flat c = m->at[m->from[hp]], d = m->at[m->from[tp]];
+    double here = dot(c, a, b) * tl_flat_cross(d, b, a),
+           there = dot(d, b, a) * tl_flat_cross(c, a, b);
     if (here + there >= -ROUNDED * (fabs(here) + fabs(there)))
         return false;
-    if (height(d, c, a) <= 0 || height(c, d, b) <= 0)
+    if (tl_flat_height(d, c, a) <= 0 || tl_flat_height(c, d, b) <= 0)
         return false;
     m->from[h] = m->from[tp];
     m->from[t] = m->from[hp];
@@ -227,7 +135,8 @@ static size_t previous(const mesh *m, size_t h)
 static bool stays_convex(const mesh *m, size_t h, double least)
 {
     size_t into = previous(m, h), out = m->next[m->twin[h]];
-    return height(m->at[m->from[into]], m->at[m->from[h]], m->at[m->from[m->next[out]]]) >= least;
+    return tl_flat_height(m->at[m->from[into]], m->at[m->from[h]], m->at[m->from[m->next[out]]]) >=
+           least;
 }
 
 /* Takes the edge of half-edge h out when what it parts is convex together. */
@@ -251,8 +160,8 @@ static double thinness(const mesh *m, size_t h)
     const size_t sides[2] = {h, m->twin[h]};
     for (size_t s = 0; s < 2; s++) {
         size_t n = m->next[sides[s]];
-        least = fmin(
-            least, height(m->at[m->from[sides[s]]], m->at[m->from[n]], m->at[m->from[m->next[n]]]));
+        least = fmin(least, tl_flat_height(m->at[m->from[sides[s]]], m->at[m->from[n]],
+                                           m->at[m->from[m->next[n]]]));
     }
     return least;
 }
@@ -283,14 +192,15 @@ static void merge(mesh *m)
                 take_out(m, m->order[k], pass == 0 ? 2 * m->near : -m->near);
 }
 
-/* Writes the corners of the part that half-edge h goes round, but for those on a straight line; returns their number. */
+/* Writes the corners of the part that half-edge h goes round, but for those on a straight line; returns their
+ * number. */
 static size_t walk(const mesh *m, size_t h, bool *seen, size_t *corner)
 {
     size_t count = 0, e = h;
     do {
         seen[e] = true;
         size_t n = m->next[e], p = previous(m, e);
-        if (height(m->at[m->from[p]], m->at[m->from[e]], m->at[m->from[n]]) > m->near)
+        if (tl_flat_height(m->at[m->from[p]], m->at[m->from[e]], m->at[m->from[n]]) > m->near)
             corner[count++] = m->from[e];
         e = n;
     } while (e != h);
@@ -312,16 +222,16 @@ static void list_parts(const mesh *m, bool *seen, convex_parts *parts)
 }
 
 /* Twice the area. */
-static double area_of(const flat *at, const size_t *corner, size_t count)
+static double area_of(const tl_flat *at, const size_t *corner, size_t count)
 {
     double sum = 0;
     for (size_t i = 2; i < count; i++)
-        sum += cross(at[corner[0]], at[corner[i - 1]], at[corner[i]]);
+        sum += tl_flat_cross(at[corner[0]], at[corner[i - 1]], at[corner[i]]);
     return sum;
 }
 
 /* Whether the parts are convex and their areas add up to twice the `area`, but for `off`. */
-static bool are_sound(const flat *at, const convex_parts *parts, double area, double off)
+static bool are_sound(const tl_flat *at, const convex_parts *parts, double area, double off)
 {
     double sum = 0;
     for (size_t p = 0; p < parts->parts; p++) {
@@ -329,8 +239,8 @@ static bool are_sound(const flat *at, const convex_parts *parts, double area, do
         size_t count = parts->start[p + 1] - parts->start[p];
         sum += area_of(at, corner, count);
         for (size_t i = 0; i < count; i++)
-            if (height(at[corner[i]], at[corner[(i + 1) % count]], at[corner[(i + 2) % count]]) <=
-                0)
+            if (tl_flat_height(at[corner[i]], at[corner[(i + 1) % count]],
+                               at[corner[(i + 2) % count]]) <= 0)
                 return false;
     }
     return parts->parts > 0 && fabs(sum - area) <= off;
@@ -339,25 +249,25 @@ static bool are_sound(const flat *at, const convex_parts *parts, double area, do
 /* ---------------------------------------------------------------- all of it -------------- */
 
 /* Writes the corners that count, counter-clockwise; returns their number. */
-static size_t list_corners(const flat *at, size_t n, double near, bool clockwise, size_t *corner)
+static size_t list_corners(const tl_flat *at, size_t n, double near, bool clockwise, size_t *corner)
 {
     size_t count = 0;
     for (size_t k = 0; k < n; k++) {
         size_t i = clockwise ? n - 1 - k : k;
-        flat before = at[clockwise ? (i + 1) % n : (i + n - 1) % n];
-        flat after = at[clockwise ? (i + n - 1) % n : (i + 1) % n];
+        tl_flat before = at[clockwise ? (i + 1) % n : (i + n - 1) % n];
+        tl_flat after = at[clockwise ? (i + n - 1) % n : (i + 1) % n];
         if (count)
             before = at[corner[count - 1]];
-        if (fabs(height(before, at[i], after)) > near)
+        if (fabs(tl_flat_height(before, at[i], after)) > near)
             corner[count++] = i;
     }
     return count;
 }
 
-static convex_status divide(const flat *at, size_t n, double area, double extent,
+static convex_status divide(const tl_flat *at, size_t n, double area, double extent,
                             convex_parts *parts)
 {
-    double near = STRAIGHT * extent;
+    double near = STRAIGHT * extent, ear;
     size_t edges = 3 * n;
     mesh m = {.at = at, .near = near};
     m.from = malloc(6 * edges * sizeof *m.from);
@@ -375,7 +285,7 @@ static convex_status divide(const flat *at, size_t n, double area, double extent
         for (size_t k = 0; k < r.count; k++)
             r.beyond[k] = NONE;
         while (r.count >= 3)
-            clip(&m, &r, find_ear(&m, &r));
+            clip(&m, &r, tl_polygon_ear(at, r.corner, r.count, near, &ear));
         flip_all(&m);
         merge(&m);
         list_parts(&m, seen, parts);
@@ -388,7 +298,7 @@ static convex_status divide(const flat *at, size_t n, double area, double extent
     return status;
 }
 
-convex_status convex_divide(const flat *at, size_t count, convex_parts *parts, size_t *one,
+convex_status convex_divide(const tl_flat *at, size_t count, convex_parts *parts, size_t *one,
                             size_t *other)
 {
     *parts = (convex_parts){0};
@@ -396,8 +306,8 @@ convex_status convex_divide(const flat *at, size_t count, convex_parts *parts, s
         return CONVEX_EMPTY;
     double extent = 0, area = 0; /* twice */
     for (size_t i = 1; i < count; i++) {
-        extent = fmax(extent, apart(at[0], at[i]));
-        area += cross(at[0], at[i - 1], at[i]);
+        extent = fmax(extent, tl_flat_apart(at[0], at[i]));
+        area += tl_flat_cross(at[0], at[i - 1], at[i]);
     }
     convex_status status = check_simple(at, count, extent, one, other);
     if (status != CONVEX_DONE)

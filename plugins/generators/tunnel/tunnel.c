@@ -1,21 +1,46 @@
 /* tunnel.c - generator "tunnel": straight lines connect the corners of two end polygons; blocks in the way
  * of the prism between them are cut along its surface.
  *
- * A block whose inside meets the prism is cut by the planes of the sides, in the order of face1's edges,
- * then by the planes of the ends; each cut splits the part outside off. The cuts are no joints: parts of
- * one block outside stay joined where they share a cut face. What is inside leaves the body of its block,
- * gets the group, and can be excavated. A section that is not convex is divided into convex parts,
- * which are carved one after the other; parts of one body inside stay joined too (Hart, Cundall and Lemos,
- * Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125, section on model generation).
+ * A block whose inside meets the prism is cut by the planes of the sides, in the order of face1's edges. Then it is cut
+ * by the planes of the ends. Each cut splits the part outside off. The cuts are no joints: parts of one block outside
+ * stay joined where they share a cut face. What is inside leaves the body of its block, gets the group, and can be
+ * excavated. A section that is not convex is divided into convex parts, which are carved one after the other; parts of
+ * one body inside stay joined too (Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125, section on
+ * model generation).
+ *
+ * A polygon is divided by clipping ears (triangles of three corners in a row that hold no other corner;
+ * G. H. Meisters, Am. Math. Monthly 82 (1975) 648-651) and joining what stays convex (S. Hertel and
+ * K. Mehlhorn, Lect. Notes Comput. Sci. 158 (1983) 207-218): at most four times the least number of
+ * parts. Work grows with the cube of the number of corners.
  *
  * Limits: faces and sides must be plane, and the planes of the ends must not meet within the tunnel. */
-#include "section.h"
-
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
+
+/* Corners are given with six digits or more: places closer than this times the size of the tunnel are the
+ * same, and what is bent by less is flat. */
+#define FIT 1e-6
+
+/* The polygon of one end in its own plane. */
+typedef struct outline {
+    tl_flat *at; /* [count], counter-clockwise as seen against the normal */
+    size_t count;
+    tl_vec3 normal; /* of unit length */
+    tl_vec3 middle; /* mean of the corners */
+    double area;
+    double spread; /* of the largest triangle of the middle and two corners */
+    double bend;   /* largest distance of a corner from the plane */
+} outline;
+
+/* Convex parts that make up a polygon: part p has the corners corner[start[p]] .. corner[start[p + 1]]. */
+typedef struct division {
+    size_t *corner, *start;
+    size_t parts;
+} division;
 
 typedef struct params {
     tl_points face1, face2;
@@ -30,6 +55,166 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_STRING, params, group, "", "group of what lies inside", .def_text = "tunnel"),
 };
+
+/* ---------------------------------------------------------------- section ---------------- */
+
+/* Lays corners into the plane that fits them; false without memory. Corners on one line have the spread 0 and no
+ * normal. Free `at`. */
+static bool outline_make(const tl_vec3 *corners, size_t count, outline *made)
+{
+    *made = (outline){.at = malloc((count + 1) * sizeof *made->at), .count = count};
+    if (!made->at)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        made->middle = tl_v3_add(made->middle, tl_v3_sub(corners[i], corners[0]));
+    made->middle = tl_v3_madd(corners[0], 1.0 / (double)count, made->middle);
+    tl_vec3 sum = {0, 0, 0}, widest = {0, 0, 0}; /* twice an area, along its normal */
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 d = tl_v3_sub(corners[i], made->middle);
+        sum = tl_v3_add(sum, tl_v3_cross(d, tl_v3_sub(corners[(i + 1) % count], made->middle)));
+        for (size_t j = i + 1; j < count; j++) {
+            tl_vec3 wide = tl_v3_cross(d, tl_v3_sub(corners[j], made->middle));
+            widest = tl_v3_norm2(wide) > tl_v3_norm2(widest) ? wide : widest;
+        }
+    }
+    made->area = 0.5 * tl_v3_norm(sum);
+    made->spread = 0.5 * tl_v3_norm(widest);
+    if (!(made->spread > 0))
+        return true;
+    /* areas of a polygon that crosses itself may cancel; it still has a plane */
+    made->normal = tl_v3_unit(made->area > FIT * made->spread ? sum : widest);
+    tl_vec3 t1 = tl_v3_perpendicular(made->normal), t2 = tl_v3_cross(made->normal, t1);
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 d = tl_v3_sub(corners[i], made->middle);
+        made->at[i] = (tl_flat){tl_v3_dot(d, t1), tl_v3_dot(d, t2)};
+        made->bend = fmax(made->bend, fabs(tl_v3_dot(d, made->normal)));
+    }
+    return true;
+}
+
+static bool is_convex(const tl_flat *at, const size_t *corner, size_t count, double near)
+{
+    for (size_t i = 0; i < count; i++)
+        if (tl_flat_height(at[corner[i]], at[corner[(i + 1) % count]],
+                           at[corner[(i + 2) % count]]) < -near)
+            return false;
+    return true;
+}
+
+/* A convex part while parts are being joined. */
+typedef struct piece {
+    size_t *corner;
+    size_t count;
+} piece;
+
+/* Joins b to a over an edge they share when the whole is convex; a has room for both. */
+static bool join_pieces(const tl_flat *at, piece *a, piece *b, size_t *scratch, double near)
+{
+    for (size_t i = 0; i < a->count; i++)
+        for (size_t j = 0; j < b->count; j++) {
+            size_t from = a->corner[i], to = a->corner[(i + 1) % a->count];
+            if (b->corner[j] != to || b->corner[(j + 1) % b->count] != from)
+                continue;
+            size_t count = 0;
+            for (size_t k = 0; k < a->count; k++) /* from `to` all the way round to `from` */
+                scratch[count++] = a->corner[(i + 1 + k) % a->count];
+            for (size_t k = 2; k < b->count; k++) /* those of b between `from` and `to` */
+                scratch[count++] = b->corner[(j + k) % b->count];
+            if (!is_convex(at, scratch, count, near))
+                return false;
+            memcpy(a->corner, scratch, count * sizeof *scratch);
+            a->count = count;
+            b->count = 0;
+            return true;
+        }
+    return false;
+}
+
+/* Fills triangles[] with corners in threes; returns their number. `rest` is used up. */
+static size_t clip_ears(const outline *section, double near, size_t *rest, piece *triangles)
+{
+    size_t count = section->count, made = 0;
+    while (count >= 3) {
+        double height;
+        size_t k = tl_polygon_ear(section->at, rest, count, near, &height);
+        if (height > near) { /* a corner on a straight line leaves without a triangle */
+            piece *t = &triangles[made++];
+            t->corner[0] = rest[(k + count - 1) % count];
+            t->corner[1] = rest[k];
+            t->corner[2] = rest[(k + 1) % count];
+            t->count = 3;
+        }
+        count--;
+        for (; k < count; k++)
+            rest[k] = rest[k + 1];
+    }
+    return made;
+}
+
+static void join_all(const outline *section, double near, piece *pieces, size_t count,
+                     size_t *scratch)
+{
+    bool joined = true;
+    while (joined) {
+        joined = false;
+        for (size_t i = 0; i < count; i++)
+            for (size_t j = i + 1; j < count; j++)
+                if (pieces[i].count && pieces[j].count &&
+                    join_pieces(section->at, &pieces[i], &pieces[j], scratch, near))
+                    joined = true;
+    }
+}
+
+/* Lists the pieces, each from its lowest corner on. */
+static void list_parts(const piece *pieces, size_t count, division *parts)
+{
+    size_t at = 0;
+    for (size_t i = 0; i < count; i++) {
+        const piece *p = &pieces[i];
+        if (p->count == 0)
+            continue;
+        size_t lowest = 0;
+        for (size_t k = 1; k < p->count; k++)
+            lowest = p->corner[k] < p->corner[lowest] ? k : lowest;
+        parts->start[parts->parts++] = at;
+        for (size_t k = 0; k < p->count; k++)
+            parts->corner[at++] = p->corner[(lowest + k) % p->count];
+    }
+    parts->start[parts->parts] = at;
+}
+
+/* Divides a polygon that does not cross itself into convex parts; a convex one is left whole with its corners in order.
+ * False without memory. Free `corner` and `start`. */
+static bool outline_divide(const outline *section, double near, division *parts)
+{
+    size_t n = section->count;
+    *parts = (division){.corner = malloc(3 * n * sizeof *parts->corner),
+                        .start = malloc((n + 1) * sizeof *parts->start)};
+    size_t *rest = calloc(2 * n, sizeof *rest), *store = malloc(n * n * sizeof *store);
+    piece *pieces = calloc(n, sizeof *pieces);
+    bool enough = parts->corner && parts->start && rest && store && pieces;
+    if (enough) {
+        for (size_t i = 0; i < n; i++) {
+            rest[i] = i;
+            pieces[i] = (piece){store + i * n, 0};
+        }
+        if (is_convex(section->at, rest, n, near)) {
+            memcpy(pieces[0].corner, rest, n * sizeof *rest);
+            pieces[0].count = n;
+            list_parts(pieces, 1, parts);
+        } else {
+            size_t count = clip_ears(section, near, rest, pieces);
+            join_all(section, near, pieces, count, rest + n);
+            list_parts(pieces, count, parts);
+        }
+    }
+    free(rest);
+    free(store);
+    free(pieces);
+    return enough;
+}
+
+/* ---------------------------------------------------------------- prism ------------------ */
 
 /* The prism: for each convex part of the section the half spaces that hold it. */
 typedef struct prism {
@@ -90,7 +275,7 @@ static tl_status check_face(const tl_host *host, const tl_points *face, const ch
                           "%s is warped: a corner lies %g m off the plane that fits it, more than "
                           "%g m; give corners in one plane",
                           name, made->bend, near);
-    if (!is_line && outline_crosses(made, near, &one, &other))
+    if (!is_line && tl_polygon_crosses(made->at, n, near, &one, &other))
         return host->fail(
             host, TL_E_GEOMETRY,
             "%s crosses or touches itself: its edge from corner %zu to %zu meets that "
@@ -241,29 +426,21 @@ typedef struct carving {
 
 static bool add_outer(carving *c, size_t index)
 {
-    if (c->outer_count == c->outer_capacity) {
-        size_t capacity = c->outer_capacity ? 2 * c->outer_capacity : 64;
-        size_t *outer = realloc(c->outer, capacity * sizeof *outer);
-        if (!outer)
-            return false;
-        c->outer = outer;
-        c->outer_capacity = capacity;
-    }
-    c->outer[c->outer_count++] = index;
+    size_t *outer = tl_grown(c->outer, &c->outer_capacity, c->outer_count + 1, sizeof *outer);
+    if (!outer)
+        return false;
+    c->outer = outer;
+    outer[c->outer_count++] = index;
     return true;
 }
 
 static bool add_inside(carving *c, uint32_t body, size_t index)
 {
-    if (c->inside_count == c->inside_capacity) {
-        size_t capacity = c->inside_capacity ? 2 * c->inside_capacity : 64;
-        inner *inside = realloc(c->inside, capacity * sizeof *inside);
-        if (!inside)
-            return false;
-        c->inside = inside;
-        c->inside_capacity = capacity;
-    }
-    c->inside[c->inside_count++] = (inner){body, index};
+    inner *inside = tl_grown(c->inside, &c->inside_capacity, c->inside_count + 1, sizeof *inside);
+    if (!inside)
+        return false;
+    c->inside = inside;
+    inside[c->inside_count++] = (inner){body, index};
     return true;
 }
 
