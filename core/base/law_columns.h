@@ -23,7 +23,8 @@ enum {
     TL_AT_COUNT = TL_AT_STATE + TL_STATE_COLUMNS
 };
 
-/* A batch of the columns from `first` on, `stride` numbers apart. `state` gets where the columns of `states` states are. */
+/* A batch of the columns from `first` on, `stride` numbers apart. `state` gets where the columns of `states` states
+ * are. */
 static inline tl_law_batch tl_law_batch_of(double *first, size_t stride, uint32_t *flags,
                                            double **state, int states)
 {

@@ -1,4 +1,5 @@
-/* checker.c - the parameters a kind is tried with: given, default, plausible by their units, or drawn within their ranges. */
+/* checker.c - the parameters a kind is tried with: given, default, plausible by their units, or drawn within their
+ * ranges. */
 #include "check/checker.h"
 
 #include <math.h>
@@ -65,7 +66,8 @@ static double choice_of(const tl_param *p, uint64_t key)
     return floor(tl_uniform(key) * count);
 }
 
-/* A plausible value. `vectors` counts those of a set: the first is the origin, the second the other corner of a cube. */
+/* A plausible value. `vectors` counts those of a set: the first is the origin, the second the other corner of a
+ * cube. */
 static void make(const tl_param *p, uint64_t key, bool draw, int *vectors, param_storage *d)
 {
     static const double corners[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2};

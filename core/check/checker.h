@@ -1,4 +1,5 @@
-/* checker.h - what the conformance checks of the four types of plugins share: parameters, faults found, and random numbers. */
+/* checker.h - what the conformance checks of the four types of plugins share: parameters, faults found, and random
+ * numbers. */
 #ifndef TL_CHECK_CHECKER_H
 #define TL_CHECK_CHECKER_H
 
@@ -33,8 +34,9 @@ typedef struct tl_checker {
     char fault[TL_CHECK_MOST][TL_ERROR_TEXT];
 } tl_checker;
 
-/* A set of parameters as values. Set 0 has the given ones, and a plausible one of each that is required; later sets draw what
- * is not given. `*values`, and `*held`, in which vectors are, are to be freed after the last use, on failure too. */
+/* A set of parameters as values. Set 0 has the given ones, and a plausible one of each that is required; later sets
+ * draw what is not given. `*values`, and `*held`, in which vectors are, are to be freed after the last use, on failure
+ * too. */
 tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held);
 /* The same, read into `params`, of the kind's params_size bytes; `*held` likewise. */
 tl_status tl_check_params(tl_checker *c, int set, void *params, void **held);
@@ -45,8 +47,8 @@ bool tl_check_asked(const tl_checker *c, uint32_t param);
 /* What a kind's `create` makes of parameters; the parameters themselves where it is NULL. */
 tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void **, tl_report *),
                           void *params, void **self);
-/* Calls `try_set` with one set of parameters after another, until TL_CHECK_SETS have been tried. It gives TL_E_MEMORY, or
- * another failure where the kind refuses the set. Fails where the given ones are refused, or all. */
+/* Calls `try_set` with one set of parameters after another, until TL_CHECK_SETS have been tried. It gives TL_E_MEMORY,
+ * or another failure where the kind refuses the set. Fails where the given ones are refused, or all. */
 tl_status tl_check_sets(tl_checker *c,
                         tl_status (*try_set)(tl_checker *c, void *params, void *user), void *user);
 

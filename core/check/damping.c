@@ -1,7 +1,7 @@
 /* damping.c - the conformance check of dampings.
  *
- * With each set of parameters 64 bodies of random masses go through random motions under random forces; a few rest. Every
- * step is computed as a whole, in parts and body by body. */
+ * With each set of parameters 64 bodies of random masses go through random motions under random forces; a few rest.
+ * Every step is computed as a whole, in parts and body by body. */
 #include "check/damping.h"
 
 #include "base/inside.h"
@@ -376,8 +376,8 @@ static bool gives_other_forces(trial *t, const bodies *in)
            memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
 }
 
-/* Goes from states before begin() through the step once more; whether it gave something else. The states are then what they were
- * after the step. */
+/* Goes from states before begin() through the step once more; whether it gave something else. The states are then what
+ * they were after the step. */
 static bool gives_other(trial *t, const double began[STATES_MOST])
 {
     double after[STATES_MOST];

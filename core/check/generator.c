@@ -1,7 +1,7 @@
 /* generator.c - the conformance check of generators.
  *
- * A generator is run on a cube of 10 m, or in an empty model where it does not work on that. Each call of a service that can fail
- * goes through a function here, which counts it and can let it fail. */
+ * A generator is run on a cube of 10 m, or in an empty model where it does not work on that. Each call of a service
+ * that can fail goes through a function here, which counts it and can let it fail. */
 #include "check/generator.h"
 
 #include <math.h>
@@ -46,7 +46,8 @@ static tl_status count(void)
     return TL_OK;
 }
 
-/* Defines watched_SERVICE with these parameters, in brackets: it counts the call and hands the arguments on to the host. */
+/* Defines watched_SERVICE with these parameters, in brackets: it counts the call and hands the arguments on to the
+ * host. */
 #define WATCHED(service, parameters, ...)                                                          \
     static tl_status watched_##service parameters                                                  \
     {                                                                                              \

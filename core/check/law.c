@@ -1,11 +1,12 @@
 /* law.c - the conformance check of contact laws.
  *
  * With each set of parameters 64 points of random areas and directions go through random motions: closing and opening,
- * shear that sticks and shear that slips. Every step is computed as a whole, in parts, point by point and turned in space;
- * from the place it leads to, the points are moved a little for the stiffness, and not at all. A state is given another value, that of
- * another point, and a parameter another one of its range: the result must be another one to the bit, with some set of parameters,
- * at some point of some step. The normal force is looked at in law_normal.c, work and energies on longer paths in law_paths.c.
- * Forces are compared relative to those that the point has, or had on average. */
+ * shear that sticks and shear that slips. Every step is computed as a whole, in parts, point by point and turned in
+ * space; from the place it leads to, the points are moved a little for the stiffness, and not at all. A state is given
+ * another value, that of another point, and a parameter another one of its range: the result must be another one to the
+ * bit, with some set of parameters, at some point of some step. The normal force is looked at in law_normal.c, work and
+ * energies on longer paths in law_paths.c. Forces are compared relative to those that the point has, or had on
+ * average. */
 #include "check/law.h"
 
 #include "check/law_normal.h"
@@ -80,7 +81,8 @@ static uint32_t width_of(const tl_kind *kind, uint32_t state)
     return kind->states[state].kind == TL_STATE_TANGENT ? 3 : 1;
 }
 
-/* The axis that the normal of a point is, for a few: zeros in two components of it, and of its shear; -1 of the others. */
+/* The axis that the normal of a point is, for a few: zeros in two components of it, and of its shear; -1 of the
+ * others. */
 static int axis_of(size_t i)
 {
     return i % 16 == 6 ? (int)(i / 16 % 3) : -1;
@@ -440,8 +442,8 @@ static void check_stiffness(trial *t, int step, bool along)
         double rise = along ? -tl_v3_dot(change, slide) / (moved > 0 ? moved : 1)
                             : (out.c[TL_AT_F_N][i] - rest.c[TL_AT_F_N][i]) * (closing < 0 ? -1 : 1);
         double bound = along ? t->law.ks : t->law.kn;
-        /* what falls: friction does at any rate, and a bond, which breaks or softens in the part that is apart; walls that
-         * meet are where the closure says */
+        /* what falls: friction does at any rate, and a bond, which breaks or softens in the part that is apart; walls
+         * that meet are where the closure says */
         bool falls = along ? tl_v3_norm(tl_check_vec(out.c[TL_AT_F_S], i)) <
                                  tl_v3_norm(tl_check_vec(rest.c[TL_AT_F_S], i))
                            : rest.c[TL_AT_APART][i] > 0;

@@ -1,4 +1,5 @@
-/* law_normal.c - the normal force, and what a law tells of it: `linear`, `pressed`, `across_gap`, `pulls`, and the flags.
+/* law_normal.c - the normal force, and what a law tells of it: `linear`, `pressed`, `across_gap`, `pulls`, and the
+ * flags.
  *
  * With u = closure + lift, the share `hold` of tension and a part of the area that is apart by `apart` in the mean,
  *
@@ -10,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Tolerance: share of the closures by which the slope of `pressed` is found, and its relative error, and that of an
- * initial force. Test: unit/test_check. */
+/* Share of the closures by which the slope of `pressed` is found, and its relative error, and that of an initial
+ * force. */
 #define SMALL 1e-4
 #define SLOPE_ERROR 1e-3
 /* Tolerance: the same of forces and energies that are compared, which differ by roundings of closures. Test:

@@ -1,16 +1,16 @@
-/* law_paths.c - paths of closure and shear: what the walls' work puts into a point is stored or turned to heat, and a closed
- * path gives no energy.
+/* law_paths.c - paths of closure and shear: what the walls' work puts into a point is stored or turned to heat, and a
+ * closed path gives no energy.
  *
  *     W = sum of (f_n + f_n')/2 d(closure) - (f_s + f_s')/2 . du_s
  *     W - heat = stored - stored at the beginning,        W >= 0 over a closed path, J
  *
- * Every point begins and ends at the same place, on a path of straight parts of its own: closing, opening, small and large shear,
- * out of the plane of those before as well. Of eight points one is pressed by an initial force, one is made while its walls are
- * apart, and of one a part is apart, which does work of its own. The work is a sum of means, so where a force bends it is wrong by
- * its change within a small step; the bound allows for that.
+ * Every point begins and ends at the same place, on a path of straight parts of its own: closing, opening, small and
+ * large shear, out of the plane of those before as well. Of eight points one is pressed by an initial force, and one is
+ * made while its walls are apart. Of one a part is apart, which does work of its own. The work is a sum of means, so
+ * where a force bends it is wrong by its change within a small step; the bound allows for that.
  *
- * Shear of one direction, at a constant closure, leads to the same force whether it is made in a few steps or in many. A law that
- * forgets a state between the steps, or finds the wrong slip of a step, does not keep to this. */
+ * Shear of one direction, at a constant closure, leads to the same force whether it is made in a few steps or in many.
+ * A law that forgets a state between the steps, or finds the wrong slip of a step, does not keep to this. */
 #include "check/law_paths.h"
 
 #include <math.h>
@@ -19,10 +19,8 @@
 /* Corners of a path, and steps from one to the next. */
 #define CORNERS 7
 #define STEPS 150
-/* Tolerance: energy that may seem to be made or lost, relative to the work of all steps. The first is the error of the
- * sum, where forces bend. The second is that of steps with heat, in which forces bend less. Laws of Talus err by up to
- * 1e-3 and 5e-5, those with linear springs by 3e-5. A heat by the force at the end of a step errs by more. Test:
- * unit/test_check, python/test_wrong_laws. */
+/* Energy that may seem to be made or lost, relative to the work of all steps: the error of the sum, where forces bend,
+ * and of steps with heat, in which forces bend less. A heat by the force at the end of a step errs by more. */
 #define ERROR 2e-3
 #define HEAT_ERROR 2e-4
 /* Tolerance: heat of a step, of its work, below which it is rounding. */
@@ -230,8 +228,8 @@ void tl_law_check_energy(tl_law_trial *t)
 #define COARSE 12
 #define FINE 96
 #define TIME (FINE * TL_CHECK_DT)
-/* Share of the force by which the two may differ, for the path in few steps is not exact. Where a joint jumps they differ by more,
- * so that most points that slip must, and some number of them. */
+/* Share of the force by which the two may differ, for the path in few steps is not exact. Where a joint jumps they
+ * differ by more, so that most points that slip must, and some number of them. */
 #define DIFFERENCE 0.1
 #define SOME 12
 /* Share of the stress that the path leads to below which a stress is none. */

@@ -1,9 +1,9 @@
 /* law_points.c - calls a law on a batch as the host would, and watches what it writes to.
  *
- * Behind the padded batch lie lanes that are no one's, and behind the declared states columns. Both hold numbers of several
- * sizes and signs, and others in another call: no addition, product or bound leaves them all as they were. A law that writes
- * there, or to what is const, has overwritten what belongs to others. A law that reads there gives something else with other
- * numbers. So it does when it reads the columns of energies, which are to be written. */
+ * Behind the padded batch lie lanes that are no one's, and behind the declared states columns. Both hold numbers of
+ * several sizes and signs, and others in another call: no addition, product or bound leaves them all as they were. A
+ * law that writes there, or to what is const, has overwritten what belongs to others. A law that reads there gives
+ * something else with other numbers. So it does when it reads the columns of energies, which are to be written. */
 #include "check/law_points.h"
 
 #include "base/inside.h"

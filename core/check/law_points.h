@@ -1,9 +1,10 @@
-/* law_points.h - a law that is tried: its contact points, calling it on some of them as the host would, and the checks by number. */
+/* law_points.h - a law that is tried: its contact points, calling it on some of them as the host would, and the checks
+ * by number. */
 #ifndef TL_CHECK_LAW_POINTS_H
 #define TL_CHECK_LAW_POINTS_H
 
-#include "check/checker.h"
 #include "base/law_columns.h"
+#include "check/checker.h"
 
 enum {
     TL_LAW_RUNS,
@@ -35,7 +36,8 @@ enum {
 #define TL_CHECK_DT 1e-4
 /* Relative error of forces that rounding explains: some thousand roundings. */
 #define TL_CHECK_ROUNDING 1e-11
-/* Lanes of the longest batch, in which points are there more than once: no multiple of what a law may take at a time. */
+/* Lanes of the longest batch, in which points are there more than once: no multiple of what a law may take at a
+ * time. */
 #define TL_CHECK_LANES (2 * TL_CHECK_POINTS + TL_LANES)
 
 typedef struct tl_check_points {
@@ -72,9 +74,9 @@ typedef struct tl_check_call {
     tl_report report;
 } tl_check_call;
 
-/* Calls the law on the points order[begin] .. order[begin + count - 1] (all in turn when `order` is NULL), in a batch of
- * their own that is padded, between guards, and writes what it gives to `out`; of a point that is there twice what the last gives.
- * At most TL_CHECK_LANES. */
+/* Calls the law on the points order[begin] .. order[begin + count - 1], or in turn when `order` is NULL; at most
+ * TL_CHECK_LANES. They are a batch of their own that is padded, between guards. What the law gives goes to `out`; of a
+ * point that is there twice what the last gives. */
 void tl_law_call(const tl_check_law *law, const tl_check_points *in, tl_check_points *out,
                  const size_t *order, size_t begin, size_t count, tl_check_call *call);
 /* The same on all points, in one batch with energies. */
@@ -105,8 +107,8 @@ typedef struct tl_law_trial {
     tl_check_seen seen;            /* with this set and those before */
 } tl_law_trial;
 
-/* What points carry where their walls are apart, as the host finds it: what lifts them, m, the share of tension that they hold
- * in a part apart, and in a point that is wholly apart. */
+/* What points carry where their walls are apart, as the host finds it: what lifts them, m, the share of tension that
+ * they hold in a part apart, and in a point that is wholly apart. */
 typedef struct tl_check_gaps {
     double lift[TL_CHECK_POINTS], hold[TL_CHECK_POINTS], bond[TL_CHECK_POINTS];
 } tl_check_gaps;
@@ -116,7 +118,8 @@ void tl_law_gaps(const tl_check_law *law, const tl_check_points *p, tl_check_gap
 /* What `pressed` tells at the points' closures moved by `move`: energies, and forces or not-a-number. */
 void tl_law_pressed(const tl_check_law *law, const tl_check_points *given, double move,
                     double energy[TL_CHECK_POINTS], double force[TL_CHECK_POINTS]);
-/* Closure at the outermost fibre, `below` that in the middle; where a part is apart, that of a joint that opens in a line. */
+/* Closure at the outermost fibre, `below` that in the middle; where a part is apart, that of a joint that opens in a
+ * line. */
 double tl_law_edge(double closure, double apart, double lift, double below);
 
 #endif

@@ -1,7 +1,7 @@
 /* screen.c - the conformance check of screens.
  *
- * A screen is opened twice in a row with the given and default parameters, told of frames that nobody sees, asked for
- * commands that nobody gives, and closed. What reaches those who look only a test that looks can tell. */
+ * A screen is opened twice in a row with the given and default parameters. It is told of frames that nobody sees, asked
+ * for commands that nobody gives, and closed. What reaches those who look only a test that looks can tell. */
 #include "check/screen.h"
 
 #include "base/clock.h"

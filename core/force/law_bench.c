@@ -1,11 +1,12 @@
 /* law_bench.c - a joint law on one contact point: direct shear, cycles and closure tests (talus/law_test.h).
  *
- * The law gets a batch of TL_LANES points as in a step, of which the first has an area of 1 m2 and the others are padding. In
- * a test by normal stress s each step looks for the closure c at which
+ * The law gets a batch of TL_LANES points as in a step. The first has an area of 1 m2, and the others are padding. In a
+ * test by normal stress s each step looks for the closure c at which
  *
  *     f_n(c) = s + K (c_start - c)
  *
- * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work is summed by the trapezoidal rule. */
+ * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work
+ * is summed by the trapezoidal rule. */
 #include "base/inside.h"
 #include "base/law_columns.h"
 #include "contact/contacts.h"
@@ -87,8 +88,8 @@ static tl_status try_closure(const bench *b, const motion *by, double closure, s
 
 /* ---------------------------------------------------------------- normal stress ---------- */
 
-/* Tolerance: error of the normal stress that counts as none, relative to the stress, and as a closure of the stiffness
- * that the law names. Both are far above the rounding of a spring. */
+/* Error of the normal stress that counts as none, relative to the stress, and as a closure of the stiffness that the
+ * law names: both are far above the rounding of a spring. */
 #define STRESS_ERROR 1e-12
 #define CLOSURE_ERROR 1e-19
 /* Doublings of the first trial, which the law's stiffness makes too short: up to 1e30 times it. */
@@ -207,27 +208,19 @@ tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_error *
     for (size_t k = 0; k < test->count; k++) {
         const tl_law_leg *leg = &test->path[k];
         bool ramp = !isnan(leg->normal_stress);
+        bool timed = !isnan(leg->time), still = isnan(leg->shear) && isnan(leg->closure) && !ramp;
+        const char *why = NULL;
         if (!isnan(leg->closure) && by_stress(test))
-            return tl_fail(
-                error, TL_E_ARGUMENT,
-                "law_test, path[%zu]: closure is given in a test by normal_stress; leave "
-                "one of them out",
-                k + 1);
-        if (ramp && (!by_stress(test) || test->stiffness > 0))
-            return tl_fail(error, TL_E_ARGUMENT,
-                           "law_test, path[%zu]: normal_stress can change only in a test with "
-                           "normal_stress and without stiffness",
-                           k + 1);
-        if (isnan(leg->shear) && isnan(leg->closure) && !ramp && isnan(leg->time))
-            return tl_fail(error, TL_E_ARGUMENT,
-                           "law_test, path[%zu]: nothing is to happen: give shear, closure, "
-                           "normal_stress or a time",
-                           k + 1);
-        if (!isnan(leg->time) && !isnan(leg->speed))
-            return tl_fail(error, TL_E_ARGUMENT,
-                           "law_test, path[%zu]: time and speed both say how long it takes; leave "
-                           "one of them out",
-                           k + 1);
+            why = "closure is given in a test by normal_stress; leave one of them out";
+        else if (ramp && (!by_stress(test) || test->stiffness > 0))
+            why =
+                "normal_stress can change only in a test with normal_stress and without stiffness";
+        else if (still && !timed)
+            why = "nothing is to happen: give shear, closure, normal_stress or a time";
+        else if (timed && !isnan(leg->speed))
+            why = "time and speed both say how long it takes; leave one of them out";
+        if (why)
+            return tl_fail(error, TL_E_ARGUMENT, "law_test, path[%zu]: %s", k + 1, why);
         steps += (double)steps_of(test, leg);
         if (steps > TL_LAW_TEST_STEPS)
             return tl_fail(error, TL_E_ARGUMENT,

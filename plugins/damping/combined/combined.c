@@ -2,19 +2,17 @@
  *
  *     F_d = alpha/2 |F| (sign(dF/dt) - sign(v))     for each component of force and moment on its own
  *
- * F is the whole unbalanced force, dF its change since the step before; sign(0) is 0. In a free vibration
- * dF/dt and v have opposite signs, and it is the damping "local". About a steady motion the velocity
- * keeps its sign: local damping then brakes the motion and leaves the vibration alone, while here dF/dt
- * still tells the vibration's direction, so that is damped, and the drag is half. It suits slow flow,
- * sliding and moving boundaries. A body without velocity is left alone: there is nothing to damp.
+ * F is the whole unbalanced force, dF its change since the step before; sign(0) is 0. In a free vibration dF/dt and v
+ * have opposite signs, and it is the damping "local". About a steady motion the velocity keeps its sign: local damping
+ * then brakes the motion and leaves the vibration alone. Here dF/dt still tells the vibration's direction, so that is
+ * damped, and the drag is half. It suits slow flow, sliding and moving boundaries. A body without velocity is left
+ * alone: there is nothing to damp.
  *
  * Source: the combined damping of the distinct element codes of Itasca, after P. A. Cundall. The
  * effective stiffness rises by (1 + alpha) at the most, so the stable time step shrinks by
  * 1 / sqrt(1 + alpha). The forces of the step before are the host's. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
-
-#include <math.h>
 
 typedef struct params {
     double alpha;
@@ -59,11 +57,7 @@ static double step_factor(const void *self)
     return 1 / sqrt(1 + p->alpha);
 }
 
-static const tl_damping_ops ops = {.size = sizeof ops,
-                                   .update = update,
-                                   .step_factor = step_factor,
-                                   .before = true,
-                                   .never_fails = true};
+static const tl_damping_ops ops = TL_DAMPING_OPS(.step_factor = step_factor, .before = true);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_DAMPING, ops, .name = "combined",

@@ -5,15 +5,16 @@
  *
  * The kinetic energy of the whole has then just been at its peak, and the model near an equilibrium. From there it
  * starts again, towards the next. No coefficient has to fit the model's lowest frequency: a vibration comes to rest
- * after a quarter of its period, the lowest too. What slides or falls gains speed until then, and loses it with the rest.
+ * after a quarter of its period, the lowest too. What slides or falls gains speed until then, and loses it with the
+ * rest.
  *
  * Source: the kinetic damping of dynamic relaxation, P. A. Cundall, "Explicit finite-difference methods in
  * geomechanics" (1976), and M. R. Barnes, "Form-finding and analysis of prestressed nets and membranes", Computers and
- * Structures 30 (1988) 685-695. There the kinetic energy is watched; its rate, the power of the forces, tells the peak a
- * step sooner and under mass scaling, too.
+ * Structures 30 (1988) 685-695. There the kinetic energy is watched; its rate, the power of the forces, tells the peak
+ * a step sooner and under mass scaling, too.
  *
- * Velocities are stopped by the viscous coefficient 2 / dt, with which (23) leaves nothing of them, whatever the inertia,
- * and takes half of the kick. So the half step after a stop is that of a motion that begins. */
+ * Velocities are stopped by the viscous coefficient 2 / dt, with which (23) leaves nothing of them, whatever the
+ * inertia, and takes half of the kick. So the half step after a stop is that of a motion that begins. */
 #include <talus/kit.h>
 #include <talus/version.h>
 

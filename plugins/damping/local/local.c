@@ -10,10 +10,8 @@
  * Source: P. A. Cundall, "Distinct element models of rock and soil structure", in Analytical and
  * Computational Methods in Engineering Rock Mechanics (1987). It raises the effective stiffness by
  * (1 + alpha), so the stable time step shrinks by 1 / sqrt(1 + alpha). */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
-
-#include <math.h>
 
 typedef struct params {
     double alpha;
@@ -55,8 +53,7 @@ static double step_factor(const void *self)
     return 1 / sqrt(1 + p->alpha);
 }
 
-static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = step_factor, .never_fails = true};
+static const tl_damping_ops ops = TL_DAMPING_OPS(.step_factor = step_factor);
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_DAMPING, ops, .name = "local",

@@ -26,8 +26,7 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
     return TL_OK;
 }
 
-static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = tl_step_factor_one, .never_fails = true};
+static const tl_damping_ops ops = TL_DAMPING_OPS(.step_factor = tl_step_factor_one);
 
 static const tl_kind kind = TL_KIND(TL_KIND_DAMPING, ops, .name = "viscous",
                                     .doc = "Constant viscous damping of all velocities.",

@@ -6,13 +6,13 @@
  *     |f_s| <= A s tan(phi_r + m(u / u_peak) i) / reduction,    u_peak = L / 500 (JRC / L)^0.33
  *     opening += tan(m i / 2) slip                   while m > 0
  *
- * m is JRC_mob / JRC, a line through the points of `mobilised`; below u = 0.3 u_peak the angle rises from 0 to phi_r. The
- * displacement u is the length of the slip and the stretch of the shear spring, so a step of whatever length ends on the curve.
- * Beyond the stress `linear_from` closure is linear with the tangent there, which is the stiffness that the time step
- * needs.
+ * m is JRC_mob / JRC, a line through the points of `mobilised`; below u = 0.3 u_peak the angle rises from 0 to phi_r.
+ * The displacement u is the length of the slip and the stretch of the shear spring. So a step of whatever length ends
+ * on the curve. Beyond the stress `linear_from` closure is linear with the tangent there, which is the stiffness that
+ * the time step needs.
  *
- * Source: Barton and Choubey, Rock Mech. 10 (1977) 1-54; Bandis, Lumsden and Barton, Int. J. Rock Mech. Min. Sci. 18 (1981) 1-21
- * and 20 (1983) 249-268; Barton, Bandis and Bakhtar, ibid. 22 (1985) 121-140.
+ * Source: Barton and Choubey, Rock Mech. 10 (1977) 1-54; Bandis, Lumsden and Barton, Int. J. Rock Mech. Min. Sci. 18
+ * (1981) 1-21 and 20 (1983) 249-268; Barton, Bandis and Bakhtar, ibid. 22 (1985) 121-140.
  *
  * Energy turned to heat: the work of slip, less what it pays for opening the joint, tl_law_lift_work.
  *
@@ -21,21 +21,22 @@
 #include <talus/version.h>
 
 #define LN10 2.30258509299404568402
-/* Scaling a force down to its limit, and the slip that follows from it, leave it within some roundings of the limit; without
- * this margin a point at rest would be scaled down by them in every step. */
+/* Scaling a force down to its limit, and the slip that follows from it, leave it within some roundings of the limit;
+ * without this margin a point at rest would be scaled down by them in every step. */
 #define ROUNDING 1e-14
 /* What the strength without roughness, which needs no logarithm, must exceed the shear stress by to be believed. */
 #define SURE (1 - 1e-12)
 /* Step of such a slip, over it, that is no step: the error is squared in each. */
 #define FOUND 1e-9
-/* Newton's passes for the slip that opens the joint and so raises its own strength. Those that have not met after them, as after
- * a step of many u_peak, do not open in that step. */
+/* Newton's passes for the slip that opens the joint and so raises its own strength. Those that have not met after them,
+ * as after a step of many u_peak, do not open in that step. */
 #define PASSES 5
 /* Largest angle of friction with roughness, deg: Barton and Choubey. */
 #define STEEPEST 70
 /* Normal stress, Pa, whose logarithm is taken for those below. */
 #define FAINT 1e-200
-/* Closure over vm up to which the stored energy is summed as a series: its closed form is a difference of like numbers. */
+/* Closure over vm up to which the stored energy is summed as a series: its closed form is a difference of like
+ * numbers. */
 #define SERIES 0.03125
 
 typedef struct params {
@@ -328,8 +329,8 @@ TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
     }
 }
 
-/* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
- * every machine. */
+/* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not
+ * vectorised for every machine. */
 TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, const trial *restrict t, double *restrict mark,
                        double *restrict stored, double *restrict dissipated, const int slid,

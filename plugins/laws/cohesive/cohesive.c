@@ -1,4 +1,5 @@
-/* cohesive.c - law "cohesive": a bond that softens in tension and shear until it is broken, and friction on what is broken.
+/* cohesive.c - law "cohesive": a bond that softens in tension and shear until it is broken, and friction on what is
+ * broken.
  *
  * Of the area a share D, the damage, is broken; the bonded rest is elastic:
  *
@@ -11,23 +12,25 @@
  *     f_n = A (max(0, s) - (1 - D) t_n)
  *     f_s = A ((1 - D) t_s + D q),  |q| <= tan(friction) max(0, s)
  *
- * r is the displacement at failure over that at onset. Of a path of one mode mix, the work of tension over GI and that of shear
- * over GII then add up to 1. What breaks keeps the stress it had, up to the friction, and q is the mean over the broken share.
+ * r is the displacement at failure over that at onset. Of a path of one mode mix, the work of tension over GI and that
+ * of shear over GII then add up to 1. What breaks keeps the stress it had, up to the friction, and q is the mean over
+ * the broken share.
  *
- * Energy turned to heat: of the damage, and of slip of the broken share. Both are what the walls' work, by mean forces, leaves of
- * the stored energy: dD k x0 x1 / 2 of a bonded spring that goes from x0 to x1 while dD breaks. Averaging q only loses energy.
+ * Energy turned to heat: of the damage, and of slip of the broken share. Both are what the walls' work, by mean forces,
+ * leaves of the stored energy: dD k x0 x1 / 2 of a bonded spring that goes from x0 to x1 while dD breaks. Averaging q
+ * only loses energy.
  *
- * Source: Camanho and Davila, NASA/TM-2002-211737 (2002), with the linear criterion of failure; friction on the broken share
- * after Bisoffi-Sauve, Morel and Dubois, Eng. Struct. 182 (2019) 89-104, and Alfano and Sacco, Int. J. Numer. Meth. Engng 68
- * (2006) 542-582. Walls that come near each other from afar have no bond.
+ * Source: Camanho and Davila, NASA/TM-2002-211737 (2002), with the linear criterion of failure; friction on the broken
+ * share after Bisoffi-Sauve, Morel and Dubois, Eng. Struct. 182 (2019) 89-104, and Alfano and Sacco, Int. J. Numer.
+ * Meth. Engng 68 (2006) 542-582. Walls that come near each other from afar have no bond.
  *
- * Limits: compression does not raise c; it does not crush. Damage begins where a point's area is pulled most, at its outermost
- * fibre. */
+ * Limits: compression does not raise c; it does not crush. Damage begins where a point's area is pulled most, at its
+ * outermost fibre. */
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Scaling a stress down to its limit, mixing it with another and taking it out of the force again leaves it within some
- * roundings of the limit; without this margin a point at rest would be scaled down by them in every step. */
+/* A stress is scaled down to its limit, mixed with another and taken out of the force again. That leaves it within
+ * some roundings of the limit. Without this margin a point at rest would be scaled down by them in every step. */
 #define ROUNDING 1e-14
 /* Damage that leaves less than this share bonded is whole: the stress of the rest could not be told from rounding. */
 #define REST 1e-6
@@ -133,7 +136,8 @@ TL_IN_LOOP double carried(double before, double then, double now)
     return now == then ? before : now;
 }
 
-/* Heat of the slip of a spring of unit stiffness that is brought down from a trial stress; `along`: its product with that before. */
+/* Heat of the slip of a spring of unit stiffness that is brought down from a trial stress; `along`: its product with
+ * that before. */
 TL_IN_LOOP double slip_heat(double along, double trial, double limit)
 {
     double size = trial > limit ? trial : 1;
@@ -156,8 +160,8 @@ TL_IN_LOOP double most_pulled(double kn, double edge, double initial, double mea
     return fibre > mean ? fibre : mean;
 }
 
-/* The law for up to TL_LANES points from `begin`. A NaN goes through all comparisons to the forces, where the host finds it. `mark`
- * takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. */
+/* The law for up to TL_LANES points from `begin`. A NaN goes through all comparisons to the forces, where the host
+ * finds it. `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. */
 TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t begin,
                      uint32_t lanes, double *restrict mark, double *restrict stored,
                      double *restrict dissipated)

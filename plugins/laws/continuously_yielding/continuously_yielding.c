@@ -6,21 +6,22 @@
  *     d phi_m = -(phi_m - phi) (1 - F) du / R         not where F > 1
  *     opening += max(0, tan(psi)) (1 - F) du          psi = atan(t / s) - phi, at the end of a step
  *
- * r is t / t_m, at most 0.75, where the motion was last reversed, and 0 at first. Without `softening` F is not negative, so that
- * t stays where the wear of t_m overtakes it. In the plane t is the component along du, and the stress stays within the larger of
- * t_m and of what it was; it never is more than s tan(phi_i). Over a step the equation of t is solved exactly, at the mean of
- * phi_m before and after.
+ * r is t / t_m, at most 0.75, where the motion was last reversed, and 0 at first. Without `softening` F is not
+ * negative, so that t stays where the wear of t_m overtakes it. In the plane t is the component along du, and the
+ * stress stays within the larger of t_m and of what it was; it never is more than s tan(phi_i). Over a step the
+ * equation of t is solved exactly, at the mean of phi_m before and after.
  *
- * Reversals. A joint has an r for each way it may move, e: r(e) = a + min(0, b.e), with the states a, `reversal`, and b, `way`.
- * While it moves by du along e, r(e) stays, and r(-e), which a motion back begins with, comes to the present -t / t_m, at most 0.75:
+ * Reversals. A joint has an r for each way it may move, e: r(e) = a + min(0, b.e), with the states a, `reversal`, and
+ * b, `way`. While it moves by du along e, r(e) stays. r(-e), which a motion back begins with, comes to the present -t /
+ * t_m, at most 0.75:
  *     dr(-e) = (-t / t_m - r(-e)) du / l,     l = 0.01 t_m / ks + 1e-6 R
- * what b has across e fades as r(-e) does. So a motion back over l or more is a reversal; one that is next to nothing changes next to
- * nothing, for no test tells which is which.
+ * what b has across e fades as r(-e) does. So a motion back over l or more is a reversal; one that is next to nothing
+ * changes next to nothing, for no test tells which is which.
  *
- * Energy. Unloading gives back more than t^2 / (2 ks), for it is softer than ks. What the walls have put in counts as stored up to a
- * bound on what unloading can give back, 3 (1 + x) t_m^2 / ks (x - log(1 + x)) with x = t / t_m; the rest is heat. The part
- * beyond t^2 / (2 ks_max) is a state. Where it is used up, as where an initial stress is unloaded, t falls as such a spring's does.
- * Opening the joint costs tl_law_lift_work.
+ * Energy. Unloading gives back more than t^2 / (2 ks), for it is softer than ks. What the walls have put in counts as
+ * stored up to a bound on what unloading can give back; the rest is heat. With x = t / t_m the bound is 3 (1 + x) t_m^2
+ * / ks (x - log(1 + x)). The part beyond t^2 / (2 ks_max) is a state. Where it is used up, as where an initial stress
+ * is unloaded, t falls as such a spring's does. Opening the joint costs tl_law_lift_work.
  *
  * Source: Cundall and Hart, report to Itasca (1984), and Eng. Comput. 9 (1992) 101-113;
  * Cundall and Lemos, in Rockbursts and Seismicity in Mines (1990) 107-112.
@@ -33,7 +34,8 @@
 #define ROUNDING 1e-14
 /* The largest r at a reversal. */
 #define MOST_RATIO 0.75
-/* The way l in which r comes to that of a motion back, over t_m / ks; and what it is at the least, over the roughness. */
+/* The way l in which r comes to that of a motion back, over t_m / ks; and what it is at the least, over the
+ * roughness. */
 #define MEMORY 0.01
 #define LEAST_MEMORY 1e-6
 /* Normal stress and strength, Pa, that count as none. */
@@ -90,7 +92,8 @@ typedef struct yielding {
     double per_roughness, least_memory, dilation, softening;
 } yielding;
 
-/* `curved` is a constant at each call: whether stiffness depends on the stress, which takes logarithms and exponentials. */
+/* `curved` is a constant at each call: whether stiffness depends on the stress, which takes logarithms and
+ * exponentials. */
 
 /* s(v) of the power law, without its bound. */
 TL_IN_LOOP double curved_stress(const int curved, const yielding *law, double v)
@@ -261,13 +264,14 @@ TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, dou
     return w;
 }
 
-/* What is remembered of the way that a point was moved: the ratio for the way it is moved now, the share of the old way that stays, and
- * what this way adds along itself. */
+/* What is remembered of the way that a point was moved: the ratio for the way it is moved now, the share of the old way
+ * that stays, and what this way adds along itself. */
 typedef struct turning {
     double ratio, across, along;
 } turning;
 
-/* Half of what was remembered is left after a way of the length `memory`; `share` is that of the strength which is used along this way. */
+/* Half of what was remembered is left after a way of the length `memory`; `share` is that of the strength which is used
+ * along this way. */
 TL_IN_LOOP turning remember(double last, double toward, double share, double ratio, double way,
                             double memory)
 {
@@ -278,8 +282,8 @@ TL_IN_LOOP turning remember(double last, double toward, double share, double rat
     return (turning){ratio > back ? ratio : back, across, ratio - back - across * toward};
 }
 
-/* Closure, shear stress and wear. `moves`, a constant: 0 if no lane moves along the joint; then no angle is needed, and the
- * results are the same to the bit. How many lanes slip opens. */
+/* Closure, shear stress and wear. `moves`, a constant: 0 if no lane moves along the joint; then no angle is needed, and
+ * the results are the same to the bit. How many lanes slip opens. */
 TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32_t begin,
                         uint32_t lanes, trial *restrict t, const int curved, const int moves)
 {
@@ -317,8 +321,8 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double yields = slip > 0.5 * d ? 1 : 0, changes = up < 0 ? 1 : up;
         double over = size > bound * (1 + ROUNDING) ? 1 : 0;
         double scale = over > 0 ? bound / (over > 0 ? size : 1) : 1;
-        /* Of the stresses before, a point that presses less than others and is pressed more in this step would open by less than they:
-         * it would stay behind them, and part. */
+        /* Of the stresses before, a point that presses less than others and is pressed more in this step would open by
+         * less than they: it would stay behind them, and part. */
         double slope = stress > FAINT ? scale * size / (stress > FAINT ? stress : 1) : 0;
         double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
         tangent = tangent > 0 ? law.dilation * tangent : 0;
@@ -361,8 +365,8 @@ TL_IN_LOOP double elastic(double x)
     return 3 * (1 + x) * (x < 1e-3 ? series : closed);
 }
 
-/* Share of a stress to which it falls when there is only so much energy: `paid` and the work `ends` of what stays of it, and its spring
- * would hold `spring`. */
+/* Share of a stress to which it falls when there is only so much energy: `paid` and the work `ends` of what stays of
+ * it, and its spring would hold `spring`. */
 TL_IN_LOOP double afforded(double spring, double paid, double ends)
 {
     double square = ends * ends + 4 * spring * paid, some = spring > 0 ? spring : 1;
@@ -371,8 +375,8 @@ TL_IN_LOOP double afforded(double spring, double paid, double ends)
     return share > 0 ? share : 0;
 }
 
-/* Dilation, and what it leaves of the energy that shear has put in; whether some of that might be more than unloading can give
- * back. `opens`, a constant: 0 if no lane is opened by slip. */
+/* Dilation, and what it leaves of the energy that shear has put in; whether some of that might be more than unloading
+ * can give back. `opens`, a constant: 0 if no lane is opened by slip. */
 TL_IN_LOOP double lift(const yielding *given, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, trial *restrict t, const int curved, const int opens)
 {

@@ -7,22 +7,22 @@
  *     |f_t| > limit:  f_s = f_t limit / |f_t|       eq. (12), slipping
  *     opening += tan(dilation) slip                 up to dilation_limit tan(dilation)
  *
- * Where a part of the area is closed and another apart, by `apart` in the mean, the bond pulls on the latter; without it
- * only the closed part carries. f_e is the normal force that the area A would have with the closure at its outermost fibre: a
- * bond in bending breaks where it is pulled most. T, c and the friction are those of the bond while it holds. At the first
- * failure, in tension or in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
- * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost; of a point that has been given area of both kinds it is
- * the share that is bonded. Such a point has the mean strengths in shear, pulls with that share of its area, and fails where a whole one
- * does; no residual tension holds on it. Since the closure is a total one, a point that has opened carries again only where its
- * walls meet. A residual tensile strength holds while f_e >= -T A. Walls that have parted
- * beyond it do not pull on their way back: it holds again once they have met over the whole area. Dilation and its state `opening`
- * are those of the law "coulomb"; under tension slip does not dilate.
+ * Where a part of the area is closed and another apart, by `apart` in the mean, the bond pulls on the latter; without
+ * it only the closed part carries. f_e is the normal force that the area A would have with the closure at its outermost
+ * fibre: a bond in bending breaks where it is pulled most. T, c and the friction are those of the bond while it holds.
+ * At the first failure, in tension or in shear, the bond is lost for good: T, c and the friction drop to their residual
+ * values within that step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost; of a point that has
+ * been given area of both kinds it is the share that is bonded. Such a point has the mean strengths in shear, pulls
+ * with that share of its area, and fails where a whole one does; no residual tension holds on it. Since the closure is
+ * a total one, a point that has opened carries again only where its walls meet. A residual tensile strength holds while
+ * f_e >= -T A. Walls that have parted beyond it do not pull on their way back: it holds again once they have met over
+ * the whole area. Dilation and its state `opening` are those of the law "coulomb"; under tension slip does not dilate.
  *
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the loss of the bond
  * after the manual of 3DEC. Walls that come near each other from afar have no bond.
  *
- * Energy turned to heat: as in the law "coulomb", and what a tensile spring has got when it lets go, bond or residual. The walls
- * work by the mean of the forces before and after a step: tl_law_snap_work.
+ * Energy turned to heat: as in the law "coulomb", and what a tensile spring has got when it lets go, bond or residual.
+ * The walls work by the mean of the forces before and after a step: tl_law_snap_work.
  *
  * Limit: as for "coulomb", changes of kn and ks and insitu belong before slip has opened the joint. */
 #include <talus/kit.h>
@@ -94,7 +94,8 @@ typedef struct gripping {
     double bond, tangent, cohesion;
 } gripping;
 
-/* Whether a bond holds a step: under a shear force on trial, what presses or pulls, and the force at the outermost fibre. */
+/* Whether a bond holds a step: under a shear force on trial, what presses or pulls, and the force at the outermost
+ * fibre. */
 TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, double before,
                             double area, double trial, double total, double fibre)
 {
@@ -108,12 +109,12 @@ TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, doub
                       after * peak->cohesion + rest * residual->cohesion};
 }
 
-/* The law itself, for up to TL_LAW_STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
- * so that the loop exists once for each and none has a branch in it; without dilation the opening of
- * slip in the past still counts. A NaN goes through
- * all comparisons to the forces, where the host finds it. `mark` is given 1 of walls that were apart and have not met since, else 0,
- * and takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. `more` takes the energy beyond
- * that of the sum f_n: P Q / (kn A) of points of which a part presses and another pulls, and that of a share that pulls alone. */
+/* The law itself, for up to TL_LAW_STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call, so that
+ * the loop exists once for each and none has a branch in it; without dilation the opening of slip in the past still
+ * counts. A NaN goes through all comparisons to the forces, where the host finds it. `mark` is given 1 of walls that
+ * were apart and have not met since, else 0, and takes the flags as doubles: a loop over lanes of two widths is not
+ * vectorised for every machine. `more` takes the energy beyond that of the sum f_n: P Q / (kn A) of points of which a
+ * part presses and another pulls, and that of a share that pulls alone. */
 TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                      double *restrict mark, double *restrict more, const int heat,
                      const int dilates)

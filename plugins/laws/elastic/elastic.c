@@ -3,10 +3,10 @@
  *     f_n = kn A (closure - apart) + f_n0           total, compression positive; after eq. (6)
  *     f_s <- f_s - ks A du_s                        eq. (7), on block B
  *
- * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The normal force
- * follows the total closure, not increments, so that an opened contact does not reload before its gap
- * is closed again. Nothing is dissipated. Where a part of the area is closed and another apart, by `apart` in the mean, the latter
- * pulls. Walls that come near each other from afar do not pull before they have met over the whole area; until then they keep the
+ * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The normal force follows the total
+ * closure, not increments, so that an opened contact does not reload before its gap is closed again. Nothing is
+ * dissipated. Where a part of the area is closed and another apart, by `apart` in the mean, the latter pulls. Walls
+ * that come near each other from afar do not pull before they have met over the whole area; until then they keep the
  * flag. */
 #include <talus/kit.h>
 #include <talus/version.h>

@@ -6,23 +6,25 @@
  *     theta' = 1 - V theta / D_c              aging;     theta' = -(V theta / D_c) ln(V theta / D_c)      slip
  *     f_s <- f_s - ks A (du_s - V dt)
  *
- * For V > 0 this is mu0 + a ln(V / V0) + b ln(V0 theta / D_c), regularised at V = 0. A state goes on by the exact solution at
- * its V. The force of a step is that of the state in its middle, reached with the rate of the step itself, so that slip of many
- * D_c in a step keeps to steady friction. V follows from y, with E = (mu0 + b ln(V0 theta / D_c)) / a at the beginning:
+ * For V > 0 this is mu0 + a ln(V / V0) + b ln(V0 theta / D_c), regularised at V = 0. A state goes on by the exact
+ * solution at its V. The force of a step is that of the state in its middle, reached with the rate of the step itself.
+ * So slip of many D_c in a step keeps to steady friction. V follows from y, with E = (mu0 + b ln(V0 theta / D_c)) / a
+ * at the beginning:
  *
  *     V = V0 (exp(y - E) - exp(-y - E)),    s mu + (ks dt + eta) V = |f_t| / A
  *
  * by Newton's steps from the rate of the step before, kept between bounds that close in on a root.
  *
- * Source: Dieterich, J. Geophys. Res. 84 (1979) 2161-2168; Ruina, J. Geophys. Res. 88 (1983) 10359-10370; the form with arsinh
- * after Rice and Ben-Zion, Proc. Natl. Acad. Sci. 93 (1996) 3811-3818; eta: Rice, J. Geophys. Res. 98 (1993) 9885-9907.
+ * Source: Dieterich, J. Geophys. Res. 84 (1979) 2161-2168; Ruina, J. Geophys. Res. 88 (1983) 10359-10370; the form with
+ * arsinh after Rice and Ben-Zion, Proc. Natl. Acad. Sci. 93 (1996) 3811-3818; eta: Rice, J. Geophys. Res. 98 (1993)
+ * 9885-9907.
  *
  * Limit: slip never ends, so a joint under shear stress creeps. Scaled masses falsify the rates. */
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Newton's passes at most: 4 do in steady slip, and some 50 halve the bounds to nothing. A lane that has found its root stays
- * there, so that it does not matter which others it is with. */
+/* Newton's passes at most: 4 do in steady slip, and some 50 halve the bounds to nothing. A lane that has found its root
+ * stays there, so that it does not matter which others it is with. */
 #define PASSES 60
 /* Step of y, which is about ln V, that is no step. */
 #define FOUND 1e-12
@@ -120,7 +122,8 @@ typedef struct trial {
     tl_law_scratch root, low, high, found;
 } trial;
 
-/* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. How many lanes carry shear. */
+/* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. How many lanes carry
+ * shear. */
 TL_IN_LOOP double press(const params *given, const tl_law_batch *batch, uint32_t begin,
                         uint32_t lanes, trial *restrict t)
 {
@@ -159,7 +162,8 @@ TL_IN_LOOP double press(const params *given, const tl_law_batch *batch, uint32_t
         t->exponent[i] = exponent;
         t->low[i] = 0;
         t->high[i] = high;
-        /* no more than would carry the stress without slip in this step: a point at rest has slowed down since the last */
+        /* no more than would carry the stress without slip in this step: a point at rest has slowed down since the
+         * last */
         double still = shear / (effect > 0 ? effect : 1);
         root = root < still ? root : still;
         t->root[i] = root < high ? root : high;
@@ -224,8 +228,8 @@ TL_IN_LOOP void find_rates(const params *given, double dt, uint32_t lanes, trial
     }
 }
 
-/* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
- * every machine. */
+/* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not
+ * vectorised for every machine. */
 TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, const trial *restrict t, double *restrict mark,
                        double *restrict stored, double *restrict dissipated, const int evolution)

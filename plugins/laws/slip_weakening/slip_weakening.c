@@ -6,15 +6,16 @@
  *     w(s) = max(0, 1 - s / D_c)  or  exp(-s / D_c)          linear, exponential
  *     |f_t| > strength:  |f_s| = strength(s + ds) = |f_t| - ks A ds,   s += ds
  *
- * The slip s of a step is the one at whose end the strength is met, so the force lies on the curve at any length of step. Where
- * the strength falls faster than the spring, ks < (c - c_r + s_n (tan phi - tan phi_r)) / D_c, it cannot: the point then falls
- * to the next crossing of the two within the step, and what the spring gives off beyond the strength is heat.
+ * The slip s of a step is the one at whose end the strength is met. So the force lies on the curve at any length of
+ * step. Where the strength falls faster than the spring, ks < (c - c_r + s_n (tan phi - tan phi_r)) / D_c, it cannot:
+ * the point then falls to the next crossing of the two within the step, and what the spring gives off beyond the
+ * strength is heat.
  *
- * Healing of a point that does not slip: s goes back to 0 at once, or shrinks by exp(-t / healing_time). With healing s is no
- * more than D_c in the linear form. It changes the strength only, so it makes no energy.
+ * Healing of a point that does not slip: s goes back to 0 at once, or shrinks by exp(-t / healing_time). With healing s
+ * is no more than D_c in the linear form. It changes the strength only, so it makes no energy.
  *
- * Source: Ida, J. Geophys. Res. 77 (1972) 3796-3805; Andrews, J. Geophys. Res. 81 (1976) 5679-5687; stability after Rice,
- * Pure Appl. Geophys. 121 (1983) 443-475. */
+ * Source: Ida, J. Geophys. Res. 77 (1972) 3796-3805; Andrews, J. Geophys. Res. 81 (1976) 5679-5687; stability after
+ * Rice, Pure Appl. Geophys. 121 (1983) 443-475. */
 #include <talus/kit.h>
 #include <talus/version.h>
 
@@ -22,7 +23,8 @@
 #define SURE (1 - 1e-12)
 /* Step of Newton's search, over D_c, that is no step: the error is squared in each. */
 #define FOUND 1e-9
-/* Newton's passes for the slip of the exponential form: the start is within a quarter of it, and the error is squared. */
+/* Newton's passes for the slip of the exponential form: the start is within a quarter of it, and the error is
+ * squared. */
 #define PASSES 6
 /* Share of D_c below which slip that heals is gone: its strength is lost in rounding. */
 #define HEALED 1e-16
@@ -121,9 +123,9 @@ TL_IN_LOOP double linear_slip(double above, double drop, double room, double slo
     return steep > 0 ? soon : above;
 }
 
-/* Where Newton's search for the same of the exponential strength begins. It is the root of
- * g(x) = above - x - drop exp(-x), which is concave, so that steps from beyond the root stay beyond it. The start replaces
- * exp(-x) by 1 - x + x^2/3, which is less up to x = 1. */
+/* Where Newton's search for the same of the exponential strength begins. It is the root of g(x) = above - x - drop
+ * exp(-x), which is concave, so that steps from beyond the root stay beyond it. The start replaces exp(-x) by 1 - x +
+ * x^2/3, which is less up to x = 1. */
 TL_IN_LOOP double exponential_start(double above, double drop)
 {
     double b = 1 - drop, over = above - drop, q = drop * (1. / 3);
@@ -136,8 +138,8 @@ TL_IN_LOOP double exponential_start(double above, double drop)
     return near <= 1 ? start : above;
 }
 
-/* One of its passes; how many lanes have not found their root. They stay at one that they have found, so that it does not
- * matter which others they are with. */
+/* One of its passes; how many lanes have not found their root. They stay at one that they have found, so that it does
+ * not matter which others they are with. */
 TL_IN_LOOP double exponential_pass(const double *restrict above, const double *restrict drop,
                                    double *restrict x, double *restrict found, uint32_t lanes)
 {
@@ -247,8 +249,8 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
     }
 }
 
-/* Forces, heat and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for every
- * machine. */
+/* Forces, heat and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
+ * every machine. */
 TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, const trial *restrict t, double *restrict mark,
                        const int heat)

@@ -1,8 +1,8 @@
 /* browser.c - screen "browser": the page of a model, served on the loopback while the model runs.
  *
- * One thread serves all requests, with libmicrohttpd. It waits for four things at once: somebody who connects, a frame or the
- * end from the model's thread, what the library's connections wait for, and watchers without news who go away, of whom
- * the library hears nothing. The model's thread only puts frames and takes commands (mailbox.h).
+ * One thread serves all requests, with libmicrohttpd. It waits for four things at once: somebody who connects, a frame
+ * or the end from the model's thread, what the library's connections wait for, and watchers without news who go away.
+ * Of those the library hears nothing. The model's thread only puts frames and takes commands (mailbox.h).
  *
  * There is no other address than 127.0.0.1. Over ssh: `ssh -L PORT:127.0.0.1:PORT host`. */
 #define _GNU_SOURCE /* accept4, POLLRDHUP */

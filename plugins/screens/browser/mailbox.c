@@ -26,8 +26,8 @@ struct mailbox {
     pthread_mutex_t lock;
     pthread_cond_t told; /* a command, or somebody who begins to look */
     atomic_uint watching, waiting;
-    /* What follows is read under the lock, and written under it. Frames are written by `put` alone, which therefore reads
-     * them without it. */
+    /* What follows is read under the lock, and written under it. Frames are written by `put` alone, which therefore
+     * reads them without it. */
     piece **news; /* since the last beginning */
     size_t news_count, news_capacity;
     piece *now;

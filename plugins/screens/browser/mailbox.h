@@ -1,8 +1,9 @@
 /* mailbox.h - frames and commands between the thread of the model and the thread of the server.
  *
  * The model's side puts frames and takes commands; it waits for no reader. What is put is copied once, into pieces that
- * never change and that whoever reads them holds by a count. A watcher gets frames one by one, each whole: the news that it
- * has not got yet, and what there is now. While one is on its way to it newer ones are passed over, but for their news. */
+ * never change and that whoever reads them holds by a count. A watcher gets frames one by one, each whole: the news
+ * that it has not got yet, and what there is now. While one is on its way to it newer ones are passed over, but for
+ * their news. */
 #ifndef TALUS_BROWSER_MAILBOX_H
 #define TALUS_BROWSER_MAILBOX_H
 

@@ -4,11 +4,10 @@
  *     GET /scene      frames without an end, as docs/scene_format.md tells
  *     POST /command   a command for the model, one JSON object
  *
- * A request shows the token, in the header X-Talus-Token or in the address, or gets 403, whatever it asks for but the page, which holds nothing
- * of the run. Its body is
- * read to the end before the answer, where that is not long, since a connection that is closed before is reset, and the answer
- * lost. Every answer but the frames closes its connection, so that none is kept for nothing. A request that is no HTTP
- * gets the library's own answer, which holds nothing. */
+ * A request shows the token, in the header X-Talus-Token or in the address, or gets 403, whatever it asks for. The page
+ * needs none, for it holds nothing of the run. A body that is not long is read to its end before the answer. A
+ * connection that is closed before is reset, and the answer lost. Every answer but the frames closes its connection, so
+ * that none is kept for nothing. A request that is no HTTP gets the library's own answer, which holds nothing. */
 #include "server.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* server.h - what the requests and the loop of the server share. All of it belongs to the server's thread, but for what is
- * said to be the model's. */
+/* server.h - what the requests and the loop of the server share. All of it belongs to the server's thread, but for what
+ * is said to be the model's. */
 #ifndef TALUS_BROWSER_SERVER_H
 #define TALUS_BROWSER_SERVER_H
 
@@ -8,8 +8,8 @@
 
 #include <microhttpd.h>
 
-/* Who can look at once; connections that are served, so that those who look can also command. As many more are let in and get 503
- * for an answer; the others are closed at once. */
+/* Who can look at once; connections that are served, so that those who look can also command. As many more are let in
+ * and get 503 for an answer; the others are closed at once. */
 #define MOST_WATCHERS 8
 #define MOST_CONNECTIONS 12
 

@@ -2,8 +2,8 @@
  *
  *     F_d = -c m |v| v        M_d = -c_w I |w| w
  *
- * c is in 1/m, c_w without a unit. A body that falls reaches the velocity sqrt(g / c). The force is a pure function of the
- * body, so the host may give bodies in batches of any size, to several threads. */
+ * c is in 1/m, c_w without a unit. A body that falls reaches the velocity sqrt(g / c). The force is a pure function of
+ * the body, so the host may give bodies in batches of any size, to several threads. */
 #include <talus/kit.h>
 
 /* What a script gives; the host fills it in from the table below, checked and with defaults. */

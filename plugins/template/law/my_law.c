@@ -5,8 +5,8 @@
  *     |f_s| <= f_n tan phi;  slip grows by the part of the motion that the spring does not take
  *
  * Compression is positive. The friction is that at the end of the step, so a step without motion changes nothing: with
- * limit = f_n tan phi at its beginning and soft = f_n (tan peak - tan residual) / distance, slip grows by
- * (|f_t| - limit) / (ks A - soft). Where the friction falls faster than the spring unloads, it falls to the residual one at
+ * limit = f_n tan phi at its beginning and soft = f_n (tan peak - tan residual) / distance, slip grows by (|f_t| -
+ * limit) / (ks A - soft). Where the friction falls faster than the spring unloads, it falls to the residual one at
  * once. */
 #include <talus/kit.h>
 
@@ -32,8 +32,8 @@ static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"),
 };
 
-/* Slip of a step in which the spring alone would take the force `trial`, above `limit`, N. `soft`: by how much the limit
- * falls for a metre of slip, N/m; `lowest`: the limit after the whole distance. */
+/* Slip of a step in which the spring alone would take the force `trial`, above `limit`, N. `soft`: by how much the
+ * limit falls for a metre of slip, N/m; `lowest`: the limit after the whole distance. */
 static double slip_of(double trial, double limit, double lowest, double stiffness, double soft)
 {
     double to_lowest = (trial - lowest) / stiffness;
@@ -60,7 +60,8 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
         double trial = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
         double left = fmax(0, 1 - slip[i] / p->distance), limit = f_n * (low + drop * left);
         double f_s = trial;
-        /* a padding lane has area 0: it must neither divide by it nor slip; 1e-12 keeps rounding from counting as slip */
+        /* a padding lane has area 0: it must neither divide by it nor slip; 1e-12 keeps rounding from counting as
+         * slip */
         if (trial > limit * (1 + 1e-12) && stiffness > 0) {
             double soft = left > 0 ? f_n * drop / p->distance : 0;
             moved = f_n > 0 ? slip_of(trial, limit, f_n * low, stiffness, soft) : trial / stiffness;
