@@ -132,9 +132,8 @@ static void make_other(const tl_param *p, uint64_t key, int *vectors, const tl_v
     }
 }
 
-/* The values of a set, with the parameter `varied`, unless -1, of another value than in that set. */
-static tl_status values_of(tl_checker *c, int set, int varied, tl_value **values, size_t *count,
-                           void **held)
+tl_status tl_check_values(tl_checker *c, int set, int varied, tl_value **values, size_t *count,
+                          void **held)
 {
     const tl_kind *kind = c->kind;
     param_storage *all = calloc(kind->param_count + 1, sizeof *all);
@@ -168,18 +167,13 @@ static tl_status values_of(tl_checker *c, int set, int varied, tl_value **values
     return TL_OK;
 }
 
-tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held)
-{
-    return values_of(c, set, -1, values, count, held);
-}
-
-static tl_status params_of(tl_checker *c, int set, int varied, void *params, void **held)
+tl_status tl_check_params(tl_checker *c, int set, int varied, void *params, void **held)
 {
     const tl_kind *kind = c->kind;
     char context[160];
     tl_value *values;
     size_t count;
-    tl_status status = values_of(c, set, varied, &values, &count, held);
+    tl_status status = tl_check_values(c, set, varied, &values, &count, held);
     snprintf(context, sizeof context, "'%s' cannot be tried", kind->name);
     memset(params, 0, kind->params_size);
     const tl_args args = {values, count};
@@ -188,16 +182,6 @@ static tl_status params_of(tl_checker *c, int set, int varied, void *params, voi
                               params, context, c->error);
     free(values);
     return status;
-}
-
-tl_status tl_check_params(tl_checker *c, int set, void *params, void **held)
-{
-    return params_of(c, set, -1, params, held);
-}
-
-tl_status tl_check_varied(tl_checker *c, int set, uint32_t param, void *params, void **held)
-{
-    return params_of(c, set, (int)param, params, held);
 }
 
 tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void **, tl_report *),
@@ -219,7 +203,7 @@ tl_status tl_check_sets(tl_checker *c,
     int tried = 0, most = 20 * TL_CHECK_SETS; /* kinds refuse some drawn sets */
     tl_status status = params ? TL_OK : tl_fail_memory(c->error);
     for (int set = 0; status == TL_OK && set < most && tried < TL_CHECK_SETS; set++) {
-        tl_status now = tl_check_params(c, set, params, &held);
+        tl_status now = tl_check_params(c, set, TL_CHECK_NONE, params, &held);
         if (now == TL_OK)
             now = try_set(c, params, user);
         free(held);

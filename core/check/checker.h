@@ -18,6 +18,8 @@
 #define TL_CHECK_POINTS 64
 /* Parameters of a law or a damping whose effect is looked for, at most. */
 #define TL_CHECK_PARAMS 64
+/* The number of no parameter. */
+#define TL_CHECK_NONE (-1)
 
 /* A check by its name, and what it asks. */
 typedef struct tl_check_rule {
@@ -35,13 +37,12 @@ typedef struct tl_checker {
 } tl_checker;
 
 /* A set of parameters as values. Set 0 has the given ones, and a plausible one of each that is required; later sets
- * draw what is not given. `*values`, and `*held`, in which vectors are, are to be freed after the last use, on failure
- * too. */
-tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held);
+ * draw what is not given. The parameter `varied`, unless TL_CHECK_NONE, has another value than it would. `*values`, and
+ * `*held`, in which vectors are, are to be freed after the last use, on failure too. */
+tl_status tl_check_values(tl_checker *c, int set, int varied, tl_value **values, size_t *count,
+                          void **held);
 /* The same, read into `params`, of the kind's params_size bytes; `*held` likewise. */
-tl_status tl_check_params(tl_checker *c, int set, void *params, void **held);
-/* The same with another value of one parameter. */
-tl_status tl_check_varied(tl_checker *c, int set, uint32_t param, void *params, void **held);
+tl_status tl_check_params(tl_checker *c, int set, int varied, void *params, void **held);
 /* Whether an effect of that parameter is asked for: of those that are given, or of all when none is. */
 bool tl_check_asked(const tl_checker *c, uint32_t param);
 /* What a kind's `create` makes of parameters; the parameters themselves where it is NULL. */

@@ -429,7 +429,7 @@ static void see_param(trial *t, uint32_t k, void *params)
     void *held = NULL, *own = t->self;
     char text[sizeof t->c->params_text];
     memcpy(text, t->c->params_text, sizeof text);
-    if (tl_check_varied(t->c, t->c->set, k, params, &held) == TL_OK &&
+    if (tl_check_params(t->c, t->c->set, (int)k, params, &held) == TL_OK &&
         tl_check_create(t->c, t->ops->create, params, &t->self) == TL_OK) {
         t->matters[k] = gives_other(t, t->began);
         if (t->ops->destroy)

@@ -208,7 +208,7 @@ tl_status tl_check_generator_kind(tl_checker *c)
     const void *ops = kind->ops;
     void *held;
     tl_value *values;
-    tl_status status = tl_check_values(c, 0, &values, &t.args.count, &held);
+    tl_status status = tl_check_values(c, 0, TL_CHECK_NONE, &values, &t.args.count, &held);
     t.args.values = values;
     t.w.ops = ops;
     t.w.params_size = kind->params_size;

@@ -731,7 +731,7 @@ static tl_status try_varied(trial *t)
         params[k] = malloc(c->kind->params_size + 1);
         if (!params[k])
             status = tl_fail_memory(c->error);
-        else if (tl_check_varied(c, c->set, k, params[k], &held[k]) == TL_OK)
+        else if (tl_check_params(c, c->set, (int)k, params[k], &held[k]) == TL_OK)
             open[k] = open_law(c, params[k], &varied[k]) == TL_OK;
         if (open[k] && (varied[k].kn != t->law.kn || varied[k].ks != t->law.ks))
             t->seen.matters[k] = true;

@@ -128,7 +128,8 @@ tl_status tl_check_screen_kind(tl_checker *c)
     size_t size = c->kind->params_size;
     char *params = malloc(2 * size + 1);
     void *held = NULL, *self = NULL;
-    tl_status status = params ? tl_check_params(c, 0, params, &held) : tl_fail_memory(c->error);
+    tl_status status =
+        params ? tl_check_params(c, 0, TL_CHECK_NONE, params, &held) : tl_fail_memory(c->error);
     if (status == TL_OK)
         memcpy(params + size, params, size);
     for (int i = 0; status == TL_OK && i < 2; i++) {
