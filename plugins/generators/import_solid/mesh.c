@@ -68,10 +68,7 @@ void mesh_free(mesh *m)
     free(m->start);
     free(m->face_of);
     free(m->mate);
-    free(m->normal);
-    free(m->height);
-    free(m->longest);
-    free(m->solid);
+    free(m->face);
 }
 
 uint32_t mesh_next(const mesh *m, uint32_t h)
@@ -152,11 +149,11 @@ static tl_status measure_face(mesh *m, uint32_t face)
     double height = tl_v3_norm(area) / longest;
     if (!(height > SLENDER * longest))
         return face_fault(m, face, "has no area", "remove such faces and close the gap");
-    m->normal[face] = tl_v3_unit(area);
-    m->longest[face] = longest;
-    m->height[face] = height;
+    m->face[face].normal = tl_v3_unit(area);
+    m->face[face].longest = longest;
+    m->face[face].height = height;
     for (uint32_t h = from; h < to; h++) {
-        double off = tl_v3_dot(m->normal[face], tl_v3_sub(m->vertex[m->corner[h]], zero));
+        double off = tl_v3_dot(m->face[face].normal, tl_v3_sub(m->vertex[m->corner[h]], zero));
         if (fabs(off) > FLAT * longest)
             return face_fault(m, face, "is not flat", "divide it into triangles");
     }
@@ -191,9 +188,9 @@ static side side_of(const mesh *m, uint32_t h)
 static double inner_angle(const mesh *m, uint32_t h, uint32_t g)
 {
     tl_vec3 a = m->vertex[m->corner[h]], b = m->vertex[m->corner[mesh_next(m, h)]];
-    tl_vec3 along = tl_v3_unit(tl_v3_sub(b, a)), n = m->normal[m->face_of[h]];
+    tl_vec3 along = tl_v3_unit(tl_v3_sub(b, a)), n = m->face[m->face_of[h]].normal;
     tl_vec3 into = tl_v3_cross(n, along);
-    tl_vec3 other = tl_v3_cross(along, m->normal[m->face_of[g]]);
+    tl_vec3 other = tl_v3_cross(along, m->face[m->face_of[g]].normal);
     double angle = tl_atan2(-tl_v3_dot(other, n), tl_v3_dot(other, into));
     return angle < SAME_SIDE ? angle + 2 * TL_PI : angle;
 }
@@ -287,21 +284,21 @@ static tl_status number_solids(mesh *m)
     if (!open)
         return mesh_no_memory(m);
     for (size_t face = 0; face < m->faces; face++)
-        m->solid[face] = NONE;
+        m->face[face].solid = NONE;
     for (size_t first = 0; first < m->faces; first++) {
-        if (m->solid[first] != NONE)
+        if (m->face[first].solid != NONE)
             continue;
         uint32_t number = (uint32_t)m->solids++;
         size_t count = 0;
         open[count++] = (uint32_t)first;
-        m->solid[first] = number;
+        m->face[first].solid = number;
         while (count > 0) {
             uint32_t face = open[--count];
             for (uint32_t h = m->start[face]; h < m->start[face + 1]; h++) {
                 uint32_t next = m->face_of[m->mate[h]];
-                if (m->solid[next] != NONE)
+                if (m->face[next].solid != NONE)
                     continue;
-                m->solid[next] = number;
+                m->face[next].solid = number;
                 open[count++] = next;
             }
         }
@@ -316,11 +313,8 @@ tl_status mesh_close(mesh *m)
         return m->host->fail(m->host, TL_E_GEOMETRY, "file '%.200s' holds no faces", m->file);
     m->face_of = malloc(m->corners * sizeof *m->face_of);
     m->mate = malloc(m->corners * sizeof *m->mate);
-    m->normal = malloc(m->faces * sizeof *m->normal);
-    m->height = malloc(m->faces * sizeof *m->height);
-    m->longest = malloc(m->faces * sizeof *m->longest);
-    m->solid = malloc(m->faces * sizeof *m->solid);
-    if (!m->face_of || !m->mate || !m->normal || !m->height || !m->longest || !m->solid)
+    m->face = malloc(m->faces * sizeof *m->face);
+    if (!m->face_of || !m->mate || !m->face)
         return mesh_no_memory(m);
     tl_status status = weld(m);
     for (size_t face = 0; face < m->faces && status == TL_OK; face++)

@@ -12,6 +12,13 @@
 #define MOST_CORNERS 0x7fffffffu
 #define NONE UINT32_MAX
 
+/* What is found of a face. */
+typedef struct mesh_face {
+    tl_vec3 normal;
+    double longest, height; /* longest edge; area over that */
+    uint32_t solid;         /* number of its solid, from 0 in the order of first faces */
+} mesh_face;
+
 /* Faces are polygons, counter-clockwise from outside; the corners of face f are
  * corner[start[f]] .. corner[start[f + 1] - 1], indices into vertex. Half-edge h runs from corner[h] to the
  * next corner of its face. */
@@ -28,10 +35,7 @@ typedef struct mesh {
     /* after mesh_close */
     uint32_t *face_of; /* [corners] */
     uint32_t *mate;  /* [corners] the half-edge that runs the other way on the solid's next face */
-    tl_vec3 *normal; /* [faces] */
-    double *height;  /* [faces] area over longest edge */
-    double *longest; /* [faces] longest edge */
-    uint32_t *solid; /* [faces] number of its solid, from 0 in the order of first faces */
+    mesh_face *face; /* [faces] */
     size_t solids;
 } mesh;
 

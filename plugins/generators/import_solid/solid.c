@@ -55,11 +55,11 @@ static bool solids_begin(const mesh *m, solids *s)
         return false;
     /* first[i + 2] counts, then first[i + 1] is where solid i is filled in, and at last its end */
     for (size_t f = 0; f < m->faces; f++)
-        s->first[m->solid[f] + 2]++;
+        s->first[m->face[f].solid + 2]++;
     for (size_t i = 2; i < m->solids + 2; i++)
         s->first[i] += s->first[i - 1];
     for (size_t f = 0; f < m->faces; f++)
-        s->face[s->first[m->solid[f] + 1]++] = (uint32_t)f;
+        s->face[s->first[m->face[f].solid + 1]++] = (uint32_t)f;
     return true;
 }
 
@@ -108,7 +108,7 @@ static void look_across(const mesh *m, uint32_t face, uint32_t other, double *ab
     *above = *below = 0;
     tl_vec3 on = m->vertex[m->corner[m->start[face]]];
     for (uint32_t h = m->start[other]; h < m->start[other + 1]; h++) {
-        double off = tl_v3_dot(m->normal[face], tl_v3_sub(m->vertex[m->corner[h]], on));
+        double off = tl_v3_dot(m->face[face].normal, tl_v3_sub(m->vertex[m->corner[h]], on));
         *above = fmax(*above, off);
         *below = fmin(*below, off);
     }
@@ -122,7 +122,8 @@ static bool look_at_bend(const solids *s, uint32_t h)
     double above, below, above_b, below_b;
     look_across(m, a, b, &above, &below);
     look_across(m, b, a, &above_b, &below_b);
-    double longest = fmax(m->longest[a], m->longest[b]), height = fmin(m->height[a], m->height[b]);
+    double longest = fmax(m->face[a].longest, m->face[b].longest),
+           height = fmin(m->face[a].height, m->face[b].height);
     /* a plane that is off at a low triangle is off by more at the far end of its neighbour */
     double rounding = ROUNDING * m->reach * (1 + longest / height);
     double tolerance = fmin(rounding, BEND * longest);
@@ -130,7 +131,7 @@ static bool look_at_bend(const solids *s, uint32_t h)
     if (fmin(above, above_b) > fmax(tolerance, INWARD * longest))
         return false;
     if (fmin(below, below_b) >= -tolerance && fmax(above, above_b) <= tolerance &&
-        tl_v3_dot(m->normal[a], m->normal[b]) > 0)
+        tl_v3_dot(m->face[a].normal, m->face[b].normal) > 0)
         s->side[side_root(s, b)] = side_root(s, a);
     return true;
 }
