@@ -35,10 +35,7 @@ typedef struct operation {
     size_t at;
 } operation;
 
-#define OPERATION(ops, name)                                                                       \
-    {                                                                                              \
-#name, offsetof(ops, name)                                                                 \
-    }
+#define AT(ops, name) #name, offsetof(ops, name)
 
 /* The types of kinds: sizes of their operations in version 1.0 and here, what must be there, and what comes in pairs or
  * not at all. */
@@ -50,25 +47,27 @@ static const struct {
     [TL_KIND_LAW] = {"law",
                      offsetof(tl_law_ops, stateless),
                      sizeof(tl_law_ops),
-                     {OPERATION(tl_law_ops, update), OPERATION(tl_law_ops, stiffness)},
-                     {OPERATION(tl_law_ops, create), OPERATION(tl_law_ops, destroy)}},
+                     {{AT(tl_law_ops, update)}, {AT(tl_law_ops, stiffness)}},
+                     {{AT(tl_law_ops, create)}, {AT(tl_law_ops, destroy)}}},
     [TL_KIND_DAMPING] = {"damping",
                          offsetof(tl_damping_ops, before),
                          sizeof(tl_damping_ops),
-                         {OPERATION(tl_damping_ops, update),
-                          OPERATION(tl_damping_ops, step_factor)},
-                         {OPERATION(tl_damping_ops, create), OPERATION(tl_damping_ops, destroy)}},
+                         {{AT(tl_damping_ops, update)}, {AT(tl_damping_ops, step_factor)}},
+                         {{AT(tl_damping_ops, create)}, {AT(tl_damping_ops, destroy)}}},
     [TL_KIND_GENERATOR] = {"generator",
                            sizeof(tl_generator_ops),
                            sizeof(tl_generator_ops),
-                           {OPERATION(tl_generator_ops, generate)},
+                           {{AT(tl_generator_ops, generate)}},
                            {{0}}},
     [TL_KIND_SCREEN] = {"screen",
                         sizeof(tl_screen_ops),
                         sizeof(tl_screen_ops),
-                        {OPERATION(tl_screen_ops, open), OPERATION(tl_screen_ops, address),
-                         OPERATION(tl_screen_ops, watchers), OPERATION(tl_screen_ops, put),
-                         OPERATION(tl_screen_ops, take), OPERATION(tl_screen_ops, close)},
+                        {{AT(tl_screen_ops, open)},
+                         {AT(tl_screen_ops, address)},
+                         {AT(tl_screen_ops, watchers)},
+                         {AT(tl_screen_ops, put)},
+                         {AT(tl_screen_ops, take)},
+                         {AT(tl_screen_ops, close)}},
                         {{0}}},
 };
 

@@ -428,17 +428,19 @@ static inline size_t tl_polygon_ear(const tl_flat *at, const size_t *corner, siz
     for (size_t k = 0; k < count; k++) {
         size_t i = corner[(k + count - 1) % count], j = corner[k], l = corner[(k + 1) % count];
         tl_flat a = at[i], b = at[j], c = at[l];
-        *height = tl_flat_height(a, b, c);
-        int inside = 0; /* some other corner is */
-        for (size_t q = 0; q<count && * height> near && !inside; q++) {
+        double high = tl_flat_height(a, b, c);
+        int ear = high > near;
+        for (size_t q = 0; q < count && ear; q++) {
             size_t o = corner[q];
-            inside = o != i && o != j && o != l && tl_flat_cross(a, b, at[o]) >= 0 &&
-                     tl_flat_cross(b, c, at[o]) >= 0 && tl_flat_cross(c, a, at[o]) >= 0;
+            ear = o == i || o == j || o == l || tl_flat_cross(a, b, at[o]) < 0 ||
+                  tl_flat_cross(b, c, at[o]) < 0 || tl_flat_cross(c, a, at[o]) < 0;
         }
-        if (*height > near && !inside)
+        if (ear) {
+            *height = high;
             return k;
-        if (fabs(*height) < least) {
-            least = fabs(*height);
+        }
+        if (fabs(high) < least) {
+            least = fabs(high);
             flattest = k;
         }
     }
