@@ -121,41 +121,21 @@ static double field_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *
     return press->overlap;
 }
 
-/* Its faces that are moved out. false: none are. */
-static bool find_moved(const tl_model *m, uint32_t c, const tl_pair_view *view, tl_moved_faces *out)
-{
-    const tl_press_row *row = tl_press_row_of(m, c);
-    if (!row || (row->shift == 0 && !row->leans))
-        return false;
-    out->faces = row->shifted;
-    for (int k = 0; k < 2; k++) {
-        tl_plane plane = row->leans ? row->lean[k] : row->shifted_at[k];
-        if (k == 1) {
-            plane.normal = tl_m3_mul(&view->turn, plane.normal);
-            plane.offset += tl_v3_dot(plane.normal, view->shift);
-        }
-        plane.offset += 0.5 * row->shift;
-        out->plane[k] = plane;
-    }
-    return true;
-}
-
-/* How far apart its blocks may be where faces are moved out. */
-static double reach_of(const tl_press_row *row, const tl_pair_view *view)
-{
-    return tl_lean_reach(row->shift, row->leans ? row->lean : NULL,
-                         view->a->plane[row->shifted.a].normal, view->size);
-}
-
 static bool field_show(tl_model *m, uint32_t c, const tl_pair_view *view,
                        tl_narrow_scratch *scratch, tl_surface *surface)
 {
     tl_region region;
-    tl_moved_faces moved;
-    bool are_moved = find_moved(m, c, view, &moved);
-    double margin = are_moved ? reach_of(tl_press_row_of(m, c), view) : 0;
-    return tl_region_find(view, margin, scratch, &region) &&
-           tl_surface_add_field(view, &region, are_moved ? &moved : NULL, surface);
+    tl_press_query query = {.view = view, .region = &region};
+    const tl_press_row *row = tl_press_row_of(m, c);
+    double reach = 0; /* how far apart blocks with moved faces may be */
+    if (row && (row->shift != 0 || row->leans)) {
+        query.shift = row->shift;
+        query.shifted = row->shifted;
+        query.lean = row->leans ? row->lean : NULL;
+        reach = tl_lean_reach(row->shift, query.lean, view->a->plane[row->shifted.a].normal,
+                              view->size);
+    }
+    return tl_region_find(view, reach, scratch, &region) && tl_surface_add_field(&query, surface);
 }
 
 static bool field_sound(const tl_detect *d, uint32_t c, uint32_t faces_a, uint32_t faces_b)

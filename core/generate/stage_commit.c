@@ -305,7 +305,7 @@ static void visit_parts(const tl_stage *stage, const tl_id *ids, const cut_loads
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++) {
-        uint32_t row = loads->of[i] == TL_NO_ROW ? TL_NO_ROW : m->row_of[ids[i]];
+        uint32_t row = loads->of[i] == TL_NO_ROW ? TL_NO_ROW : tl_block_row_quiet(m, ids[i]);
         cut_face *f = row == TL_NO_ROW ? NULL : faces_of(loads, stage->blocks[i].source);
         for (; f; f = next_of(loads, f)) {
             uint32_t part = part_of(m, row, f);

@@ -398,7 +398,7 @@ tl_status tl_bodies_fall_apart(tl_model *m, const tl_id *ids, size_t count)
     if (status == TL_OK) {
         memset(keep, 1, blocks);
         for (size_t i = 0; i < count; i++)
-            keep[m->row_of[ids[i]]] = 0;
+            keep[tl_block_row_quiet(m, ids[i])] = 0;
         tl_bodies_groups(m, group);
         status = find_groups(m, keep, group);
     }

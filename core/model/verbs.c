@@ -35,7 +35,7 @@ tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidde
 static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (m->bodies.member_count[m->blocks.body[m->row_of[ids[i]]]] > 1)
+        if (m->bodies.member_count[m->blocks.body[tl_block_row_quiet(m, ids[i])]] > 1)
             return true;
     return false;
 }
@@ -117,7 +117,7 @@ static tl_status change_fixing(tl_model *m, const tl_id *ids, size_t count, cons
         status = check_ids(m, ids, count);
     bool changed = false;
     for (size_t i = 0; i < count && status == TL_OK; i++) {
-        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
         change(m, body, what);

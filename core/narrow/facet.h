@@ -24,6 +24,16 @@ typedef struct tl_facet {
     uint16_t ia, ib; /* faces */
 } tl_facet;
 
+static inline bool tl_facet_is_patch(const tl_facet *facet)
+{
+    return facet->kind == TL_FACET_PATCH;
+}
+
+static inline bool tl_facet_is_field(const tl_facet *facet)
+{
+    return facet->kind == TL_FACET_FIELD;
+}
+
 /* The points of a field contact, both at the centre of its pressure. The first carries the force and the shear, the
  * second the torsion. */
 enum { TL_FIELD_SHEAR, TL_FIELD_TORSION, TL_FIELD_POINTS };

@@ -32,22 +32,8 @@ static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (!tl_pair_place(&view, scratch))
-        return false;
-    if (facet->kind == TL_FACET_PATCH)
-        return tl_surface_add_patch(&view, facet->ia, facet->ib, surface);
-    tl_region region;
-    tl_press_query query = {.view = &view, .region = &region};
-    const tl_press_row *row = tl_press_row_of(m, c);
-    double reach = 0; /* how far apart blocks with moved faces may be */
-    if (row && (row->shift != 0 || row->leans)) {
-        query.shift = row->shift;
-        query.shifted = row->shifted;
-        query.lean = row->leans ? row->lean : NULL;
-        reach =
-            tl_lean_reach(row->shift, query.lean, view.a->plane[row->shifted.a].normal, view.size);
-    }
-    return tl_region_find(&view, reach, scratch, &region) && tl_surface_add_field(&query, surface);
+    return tl_pair_place(&view, scratch) &&
+           tl_contact_kind_of(m->detect, c)->place->show(m, c, &view, scratch, surface);
 }
 
 /* From the frame of a block's body to places relative to the model's origin. */
