@@ -10,8 +10,6 @@
 #include "io/pieces.h"
 #include "io/vtk_blocks.h"
 #include "io/vtk_contacts.h"
-#include "io/vtk_joints.h"
-#include "io/vtk_section.h"
 #include "model/options.h"
 #include "model/rows.h"
 #include "state/outputs.h"

@@ -18,14 +18,27 @@
  *             explode       from the model's centre to the block's centroid, m: ParaView's Warp By
  *                           Vector with it moves the blocks apart
  *
- * The model's centre is the mean of the blocks' centroids weighted by volume. */
+ * The model's centre is the mean of the blocks' centroids weighted by volume.
+ *
+ * A section is POLYDATA of the polygons in which a plane cuts the blocks.
+ *
+ * Cell data   block_id  id of the block
+ *             group     index into the field group_names
+ *             body      id of its body
+ *             hidden    1 when hidden
+ *             displacement, displacement_in_plane     of the polygon's middle, m
+ * Point data  displacement              m, since creation or the last reset
+ *             displacement_in_plane     the same without its part normal to the plane
+ *
+ * A vertex on the plane counts as above it, so a face that lies in the plane is shown once: of the
+ * block below. Points closer than TL_POLY_ON times the block's size are one. */
 #include "io/vtk_blocks.h"
 
 #include "base/error.h"
 #include "io/extra_fields.h"
 #include "io/pieces.h"
 #include "io/vtk_file.h"
-#include "model/regroup.h"
+#include "model/fields.h"
 
 #include <stdlib.h>
 
@@ -43,11 +56,6 @@ static size_t stream_of(const tl_poly *shape)
     return 2u + shape->face_count + shape->start[shape->face_count];
 }
 
-static size_t vertices_of(const grid *g, size_t begin, size_t end)
-{
-    return g->first[end] - g->first[begin];
-}
-
 /* ---------------------------------------------------------------- points ----------------- */
 
 typedef unsigned char *(*point_fn)(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to);
@@ -56,16 +64,14 @@ typedef unsigned char *(*point_fn)(const grid *g, uint32_t row, tl_vec3 local, u
 static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece,
                                  point_fn of, size_t each)
 {
-    size_t bytes = vertices_of(g, begin, end) * each;
+    size_t bytes = (g->first[end] - g->first[begin]) * each;
     unsigned char *to = tl_piece_reserve(piece, bytes);
-    if (!to)
-        return;
-    for (uint32_t row = (uint32_t)begin; row < end; row++) {
+    for (uint32_t row = (uint32_t)begin; to && row < end; row++) {
         const tl_poly *shape = g->blocks->shape[row];
         for (uint32_t v = 0; v < shape->vertex_count; v++)
             to = of(g, row, shape->vertex[v], to);
     }
-    piece->length += bytes;
+    piece->length += to ? bytes : 0;
 }
 
 static unsigned char *put_place(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
@@ -79,6 +85,13 @@ static unsigned char *put_displacement(const grid *g, uint32_t row, tl_vec3 loca
     return tl_vtk_put_float3(to, tl_block_point_displacement(g->model, row, local));
 }
 
+/* From the model's centre to the block's: the same for all its vertices. */
+static unsigned char *put_explode(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
+{
+    (void)local;
+    return tl_vtk_put_float3(to, tl_v3_sub(tl_block_centroid(g->model, row), g->centre));
+}
+
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
     fill_vertices(user, begin, end, piece, put_place, TL_VTK_VEC3_BYTES);
@@ -89,20 +102,9 @@ static void fill_displacements(const void *user, size_t begin, size_t end, tl_pi
     fill_vertices(user, begin, end, piece, put_displacement, TL_VTK_FLOAT3_BYTES);
 }
 
-/* From the model's centre to the block's: the same for all its vertices. */
 static void fill_explode(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    const grid *g = user;
-    size_t bytes = vertices_of(g, begin, end) * TL_VTK_FLOAT3_BYTES;
-    unsigned char *to = tl_piece_reserve(piece, bytes);
-    if (!to)
-        return;
-    for (uint32_t row = (uint32_t)begin; row < end; row++) {
-        tl_vec3 away = tl_v3_sub(tl_block_centroid(g->model, row), g->centre);
-        for (uint32_t v = g->first[row]; v < g->first[row + 1]; v++)
-            to = tl_vtk_put_float3(to, away);
-    }
-    piece->length += bytes;
+    fill_vertices(user, begin, end, piece, put_explode, TL_VTK_FLOAT3_BYTES);
 }
 
 /* ---------------------------------------------------------------- cells ------------------ */
@@ -129,128 +131,76 @@ static void fill_cells(const void *user, size_t begin, size_t end, tl_piece *pie
 
 /* ---------------------------------------------------------------- cell data -------------- */
 
-/* A number or a vector of each block. */
-typedef struct cell_array {
-    const char *name;
-    int32_t (*whole)(const tl_model *m, uint32_t row);
-    double (*real)(const tl_model *m, uint32_t row);
-    tl_vec3 (*vector)(const tl_model *m, uint32_t row);
-} cell_array;
+/* An array of the field, and the quantity of blocks that it shows. */
+static const struct {
+    const char *name, *quantity;
+} arrays[] = {
+    {"block_id", "id"},
+    {"group", "group"},
+    {"body", "body"},
+    {"volume", "volume"},
+    {"density", "density"},
+    {"mass", "mass"},
+    {"displacement", "displacement"},
+    {"rotation", "rotation_vector"},
+    {"unbalanced_force", "force"},
+    {"fixed", "fixed"},
+    {"hidden", "hidden"},
+};
 
-typedef struct cell_job {
+enum { ARRAYS = sizeof arrays / sizeof *arrays };
+
+typedef struct array_job {
     const tl_model *model;
-    const cell_array *array;
-} cell_job;
+    const tl_field *of;
+} array_job;
 
-static size_t bytes_of(const cell_array *a)
+static size_t width_of(const tl_field *of)
 {
-    return a->whole ? TL_VTK_INT_BYTES : a->real ? sizeof(double) : TL_VTK_VEC3_BYTES;
+    return of->kind == TL_FIELD_VEC3 ? 3 : 1;
+}
+
+static bool is_real(const tl_field *of)
+{
+    return of->kind == TL_FIELD_VEC3 || of->kind == TL_FIELD_SCALAR;
+}
+
+static size_t bytes_of(const tl_field *of)
+{
+    return width_of(of) * (is_real(of) ? sizeof(double) : TL_VTK_INT_BYTES);
 }
 
 static void fill_array(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    const cell_job *job = user;
-    const cell_array *a = job->array;
-    size_t bytes = (end - begin) * bytes_of(a);
+    const array_job *job = user;
+    const size_t width = width_of(job->of), bytes = (end - begin) * bytes_of(job->of);
+    const bool real = is_real(job->of);
     unsigned char *to = tl_piece_reserve(piece, bytes);
-    if (!to)
-        return;
-    for (uint32_t row = (uint32_t)begin; row < end; row++) {
-        if (a->whole)
-            to = tl_vtk_put_int(to, a->whole(job->model, row));
-        else if (a->real)
-            to = tl_vtk_put_double(to, a->real(job->model, row));
-        else
-            to = tl_vtk_put_vec3(to, a->vector(job->model, row));
+    for (uint32_t row = (uint32_t)begin; to && row < end; row++) {
+        double value[6];
+        tl_block_numbers(job->model, row, job->of, value);
+        for (size_t w = 0; w < width; w++)
+            to = real ? tl_vtk_put_double(to, value[w])
+                      : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
     }
-    piece->length += bytes;
+    piece->length += to ? bytes : 0;
 }
 
-static int32_t cell_type(const tl_model *m, uint32_t row)
+static tl_status put_array(tl_model *m, tl_pieces *out, const tl_field *of)
 {
-    (void)m, (void)row;
-    return TL_VTK_POLYHEDRON;
+    const array_job job = {m, of};
+    const size_t rows = m->blocks.table.rows;
+    return tl_vtk_list(out, rows, rows * bytes_of(of), fill_array, &job);
 }
 
-static int32_t id_of(const tl_model *m, uint32_t row)
+static void fill_types(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    return (int32_t)m->blocks.id[row];
-}
-
-static int32_t group_of(const tl_model *m, uint32_t row)
-{
-    return (int32_t)m->blocks.group[row];
-}
-
-static int32_t body_of(const tl_model *m, uint32_t row)
-{
-    return (int32_t)m->bodies.id[m->blocks.body[row]];
-}
-
-static int32_t is_fixed(const tl_model *m, uint32_t row)
-{
-    return m->bodies.fixed[m->blocks.body[row]] == TL_FIX_ALL;
-}
-
-static int32_t is_hidden(const tl_model *m, uint32_t row)
-{
-    return m->blocks.hidden[row] != 0;
-}
-
-static double volume_of(const tl_model *m, uint32_t row)
-{
-    return m->blocks.volume[row];
-}
-
-static double density_of(const tl_model *m, uint32_t row)
-{
-    return m->blocks.density[row];
-}
-
-static double mass_of(const tl_model *m, uint32_t row)
-{
-    return m->blocks.density[row] * m->blocks.volume[row];
-}
-
-static tl_vec3 rotation_of(const tl_model *m, uint32_t row)
-{
-    return tl_q_vector(m->bodies.q[m->blocks.body[row]]);
-}
-
-static tl_vec3 unbalanced_of(const tl_model *m, uint32_t row)
-{
-    return m->bodies.force[m->blocks.body[row]];
-}
-
-static double displacement_size(const tl_model *m, uint32_t row)
-{
-    return tl_v3_norm(tl_block_displacement(m, row));
-}
-
-static const cell_array types = {.whole = cell_type}, sizes = {.real = displacement_size},
-                        velocities = {.vector = tl_block_velocity};
-static const cell_array fields[] = {
-    {"block_id", .whole = id_of},
-    {"group", .whole = group_of},
-    {"body", .whole = body_of},
-    {"volume", .real = volume_of},
-    {"density", .real = density_of},
-    {"mass", .real = mass_of},
-    {"displacement", .vector = tl_block_displacement},
-    {"rotation", .vector = rotation_of},
-    {"unbalanced_force", .vector = unbalanced_of},
-    {"fixed", .whole = is_fixed},
-    {"hidden", .whole = is_hidden},
-};
-
-enum { FIELDS = sizeof fields / sizeof *fields };
-
-static tl_status put_array(tl_model *m, tl_pieces *out, const cell_array *a)
-{
-    const cell_job job = {m, a};
-    tl_status status = tl_pieces_write(out, m->blocks.table.rows, bytes_of(a), fill_array, &job);
-    tl_vtk_line(out->output->file);
-    return status;
+    (void)user;
+    size_t bytes = (end - begin) * TL_VTK_INT_BYTES;
+    unsigned char *to = tl_piece_reserve(piece, bytes);
+    for (size_t row = begin; to && row < end; row++)
+        to = tl_vtk_put_int(to, TL_VTK_POLYHEDRON);
+    piece->length += to ? bytes : 0;
 }
 
 /* A field that the program adds. */
@@ -268,9 +218,7 @@ static tl_status put_field(tl_model *m, tl_pieces *out, const tl_extra_field *fi
 {
     size_t rows = m->blocks.table.rows;
     tl_vtk_array(out->output->file, field->name, 1, rows, TL_VTK_DOUBLE);
-    tl_status status = tl_pieces_write(out, rows, sizeof(double), fill_field, field);
-    tl_vtk_line(out->output->file);
-    return status;
+    return tl_vtk_list(out, rows, rows * sizeof(double), fill_field, field);
 }
 
 static tl_status put_cell_data(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
@@ -279,15 +227,16 @@ static tl_status put_cell_data(tl_model *m, const tl_vtk_parts *parts, tl_pieces
     size_t rows = m->blocks.table.rows;
     fprintf(file, "CELL_DATA %zu\nSCALARS displacement_size double 1\nLOOKUP_TABLE default\n",
             rows);
-    tl_status status = put_array(m, out, &sizes);
+    tl_status status = put_array(m, out, tl_block_quantity("displacement_size"));
     fprintf(file, "VECTORS velocity double\n");
     if (status == TL_OK)
-        status = put_array(m, out, &velocities);
-    tl_vtk_field(file, "FieldData", FIELDS + parts->block_field_count);
-    for (size_t i = 0; i < FIELDS && status == TL_OK; i++) {
-        tl_vtk_array(file, fields[i].name, fields[i].vector ? 3 : 1, rows,
-                     fields[i].whole ? TL_VTK_INT : TL_VTK_DOUBLE);
-        status = put_array(m, out, &fields[i]);
+        status = put_array(m, out, tl_block_quantity("velocity"));
+    tl_vtk_field(file, "FieldData", ARRAYS + parts->block_field_count);
+    for (size_t i = 0; i < ARRAYS && status == TL_OK; i++) {
+        const tl_field *of = tl_block_quantity(arrays[i].quantity);
+        tl_vtk_array(file, arrays[i].name, width_of(of), rows,
+                     is_real(of) ? TL_VTK_DOUBLE : TL_VTK_INT);
+        status = put_array(m, out, of);
     }
     for (size_t i = 0; i < parts->block_field_count && status == TL_OK; i++)
         status = put_field(m, out, &parts->block_fields[i]);
@@ -310,15 +259,6 @@ static tl_vec3 model_centre(const tl_model *m)
     return volume > 0 ? tl_v3_madd(m->origin, 1 / volume, sum) : m->origin;
 }
 
-/* A list that is made of the blocks, `bytes` in all. */
-static tl_status put_list(const grid *g, tl_pieces *out, size_t bytes, tl_piece_fn fn)
-{
-    size_t rows = g->blocks->table.rows;
-    tl_status status = tl_pieces_write(out, rows, 1 + bytes / (rows + 1), fn, g);
-    tl_vtk_line(out->output->file);
-    return status;
-}
-
 static tl_status put_grid(tl_model *m, const grid *g, size_t stream, const tl_vtk_parts *parts,
                           tl_pieces *out)
 {
@@ -326,21 +266,22 @@ static tl_status put_grid(tl_model *m, const grid *g, size_t stream, const tl_vt
     size_t rows = m->blocks.table.rows, points = g->first[rows];
     tl_vtk_header(file, m, "blocks", "UNSTRUCTURED_GRID");
     fprintf(file, "POINTS %zu double\n", points);
-    tl_status status = put_list(g, out, points * TL_VTK_VEC3_BYTES, fill_places);
+    tl_status status = tl_vtk_list(out, rows, points * TL_VTK_VEC3_BYTES, fill_places, g);
     fprintf(file, "CELLS %zu %zu\n", rows, stream);
     if (status == TL_OK)
-        status = put_list(g, out, stream * TL_VTK_INT_BYTES, fill_cells);
+        status = tl_vtk_list(out, rows, stream * TL_VTK_INT_BYTES, fill_cells, g);
     fprintf(file, "CELL_TYPES %zu\n", rows);
     if (status == TL_OK)
-        status = put_array(m, out, &types);
+        status = tl_vtk_list(out, rows, rows * TL_VTK_INT_BYTES, fill_types, g);
     if (status == TL_OK)
         status = put_cell_data(m, parts, out);
     fprintf(file, "POINT_DATA %zu\nVECTORS displacement float\n", points);
     if (status == TL_OK)
-        status = put_list(g, out, points * TL_VTK_FLOAT3_BYTES, fill_displacements);
+        status = tl_vtk_list(out, rows, points * TL_VTK_FLOAT3_BYTES, fill_displacements, g);
     tl_vtk_field(file, "FieldData", 1);
     tl_vtk_array(file, "explode", 3, points, TL_VTK_FLOAT);
-    return status == TL_OK ? put_list(g, out, points * TL_VTK_FLOAT3_BYTES, fill_explode) : status;
+    return status == TL_OK ? tl_vtk_list(out, rows, points * TL_VTK_FLOAT3_BYTES, fill_explode, g)
+                           : status;
 }
 
 static tl_status check_fields(tl_model *m, const tl_vtk_parts *parts)
@@ -348,12 +289,9 @@ static tl_status check_fields(tl_model *m, const tl_vtk_parts *parts)
     static const char context[] = "write_vtk: block_fields";
     tl_status status = tl_extra_fields_check(context, parts->block_fields, parts->block_field_count,
                                              m->blocks.table.rows, "blocks", &m->error);
-    if (status == TL_OK)
+    for (size_t i = 0; status == TL_OK && i < ARRAYS; i++)
         status = tl_extra_fields_differ(context, parts->block_fields, parts->block_field_count,
-                                        "block_id", &m->error);
-    for (size_t i = 0; status == TL_OK && i < FIELDS; i++)
-        status = tl_extra_fields_differ(context, parts->block_fields, parts->block_field_count,
-                                        fields[i].name, &m->error);
+                                        arrays[i].name, &m->error);
     return status;
 }
 
@@ -377,5 +315,193 @@ tl_status tl_vtk_blocks(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
         g.first[row + 1] = g.first[row] + b->shape[row]->vertex_count;
     status = put_grid(m, &g, stream, parts, out);
     free(g.first);
+    return status;
+}
+
+/* ---------------------------------------------------------------- section ---------------- */
+
+typedef struct corner {
+    tl_vec3 at; /* in the body's frame */
+    double angle;
+} corner;
+
+/* The polygons of a section, one after the other. */
+typedef struct section {
+    tl_vec3 normal;
+    corner *corners;
+    uint32_t *row, *end; /* [polygons] block row; end of its corners */
+    size_t points, point_capacity, polygons, row_capacity, end_capacity;
+} section;
+
+static bool reserve_corners(section *s, size_t corners)
+{
+    return tl_grow(&s->corners, &s->point_capacity, s->points + corners, sizeof *s->corners) &&
+           tl_grow(&s->row, &s->row_capacity, s->polygons + 1, sizeof *s->row) &&
+           tl_grow(&s->end, &s->end_capacity, s->polygons + 1, sizeof *s->end);
+}
+
+static int by_angle(const void *a, const void *b)
+{
+    double x = ((const corner *)a)->angle, y = ((const corner *)b)->angle;
+    return (x > y) - (x < y);
+}
+
+/* Where the edges of a shape pass from below the plane to above. */
+static size_t find_corners(const tl_poly *p, tl_plane plane, corner *list)
+{
+    double on = TL_POLY_ON * p->size;
+    size_t count = 0;
+    for (uint32_t e = 0; e < p->edge_count; e++) {
+        tl_vec3 a = p->vertex[p->edge[e].a], b = p->vertex[p->edge[e].b];
+        double da = tl_v3_dot(plane.normal, a) - plane.offset;
+        double db = tl_v3_dot(plane.normal, b) - plane.offset;
+        if ((da < -on) == (db < -on))
+            continue;
+        double t = fmin(1, fmax(0, da / (da - db)));
+        list[count++].at = tl_v3_madd(a, t, tl_v3_sub(b, a));
+    }
+    return count;
+}
+
+/* Brings the corners of a convex polygon into order, counter-clockwise as seen from above the plane,
+ * each once; returns how many are left. */
+static size_t order_corners(tl_vec3 normal, double on, corner *list, size_t count)
+{
+    tl_vec3 sum = {0, 0, 0};
+    for (size_t i = 0; i < count; i++)
+        sum = tl_v3_add(sum, tl_v3_sub(list[i].at, list[0].at));
+    tl_vec3 middle = tl_v3_madd(list[0].at, 1.0 / (double)count, sum);
+    tl_vec3 t1 = tl_v3_perpendicular(normal), t2 = tl_v3_cross(normal, t1);
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 arm = tl_v3_sub(list[i].at, middle);
+        list[i].angle = tl_atan2(tl_v3_dot(arm, t2), tl_v3_dot(arm, t1));
+    }
+    qsort(list, count, sizeof *list, by_angle);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (kept == 0 || tl_v3_norm(tl_v3_sub(list[i].at, list[kept - 1].at)) > on)
+            list[kept++] = list[i];
+    while (kept > 1 && tl_v3_norm(tl_v3_sub(list[kept - 1].at, list[0].at)) <= on)
+        kept--;
+    return kept;
+}
+
+static bool cut_blocks(const tl_model *m, tl_plane plane, section *s)
+{
+    const tl_blocks *b = &m->blocks;
+    for (uint32_t row = 0; row < b->table.rows; row++) {
+        uint32_t body = b->body[row];
+        const tl_poly *shape = b->shape[row];
+        tl_plane local = {tl_m3_tmul(&m->bodies.pose[body].r, plane.normal),
+                          plane.offset - tl_v3_dot(plane.normal, tl_body_place(&m->bodies, body))};
+        if (!reserve_corners(s, shape->edge_count))
+            return false;
+        corner *list = s->corners + s->points;
+        size_t count = find_corners(shape, local, list);
+        if (count < 3 ||
+            (count = order_corners(local.normal, TL_POLY_ON * shape->size, list, count)) < 3)
+            continue;
+        s->points += count;
+        s->row[s->polygons] = row;
+        s->end[s->polygons++] = (uint32_t)s->points;
+    }
+    return true;
+}
+
+static void put_polygons(const tl_model *m, const section *s, FILE *file)
+{
+    fprintf(file, "POINTS %zu double\n", s->points);
+    size_t at = 0;
+    for (size_t i = 0; i < s->polygons; i++)
+        for (; at < s->end[i]; at++)
+            tl_vtk_vec3(file, tl_model_point(m, m->blocks.body[s->row[i]], s->corners[at].at));
+    fprintf(file, "\nPOLYGONS %zu %zu\n", s->polygons, s->polygons + s->points);
+    int32_t next = 0;
+    for (size_t i = 0; i < s->polygons; i++) {
+        tl_vtk_int(file, (int32_t)s->end[i] - next);
+        while (next < (int32_t)s->end[i])
+            tl_vtk_int(file, next++);
+    }
+    tl_vtk_line(file);
+}
+
+static tl_vec3 in_plane(tl_vec3 normal, tl_vec3 v)
+{
+    return tl_v3_madd(v, -tl_v3_dot(v, normal), normal);
+}
+
+static tl_vec3 middle_displacement(const tl_model *m, const section *s, size_t polygon)
+{
+    size_t begin = polygon ? s->end[polygon - 1] : 0, end = s->end[polygon];
+    tl_vec3 sum = {0, 0, 0};
+    for (size_t at = begin; at < end; at++)
+        sum = tl_v3_add(sum, tl_v3_sub(s->corners[at].at, s->corners[begin].at));
+    tl_vec3 middle = tl_v3_madd(s->corners[begin].at, 1.0 / (double)(end - begin), sum);
+    return tl_block_point_displacement(m, s->row[polygon], middle);
+}
+
+/* A quantity of the blocks that is a whole number. */
+static void put_whole(const tl_model *m, const section *s, const char *name, FILE *file)
+{
+    for (size_t i = 0; i < s->polygons; i++) {
+        double value[6];
+        tl_block_numbers(m, s->row[i], tl_block_quantity(name), value);
+        tl_vtk_int(file, (int32_t)(uint32_t)value[0]);
+    }
+    tl_vtk_line(file);
+}
+
+static void put_section_cells(const tl_model *m, const section *s, FILE *file)
+{
+    fprintf(file, "CELL_DATA %zu\nSCALARS block_id int 1\nLOOKUP_TABLE default\n", s->polygons);
+    put_whole(m, s, "id", file);
+    fprintf(file, "VECTORS displacement double\n");
+    for (size_t i = 0; i < s->polygons; i++)
+        tl_vtk_vec3(file, middle_displacement(m, s, i));
+    tl_vtk_line(file);
+    tl_vtk_field(file, "FieldData", 4);
+    static const char *const names[] = {"group", "body", "hidden"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        tl_vtk_array(file, names[k], 1, s->polygons, TL_VTK_INT);
+        put_whole(m, s, names[k], file);
+    }
+    tl_vtk_array(file, "displacement_in_plane", 3, s->polygons, TL_VTK_DOUBLE);
+    for (size_t i = 0; i < s->polygons; i++)
+        tl_vtk_vec3(file, in_plane(s->normal, middle_displacement(m, s, i)));
+    tl_vtk_line(file);
+}
+
+static void put_point_data(const tl_model *m, const section *s, FILE *file)
+{
+    fprintf(file, "POINT_DATA %zu\nVECTORS displacement double\n", s->points);
+    for (size_t i = 0, at = 0; i < s->polygons; i++)
+        for (; at < s->end[i]; at++)
+            tl_vtk_vec3(file, tl_block_point_displacement(m, s->row[i], s->corners[at].at));
+    tl_vtk_line(file);
+    tl_vtk_field(file, "FieldData", 1);
+    tl_vtk_array(file, "displacement_in_plane", 3, s->points, TL_VTK_DOUBLE);
+    for (size_t i = 0, at = 0; i < s->polygons; i++)
+        for (; at < s->end[i]; at++)
+            tl_vtk_vec3(file, in_plane(s->normal, tl_block_point_displacement(m, s->row[i],
+                                                                              s->corners[at].at)));
+    tl_vtk_line(file);
+}
+
+tl_status tl_vtk_section(tl_model *m, tl_plane plane, tl_pieces *out)
+{
+    FILE *file = out->output->file;
+    section s = {.normal = plane.normal};
+    tl_status status = cut_blocks(m, plane, &s) ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        status = tl_vtk_countable(s.polygons + s.points, "section", &m->error);
+    if (status == TL_OK) {
+        tl_vtk_header(file, m, "section", "POLYDATA");
+        put_polygons(m, &s, file);
+        put_section_cells(m, &s, file);
+        put_point_data(m, &s, file);
+    }
+    free(s.corners);
+    free(s.row);
+    free(s.end);
     return status;
 }

@@ -5,43 +5,36 @@
 
 #include <string.h>
 
-static void put_bytes(FILE *file, uint64_t bits, int bytes)
-{
-    unsigned char big[8];
-    for (int i = 0; i < bytes; i++)
-        big[i] = (unsigned char)(bits >> (8 * (bytes - 1 - i)));
-    fwrite(big, 1, (size_t)bytes, file);
-}
-
 void tl_vtk_int(FILE *file, int32_t value)
 {
-    put_bytes(file, (uint32_t)value, 4);
+    unsigned char bytes[TL_VTK_INT_BYTES];
+    tl_vtk_put_int(bytes, value);
+    fwrite(bytes, 1, sizeof bytes, file);
 }
 
 void tl_vtk_double(FILE *file, double value)
 {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_bytes(file, bits, 8);
+    unsigned char bytes[sizeof value];
+    tl_vtk_put_double(bytes, value);
+    fwrite(bytes, 1, sizeof bytes, file);
 }
 
 void tl_vtk_vec3(FILE *file, tl_vec3 value)
 {
-    tl_vtk_double(file, value.x);
-    tl_vtk_double(file, value.y);
-    tl_vtk_double(file, value.z);
+    unsigned char bytes[TL_VTK_VEC3_BYTES];
+    tl_vtk_put_vec3(bytes, value);
+    fwrite(bytes, 1, sizeof bytes, file);
 }
 
 /* A text goes after its length, whose two highest bits tell how many bytes the length takes. */
 void tl_vtk_string(FILE *file, const char *text)
 {
     size_t length = strlen(text);
-    if (length < (size_t)1 << 6)
-        put_bytes(file, (uint64_t)3 << 6 | length, 1);
-    else if (length < (size_t)1 << 14)
-        put_bytes(file, (uint64_t)2 << 14 | length, 2);
-    else
-        put_bytes(file, (uint64_t)1 << 30 | length, 4);
+    const unsigned bytes = length < (size_t)1 << 6 ? 1 : length < (size_t)1 << 14 ? 2 : 4;
+    const uint32_t mark = bytes == 1 ? 3 : bytes == 2 ? 2 : 1;
+    unsigned char head[TL_VTK_INT_BYTES];
+    tl_vtk_put_int(head, (int32_t)(mark << 30 | (uint32_t)length << (32 - 8 * bytes)));
+    fwrite(head, 1, bytes, file);
     fwrite(text, 1, length, file);
 }
 
@@ -58,6 +51,13 @@ void tl_vtk_array(FILE *file, const char *name, size_t components, size_t tuples
 void tl_vtk_line(FILE *file)
 {
     fputc('\n', file);
+}
+
+tl_status tl_vtk_list(tl_pieces *out, size_t rows, size_t bytes, tl_piece_fn fn, const void *user)
+{
+    tl_status status = tl_pieces_write(out, rows, 1 + bytes / (rows + 1), fn, user);
+    tl_vtk_line(out->output->file);
+    return status;
 }
 
 void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset)

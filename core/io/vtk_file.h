@@ -27,6 +27,9 @@ void tl_vtk_field(FILE *file, const char *name, size_t arrays);
 void tl_vtk_array(FILE *file, const char *name, size_t components, size_t tuples, const char *type);
 void tl_vtk_line(FILE *file);
 
+/* A list that is made of rows, `bytes` in all, as tl_pieces_write does it, and its line. */
+tl_status tl_vtk_list(tl_pieces *out, size_t rows, size_t bytes, tl_piece_fn fn, const void *user);
+
 /* One number, vector or text of the array at hand. */
 void tl_vtk_int(FILE *file, int32_t value);
 void tl_vtk_double(FILE *file, double value);

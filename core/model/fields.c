@@ -1,75 +1,13 @@
 /* fields.c - what can be asked of a block: its named fields and its shape in place. */
-#include "model/model.h"
+#include "model/fields.h"
+
 #include "model/regroup.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/fields.h>
 #include <talus/views.h>
-
-enum {
-    F_ID,
-    F_GROUP,
-    F_DENSITY,
-    F_VOLUME,
-    F_MASS,
-    F_INERTIA,
-    F_CENTROID,
-    F_DISPLACEMENT,
-    F_ROTATION,
-    F_VELOCITY,
-    F_ANGULAR_VELOCITY,
-    F_FORCE,
-    F_MOMENT,
-    F_FIXED,
-    F_HIDDEN,
-    F_BODY,
-    F_SPEED,
-    F_KINETIC_ENERGY,
-    F_COUNT
-};
-
-static const tl_field fields[F_COUNT] = {
-    [F_ID] = {"id", TL_FIELD_COUNT, "", "number of the block, never used again"},
-    [F_GROUP] = {"group", TL_FIELD_TEXT, "", "name of its group"},
-    [F_DENSITY] = {"density", TL_FIELD_SCALAR, "kg/m3", "mass per volume"},
-    [F_VOLUME] = {"volume", TL_FIELD_SCALAR, "m3", "volume of the block alone"},
-    [F_MASS] = {"mass", TL_FIELD_SCALAR, "kg", "mass of the block alone"},
-    [F_INERTIA] = {"inertia", TL_FIELD_SYM3, "kg m2",
-                   "inertia of the block about its centroid, in the axes of the model"},
-    [F_CENTROID] = {"centroid", TL_FIELD_VEC3, "m", "present place of the centroid"},
-    [F_DISPLACEMENT] = {"displacement", TL_FIELD_VEC3, "m",
-                        "of the centroid, since creation or reset_displacement"},
-    [F_ROTATION] = {"rotation", TL_FIELD_QUAT, "", "unit quaternion w, x, y, z of its body"},
-    [F_VELOCITY] = {"velocity", TL_FIELD_VEC3, "m/s", "of the centroid, half a step ago"},
-    [F_ANGULAR_VELOCITY] = {"angular_velocity", TL_FIELD_VEC3, "rad/s", "of its body"},
-    [F_FORCE] = {"force", TL_FIELD_VEC3, "N", "unbalanced force on its body"},
-    [F_MOMENT] = {"moment", TL_FIELD_VEC3, "N m", "unbalanced moment about its body's centroid"},
-    [F_FIXED] = {"fixed", TL_FIELD_BOOL, "", "whether its body is held in every component"},
-    [F_HIDDEN] = {"hidden", TL_FIELD_BOOL, "", "hidden blocks are not cut"},
-    [F_BODY] = {"body", TL_FIELD_COUNT, "", "id of its rigid body: the lowest id of its blocks"},
-    [F_SPEED] = {"speed", TL_FIELD_SCALAR, "m/s", "length of the velocity"},
-    [F_KINETIC_ENERGY] = {"kinetic_energy", TL_FIELD_SCALAR, "J", "of the block alone"},
-};
-
-const tl_field *tl_block_fields(size_t *count)
-{
-    *count = F_COUNT;
-    return fields;
-}
-
-static void put_vector(tl_field_value *value, tl_vec3 v)
-{
-    value->number[0] = v.x;
-    value->number[1] = v.y;
-    value->number[2] = v.z;
-}
-
-static void put_tensor(tl_field_value *value, tl_sym3 t)
-{
-    const double n[6] = {t.xx, t.yy, t.zz, t.xy, t.yz, t.zx};
-    memcpy(value->number, n, sizeof n);
-}
 
 static double kinetic_energy(const tl_model *m, uint32_t row)
 {
@@ -79,42 +17,97 @@ static double kinetic_energy(const tl_model *m, uint32_t row)
            0.5 * tl_v3_dot(w, tl_s3_mul(tl_block_inertia(m, row), w));
 }
 
+/* The fields: name, kind, unit, what they are, and the value of the block in `row`, which is one of the blocks b, and of its
+ * `body`. */
+#define BLOCK_FIELDS(FIELD)                                                                        \
+    FIELD(id, COUNT, "", "number of the block, never used again", b->id[row])                      \
+    FIELD(group, TEXT, "", "name of its group", b->group[row])                                     \
+    FIELD(density, SCALAR, "kg/m3", "mass per volume", b->density[row])                            \
+    FIELD(volume, SCALAR, "m3", "volume of the block alone", b->volume[row])                       \
+    FIELD(mass, SCALAR, "kg", "mass of the block alone", b->density[row] * b->volume[row])         \
+    FIELD(inertia, SYM3, "kg m2",                                                                  \
+          "inertia of the block about its centroid, in the axes of the model",                     \
+          tl_block_inertia(m, row))                                                                \
+    FIELD(centroid, VEC3, "m", "present place of the centroid", tl_block_centroid(m, row))         \
+    FIELD(displacement, VEC3, "m", "of the centroid, since creation or reset_displacement",        \
+          tl_block_displacement(m, row))                                                           \
+    FIELD(rotation, QUAT, "", "unit quaternion w, x, y, z of its body", bodies->q[body])           \
+    FIELD(velocity, VEC3, "m/s", "of the centroid, half a step ago", tl_block_velocity(m, row))    \
+    FIELD(angular_velocity, VEC3, "rad/s", "of its body", bodies->w[body])                         \
+    FIELD(force, VEC3, "N", "unbalanced force on its body", bodies->force[body])                   \
+    FIELD(moment, VEC3, "N m", "unbalanced moment about its body's centroid",                      \
+          bodies->moment[body])                                                                    \
+    FIELD(fixed, BOOL, "", "whether its body is held in every component",                          \
+          bodies->fixed[body] == TL_FIX_ALL)                                                       \
+    FIELD(hidden, BOOL, "", "hidden blocks are not cut", b->hidden[row] != 0)                      \
+    FIELD(body, COUNT, "", "id of its rigid body: the lowest id of its blocks", bodies->id[body])  \
+    FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(tl_block_velocity(m, row)))   \
+    FIELD(kinetic_energy, SCALAR, "J", "of the block alone", kinetic_energy(m, row))
+
+/* What else files show. */
+#define BLOCK_ARRAYS(FIELD)                                                                        \
+    FIELD(rotation_vector, VEC3, "rad", "axis times angle", tl_q_vector(bodies->q[body]))          \
+    FIELD(displacement_size, SCALAR, "m", "length of the displacement",                            \
+          tl_v3_norm(tl_block_displacement(m, row)))
+
+#define NUMBER(name, kind, unit, doc, value) F_##name,
+#define FIELD(name, kind, unit, doc, value) {#name, TL_FIELD_##kind, unit, doc},
+#define CASE(name, kind, unit, doc, value)                                                         \
+    case F_##name: TL_FIELD_PUT(out, value); break;
+
+enum { BLOCK_FIELDS(NUMBER) F_COUNT, F_BEFORE_ARRAYS = F_COUNT - 1, BLOCK_ARRAYS(NUMBER) F_ALL };
+
+static const tl_field fields[F_ALL] = {BLOCK_FIELDS(FIELD) BLOCK_ARRAYS(FIELD)};
+
+const tl_field *tl_block_fields(size_t *count)
+{
+    *count = F_COUNT;
+    return fields;
+}
+
+const tl_field *tl_block_quantity(const char *name)
+{
+    const tl_field *of = fields;
+    while (strcmp(of->name, name) != 0)
+        of++;
+    return of;
+}
+
+void tl_block_numbers(const tl_model *m, uint32_t row, const tl_field *of, double out[6])
+{
+    const tl_blocks *b = &m->blocks;
+    const tl_bodies *bodies = &m->bodies;
+    const uint32_t body = b->body[row];
+    switch (of - fields) {
+        BLOCK_FIELDS(CASE)
+        BLOCK_ARRAYS(CASE)
+    default: break;
+    }
+}
+
+size_t tl_field_width(tl_field_kind kind)
+{
+    switch (kind) {
+    case TL_FIELD_VEC3: return 3;
+    case TL_FIELD_QUAT: return 4;
+    case TL_FIELD_SYM3: return 6;
+    case TL_FIELD_IDS: return 2;
+    case TL_FIELD_TEXT: return 0;
+    default: return 1;
+    }
+}
+
 tl_status tl_block_field(tl_model *m, tl_id block, size_t index, tl_field_value *value)
 {
     assert(index < F_COUNT);
     uint32_t row = tl_block_row(m, block);
     if (row == TL_NO_ROW)
         return m->error.status;
-    const tl_blocks *b = &m->blocks;
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t body = b->body[row];
     *value = (tl_field_value){{0}, NULL};
-    switch (index) {
-    case F_ID: value->number[0] = block; break;
-    case F_GROUP: value->text = m->groups[b->group[row]]; break;
-    case F_DENSITY: value->number[0] = b->density[row]; break;
-    case F_VOLUME: value->number[0] = b->volume[row]; break;
-    case F_MASS: value->number[0] = b->density[row] * b->volume[row]; break;
-    case F_INERTIA: put_tensor(value, tl_block_inertia(m, row)); break;
-    case F_CENTROID: put_vector(value, tl_block_centroid(m, row)); break;
-    case F_DISPLACEMENT: put_vector(value, tl_block_displacement(m, row)); break;
-    case F_ROTATION: {
-        tl_quat q = bodies->q[body];
-        const double n[4] = {q.w, q.x, q.y, q.z};
-        memcpy(value->number, n, sizeof n);
-        break;
-    }
-    case F_VELOCITY: put_vector(value, tl_block_velocity(m, row)); break;
-    case F_ANGULAR_VELOCITY: put_vector(value, bodies->w[body]); break;
-    case F_FORCE: put_vector(value, bodies->force[body]); break;
-    case F_MOMENT: put_vector(value, bodies->moment[body]); break;
-    case F_FIXED: value->number[0] = bodies->fixed[body] == TL_FIX_ALL; break;
-    case F_HIDDEN: value->number[0] = b->hidden[row] != 0; break;
-    case F_BODY: value->number[0] = bodies->id[body]; break;
-    case F_SPEED: value->number[0] = tl_v3_norm(tl_block_velocity(m, row)); break;
-    case F_KINETIC_ENERGY: value->number[0] = kinetic_energy(m, row); break;
-    default: break;
-    }
+    if (fields[index].kind == TL_FIELD_TEXT)
+        value->text = m->groups[m->blocks.group[row]];
+    else
+        tl_block_numbers(m, row, &fields[index], value->number);
     return TL_OK;
 }
 

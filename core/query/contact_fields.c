@@ -15,48 +15,71 @@
 #include <string.h>
 #include <talus/fields.h>
 
-enum {
-    F_ID,
-    F_BLOCKS,
-    F_JOINT,
-    F_AREA,
-    F_NORMAL,
-    F_POINT,
-    F_GAP,
-    F_NORMAL_FORCE,
-    F_SHEAR_FORCE,
-    F_NORMAL_STRESS,
-    F_SHEAR_STRESS,
-    F_SHEAR_DISPLACEMENT,
-    F_STATE,
-    F_LAW,
-    F_COUNT
-};
+/* The fields: name, kind, unit, what tl_contact_facts has them by (of several numbers the first), and what they are. */
+#define CONTACT_FIELDS(FIELD)                                                                      \
+    FIELD(id, COUNT, "", id, "number of the contact, never used again")                            \
+    FIELD(blocks, IDS, "", a, "its two blocks, the older first")                                   \
+    FIELD(joint, TEXT, "", tag.joint, "joint and plane (\"J1:3\"), or empty")                      \
+    FIELD(area, SCALAR, "m2", area,                                                                \
+          "of the common polygon of two faces, or of the surface of pressure")                     \
+    FIELD(normal, VEC3, "", normal, "unit normal from the first block to the second")              \
+    FIELD(point, VEC3, "m", point, "centroid of the polygon, or centre of pressure")               \
+    FIELD(gap, SCALAR, "m", gap, "smallest gap, negative when overlapping")                        \
+    FIELD(normal_force, SCALAR, "N", normal_force, "compression positive")                         \
+    FIELD(shear_force, VEC3, "N", shear_force, "on the second block")                              \
+    FIELD(normal_stress, SCALAR, "Pa", normal_stress, "normal force over area")                    \
+    FIELD(shear_stress, SCALAR, "Pa", shear_stress, "length of shear force over area")             \
+    FIELD(shear_displacement, VEC3, "m", shear_displacement,                                       \
+          "of the second block against the first at the point, along the contact: difference of "  \
+          "their displacements")                                                                   \
+    FIELD(state, TEXT, "", state, "\"elastic\", \"slipping\", \"open\" or \"failed\"")             \
+    FIELD(law, TEXT, "", law, "name of the law of its joint, or empty")
 
-static const tl_field fields[F_COUNT] = {
-    [F_ID] = {"id", TL_FIELD_COUNT, "", "number of the contact, never used again"},
-    [F_BLOCKS] = {"blocks", TL_FIELD_IDS, "", "its two blocks, the older first"},
-    [F_JOINT] = {"joint", TL_FIELD_TEXT, "", "joint and plane (\"J1:3\"), or empty"},
-    [F_AREA] = {"area", TL_FIELD_SCALAR, "m2",
-                "of the common polygon of two faces, or of the surface of pressure"},
-    [F_NORMAL] = {"normal", TL_FIELD_VEC3, "", "unit normal from the first block to the second"},
-    [F_POINT] = {"point", TL_FIELD_VEC3, "m", "centroid of the polygon, or centre of pressure"},
-    [F_GAP] = {"gap", TL_FIELD_SCALAR, "m", "smallest gap, negative when overlapping"},
-    [F_NORMAL_FORCE] = {"normal_force", TL_FIELD_SCALAR, "N", "compression positive"},
-    [F_SHEAR_FORCE] = {"shear_force", TL_FIELD_VEC3, "N", "on the second block"},
-    [F_NORMAL_STRESS] = {"normal_stress", TL_FIELD_SCALAR, "Pa", "normal force over area"},
-    [F_SHEAR_STRESS] = {"shear_stress", TL_FIELD_SCALAR, "Pa", "length of shear force over area"},
-    [F_SHEAR_DISPLACEMENT] = {"shear_displacement", TL_FIELD_VEC3, "m",
-                              "of the second block against the first at the point, along the "
-                              "contact: difference of their displacements"},
-    [F_STATE] = {"state", TL_FIELD_TEXT, "", "\"elastic\", \"slipping\", \"open\" or \"failed\""},
-    [F_LAW] = {"law", TL_FIELD_TEXT, "", "name of the law of its joint, or empty"},
-};
+/* What else files show. */
+#define CONTACT_ARRAYS(FIELD)                                                                      \
+    FIELD(plane, COUNT, "", tag.plane, "")                                                         \
+    FIELD(contact_id, COUNT, "", id, "")                                                           \
+    FIELD(block_id, COUNT, "", a, "")                                                              \
+    FIELD(block_a, COUNT, "", a, "")                                                               \
+    FIELD(block_b, COUNT, "", b, "")                                                               \
+    FIELD(slip, SCALAR, "m", slip, "")
+
+#define NUMBER(name, kind, unit, from, doc) F_##name,
+#define FIELD(name, kind, unit, from, doc) {#name, TL_FIELD_##kind, unit, doc},
+#define OFFSET(name, kind, unit, from, doc) offsetof(tl_contact_facts, from),
+
+enum { CONTACT_FIELDS(NUMBER) F_COUNT };
+
+static const tl_field fields[] = {CONTACT_FIELDS(FIELD) CONTACT_ARRAYS(FIELD)};
+static const size_t offsets[] = {CONTACT_FIELDS(OFFSET) CONTACT_ARRAYS(OFFSET)};
 
 const tl_field *tl_contact_fields(size_t *count)
 {
     *count = F_COUNT;
     return fields;
+}
+
+const tl_field *tl_contact_quantity(const char *name)
+{
+    const tl_field *of = fields;
+    while (strcmp(of->name, name) != 0)
+        of++;
+    return of;
+}
+
+size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3])
+{
+    const size_t width = of->kind == TL_FIELD_TEXT ? 1 : tl_field_width(of->kind);
+    const char *from = (const char *)facts + offsets[of - fields];
+    uint32_t whole[2];
+    if (of->kind == TL_FIELD_SCALAR || of->kind == TL_FIELD_VEC3) {
+        memcpy(out, from, width * sizeof *out);
+        return width;
+    }
+    memcpy(whole, from, width * sizeof *whole);
+    for (size_t w = 0; w < width; w++)
+        out[w] = whole[w];
+    return width;
 }
 
 size_t tl_point_count(const tl_model *m, uint32_t contact)
@@ -147,6 +170,7 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
                             .a = m->blocks.id[c->a[contact]],
                             .b = m->blocks.id[c->b[contact]],
                             .tag = c->tag[contact],
+                            .law = c->law[contact],
                             .area = c->area[contact],
                             .state = state_of(m->detect, contact)};
     tl_vec3 point;
@@ -161,51 +185,35 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     return out;
 }
 
-static const tl_kind *law_of(const tl_model *m, uint32_t contact)
+tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row)
 {
-    uint32_t law = m->detect->contacts.law[contact];
-    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
-}
-
-static void put_vector(tl_field_value *value, tl_vec3 v)
-{
-    value->number[0] = v.x;
-    value->number[1] = v.y;
-    value->number[2] = v.z;
+    tl_status status = tl_detect_refresh(m);
+    if (status != TL_OK)
+        return status;
+    *row = tl_contact_row(m->detect, contact);
+    if (*row == TL_NO_ROW)
+        return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
+                       contact);
+    return TL_OK;
 }
 
 tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_value *value)
 {
     assert(index < F_COUNT);
-    tl_status status = tl_detect_refresh(m);
+    uint32_t row;
+    tl_status status = tl_contact_find(m, contact, &row);
     if (status != TL_OK)
         return status;
-    uint32_t c = tl_contact_row(m->detect, contact);
-    if (c == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
-                       contact);
+    const tl_contact_facts facts = tl_contact_facts_of(m, row);
     *value = (tl_field_value){{0}, NULL};
-    tl_contact_facts facts = tl_contact_facts_of(m, c);
-    switch (index) {
-    case F_ID: value->number[0] = contact; break;
-    case F_BLOCKS:
-        value->number[0] = facts.a;
-        value->number[1] = facts.b;
-        break;
-    case F_JOINT: value->text = tl_tag_name(m, facts.tag); break;
-    case F_AREA: value->number[0] = facts.area; break;
-    case F_NORMAL: put_vector(value, facts.normal); break;
-    case F_POINT: put_vector(value, facts.point); break;
-    case F_GAP: value->number[0] = facts.gap; break;
-    case F_NORMAL_FORCE: value->number[0] = facts.normal_force; break;
-    case F_SHEAR_FORCE: put_vector(value, facts.shear_force); break;
-    case F_NORMAL_STRESS: value->number[0] = facts.normal_stress; break;
-    case F_SHEAR_STRESS: value->number[0] = facts.shear_stress; break;
-    case F_SHEAR_DISPLACEMENT: put_vector(value, facts.shear_displacement); break;
-    case F_STATE: value->text = tl_state_name(facts.state); break;
-    case F_LAW: value->text = law_of(m, c) ? law_of(m, c)->name : ""; break;
-    default: break;
-    }
+    if (fields[index].kind != TL_FIELD_TEXT)
+        tl_contact_numbers(&facts, &fields[index], value->number);
+    else if (index == F_joint)
+        value->text = tl_tag_name(m, facts.tag);
+    else if (index == F_state)
+        value->text = tl_state_name(facts.state);
+    else
+        value->text = facts.law == TL_NO_ROW ? "" : m->joint_laws[facts.law].kind->name;
     return TL_OK;
 }
 

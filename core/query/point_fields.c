@@ -1,10 +1,12 @@
 /* point_fields.c - what can be asked of contact points: their fields, by name, and the states of their law. */
 #include "query/point_fields.h"
 
+#include "base/columns.h"
 #include "contact/detection.h"
 #include "contact/index.h"
 #include "contact/places.h"
 #include "detect/detect.h"
+#include "model/fields.h"
 #include "query/contact_fields.h"
 
 #include <math.h>
@@ -215,18 +217,6 @@ double tl_law_states_slip(const tl_model *m, const tl_law_states *states, uint32
  *
  * Fields and states of many blocks or contacts, by name, as one list of numbers. */
 
-size_t tl_field_width(tl_field_kind kind)
-{
-    switch (kind) {
-    case TL_FIELD_VEC3: return 3;
-    case TL_FIELD_QUAT: return 4;
-    case TL_FIELD_SYM3: return 6;
-    case TL_FIELD_IDS: return 2;
-    case TL_FIELD_TEXT: return 0;
-    default: return 1;
-    }
-}
-
 /* "a block has no field 'velocty'; did you mean 'velocity'?" */
 static tl_status unknown_name(tl_model *m, const char *item, const tl_field *fields, size_t count,
                               const tl_law_states *states, const char *name)
@@ -281,16 +271,6 @@ static tl_status contact_value_find(tl_model *m, const char *item, const tl_fiel
     return status == TL_OK ? value_find(m, item, fields, count, states, name, of) : status;
 }
 
-/* Row of the contact of an id, or TL_E_STALE with a sentence; contacts are up to date. */
-static tl_status contact_find(tl_model *m, tl_id contact, uint32_t *row)
-{
-    *row = tl_contact_row(m->detect, contact);
-    if (*row == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
-                       contact);
-    return TL_OK;
-}
-
 tl_status tl_blocks_values(tl_model *m, const tl_id *ids, size_t count, const char *field,
                            double *out, size_t *width)
 {
@@ -313,25 +293,20 @@ tl_status tl_blocks_values(tl_model *m, const tl_id *ids, size_t count, const ch
 
 /* One value of a contact. */
 static tl_status contact_value(tl_model *m, const tl_law_states *states, const tl_value_of *of,
-                               bool is_state, tl_id contact, double *out)
+                               tl_id contact, double *out)
 {
     uint32_t row;
-    tl_status status = contact_find(m, contact, &row);
+    tl_status status = tl_contact_find(m, contact, &row);
     if (status != TL_OK)
         return status;
     if (of->state) {
         tl_law_state_of_contact(m, states, of->state, row, out);
         return TL_OK;
     }
-    if (is_state) {
-        *out = tl_contact_facts_of(m, row).state;
-        return TL_OK;
-    }
-    tl_field_value value;
-    status = tl_contact_field(m, contact, of->field, &value);
-    if (status == TL_OK)
-        memcpy(out, value.number, of->width * sizeof *out);
-    return status;
+    size_t all;
+    const tl_contact_facts facts = tl_contact_facts_of(m, row);
+    tl_contact_numbers(&facts, &tl_contact_fields(&all)[of->field], out);
+    return TL_OK;
 }
 
 tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const char *name,
@@ -344,9 +319,8 @@ tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const 
     tl_status status = contact_value_find(m, "contact", fields, all, &states, name, &of);
     if (status == TL_OK) {
         *width = of.width;
-        bool is_state = strcmp(name, "state") == 0;
         for (size_t i = 0; i < count && out && status == TL_OK; i++)
-            status = contact_value(m, &states, &of, is_state, ids[i], out + i * of.width);
+            status = contact_value(m, &states, &of, ids[i], out + i * of.width);
     }
     tl_law_states_free(&states);
     return status;
@@ -358,9 +332,7 @@ tl_status tl_states_list(tl_model *m, tl_id contact, tl_law_state **list, size_t
     *count = 0;
     tl_law_states states = {0};
     uint32_t row = TL_NO_ROW;
-    tl_status status = contact == TL_NO_ID ? TL_OK : tl_detect_refresh(m);
-    if (status == TL_OK && contact != TL_NO_ID)
-        status = contact_find(m, contact, &row);
+    tl_status status = contact == TL_NO_ID ? TL_OK : tl_contact_find(m, contact, &row);
     if (status == TL_OK)
         status = tl_law_states_list(m, &states);
     if (status != TL_OK)
@@ -375,20 +347,31 @@ tl_status tl_states_list(tl_model *m, tl_id contact, tl_law_state **list, size_t
 
 /* ---------------------------------------------------------------- points ------------------ */
 
-enum { F_POSITION, F_AREA, F_NORMAL_FORCE, F_SHEAR_FORCE, F_GAP, F_CLOSURE, F_STATE, F_COUNT };
+/* The fields: name, kind, unit, what they are, and the value of point k of a contact for writer w, in `row` of points p. */
+#define POINT_FIELDS(FIELD)                                                                        \
+    FIELD(position, VEC3, "m", "present place of the point",                                       \
+          tl_v3_add(w->model->origin, w->place[k]))                                                \
+    FIELD(area, SCALAR, "m2", "share of the contact's area", p->area[row])                         \
+    FIELD(normal_force, SCALAR, "N", "compression positive", p->f_n[row])                          \
+    FIELD(shear_force, VEC3, "N", "on the second block", tl_columns_get(p->f_s, row))              \
+    FIELD(gap, SCALAR, "m",                                                                        \
+          "of the walls at the point, negative when overlapping; of a field contact the mean "     \
+          "over its area",                                                                         \
+          w->gap[k])                                                                               \
+    FIELD(closure, SCALAR, "m",                                                                    \
+          "how far the walls have approached since the law's reference state",                     \
+          -w->gap[k] - (p->reference ? p->reference[row] : 0))                                     \
+    FIELD(state, TEXT, "", "\"elastic\", \"slipping\", \"open\" or \"failed\"",                    \
+          tl_contact_state_of_flags(p->flags[row], p->flags[row]))
 
-static const tl_field fields[F_COUNT] = {
-    [F_POSITION] = {"position", TL_FIELD_VEC3, "m", "present place of the point"},
-    [F_AREA] = {"area", TL_FIELD_SCALAR, "m2", "share of the contact's area"},
-    [F_NORMAL_FORCE] = {"normal_force", TL_FIELD_SCALAR, "N", "compression positive"},
-    [F_SHEAR_FORCE] = {"shear_force", TL_FIELD_VEC3, "N", "on the second block"},
-    [F_GAP] = {"gap", TL_FIELD_SCALAR, "m",
-               "of the walls at the point, negative when overlapping; of a field contact the mean "
-               "over its area"},
-    [F_CLOSURE] = {"closure", TL_FIELD_SCALAR, "m",
-                   "how far the walls have approached since the law's reference state"},
-    [F_STATE] = {"state", TL_FIELD_TEXT, "", "\"elastic\", \"slipping\", \"open\" or \"failed\""},
-};
+#define NUMBER(name, kind, unit, doc, value) F_##name,
+#define FIELD(name, kind, unit, doc, value) {#name, TL_FIELD_##kind, unit, doc},
+#define CASE(name, kind, unit, doc, value)                                                         \
+    case F_##name: TL_FIELD_PUT(w->out, value); break;
+
+enum { POINT_FIELDS(NUMBER) F_COUNT };
+
+static const tl_field fields[F_COUNT] = {POINT_FIELDS(FIELD)};
 
 const tl_field *tl_point_fields(size_t *count)
 {
@@ -402,7 +385,7 @@ tl_status tl_points_start(tl_model *m, const tl_id *contacts, size_t count, size
     start[0] = 0;
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t row;
-        status = contact_find(m, contacts[i], &row);
+        status = tl_contact_find(m, contacts[i], &row);
         if (status == TL_OK)
             start[i + 1] = start[i] + tl_point_count(m, row);
     }
@@ -414,22 +397,13 @@ tl_status tl_points_start(tl_model *m, const tl_id *contacts, size_t count, size
 /* What is written, and the places and gaps of the points of the contact at hand. */
 typedef struct writer {
     const tl_model *model;
-    size_t field; /* or F_COUNT: a state */
     const tl_law_states *states;
-    const tl_law_state *state;
+    tl_value_of of;
     tl_vec3 *place;
     double *gap;
     size_t capacity;
     double *out;
 } writer;
-
-static double *put_vector(double *out, tl_vec3 v)
-{
-    *out++ = v.x;
-    *out++ = v.y;
-    *out++ = v.z;
-    return out;
-}
 
 /* Makes room for the places of so many points; false when out of memory. */
 static bool reserve(writer *w, size_t count)
@@ -448,29 +422,20 @@ static void write_point(writer *w, uint32_t contact, size_t k)
 {
     const tl_points_table *p = &w->model->detect->points;
     size_t row = tl_point_row(&w->model->detect->contacts, contact, k);
-    switch (w->field) {
-    case F_POSITION: w->out = put_vector(w->out, tl_v3_add(w->model->origin, w->place[k])); break;
-    case F_AREA: *w->out++ = p->area[row]; break;
-    case F_NORMAL_FORCE: *w->out++ = p->f_n[row]; break;
-    case F_SHEAR_FORCE:
-        w->out = put_vector(w->out, tl_v3(p->f_s[0][row], p->f_s[1][row], p->f_s[2][row]));
-        break;
-    case F_GAP: *w->out++ = w->gap[k]; break;
-    case F_CLOSURE: *w->out++ = -w->gap[k] - (p->reference ? p->reference[row] : 0); break;
-    case F_STATE: *w->out++ = tl_contact_state_of_flags(p->flags[row], p->flags[row]); break;
-    default:
-        law_state_at_point(w->model, w->states, w->state, contact, k, w->out);
-        w->out += w->state->width;
+    switch (w->of.field) {
+        POINT_FIELDS(CASE)
+    default: law_state_at_point(w->model, w->states, w->of.state, contact, k, w->out);
     }
+    w->out += w->of.width;
 }
 
 static tl_status write_contact(tl_model *m, writer *w, tl_id id)
 {
     uint32_t row;
-    tl_status status = contact_find(m, id, &row);
+    tl_status status = tl_contact_find(m, id, &row);
     if (status != TL_OK)
         return status;
-    if (w->field == F_POSITION || w->field == F_GAP || w->field == F_CLOSURE) {
+    if (w->of.field == F_position || w->of.field == F_gap || w->of.field == F_closure) {
         if (!reserve(w, m->detect->contacts.point_count[row]))
             return tl_fail_memory(&m->error);
         tl_contact_point_places(m, row, w->place, w->gap);
@@ -487,8 +452,7 @@ tl_status tl_points_values(tl_model *m, const tl_id *contacts, size_t count, con
     tl_value_of of;
     tl_status status = contact_value_find(m, "contact point", fields, F_COUNT, &states, name, &of);
     if (status == TL_OK) {
-        writer w = {
-            .model = m, .field = of.field, .states = &states, .state = of.state, .out = out};
+        writer w = {.model = m, .states = &states, .of = of, .out = out};
         *width = of.width;
         for (size_t i = 0; i < count && out && status == TL_OK; i++)
             status = write_contact(m, &w, contacts[i]);
