@@ -64,6 +64,11 @@ void tl_entries_take(void *user, const tl_entry *to)
     copy->failed = copy->failed || !copied;
 }
 
+void tl_entry_name(const tl_entry *entry, char name[TL_COLUMN_CHUNK])
+{
+    snprintf(name, TL_COLUMN_CHUNK, "%s%s", entry->prefix ? entry->prefix : "", entry->name);
+}
+
 void tl_column_chunk(const char *table_name, const tl_table *table, size_t k,
                      char name[TL_COLUMN_CHUNK])
 {

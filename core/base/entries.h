@@ -29,9 +29,11 @@ void tl_entries_take(void *user, const tl_entry *entry);
 /* Puts a list of so many items, from malloc, in the place of the one of an entry, which is freed. */
 void tl_entry_put_list(const tl_entry *to, void *list, size_t items);
 
-/* Room for the name under which a file keeps a column. */
+/* Room for the name under which a file keeps an entry or a column. */
 #define TL_COLUMN_CHUNK 96
 
+/* The whole name of an entry. */
+void tl_entry_name(const tl_entry *entry, char name[TL_COLUMN_CHUNK]);
 /* The name of column `k` of a table: "bodies.mass"; of several columns of one name each has its number, "detect.points.p[k].2". */
 void tl_column_chunk(const char *table_name, const tl_table *table, size_t k,
                      char name[TL_COLUMN_CHUNK]);

@@ -25,7 +25,8 @@ typedef enum tl_entry_form {
 } tl_entry_form;
 
 typedef struct tl_entry {
-    const char *name; /* "detect.pairs" */
+    const char *prefix,
+        *name; /* "detect.pairs", or in two parts; the prefix of a whole name is NULL */
     tl_entry_form form;
     tl_keep keep;
     void *at;
@@ -53,6 +54,19 @@ static inline void tl_walk_value(const tl_walk *w, tl_keep keep, const char *nam
                                  size_t size)
 {
     const tl_entry e = {.name = name, .form = TL_ENTRY_VALUE, .keep = keep, .at = at, .size = size};
+    w->visit(w->user, &e);
+}
+
+/* The same with a name in two parts. */
+static inline void tl_walk_setting(const tl_walk *w, const char *prefix, const char *name, void *at,
+                                   size_t size)
+{
+    const tl_entry e = {.prefix = prefix,
+                        .name = name,
+                        .form = TL_ENTRY_VALUE,
+                        .keep = TL_KEEP_STATE,
+                        .at = at,
+                        .size = size};
     w->visit(w->user, &e);
 }
 

@@ -194,10 +194,11 @@ static void free_columns(columns *c)
 static void set_numbers(const column *of, size_t row, const double *value)
 {
     unsigned char *to = of->at + row * bytes_of(of);
+    const char type = of->type[0];
     for (size_t w = 0; w < of->width; w++)
-        to = of->type[0] == 'd'   ? tl_vtk_put_double(to, value[w])
-             : of->type[0] == 'f' ? tl_vtk_put_float(to, value[w])
-                                  : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
+        to = type == 'd'   ? tl_vtk_put_double(to, value[w])
+             : type == 'f' ? tl_vtk_put_float(to, value[w])
+                           : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
 }
 
 static void set_row(const columns *c, const tl_model *m, size_t row, const tl_contact_facts *facts,

@@ -1,24 +1,52 @@
 /* walk.c - the entries of a model. */
 #include "model/walk.h"
 
+#include "base/params.h"
+#include "model/functions.h"
+
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "model.", m, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "model.", m, member)
 #define LIST(keep, member, count, capacity)                                                        \
     TL_WALK_LIST(walk, TL_KEEP_##keep, "model.", m, member, &m->count, &m->capacity,               \
                  offsetof(tl_memory, other))
 
+tl_settings tl_config_settings(void)
+{
+    tl_settings of = {.prefix = "model.config.", .offset = offsetof(tl_model, config)};
+    of.params = tl_function_params("model", &of.count, NULL);
+    return of;
+}
+
+tl_settings tl_timestep_settings(void)
+{
+    tl_settings of = {.prefix = "model.timestep.", .offset = offsetof(tl_model, timestep)};
+    of.params = tl_function_params("timestep", &of.count, NULL);
+    return of;
+}
+
+void *tl_setting_at(const tl_model *m, const tl_settings *of, size_t i)
+{
+    const tl_param *param = &of->params[i];
+    char *owner = (char *)(uintptr_t)m + of->offset;
+    return param->flags & TL_PARAM_PASSING ? NULL : owner + param->offset;
+}
+
+static void walk_struct(const tl_model *m, tl_settings of, const tl_walk *walk)
+{
+    for (size_t i = 0; i < of.count; i++) {
+        void *at = tl_setting_at(m, &of, i);
+        if (at)
+            tl_walk_setting(walk, of.prefix, of.params[i].name, at,
+                            tl_param_bytes(of.params[i].type));
+    }
+}
+
 static void walk_settings(tl_model *m, const tl_walk *walk)
 {
-    VALUE(STATE, config.gravity);
-    VALUE(STATE, config.seed);
-    VALUE(STATE, config.rotation);
-    VALUE(STATE, config.reuse_geometry);
-    VALUE(STATE, config.contact_points);
+    walk_struct(m, tl_config_settings(), walk);
     VALUE(STATE, min_area);
     LIST(STATE, joint_min_areas, joint_min_area_count, joint_min_area_count);
-    VALUE(STATE, timestep.fraction);
-    VALUE(STATE, timestep.rule);
-    VALUE(STATE, timestep.dt);
+    walk_struct(m, tl_timestep_settings(), walk);
     FLAG(STATE, mass_scaling);
     VALUE(STATE, added_dt);
     VALUE(STATE, added_most);

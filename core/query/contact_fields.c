@@ -69,7 +69,7 @@ const tl_field *tl_contact_quantity(const char *name)
 
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3])
 {
-    const size_t width = of->kind == TL_FIELD_TEXT ? 1 : tl_field_width(of->kind);
+    const size_t width = of->kind == TL_FIELD_VEC3 ? 3 : of->kind == TL_FIELD_IDS ? 2 : 1;
     const char *from = (const char *)facts + offsets[of - fields];
     uint32_t whole[2];
     if (of->kind == TL_FIELD_SCALAR || of->kind == TL_FIELD_VEC3) {

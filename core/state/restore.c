@@ -3,6 +3,7 @@
 #include "state/restore.h"
 
 #include "base/entries.h"
+#include "base/params.h"
 #include "base/walk.h"
 #include "contact/contacts.h"
 #include "contact/index.h"
@@ -33,21 +34,21 @@
 /* Entries on their way from an archive. */
 typedef struct reader {
     const tl_archive *archive;
-    const char *bad; /* the first entry that did not fit; NULL: none */
-    bool lacked;     /* memory */
+    char name[TL_COLUMN_CHUNK]; /* of the entry at hand, or the first that did not fit */
+    bool bad, lacked;           /* one did not fit; for want of memory */
 } reader;
 
 /* ---------------------------------------------------------------- entries ---------------- */
 
 static bool read_list(reader *r, const tl_entry *e)
 {
-    const tl_chunk *chunk = tl_archive_find(r->archive, e->name);
+    const tl_chunk *chunk = tl_archive_find(r->archive, r->name);
     if (!chunk || chunk->size != e->size || chunk->items > SIZE_MAX / e->size)
         return false;
     size_t items = (size_t)chunk->items;
     void *list = items ? malloc(items * e->size) : NULL;
     r->lacked = items && !list;
-    bool read = !r->lacked && tl_archive_get(r->archive, e->name, list, e->size, items);
+    bool read = !r->lacked && tl_archive_get(r->archive, r->name, list, e->size, items);
     if (!read) {
         free(list);
         return false;
@@ -57,11 +58,11 @@ static bool read_list(reader *r, const tl_entry *e)
 }
 
 /* Whether the archive has all columns of a table, each with so many rows: before there is memory for them. */
-static bool has_columns(const reader *r, const char *name, const tl_table *table, uint64_t rows)
+static bool has_columns(const reader *r, const tl_table *table, uint64_t rows)
 {
     for (size_t k = 0; k < table->column_count; k++) {
         char full[TL_CHUNK_NAME];
-        tl_column_chunk(name, table, k, full);
+        tl_column_chunk(r->name, table, k, full);
         const tl_chunk *chunk = tl_archive_find(r->archive, full);
         if (!(table->columns[k].flags & TL_COLUMN_OWNED) &&
             (!chunk || chunk->size != table->columns[k].size || chunk->items != rows))
@@ -70,19 +71,18 @@ static bool has_columns(const reader *r, const char *name, const tl_table *table
     return true;
 }
 
-static bool read_table(reader *r, const tl_entry *e)
+static bool read_table(reader *r, tl_table *table)
 {
     char full[TL_CHUNK_NAME];
-    tl_table *table = e->at;
     uint64_t rows;
-    snprintf(full, sizeof full, "%s.rows", e->name);
+    snprintf(full, sizeof full, "%.80s.rows", r->name);
     if (!tl_archive_get(r->archive, full, &rows, sizeof rows, 1) || rows > UINT32_MAX ||
-        !has_columns(r, e->name, table, rows))
+        !has_columns(r, table, rows))
         return false;
     r->lacked = !tl_table_resize(table, (size_t)rows);
     for (size_t k = 0; k < table->column_count && !r->lacked; k++) {
         const tl_column *column = &table->columns[k];
-        tl_column_chunk(e->name, table, k, full);
+        tl_column_chunk(r->name, table, k, full);
         if (!(column->flags & TL_COLUMN_OWNED) &&
             !tl_archive_get(r->archive, full, tl_table_data(table, k), column->size, table->rows))
             return false;
@@ -96,15 +96,15 @@ static void read_entry(void *user, const tl_entry *e)
     bool read;
     if (r->bad || (e->keep != TL_KEEP_STATE && e->keep != TL_KEEP_CACHE))
         return;
+    tl_entry_name(e, r->name);
     if (e->form == TL_ENTRY_TABLE)
-        read = read_table(r, e);
+        read = read_table(r, e->at);
     else if (e->form == TL_ENTRY_LIST)
         read = read_list(r, e);
     else
-        read = tl_archive_get(r->archive, e->name, e->at, e->size, 1) &&
+        read = tl_archive_get(r->archive, r->name, e->at, e->size, 1) &&
                (e->form != TL_ENTRY_FLAG || tl_is_flag(e->at));
-    if (!read)
-        r->bad = e->name;
+    r->bad = !read;
 }
 
 static tl_status told(const reader *r, tl_model *m)
@@ -113,7 +113,7 @@ static tl_status told(const reader *r, tl_model *m)
         return TL_OK;
     return r->lacked
                ? tl_fail_memory(&m->error)
-               : tl_archive_bad(r->archive, &m->error, "'%s' is missing or does not fit", r->bad);
+               : tl_archive_bad(r->archive, &m->error, "'%s' is missing or does not fit", r->name);
 }
 
 static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
@@ -143,17 +143,21 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
 /* Bits of `said`: one for each remark. */
 #define ALL_REMARKS ((2u << TL_REMARK_UNDECIDED) - 1)
 
+/* Settings are what the tables of parameters allow. */
+static bool struct_is_sound(const tl_model *m, tl_settings of)
+{
+    for (size_t i = 0; i < of.count; i++) {
+        const void *at = tl_setting_at(m, &of, i);
+        if (at && !tl_param_sound(&of.params[i], at))
+            return false;
+    }
+    return true;
+}
+
 static bool settings_are_sound(const tl_model *m)
 {
-    const tl_model_config *c = &m->config;
-    const tl_timestep *t = &m->timestep;
-    bool steps = (isnan(t->fraction) || (t->fraction > 0 && t->fraction <= 1)) &&
-                 (t->rule == TL_TIMESTEP_BODY || t->rule == TL_TIMESTEP_PAPER) &&
-                 (isnan(t->dt) || (t->dt > 0 && isfinite(t->dt)));
-    return tl_v3_finite(c->gravity) && tl_v3_finite(m->gravity_before) &&
-           (!m->loads_changed || m->bodies.load_before) && c->rotation >= TL_ROTATION_EXACT &&
-           c->rotation <= TL_ROTATION_PAPER && c->reuse_geometry >= 0 && c->reuse_geometry <= 1 &&
-           c->contact_points >= 0 && c->contact_points <= TL_POINTS_CORNERS && steps &&
+    return struct_is_sound(m, tl_config_settings()) && struct_is_sound(m, tl_timestep_settings()) &&
+           tl_v3_finite(m->gravity_before) && (!m->loads_changed || m->bodies.load_before) &&
            tl_v3_finite(m->origin) && isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 &&
            memchr(m->stage, 0, sizeof m->stage) && tl_text_is_clean(m->stage) && m->cycles >= 0 &&
            m->cycles <= MOST_CYCLES && m->gone == 0 && (m->said & ~ALL_REMARKS) == 0 &&

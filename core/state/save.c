@@ -24,7 +24,7 @@ static void save_table(tl_archive_writer *w, const char *name, const tl_table *t
 {
     char full[TL_CHUNK_NAME];
     uint64_t rows = table->rows;
-    snprintf(full, sizeof full, "%s.rows", name);
+    snprintf(full, sizeof full, "%.80s.rows", name);
     tl_archive_put(w, full, &rows, sizeof rows, 1);
     for (size_t k = 0; k < table->column_count; k++) {
         const tl_column *column = &table->columns[k];
@@ -39,14 +39,16 @@ static void save_entry(void *user, const tl_entry *entry)
     tl_archive_writer *w = user;
     if (entry->keep != TL_KEEP_STATE && entry->keep != TL_KEEP_CACHE)
         return;
+    char name[TL_COLUMN_CHUNK];
+    tl_entry_name(entry, name);
     if (entry->form == TL_ENTRY_TABLE) {
-        save_table(w, entry->name, entry->at);
+        save_table(w, name, entry->at);
     } else if (entry->form == TL_ENTRY_LIST) {
         const void *list;
         memcpy(&list, entry->at, sizeof list);
-        tl_archive_put(w, entry->name, list, entry->size, list ? entry->items : 0);
+        tl_archive_put(w, name, list, entry->size, list ? entry->items : 0);
     } else {
-        tl_archive_put(w, entry->name, entry->at, entry->size, 1);
+        tl_archive_put(w, name, entry->at, entry->size, 1);
     }
 }
 

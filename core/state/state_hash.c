@@ -15,9 +15,14 @@
 #include "cycle/timestep.h"
 #include "detect/detect.h"
 #include "model/loads.h"
+#include "model/walk.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Whole numbers of the settings, and a few more. */
+#define MOST_WORDS 64
 
 static void hash_table(tl_hash *hash, const tl_table *table)
 {
@@ -249,39 +254,51 @@ static void hash_damping(tl_hash *hash, const tl_model *m)
     tl_hash_bytes(hash, b->moment_before, b->table.rows * sizeof *b->moment_before);
 }
 
+/* The real numbers of a struct of settings; of the share of the critical step the one in use. */
+static void hash_reals(tl_hash *hash, const tl_model *m, const tl_settings *of)
+{
+    for (size_t i = 0; i < of->count; i++) {
+        const uint32_t type = of->params[i].type;
+        const double *at = tl_setting_at(m, of, i), fraction = tl_timestep_fraction(m);
+        if (at && (type == TL_PARAM_REAL || type == TL_PARAM_VEC3))
+            hash_numbers(hash, at == &m->timestep.fraction ? &fraction : at,
+                         type == TL_PARAM_VEC3 ? 3 : 1);
+    }
+}
+
+/* Puts its whole numbers; where the next goes. */
+static int64_t *put_words(int64_t *to, const tl_model *m, const tl_settings *of)
+{
+    for (size_t i = 0; i < of->count; i++) {
+        const uint32_t type = of->params[i].type;
+        const void *at = tl_setting_at(m, of, i);
+        if (at && type == TL_PARAM_INT)
+            memcpy(to++, at, sizeof *to);
+        else if (at && (type == TL_PARAM_BOOL || type == TL_PARAM_ENUM))
+            *to++ = *(const int32_t *)at;
+    }
+    return to;
+}
+
 static void hash_settings(tl_hash *hash, const tl_model *m)
 {
     const struct tl_cycle *c = m->cycle;
-    const tl_model_config *config = &m->config;
-    const double numbers[] = {
-        m->time,
-        m->dt,
-        c ? c->dt : 0, /* the step in use, which stays while it is hardly too short */
-        c ? c->kinetic_before : 0,
-        m->origin.x,
-        m->origin.y,
-        m->origin.z,
-        config->gravity.x,
-        config->gravity.y,
-        config->gravity.z,
-        tl_timestep_fraction(m),
-        m->timestep.dt,
-        m->min_area.fraction,
-        m->min_area.absolute,
-    };
-    const int64_t words[] = {m->cycles,
-                             m->next_id,
-                             config->seed,
-                             config->rotation,
-                             config->reuse_geometry,
-                             config->contact_points,
-                             m->timestep.rule,
-                             m->mass_scaling,
-                             m->origin_set};
-    tl_hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
-    tl_hash_bytes(hash, words, sizeof words);
-    if (m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(config->gravity, m->gravity_before)))
-        tl_hash_numbers(hash, &m->gravity_before.x, 3);
+    const tl_settings config = tl_config_settings(), timestep = tl_timestep_settings();
+    /* c->dt, the step in use, stays while it is hardly too short */
+    hash_numbers(hash, (const double[]){m->time, m->dt, c ? c->dt : 0, c ? c->kinetic_before : 0},
+                 4);
+    hash_numbers(hash, &m->origin.x, 3);
+    hash_reals(hash, m, &config);
+    hash_reals(hash, m, &timestep);
+    hash_numbers(hash, (const double[]){m->min_area.fraction, m->min_area.absolute}, 2);
+    int64_t words[MOST_WORDS] = {m->cycles, m->next_id};
+    assert(config.count + timestep.count + 4 <= MOST_WORDS);
+    int64_t *next = put_words(put_words(words + 2, m, &config), m, &timestep);
+    *next++ = m->mass_scaling;
+    *next++ = m->origin_set;
+    tl_hash_bytes(hash, words, (size_t)(next - words) * sizeof *words);
+    if (m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(m->config.gravity, m->gravity_before)))
+        hash_numbers(hash, &m->gravity_before.x, 3);
     if (tl_adds_mass(m))
         tl_hash_numbers(hash, (const double[]){m->added_dt, m->added_most}, 2);
     for (size_t i = 0; i < m->joint_count; i++) {

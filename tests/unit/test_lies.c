@@ -191,7 +191,7 @@ static const lie lies[] = {
     LIE("model.loads_changed", 0, two),
     LIE("model.timestep.rule", 0, all_bits),
     LIE("model.timestep.fraction", 0, none),
-    LIE("model.timestep.fraction", 0, more_than_all),
+    LIE("model.timestep.fraction", 0, farther),
     LIE("model.timestep.dt", 0, none),
     LIE("model.timestep.dt", 0, infinite),
     LIE("model.min_area", 0, infinite),
@@ -413,6 +413,7 @@ static const lie harmless[] = {
     LIE("model.min_area", 8, none),
     LIE("model.min_area", 8, unknown),
     LIE("model.timestep.fraction", 0, all_of_it),
+    LIE("model.timestep.fraction", 0, more_than_all),
     LIE("model.timestep.fraction", 0, unknown),
     LIE("model.dt", 0, none),
 };
