@@ -13,79 +13,48 @@
 
 /* ---------------------------------------------------------------- blocks ----------------- */
 
-static void put_vertices(tl_piece *to, const tl_model *m, uint32_t row)
-{
-    const tl_poly *shape = m->blocks.shape[row];
-    tl_json_put(to, "\"vertices\": [");
-    for (uint32_t i = 0; i < shape->vertex_count; i++) {
-        tl_vec3 at = tl_model_point(m, m->blocks.body[row], shape->vertex[i]);
-        tl_json_put(to, i ? ", [" : "[");
-        tl_json_number(to, at.x);
-        tl_json_put(to, ", ");
-        tl_json_number(to, at.y);
-        tl_json_put(to, ", ");
-        tl_json_number(to, at.z);
-        tl_json_put(to, "]");
-    }
-    tl_json_put(to, "]");
-}
-
 static void put_faces(tl_piece *to, const tl_model *m, const tl_poly *shape)
 {
-    tl_json_put(to, "\"faces\": [");
     for (uint32_t f = 0; f < shape->face_count; f++) {
         tl_json_put(to, f ? ",\n      {\"vertices\": [" : "\n      {\"vertices\": [");
-        for (uint32_t i = shape->start[f]; i < shape->start[f + 1]; i++) {
-            if (i > shape->start[f])
-                tl_json_put(to, ", ");
-            tl_json_whole(to, shape->loop[i]);
-        }
+        for (uint32_t i = shape->start[f]; i < shape->start[f + 1]; i++)
+            tl_json_print(to, i > shape->start[f] ? ", %u" : "%u", (uint32_t)shape->loop[i]);
         tl_json_put(to, "]");
-        if (shape->tag[f].joint) {
-            tl_json_put(to, ", \"joint\": ");
-            tl_json_text(to, m->joints[shape->tag[f].joint - 1].name);
-            tl_json_put(to, ", \"plane\": ");
-            tl_json_whole(to, shape->tag[f].plane);
-        }
+        if (shape->tag[f].joint)
+            tl_json_print(to, ", \"joint\": %s, \"plane\": %u",
+                          m->joints[shape->tag[f].joint - 1].name, shape->tag[f].plane);
         tl_json_put(to, "}");
     }
-    tl_json_put(to, "]");
 }
 
 static void put_fixed(tl_piece *to, unsigned fixed)
 {
-    static const char *const names[] = {"\"x\"", "\"y\"", "\"z\"", "\"rotation\""};
-    tl_json_put(to, "\"fixed\": [");
+    static const char *const names[] = {"x", "y", "z", "rotation"};
     bool first = true;
     for (unsigned i = 0; i < 4; i++) {
         if (!(fixed & 1u << i))
             continue;
-        tl_json_put(to, first ? "" : ", ");
-        tl_json_put(to, names[i]);
+        tl_json_print(to, first ? "%s" : ", %s", names[i]);
         first = false;
     }
-    tl_json_put(to, "]");
 }
 
 static void put_block(tl_piece *to, const tl_model *m, uint32_t row)
 {
-    uint32_t body = m->blocks.body[row];
-    tl_json_put(to, row ? ",\n    {\"id\": " : "\n    {\"id\": ");
-    tl_json_whole(to, m->blocks.id[row]);
-    tl_json_put(to, ", \"group\": ");
-    tl_json_text(to, m->groups[m->blocks.group[row]]);
-    tl_json_put(to, ", \"density\": ");
-    tl_json_number(to, m->blocks.density[row]);
-    tl_json_put(to, ", \"body\": ");
-    tl_json_whole(to, m->bodies.id[body]);
-    tl_json_put(to, ", ");
+    const uint32_t body = m->blocks.body[row];
+    const tl_poly *shape = m->blocks.shape[row];
+    tl_json_print(to,
+                  "%r\n    {\"id\": %u, \"group\": %s, \"density\": %g, \"body\": %u, \"fixed\": [",
+                  row ? "," : "", m->blocks.id[row], m->groups[m->blocks.group[row]],
+                  m->blocks.density[row], m->bodies.id[body]);
     put_fixed(to, m->bodies.fixed[body]);
-    tl_json_put(to, m->blocks.hidden[row] ? ", \"hidden\": true,\n     "
-                                          : ", \"hidden\": false,\n     ");
-    put_vertices(to, m, row);
-    tl_json_put(to, ",\n     ");
-    put_faces(to, m, m->blocks.shape[row]);
-    tl_json_put(to, "}");
+    tl_json_print(to, "], \"hidden\": %r,\n     \"vertices\": [",
+                  m->blocks.hidden[row] ? "true" : "false");
+    for (uint32_t i = 0; i < shape->vertex_count; i++)
+        tl_json_print(to, i ? ", %v" : "%v", tl_model_point(m, body, shape->vertex[i]));
+    tl_json_put(to, "],\n     \"faces\": [");
+    put_faces(to, m, shape);
+    tl_json_put(to, "]}");
 }
 
 static void fill_blocks(const void *user, size_t begin, size_t end, tl_piece *piece)
@@ -99,13 +68,9 @@ static void fill_blocks(const void *user, size_t begin, size_t end, tl_piece *pi
 static void fill_joints(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
     const tl_model *m = user;
-    for (size_t i = begin; i < end; i++) {
-        tl_json_put(piece, i ? ",\n    {\"name\": " : "\n    {\"name\": ");
-        tl_json_text(piece, m->joints[i].name);
-        tl_json_put(piece, ", \"planes\": ");
-        tl_json_whole(piece, m->joints[i].planes);
-        tl_json_put(piece, "}");
-    }
+    for (size_t i = begin; i < end; i++)
+        tl_json_print(piece, "%r\n    {\"name\": %s, \"planes\": %u}", i ? "," : "",
+                      m->joints[i].name, m->joints[i].planes);
 }
 
 static tl_status write_model(tl_output *output, tl_model *m)

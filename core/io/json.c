@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "io/pieces.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <talus/text.h>
@@ -22,14 +23,14 @@ void tl_json_put(tl_piece *to, const char *text)
     tl_json_bytes(to, text, strlen(text));
 }
 
-void tl_json_number(tl_piece *to, double value)
+static void put_number(tl_piece *to, double value)
 {
     unsigned char *at = tl_piece_reserve(to, TL_NUMBER_TEXT);
     if (at)
         to->length += tl_number_text(value, (char *)at);
 }
 
-void tl_json_whole(tl_piece *to, uint32_t value)
+static void put_whole(tl_piece *to, uint32_t value)
 {
     char digits[10];
     size_t at = sizeof digits;
@@ -50,7 +51,7 @@ static void put_letter(tl_piece *to, unsigned char letter)
     tl_json_put(to, escaped);
 }
 
-void tl_json_text(tl_piece *to, const char *text)
+static void put_text(tl_piece *to, const char *text)
 {
     tl_json_put(to, "\"");
     while (*text) {
@@ -66,4 +67,25 @@ void tl_json_text(tl_piece *to, const char *text)
         text += bytes;
     }
     tl_json_put(to, "\"");
+}
+
+void tl_json_print(tl_piece *to, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    for (const char *next; (next = strchr(format, '%')) != NULL; format = next + 2) {
+        tl_json_bytes(to, format, (size_t)(next - format));
+        switch (next[1]) {
+        case 's': put_text(to, va_arg(args, const char *)); break;
+        case 'g': put_number(to, va_arg(args, double)); break;
+        case 'u': put_whole(to, va_arg(args, uint32_t)); break;
+        case 'r': tl_json_put(to, va_arg(args, const char *)); break;
+        default: {
+            const tl_vec3 v = va_arg(args, tl_vec3);
+            tl_json_print(to, "[%g, %g, %g]", v.x, v.y, v.z);
+        }
+        }
+    }
+    va_end(args);
+    tl_json_put(to, format);
 }

@@ -221,15 +221,6 @@ static tl_status page_begin(tl_model *m, const char *path, const char *title,
 
 /* ---------------------------------------------------------------- an element ------------- */
 
-static void put_attribute(tl_piece *to, const char *name, double value)
-{
-    tl_json_put(to, " data-");
-    tl_json_put(to, name);
-    tl_json_put(to, "=\"");
-    tl_json_number(to, value);
-    tl_json_put(to, "\"");
-}
-
 /* The element of the next frame. */
 static tl_status make_element(tl_model *m, tl_scene *scene, const tl_html *options,
                               tl_piece *element)
@@ -240,14 +231,12 @@ static tl_status make_element(tl_model *m, tl_scene *scene, const tl_html *optio
     if (status == TL_OK)
         status = tl_model_go_on(m);
     if (status == TL_OK) {
-        tl_json_put(element, "<script type=\"text/talus\"");
-        put_attribute(element, "frame", scene->sent.frames);
-        put_attribute(element, "bytes", (double)chunks.length);
-        put_attribute(element, "time", facts.time);
-        put_attribute(element, "cycle", (double)facts.cycle);
-        put_attribute(element, "largest", facts.largest);
-        put_attribute(element, "model", facts.news > 0);
-        tl_json_put(element, ">");
+        tl_json_print(
+            element,
+            "<script type=\"text/talus\" data-frame=\"%u\" data-bytes=\"%g\" data-time=\"%g\" "
+            "data-cycle=\"%g\" data-largest=\"%g\" data-model=\"%u\">",
+            scene->sent.frames, (double)chunks.length, facts.time, (double)facts.cycle,
+            facts.largest, (uint32_t)(facts.news > 0));
         status = tl_pack(m, chunks.data, chunks.length, element);
     }
     free(chunks.data);

@@ -80,37 +80,12 @@ static bool compare(tl_scene *scene, const tl_model *m, news *found)
  *
  * HEAD: what does not change with the blocks, as JSON. */
 
-static void put_vector(tl_piece *to, tl_vec3 v)
+static void put_fields(tl_piece *to, const tl_extra_field *fields, size_t count, bool more,
+                       const char *of)
 {
-    const double numbers[3] = {v.x, v.y, v.z};
-    for (int i = 0; i < 3; i++) {
-        tl_json_put(to, i ? ", " : "[");
-        tl_json_number(to, numbers[i]);
-    }
-    tl_json_put(to, "]");
-}
-
-/* "name": NAME, "unit": UNIT */
-static void put_named(tl_piece *to, const char *name, const char *unit)
-{
-    tl_json_put(to, "\"name\": ");
-    tl_json_text(to, name);
-    tl_json_put(to, ", \"unit\": ");
-    tl_json_text(to, unit ? unit : "");
-}
-
-static void put_fields(tl_piece *to, const tl_html *options)
-{
-    size_t blocks = options->block_field_count, count = blocks + options->contact_field_count;
-    tl_json_put(to, ", \"fields\": [");
-    for (size_t i = 0; i < count; i++) {
-        const tl_extra_field *field =
-            i < blocks ? &options->block_fields[i] : &options->contact_fields[i - blocks];
-        tl_json_put(to, i ? ", {" : "{");
-        put_named(to, field->name, field->unit);
-        tl_json_put(to, i < blocks ? ", \"of\": \"blocks\"}" : ", \"of\": \"contacts\"}");
-    }
-    tl_json_put(to, "]");
+    for (size_t i = 0; i < count; i++)
+        tl_json_print(to, "%r{\"name\": %s, \"unit\": %s, \"of\": %s}", more || i ? ", " : "",
+                      fields[i].name, fields[i].unit ? fields[i].unit : "", of);
 }
 
 /* A list that is begun, of named things with units. */
@@ -123,9 +98,7 @@ static void put_history(void *user, const char *name, const char *unit, double v
 {
     (void)value;
     named_list *l = user;
-    tl_json_put(l->to, l->begun ? ", {" : "{");
-    put_named(l->to, name, unit);
-    tl_json_put(l->to, "}");
+    tl_json_print(l->to, "%r{\"name\": %s, \"unit\": %s}", l->begun ? ", " : "", name, unit);
     l->begun = true;
 }
 
@@ -156,91 +129,56 @@ static double friction_of_joint(const tl_model *m, uint32_t joint)
     return friction;
 }
 
-static void put_friction(tl_piece *to, const tl_model *m)
-{
-    tl_json_put(to, ", \"friction\": [null");
-    for (size_t i = 0; i < m->joint_count; i++) {
-        double friction = friction_of_joint(m, (uint32_t)i + 1);
-        tl_json_put(to, ", ");
-        if (isfinite(friction))
-            tl_json_number(to, friction);
-        else
-            tl_json_put(to, "null");
-    }
-    tl_json_put(to, "]");
-}
-
 /* The JSON of the head of the scene's next frame, into `text`. */
 static void scene_head(const tl_model *m, const tl_html *options, const tl_scene *scene,
                        tl_piece *text)
 {
+    const size_t block_fields = options->block_field_count;
     text->length = 0;
-    tl_json_put(text, "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION "\", \"title\": ");
-    tl_json_text(text, options->title ? options->title : "");
-    tl_json_put(text, ", \"origin\": ");
-    put_vector(text, m->origin);
-    tl_json_put(text, ", \"gravity\": ");
-    put_vector(text, m->config.gravity);
-    tl_json_put(text, ", \"size\": ");
-    tl_json_number(text, scene->next.median);
-    if (options->safety_limit > 0) {
-        tl_json_put(text, ", \"safety_limit\": ");
-        tl_json_number(text, options->safety_limit);
-    }
+    tl_json_print(text,
+                  "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION
+                  "\", \"title\": %s, \"origin\": %v, \"gravity\": %v, \"size\": %g",
+                  options->title ? options->title : "", m->origin, m->config.gravity,
+                  scene->next.median);
+    if (options->safety_limit > 0)
+        tl_json_print(text, ", \"safety_limit\": %g", options->safety_limit);
     tl_json_put(text, ", \"groups\": [");
-    for (size_t i = 0; i < m->group_count; i++) {
-        tl_json_put(text, i ? ", " : "");
-        tl_json_text(text, m->groups[i]);
-    }
+    for (size_t i = 0; i < m->group_count; i++)
+        tl_json_print(text, i ? ", %s" : "%s", m->groups[i]);
     tl_json_put(text, "], \"joints\": [\"\"");
+    for (size_t i = 0; i < m->joint_count; i++)
+        tl_json_print(text, ", %s", m->joints[i].name);
+    tl_json_put(text, "], \"friction\": [null");
     for (size_t i = 0; i < m->joint_count; i++) {
-        tl_json_put(text, ", ");
-        tl_json_text(text, m->joints[i].name);
+        double friction = friction_of_joint(m, (uint32_t)i + 1);
+        tl_json_print(text, isfinite(friction) ? ", %g" : ", null", friction);
     }
-    tl_json_put(text, "]");
-    put_friction(text, m);
-    put_fields(text, options);
-    tl_json_put(text, ", \"histories\": [");
+    tl_json_put(text, "], \"fields\": [");
+    put_fields(text, options->block_fields, block_fields, false, "blocks");
+    put_fields(text, options->contact_fields, options->contact_field_count, block_fields > 0,
+               "contacts");
+    tl_json_put(text, "], \"histories\": [");
     tl_scene_histories(m, put_history, &(named_list){text, false});
-    tl_json_put(text, "]");
-    if (scene->live)
-        tl_json_put(text, ", \"live\": true");
-    if (scene->live == TL_SCENE_COMMANDS)
-        tl_json_put(text, ", \"commands\": true");
-    tl_json_put(text, "}");
+    tl_json_print(text, "]%r%r}", scene->live ? ", \"live\": true" : "",
+                  scene->live == TL_SCENE_COMMANDS ? ", \"commands\": true" : "");
 }
 
 /* ---------------------------------------------------------------- FIND --------------------
  *
  * FIND: how the model stands, as JSON. */
 
-static void put_number(tl_piece *to, const char *name, double value)
-{
-    tl_json_put(to, ", \"");
-    tl_json_put(to, name);
-    tl_json_put(to, "\": ");
-    tl_json_number(to, value);
-}
-
 /* The JSON of FIND, the verdict, with the state hash unless that is NULL, into `text`. */
 static void scene_finding(const tl_verdict *v, const char *hash, tl_piece *text)
 {
     char sentence[512];
     tl_verdict_text(v, sentence, sizeof sentence);
-    tl_json_put(text, "{\"standing\": ");
-    tl_json_text(text, tl_standing_name(v->standing));
-    tl_json_put(text, ", \"text\": ");
-    tl_json_text(text, sentence);
-    tl_json_put(text, ", \"stage\": ");
-    tl_json_text(text, v->stage);
-    put_number(text, "closed", v->closed);
-    put_number(text, "moved", (double)v->moved);
-    put_number(text, "contacts", (double)v->contacts);
-    put_number(text, "slipping", (double)v->slipping);
-    if (hash) {
-        tl_json_put(text, ", \"hash\": ");
-        tl_json_text(text, hash);
-    }
+    tl_json_print(text,
+                  "{\"standing\": %s, \"text\": %s, \"stage\": %s, \"closed\": %g, \"moved\": %g, "
+                  "\"contacts\": %g, \"slipping\": %g",
+                  tl_standing_name(v->standing), sentence, v->stage, v->closed, (double)v->moved,
+                  (double)v->contacts, (double)v->slipping);
+    if (hash)
+        tl_json_print(text, ", \"hash\": %s", hash);
     tl_json_put(text, "}");
 }
 

@@ -267,25 +267,16 @@ bool tl_view_take(tl_view *v, double seconds, tl_view_command *command)
     return false;
 }
 
-static void put_member(tl_piece *to, const char *name, const char *text)
-{
-    if (!text)
-        return;
-    tl_json_put(to, ", \"");
-    tl_json_put(to, name);
-    tl_json_put(to, "\": ");
-    tl_json_text(to, text);
-}
-
 tl_status tl_view_tell(tl_view *v, tl_view_state state, const char *line, const char *refused)
 {
     static const char *const states[] = {"running", "paused", "waiting", "ended"};
     tl_model *m = v->model;
     tl_piece text = {0};
-    tl_json_put(&text, "{\"state\": ");
-    tl_json_text(&text, states[state]);
-    put_member(&text, "line", line);
-    put_member(&text, "refused", refused);
+    tl_json_print(&text, "{\"state\": %s", states[state]);
+    if (line)
+        tl_json_print(&text, ", \"line\": %s", line);
+    if (refused)
+        tl_json_print(&text, ", \"refused\": %s", refused);
     tl_json_put(&text, "}");
     tl_status status = text.failed ? tl_fail_memory(&m->error)
                                    : tl_scene_bytes(m, "LIVE", text.data, text.length, &v->told);
