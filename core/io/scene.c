@@ -8,9 +8,7 @@
 #include "io/extra_fields.h"
 #include "io/json.h"
 #include "io/pieces.h"
-#include "io/scene_blocks.h"
-#include "io/scene_contacts.h"
-#include "io/scene_numbers.h"
+#include "io/scene_chunks.h"
 #include "io/scene_put.h"
 #include "io/verdict.h"
 #include "model/joints.h"
@@ -189,7 +187,6 @@ static void scene_finding(const tl_verdict *v, const char *hash, tl_piece *text)
 /* Bytes of one: joint, plane, block, normal, point, thickness, limit. */
 #define BYTES 44
 
-/* REFU: the cuts that were refused. */
 static tl_status scene_refused(tl_model *m, tl_piece *out)
 {
     const tl_cut_record *record = &m->record;
@@ -282,7 +279,6 @@ static tl_status put(tl_model *m, const bounds *list, tl_piece *out)
     return TL_OK;
 }
 
-/* TOUC: the faces with which bodies lie on others. */
 static tl_status scene_touches(tl_model *m, tl_piece *out)
 {
     tl_touches touches;

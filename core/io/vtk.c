@@ -5,8 +5,10 @@
  * that a full disk or a folder without permission leaves the series as it was. */
 
 #include "base/error.h"
+#include "base/number.h"
 #include "base/output_file.h"
 #include "base/signals.h"
+#include "io/json.h"
 #include "io/pieces.h"
 #include "io/vtk_blocks.h"
 #include "io/vtk_contacts.h"
@@ -31,10 +33,10 @@ typedef struct tl_vtk_index_change {
     tl_output whole;
     tl_vtk_index *index; /* as it is */
     tl_vtk_index next;   /* as it will be */
-    char *path, *entry;
-    size_t length; /* of the entry */
-    off_t at;      /* where it goes */
-    int file;      /* descriptor to write it to; 0: the whole is written anew */
+    char *path;
+    tl_piece entry;
+    off_t at; /* where it goes */
+    int file; /* descriptor to write it to; 0: the whole is written anew */
 } tl_vtk_index_change;
 
 /* ---------------------------------------------------------------- series ------------------
@@ -93,93 +95,60 @@ static double vtk_series_time(const tl_vtk_series *series, double time)
     return fmax(time, last + STAGE * fmax(1, fabs(last)));
 }
 
-static void put_json_text(FILE *file, const char *text)
-{
-    fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"' || *text == '\\')
-            fprintf(file, "\\%c", *text);
-        else if ((unsigned char)*text < 0x20)
-            fprintf(file, "\\u%04x", (unsigned)(unsigned char)*text);
-        else
-            fputc(*text, file);
-    }
-    fputc('"', file);
-}
-
-/* With all digits. */
-static void put_json_number(FILE *file, double value)
-{
-    char text[32];
-    tl_text_print(text, sizeof text, "%.17g", value);
-    fputs(text, file);
-}
-
-/* One frame of the list; false when out of memory. */
+/* Adds one frame of the list, its time with all digits; false when out of memory. */
 static bool put_entry(const tl_vtk_series *series, const char *content, size_t frame, double time,
-                      FILE *file)
+                      tl_piece *to)
 {
-    char *name = vtk_frame_name(series, content, frame);
+    char *name = vtk_frame_name(series, content, frame), number[TL_NUMBER_TEXT];
     if (!name)
         return false;
     const char *slash = strrchr(name, '/');
-    fprintf(file, "    {\"name\": ");
-    put_json_text(file, slash ? slash + 1 : name);
-    fprintf(file, ", \"time\": ");
-    put_json_number(file, time);
-    fprintf(file, "}");
+    tl_text_print(number, sizeof number, "%.17g", time);
+    tl_json_print(to, "    {\"name\": %s, \"time\": %r}", slash ? slash + 1 : name, number);
     free(name);
-    return true;
+    return !to->failed;
 }
 
-/* Writes the list with all frames so far that have the file and one more at `time`, and notes where the next goes. */
+/* Adds all frames so far that have the file and one more at `time`. */
+static bool put_list(const tl_vtk_series *series, size_t part, const char *content, double time,
+                     tl_piece *to)
+{
+    tl_json_put(to, "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n");
+    for (size_t frame = 0; frame < series->count; frame++) {
+        if (!(series->frames[frame].parts >> part & 1))
+            continue;
+        if (!put_entry(series, content, frame, series->frames[frame].time, to))
+            return false;
+        tl_json_put(to, before_entry);
+    }
+    return put_entry(series, content, series->count, time, to);
+}
+
+/* Writes the list and notes where the next frame goes. */
 static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *series, size_t part,
                              const char *content, double time, tl_error *error)
 {
-    tl_status status = tl_output_open(&change->whole, change->path, error);
-    if (status != TL_OK)
-        return status;
-    FILE *file = change->whole.file;
-    fprintf(file, "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n");
-    for (size_t frame = 0; frame <= series->count; frame++) {
-        bool last = frame == series->count;
-        if (!last && !(series->frames[frame].parts >> part & 1))
-            continue;
-        if (!put_entry(series, content, frame, last ? time : series->frames[frame].time, file))
-            return tl_fail_memory(error);
-        if (!last)
-            fputs(before_entry, file);
+    tl_piece list = {0};
+    tl_status status = put_list(series, part, content, time, &list)
+                           ? tl_output_open(&change->whole, change->path, error)
+                           : tl_fail_memory(error);
+    if (status == TL_OK) {
+        const off_t end = (off_t)list.length;
+        const off_t blank = series->written[part] >= LEAST_ROOMY ? end : 0;
+        tl_output_put(&change->whole, list.data, list.length);
+        fprintf(change->whole.file, "%*s%s", (int)blank, "", tail);
+        change->next = (tl_vtk_index){series->written[part] + 1, end, end + blank, {0}};
+        status = tl_output_finish(&change->whole, error);
     }
-    off_t end = ftello(file);
-    off_t blank = series->written[part] >= LEAST_ROOMY && end > 0 ? end : 0;
-    for (off_t i = 0; i < blank; i++)
-        fputc(' ', file);
-    fputs(tail, file);
-    change->next = (tl_vtk_index){series->written[part] + 1, end, end + blank, {0}};
-    return tl_output_finish(&change->whole, error);
-}
-
-/* The text that the next frame adds to the list; NULL when out of memory. */
-static char *entry_text(const tl_vtk_series *series, const char *content, double time,
-                        size_t *length)
-{
-    char *text = NULL;
-    FILE *file = open_memstream(&text, length);
-    if (!file)
-        return NULL;
-    fputs(before_entry, file);
-    bool good = put_entry(series, content, series->count, time, file) && !ferror(file);
-    if (fclose(file) == 0 && good)
-        return text;
-    free(text);
-    return NULL;
+    free(list.data);
+    return status;
 }
 
 /* Opens the index for an entry that goes into its room; false when the whole is to be written anew. */
 static bool open_reserved(tl_vtk_index_change *change, size_t written)
 {
     const tl_vtk_index *index = change->index;
-    off_t length = (off_t)change->length, at = index->place, next = (at / PAGE + 1) * PAGE;
+    off_t length = (off_t)change->entry.length, at = index->place, next = (at / PAGE + 1) * PAGE;
     if (at + length > next) /* within one page */
         at = next;
     if (index->frames != written || length > PAGE || at + length > index->end)
@@ -211,8 +180,8 @@ static tl_status vtk_index_open(tl_vtk_index_change *change, tl_vtk_series *seri
 {
     *change = (tl_vtk_index_change){.index = &series->index[part]};
     change->path = index_name(series, content);
-    change->entry = entry_text(series, content, time, &change->length);
-    if (!change->path || !change->entry)
+    tl_json_put(&change->entry, before_entry);
+    if (!change->path || !put_entry(series, content, series->count, time, &change->entry))
         return tl_fail_memory(error);
     if (open_reserved(change, series->written[part]))
         return TL_OK;
@@ -224,8 +193,8 @@ static tl_status commit_entry(tl_vtk_index_change *change, tl_error *error)
 {
     change->index->frames = 0; /* no longer known until it is done */
     errno = 0;
-    ssize_t written = pwrite(change->file, change->entry, change->length, change->at);
-    int code = written == (ssize_t)change->length ? 0 : errno ? errno : EIO;
+    ssize_t written = pwrite(change->file, change->entry.data, change->entry.length, change->at);
+    int code = written == (ssize_t)change->entry.length ? 0 : errno ? errno : EIO;
     if (close(change->file) != 0 && code == 0)
         code = errno;
     change->file = 0;
@@ -256,58 +225,36 @@ static void vtk_index_drop(tl_vtk_index_change *change)
         close(change->file);
     tl_output_drop(&change->whole);
     free(change->path);
-    free(change->entry);
+    free(change->entry.data);
     *change = (tl_vtk_index_change){.file = 0};
 }
 
 /* ---------------------------------------------------------------- frames ------------------ */
 
-typedef struct frame frame;
-
 typedef struct part {
     const char *content; /* in the file's name */
-    tl_status (*write)(tl_model *m, const frame *f, tl_pieces *out);
+    tl_status (*write)(tl_model *m, const tl_vtk_parts *fields, tl_pieces *out);
 } part;
 
 /* What is written: the parts of a kind of frame whose bits are set. */
-struct frame {
+typedef struct frame {
     const char *function; /* of the user's */
     const part *parts;
     size_t count;
     unsigned wanted;
     const tl_plane *section;    /* of a section */
     const tl_vtk_parts *fields; /* of a whole frame: what is added to its arrays */
-};
-
-static tl_status write_blocks(tl_model *m, const frame *f, tl_pieces *out)
-{
-    return tl_vtk_blocks(m, f->fields, out);
-}
-
-static tl_status write_contacts(tl_model *m, const frame *f, tl_pieces *out)
-{
-    return tl_vtk_contacts(m, f->fields, out);
-}
-
-static tl_status write_joints(tl_model *m, const frame *f, tl_pieces *out)
-{
-    return tl_vtk_joints(m, f->fields, out);
-}
-
-static tl_status write_section(tl_model *m, const frame *f, tl_pieces *out)
-{
-    return tl_vtk_section(m, *f->section, out);
-}
+} frame;
 
 enum { BLOCKS, CONTACTS, JOINTS, PART_COUNT };
 
 static const part frame_parts[PART_COUNT] = {
-    [BLOCKS] = {"blocks", write_blocks},
-    [CONTACTS] = {"contacts", write_contacts},
-    [JOINTS] = {"joints", write_joints},
+    [BLOCKS] = {"blocks", tl_vtk_blocks},
+    [CONTACTS] = {"contacts", tl_vtk_contacts},
+    [JOINTS] = {"joints", tl_vtk_joints},
 };
 
-static const part section_part = {"section", write_section};
+static const part section_part = {"section", NULL};
 
 static_assert(PART_COUNT <= TL_VTK_PARTS, "a series has an index for each file of a frame");
 
@@ -327,7 +274,8 @@ static tl_status write_part(tl_model *m, const tl_vtk_series *series, const fram
         status = tl_model_go_on(m);
     pieces->output = output;
     if (status == TL_OK)
-        status = p->write(m, f, pieces);
+        status =
+            f->section ? tl_vtk_section(m, *f->section, pieces) : p->write(m, f->fields, pieces);
     return status == TL_OK ? tl_output_finish(output, &m->error) : status;
 }
 
