@@ -91,7 +91,7 @@ static double vtk_series_time(const tl_vtk_series *series, double time)
 {
     if (series->count == 0)
         return time;
-    double last = series->frames[series->count - 1].time;
+    double last = series->times[series->count - 1];
     return fmax(time, last + STAGE * fmax(1, fabs(last)));
 }
 
@@ -115,9 +115,9 @@ static bool put_list(const tl_vtk_series *series, size_t part, const char *conte
 {
     tl_json_put(to, "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n");
     for (size_t frame = 0; frame < series->count; frame++) {
-        if (!(series->frames[frame].parts >> part & 1))
+        if (!(series->parts[frame] >> part & 1))
             continue;
-        if (!put_entry(series, content, frame, series->frames[frame].time, to))
+        if (!put_entry(series, content, frame, series->times[frame], to))
             return false;
         tl_json_put(to, before_entry);
     }
@@ -343,7 +343,7 @@ static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
     status = write_files(m, series, f, time);
     tl_signals_release(&before);
     if (status == TL_OK)
-        tl_vtk_series_add(series, (tl_vtk_frame){time, f->wanted});
+        tl_vtk_series_add(series, time, f->wanted);
     else if (status == TL_E_IO)
         tl_error_prefix(&m->error, "%s: ", f->function);
     return status;

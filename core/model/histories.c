@@ -30,6 +30,16 @@ const char *tl_history_unsound(const tl_model *m, const tl_history *h)
     return m->history_count < TL_MOST_HISTORIES ? NULL : "it has too many histories";
 }
 
+tl_history_list tl_history_list_at(const tl_history *h, unsigned k)
+{
+    switch (k) {
+    case 0: return (tl_history_list){"ids", h->ids, sizeof *h->ids, h->id_count};
+    case 1: return (tl_history_list){"cycles", h->cycles, sizeof *h->cycles, h->count};
+    case 2: return (tl_history_list){"times", h->times, sizeof *h->times, h->count};
+    default: return (tl_history_list){"values", h->values, sizeof *h->values, h->count * h->width};
+    }
+}
+
 void tl_history_free(tl_history *h)
 {
     if (!h)

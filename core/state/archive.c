@@ -38,6 +38,15 @@ static const char magic[8] = TL_ARCHIVE_MAGIC;
 /* Bytes of a frame that is skipped beside what is in it; it holds less than 4 GiB, so data has less than 128 GiB. */
 #define SKIPPED 8
 
+const char *tl_chunk_name(char name[TL_CHUNK_NAME], const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(name, TL_CHUNK_NAME, format, args);
+    va_end(args);
+    return name;
+}
+
 /* ---------------------------------------------------------------- writing ---------------- */
 
 tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *error)
@@ -107,6 +116,11 @@ void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, si
     tl_output_put(&w->out, &head, sizeof head);
     tl_output_put(&w->out, name, head.name_bytes);
     tl_output_put(&w->out, stored, head.stored);
+}
+
+void tl_archive_put_text(tl_archive_writer *w, const char *name, const char *text)
+{
+    tl_archive_put(w, name, text, 1, strlen(text));
 }
 
 tl_status tl_archive_end(tl_archive_writer *w, tl_error *error)

@@ -12,6 +12,9 @@
 /* Longest name of a chunk. */
 #define TL_CHUNK_NAME 96
 
+/* Makes the name of a chunk by a format, "law.%zu.tag", and gives it; what is too long is cut off. */
+const char *tl_chunk_name(char name[TL_CHUNK_NAME], const char *format, ...) TL_PRINTF(2, 3);
+
 /* ---- writing ---- */
 
 typedef struct tl_archive_writer {
@@ -28,6 +31,8 @@ tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *err
 /* Adds a chunk of `items` items of `size` bytes; what fails is found by tl_archive_end. */
 void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size,
                     size_t items);
+/* Adds the bytes of a text. */
+void tl_archive_put_text(tl_archive_writer *w, const char *name, const char *text);
 /* Gives the file its name when all is well; else what was there stays. */
 tl_status tl_archive_end(tl_archive_writer *w, tl_error *error);
 

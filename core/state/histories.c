@@ -11,7 +11,6 @@
 
 #include "model/histories.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,13 +21,6 @@ typedef struct history_kept {
     uint64_t ids, width, count;
     uint8_t source, take, selection, lost, list, spare[3];
 } history_kept;
-
-/* The name of a list of history `k`. */
-static const char *entry(char name[TL_CHUNK_NAME], size_t k, const char *what)
-{
-    snprintf(name, TL_CHUNK_NAME, "histories.%zu.%.16s", k, what);
-    return name;
-}
 
 /* ---------------------------------------------------------------- saving ----------------- */
 
@@ -56,14 +48,13 @@ bool tl_histories_save(const tl_model *m, tl_archive_writer *w)
     if (!kept)
         return false;
     for (size_t k = 0; k < m->history_count; k++) {
-        const tl_history *h = m->histories[k];
-        char name[TL_CHUNK_NAME];
-        keep(h, &kept[k]);
-        tl_archive_put(w, entry(name, k, "ids"), h->ids, sizeof *h->ids, h->id_count);
-        tl_archive_put(w, entry(name, k, "cycles"), h->cycles, sizeof *h->cycles, h->count);
-        tl_archive_put(w, entry(name, k, "times"), h->times, sizeof *h->times, h->count);
-        tl_archive_put(w, entry(name, k, "values"), h->values, sizeof *h->values,
-                       h->count * h->width);
+        keep(m->histories[k], &kept[k]);
+        for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
+            char name[TL_CHUNK_NAME];
+            const tl_history_list list = tl_history_list_at(m->histories[k], i);
+            tl_chunk_name(name, "histories.%zu.%s", k, list.name);
+            tl_archive_put(w, name, list.at, list.size, list.items);
+        }
     }
     tl_archive_put(w, "histories", kept, sizeof *kept, m->history_count);
     free(kept);
@@ -98,20 +89,18 @@ static tl_history history_of(const history_kept *kept)
     return h;
 }
 
-/* Whether an archive has a list of so many items: before there is memory for them. */
-static bool has_list(const tl_archive *a, size_t k, const char *what, size_t size, size_t items)
-{
-    char name[TL_CHUNK_NAME];
-    const tl_chunk *chunk = tl_archive_find(a, entry(name, k, what));
-    return chunk && chunk->size == size && chunk->items == items;
-}
-
+/* Whether an archive has the lists, of so many items: before there is memory for them. */
 static bool has_lists(const tl_archive *a, size_t k, const tl_history *h)
 {
-    return has_list(a, k, "ids", sizeof *h->ids, h->id_count) &&
-           has_list(a, k, "cycles", sizeof *h->cycles, h->count) &&
-           has_list(a, k, "times", sizeof *h->times, h->count) &&
-           has_list(a, k, "values", sizeof *h->values, h->count * h->width);
+    for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
+        char name[TL_CHUNK_NAME];
+        const tl_history_list list = tl_history_list_at(h, i);
+        tl_chunk_name(name, "histories.%zu.%s", k, list.name);
+        const tl_chunk *chunk = tl_archive_find(a, name);
+        if (!chunk || chunk->size != list.size || chunk->items != list.items)
+            return false;
+    }
+    return true;
 }
 
 static bool samples_are_sound(const tl_model *m, const tl_history *h)
@@ -125,13 +114,14 @@ static bool samples_are_sound(const tl_model *m, const tl_history *h)
 
 static bool read_lists(const tl_model *m, const tl_archive *a, size_t k, tl_history *h)
 {
-    char name[TL_CHUNK_NAME];
-    return tl_archive_get(a, entry(name, k, "ids"), h->ids, sizeof *h->ids, h->id_count) &&
-           tl_archive_get(a, entry(name, k, "cycles"), h->cycles, sizeof *h->cycles, h->count) &&
-           tl_archive_get(a, entry(name, k, "times"), h->times, sizeof *h->times, h->count) &&
-           tl_archive_get(a, entry(name, k, "values"), h->values, sizeof *h->values,
-                          h->count * h->width) &&
-           samples_are_sound(m, h);
+    for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
+        char name[TL_CHUNK_NAME];
+        const tl_history_list list = tl_history_list_at(h, i);
+        tl_chunk_name(name, "histories.%zu.%s", k, list.name);
+        if (!tl_archive_get(a, name, list.at, list.size, list.items))
+            return false;
+    }
+    return samples_are_sound(m, h);
 }
 
 static tl_status restore_one(tl_model *m, const tl_archive *a, size_t k, const history_kept *kept)
@@ -180,13 +170,11 @@ tl_status tl_histories_copy(tl_model *to, const tl_model *from)
         tl_history *copy = tl_history_hold(to, h, h->count);
         if (!copy)
             return tl_fail_memory(&to->error);
-        if (h->id_count)
-            memcpy(copy->ids, h->ids, h->id_count * sizeof *h->ids);
-        if (h->count == 0)
-            continue;
-        memcpy(copy->cycles, h->cycles, h->count * sizeof *h->cycles);
-        memcpy(copy->times, h->times, h->count * sizeof *h->times);
-        memcpy(copy->values, h->values, h->count * h->width * sizeof *h->values);
+        for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
+            const tl_history_list list = tl_history_list_at(h, i);
+            if (list.items)
+                memcpy(tl_history_list_at(copy, i).at, list.at, list.items * list.size);
+        }
     }
     return TL_OK;
 }

@@ -42,39 +42,30 @@ static void state_names(const tl_kind *kind, char text[NAMES])
 
 /* ---------------------------------------------------------------- saving ----------------- */
 
-static void put_text(tl_archive_writer *w, const char *prefix, const char *name, const char *text)
-{
-    char full[TL_CHUNK_NAME];
-    snprintf(full, sizeof full, "%.30s.%.64s", prefix, name);
-    tl_archive_put(w, full, text, 1, strlen(text));
-}
-
 static void put_param(tl_archive_writer *w, const char *prefix, const tl_param *p,
                       const void *params)
 {
-    char full[TL_CHUNK_NAME];
-    int length = snprintf(full, sizeof full, "%s.param.%s", prefix, p->name);
-    if (length < 0 || (size_t)length >= sizeof full)
-        return; /* it will be asked for in vain */
+    char name[TL_CHUNK_NAME];
     const char *at = (const char *)params + p->offset;
     int32_t choice;
+    tl_chunk_name(name, "%s.param.%s", prefix, p->name);
     if (p->type == TL_PARAM_ENUM) {
         memcpy(&choice, at, sizeof choice);
-        tl_archive_put(w, full, p->choices[choice], 1, strlen(p->choices[choice]));
+        tl_archive_put_text(w, name, p->choices[choice]);
     } else {
-        tl_archive_put(w, full, at, tl_param_bytes(p->type), 1);
+        tl_archive_put(w, name, at, tl_param_bytes(p->type), 1);
     }
 }
 
 static void put_kind(tl_archive_writer *w, const char *prefix, const tl_kind *kind,
                      const void *params)
 {
-    char text[NAMES], plugin[PLUGIN_NAME];
-    put_text(w, prefix, "kind", kind->name);
+    char name[TL_CHUNK_NAME], text[NAMES], plugin[PLUGIN_NAME];
     plugin_text(kind, plugin);
-    put_text(w, prefix, "plugin", plugin);
     state_names(kind, text);
-    put_text(w, prefix, "states", text);
+    tl_archive_put_text(w, tl_chunk_name(name, "%s.kind", prefix), kind->name);
+    tl_archive_put_text(w, tl_chunk_name(name, "%s.plugin", prefix), plugin);
+    tl_archive_put_text(w, tl_chunk_name(name, "%s.states", prefix), text);
     for (uint32_t k = 0; k < kind->param_count; k++) {
         tl_param p = tl_param_row(kind->params, k, kind->param_stride);
         put_param(w, prefix, &p, params);
@@ -86,11 +77,11 @@ void tl_laws_save(const tl_model *m, tl_archive_writer *w)
     uint64_t count = m->joint_law_count;
     tl_archive_put(w, "laws", &count, sizeof count, 1);
     for (size_t i = 0; i < m->joint_law_count; i++) {
-        char prefix[PREFIX], full[TL_CHUNK_NAME];
+        const tl_law *law = &m->joint_laws[i];
+        char prefix[PREFIX], name[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", i);
-        snprintf(full, sizeof full, "%.30s.tag", prefix);
-        tl_archive_put(w, full, &m->joint_laws[i].tag, sizeof m->joint_laws[i].tag, 1);
-        put_kind(w, prefix, m->joint_laws[i].kind, m->joint_laws[i].params);
+        tl_archive_put(w, tl_chunk_name(name, "%s.tag", prefix), &law->tag, sizeof law->tag, 1);
+        put_kind(w, prefix, law->kind, law->params);
     }
 }
 
@@ -105,22 +96,14 @@ void tl_damping_save(const tl_model *m, tl_archive_writer *w)
 
 /* ---------------------------------------------------------------- restoring -------------- */
 
-/* The text of a chunk; NULL when there is none, or none so short. */
-static const char *get_text(const tl_archive *a, const char *prefix, const char *name, char *text,
-                            size_t capacity)
-{
-    char full[TL_CHUNK_NAME];
-    snprintf(full, sizeof full, "%.30s.%.64s", prefix, name);
-    return tl_archive_text(a, full, text, capacity) ? text : NULL;
-}
-
 /* Finds the law or damping of a prefix among the plugins, and sees that it is the same one. */
 static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix, tl_kind_type type,
                            const tl_kind **kind)
 {
     char name[PLUGIN_NAME], plugin[PLUGIN_NAME], now[PLUGIN_NAME], states[NAMES], states_now[NAMES];
-    if (!get_text(a, prefix, "kind", name, sizeof name) ||
-        !get_text(a, prefix, "plugin", plugin, sizeof plugin))
+    char chunk[TL_CHUNK_NAME];
+    if (!tl_archive_text(a, tl_chunk_name(chunk, "%s.kind", prefix), name, sizeof name) ||
+        !tl_archive_text(a, tl_chunk_name(chunk, "%s.plugin", prefix), plugin, sizeof plugin))
         return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
     const char *what = type == TL_KIND_LAW ? "law" : "damping";
     *kind = tl_plugin_find(type, name);
@@ -138,7 +121,8 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
             "loaded: load the plugin in the version that the file was saved with",
             a->path, what, name, plugin, now);
     state_names(*kind, states_now);
-    if (!get_text(a, prefix, "states", states, sizeof states) || strcmp(states, states_now) != 0)
+    if (!tl_archive_text(a, tl_chunk_name(chunk, "%s.states", prefix), states, sizeof states) ||
+        strcmp(states, states_now) != 0)
         return tl_archive_bad(a, &m->error, "%s '%s' has other states", what, name);
     return TL_OK;
 }
@@ -153,37 +137,36 @@ typedef struct read_param {
 static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p, read_param *r,
                      tl_value *value, bool *given)
 {
-    char name[TL_CHUNK_NAME], full[TL_CHUNK_NAME];
+    char name[TL_CHUNK_NAME];
     int64_t whole;
     int32_t yes;
-    snprintf(name, sizeof name, "param.%.80s", p->name);
-    snprintf(full, sizeof full, "%s.%.80s", prefix, name);
+    tl_chunk_name(name, "%s.param.%s", prefix, p->name);
     *given = true;
     *value = (tl_value){.key = p->name, .type = TL_VALUE_NUMBER};
     switch (p->type) {
     case TL_PARAM_INT:
-        if (!tl_archive_get(a, full, &whole, sizeof whole, 1))
+        if (!tl_archive_get(a, name, &whole, sizeof whole, 1))
             return false;
         value->number = (double)whole;
         return true;
     case TL_PARAM_BOOL:
         value->type = TL_VALUE_BOOL;
-        if (!tl_archive_get(a, full, &yes, sizeof yes, 1))
+        if (!tl_archive_get(a, name, &yes, sizeof yes, 1))
             return false;
         value->number = yes != 0;
         return true;
     case TL_PARAM_ENUM:
         value->type = TL_VALUE_STRING;
-        value->text = get_text(a, prefix, name, r->text, sizeof r->text);
-        return value->text != NULL;
+        value->text = r->text;
+        return tl_archive_text(a, name, r->text, sizeof r->text);
     case TL_PARAM_VEC3:
         value->type = TL_VALUE_NUMBERS;
         value->data = r->numbers;
         value->count = 3;
-        *given = tl_archive_get(a, full, r->numbers, sizeof r->numbers, 1);
+        *given = tl_archive_get(a, name, r->numbers, sizeof r->numbers, 1);
         break;
     default:
-        *given = tl_archive_get(a, full, r->numbers, sizeof *r->numbers, 1);
+        *given = tl_archive_get(a, name, r->numbers, sizeof *r->numbers, 1);
         value->number = r->numbers[0];
     }
     bool there = *given;
@@ -254,11 +237,11 @@ tl_status tl_laws_restore(tl_model *m, const tl_archive *a)
     if (!m->joint_laws)
         return tl_fail_memory(&m->error);
     while (m->joint_law_count < count) {
-        char prefix[PREFIX], full[TL_CHUNK_NAME];
+        char prefix[PREFIX], name[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", m->joint_law_count);
-        snprintf(full, sizeof full, "%.30s.tag", prefix);
         tl_tag tag;
-        if (!tl_archive_get(a, full, &tag, sizeof tag, 1) || !tag_is_sound(m, tag))
+        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) ||
+            !tag_is_sound(m, tag))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
         tl_status status =
             restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count]);

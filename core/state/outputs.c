@@ -35,7 +35,8 @@ static void series_destroy(tl_vtk_series *series)
         tl_vtk_series *next = series->next;
         free(series->prefix);
         free(series->kind);
-        free(series->frames);
+        free(series->times);
+        free(series->parts);
         free(series);
         series = next;
     }
@@ -68,17 +69,10 @@ static tl_outputs *outputs_of(tl_model *m)
     return m->outputs;
 }
 
-static bool reserve_frame(tl_vtk_series *series)
+static bool reserve_frames(tl_vtk_series *series, size_t count)
 {
-    if (series->count < series->capacity)
-        return true;
-    size_t capacity = series->capacity ? 2 * series->capacity : 16;
-    tl_vtk_frame *frames = realloc(series->frames, capacity * sizeof *frames);
-    if (!frames)
-        return false;
-    series->frames = frames;
-    series->capacity = capacity;
-    return true;
+    return tl_grow(&series->times, &series->time_capacity, count, sizeof *series->times) &&
+           tl_grow(&series->parts, &series->part_capacity, count, sizeof *series->parts);
 }
 
 tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kind)
@@ -102,14 +96,15 @@ tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kin
         series->next = o->series;
         o->series = series;
     }
-    return reserve_frame(series) ? series : NULL;
+    return reserve_frames(series, series->count + 1) ? series : NULL;
 }
 
-void tl_vtk_series_add(tl_vtk_series *series, tl_vtk_frame frame)
+void tl_vtk_series_add(tl_vtk_series *series, double time, uint32_t parts)
 {
-    series->frames[series->count++] = frame;
+    series->times[series->count] = time;
+    series->parts[series->count++] = parts;
     for (unsigned k = 0; k < TL_VTK_PARTS; k++)
-        series->written[k] += frame.parts >> k & 1;
+        series->written[k] += parts >> k & 1;
 }
 
 tl_page *tl_page_of(tl_model *m, const char *prefix)
@@ -136,86 +131,55 @@ tl_page *tl_page_of(tl_model *m, const char *prefix)
 
 /* ---------------------------------------------------------------- frames in an archive --- */
 
-/* The name of an entry of number `k` of a list. */
-static const char *entry(char name[TL_CHUNK_NAME], const char *list, size_t k, const char *what)
-{
-    snprintf(name, TL_CHUNK_NAME, "%s.%zu.%.16s", list, k, what);
-    return name;
-}
-
-static bool save_series(const tl_vtk_series *series, size_t k, tl_archive_writer *w)
+static void save_frames(const tl_model *m, tl_archive_writer *w)
 {
     char name[TL_CHUNK_NAME];
-    double *times = malloc((series->count + 1) * sizeof *times);
-    uint32_t *parts = malloc((series->count + 1) * sizeof *parts);
-    bool enough = times && parts;
-    for (size_t i = 0; enough && i < series->count; i++) {
-        times[i] = series->frames[i].time;
-        parts[i] = series->frames[i].parts;
-    }
-    if (enough) {
-        tl_archive_put(w, entry(name, "frames", k, "prefix"), series->prefix, 1,
-                       strlen(series->prefix));
-        tl_archive_put(w, entry(name, "frames", k, "kind"), series->kind, 1, strlen(series->kind));
-        tl_archive_put(w, entry(name, "frames", k, "times"), times, sizeof *times, series->count);
-        tl_archive_put(w, entry(name, "frames", k, "parts"), parts, sizeof *parts, series->count);
-    }
-    free(times);
-    free(parts);
-    return enough;
-}
-
-static bool save_frames(const tl_model *m, tl_archive_writer *w)
-{
     uint64_t count = 0;
-    for (const tl_vtk_series *series = m->outputs ? m->outputs->series : NULL; series;
-         series = series->next)
-        if (!save_series(series, count++, w))
-            return false;
-    tl_archive_put(w, "frames", &count, sizeof count, 1);
-    return true;
-}
-
-static tl_status add_frames(tl_model *m, const char *prefix, const char *kind, const double *times,
-                            const uint32_t *parts, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        tl_vtk_series *series = tl_vtk_series_of(m, prefix, kind);
-        if (!series)
-            return tl_fail_memory(&m->error);
-        tl_vtk_series_add(series, (tl_vtk_frame){times[i], parts[i]});
+    for (const tl_vtk_series *of = m->outputs ? m->outputs->series : NULL; of; of = of->next) {
+        const size_t k = (size_t)count++;
+        tl_archive_put_text(w, tl_chunk_name(name, "frames.%zu.prefix", k), of->prefix);
+        tl_archive_put_text(w, tl_chunk_name(name, "frames.%zu.kind", k), of->kind);
+        tl_archive_put(w, tl_chunk_name(name, "frames.%zu.times", k), of->times, sizeof *of->times,
+                       of->count);
+        tl_archive_put(w, tl_chunk_name(name, "frames.%zu.parts", k), of->parts, sizeof *of->parts,
+                       of->count);
     }
-    return TL_OK;
+    tl_archive_put(w, "frames", &count, sizeof count, 1);
 }
 
-static bool frames_are_sound(const double *times, const uint32_t *parts, size_t count)
+/* Reads the frames of a series that has room for them. */
+static bool read_frames(const tl_archive *a, size_t k, size_t count, tl_vtk_series *to)
 {
-    for (size_t i = 0; i < count; i++)
-        if (!isfinite(times[i]) || parts[i] >> TL_VTK_PARTS != 0)
-            return false;
-    return true;
+    char name[TL_CHUNK_NAME];
+    if (!tl_archive_get(a, tl_chunk_name(name, "frames.%zu.times", k), to->times, sizeof *to->times,
+                        count) ||
+        !tl_archive_get(a, tl_chunk_name(name, "frames.%zu.parts", k), to->parts, sizeof *to->parts,
+                        count))
+        return false;
+    while (to->count < count && isfinite(to->times[to->count]) &&
+           to->parts[to->count] >> TL_VTK_PARTS == 0)
+        tl_vtk_series_add(to, to->times[to->count], to->parts[to->count]);
+    return to->count == count;
 }
 
 static tl_status restore_series(tl_model *m, size_t k, const tl_archive *a)
 {
     char prefix[LONGEST_PREFIX], kind[LONGEST_KIND], name[TL_CHUNK_NAME];
-    const tl_chunk *chunk = tl_archive_find(a, entry(name, "frames", k, "times"));
-    size_t count = chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
-    double *times = malloc((count + 1) * sizeof *times);
-    uint32_t *parts = malloc((count + 1) * sizeof *parts);
-    tl_status status = times && parts ? TL_OK : tl_fail_memory(&m->error);
-    if (status == TL_OK &&
-        !(tl_archive_text(a, entry(name, "frames", k, "prefix"), prefix, sizeof prefix) &&
-          tl_archive_text(a, entry(name, "frames", k, "kind"), kind, sizeof kind) &&
-          tl_archive_get(a, entry(name, "frames", k, "times"), times, sizeof *times, count) &&
-          tl_archive_get(a, entry(name, "frames", k, "parts"), parts, sizeof *parts, count) &&
-          frames_are_sound(times, parts, count)))
-        status = tl_archive_bad(a, &m->error, "a series of frames is missing or does not fit");
-    if (status == TL_OK)
-        status = add_frames(m, prefix, kind, times, parts, count);
-    free(times);
-    free(parts);
-    return status;
+    const tl_chunk *chunk = tl_archive_find(a, tl_chunk_name(name, "frames.%zu.times", k));
+    const size_t count = chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
+    tl_vtk_series *series = NULL;
+    bool read =
+        chunk &&
+        tl_archive_text(a, tl_chunk_name(name, "frames.%zu.prefix", k), prefix, sizeof prefix) &&
+        tl_archive_text(a, tl_chunk_name(name, "frames.%zu.kind", k), kind, sizeof kind);
+    if (read) {
+        series = tl_vtk_series_of(m, prefix, kind);
+        if (!series || !reserve_frames(series, count))
+            return tl_fail_memory(&m->error);
+        read = series->count == 0 && read_frames(a, k, count, series);
+    }
+    return read ? TL_OK
+                : tl_archive_bad(a, &m->error, "a series of frames is missing or does not fit");
 }
 
 static tl_status restore_frames(tl_model *m, const tl_archive *a)
@@ -236,19 +200,20 @@ static tl_status restore_frames(tl_model *m, const tl_archive *a)
 static void save_pages(const tl_model *m, tl_archive_writer *w)
 {
     char name[TL_CHUNK_NAME];
-    uint64_t count = 0;
+    size_t count = 0;
     for (const tl_page *page = m->outputs ? m->outputs->pages : NULL; page; page = page->next) {
         const tl_page_end *end = &page->end;
         const uint64_t numbers[NUMBERS] = {end->frames, end->at, end->checked, end->digest.a,
                                            end->digest.b};
         if (end->frames == 0)
             continue;
-        tl_archive_put(w, entry(name, "pages", count, "prefix"), page->prefix, 1,
-                       strlen(page->prefix));
-        tl_archive_put(w, entry(name, "pages", count, "end"), numbers, sizeof *numbers, NUMBERS);
+        tl_archive_put_text(w, tl_chunk_name(name, "pages.%zu.prefix", count), page->prefix);
+        tl_archive_put(w, tl_chunk_name(name, "pages.%zu.end", count), numbers, sizeof *numbers,
+                       NUMBERS);
         count++;
     }
-    tl_archive_put(w, "pages", &count, sizeof count, 1);
+    const uint64_t saved = count;
+    tl_archive_put(w, "pages", &saved, sizeof saved, 1);
 }
 
 static bool end_is_sound(const tl_page_end *end)
@@ -262,8 +227,9 @@ static tl_status restore_page(tl_model *m, size_t k, const tl_archive *a)
     char prefix[LONGEST_PREFIX], name[TL_CHUNK_NAME];
     uint64_t numbers[NUMBERS];
     bool read =
-        tl_archive_text(a, entry(name, "pages", k, "prefix"), prefix, sizeof prefix) &&
-        tl_archive_get(a, entry(name, "pages", k, "end"), numbers, sizeof *numbers, NUMBERS);
+        tl_archive_text(a, tl_chunk_name(name, "pages.%zu.prefix", k), prefix, sizeof prefix) &&
+        tl_archive_get(a, tl_chunk_name(name, "pages.%zu.end", k), numbers, sizeof *numbers,
+                       NUMBERS);
     tl_page_end end = {0};
     if (read)
         end = (tl_page_end){
@@ -293,10 +259,10 @@ static tl_status restore_pages(tl_model *m, const tl_archive *a)
 
 /* ---------------------------------------------------------------- both ------------------- */
 
-bool tl_outputs_save(const tl_model *m, tl_archive_writer *w)
+void tl_outputs_save(const tl_model *m, tl_archive_writer *w)
 {
     save_pages(m, w);
-    return save_frames(m, w);
+    save_frames(m, w);
 }
 
 tl_status tl_outputs_restore(tl_model *m, const tl_archive *a)

@@ -26,19 +26,14 @@ typedef struct tl_vtk_index {
     tl_vtk_file_id written;
 } tl_vtk_index;
 
-/* A frame: its time in the indices, and which of its files were written, bit k for number k. */
-typedef struct tl_vtk_frame {
-    double time;
-    unsigned parts;
-} tl_vtk_frame;
-
 /* The frames of one prefix and one kind of frame. A model keeps a list of these. */
 typedef struct tl_vtk_series {
     struct tl_vtk_series *next;
     char *prefix;
     char *kind;
-    tl_vtk_frame *frames;
-    size_t count, capacity;
+    double *times;   /* of its frames in the indices, s */
+    uint32_t *parts; /* which of their files were written, bit k for number k */
+    size_t count, time_capacity, part_capacity;
     size_t written[TL_VTK_PARTS]; /* frames that have the file */
     tl_vtk_index index[TL_VTK_PARTS];
 } tl_vtk_series;
@@ -67,12 +62,12 @@ typedef struct tl_page {
 /* Finds or makes the series of a prefix and a kind of frame, with room for one more frame; NULL when out of memory. */
 tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kind);
 /* Notes that the frame is written. */
-void tl_vtk_series_add(tl_vtk_series *series, tl_vtk_frame frame);
+void tl_vtk_series_add(tl_vtk_series *series, double time, uint32_t parts);
 /* Finds or makes the page of a prefix; NULL when out of memory. */
 tl_page *tl_page_of(tl_model *m, const char *prefix);
 
-/* Adds frames and pages to an archive; false when out of memory. */
-bool tl_outputs_save(const tl_model *m, tl_archive_writer *w);
+/* Adds frames and pages to an archive. */
+void tl_outputs_save(const tl_model *m, tl_archive_writer *w);
 /* Goes on with them where the saved model was; with pages as far as their files still are as they were then. */
 tl_status tl_outputs_restore(tl_model *m, const tl_archive *archive);
 

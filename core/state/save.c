@@ -106,13 +106,13 @@ static bool save_planes(tl_archive_writer *w, const tl_model *m)
 static void save_all(tl_archive_writer *w, tl_model *m)
 {
     const tl_walk walk = {save_entry, w};
-    tl_archive_put(w, "program", TALUS_VERSION, 1, strlen(TALUS_VERSION));
+    tl_archive_put_text(w, "program", TALUS_VERSION);
     tl_model_walk(m, &walk);
     bool saved = tl_shapes_save(m, w) && save_names(w, "groups", m->group_count, group_name, m) &&
                  save_names(w, "joints.names", m->joint_count, joint_name, m) &&
                  save_planes(w, m) && save_drives(w, m);
     w->lost = w->lost || !saved;
-    w->lost = !tl_outputs_save(m, w) || w->lost;
+    tl_outputs_save(m, w);
     w->lost = !tl_histories_save(m, w) || w->lost;
     tl_laws_save(m, w);
     tl_damping_save(m, w);
