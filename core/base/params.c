@@ -21,7 +21,7 @@
 typedef struct reader {
     tl_param param;
     const tl_value *value;
-    const char *context;
+    const char *prefix; /* of sentences: "context: ", or nothing */
     tl_error *error;
 } reader;
 
@@ -107,17 +107,6 @@ void tl_param_range(const tl_param *param, char *text, size_t size)
         snprintf(text, size, "%c%s, %s%c", open_min ? '(' : '[', low, high, open_max ? ')' : ']');
 }
 
-/* "context: ", or nothing when there is no context. */
-static const char *colon(const char *context)
-{
-    return context && context[0] ? ": " : "";
-}
-
-static const char *shown(const char *context)
-{
-    return context ? context : "";
-}
-
 /* What the caller gave, in words a script's author knows. */
 static void describe_value(const tl_value *value, char *text, size_t size)
 {
@@ -147,8 +136,8 @@ static tl_status wrong_type(const reader *r, const char *wanted)
 {
     char given[160];
     describe_value(r->value, given, sizeof given);
-    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s%s must be %s, not %s", shown(r->context),
-                   colon(r->context), r->param.name, wanted, given);
+    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s must be %s, not %s", r->prefix, r->param.name,
+                   wanted, given);
 }
 
 /* One number of a value: `part` names it ("friction", "origin.y", "vertices, row 4, y"). */
@@ -158,15 +147,14 @@ static tl_status check_number(const reader *r, const char *part, double value)
         return TL_OK;
     char number[TL_NUMBER_TEXT], range[TL_RANGE_TEXT];
     tl_number_text(value, number);
-    const char *context = shown(r->context), *sep = colon(r->context);
     if (!isfinite(value))
-        return tl_fail(r->error, TL_E_ARGUMENT, "%s%s%s = %s is not a finite number", context, sep,
-                       part, number);
+        return tl_fail(r->error, TL_E_ARGUMENT, "%s%s = %s is not a finite number", r->prefix, part,
+                       number);
     tl_param_range(&r->param, range, sizeof range);
     const char *unit = r->param.unit ? r->param.unit : "", *space = unit[0] ? " " : "";
     const char *verb = range[0] == '[' || range[0] == '(' ? "is outside" : "must be";
-    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s%s = %s%s%s %s %s", context, sep, part, number,
-                   space, unit, verb, range);
+    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s = %s%s%s %s %s", r->prefix, part, number, space,
+                   unit, verb, range);
 }
 
 static tl_status check_point(const reader *r, const char *part, const char *joiner,
@@ -229,9 +217,7 @@ static tl_status read_enum(const reader *r, void *to)
             return TL_OK;
         }
     }
-    char context[200];
-    snprintf(context, sizeof context, "%.190s%s", shown(r->context), colon(r->context));
-    return tl_fail_unknown(r->error, TL_E_ARGUMENT, context, r->param.name, r->value->text,
+    return tl_fail_unknown(r->error, TL_E_ARGUMENT, r->prefix, r->param.name, r->value->text,
                            r->param.choices, count);
 }
 
@@ -285,8 +271,8 @@ static tl_status read_value(const reader *r, void *to)
     case TL_PARAM_STRING: return read_string(r, to);
     case TL_PARAM_POINTS: return read_points(r, to);
     default:
-        return tl_fail(r->error, TL_E_PLUGIN, "%s%sparameter '%s' has the unknown type %u",
-                       shown(r->context), colon(r->context), r->param.name, r->param.type);
+        return tl_fail(r->error, TL_E_PLUGIN, "%sparameter '%s' has the unknown type %u", r->prefix,
+                       r->param.name, r->param.type);
     }
 }
 
@@ -328,7 +314,7 @@ static size_t find_param(const tl_param *params, size_t count, size_t stride, co
 }
 
 static tl_status unknown_key(const tl_param *params, size_t count, size_t stride, const char *key,
-                             const char *context, tl_error *error)
+                             const char *prefix, tl_error *error)
 {
     const char *names[MOST_NAMES];
     size_t n = 0;
@@ -338,8 +324,6 @@ static tl_status unknown_key(const tl_param *params, size_t count, size_t stride
         if (row.alias)
             names[n++] = row.alias;
     }
-    char prefix[200];
-    snprintf(prefix, sizeof prefix, "%.190s%s", shown(context), colon(context));
     if (n == 0)
         return tl_fail(error, TL_E_ARGUMENT, "%sunknown parameter '%.80s' (it takes none)", prefix,
                        key);
@@ -355,18 +339,18 @@ static bool same_number(const tl_value *a, const tl_value *b)
 
 /* The same parameter given twice, by its name and by its alias, and not with the same number. */
 static tl_status check_once(const tl_param *param, const tl_args *args, size_t index,
-                            const char *context, tl_error *error)
+                            const char *prefix, tl_error *error)
 {
     for (size_t i = 0; i < index; i++)
         if (answers_to(param, args->values[i].key) &&
             !same_number(&args->values[i], &args->values[index]))
             return tl_fail(error, TL_E_ARGUMENT,
-                           "%s%s%s and %s are the same parameter: give one of them", shown(context),
-                           colon(context), args->values[i].key, args->values[index].key);
+                           "%s%s and %s are the same parameter: give one of them", prefix,
+                           args->values[i].key, args->values[index].key);
     return TL_OK;
 }
 
-static tl_status check_required(const tl_param *param, const tl_args *args, const char *context,
+static tl_status check_required(const tl_param *param, const tl_args *args, const char *prefix,
                                 tl_error *error)
 {
     if (!(param->flags & TL_PARAM_REQUIRED))
@@ -375,14 +359,17 @@ static tl_status check_required(const tl_param *param, const tl_args *args, cons
         if (answers_to(param, args->values[i].key))
             return TL_OK;
     const char *unit = param->unit ? param->unit : "";
-    return tl_fail(error, TL_E_ARGUMENT, "%s%sparameter '%s' is missing%s%s%s%s%.160s",
-                   shown(context), colon(context), param->name, unit[0] ? ", in " : "", unit,
-                   param->doc ? " (" : "", param->doc ? param->doc : "", param->doc ? ")" : "");
+    return tl_fail(error, TL_E_ARGUMENT, "%sparameter '%s' is missing%s%s%s%s%.160s", prefix,
+                   param->name, unit[0] ? ", in " : "", unit, param->doc ? " (" : "",
+                   param->doc ? param->doc : "", param->doc ? ")" : "");
 }
 
 tl_status tl_args_read(const tl_param *params, size_t count, size_t stride, const tl_args *args,
                        bool keep, void *out, const char *context, tl_error *error)
 {
+    char prefix[TL_ERROR_TEXT] = "";
+    if (context && context[0])
+        snprintf(prefix, sizeof prefix, "%s: ", context);
     for (size_t i = 0; i < count && !keep; i++) {
         tl_param row = tl_param_row(params, i, stride);
         write_default(&row, (char *)out + row.offset);
@@ -391,9 +378,9 @@ tl_status tl_args_read(const tl_param *params, size_t count, size_t stride, cons
         const char *key = args->values[i].key;
         size_t at = find_param(params, count, stride, key);
         if (at == count)
-            return unknown_key(params, count, stride, key, context, error);
-        reader r = {tl_param_row(params, at, stride), &args->values[i], context, error};
-        tl_status status = check_once(&r.param, args, i, context, error);
+            return unknown_key(params, count, stride, key, prefix, error);
+        reader r = {tl_param_row(params, at, stride), &args->values[i], prefix, error};
+        tl_status status = check_once(&r.param, args, i, prefix, error);
         if (status == TL_OK)
             status = read_value(&r, (char *)out + r.param.offset);
         if (status != TL_OK)
@@ -401,7 +388,7 @@ tl_status tl_args_read(const tl_param *params, size_t count, size_t stride, cons
     }
     for (size_t i = 0; i < count && !keep; i++) {
         tl_param row = tl_param_row(params, i, stride);
-        tl_status status = check_required(&row, args, context, error);
+        tl_status status = check_required(&row, args, prefix, error);
         if (status != TL_OK)
             return status;
     }

@@ -50,33 +50,6 @@ typedef struct tl_walk {
     void *user;
 } tl_walk;
 
-static inline void tl_walk_value(const tl_walk *w, tl_keep keep, const char *name, void *at,
-                                 size_t size)
-{
-    const tl_entry e = {.name = name, .form = TL_ENTRY_VALUE, .keep = keep, .at = at, .size = size};
-    w->visit(w->user, &e);
-}
-
-/* The same with a name in two parts. */
-static inline void tl_walk_setting(const tl_walk *w, const char *prefix, const char *name, void *at,
-                                   size_t size)
-{
-    const tl_entry e = {.prefix = prefix,
-                        .name = name,
-                        .form = TL_ENTRY_VALUE,
-                        .keep = TL_KEEP_STATE,
-                        .at = at,
-                        .size = size};
-    w->visit(w->user, &e);
-}
-
-static inline void tl_walk_flag(const tl_walk *w, tl_keep keep, const char *name, bool *at)
-{
-    const tl_entry e = {
-        .name = name, .form = TL_ENTRY_FLAG, .keep = keep, .at = at, .size = sizeof *at};
-    w->visit(w->user, &e);
-}
-
 /* A list; one whose room is noted nowhere, NULL, has room for its items. */
 static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name, void *slot,
                                 size_t size, size_t *count, size_t *capacity, size_t counts_for)
@@ -107,10 +80,18 @@ static inline void tl_walk_table(const tl_walk *w, tl_keep keep, const char *nam
 }
 
 /* A member of a struct under its own name after a prefix: TL_WALK_VALUE(walk, TL_KEEP_STATE, "model.", m, time). */
-#define TL_WALK_VALUE(walk, keep, prefix, owner, member)                                           \
-    tl_walk_value((walk), (keep), prefix #member, &(owner)->member, sizeof(owner)->member)
-#define TL_WALK_FLAG(walk, keep, prefix, owner, member)                                            \
-    tl_walk_flag((walk), (keep), prefix #member, &(owner)->member)
+#define TL_WALK_VALUE(walk, keep_, prefix_, owner, member)                                         \
+    (walk)->visit((walk)->user, &(const tl_entry){.name = prefix_ #member,                         \
+                                                  .form = TL_ENTRY_VALUE,                          \
+                                                  .keep = (keep_),                                 \
+                                                  .at = &(owner)->member,                          \
+                                                  .size = sizeof(owner)->member})
+#define TL_WALK_FLAG(walk, keep_, prefix_, owner, member)                                          \
+    (walk)->visit((walk)->user, &(const tl_entry){.name = prefix_ #member,                         \
+                                                  .form = TL_ENTRY_FLAG,                           \
+                                                  .keep = (keep_),                                 \
+                                                  .at = &(owner)->member,                          \
+                                                  .size = sizeof(owner)->member})
 #define TL_WALK_LIST(walk, keep, prefix, owner, member, count, capacity, counts_for)               \
     tl_walk_list((walk), (keep), prefix #member, &(owner)->member, sizeof *(owner)->member,        \
                  (count), (capacity), (counts_for))

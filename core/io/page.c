@@ -271,6 +271,7 @@ static tl_status copy_before(tl_model *m, const char *path, uint64_t bytes, tl_o
     return status;
 }
 
+/* Adds a frame to a copy of what was left of a page that is longer. */
 static tl_status add_to_copy(tl_model *m, const char *path, const tl_piece *element,
                              tl_page_end *end)
 {
@@ -303,6 +304,7 @@ static int write_at(int file, const void *from, size_t bytes, uint64_t at)
     return 0;
 }
 
+/* Adds a frame to a page that stands whole. */
 static tl_status add_in_place(tl_model *m, const char *path, const tl_piece *element,
                               tl_page_end *end)
 {
@@ -328,14 +330,6 @@ static tl_status add_in_place(tl_model *m, const char *path, const tl_piece *ele
         return tl_output_fail(&m->error, path, code);
     note_end(end, last, element);
     return TL_OK;
-}
-
-/* Adds a frame, in place where the page stands whole; where it is longer, to a copy of what was left. */
-static tl_status page_add(tl_model *m, const char *path, tl_page_stand stand,
-                          const tl_piece *element, tl_page_end *end)
-{
-    return stand == TL_PAGE_WHOLE ? add_in_place(m, path, element, end)
-                                  : add_to_copy(m, path, element, end);
 }
 
 /* ---------------------------------------------------------------- a frame ---------------- */
@@ -377,8 +371,9 @@ static tl_status add_frame(tl_model *m, tl_page *page, const char *path, const t
     if (status == TL_OK)
         status = tl_model_go_on(m);
     if (status == TL_OK)
-        status = page->end.frames ? page_add(m, path, stand, &element, &page->end)
-                                  : page_begin(m, path, options->title, &element, &page->end);
+        status = page->end.frames == 0 ? page_begin(m, path, options->title, &element, &page->end)
+                 : stand == TL_PAGE_WHOLE ? add_in_place(m, path, &element, &page->end)
+                                          : add_to_copy(m, path, &element, &page->end);
     free(element.data);
     if (status != TL_OK)
         return status;

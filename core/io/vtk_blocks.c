@@ -471,20 +471,24 @@ static void put_section_cells(const tl_model *m, const section *s, FILE *file)
     tl_vtk_line(file);
 }
 
+/* Displacements of the points, or what they are in the plane. */
+static void put_displacements(const tl_model *m, const section *s, bool all, FILE *file)
+{
+    for (size_t i = 0, at = 0; i < s->polygons; i++)
+        for (; at < s->end[i]; at++) {
+            tl_vec3 moved = tl_block_point_displacement(m, s->row[i], s->corners[at].at);
+            tl_vtk_vec3(file, all ? moved : in_plane(s->normal, moved));
+        }
+    tl_vtk_line(file);
+}
+
 static void put_point_data(const tl_model *m, const section *s, FILE *file)
 {
     fprintf(file, "POINT_DATA %zu\nVECTORS displacement double\n", s->points);
-    for (size_t i = 0, at = 0; i < s->polygons; i++)
-        for (; at < s->end[i]; at++)
-            tl_vtk_vec3(file, tl_block_point_displacement(m, s->row[i], s->corners[at].at));
-    tl_vtk_line(file);
+    put_displacements(m, s, true, file);
     tl_vtk_field(file, "FieldData", 1);
     tl_vtk_array(file, "displacement_in_plane", 3, s->points, TL_VTK_DOUBLE);
-    for (size_t i = 0, at = 0; i < s->polygons; i++)
-        for (; at < s->end[i]; at++)
-            tl_vtk_vec3(file, in_plane(s->normal, tl_block_point_displacement(m, s->row[i],
-                                                                              s->corners[at].at)));
-    tl_vtk_line(file);
+    put_displacements(m, s, false, file);
 }
 
 tl_status tl_vtk_section(tl_model *m, tl_plane plane, tl_pieces *out)

@@ -34,10 +34,14 @@ void *tl_setting_at(const tl_model *m, const tl_settings *of, size_t i)
 static void walk_struct(const tl_model *m, tl_settings of, const tl_walk *walk)
 {
     for (size_t i = 0; i < of.count; i++) {
-        void *at = tl_setting_at(m, &of, i);
-        if (at)
-            tl_walk_setting(walk, of.prefix, of.params[i].name, at,
-                            tl_param_bytes(of.params[i].type));
+        const tl_entry entry = {.prefix = of.prefix,
+                                .name = of.params[i].name,
+                                .form = TL_ENTRY_VALUE,
+                                .keep = TL_KEEP_STATE,
+                                .at = tl_setting_at(m, &of, i),
+                                .size = tl_param_bytes(of.params[i].type)};
+        if (entry.at)
+            walk->visit(walk->user, &entry);
     }
 }
 
