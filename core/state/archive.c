@@ -11,7 +11,6 @@
 
 #include "base/output_file.h"
 #include "base/regular.h"
-#include "state/archive_format.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -42,7 +41,7 @@ const char *tl_chunk_name(char name[TL_CHUNK_NAME], const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    vsnprintf(name, TL_CHUNK_NAME, format, args);
+    tl_text_vprint(name, TL_CHUNK_NAME, format, args);
     va_end(args);
     return name;
 }

@@ -5,15 +5,21 @@
 
 #include <stdlib.h>
 
-void tl_drive_keep(const tl_drive_record *record, tl_drive_kept *kept)
+/* What is kept of all drives; NULL when out of memory. */
+static tl_drive_kept *keep_all(const tl_model *m)
 {
-    const tl_drive *drive = &record->drive;
-    kept->velocity = drive->velocity;
-    kept->angular_velocity = drive->angular_velocity;
-    kept->velocity_now = record->velocity;
-    kept->angular_velocity_now = record->angular_velocity;
-    kept->velocity_asked = drive->velocity_at != NULL;
-    kept->angular_velocity_asked = drive->angular_velocity_at != NULL;
+    tl_drive_kept *all = calloc(m->drive_count + 1, sizeof *all);
+    for (size_t i = 0; all && i < m->drive_count; i++) {
+        const tl_drive_record *record = &m->drives[i];
+        const tl_drive *drive = &record->drive;
+        all[i].velocity = drive->velocity;
+        all[i].angular_velocity = drive->angular_velocity;
+        all[i].velocity_now = record->velocity;
+        all[i].angular_velocity_now = record->angular_velocity;
+        all[i].velocity_asked = drive->velocity_at != NULL;
+        all[i].angular_velocity_asked = drive->angular_velocity_at != NULL;
+    }
+    return all;
 }
 
 /* The lowest block that a drive, counted from 1, moves, and how many bodies. */
@@ -56,8 +62,9 @@ static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept,
         asked.angular_velocity ? "angular_velocity" : "");
 }
 
-tl_status tl_drives_make(tl_model *m, const tl_drive_kept *kept, size_t count,
-                         const tl_drive_record *from, tl_drive_again_fn again, void *user)
+/* `from` has the drives of the original, of a copy; of a file it is NULL. */
+static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count,
+                      const tl_drive_record *from, tl_drive_again_fn again, void *user)
 {
     if (count == 0)
         return TL_OK;
@@ -84,14 +91,45 @@ tl_status tl_drives_make(tl_model *m, const tl_drive_kept *kept, size_t count,
     return TL_OK;
 }
 
+bool tl_drives_save(const tl_model *m, tl_archive_writer *w)
+{
+    tl_drive_kept *kept = keep_all(m);
+    if (kept)
+        tl_archive_put(w, "drives", kept, sizeof *kept, m->drive_count);
+    free(kept);
+    return kept != NULL;
+}
+
+size_t tl_drives_in(const tl_archive *a)
+{
+    const tl_chunk *chunk = tl_archive_find(a, "drives");
+    return chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
+}
+
+tl_status tl_drives_restore(tl_model *m, const tl_archive *a, tl_drive_again_fn again, void *user)
+{
+    const size_t count = tl_drives_in(a);
+    tl_drive_kept *kept = malloc((count + 1) * sizeof *kept);
+    if (!kept)
+        return tl_fail_memory(&m->error);
+    bool read = tl_archive_get(a, "drives", kept, sizeof *kept, count);
+    for (size_t i = 0; i < count && read; i++)
+        read = tl_v3_finite(kept[i].velocity) && tl_v3_finite(kept[i].angular_velocity) &&
+               tl_v3_finite(kept[i].velocity_now) && tl_v3_finite(kept[i].angular_velocity_now);
+    tl_status status = read ? make(m, kept, count, NULL, again, user)
+                            : tl_archive_bad(a, &m->error, "'drives' is missing or does not fit");
+    free(kept);
+    if (status == TL_E_STATE)
+        tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
+    return status;
+}
+
 tl_status tl_drives_copy(tl_model *to, const tl_model *from, tl_drive_again_fn again, void *user)
 {
-    tl_drive_kept *kept = calloc(from->drive_count + 1, sizeof *kept);
+    tl_drive_kept *kept = keep_all(from);
     if (!kept)
         return tl_fail_memory(&to->error);
-    for (size_t i = 0; i < from->drive_count; i++)
-        tl_drive_keep(&from->drives[i], &kept[i]);
-    tl_status status = tl_drives_make(to, kept, from->drive_count, from->drives, again, user);
+    tl_status status = make(to, kept, from->drive_count, from->drives, again, user);
     free(kept);
     return status;
 }

@@ -3,6 +3,7 @@
 #define TL_STATE_DRIVES_H
 
 #include "model/model.h"
+#include "state/archive.h"
 
 /* A drive without its functions, as a file keeps it. */
 typedef struct tl_drive_kept {
@@ -11,12 +12,13 @@ typedef struct tl_drive_kept {
     uint8_t velocity_asked, angular_velocity_asked; /* 1: a function gave it */
 } tl_drive_kept;
 
-/* Puts what a file keeps of a drive into a row that is zero. */
-void tl_drive_keep(const tl_drive_record *record, tl_drive_kept *kept);
-/* Makes the drives of a model whose bodies have the numbers of theirs already. `from` has those of the original, of a copy;
- * of a file it is NULL. */
-tl_status tl_drives_make(tl_model *m, const tl_drive_kept *kept, size_t count,
-                         const tl_drive_record *from, tl_drive_again_fn again, void *user);
+/* Adds them to an archive; false when out of memory. */
+bool tl_drives_save(const tl_model *m, tl_archive_writer *w);
+/* How many an archive has. */
+size_t tl_drives_in(const tl_archive *archive);
+/* Makes the drives of a model whose bodies have the numbers of theirs already. */
+tl_status tl_drives_restore(tl_model *m, const tl_archive *archive, tl_drive_again_fn again,
+                            void *user);
 tl_status tl_drives_copy(tl_model *to, const tl_model *from, tl_drive_again_fn again, void *user);
 
 #endif

@@ -390,12 +390,6 @@ static tl_status read_planes(tl_model *m, const tl_archive *a)
     return read ? TL_OK : tl_archive_bad(a, &m->error, "'joints.planes' does not fit the joints");
 }
 
-static size_t drives_in(const tl_archive *a)
-{
-    const tl_chunk *chunk = tl_archive_find(a, "drives");
-    return chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
-}
-
 /* Planes that parts of bodies have of each other follow from their shapes. */
 static tl_status share_planes(tl_model *m)
 {
@@ -437,7 +431,7 @@ static tl_status read_rows(tl_model *m, const tl_archive *a)
     if (status == TL_OK)
         status = read_planes(m, a);
     if (status == TL_OK)
-        status = unsound(a, m, rows_unsound(m, m->group_count, drives_in(a)));
+        status = unsound(a, m, rows_unsound(m, m->group_count, tl_drives_in(a)));
     if (status == TL_OK)
         status = tl_shapes_restore(m, a);
     return status == TL_OK ? derive_rows(m) : status;
@@ -482,24 +476,6 @@ static const char *cycle_unsound(const tl_model *m, struct tl_cycle *c)
 }
 
 /* ---------------------------------------------------------------- the rest --------------- */
-
-static tl_status read_drives(tl_model *m, const tl_archive *a, tl_drive_again_fn again, void *user)
-{
-    size_t count = drives_in(a);
-    tl_drive_kept *kept = malloc((count + 1) * sizeof *kept);
-    if (!kept)
-        return tl_fail_memory(&m->error);
-    bool read = tl_archive_get(a, "drives", kept, sizeof *kept, count);
-    for (size_t i = 0; i < count && read; i++)
-        read = tl_v3_finite(kept[i].velocity) && tl_v3_finite(kept[i].angular_velocity) &&
-               tl_v3_finite(kept[i].velocity_now) && tl_v3_finite(kept[i].angular_velocity_now);
-    tl_status status = read ? tl_drives_make(m, kept, count, NULL, again, user)
-                            : tl_archive_bad(a, &m->error, "'drives' is missing or does not fit");
-    free(kept);
-    if (status == TL_E_STATE)
-        tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
-    return status;
-}
 
 /* Makes the columns of contact points that laws and initial forces have. */
 static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
@@ -593,7 +569,7 @@ static tl_status fill(tl_model *m, const tl_archive *a, tl_drive_again_fn again,
         status = tl_outputs_restore(m, a);
     if (status == TL_OK)
         status = tl_histories_restore(m, a);
-    return status == TL_OK ? read_drives(m, a, again, user) : status;
+    return status == TL_OK ? tl_drives_restore(m, a, again, user) : status;
 }
 
 tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_drive_again_fn again,

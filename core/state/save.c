@@ -81,17 +81,6 @@ static const char *joint_name(const tl_model *m, size_t i)
     return m->joints[i].name;
 }
 
-static bool save_drives(tl_archive_writer *w, const tl_model *m)
-{
-    tl_drive_kept *kept = calloc(m->drive_count + 1, sizeof *kept);
-    for (size_t i = 0; kept && i < m->drive_count; i++)
-        tl_drive_keep(&m->drives[i], &kept[i]);
-    if (kept)
-        tl_archive_put(w, "drives", kept, sizeof *kept, m->drive_count);
-    free(kept);
-    return kept != NULL;
-}
-
 static bool save_planes(tl_archive_writer *w, const tl_model *m)
 {
     uint32_t *planes = malloc((m->joint_count + 1) * sizeof *planes);
@@ -110,10 +99,10 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     tl_model_walk(m, &walk);
     bool saved = tl_shapes_save(m, w) && save_names(w, "groups", m->group_count, group_name, m) &&
                  save_names(w, "joints.names", m->joint_count, joint_name, m) &&
-                 save_planes(w, m) && save_drives(w, m);
-    w->lost = w->lost || !saved;
+                 save_planes(w, m) && tl_drives_save(m, w);
     tl_outputs_save(m, w);
-    w->lost = !tl_histories_save(m, w) || w->lost;
+    saved = tl_histories_save(m, w) && saved;
+    w->lost = w->lost || !saved;
     tl_laws_save(m, w);
     tl_damping_save(m, w);
     if (tl_detect_lasting(m))

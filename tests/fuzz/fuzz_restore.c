@@ -3,7 +3,6 @@
  * Checksums would refuse what was changed at random before anything looks at it. So the chunks of a file are taken apart, one is
  * changed, and the file is put together anew with right checksums, as by somebody who means harm. */
 #include "state/archive.h"
-#include "state/archive_format.h"
 #include "state/restore.h"
 
 #include <stdlib.h>

@@ -3,7 +3,6 @@
 #include "state/archive.h"
 
 #include "check.h"
-#include "state/archive_format.h"
 
 #include <stddef.h>
 #include <stdlib.h>

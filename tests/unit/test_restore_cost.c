@@ -2,7 +2,6 @@
  * are refused or sound, with no more memory than a multiple of their size. */
 #include "contact_scene.h"
 #include "state/archive.h"
-#include "state/archive_format.h"
 
 #include <stddef.h>
 #include <stdlib.h>
