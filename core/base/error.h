@@ -7,8 +7,8 @@
 #include <talus/text.h>
 #include <talus/types.h>
 
-/* Puts a formatted sentence into `error` (which may be NULL) and returns `status`. Line ends in names, and the like, are
- * shown escaped (talus/text.h): a sentence is one line. */
+/* Puts a formatted sentence into `error` (which may be NULL) and returns `status`. Line ends in names, and the like,
+ * are shown escaped (talus/text.h): a sentence is one line. */
 tl_status tl_fail(tl_error *error, tl_status status, const char *format, ...) TL_PRINTF(3, 4);
 tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_list args);
 /* TL_E_MEMORY with its sentence. */

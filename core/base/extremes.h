@@ -1,5 +1,5 @@
-/* extremes.h - the larger and the smaller of two numbers, the same on every machine. Of fmax and fmin few compilers make one instruction, and of
- * two zeros of different sign they may give either. */
+/* extremes.h - the larger and the smaller of two numbers, the same on every machine. Of fmax and fmin few compilers
+ * make one instruction, and of two zeros of different sign they may give either. */
 #ifndef TL_BASE_EXTREMES_H
 #define TL_BASE_EXTREMES_H
 

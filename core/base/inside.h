@@ -25,8 +25,8 @@ static inline void tl_leave(void)
     tl_inside_plugin.function = NULL;
 }
 
-/* Bytes of the stack on which a thread's signals are handled when its own has run out: some KB of registers, and
- * what the handler needs. */
+/* Bytes of the stack on which a thread's signals are handled when its own has run out. A handler needs some KB of
+ * registers, and more. */
 #define TL_SIGNAL_STACK 65536
 
 #endif

@@ -1,5 +1,5 @@
-/* lanes.h - vectors, quaternions and matrices of TL_LANES things side by side, component by component: what a loop over lanes
- * reads and writes as whole vectors of the processor. */
+/* lanes.h - vectors, quaternions and matrices of TL_LANES things side by side, component by component. A loop over
+ * lanes reads and writes them as whole vectors of the processor. */
 #ifndef TL_BASE_LANES_H
 #define TL_BASE_LANES_H
 

@@ -1,5 +1,5 @@
-/* names.h - names a user types: their form, the nearest known one, and the sentence that refuses an
- * unknown one. tl_nearest_name itself is declared in talus.h, for front ends. */
+/* names.h - names a user types: their form, the nearest known one, and the refusal of an unknown one. The function
+ * tl_nearest_name is declared in talus.h, for front ends. */
 #ifndef TL_BASE_NAMES_H
 #define TL_BASE_NAMES_H
 

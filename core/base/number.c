@@ -1,16 +1,17 @@
-/* number.c - the shortest text of a double, as "%.*g" writes it with the fewest digits, from six on, that read back as the
- * same double.
+/* number.c - the shortest text of a double, as "%.*g" writes it. It has the fewest digits, from six on, that read
+ * back as the same double.
  *
- * Numbers between 1e-10 and 1e15, which are nearly all, go without the C library, exactly, in integers of 128 bits: the
- * double is m 2^e with m < 2^53, and k is chosen so that
+ * Numbers between 1e-10 and 1e15, which are nearly all, go without the C library, exactly, in integers of 128 bits.
+ * The double is m 2^e with m < 2^53. The integer k is chosen so that
  *
  *     value 10^k = m 5^k / 2^s,   s = -(e + k),
  *
- * lies between 1e16 and 1e17: its whole part has 17 digits, which always read back. m 5^k < 2^116 and s > 0, as 2 <= k <= 27.
- * Fewer digits read back when the decimal number nearest to the double lies within half a step of the doubles, 5^k / 2 in the
- * units of m 5^k, or on the edge of that when m is even, since ties are read as the even one. Where a number of digits does so
- * does every larger number, since what it can write is no farther from the double. A power of two is nearer to the double below
- * it than to the one above: that is left to the C library, as are the very large and small. */
+ * lies between 1e16 and 1e17: its whole part has 17 digits, which always read back. Here m 5^k < 2^116 and s > 0, as
+ * 2 <= k <= 27. Fewer digits read back when the decimal number nearest to the double lies within half a step of the
+ * doubles. That is 5^k / 2 in the units of m 5^k. The edge counts when m is even, since ties are read as the even
+ * one. Where a number of digits does so does every larger number, since what it can write is no farther from the
+ * double. A power of two is nearer to the double below it than to the one above. It is left to the C library, as are
+ * the very large and small. */
 #include "base/number.h"
 
 #include <math.h>

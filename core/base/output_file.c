@@ -1,10 +1,10 @@
 /* output_file.c - files that have no name until they are finished.
  *
- * Where the system can (Linux, most file systems), the file is made without a name, so that nothing of it is left
- * however the program ends. A new name is then given to it directly; where a file of that name exists, it gets a
- * temporary one first, since only a rename replaces a file. Elsewhere it has the temporary name from the beginning.
+ * Where the system can (Linux, most file systems), the file is made without a name. So nothing of it is left however
+ * the program ends. A new name is then given to it directly. Where a file of that name exists, it gets a temporary
+ * one first, since only a rename replaces a file. Elsewhere it has the temporary name from the beginning.
  *
- * Temporary names carry the process id and a number that is not taken, so two runs that write the same series do not
+ * Temporary names carry the process id and a number that is not taken. So two runs that write the same series do not
  * write into each other's files. Limit: a crash of the machine may lose a file that is not durable; a result can be
  * written again. */
 #define _GNU_SOURCE /* O_TMPFILE */

@@ -20,8 +20,8 @@ typedef struct tl_output {
         durable; /* set after the opening: it is to outlive a crash of the machine from the commit on */
 } tl_output;
 
-/* From the opening of a file until it is dropped the caller holds the signals that end a program (base/signals.h), so
- * that its end leaves no temporary file. */
+/* From the opening of a file until it is dropped the caller holds the signals that end a program (base/signals.h). So
+ * its end leaves no temporary file. */
 
 /* Opens the file that is to become `path`, making the folders on the way. Only a regular file is ever replaced: a
  * device, a pipe or a folder is refused. A symbolic link stays, and the file that it leads to is replaced. */
@@ -34,7 +34,8 @@ tl_status tl_output_finish(tl_output *output, tl_error *error);
 tl_status tl_output_commit(tl_output *output, tl_error *error);
 /* Removes what is not committed and frees; does nothing to a zeroed or dropped output. */
 void tl_output_drop(tl_output *output);
-/* What the user gave before the ending that the files get in any case, in memory of its own; NULL when there is none left. */
+/* What the user gave before the ending that the files get in any case, in memory of its own; NULL when there is none
+ * left. */
 char *tl_output_prefix(const char *given, const char *ending);
 /* TL_E_IO: "cannot write 'path': " and the text of an errno. */
 tl_status tl_output_fail(tl_error *error, const char *path, int code);

@@ -1,14 +1,14 @@
 /* parallel.c - see parallel.h.
  *
- * The loops of a step follow each other within microseconds, so none may cost a system call: threads that wait
- * spin for a while, and sleep only when nothing has come by then; whoever has something for a sleeper wakes it.
+ * The loops of a step follow each other within microseconds, so none may cost a system call. Threads that wait spin
+ * for a while, and sleep only when nothing has come by then. Whoever has something for a sleeper wakes it.
  *
- * Each thread has its part of the chunks, the same part of every loop, so that what it works on stays in its
- * cache from loop to loop; when it is through it takes what others have left. A chunk is taken by counting
- * down a ticket, which holds the number of the loop, too: a thread that comes late, from a loop that is over,
- * finds nothing on it or takes a chunk of the new loop, never one of the old. So a loop ends as soon as its
- * chunks are done, whether or not all threads have seen it: where there are more threads than processors,
- * nobody waits for one that does not run. What describes a loop does not change while a chunk of it is out. */
+ * Each thread has its part of the chunks, the same part of every loop, so that what it works on stays in its cache
+ * from loop to loop. When it is through it takes what others have left. A chunk is taken by counting down a ticket,
+ * which holds the number of the loop, too. A thread may come late, from a loop that is over. It finds nothing on the
+ * ticket, or takes a chunk of the new loop, never one of the old. So a loop ends as soon as its chunks are done,
+ * whether or not all threads have seen it. Where there are more threads than processors, nobody waits for one that
+ * does not run. What describes a loop does not change while a chunk of it is out. */
 #define _XOPEN_SOURCE 700 /* sigaltstack */
 #include "base/parallel.h"
 
@@ -23,8 +23,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* How many looks a waiting thread takes before it sleeps: some 50 microseconds, as long as it takes
- * to put a thread to sleep and wake it. */
+/* How many looks a waiting thread takes before it sleeps. They take some 50 microseconds, as sleep and waking do. */
 #define SPIN_LOOKS 1000
 
 /* Bytes apart at which two threads do not disturb each other's memory: two cache lines, which

@@ -1,7 +1,7 @@
 /* params.c - checks a script's values against a table of parameters and fills a plain struct.
  *
- * Every refusal is one sentence of the form "<context>: <what is wrong, value, unit> <allowed>", so
- * that a user can mend the script without looking anything up. Nothing here allocates. */
+ * Every refusal is one sentence of the form "<context>: <what is wrong, value, unit> <allowed>". So a user can mend
+ * the script without looking anything up. Nothing here allocates. */
 #include "base/params.h"
 
 #include "base/error.h"

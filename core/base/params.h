@@ -12,8 +12,8 @@
 /* Bytes of the longest text tl_param_range writes. */
 #define TL_RANGE_TEXT 96
 
-/* Row `index` of a table whose rows are `stride` bytes apart, copied into the host's own shape;
- * members an older table does not have are zero. Stride 0 means sizeof(tl_param). */
+/* Row `index` of a table whose rows are `stride` bytes apart, copied into the host's own shape. Members that an older
+ * table does not have are zero. Stride 0 means sizeof(tl_param). */
 tl_param tl_param_row(const tl_param *params, size_t index, size_t stride);
 
 /* Bytes of the member a parameter of this type fills; 0 for an unknown type. */

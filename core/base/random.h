@@ -1,6 +1,6 @@
-/* random.h - counter-based random numbers: a draw is a pure function of its key, so adding a
- * draw elsewhere never changes it (after Salmon et al., "Parallel random numbers: as easy as
- * 1, 2, 3", SC11; the mixing function is that of SplitMix64, Steele, Lea and Flood 2014). */
+/* random.h - counter-based random numbers: a draw is a pure function of its key, so adding a draw elsewhere never
+ * changes it. After Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC11. The mixing function is that
+ * of SplitMix64 (Steele, Lea and Flood 2014). */
 #ifndef TL_BASE_RANDOM_H
 #define TL_BASE_RANDOM_H
 

@@ -4,7 +4,8 @@
 
 #include <stdbool.h>
 
-/* What stands at `path`, links followed, when it is there and not a regular file: "a pipe"; else NULL. Opens nothing. */
+/* What stands at `path`, links followed, when it is there and not a regular file: "a pipe"; else NULL. Opens
+ * nothing. */
 const char *tl_not_regular(const char *path);
 
 #endif

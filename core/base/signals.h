@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Blocks SIGTERM, SIGINT, SIGHUP and SIGQUIT for this thread and those that it starts: `all` of them, or those that end
- * the program, for nothing handles them. *before is what to go back to. */
+/* Blocks SIGTERM, SIGINT, SIGHUP and SIGQUIT for this thread and those that it starts: `all` of them, or those that
+ * nothing handles. They end the program. *before is what to go back to. */
 static inline void tl_signals_hold(sigset_t *before, bool all)
 {
     static const int ending[] = {SIGTERM, SIGINT, SIGHUP, SIGQUIT};

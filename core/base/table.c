@@ -10,7 +10,7 @@
 
 /* Capacities are multiples of this, so that a vector loop may run past the last row. */
 #define ROW_ROUND 16u
-/* What grows row by row gets 1 / this more than it has: a row is then copied some ten times before it lies still, and
+/* What grows row by row gets 1 / this more than it has. A row is then copied some ten times before it lies still, and
  * little is left over. */
 #define GROWTH 8
 

@@ -63,23 +63,23 @@ bool tl_table_reserve(tl_table *table, size_t rows);
 bool tl_table_resize(tl_table *table, size_t rows);
 /* Keeps the rows for which keep[row] is not 0, in order. */
 void tl_table_keep(tl_table *table, const unsigned char *keep);
-/* Puts the last `count` rows in between the others: the k-th of them becomes row at[k]; they ascend. There is room for as many
- * rows more. */
+/* Puts the last `count` rows in between the others: the k-th of them becomes row at[k]; they ascend. There is room
+ * for as many rows more. */
 void tl_table_insert(tl_table *table, const uint32_t *at, size_t count);
 /* Copies a row over another. */
 void tl_table_move(tl_table *table, size_t to, size_t from);
 void *tl_table_data(const tl_table *table, size_t column);
 void tl_table_free(tl_table *table);
-/* Makes a table of the same columns, rows and capacity for another owner of the same type, in the place of one without memory;
- * false when out of memory (it is empty then). */
+/* Makes a table of the same columns, rows and capacity for another owner of the same type. It replaces one without
+ * memory. false when out of memory (it is empty then). */
 bool tl_table_copy(tl_table *table, void *owner, const tl_table *from);
 /* Makes an empty table of the same columns for such an owner in its place. */
 void tl_table_like(tl_table *table, void *owner, const tl_table *from);
 /* Bytes its columns take, spare rows included. */
 size_t tl_table_bytes(const tl_table *table);
 
-/* Makes room for `need` items of `size` bytes in the array whose pointer is at `slot`, with some to spare;
- * what is there stays. false when out of memory (nothing changed). */
+/* Makes room for `need` items of `size` bytes in the array whose pointer is at `slot`, with some to spare. What is
+ * there stays. false when out of memory (nothing changed). */
 bool tl_grow(void *slot, size_t *capacity, size_t need, size_t size);
 /* The same without any to spare: for what has a place for each block or body. */
 bool tl_fit(void *slot, size_t *capacity, size_t need, size_t size);

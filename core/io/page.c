@@ -1,8 +1,8 @@
 /* page.c - a page for a browser, frame by frame: tl_write_html.
  *
- * What a frame is made of tells scene.h; here it becomes an element of the page (docs/scene_format.md). The frames are in the
- * file only: a model remembers what a reader of the page knows, and how the file ended, so that it goes on with its own
- * page and with no other. */
+ * What a frame is made of tells scene.h; here it becomes an element of the page (docs/scene_format.md). The frames
+ * are in the file only. A model remembers what a reader of the page knows, and how the file ended. So it goes on with
+ * its own page and with no other. */
 #define _GNU_SOURCE /* pread, pwrite */
 #include "io/page.h"
 
@@ -74,9 +74,9 @@ static const char *name_of(const char *prefix)
  *     ... </script> <!--<script ...> ... </script> <!---->   the frame is written over the second half of the comment
  *     ... </script>     <script ...> ... </script> <!---->   the first half is blanked
  *
- * Until the last write, of four bytes within a page of the system, the new element is part of a comment, so the file is a
- * whole page at any moment, however the program ends. A comment without an end, while the element is not all there, goes to
- * the end of the file. */
+ * Until the last write, of four bytes within a page of the system, the new element is part of a comment. So the file
+ * is a whole page at any moment, however the program ends. A comment without an end, while the element is not all
+ * there, goes to the end of the file. */
 
 static const char opening[] = "<!--", closing[] = "-->\n", blank[] = "    ";
 
@@ -442,8 +442,8 @@ tl_status tl_write_html(tl_model *m, const char *prefix, const tl_html *options)
  *
  * Zlib (RFC 1950) and base64 (RFC 4648), by several threads.
  *
- * The bytes are divided into pieces, each is compressed for itself and ends at a whole byte, so that the pieces one after
- * the other are one stream. */
+ * The bytes are divided into pieces. Each is compressed for itself and ends at a whole byte, so that the pieces one
+ * after the other are one stream. */
 
 /* Bytes of a piece, and most that one can become: a stored block of five bytes for each 16 kB, and its end. */
 #define PIECE ((size_t)256 << 10)
@@ -451,7 +451,8 @@ tl_status tl_write_html(tl_model *m, const char *prefix, const tl_html *options)
 /* Bytes whose text a thread writes at a time: a multiple of three, so the texts join. */
 #define TEXT_CHUNK ((size_t)3 << 16)
 
-/* Cost only: bytes of a piece that are tried, and the share of the length above which repeats are not looked for. */
+/* Bytes of a piece that are tried, and the share of the length without looking for what repeats above which it is not
+ * looked for. */
 #define PROBE ((size_t)8 << 10)
 #define WORTH 0.9
 /* No strategy. */
@@ -474,8 +475,8 @@ static size_t piece_bytes(const packer *p, size_t i)
     return i + 1 < p->pieces ? PIECE : p->bytes - i * PIECE;
 }
 
-/* Compresses bytes into the place of piece i and ends at a whole byte, or ends the stream; how many bytes come of it, or 0
- * when out of memory. */
+/* Compresses bytes into the place of piece i and ends at a whole byte, or ends the stream. Gives how many bytes come
+ * of it, or 0 when out of memory. */
 static size_t compress_bytes(const packer *p, size_t i, const unsigned char *from, size_t bytes,
                              int strategy, int end)
 {
@@ -495,8 +496,8 @@ static size_t compress_bytes(const packer *p, size_t i, const unsigned char *fro
     return length;
 }
 
-/* Whether looking for what repeats is worth its time, three times that of coding alone: not in most numbers of moving blocks.
- * A part of the piece tells. NO_MEMORY: nothing does. */
+/* Whether looking for what repeats is worth its time, three times that of coding alone: not in most numbers of moving
+ * blocks. A part of the piece tells. NO_MEMORY: nothing does. */
 static int strategy_of(const packer *p, size_t i, const unsigned char *from, size_t bytes)
 {
     if (bytes < 4 * PROBE)

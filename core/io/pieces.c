@@ -1,7 +1,7 @@
 /* pieces.c - see pieces.h.
  *
- * Pieces are small enough to stay in a processor's cache until the system has copied them. There are two sets of them: while
- * one thread writes one set, the others fill the other, and then it helps them. */
+ * Pieces are small enough to stay in a processor's cache until the system has copied them. There are two sets of
+ * them: while one thread writes one set, the others fill the other, and then it helps them. */
 #include "io/pieces.h"
 
 #include "base/error.h"

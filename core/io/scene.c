@@ -1,7 +1,7 @@
 /* scene.c - a frame: what a reader does not know yet of head and blocks, and what is new in every frame.
  *
- * The blocks that were sent are kept in order of id, as rows are, so one walk through both tells what has come, changed
- * and gone. */
+ * The blocks that were sent are kept in order of id, as rows are. So one walk through both tells what has come,
+ * changed and gone. */
 #include "io/scene.h"
 
 #include "base/params.h"

@@ -1,7 +1,7 @@
 /* scene_chunks.c - SHAP, FRAM, CONT, FIEL, LINE and KEYS: shapes once, the rest in every frame.
  *
- * A block's frame is that of its body, moved to the block's own centroid, so the quaternion of its body turns it, and rows
- * need nothing of an earlier frame. */
+ * A block's frame is that of its body, moved to the block's own centroid. So the quaternion of its body turns it, and
+ * rows need nothing of an earlier frame. */
 #include "io/scene_chunks.h"
 
 #include "base/parallel.h"

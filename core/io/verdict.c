@@ -1,4 +1,5 @@
-/* verdict.c - how a model stands: what has moved of it, what its joints have slipped and opened, and all that in a sentence. */
+/* verdict.c - how a model stands: what has moved of it, what its joints have slipped and opened, and all that in a
+ * sentence. */
 #include "io/verdict.h"
 
 #include "base/groups.h"
@@ -14,20 +15,20 @@
 #include <talus/kit.h>
 #include <talus/vmath.h>
 
-/* Tolerance: share of the largest displacement below which a block goes with those that move. The second is the
- * displacement over the median size of blocks below which nothing is seen. */
+/* Share of the largest displacement from which a block is one of those that move. Displacement over the median size
+ * of blocks below which nothing is seen. */
 #define LEAST_SHARE 0.05
 #define LEAST_SEEN 1e-3
 /* Tolerance: pages keep displacements in single precision: what is told to have closed is more than that rounds. */
 #define ABOVE (1 + 1e-6)
-/* Tolerance: motion, over what springs bear, that sudden loads and closing of joints explain. A load near the edge of
- * a face turns a block by more than its springs show. */
+/* What sudden loads make of what springs bear, and more than that. A load near the edge of a face turns a block by
+ * more than its springs show. */
 #define SPRINGS 3
 /* Tolerance: what a joint may close, over the smaller block's size: more is a corner that has sunk in. */
 #define MOST_SPRUNG 0.03
 
-/* Of a body: its volume, m3, and size, m; how far it has moved since displacements began to count, m; and whether it has failed, which is to have
- * moved, however far joints may close. */
+/* Of a body: its volume, m3, and size, m, and how far it has moved since displacements began to count, m. One that
+ * has failed has moved, however far joints may close. */
 typedef struct body_facts {
     double volume, size;
     tl_vec3 way;
@@ -35,7 +36,8 @@ typedef struct body_facts {
     bool still; /* of the first of a group: it has but closed its joints */
 } body_facts;
 
-/* Sums over contacts, and what they come to: the mean point, m, relative to the model's origin, and how far b has gone from a there, m. */
+/* Sums over contacts, and what they come to. The mean point, m, is relative to the model's origin; `passed` is how
+ * far b has gone from a there, m. */
 typedef struct means {
     double weight;
     tl_vec3 point, passed;
@@ -118,7 +120,8 @@ static void find_bodies(const tl_model *m, const motion_list *list, tl_verdict *
 
 /* ---------------------------------------------------------------- what has but closed ---- */
 
-/* How far the springs of a contact have let its blocks move against each other, m, times its area: pressed or pulled in, and sheared. */
+/* How far the springs of a contact have let its blocks move against each other, m, times its area: pressed or pulled
+ * in, and sheared. */
 static double sprung(const tl_model *m, uint32_t contact, const tl_contact_facts *facts)
 {
     const tl_detect *d = m->detect;
@@ -164,8 +167,8 @@ static bool has_but_closed(const tl_model *m, const motion_list *list, const mee
     return fmax(parted, slid) <= most && turned * size <= most;
 }
 
-/* Finds which bodies have but closed their joints: those that hang together, by contacts that have, with one that is held or has moved by less
- * than `closed`. */
+/* Finds which bodies have but closed their joints. They hang together, by contacts that have, with one that is held
+ * or has moved by less than `closed`. */
 static void find_still(const tl_model *m, const motion_list *list, const tl_verdict *v)
 {
     for (size_t i = 0; i < list->count; i++) {

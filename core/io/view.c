@@ -1,8 +1,8 @@
 /* view.c - a model that is seen while it runs (talus/view.h): which frames a screen gets, and when.
  *
- * A frame has two parts (scene.h): news, which everyone who looks must get once and in order - head, shapes, blocks that are
- * gone, what was done - and what is so now. News adds up to all that somebody who comes late needs. Where it has grown
- * to several times what the model itself takes, it begins anew. */
+ * A frame has two parts (scene.h): news, and what is so now. Everyone who looks must get news once and in order:
+ * head, shapes, blocks that are gone, what was done. News adds up to all that somebody who comes late needs. Where it
+ * has grown to several times what the model itself takes, it begins anew. */
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/inside.h"
@@ -21,8 +21,8 @@
 
 /* Constant: frames a second at most. */
 #define RATE 25.0
-/* News begins anew when what has come since its beginning is longer than that by so many bytes: below, all of it again is no
- * saving. */
+/* News begins anew when what has come since its beginning is longer than that by so many bytes. Below, all of it
+ * again is no saving. */
 #define GROWN ((size_t)16 << 20)
 
 struct tl_view {

@@ -1,7 +1,7 @@
 /* view_command.c - reads the commands of those who look at a model (talus/view.h): one JSON object each.
  *
- * What comes from outside is never trusted: a command is one of a list, with numbers, ids and the name of a joint, and nothing
- * that is not asked for. Objects have no objects in them, so no reader for all of JSON is needed. */
+ * What comes from outside is never trusted. A command is one of a list, with numbers, ids and the name of a joint.
+ * Nothing that is not asked for is taken. Objects have no objects in them, so no reader for all of JSON is needed. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

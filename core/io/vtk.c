@@ -1,8 +1,8 @@
 /* vtk.c - a frame for ParaView: blocks, contacts and joint faces, or some of these, or a section, and the index of
  * each series. Files of one number are of one frame; a part that is left out of a frame has no file of that number.
  *
- * The files of a frame are all written under temporary names before the first is renamed, so
- * that a full disk or a folder without permission leaves the series as it was. */
+ * The files of a frame are all written under temporary names before the first is renamed. So a full disk or a folder
+ * without permission leaves the series as it was. */
 
 #include "base/error.h"
 #include "base/number.h"
@@ -48,10 +48,10 @@ typedef struct tl_vtk_index_change {
  * Names are relative to the index, so a folder of results can be moved.
  *
  * To write the whole list with every frame would take a time that grows as the square of their number. A long list is
- * written with as much blank room before its end as it has text, and the entries of the frames that follow are put there:
- * one call to write each, within one page of the system, which is done or not done however the program ends. So the file
- * is a complete list after every frame and at any moment in between. When the room is used up, or the file is not the one
- * that was written, the whole is written anew. */
+ * written with as much blank space before its end as it has text. The entries of the frames that follow are put
+ * there, each by one call within one page of the system. Such a call is done or not done however the program ends. So
+ * the file is a complete list after every frame and at any moment in between. When the room is used up, or the file
+ * is not the one that was written, the whole is written anew. */
 
 /* Bytes that the system writes as one, at multiples of that: no system has smaller pages. */
 #define PAGE 4096
@@ -61,8 +61,8 @@ typedef struct tl_vtk_index_change {
 static const char before_entry[] = ",\n";
 static const char tail[] = "\n  ]\n}\n";
 
-/* Tolerance: frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to
- * tell them apart. */
+/* Frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to tell them
+ * apart. */
 #define STAGE 1e-9
 
 /* Name of a file of the series: PREFIX_CONTENT_NNNNNN.vtk. The text is the caller's; NULL when out of memory. */
@@ -85,8 +85,8 @@ static char *index_name(const tl_vtk_series *series, const char *content)
     return name;
 }
 
-/* The time under which the next frame is listed: that of the model, or a little more than that of the frame before. Readers take
- * frames of one time for one frame, so stages without a step between them would not be seen. */
+/* The time under which the next frame is listed: that of the model, or a little more than that of the frame before.
+ * Readers take frames of one time for one frame, so stages without a step between them would not be seen. */
 static double vtk_series_time(const tl_vtk_series *series, double time)
 {
     if (series->count == 0)

@@ -15,9 +15,9 @@
  *
  * All of a contact is asked for once and kept in the form of the file, array by array.
  *
- * Joints are POLYDATA of polygons, one for each place where two blocks touch (contacts that are not
- * flush have several), and one for each face that a joint made and on which no contact lies any more. So what joints do shows
- * once and where it happens.
+ * Joints are POLYDATA of polygons. There is one for each place where two blocks touch; contacts that are not flush
+ * have several. There is one for each face that a joint made and on which no contact lies any more. So what joints do
+ * shows once and where it happens.
  *
  * Cell data  joint     index into the field joint_names; 0 where neither face was made by a joint
  *            plane     number of the plane within its joint set
@@ -59,8 +59,8 @@
  *
  * Arrays of a file that are filled row by row, by several threads, and written one after the other. */
 
-/* Quantities of contacts in the order of a file, of which the first have headings of their own, and the type of its real
- * numbers. */
+/* Quantities of contacts in the order of a file, of which the first have headings of their own, and the type of its
+ * real numbers. */
 typedef struct array_list {
     const char *const *names;
     size_t count, headed;
@@ -91,8 +91,8 @@ typedef struct column {
     unsigned char *at;        /* as it is in the file */
 } column;
 
-/* The quantities of a list, after them a column for each state of the laws (law_NAME where a quantity has its name), and then
- * one for each field that the program adds. */
+/* The quantities of a list, after them a column for each state of the laws, and then one for each field that the
+ * program adds. A state is called law_NAME where a quantity has its name. */
 typedef struct columns {
     column *list;
     size_t given, headed, count, rows;
@@ -324,7 +324,8 @@ typedef struct joints {
     columns columns;
 } joints;
 
-/* Bits of faces with a flush contact, face by face of all blocks; `first` is where a block's begin. NULL: out of memory. */
+/* Bits of faces with a flush contact, face by face of all blocks; `first` is where a block's begin. NULL: out of
+ * memory. */
 static unsigned char *mark_touching(const joints *j, const size_t *first, size_t faces)
 {
     const tl_contacts *c = &j->model->detect->contacts;

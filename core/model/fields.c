@@ -17,8 +17,8 @@ static double kinetic_energy(const tl_model *m, uint32_t row)
            0.5 * tl_v3_dot(w, tl_s3_mul(tl_block_inertia(m, row), w));
 }
 
-/* The fields: name, kind, unit, what they are, and the value of the block in `row`, which is one of the blocks b, and of its
- * `body`. */
+/* The fields: name, kind, unit, what they are, and their value. It is that of the block in `row` of the blocks b, or
+ * of its `body`. */
 #define BLOCK_FIELDS(FIELD)                                                                        \
     FIELD(id, COUNT, "", "number of the block, never used again", b->id[row])                      \
     FIELD(group, TEXT, "", "name of its group", b->group[row])                                     \

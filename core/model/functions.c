@@ -1,5 +1,5 @@
-/* functions.c - the parameters of the kernel's own functions, declared once: the check of what a
- * script gives, the defaults and the help text all read these tables.
+/* functions.c - the parameters of the kernel's own functions, declared once. The check of what a script gives, the
+ * defaults and the help text all read these tables.
  *
  * A function whose arguments are positional ("cycle", "write_vtk") is listed with them as if they
  * were named. What a table of parameters cannot express (functions, nested tables, lists of

@@ -51,7 +51,8 @@ void tl_history_free(tl_history *h)
     free(h);
 }
 
-/* Room in the columns of a history for so many samples of its width; false: out of memory, and they are as they were. */
+/* Room in the columns of a history for so many samples of its width; false: out of memory, and they are as they
+ * were. */
 static bool hold_samples(tl_history *h, size_t capacity)
 {
     int64_t *cycles = realloc(h->cycles, capacity * sizeof *cycles);

@@ -1,7 +1,8 @@
 /* options.c - the structs of options: their defaults, and reading what callers give.
  *
- * A struct of options begins with its size in bytes, as the caller's headers have it. Later headers append members only,
- * so the first `size` bytes mean the same in both. The defaults are those of the tables of parameters (functions.c). */
+ * A struct of options begins with its size in bytes, as the caller's headers have it. Later headers append members
+ * only, so the first `size` bytes mean the same in both. The defaults are those of the tables of parameters
+ * (functions.c). */
 #include "model/options.h"
 
 #include "base/error.h"

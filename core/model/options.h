@@ -6,8 +6,8 @@
 
 #include <talus/talus.h>
 
-/* Copies a caller's struct of options into the library's own, `own`: what the caller's headers did not know yet has its
- * default, and so has everything when `given` is NULL. Refuses a struct without size, or of headers newer than this
+/* Copies a caller's struct of options into the library's own, `own`. What the caller's headers did not know yet has
+ * its default. So has everything when `given` is NULL. Refuses a struct without size, or of headers newer than this
  * library. */
 tl_status tl_options_read(tl_options which, const void *given, void *own, tl_error *error);
 

@@ -19,8 +19,8 @@ tl_settings tl_timestep_settings(void);
 /* Where a model has setting i; NULL: it is no state. */
 void *tl_setting_at(const tl_model *m, const tl_settings *of, size_t i);
 
-/* Visits what a model keeps itself. Not among it are things with owners of their own: the polyhedra, names of groups and joints,
- * laws, damping and drives. */
+/* Visits what a model keeps itself. Not among it are things with owners of their own: the polyhedra, names of groups
+ * and joints, laws, damping and drives. */
 void tl_model_walk(tl_model *m, const tl_walk *walk);
 
 #endif

@@ -33,15 +33,15 @@ const tl_field *tl_contact_quantity(const char *name);
 /* Puts its numbers; of a text the number that stands for it. Returns how many. */
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3]);
 
-/* Points of a contact that are told of: all of a patch, and of a field contact the one at the centre of its pressure. The
- * other one, of torsion, has the same normal force once more. */
+/* Points of a contact that are told of: all of a patch, and of a field contact the one at the centre of its pressure.
+ * The other one, of torsion, has the same normal force once more. */
 size_t tl_point_count(const tl_model *m, uint32_t contact);
 /* What a law's flags mean: those that some point has, and those that all have. */
 tl_contact_state tl_contact_state_of_flags(uint32_t any, uint32_t all);
 /* Of a row of contacts that are up to date: tl_contacts_listed. Changes nothing, so several threads may ask. */
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact);
-/* How far a contact's second block has gone from the first since displacements began to count, m, at a point of both that is now at x,
- * relative to the model's origin. */
+/* How far a contact's second block has gone from the first since displacements began to count, m. It is told of a
+ * point of both that is now at x, relative to the model's origin. */
 tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x);
 /* Brings the contacts up to date and finds the row of one; TL_E_STALE with a sentence when it is gone. */
 tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row);

@@ -4,8 +4,8 @@
 
 #include "model/model.h"
 
-/* Of each listed contact: a flush one has one polygon, halfway between its two faces; a field contact one for each pair of faces
- * that are the nearest on the surface of its pressure. */
+/* Of each listed contact. A flush one has one polygon, halfway between its two faces. A field contact has one for
+ * each pair of faces that are the nearest on the surface of its pressure. */
 typedef struct tl_contact_polygons {
     size_t contacts, polygons, corners;
     uint32_t *first; /* [contacts + 1] number of a contact's first polygon */
@@ -14,8 +14,8 @@ typedef struct tl_contact_polygons {
         corner; /* relative to the model's origin, m; counter-clockwise seen against the contact's normal */
 } tl_contact_polygons;
 
-/* Finds those of rows of contacts that are up to date: tl_contacts_listed. Freed by tl_contact_polygons_free, also after a
- * failure: out of memory. The same for any number of threads. */
+/* Finds those of rows of contacts that are up to date: tl_contacts_listed. Freed by tl_contact_polygons_free, also
+ * after a failure: out of memory. The same for any number of threads. */
 tl_status tl_contact_polygons_find(tl_model *m, const uint32_t *rows, size_t count,
                                    tl_contact_polygons *out);
 void tl_contact_polygons_free(tl_contact_polygons *polygons);

@@ -1,14 +1,13 @@
-/* keyblocks.c - block theory on the blocks as they are: which bodies can move out, how, and with what
- * factor of safety (Goodman and Shi 1985; Shi's theorem; Warburton 1981 for the modes).
+/* keyblocks.c - block theory on the blocks as they are: which bodies can move out, how, and with what factor of
+ * safety. After Goodman and Shi 1985 (Shi's theorem), and Warburton 1981 for the modes.
  *
- * With outward unit normals n_i of the faces in contact with other bodies, a body can be moved by a
- * translation d when d . n_i <= 0 for all i. These d are its joint pyramid, a convex cone. The body is
- * removable when the cone holds more than zero: a block that is convex and finite then has its free
- * faces on the way out. A cone other than {0} holds an edge n_i x n_j or, when all normals are
- * parallel, -n_1; so looking at these decides it.
+ * Let n_i be the outward unit normals of the faces in contact with other bodies. A body can be moved by a translation
+ * d when d . n_i <= 0 for all i. These d are its joint pyramid, a convex cone. The body is removable when the cone
+ * holds more than zero. A block that is convex and finite then has its free faces on the way out. A cone other than
+ * {0} holds an edge n_i x n_j or, when all normals are parallel, -n_1; so looking at these decides it.
  *
- * The active force r (weight and the load of the body) moves it along the direction in the cone that
- * gains the most energy: the projection s of r on the cone,
+ * The active force r is the weight and the load of the body. It moves the body along the direction in the cone that
+ * gains the most energy. That is the projection s of r on the cone,
  *
  *     r = s + sum N_i n_i,   N_i >= 0,   s . n_i <= 0,   N_i (s . n_i) = 0
  *
@@ -18,14 +17,15 @@
  *
  *     sum (N_i tan(friction_i) + cohesion_i A_i) / |s|
  *
- * A body on rollers moves in what is left of space, P: its cone lies in it, and r and the normals are projected on it. With n' = P n,
- * N_i is then that over |n'_i|; rollers take the rest, without friction.
+ * A body on rollers moves in what is left of space, P. Its cone lies in P, and r and the normals are projected on it.
+ * With n' = P n, N_i is then that over |n'_i|; rollers take the rest, without friction.
  *
- * The faces are those on which the body lay when it was made, for settling tilts it and parts walls (touching.c); of
- * a body that has moved by more than TL_TOUCH_KEPT of its size against what it touches, they are those on which it lies now.
+ * The faces are those on which the body lay when it was made, for settling tilts it and parts walls (touching.c). A
+ * body may have moved by more than TL_TOUCH_KEPT of its size against what it touches. Its faces are those on which it
+ * lies now.
  *
- * Limits: translations only; each body alone, all others at rest; a body of several blocks is
- * judged by its contact faces alone, which is exact only when it is convex. */
+ * Limits: translations only; each body alone, all others at rest. A body of several blocks is judged by its contact
+ * faces alone, which is exact only when it is convex. */
 #include "base/error.h"
 #include "model/joints.h"
 #include "model/options.h"

@@ -25,9 +25,9 @@ typedef struct tl_value_of {
  *
  * The states of the laws in use, by name, and their values at contacts and points.
  *
- * A state has the name that its law declares. Where a field of contacts or points, or an array of the contacts' files, has
- * that name, it is read as law_NAME. Two laws may declare the same name, once a number and once a vector: the later one is
- * then read as LAW_NAME, with the name of the law. */
+ * A state has the name that its law declares. Where a field of contacts or points, or an array of the contacts'
+ * files, has that name, it is read as law_NAME. Two laws may declare the same name, once a number and once a vector.
+ * The later one is then read as LAW_NAME, with the name of the law. */
 
 /* Names that are taken besides the fields of contacts: fields of points, and arrays of the contacts' files. */
 static const char *const more_names[] = {"position", "closure",    "points",  "states",
@@ -236,8 +236,8 @@ static tl_status unknown_name(tl_model *m, const char *item, const tl_field *fie
                    nearest ? nearest : "", nearest ? "'?" : "");
 }
 
-/* Looks a name up among fields and, unless NULL, states. `item` is "block". The text `state` is taken for a number; other
- * texts are refused. */
+/* Looks a name up among fields and, unless NULL, states. `item` is "block". The text `state` is taken for a number;
+ * other texts are refused. */
 static tl_status value_find(tl_model *m, const char *item, const tl_field *fields, size_t count,
                             const tl_law_states *states, const char *name, tl_value_of *of)
 {
@@ -259,7 +259,8 @@ static tl_status value_find(tl_model *m, const char *item, const tl_field *field
     return TL_OK;
 }
 
-/* The same of contacts or their points, which it brings up to date: lists the states of their laws, to be freed in any case. */
+/* The same of contacts or their points, which it brings up to date: lists the states of their laws, to be freed in
+ * any case. */
 static tl_status contact_value_find(tl_model *m, const char *item, const tl_field *fields,
                                     size_t count, tl_law_states *states, const char *name,
                                     tl_value_of *of)
@@ -347,7 +348,8 @@ tl_status tl_states_list(tl_model *m, tl_id contact, tl_law_state **list, size_t
 
 /* ---------------------------------------------------------------- points ------------------ */
 
-/* The fields: name, kind, unit, what they are, and the value of point k of a contact for writer w, in `row` of points p. */
+/* The fields: name, kind, unit, what they are, and the value of point k of a contact for writer w, in `row` of points
+ * p. */
 #define POINT_FIELDS(FIELD)                                                                        \
     FIELD(position, VEC3, "m", "present place of the point",                                       \
           tl_v3_add(w->model->origin, w->place[k]))                                                \

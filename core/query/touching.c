@@ -1,9 +1,10 @@
 /* touching.c - the faces of blocks that lie on faces of others.
  *
- * Joints are planes; blocks that settle on them sink in and turn a little, so that an edge bears and faces part. What bounds their
- * motion is the joint all the same. So a block that has moved against another by less than TL_TOUCH_KEPT of its size touches it where
- * a face lay on a face when it was made; else, and where none did, where faces lie on each other now. A corner or an
- * edge on a face bounds no half-space of motion that its neighbours do not.
+ * Joints are planes; blocks that settle on them sink in and turn a little, so that an edge bears and faces part. What
+ * bounds their motion is the joint all the same. A block may have moved against another by less than TL_TOUCH_KEPT of
+ * its size. It then touches it where a face lay on a face when it was made. Else, and where none did, it touches
+ * where faces lie on each other now. A corner or an edge on a face bounds no half-space of motion that its neighbours
+ * do not.
  *
  * Candidates are pairs whose bounds overlap: those of both places, sorted along the model's longest side. */
 #include "query/touching.h"
@@ -22,8 +23,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: gap up to which blocks touch and overlap up to which they still do, over the smaller one's size. The
- * third is the angle between faces that lie on each other, as a sine. Test: lua/test_keyblocks. */
+/* Gap up to which blocks touch, and overlap up to which they still do, over the smaller one's size. Angle between
+ * faces that lie on each other, as a sine. */
 #define GAP (TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE)
 #define OVERLAP 0.1
 #define TILT 0.03
@@ -176,8 +177,8 @@ static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint
     return !scratch->failed;
 }
 
-/* Least area of faces that lie on each other now only, of a block that has hardly moved: a strip of another block's face, on which it has
- * moved sideways, is none of its joints. */
+/* Least area of faces that lie on each other now only, of a block that has hardly moved. A strip of another block's
+ * face, on which it has moved sideways, is none of its joints. */
 static double least_area(const tl_model *m, uint32_t row, uint32_t face)
 {
     return 2 * TL_TOUCH_KEPT * tl_poly_face_area(m->blocks.shape[row], face);

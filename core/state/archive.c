@@ -5,8 +5,8 @@
  *     head    bytes of the name (4), 1 if the data is compressed (4), bytes of an item, items, bytes of the data as stored,
  *             XXH64 of name and stored data, XXH64 of the 40 bytes before
  *
- * Numbers are as the machine has them; a file of another byte order is refused. Data is compressed with zstd where that makes
- * it shorter. A file that was cut off lacks its end. */
+ * Numbers are as the machine has them; a file of another byte order is refused. Data is compressed with zstd where
+ * that makes it shorter. A file that was cut off lacks its end. */
 #include "state/archive.h"
 
 #include "base/output_file.h"
@@ -26,8 +26,8 @@
 
 static const char magic[8] = TL_ARCHIVE_MAGIC;
 
-/* Level of compression: a third of the size at some 600 MB/s, for a hundred thousand blocks of rock; higher levels take longer than
- * a disk. */
+/* Level of compression. It gives a third of the size at some 600 MB/s, for a hundred thousand blocks of rock. Higher
+ * levels take longer than a disk. */
 #define LEVEL 1
 /* Data of fewer bytes is stored as it is. */
 #define SHORT_DATA 128
@@ -147,7 +147,8 @@ tl_status tl_archive_bad(const tl_archive *a, tl_error *error, const char *forma
                    a->path, what);
 }
 
-/* The version of the program that has written a file, by its first bytes: its first chunk in all formats since 7. Empty: unknown. */
+/* The version of the program that has written a file, by its first bytes: its first chunk in all formats since 7.
+ * Empty: unknown. */
 static void find_writer(const unsigned char *bytes, size_t length, char version[WRITER])
 {
     static const char name[] = "program";

@@ -56,8 +56,8 @@ typedef struct tl_archive {
     struct ZSTD_DCtx_s *unpacker;
 } tl_archive;
 
-/* Reads a file and checks its checksums. TL_E_IO: it cannot be read; TL_E_ARGUMENT: it is no archive, of another format, cut
- * off or damaged. */
+/* Reads a file and checks its checksums. TL_E_IO: it cannot be read; TL_E_ARGUMENT: it is no archive, of another
+ * format, cut off or damaged. */
 tl_status tl_archive_open(tl_archive *archive, const char *path, tl_error *error);
 /* The same of bytes, which then belong to the archive; `path` is what sentences call it. */
 tl_status tl_archive_of_bytes(tl_archive *archive, const char *path, unsigned char *bytes,
@@ -66,11 +66,12 @@ void tl_archive_close(tl_archive *archive);
 
 /* A chunk, or NULL. */
 const tl_chunk *tl_archive_find(const tl_archive *archive, const char *name);
-/* Puts the items of a chunk into `to`, which has room for them. false: it is not there, of items of another size or another
- * number of them, or does not unpack to them. */
+/* Puts the items of a chunk into `to`, which has room for them. false: it is not there, has items of another size or
+ * number, or does not unpack to them. */
 bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size,
                     size_t items);
-/* The bytes of a chunk as a text with its terminating zero; false: it is not there, has not so much room or holds a zero. */
+/* The bytes of a chunk as a text with its terminating zero. false: it is not there, needs more room or holds a
+ * zero. */
 bool tl_archive_text(const tl_archive *archive, const char *name, char *text, size_t capacity);
 /* "cannot restore 'path': the file is damaged: ..." */
 tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char *format, ...)
@@ -84,8 +85,8 @@ tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char 
     }
 /* Format of the file, and of what the chunks hold: another is refused. */
 #define TL_ARCHIVE_FORMAT 10
-/* Data has at most so many bytes for one that is stored, so that a file can cost no more memory than some multiple of its size. What would be shorter is
- * followed by an empty frame of zstd. */
+/* Data has at most so many bytes for one that is stored. So a file can cost no more memory than some multiple of its
+ * size. What would be shorter is followed by an empty frame of zstd. */
 #define TL_ARCHIVE_DENSEST 32u
 /* Tells the order of bytes in numbers. */
 #define TL_ARCHIVE_ORDER 0x01020304u
@@ -95,8 +96,8 @@ typedef struct tl_archive_head {
     uint32_t format, order;
 } tl_archive_head;
 
-/* Of a chunk: the bytes of its name; whether its data is compressed; bytes of an item, items, and bytes of the data as stored;
- * xxHash sums of name and data, and of this head before the last. */
+/* Of a chunk: the bytes of its name; whether its data is compressed; bytes of an item, items, and bytes of the data
+ * as stored. The xxHash sums are of name and data, and of this head before the last. */
 typedef struct tl_chunk_head {
     uint32_t name_bytes, packed;
     uint64_t size, items, stored, sum, head_sum;

@@ -1,4 +1,5 @@
-/* drives.c - drives of a copied or restored model. What a function of a script does is the script's: it is asked for again. */
+/* drives.c - drives of a copied or restored model. What a function of a script does is the script's: it is asked for
+ * again. */
 #include "state/drives.h"
 
 #include "model/loads.h"

@@ -5,8 +5,8 @@
  *     PREFIX.param.X   parameter X: numbers, or the name of its choice
  *     PREFIX.states    names of its states, a line each
  *
- * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules. Parameters are checked as those of a
- * script are. */
+ * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules. Parameters are checked as
+ * those of a script are. */
 #include "state/kinds.h"
 
 #include "base/params.h"

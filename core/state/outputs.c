@@ -1,6 +1,6 @@
-/* outputs.c - the files that a model has written so far, and these in an archive: a resumed run goes on with the next frame, the
- * frames of before stay in the index, and a page goes on after the frames that it had when the model was saved. The frames of a page are in
- * its file only, so what is saved is how the file ended.
+/* outputs.c - the files that a model has written so far, and these in an archive. A resumed run goes on with the next
+ * frame, and the frames of before stay in the index. A page goes on after the frames that it had when the model was
+ * saved. The frames of a page are in its file only, so what is saved is how the file ended.
  *
  *     frames             number of series; of each, from the last that was begun:
  *     frames.K.prefix    as it was given to write_vtk or write_section

@@ -1,5 +1,5 @@
-/* outputs.h - the files that a model has written so far: frames of VTK files, and pages for browsers. A run that is resumed goes on
- * with the next frame, and in the same page. */
+/* outputs.h - the files that a model has written so far: frames of VTK files, and pages for browsers. A run that is
+ * resumed goes on with the next frame, and in the same page. */
 #ifndef TL_STATE_OUTPUTS_H
 #define TL_STATE_OUTPUTS_H
 

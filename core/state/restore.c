@@ -1,5 +1,5 @@
-/* restore.c - a model from a file that save.c has written. Whatever the file holds, nothing but a whole model or a sentence comes of
- * it: what it says is put into fresh rows and looked at before anything uses it. */
+/* restore.c - a model from a file that save.c has written. Whatever the file holds, nothing but a whole model or a
+ * sentence comes of it. What it says is put into fresh rows and looked at before anything uses it. */
 #include "state/restore.h"
 
 #include "base/entries.h"
@@ -123,11 +123,11 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
 
 /* ---------------------------------------------------------------- what is read fits -------
  *
- * Whether the rows of a model that were read from a file fit together: numbers of rows are those of rows that are
+ * Whether the rows of a model that were read from a file fit together. Numbers of rows are those of rows that are
  * there, choices are choices, bools are bools, and places are places. */
 
-/* Tolerance: error of the square of a quaternion's length, and of the sum of the sizes of a rotation's nine numbers.
- * That sum is at most 3 sqrt 3. A rotation that the program has made is off by its roundings, some 1e-15. */
+/* By so much may be off the square of a quaternion's length, and the sum of the sizes of a rotation's nine numbers
+ * (at most 3 sqrt 3). A rotation that the program has made is off by its roundings, some 1e-15. */
 #define TURN_SLACK 0.01
 #define MOST_MATRIX (5.2 + TURN_SLACK)
 
@@ -257,7 +257,8 @@ static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
            base_is_sound(tl_block_made(m, row));
 }
 
-/* Velocities and forces are any numbers: those of a model that overflows are saved as well, and the next step tells it. */
+/* Velocities and forces are any numbers: those of a model that overflows are saved as well, and the next step tells
+ * it. */
 static bool body_is_sound(const tl_model *m, uint32_t row, size_t drives)
 {
     const tl_bodies *b = &m->bodies;
@@ -406,8 +407,9 @@ static tl_status share_planes(tl_model *m)
     return status;
 }
 
-/* The lists that follow from the rows. */
-static tl_status derive_rows(tl_model *m)
+/* The lists that follow from the rows. The row of each number that a block has ever had is in the file. So there is
+ * no more memory for them than a file of its size may ask for. */
+static tl_status derive_rows(tl_model *m, const tl_archive *a)
 {
     const uint64_t structure = m->structure;
     if (!tl_rows_reserve(m, m->blocks.table.rows))

@@ -1,5 +1,5 @@
-/* save.c - a model into a file: all entries of its modules by their names, and what has owners of its own. Nothing in the model
- * changes by it, so that it makes no difference to a run when it is saved. */
+/* save.c - a model into a file: all entries of its modules by their names, and what has owners of its own. Nothing in
+ * the model changes by it, so that it makes no difference to a run when it is saved. */
 #include "base/entries.h"
 #include "base/signals.h"
 #include "contact/store.h"

@@ -1,12 +1,13 @@
-/* state_hash.c - a digest of all that the next call depends on: places, velocities, forces and histories, shapes, names,
- * laws, damping and settings. Two models of the same digest go on alike, whatever is done to both.
+/* state_hash.c - a digest of all that the next call depends on: places, velocities, forces and histories, shapes,
+ * names, laws, damping and settings. Two models of the same digest go on alike, whatever is done to both.
  *
- * Contacts are taken as the next step will find them, in a copy of the detection: whether they have been brought up to the
- * present places already, by a step that failed after that or by a question, makes no difference. So are the rates of the
- * bodies where motion follows from rates that were kept. Left out is what is only told (energies, displacements' zero,
- * record of cuts), what asking may change (contact ids, order of contacts) and what only saves work (cached axes, the broad
- * phase), for the results do not depend on it beyond the caches' margins. A column that few models need counts as zeros
- * where there is none. What follows from the rest and lies in a row with it (a pose's matrix) does no harm. */
+ * Contacts are taken as the next step will find them, in a copy of the detection. They may have been brought up to
+ * the present places already, by a step that failed after that or by a question. That makes no difference. The rates
+ * of the bodies are found likewise, where motion follows from rates that were kept. Left out is what is only told:
+ * energies, displacements' zero, record of cuts. So is what asking may change: contact ids, order of contacts. So is
+ * what only saves work: cached axes, the broad phase. The results do not depend on it beyond the caches' margins. A
+ * column that few models need counts as zeros where there is none. What follows from the rest and lies in a row with
+ * it (a pose's matrix) does no harm. */
 #include "base/hash.h"
 #include "contact/contacts.h"
 #include "contact/store.h"
@@ -70,8 +71,8 @@ static void hash_point(tl_hash *hash, const tl_points_table *p, size_t row, uint
     tl_hash_numbers(hash, late, 2 + columns);
 }
 
-/* What a field contact keeps beside its points that does not follow from places: how far an initial stress moves a face, shear
- * energy beyond that of uniform stress, and the place that its slopes are of. Zeros count as no row. */
+/* What a field contact keeps beside its points that does not follow from places. It is how far an initial stress
+ * moves a face, shear energy beyond that of uniform stress, and the place of its slopes. Zeros count as no row. */
 static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
 {
     if (d->contacts.press[contact] == TL_NO_ROW)
@@ -133,8 +134,8 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
     return TL_OK;
 }
 
-/* Hashes the contacts as the next step will find them. They are found in a copy, or for the first time beside the model: only a
- * step may bring those of the model up to date. */
+/* Hashes the contacts as the next step will find them. They are found in a copy, or for the first time beside the
+ * model. Only a step may bring those of the model up to date. */
 static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
 {
     struct tl_detect *own = m->detect, *stepped = m->stepped;
