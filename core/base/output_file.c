@@ -11,6 +11,7 @@
 #include "base/output_file.h"
 
 #include "base/error.h"
+#include "base/signals.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -268,6 +269,23 @@ void tl_output_drop(tl_output *output)
     free(output->place);
     free(output->path);
     *output = (tl_output){.path = NULL};
+}
+
+tl_status tl_output_whole(const char *path, tl_output_fn fill, void *user, tl_error *error)
+{
+    tl_output output = {0};
+    sigset_t before;
+    tl_signals_hold(&before, false);
+    tl_status status = tl_output_open(&output, path, error);
+    if (status == TL_OK)
+        status = fill(&output, user);
+    if (status == TL_OK)
+        status = tl_output_finish(&output, error);
+    if (status == TL_OK)
+        status = tl_output_commit(&output, error);
+    tl_output_drop(&output);
+    tl_signals_release(&before);
+    return status;
 }
 
 char *tl_output_prefix(const char *given, const char *ending)

@@ -34,6 +34,10 @@ tl_status tl_output_finish(tl_output *output, tl_error *error);
 tl_status tl_output_commit(tl_output *output, tl_error *error);
 /* Removes what is not committed and frees; does nothing to a zeroed or dropped output. */
 void tl_output_drop(tl_output *output);
+/* Puts what a file holds; TL_OK or the status of an error. */
+typedef tl_status (*tl_output_fn)(tl_output *output, void *user);
+/* All of it: a file that `fill` writes, while the signals that end a program are held. */
+tl_status tl_output_whole(const char *path, tl_output_fn fill, void *user, tl_error *error);
 /* What the user gave before the ending that the files get in any case, in memory of its own; NULL when there is none
  * left. */
 char *tl_output_prefix(const char *given, const char *ending);

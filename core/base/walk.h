@@ -32,7 +32,7 @@ typedef struct tl_entry {
     tl_keep keep;
     void *at;
     size_t size, items;
-    size_t bytes;      /* of a table, and of the room that a list has */
+    size_t bytes;      /* of a table, and of the capacity of a list */
     size_t *count;     /* of a list: where its number of items is noted, */
     size_t *capacity;  /* and of those it has room for, or NULL */
     size_t counts_for; /* offset in tl_memory of what its bytes count for */
@@ -51,7 +51,7 @@ typedef struct tl_walk {
     void *user;
 } tl_walk;
 
-/* A list; one whose room is noted nowhere, NULL, has room for its items. */
+/* A list; one whose capacity is noted nowhere, NULL, has room for its items. */
 static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name, void *slot,
                                 size_t size, size_t *count, size_t *capacity, size_t counts_for)
 {

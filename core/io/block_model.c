@@ -1,7 +1,6 @@
 /* block_model.c - writes the blocks of a model into a JSON file; docs/block_model.md describes it. Numbers
  * are written with the digits that give back the same double. */
 #include "base/output_file.h"
-#include "base/signals.h"
 #include "io/json.h"
 #include "io/pieces.h"
 #include "model/rows.h"
@@ -73,8 +72,9 @@ static void fill_joints(const void *user, size_t begin, size_t end, tl_piece *pi
                       m->joints[i].name, m->joints[i].planes);
 }
 
-static tl_status write_model(tl_output *output, tl_model *m)
+static tl_status write_model(tl_output *output, void *user)
 {
+    tl_model *m = user;
     FILE *file = output->file;
     tl_pieces pieces = {.model = m, .output = output};
     fputs("{\"format\": \"talus block model\", \"version\": 1,\n  \"joints\": [", file);
@@ -87,28 +87,11 @@ static tl_status write_model(tl_output *output, tl_model *m)
     return status;
 }
 
-static tl_status write_file(tl_model *m, const char *path)
-{
-    tl_output output = {0};
-    atomic_store(&m->interrupted, false);
-    tl_status status = tl_output_open(&output, path, &m->error);
-    if (status == TL_OK)
-        status = write_model(&output, m);
-    if (status == TL_OK)
-        status = tl_output_finish(&output, &m->error);
-    if (status == TL_OK)
-        status = tl_output_commit(&output, &m->error);
-    tl_output_drop(&output);
-    return status;
-}
-
 tl_status tl_write_blocks(tl_model *m, const char *path)
 {
     tl_rows_tidy(m);
-    sigset_t before;
-    tl_signals_hold(&before, false);
-    tl_status status = write_file(m, path);
-    tl_signals_release(&before);
+    atomic_store(&m->interrupted, false);
+    tl_status status = tl_output_whole(path, write_model, m, &m->error);
     if (status != TL_OK && status != TL_E_MEMORY)
         tl_error_prefix(&m->error, "write_blocks: ");
     return status;

@@ -11,11 +11,9 @@
 
 void tl_json_bytes(tl_piece *to, const char *text, size_t length)
 {
-    unsigned char *at = tl_piece_reserve(to, length);
-    if (!at)
-        return;
-    memcpy(at, text, length);
-    to->length += length;
+    unsigned char *at = tl_piece_add(to, length);
+    if (at)
+        memcpy(at, text, length);
 }
 
 void tl_json_put(tl_piece *to, const char *text)

@@ -587,12 +587,11 @@ static void text_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 static bool put_text(tl_model *m, const unsigned char *data, size_t bytes, tl_piece *out)
 {
     size_t length = (bytes + 2) / 3 * 4;
-    unsigned char *text = tl_piece_reserve(out, length);
+    unsigned char *text = tl_piece_add(out, length);
     if (!text)
         return false;
     writer w = {data, bytes, text};
     tl_parallel_for(m->pool, bytes, TEXT_CHUNK, text_range, &w);
-    out->length += length;
     return true;
 }
 

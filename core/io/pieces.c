@@ -40,6 +40,13 @@ unsigned char *tl_piece_reserve(tl_piece *piece, size_t bytes)
     return piece->data + piece->length;
 }
 
+unsigned char *tl_piece_add(tl_piece *piece, size_t bytes)
+{
+    unsigned char *to = tl_piece_reserve(piece, bytes);
+    piece->length += to ? bytes : 0;
+    return to;
+}
+
 static void write_out(tl_piece *pieces, tl_output *output)
 {
     for (size_t i = 0; i < TL_PIECES; i++) {

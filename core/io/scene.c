@@ -349,11 +349,10 @@ static tl_status put_touches(tl_scene *scene, tl_model *m, tl_piece *out)
     tl_status status = scene_touches(m, next);
     if (status != TL_OK || same_piece(next, &scene->sent.touches))
         return status;
-    unsigned char *to = tl_piece_reserve(out, next->length);
+    unsigned char *to = tl_piece_add(out, next->length);
     if (!to)
         return tl_fail_memory(&m->error);
     memcpy(to, next->data, next->length);
-    out->length += next->length;
     return TL_OK;
 }
 

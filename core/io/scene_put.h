@@ -81,7 +81,7 @@ static inline unsigned char *tl_scene_chunk(tl_piece *out, const char letters[5]
                 letters, bytes, UINT32_MAX);
         return NULL;
     }
-    unsigned char *to = tl_piece_reserve(out, 8 + bytes);
+    unsigned char *to = tl_piece_add(out, 8 + bytes);
     if (!to) {
         tl_fail_memory(error);
         return NULL;
@@ -89,7 +89,6 @@ static inline unsigned char *tl_scene_chunk(tl_piece *out, const char letters[5]
     memcpy(to, letters, 4);
     tl_put_u32(to + 4, (uint32_t)bytes);
     memset(to + 8, 0, bytes);
-    out->length += 8 + bytes;
     return to + 8;
 }
 

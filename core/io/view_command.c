@@ -173,7 +173,7 @@ static bool read_character(reader *r, const char *what, char bytes[4], size_t *c
     return code != 0 || refuse(r, "%s has a zero byte in it", what);
 }
 
-static bool read_text(reader *r, const char *what, char *out, size_t room)
+static bool read_text(reader *r, const char *what, char *out, size_t capacity)
 {
     size_t length = 0;
     if (!take(r, '"'))
@@ -187,8 +187,8 @@ static bool read_text(reader *r, const char *what, char *out, size_t room)
             break;
         if (!read_character(r, what, bytes, &count))
             return false;
-        if (length + count >= room)
-            return refuse(r, "%s is longer than %zu bytes", what, room - 1);
+        if (length + count >= capacity)
+            return refuse(r, "%s is longer than %zu bytes", what, capacity - 1);
         memcpy(out + length, bytes, count);
         length += count;
     }

@@ -28,7 +28,7 @@
 #include <talus/text.h>
 #include <unistd.h>
 
-/* A change of an index on its way: an entry that goes into the room it has, or the whole of it anew. */
+/* A change of an index on its way: an entry that goes into the space it has, or the whole of it anew. */
 typedef struct tl_vtk_index_change {
     tl_output whole;
     tl_vtk_index *index; /* as it is */
@@ -50,12 +50,12 @@ typedef struct tl_vtk_index_change {
  * To write the whole list with every frame would take a time that grows as the square of their number. A long list is
  * written with as much blank space before its end as it has text. The entries of the frames that follow are put
  * there, each by one call within one page of the system. Such a call is done or not done however the program ends. So
- * the file is a complete list after every frame and at any moment in between. When the room is used up, or the file
+ * the file is a complete list after every frame and at any moment in between. When the space is used up, or the file
  * is not the one that was written, the whole is written anew. */
 
 /* Bytes that the system writes as one, at multiples of that: no system has smaller pages. */
 #define PAGE 4096
-/* Shorter lists get no room: they are cheap to write, and easy to read. */
+/* Shorter lists get no space: they are cheap to write, and easy to read. */
 #define LEAST_ROOMY 16
 
 static const char before_entry[] = ",\n";
@@ -144,7 +144,7 @@ static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *s
     return status;
 }
 
-/* Opens the index for an entry that goes into its room; false when the whole is to be written anew. */
+/* Opens the index for an entry that goes into its space; false when the whole is to be written anew. */
 static bool open_reserved(tl_vtk_index_change *change, size_t written)
 {
     const tl_vtk_index *index = change->index;

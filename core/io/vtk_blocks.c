@@ -64,14 +64,12 @@ typedef unsigned char *(*point_fn)(const grid *g, uint32_t row, tl_vec3 local, u
 static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece,
                                  point_fn of, size_t each)
 {
-    size_t bytes = (g->first[end] - g->first[begin]) * each;
-    unsigned char *to = tl_piece_reserve(piece, bytes);
+    unsigned char *to = tl_piece_add(piece, (g->first[end] - g->first[begin]) * each);
     for (uint32_t row = (uint32_t)begin; to && row < end; row++) {
         const tl_poly *shape = g->blocks->shape[row];
         for (uint32_t v = 0; v < shape->vertex_count; v++)
             to = of(g, row, shape->vertex[v], to);
     }
-    piece->length += to ? bytes : 0;
 }
 
 static unsigned char *put_place(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
@@ -114,8 +112,7 @@ static void fill_cells(const void *user, size_t begin, size_t end, tl_piece *pie
     const grid *g = user;
     for (size_t row = begin; row < end; row++) {
         const tl_poly *shape = g->blocks->shape[row];
-        size_t bytes = stream_of(shape) * TL_VTK_INT_BYTES;
-        unsigned char *to = tl_piece_reserve(piece, bytes);
+        unsigned char *to = tl_piece_add(piece, stream_of(shape) * TL_VTK_INT_BYTES);
         if (!to)
             return;
         to = tl_vtk_put_int(to, (int32_t)stream_of(shape) - 1);
@@ -125,7 +122,6 @@ static void fill_cells(const void *user, size_t begin, size_t end, tl_piece *pie
             for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++)
                 to = tl_vtk_put_int(to, (int32_t)(g->first[row] + shape->loop[i]));
         }
-        piece->length += bytes;
     }
 }
 
@@ -175,7 +171,7 @@ static void fill_array(const void *user, size_t begin, size_t end, tl_piece *pie
     const array_job *job = user;
     const size_t width = width_of(job->of), bytes = (end - begin) * bytes_of(job->of);
     const bool real = is_real(job->of);
-    unsigned char *to = tl_piece_reserve(piece, bytes);
+    unsigned char *to = tl_piece_add(piece, bytes);
     for (uint32_t row = (uint32_t)begin; to && row < end; row++) {
         double value[6];
         tl_block_numbers(job->model, row, job->of, value);
@@ -183,7 +179,6 @@ static void fill_array(const void *user, size_t begin, size_t end, tl_piece *pie
             to = real ? tl_vtk_put_double(to, value[w])
                       : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
     }
-    piece->length += to ? bytes : 0;
 }
 
 static tl_status put_array(tl_model *m, tl_pieces *out, const tl_field *of)
@@ -196,22 +191,18 @@ static tl_status put_array(tl_model *m, tl_pieces *out, const tl_field *of)
 static void fill_types(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
     (void)user;
-    size_t bytes = (end - begin) * TL_VTK_INT_BYTES;
-    unsigned char *to = tl_piece_reserve(piece, bytes);
+    unsigned char *to = tl_piece_add(piece, (end - begin) * TL_VTK_INT_BYTES);
     for (size_t row = begin; to && row < end; row++)
         to = tl_vtk_put_int(to, TL_VTK_POLYHEDRON);
-    piece->length += to ? bytes : 0;
 }
 
 /* A field that the program adds. */
 static void fill_field(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
     const tl_extra_field *field = user;
-    size_t bytes = (end - begin) * sizeof(double);
-    unsigned char *to = tl_piece_reserve(piece, bytes);
+    unsigned char *to = tl_piece_add(piece, (end - begin) * sizeof(double));
     for (size_t row = begin; to && row < end; row++)
         to = tl_vtk_put_double(to, field->values[row]);
-    piece->length += to ? bytes : 0;
 }
 
 static tl_status put_field(tl_model *m, tl_pieces *out, const tl_extra_field *field)

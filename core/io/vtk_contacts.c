@@ -261,11 +261,9 @@ static void fill_contacts(void *user, size_t begin, size_t end, size_t chunk, un
 static void fill_vertices(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
     (void)user;
-    size_t bytes = 2 * (end - begin) * TL_VTK_INT_BYTES;
-    unsigned char *to = tl_piece_reserve(piece, bytes);
+    unsigned char *to = tl_piece_add(piece, 2 * (end - begin) * TL_VTK_INT_BYTES);
     for (size_t i = begin; to && i < end; i++)
         to = tl_vtk_put_int(tl_vtk_put_int(to, 1), (int32_t)i);
-    piece->length += to ? bytes : 0;
 }
 
 static tl_status put_contacts(const contacts *c, tl_pieces *out)
@@ -473,11 +471,9 @@ static size_t first_corner(const joints *j, size_t i)
 static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_piece *piece,
                                 corner_fn of, size_t each)
 {
-    size_t bytes = (first_corner(j, end) - first_corner(j, begin)) * each;
-    unsigned char *to = tl_piece_reserve(piece, bytes);
+    unsigned char *to = tl_piece_add(piece, (first_corner(j, end) - first_corner(j, begin)) * each);
     for (size_t i = begin; to && i < end; i++)
         to = i < j->of.polygons ? put_contact(j, i, of, to) : put_face(j, i, of, to);
-    piece->length += to ? bytes : 0;
 }
 
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
@@ -494,14 +490,13 @@ static void fill_polygons(const void *user, size_t begin, size_t end, tl_piece *
 {
     const joints *j = user;
     size_t numbers = end - begin + first_corner(j, end) - first_corner(j, begin);
-    unsigned char *to = tl_piece_reserve(piece, numbers * TL_VTK_INT_BYTES);
+    unsigned char *to = tl_piece_add(piece, numbers * TL_VTK_INT_BYTES);
     for (size_t i = begin; to && i < end; i++) {
         size_t first = first_corner(j, i), next = first_corner(j, i + 1);
         to = tl_vtk_put_int(to, (int32_t)(next - first));
         for (size_t k = first; k < next; k++)
             to = tl_vtk_put_int(to, (int32_t)k);
     }
-    piece->length += to ? numbers * TL_VTK_INT_BYTES : 0;
 }
 
 static tl_status put_joints(const joints *j, tl_pieces *out)

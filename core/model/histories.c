@@ -9,9 +9,9 @@
 /* Samples that a new history has room for. */
 #define FIRST_CAPACITY 64
 
-static bool is_text(const char *text, size_t room)
+static bool is_text(const char *text, size_t capacity)
 {
-    return memchr(text, '\0', room) && tl_text_is_clean(text);
+    return memchr(text, '\0', capacity) && tl_text_is_clean(text);
 }
 
 const char *tl_history_unsound(const tl_model *m, const tl_history *h)
@@ -55,13 +55,10 @@ void tl_history_free(tl_history *h)
  * were. */
 static bool hold_samples(tl_history *h, size_t capacity)
 {
-    int64_t *cycles = realloc(h->cycles, capacity * sizeof *cycles);
-    h->cycles = cycles ? cycles : h->cycles;
-    double *times = realloc(h->times, capacity * sizeof *times);
-    h->times = times ? times : h->times;
-    double *values = realloc(h->values, capacity * h->width * sizeof *values);
-    h->values = values ? values : h->values;
-    if (!cycles || !times || !values)
+    size_t of_cycles = h->capacity, of_times = h->capacity, of_values = h->capacity;
+    if (!tl_fit(&h->cycles, &of_cycles, capacity, sizeof *h->cycles) ||
+        !tl_fit(&h->times, &of_times, capacity, sizeof *h->times) ||
+        !tl_fit(&h->values, &of_values, capacity, h->width * sizeof *h->values))
         return false;
     h->capacity = capacity;
     return true;

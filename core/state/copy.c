@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The copies' own lists are made with the room that is in use only, and grow when they have to. */
+/* The copies' own lists are made with the capacity that is in use only, and grow when they have to. */
 
 /* Columns of blocks and bodies, lists and values. The polyhedra are still to be copied. */
 static bool copy_rows(tl_model *to, tl_model *from)

@@ -21,7 +21,7 @@ typedef struct tl_vtk_file_id {
 /* A .vtk.series index as it was last written. */
 typedef struct tl_vtk_index {
     size_t frames; /* that it lists; 0: nothing is known of it */
-    off_t place;   /* where its blank room begins, ... */
+    off_t place;   /* where its blank space begins, ... */
     off_t end;     /* ... and ends */
     tl_vtk_file_id written;
 } tl_vtk_index;

@@ -49,7 +49,7 @@ NUMBERS = [
     ("core/cycle/sliver.c", "SHORTENS", 3, "three times smaller than the rest allow"),
     ("core/cycle/sliver.c", "LITTLE", 0.05, "of no more than 0.05 of the rock"),
     ("core/cycle/sliver.c", "ENOUGH", 0.5, "gains at least half of the most"),
-    ("core/model/options.h", "TL_MOST_ADDED", 0.05, "`most`, 0.05 when left out"),
+    ("core/model/functions.h", "TL_MOST_ADDED", 0.05, "`most`, 0.05 when left out"),
     ("core/cycle/rest.c", "SOFTER", 1e3, "min(ρ, 10³ ρ²) B² / (2 K)"),
     ("core/cycle/rest.c", "ROUNDED_OVERLAP", 1e-10, "1e-10 r K"),
     ("core/cycle/solve.c", "LEGS", 5, "it has gone five legs in one direction"),
