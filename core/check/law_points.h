@@ -32,9 +32,9 @@ enum {
     TL_LAW_PRESSES
 };
 
-/* s, of a step. */
+/* Constant: s, of a step. */
 #define TL_CHECK_DT 1e-4
-/* Relative error of forces that rounding explains: some thousand roundings. */
+/* Tolerance: relative error of forces that rounding explains: some thousand roundings. Test: unit/test_check. */
 #define TL_CHECK_ROUNDING 1e-11
 /* Lanes of the longest batch, in which points are there more than once: no multiple of what a law may take at a
  * time. */

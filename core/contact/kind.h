@@ -86,10 +86,10 @@ static inline const tl_contact_kind *tl_contact_kind_of(const tl_detect *d, uint
 
 /* Facet and points of the contact of two blocks that have been placed, into the thread's manifold: tl_manifold_find, unless a kind of
  * contact claims them. false: out of memory. */
-static inline bool tl_contact_find(tl_model *m, uint32_t block_a, uint32_t block_b,
-                                   const tl_pair_view *view, const tl_region *region,
-                                   const tl_touch_rule *rule, const tl_manifold_before *before,
-                                   tl_narrow_scratch *scratch)
+static inline bool tl_kind_find(tl_model *m, uint32_t block_a, uint32_t block_b,
+                                const tl_pair_view *view, const tl_region *region,
+                                const tl_touch_rule *rule, const tl_manifold_before *before,
+                                tl_narrow_scratch *scratch)
 {
     for (uint32_t k = 0; k < m->detect->kind_count; k++) {
         const tl_kind_make *make = m->detect->kinds[k]->make;

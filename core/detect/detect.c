@@ -487,8 +487,8 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
-    if (!tl_contact_find(m, d->pairs[pair].a, d->pairs[pair].b, &view, &region, &rule, &before,
-                         scratch) ||
+    if (!tl_kind_find(m, d->pairs[pair].a, d->pairs[pair].b, &view, &region, &rule, &before,
+                      scratch) ||
         !tl_contact_append(m, pair, g->facet.kind, g->valid, tag, g->point_count))
         return tl_fail_memory(&m->error);
     uint32_t row = (uint32_t)d->contacts.table.rows - 1;

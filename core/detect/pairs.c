@@ -228,7 +228,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         tl_pair_sleep(d, p, way);
         return;
     }
-    if (!tl_contact_find(m, p->a, p->b, &view, &region, &rule, &before, scratch)) {
+    if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch)) {
         scratch->failed = true; /* what was found is not all there is: test again */
         return;
     }

@@ -177,8 +177,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
-    if (!tl_contact_find(m, contacts->a[c], contacts->b[c], &view, &region, &rule, &before,
-                         scratch))
+    if (!tl_kind_find(m, contacts->a[c], contacts->b[c], &view, &region, &rule, &before, scratch))
         return false;
     contacts->faces_valid_to[c] = scratch->reframed ? -INFINITY : odometer + g->valid;
     contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);

@@ -33,7 +33,7 @@ typedef struct tl_outer_face {
     tl_area_sums sums;
 } tl_outer_face;
 
-/* Off the plane, or out of the box, by less than this times the block's size a corner is in it. It is what contacts
+/* Tolerance: off the plane, or out of the box, by less than this times the block's size a corner is in it. It is what contacts
  * take for touching (TL_CONTACT_TOLERANCE). */
 #define TOLERANCE 1e-3
 /* Tolerance: largest component across an axis of the normal of a face whose roller is held along that axis. */
@@ -76,7 +76,7 @@ typedef struct body_sum {
  * polygon, over which polynomials of the second degree are integrated exactly: by triangles, at the middles of their
  * edges. */
 
-/* Share of a face that may be left bare for roundings. */
+/* Tolerance: share of a face that may be left bare for roundings. */
 #define UNCOVERED 1e-5
 
 static tl_point2 flatten(const tl_outer_face *f, tl_vec3 x)

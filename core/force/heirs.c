@@ -183,7 +183,7 @@ static bool patch_word(tl_model *m, uint32_t c, const tl_point_lanes *t, tl_word
  * Newton's steps, with slopes that are mended by what steps bring (Broyden 1965), or found by differences where that is little. Each step is
  * halved until less is missed. */
 
-/* Tolerance: steps that are made at the most, and halvings of each. */
+/* Tolerance: steps that are made at the most, and halvings of each. Test: lua/test_curved_slides. */
 #define STEPS 60
 #define HALVINGS 10
 /* Tolerance: step of differences, over the unit. */

@@ -116,7 +116,7 @@ static bool allocate(builder *b, const tl_vec3 *points, size_t count)
 
 __extension__ typedef __int128 wide_int;
 
-/* A double product of two cross product components and a difference is off by a few roundings of the sum of
+/* Tolerance: A double product of two cross product components and a difference is off by a few roundings of the sum of
  * magnitudes. Beyond this bound its sign is right. */
 #define SIGN_BOUND (8 * DBL_EPSILON)
 

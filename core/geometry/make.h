@@ -10,11 +10,11 @@
 /* Euler's formula bounds the edges of a polyhedron within the limits on vertices and faces. */
 #define TL_POLY_MAX_EDGES (TL_POLY_MAX_VERTICES + TL_POLY_MAX_FACES - 2)
 
-/* Distances are known to a few roundings of the coordinates. For a small block far from zero that,
+/* Tolerance: distances are known to a few roundings of the coordinates. For a small block far from zero that,
  * and not TL_POLY_ON times its size, is the least distance that means anything. */
 #define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
-/* Depths below this times the thickness of a block change nothing of it. Faces may be bent, and points be left out
+/* Tolerance: depths below this times the thickness of a block change nothing of it. Faces may be bent, and points be left out
  * inside, by no more. */
 #define TL_POLY_SHALLOW 1e-2
 

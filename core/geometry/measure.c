@@ -48,7 +48,7 @@ static void add_tetrahedron(moments *m, tl_vec3 a, tl_vec3 b, tl_vec3 c)
 
 /* ---- the volume of flat and long blocks ---- */
 
-/* Blocks of less than this times the cube of their size (a cube has 0.19). Their volume is what is
+/* Tolerance: blocks of less than this times the cube of their size (a cube has 0.19). Their volume is what is
  * left of tetrahedra a thousand times and more as large, and those are summed with twice the digits. */
 #define SLENDER 1e-3
 

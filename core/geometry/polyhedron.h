@@ -17,9 +17,9 @@
 /* Tolerance: a face bent by less than this times the size is one face: points are given by coordinates of six
  * digits. */
 #define TL_POLY_FLAT 1e-6
-/* The corners of a face miss its plane by less than this times its size: so far off are those of meshes. */
+/* Tolerance: the corners of a face miss its plane by less than this times its size: so far off are those of meshes. */
 #define TL_POLY_BENT 2e-4
-/* Sine of 0.025 degrees, half of what flush faces may tilt. A facet of a face may tilt its plane by less, so that two
+/* Tolerance: sine of 0.025 degrees, half of what flush faces may tilt. A facet of a face may tilt its plane by less, so that two
  * blocks lie flush on each other by such faces. */
 #define TL_POLY_TILT 4.3633e-4
 /* Limit: a cut that would leave a side thinner than this times the size is refused. */

@@ -18,15 +18,16 @@
 #include <string.h>
 #include <talus/vmath.h>
 
-/* Parts fit when planes and corners agree within this times their size. Joined blocks were cut by one
+/* Tolerance: parts fit when planes and corners agree within this times their size. Joined blocks were cut by one
  * plane, or were placed in contact by coordinates of six digits. */
 #define FIT 1e-6
-/* What is between faces that lie on each other: at most this gap and overlap, over the size of the smaller part, and
- * this sine of their angle. They may have been joined after they had settled on each other. */
+/* Tolerance: what is between faces that lie on each other: at most this gap and overlap, over the size of the smaller part, and
+ * this sine of their angle. They may have been joined after they had settled on each other.
+ * Test: unit/test_seam, lua/test_bodies. */
 #define JOINED_GAP 1e-3
 #define JOINED_OVERLAP 1e-2
 #define JOINED_TILT 1e-2
-/* Share of a face's area that may stay uncovered: of parts that fit, and of those that have settled. */
+/* Tolerance: share of a face's area that may stay uncovered: of parts that fit, and of those that have settled. */
 #define UNCOVERED 1e-5
 #define JOINED_UNCOVERED 1e-2
 

@@ -38,7 +38,7 @@ bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t bod
 /* Outward unit normal of a touch, axes of the model: as the block lay when it was made, or as it lies now. */
 tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now);
 
-/* Cosine within which a direction lies in a face, sine within which two faces are parallel: far above rounding of
+/* Tolerance: cosine within which a direction lies in a face, sine within which two faces are parallel: far above rounding of
  * what was cut. */
 #define TL_TOUCH_ALONG 1e-6
 

@@ -126,7 +126,7 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
  * Whether the rows of a model that were read from a file fit together. Numbers of rows are those of rows that are
  * there, choices are choices, bools are bools, and places are places. */
 
-/* By so much may be off the square of a quaternion's length, and the sum of the sizes of a rotation's nine numbers
+/* Tolerance: by so much may be off the square of a quaternion's length, and the sum of the sizes of a rotation's nine numbers
  * (at most 3 sqrt 3). A rotation that the program has made is off by its roundings, some 1e-15. */
 #define TURN_SLACK 0.01
 #define MOST_MATRIX (5.2 + TURN_SLACK)
@@ -407,9 +407,8 @@ static tl_status share_planes(tl_model *m)
     return status;
 }
 
-/* The lists that follow from the rows. The row of each number that a block has ever had is in the file. So there is
- * no more memory for them than a file of its size may ask for. */
-static tl_status derive_rows(tl_model *m, const tl_archive *a)
+/* The lists that follow from the rows. */
+static tl_status derive_rows(tl_model *m)
 {
     const uint64_t structure = m->structure;
     if (!tl_rows_reserve(m, m->blocks.table.rows))

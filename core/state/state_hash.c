@@ -262,8 +262,8 @@ static void hash_reals(tl_hash *hash, const tl_model *m, const tl_settings *of)
         const uint32_t type = of->params[i].type;
         const double *at = tl_setting_at(m, of, i), fraction = tl_timestep_fraction(m);
         if (at && (type == TL_PARAM_REAL || type == TL_PARAM_VEC3))
-            hash_numbers(hash, at == &m->timestep.fraction ? &fraction : at,
-                         type == TL_PARAM_VEC3 ? 3 : 1);
+            tl_hash_numbers(hash, at == &m->timestep.fraction ? &fraction : at,
+                            type == TL_PARAM_VEC3 ? 3 : 1);
     }
 }
 
@@ -286,12 +286,12 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
     const struct tl_cycle *c = m->cycle;
     const tl_settings config = tl_config_settings(), timestep = tl_timestep_settings();
     /* c->dt, the step in use, stays while it is hardly too short */
-    hash_numbers(hash, (const double[]){m->time, m->dt, c ? c->dt : 0, c ? c->kinetic_before : 0},
-                 4);
-    hash_numbers(hash, &m->origin.x, 3);
+    tl_hash_numbers(hash,
+                    (const double[]){m->time, m->dt, c ? c->dt : 0, c ? c->kinetic_before : 0}, 4);
+    tl_hash_numbers(hash, &m->origin.x, 3);
     hash_reals(hash, m, &config);
     hash_reals(hash, m, &timestep);
-    hash_numbers(hash, (const double[]){m->min_area.fraction, m->min_area.absolute}, 2);
+    tl_hash_numbers(hash, (const double[]){m->min_area.fraction, m->min_area.absolute}, 2);
     int64_t words[MOST_WORDS] = {m->cycles, m->next_id};
     assert(config.count + timestep.count + 4 <= MOST_WORDS);
     int64_t *next = put_words(put_words(words + 2, m, &config), m, &timestep);
@@ -299,7 +299,7 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
     *next++ = m->origin_set;
     tl_hash_bytes(hash, words, (size_t)(next - words) * sizeof *words);
     if (m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(m->config.gravity, m->gravity_before)))
-        hash_numbers(hash, &m->gravity_before.x, 3);
+        tl_hash_numbers(hash, &m->gravity_before.x, 3);
     if (tl_adds_mass(m))
         tl_hash_numbers(hash, (const double[]){m->added_dt, m->added_most}, 2);
     for (size_t i = 0; i < m->joint_count; i++) {
