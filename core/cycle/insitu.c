@@ -46,12 +46,11 @@ static void say_tension(tl_model *m, const tl_insitu *s)
             }
         }
     if (pulled && tl_model_says(m, TL_REMARK_TENSION))
-        tl_model_say(m,
-                     "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): "
-                     "it is positive in "
-                     "tension; give compression as negative numbers, as in zz = %g",
-                     pulled, pulled == 1 ? "" : "s", a, b,
-                     s->stress.zz != 0 ? -fabs(s->stress.zz) : -1e6);
+        tl_model_say(
+            m,
+            "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is "
+            "positive in tension; give compression as negative numbers, as in zz = %g",
+            pulled, pulled == 1 ? "" : "s", a, b, s->stress.zz != 0 ? -fabs(s->stress.zz) : -1e6);
 }
 
 /* Area of a block's face that is covered by contact patches. */
@@ -145,12 +144,11 @@ static tl_status find_outer(tl_model *m, const tl_insitu *s, outer_blocks *found
 static void say_outer(tl_model *m, const outer_blocks *found)
 {
     if (found->count)
-        tl_model_say(
-            m,
-            "insitu: %zu block%s that can move (first: block %u) %s an outer face on which "
-            "the stress does not act; fix the blocks around the region of interest",
-            found->count, found->count == 1 ? "" : "s", found->first,
-            found->count == 1 ? "has" : "have");
+        tl_model_say(m,
+                     "insitu: %zu block%s that can move (first: block %u) %s an outer face on "
+                     "which the stress does not act; fix the blocks around the region of interest",
+                     found->count, found->count == 1 ? "" : "s", found->first,
+                     found->count == 1 ? "has" : "have");
 }
 
 static bool is_bearable(tl_sym3 t)

@@ -180,14 +180,14 @@ static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const
     uint32_t mover = m->blocks.body[p->a] == fast ? p->a : p->b;
     uint32_t other = mover == p->a ? p->b : p->a;
     char text[120];
-    return tl_fail(
-        &m->error, TL_E_NUMERIC,
-        "cycle %lld: block %u, at %.3g m/s, would be carried %.3g m into or past block %u in this "
-        "step of dt = %.3g s, more than the %.3g m, half of the thinner one's thickness, up to "
-        "which their contact can tell which way they came: %s",
-        (long long)m->cycles + 1, m->blocks.id[mover], tl_v3_norm(motion[fast].shift) / dt,
-        p->deeper, m->blocks.id[other], dt, p->allowed,
-        way_out(m, dt * p->part * CLOSING_AIM / CLOSING_MOST, text, sizeof text));
+    return tl_fail(&m->error, TL_E_NUMERIC,
+                   "cycle %lld: block %u, at %.3g m/s, would be carried %.3g m into or past block "
+                   "%u in this step of dt = %.3g s, more than the %.3g m, half of the thinner "
+                   "one's thickness, up to which their contact can tell which way they came: %s",
+                   (long long)m->cycles + 1, m->blocks.id[mover],
+                   tl_v3_norm(motion[fast].shift) / dt, p->deeper, m->blocks.id[other], dt,
+                   p->allowed,
+                   way_out(m, dt * p->part * CLOSING_AIM / CLOSING_MOST, text, sizeof text));
 }
 
 /* Fails with a sentence when the step would carry or turn a block too far. `span`: of the step, after its forces. */

@@ -85,9 +85,8 @@ static void remark_density(tl_model *m, const densities *d, double g)
         return;
     tl_model_say(m,
                  "density = %g of block %u is not that of a solid, with gravity = %g m/s2: rock "
-                 "has 2000 to 3000 kg/m3, "
-                 "with kn in Pa/m, or 2 to 3 t/m3, with kn in kPa/m; give the mass of a volume, "
-                 "not its weight",
+                 "has 2000 to 3000 kg/m3, with kn in Pa/m, or 2 to 3 t/m3, with kn in kPa/m; give "
+                 "the mass of a volume, not its weight",
                  m->blocks.density[row], m->blocks.id[row], g);
 }
 
@@ -97,23 +96,21 @@ static void remark_stiffness(tl_model *m, const densities *d, double g, const tl
     bool tonnes =
         g >= EARTH_LEAST && g <= EARTH_MOST && d->least >= TONNES_LEAST && d->most <= TONNES_MOST;
     if (sunk > SOFT && tl_model_says(m, TL_REMARK_SOFT))
-        tl_model_say(m,
-                     "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under "
-                     "its own weight; "
-                     "give a larger kn, or look at the units of kn (Pa/m), density and gravity",
-                     joint_name(m, law), law->kn, m->blocks.id[d->densest], 100 * sunk);
+        tl_model_say(
+            m,
+            "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under its own "
+            "weight; give a larger kn, or look at the units of kn (Pa/m), density and gravity",
+            joint_name(m, law), law->kn, m->blocks.id[d->densest], 100 * sunk);
     else if (tonnes && sunk * RIGID < 1 && tl_model_says(m, TL_REMARK_DENSITY))
         tl_model_say(m,
                      "joint '%s': kn = %g goes with density = %g of block %u only if kn is in "
-                     "kPa/m and rock is that stiff; "
-                     "if kn is in Pa/m, give the density in kg/m3",
+                     "kPa/m and rock is that stiff; if kn is in Pa/m, give the density in kg/m3",
                      joint_name(m, law), law->kn, d->most, m->blocks.id[d->densest]);
     else if (least < STIFF && tl_model_says(m, TL_REMARK_STIFF))
         tl_model_say(m,
                      "joint '%s': kn = %g is improbably stiff: block %u closes the joint by %.2g "
-                     "of its size under its own "
-                     "weight, and steps are short for nothing; look at the units of kn (Pa/m), "
-                     "density and gravity",
+                     "of its size under its own weight, and steps are short for nothing; look at "
+                     "the units of kn (Pa/m), density and gravity",
                      joint_name(m, law), law->kn, m->blocks.id[d->lightest], least);
 }
 
@@ -145,8 +142,7 @@ void tl_remark_friction(tl_model *m, const char *joint, const tl_law *law)
         if (value > 0 && value <= 1 && tl_model_says(m, TL_REMARK_FRICTION))
             tl_model_say(m,
                          "joint '%s', law '%s': friction = %g deg is nearly none: it is an angle "
-                         "in degrees; a "
-                         "coefficient of %g is %.3g deg, and %g rad are %.3g deg",
+                         "in degrees; a coefficient of %g is %.3g deg, and %g rad are %.3g deg",
                          joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI,
                          value, value * 180 / TL_PI);
     }

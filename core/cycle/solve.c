@@ -419,14 +419,12 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
     double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(m->bodies.v[m->blocks.body[row]]);
     tl_overlap_push push;
     if (tl_energy_pushed(m, &push)) {
-        tl_model_say(
-            m,
-            "solve: an overlap pushes the model apart: blocks that were made overlapping have "
-            "given off %.3g J, "
-            "most of it blocks %u and %u, and gravity and loads %.3g J; block %u moves on at %.3g "
-            "m/s; "
-            "that is no word on whether it stands: make them apart, or with smaller overlaps",
-            push.gave, push.a, push.b, push.others, r->failing, speed);
+        tl_model_say(m,
+                     "solve: an overlap pushes the model apart: blocks that were made overlapping "
+                     "have given off %.3g J, most of it blocks %u and %u, and gravity and loads "
+                     "%.3g J; block %u moves on at %.3g m/s; that is no word on whether it stands: "
+                     "make them apart, or with smaller overlaps",
+                     push.gave, push.a, push.b, push.others, r->failing, speed);
         return;
     }
     tl_model_say(m,
@@ -524,10 +522,10 @@ tl_status tl_model_solve(tl_model *m, const tl_solve *given, tl_solve_result *re
     if (status != TL_OK)
         return status;
     if (!m->damping && tl_model_says(m, TL_REMARK_UNDAMPED))
-        tl_model_say(m,
-                     "solve: the model has no damping and may never come to rest; %s or another "
-                     "one helps",
-                     tl_words(m, "model:damping(\"local\")", "tl_model_damping() with \"local\""));
+        tl_model_say(
+            m,
+            "solve: the model has no damping and may never come to rest; %s or another one helps",
+            tl_words(m, "model:damping(\"local\")", "tl_model_damping() with \"local\""));
     return run(m, &solve, result);
 }
 

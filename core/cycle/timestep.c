@@ -505,30 +505,28 @@ static tl_status no_step(tl_model *m, double dt)
                                    "a step with dt of tl_model_timestep()");
     const char *joint = tl_words(m, "model:joint(\"*\", ...)", "tl_joint_law()");
     if (m->joint_law_count == 0)
-        return tl_fail(
-            &m->error, TL_E_STATE,
-            "no time step follows from the model: no law says how stiff a contact is; set "
-            "a law with %s or %s",
-            joint, way_out);
+        return tl_fail(&m->error, TL_E_STATE,
+                       "no time step follows from the model: no law says how stiff a contact is; "
+                       "set a law with %s or %s",
+                       joint, way_out);
     if (!(stiffest_law(m) > 0))
         return tl_fail(&m->error, TL_E_STATE,
                        "no time step follows from the model: kn and ks of all laws are 0; set a "
                        "stiffness with %s or %s",
                        joint, way_out);
-    return tl_fail(
-        &m->error, TL_E_STATE,
-        "no time step follows from the model: by its masses and stiffnesses it would be %g "
-        "s; check the units of density, sizes and kn, or set %s",
-        dt, way_out);
+    return tl_fail(&m->error, TL_E_STATE,
+                   "no time step follows from the model: by its masses and stiffnesses it would be "
+                   "%g s; check the units of density, sizes and kn, or set %s",
+                   dt, way_out);
 }
 
 static void say_long(tl_model *m, double stable, uint32_t body)
 {
-    tl_model_say(m,
-                 "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block "
-                 "%u sets: contact forces will grow without bound; give a shorter one, or leave dt "
-                 "out",
-                 m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[body]);
+    tl_model_say(
+        m,
+        "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block %u sets: "
+        "contact forces will grow without bound; give a shorter one, or leave dt out",
+        m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[body]);
 }
 
 /* Notes whether the step that was given is far above the longest that is stable whatever the rule, that of the body
@@ -556,11 +554,10 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     struct tl_cycle *c = m->cycle;
     double wanted = m->added_dt, given = m->timestep.dt;
     if (given > wanted)
-        return tl_fail(
-            &m->error, TL_E_STATE,
-            "timestep: dt = %g s is longer than %g s, the dt of mass_scaling; give one of "
-            "them only, or the longer one to mass_scaling",
-            given, wanted);
+        return tl_fail(&m->error, TL_E_STATE,
+                       "timestep: dt = %g s is longer than %g s, the dt of mass_scaling; give one "
+                       "of them only, or the longer one to mass_scaling",
+                       given, wanted);
     if (!report) {
         double limit = tl_timestep_rate_limit(m);
         rates_keep(m, limit);

@@ -84,15 +84,13 @@ tl_status tl_model_may_set(tl_model *m, const char *what)
     if (m->reading)
         return tl_fail(&m->error, TL_E_STATE,
                        "cannot %s from the function of a history or of a field, which may read the "
-                       "model only: do it "
-                       "between two runs, or in on_progress",
+                       "model only: do it between two runs, or in on_progress",
                        what);
     if (m->driving)
-        return tl_fail(
-            &m->error, TL_E_STATE,
-            "cannot %s from a drive's function, which is called in the middle of a step: "
-            "do it between two runs, or in solve's on_progress",
-            what);
+        return tl_fail(&m->error, TL_E_STATE,
+                       "cannot %s from a drive's function, which is called in the middle of a "
+                       "step: do it between two runs, or in solve's on_progress",
+                       what);
     return TL_OK;
 }
 
@@ -123,8 +121,7 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
         tl_model_says(m, TL_REMARK_GRAVITY))
         tl_model_say(m,
                      "gravity = {%g, %g, %g} points upward, for z is up: blocks will fall to the "
-                     "sky; give {%g, %g, %g} for "
-                     "weight",
+                     "sky; give {%g, %g, %g} for weight",
                      gravity.x, gravity.y, gravity.z, gravity.x, gravity.y, -gravity.z);
     return TL_OK;
 }
