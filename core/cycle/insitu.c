@@ -1,4 +1,5 @@
 /* insitu.c - initial stress put on the contacts of a model (stress.c), and what is improbable about it. */
+#include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
@@ -56,11 +57,10 @@ static void say_tension(tl_model *m, const tl_insitu *s)
 /* Area of a block's face that is covered by contact patches. */
 static double covered_area(const tl_model *m, uint32_t row, uint32_t face)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
+    const tl_contacts *c = &m->detect->contacts;
     double area = 0;
-    for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-        uint32_t i = d->by_block[e];
+    for (tl_body_contacts at = tl_contacts_of_block(m, row); tl_next_contact(&at);) {
+        uint32_t i = at.contact;
         const tl_facet *f = &c->facet[i];
         if (tl_facet_is_patch(f) && (c->a[i] == row ? f->ia : f->ib) == face)
             area += c->area[i];
@@ -73,7 +73,7 @@ static tl_status inner_area(tl_model *m, uint32_t row, uint32_t face, double *ar
 {
     const tl_poly *shape = m->blocks.shape[row];
     uint32_t body = m->blocks.body[row];
-    const uint32_t *member = m->members + m->bodies.member_start[body];
+    const uint32_t *member = tl_body_blocks(m, body);
     *area = 0;
     for (uint32_t i = 0; i < m->bodies.member_count[body]; i++) {
         const tl_poly *other = m->blocks.shape[member[i]];

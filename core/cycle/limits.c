@@ -12,6 +12,7 @@
 #include "base/columns.h"
 #include "base/extremes.h"
 #include "base/parallel.h"
+#include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "cycle/cycle_data.h"
 #include "cycle/kicked.h"
@@ -316,18 +317,14 @@ static void check_range(void *user, size_t begin, size_t end, size_t chunk, unsi
 /* The contact that presses on a body with the largest force, or TL_NO_ROW. One that is no number counts most. */
 static uint32_t hardest_contact(const tl_model *m, uint32_t body, double *force)
 {
-    const tl_detect *d = m->detect;
     uint32_t found = TL_NO_ROW;
     *force = 0;
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + k];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            double f = tl_v3_norm(d->contacts.force[d->by_block[e]]);
-            if (f <= *force)
-                continue;
-            *force = f;
-            found = d->by_block[e];
-        }
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        double f = tl_v3_norm(m->detect->contacts.force[at.contact]);
+        if (f <= *force)
+            continue;
+        *force = f;
+        found = at.contact;
     }
     return found;
 }

@@ -1,5 +1,6 @@
 /* solve.c - many steps: until a limit is met, the user interrupts, or a callback says so. */
 #include "base/clock.h"
+#include "contact/body_contacts.h"
 #include "contact/detection.h"
 #include "cycle/cycle.h"
 #include "cycle/cycle_data.h"
@@ -142,19 +143,6 @@ static tl_watch *watch_begin(const tl_model *m)
 
 /* ---------------------------------------------------------------- samples ---------------- */
 
-/* Whether a block of the body has contact points, in the first step. */
-static bool touches(const tl_model *m, uint32_t body)
-{
-    const tl_detect *d = m->detect;
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + k];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++)
-            if (d->contacts.point_count[d->by_block[e]] > 0)
-                return true;
-    }
-    return false;
-}
-
 /* What contacts carry at an overlap that is rounding (rest.c) does not count. */
 static double borne_by(const tl_model *m, uint32_t body)
 {
@@ -267,7 +255,7 @@ static tl_id watch_step(tl_watch *w, const tl_model *m)
         return w->failing;
     if (w->steps++ == 0)
         for (uint32_t body = 0; body < w->bodies; body++)
-            w->leg[body].touched = touches(m, body);
+            w->leg[body].touched = tl_body_has_points(m, body);
     if (w->steps % SAMPLE_STEPS != 0)
         return w->failing;
     sample_job job = {.w = w, .m = m};

@@ -18,6 +18,7 @@
 #include "cycle/split.h"
 
 #include "base/columns.h"
+#include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/kind.h"
@@ -344,7 +345,7 @@ struct tl_split_work {
 /* The body that all blocks of a body were in, or TL_NO_ID. */
 static tl_id whole_of(const tl_model *m, uint32_t body)
 {
-    const uint32_t *rows = &m->members[m->bodies.member_start[body]];
+    const uint32_t *rows = tl_body_blocks(m, body);
     tl_id whole = tl_split_of(m, m->blocks.id[rows[0]]);
     for (uint32_t k = 1; k < m->bodies.member_count[body]; k++)
         if (tl_split_of(m, m->blocks.id[rows[k]]) != whole)
@@ -388,8 +389,7 @@ static void list_parts(const tl_model *m, struct tl_split_work *w)
     for (size_t i = 0; i < m->split_count; i++) {
         uint32_t row = tl_block_row_quiet(m, m->splits[i].block);
         uint32_t body = row == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[row];
-        if (row == TL_NO_ROW || m->members[b->member_start[body]] != row ||
-            whole_of(m, body) == TL_NO_ID)
+        if (row == TL_NO_ROW || *tl_body_blocks(m, body) != row || whole_of(m, body) == TL_NO_ID)
             continue;
         w->parts[w->part_count] =
             (tl_split_part){.body = body,
@@ -426,26 +426,24 @@ static bool is_inner(const tl_model *m, uint32_t c)
 /* Lists the contacts on new faces, in the order of their blocks, and joins the parts that they hold together. */
 static bool list_contacts(const tl_model *m, struct tl_split_work *w)
 {
-    const tl_detect *d = m->detect;
+    const tl_contacts *contacts = &m->detect->contacts;
     size_t capacity = 0;
     for (size_t i = 0; i < w->part_count; i++)
-        for (uint32_t k = 0; k < m->bodies.member_count[w->parts[i].body]; k++) {
-            uint32_t row = m->members[m->bodies.member_start[w->parts[i].body] + k];
-            for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-                uint32_t c = d->by_block[e];
-                if (d->contacts.a[c] != row || !is_inner(m, c))
-                    continue;
-                tl_split_contact found = {.row = c,
-                                          .a = (uint32_t)i,
-                                          .b = part_of(w, m->blocks.body[d->contacts.b[c]]),
-                                          .first = w->contact_count};
-                if (!tl_grow(&w->contacts, &capacity, w->contact_count + 1, sizeof *w->contacts))
-                    return false;
-                w->contacts[w->contact_count++] = found;
-                w->point_count += d->contacts.point_count[c];
-                uint32_t a = first_of(w, found.a), b = first_of(w, found.b);
-                w->parts[a < b ? b : a].whole = a < b ? a : b;
-            }
+        for (tl_body_contacts at = tl_contacts_of_body(m, w->parts[i].body);
+             tl_next_contact(&at);) {
+            uint32_t c = at.contact;
+            if (contacts->a[c] != at.block || !is_inner(m, c))
+                continue;
+            tl_split_contact found = {.row = c,
+                                      .a = (uint32_t)i,
+                                      .b = part_of(w, m->blocks.body[contacts->b[c]]),
+                                      .first = w->contact_count};
+            if (!tl_grow(&w->contacts, &capacity, w->contact_count + 1, sizeof *w->contacts))
+                return false;
+            w->contacts[w->contact_count++] = found;
+            w->point_count += contacts->point_count[c];
+            uint32_t a = first_of(w, found.a), b = first_of(w, found.b);
+            w->parts[a < b ? b : a].whole = a < b ? a : b;
         }
     for (uint32_t i = 0; i < w->part_count; i++)
         w->parts[i].whole = first_of(w, i);
@@ -593,13 +591,13 @@ static void find_wanted(const tl_model *m, tl_split_part *parts, size_t count, d
 
 /* ---------------------------------------------------------------- tractions -------------- */
 
-/* Adds x f of the contacts of a block, x from the whole's centroid, f on the block, but for those of new faces. */
-static void add_stress(const tl_model *m, uint32_t row, tl_vec3 centre, tl_sym3 *sum)
+/* Adds x f of the contacts of a body, x from the whole's centroid, f on the body, but for those of new faces. */
+static void add_stress(const tl_model *m, uint32_t body, tl_vec3 centre, tl_sym3 *sum)
 {
     const tl_detect *d = m->detect;
     const tl_point_lanes *lanes = &d->lanes[0];
-    for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-        uint32_t c = d->by_block[e];
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        uint32_t c = at.contact;
         if (is_inner(m, c))
             continue;
         tl_contact_places(m, c, lanes);

@@ -11,6 +11,7 @@
 
 #include "base/columns.h"
 #include "base/parallel.h"
+#include "contact/body_contacts.h"
 #include "contact/detection.h"
 #include "cycle/added_mass.h"
 #include "cycle/contributors.h"
@@ -149,7 +150,7 @@ static tl_spread largest_face(const tl_model *m, uint32_t body)
 {
     tl_spread largest = {0, 0};
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
+        const tl_poly *shape = m->blocks.shape[tl_body_blocks(m, body)[k]];
         for (uint32_t f = 0; f < shape->face_count; f++) {
             tl_spread face = shape->covered[f] ? (tl_spread){0, 0} : face_of(shape, f);
             if (face.sum > (1 + AS_LARGE) * largest.sum)
@@ -189,8 +190,7 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
            part = 0; /* where the contacts ask for more anyway */
     double pushed = of.stiffness.sum * per.mass, turned = of.stiffness.r2 * per.moment;
     bool more = m->mass_scaling ? pushed < face - turn || turned < turn : pushed + turned < face;
-    if (more)
-        part = least_part(m, body, &of, face);
+    double part = more ? least_part(m, body, &of, face) : 0;
     if (!m->mass_scaling)
         return (step_rates){fmax(pushed + turned, part * face), 0};
     return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
@@ -257,12 +257,11 @@ static void rates_count(tl_model *m)
     c->all_held = true;
     for (uint32_t body = 0; body < b->table.rows && c->all_held; body++)
         c->all_held = b->fixed[body] == TL_FIX_ALL;
-    for (uint32_t body = 0; body < b->table.rows; body++) {
+    for (uint32_t body = 0; body < b->table.rows; body++)
         if (tl_body_counts(m, body) && b->mass[body] < now.least_mass) {
             now.least_mass = b->mass[body];
             now.lightest = body;
         }
-    }
     bool anew = to->version == 0 || to->constraints != now.constraints ||
                 to->rotation != now.rotation || to->points != now.points;
     if (anew && b->table.rows > 0)
@@ -372,8 +371,10 @@ void tl_rates_try(tl_model *m, double known, double *rate, double *turn_rate)
     struct tl_stiffness_rates kept = c->stiffness_rates;
     double *own = c->rate, *own_turn = c->turn_rate;
     rates_count(m);
-    for (size_t body = 0; body < m->bodies.table.rows; body++)
-        rate[body] = own[body], turn_rate[body] = own_turn[body];
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+        rate[body] = own[body];
+        turn_rate[body] = own_turn[body];
+    }
     c->rate = rate;
     c->turn_rate = turn_rate;
     rates_keep(m, known);
@@ -414,6 +415,8 @@ typedef struct bound {
     double stiffness;
 } bound;
 
+static const bound no_bound = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+
 static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
@@ -441,7 +444,7 @@ static bound paper_rule(tl_model *m)
     tl_row_value stiffest =
         row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
     if (stiffest.row == TL_NO_ROW)
-        return (bound){INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+        return no_bound;
     return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row,
                    stiffest.value};
 }
@@ -582,7 +585,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     rates_count(m);
     if (tl_adds_mass(m)) {
         if (by)
-            *by = (bound){INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+            *by = no_bound;
         return choose_added(m, dt, by != NULL);
     }
     c->adds = false;

@@ -44,7 +44,7 @@ static double width_along(const tl_model *m, uint32_t body, tl_vec3 n)
 {
     double least = INFINITY, most = -INFINITY;
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        const tl_poly *part = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
+        const tl_poly *part = m->blocks.shape[tl_body_blocks(m, body)[k]];
         for (uint32_t i = 0; i < part->vertex_count; i++) {
             double x = tl_v3_dot(n, part->vertex[i]);
             least = fmin(least, x);

@@ -9,6 +9,7 @@
 #include "model/model.h"
 
 #include "base/error.h"
+#include "contact/body_contacts.h"
 #include "contact/detection.h"
 #include "detect/detect.h"
 #include "geometry/point2.h"
@@ -139,11 +140,10 @@ static tl_status take_away(tl_model *m, tl_outer_face *f, uint32_t row, uint32_t
 /* Takes away the patches of contacts. */
 static tl_status take_contacts(tl_model *m, tl_outer_face *f)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
+    const tl_contacts *c = &m->detect->contacts;
     tl_status status = TL_OK;
-    for (uint32_t e = d->by_block_start[f->row]; e < d->by_block_start[f->row + 1]; e++) {
-        uint32_t i = d->by_block[e];
+    for (tl_body_contacts at = tl_contacts_of_block(m, f->row); tl_next_contact(&at);) {
+        uint32_t i = at.contact;
         const tl_facet *facet = &c->facet[i];
         bool first = c->a[i] == f->row;
         if (status == TL_OK && tl_facet_is_patch(facet) && c->point_count[i] &&
@@ -574,16 +574,11 @@ void tl_boundary_free(tl_boundary_result *r)
 /* What contacts, weight and load put on a body, as of the last step. */
 static tl_vec3 acting_on(const tl_model *m, uint32_t body)
 {
-    const tl_detect *d = m->detect;
+    const tl_contacts *c = &m->detect->contacts;
     tl_body_load load = tl_load_of(&m->bodies, body);
     tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + k];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            force = tl_v3_madd(force, d->contacts.b[i] == row ? 1 : -1, d->contacts.force[i]);
-        }
-    }
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
+        force = tl_v3_madd(force, c->b[at.contact] == at.block ? 1 : -1, c->force[at.contact]);
     return force;
 }
 

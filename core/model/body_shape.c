@@ -9,17 +9,11 @@
 #include <string.h>
 #include <talus/elementary.h>
 
-/* Block k of a body. */
-static uint32_t part_of(const tl_model *m, uint32_t body, uint32_t k)
-{
-    return m->members[m->bodies.member_start[body] + k];
-}
-
 double tl_body_volume(const tl_model *m, uint32_t body)
 {
     double volume = 0;
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
-        volume += m->blocks.volume[part_of(m, body, k)];
+        volume += m->blocks.volume[tl_body_blocks(m, body)[k]];
     return volume;
 }
 
@@ -55,12 +49,12 @@ static tl_status hull_of_parts(const tl_model *m, uint32_t body, tl_poly **hull)
 {
     size_t count = 0;
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
-        count += m->blocks.shape[part_of(m, body, k)]->vertex_count;
+        count += m->blocks.shape[tl_body_blocks(m, body)[k]]->vertex_count;
     tl_vec3 *points = malloc((count + 1) * sizeof *points), *end = points;
     if (!points)
         return TL_E_MEMORY;
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        const tl_poly *p = m->blocks.shape[part_of(m, body, k)];
+        const tl_poly *p = m->blocks.shape[tl_body_blocks(m, body)[k]];
         memcpy(end, p->vertex, p->vertex_count * sizeof *end);
         end += p->vertex_count;
     }
@@ -77,7 +71,7 @@ static tl_body_shape measure(const tl_poly *p)
 bool tl_body_shape_of(const tl_model *m, uint32_t body, tl_body_shape *out)
 {
     if (m->bodies.member_count[body] == 1) {
-        *out = measure(m->blocks.shape[part_of(m, body, 0)]);
+        *out = measure(m->blocks.shape[tl_body_blocks(m, body)[0]]);
         return true;
     }
     tl_poly *hull = NULL;

@@ -252,6 +252,12 @@ static inline bool tl_model_interrupted(const tl_model *m)
     return atomic_load(&m->interrupted) || (m->interrupt_asked && m->interrupt_asked());
 }
 
+/* Rows of a body's blocks, ascending: [member_count]. */
+static inline const uint32_t *tl_body_blocks(const tl_model *m, uint32_t body)
+{
+    return &m->members[m->bodies.member_start[body]];
+}
+
 /* Present place of a body's centroid, relative to the origin. */
 static inline tl_vec3 tl_body_place(const tl_bodies *b, uint32_t body)
 {

@@ -2,6 +2,7 @@
  * neighbours. Values are those of the last step's forces. */
 #include "query/contact_fields.h"
 
+#include "contact/body_contacts.h"
 #include "contact/index.h"
 #include "contact/places.h"
 #include "contact/store.h"
@@ -344,16 +345,14 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
     tl_status status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
-    const tl_detect *d = m->detect;
-    uint32_t begin = d->by_block_start[row], end = d->by_block_start[row + 1];
-    tl_id *list = malloc((end - begin + 1u) * sizeof *list);
+    const tl_contacts *c = &m->detect->contacts;
+    tl_body_contacts at = tl_contacts_of_block(m, row);
+    tl_id *list = malloc((size_t)(at.end - at.next + 1) * sizeof *list);
     if (!list)
         return tl_fail_memory(&m->error);
-    for (uint32_t e = begin; e < end; e++) {
-        uint32_t c = d->by_block[e];
-        if (d->contacts.point_count[c])
-            list[(*count)++] = m->blocks.id[tl_contact_partner(&d->contacts, c, row)];
-    }
+    while (tl_next_contact(&at))
+        if (c->point_count[at.contact])
+            list[(*count)++] = m->blocks.id[tl_contact_partner(c, at.contact, row)];
     *ids = list;
     return TL_OK;
 }

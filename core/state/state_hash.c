@@ -9,6 +9,7 @@
  * column that few models need counts as zeros where there is none. What follows from the rest and lies in a row with
  * it (a pose's matrix) does no harm. */
 #include "base/hash.h"
+#include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
@@ -94,8 +95,8 @@ static void hash_contacts(tl_hash *hash, const tl_model *m)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     for (uint32_t block = 0; block < m->blocks.table.rows; block++)
-        for (uint32_t e = d->by_block_start[block]; e < d->by_block_start[block + 1]; e++) {
-            uint32_t contact = d->by_block[e];
+        for (tl_body_contacts at = tl_contacts_of_block(m, block); tl_next_contact(&at);) {
+            const uint32_t contact = at.contact;
             if (c->a[contact] != block)
                 continue; /* it comes with its other block */
             uint32_t law = c->law[contact], columns = 0;
