@@ -17,7 +17,7 @@ bool tl_detect_hold_states(tl_detect *d, uint32_t columns);
 /* What the next step goes on from, or NULL where that finds all anew: what was found for somebody who asked is no part of it. */
 static inline tl_detect *tl_detect_lasting(const tl_model *m)
 {
-    return m->only_asked ? NULL : m->stepped ? m->stepped : m->detect;
+    return m->found_for == TL_FOR_STEPS ? m->detect : m->stepped;
 }
 
 /* NULL when out of memory. */

@@ -7,6 +7,9 @@
 #include "narrow/press.h"
 #include "narrow/press_slope.h"
 
+/* For a path length up to which something of a contact holds: it is found anew in any case. */
+#define TL_OUTDATED (-INFINITY)
+
 typedef struct tl_contacts {
     tl_table table;
     tl_id *id;

@@ -64,7 +64,7 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     /* false when a user's function ends the run: bodies then go on as they were driven before */
     *driven = status != TL_OK || tl_drives_evaluate(m, m->time + 0.5 * *dt);
     if (status == TL_OK)
-        status = tl_motion_check_held(m, *dt);
+        status = tl_motion_check(m, *dt, true);
     return status == TL_OK ? tl_undo_reserve(m, tl_travel_may_matter(m, *dt)) : status;
 }
 
@@ -82,7 +82,7 @@ static tl_status apply_forces(tl_model *m, double dt)
         if (status == TL_OK)
             status = tl_damping_apply(m, dt);
         if (status == TL_OK)
-            status = tl_motion_check(m, dt);
+            status = tl_motion_check(m, dt, false);
         tl_phase_ends(m, TL_PHASE_DAMPING);
     }
     if (status != TL_OK)

@@ -1,6 +1,4 @@
 /* joint_law.c - setting the law of a joint. */
-#include "cycle/joint_law.h"
-
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"

@@ -422,12 +422,12 @@ static void keep_bounds(struct tl_cycle *c, const limit_job *job, unsigned threa
     widen(&c->speeds, c->given);
 }
 
-static tl_status check(tl_model *m, double dt, bool held)
+tl_status tl_motion_check(tl_model *m, double dt, bool held)
 {
     struct tl_cycle *c = m->cycle;
     unsigned threads = tl_pool_threads(m->pool);
     limit_job
-        job; /* of its bounds only those of the threads there are: the others are kilobytes of zeros */
+        job; /* its bounds are kilobytes, of which only those of the threads there are count */
     job.m = m;
     job.span = (tl_step_span){dt, 0.5 * (m->dt + dt)};
     job.held = held;
@@ -445,14 +445,4 @@ static tl_status check(tl_model *m, double dt, bool held)
     /* a step that is not kept is one in which nothing can have become fast at once */
     return !held && tl_undo_keeps(m) && tl_travel_may_matter(m, dt) ? travel_check(m, &job.span)
                                                                     : TL_OK;
-}
-
-tl_status tl_motion_check_held(tl_model *m, double dt)
-{
-    return check(m, dt, true);
-}
-
-tl_status tl_motion_check(tl_model *m, double dt)
-{
-    return check(m, dt, false);
 }

@@ -6,9 +6,8 @@
 #include "cycle/kicked.h"
 
 /* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
- * not: bodies whose motion is given, after the drives have been evaluated, and those that forces move. */
-tl_status tl_motion_check_held(tl_model *m, double dt);
-tl_status tl_motion_check(tl_model *m, double dt);
+ * not: those that forces move or, with `held`, after the drives have been evaluated, those whose motion is given. */
+tl_status tl_motion_check(tl_model *m, double dt, bool held);
 
 /* Whether a step so long may carry some body too far: false is sure. Takes a constant time but after an edit. */
 bool tl_travel_may_matter(const tl_model *m, double dt);

@@ -10,6 +10,7 @@
 #include "cycle/cycle_data.h"
 #include "detect/overlap.h"
 #include "detect/passing.h"
+#include "model/joints.h"
 
 #include <string.h>
 
@@ -69,14 +70,6 @@ static bool is_density(double density)
            (density >= KILOGRAMS_LEAST && density <= KILOGRAMS_MOST);
 }
 
-/* "J1:3", "J1", or "*" for the law of all joints that have none of their own. */
-static const char *joint_name(tl_model *m, const tl_law *law)
-{
-    if (law->tag.joint == 0)
-        return "*";
-    return law->tag.plane ? tl_tag_name(m, law->tag) : m->joints[law->tag.joint - 1].name;
-}
-
 static void remark_density(tl_model *m, const densities *d, double g)
 {
     uint32_t row = is_density(d->most) ? d->lightest : d->densest;
@@ -100,18 +93,18 @@ static void remark_stiffness(tl_model *m, const densities *d, double g, const tl
             m,
             "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under its own "
             "weight; give a larger kn, or look at the units of kn (Pa/m), density and gravity",
-            joint_name(m, law), law->kn, m->blocks.id[d->densest], 100 * sunk);
+            tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->densest], 100 * sunk);
     else if (tonnes && sunk * RIGID < 1 && tl_model_says(m, TL_REMARK_DENSITY))
         tl_model_say(m,
                      "joint '%s': kn = %g goes with density = %g of block %u only if kn is in "
                      "kPa/m and rock is that stiff; if kn is in Pa/m, give the density in kg/m3",
-                     joint_name(m, law), law->kn, d->most, m->blocks.id[d->densest]);
+                     tl_pattern_name(m, law->tag), law->kn, d->most, m->blocks.id[d->densest]);
     else if (least < STIFF && tl_model_says(m, TL_REMARK_STIFF))
         tl_model_say(m,
                      "joint '%s': kn = %g is improbably stiff: block %u closes the joint by %.2g "
                      "of its size under its own weight, and steps are short for nothing; look at "
                      "the units of kn (Pa/m), density and gravity",
-                     joint_name(m, law), law->kn, m->blocks.id[d->lightest], least);
+                     tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->lightest], least);
 }
 
 void tl_remark_units(tl_model *m)
@@ -154,12 +147,11 @@ static bool may_have_closed(const tl_model *m, uint32_t contact)
     const tl_contacts *c = &m->detect->contacts;
     if (c->law[contact] == TL_NO_ROW)
         return false;
-    const uint8_t *fixed = m->bodies.fixed;
     uint32_t a = c->a[contact], b = c->b[contact];
     double thickness = fmin(tl_least_thickness(m, a), tl_least_thickness(m, b));
     double stiffness = m->joint_laws[c->law[contact]].kn * c->area[contact];
     return tl_v3_norm(c->force[contact]) > CLOSED * thickness * stiffness &&
-           !(fixed[m->blocks.body[a]] == TL_FIX_ALL && fixed[m->blocks.body[b]] == TL_FIX_ALL);
+           !tl_blocks_fixed(m, a, b);
 }
 
 void tl_remark_closure(tl_model *m)
@@ -179,7 +171,7 @@ void tl_remark_closure(tl_model *m)
                      "joint '%s': kn = %.3g is soft for what presses: the %s has closed by %.3g m, "
                      "%.0f %% of the thickness of block %u, %.3g m; give a larger kn, or look at "
                      "the units of kn (Pa/m), densities and loads",
-                     joint_name(m, law), law->kn, name, closed.overlap,
+                     tl_pattern_name(m, law->tag), law->kn, name, closed.overlap,
                      100 * closed.overlap / closed.thickness, m->blocks.id[closed.thinner],
                      closed.thickness);
         return;

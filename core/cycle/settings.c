@@ -3,22 +3,11 @@
 #include "cycle/timestep.h"
 #include "model/joints.h"
 
-#include <stdio.h>
-#include <string.h>
-
-/* "*", "J1" or "J1:3"; valid until the next call. */
-static const char *pattern_name(tl_model *m, tl_tag tag)
-{
-    if (tag.joint == 0)
-        return "*";
-    return tag.plane == 0 ? m->joints[tag.joint - 1].name : tl_tag_name(m, tag);
-}
-
 bool tl_model_law_at(tl_model *m, size_t i, const char **joint, tl_plugin_setting *law)
 {
     if (i >= m->joint_law_count)
         return false;
-    *joint = pattern_name(m, m->joint_laws[i].tag);
+    *joint = tl_pattern_name(m, m->joint_laws[i].tag);
     *law = (tl_plugin_setting){m->joint_laws[i].kind, m->joint_laws[i].params};
     return true;
 }
@@ -29,7 +18,7 @@ bool tl_model_joint_at(tl_model *m, size_t i, const char **name, const char **ru
         return false;
     *name = m->joints[i].name;
     const tl_law *law = tl_law_of(m, (tl_tag){(uint32_t)i + 1, 0});
-    *ruled_by = law ? pattern_name(m, law->tag) : NULL;
+    *ruled_by = law ? tl_pattern_name(m, law->tag) : NULL;
     return true;
 }
 
@@ -53,6 +42,6 @@ bool tl_model_contact_area_at(tl_model *m, size_t i, tl_contact_area *rule)
     *rule = tl_contact_area_default();
     rule->fraction = from->fraction;
     rule->absolute = from->absolute;
-    rule->joint = i ? pattern_name(m, m->joint_min_areas[i - 1].tag) : NULL;
+    rule->joint = i ? tl_pattern_name(m, m->joint_min_areas[i - 1].tag) : NULL;
     return true;
 }

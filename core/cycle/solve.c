@@ -14,9 +14,6 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* Watches for steady failure. */
-typedef struct tl_watch tl_watch;
-
 /* ---------------------------------------------------------------- steady failure ----------
  *
  * Telling steady failure from settling.
@@ -63,14 +60,15 @@ typedef struct leg {
     tl_vec3 way;   /* direction and speed of the leg before */
     double speed;
     uint8_t legs; /* gone, one no slower than the other */
-    tl_vec3
-        force; /* sum over the samples of these legs of the unbalanced force, and of what the body bore */
+    /* sums over the samples of these legs: the unbalanced force, and what the body bore */
+    tl_vec3 force;
     double borne;
     bool touched; /* something, when the run began */
     bool reached; /* has gone as far as its size asks: the leg may be at its end */
 } leg;
 
-struct tl_watch {
+/* Watches for steady failure. */
+typedef struct tl_watch {
     size_t bodies;
     uint64_t structure;
     int64_t steps;
@@ -78,7 +76,7 @@ struct tl_watch {
     double least;  /* length of a leg that settlement asks for, when it was last needed, m */
     leg *leg;
     tl_id failing;
-};
+} tl_watch;
 
 /* Number of blocks of the mean size across the free bodies. */
 static double blocks_on_end(const tl_model *m)
@@ -143,12 +141,6 @@ static tl_watch *watch_begin(const tl_model *m)
 
 /* ---------------------------------------------------------------- samples ---------------- */
 
-/* What contacts carry at an overlap that is rounding (rest.c) does not count. */
-static double borne_by(const tl_model *m, uint32_t body)
-{
-    return tl_borne(m, body, tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity)));
-}
-
 typedef struct sample_job {
     tl_watch *w;
     const tl_model *m;
@@ -158,7 +150,9 @@ typedef struct sample_job {
 /* Adds a sample to the leg of a body. */
 static void add_sample(leg *l, double least, const tl_model *m, uint32_t body)
 {
-    double unbalanced = tl_v3_norm(m->bodies.force[body]), borne = borne_by(m, body);
+    double weight = tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity));
+    double unbalanced = tl_v3_norm(m->bodies.force[body]);
+    double borne = tl_borne(m, body, weight); /* without what rounding carries (rest.c) */
     bool judged =
         l->touched || (m->cycle->contact_force[body] > 0 && unbalanced < SUPPORTED * borne);
     tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from);
@@ -179,8 +173,7 @@ static void add_sample(leg *l, double least, const tl_model *m, uint32_t body)
 
 static void sample_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    (void)chunk;
-    (void)thread;
+    (void)chunk, (void)thread;
     sample_job *job = user;
     const tl_model *m = job->m;
     bool reached = false;
@@ -225,25 +218,19 @@ static void end_leg(leg *l, const tl_model *m, uint32_t body)
     begin_leg(l, m, body);
 }
 
-/* Whether a body has gone all its legs, pushed that way. */
-static bool fails(const leg *l)
-{
-    return l->legs == LEGS && tl_v3_dot(l->force, l->way) > LEAST_PUSH * l->borne;
-}
-
-/* The fastest of the bodies that fail. */
+/* The fastest of the bodies that fail: that have gone all their legs, pushed that way. */
 static tl_id find_failing(const tl_watch *w, const tl_model *m)
 {
     tl_id failing = TL_NO_ID;
     double fastest = 0;
     for (uint32_t body = 0; body < w->bodies; body++) {
-        if (!fails(&w->leg[body]) || m->bodies.fixed[body] == TL_FIX_ALL)
-            continue;
+        const leg *l = &w->leg[body];
         double speed = tl_v3_norm(m->bodies.v[body]);
-        if (speed > fastest) {
-            fastest = speed;
-            failing = m->bodies.id[body];
-        }
+        if (l->legs < LEGS || !(tl_v3_dot(l->force, l->way) > LEAST_PUSH * l->borne) ||
+            m->bodies.fixed[body] == TL_FIX_ALL || !(speed > fastest))
+            continue;
+        fastest = speed;
+        failing = m->bodies.id[body];
     }
     return failing;
 }
@@ -268,26 +255,6 @@ static tl_id watch_step(tl_watch *w, const tl_model *m)
             end_leg(&w->leg[body], m, body);
     w->failing = find_failing(w, m);
     return w->failing;
-}
-
-/* The body that has gone the farthest since the watch began, over its size, of those that touched something then and have gone
- * farther than they settle: the lowest id of its blocks, and its way, m, and size, m. TL_NO_ID: none has. */
-static tl_id watch_gone(const tl_watch *w, const tl_model *m, double *way, double *size)
-{
-    double most = FAILED_SHARE, least = SETTLED_SHARE * settlement(w, m);
-    tl_id gone = TL_NO_ID;
-    for (uint32_t body = 0; body < w->bodies && w->structure == m->structure; body++) {
-        const leg *l = &w->leg[body];
-        double far = tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, l->start));
-        if (!l->touched || m->bodies.fixed[body] == TL_FIX_ALL || far < least ||
-            !(far > most * l->size))
-            continue;
-        most = far / l->size;
-        *way = far;
-        *size = l->size;
-        gone = m->bodies.id[body];
-    }
-    return gone;
 }
 
 /* ---------------------------------------------------------------- runs -------------------- */
@@ -323,18 +290,19 @@ static void measure(const tl_model *m, const progress *p)
     r->wall = tl_clock() - p->wall_0;
 }
 
-/* Calls the user's functions; true when one of them ends the run. */
-static bool call_back(tl_model *m, const progress *p, tl_status *status)
+/* Calls the user's functions after a step; true when one of them ends the run. */
+static bool call_back(tl_model *m, const tl_solve *s, int64_t done, tl_status *status)
 {
-    const tl_solve *s = p->solve;
+    const bool due = s->every > 0 && done % s->every == 0;
     bool stop = false;
     m->running = true;
-    if (s->progress)
+    if (s->each)
+        *status = s->each(s->user, m);
+    if (*status == TL_OK && due && s->progress)
         *status = s->progress(s->user, m);
-    if (*status == TL_OK && s->stop)
+    if (*status == TL_OK && due && s->stop)
         stop = s->stop(s->user, m);
     m->running = false;
-    p->result->reason = TL_SOLVE_STOP;
     return stop || *status != TL_OK;
 }
 
@@ -345,30 +313,15 @@ static bool at_rest(tl_model *m, const progress *p)
     return rests;
 }
 
-/* Calls the function of every step; false when it ends the run. */
-static bool call_each(tl_model *m, const progress *p, tl_status *status)
-{
-    if (!p->solve->each)
-        return true;
-    m->running = true;
-    *status = p->solve->each(p->solve->user, m);
-    m->running = false;
-    return *status == TL_OK;
-}
-
 /* True when the run is over; sets the reason. */
 static bool ended(tl_model *m, const progress *p, tl_status *status)
 {
     const tl_solve *s = p->solve;
     int64_t done = m->cycles - p->cycles_0;
     tl_solve_reason *reason = &p->result->reason;
-    if (!call_each(m, p, status)) {
+    if (call_back(m, s, done, status))
         *reason = TL_SOLVE_STOP;
-        return true;
-    }
-    if ((s->progress || s->stop) && s->every > 0 && done % s->every == 0 && call_back(m, p, status))
-        return true;
-    if (tl_model_interrupted(m))
+    else if (tl_model_interrupted(m))
         *reason = TL_SOLVE_INTERRUPT;
     else if (s->ratio > 0 && at_rest(m, p))
         *reason = TL_SOLVE_RATIO;
@@ -421,16 +374,27 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
                  r->failing, speed, r->ratio_local, r->ratio);
 }
 
-/* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for. */
-static void say_gone(tl_model *m, const tl_watch *watch)
+/* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for. Names
+ * the body that has gone the farthest over its size, of those that touched something then. */
+static void say_gone(tl_model *m, const tl_watch *w)
 {
-    double way = 0, size = 0;
-    tl_id gone = watch_gone(watch, m, &way, &size);
-    if (gone != TL_NO_ID)
+    double way = 0, most = FAILED_SHARE, least = SETTLED_SHARE * settlement(w, m);
+    uint32_t gone = TL_NO_ROW;
+    for (uint32_t body = 0; body < w->bodies && w->structure == m->structure; body++) {
+        const leg *l = &w->leg[body];
+        double far = tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, l->start));
+        if (!l->touched || m->bodies.fixed[body] == TL_FIX_ALL || far < least ||
+            !(far > most * l->size))
+            continue;
+        most = far / l->size;
+        way = far;
+        gone = body;
+    }
+    if (gone != TL_NO_ROW)
         tl_model_say(m,
                      "solve: at rest, but not where it began: block %u has moved by %.3g m in this "
                      "run, %.2g times its size",
-                     gone, way, way / size);
+                     m->bodies.id[gone], way, most);
 }
 
 /* Neither at rest nor failing: of a run that was to find out which. */
@@ -460,14 +424,6 @@ static void say_end(tl_model *m, const tl_solve *solve, const tl_watch *watch,
         say_undecided(m, solve, r);
 }
 
-/* For who asks how the model stands. */
-static void note_run(tl_model *m, const tl_solve *solve, const tl_solve_result *r)
-{
-    m->cycle->failing = r->failing;
-    if (solve->ratio > 0)
-        m->cycle->rest_ratio = solve->ratio;
-}
-
 static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted)
 {
     tl_solve_result unread, *const result = wanted ? wanted : &unread;
@@ -491,9 +447,10 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted
         if (status != TL_OK)
             break;
         measure(m, &p);
-        result->failing = watch ? watch_step(watch, m) : TL_NO_ID;
         if (watch)
-            note_run(m, solve, result);
+            m->cycle->failing = result->failing = watch_step(watch, m);
+        if (solve->ratio > 0)
+            m->cycle->rest_ratio = solve->ratio;
         if (ended(m, &p, &status))
             break;
     }

@@ -1,10 +1,19 @@
 /* asked.c - contacts found for somebody who asks.
  *
- * After edits contacts are made anew, and what they carry is rounded. Were that done whenever somebody asks, once after each of
- * several edits instead of once after all, later steps would have other digits for it; and a law that is set would find contacts
- * that no step has found. So what is asked for after edits is found in a copy, and the next step, or what is put on contacts,
- * goes on from the contacts as the last one left them, through all edits at once. Only the ids that contacts were asked by stay
- * theirs, in what is copied and saved, too; contacts that nobody has asked for count on from these, in the order of their births. */
+ * After edits contacts are made anew, and what they carry is rounded. That must not be done whenever somebody asks: later
+ * steps would then have other digits, and a law that is set would find contacts that no step has found. So what is asked
+ * for after edits is found in a copy. The next step, or what is put on contacts, goes on from the contacts as the last step
+ * left them, through all edits at once. m->found_for tells which contacts m->detect has:
+ *
+ *     TL_FOR_STEPS ----------- query after edits ----------> TL_FOR_QUERIES_IN_COPY   (m->stepped: the last step's)
+ *       |  ^  ^                                                |
+ *       |  |  +--- next step, stress or law: drops the copy ---+
+ *       |  +------ next step, stress or law: drops all --------+
+ *       |                                                      |
+ *       +----- no step has been made: query, failed step ----> TL_FOR_QUERIES
+ *
+ * Only the ids that contacts were asked by stay theirs, in what is copied and saved, too. Contacts that nobody has asked
+ * for count on from these, in the order of their births. */
 #include "detect/asked.h"
 
 #include "contact/store.h"
@@ -12,9 +21,9 @@
 #include <stdlib.h>
 
 /* Whether some contact has been in a step, or bears an initial stress. */
-static bool has_begun(const tl_model *m)
+static bool has_begun(const tl_detect *d)
 {
-    return m->detect->stepped_contact > 0 || m->detect->points.initial;
+    return d->stepped_contact > 0 || d->points.initial;
 }
 
 /* ---------------------------------------------------------------- ids -------------------- */
@@ -27,7 +36,7 @@ static int compare(const void *x, const void *y)
 
 bool tl_asked_note(tl_model *m)
 {
-    if (!m->stepped && !(m->detect && m->only_asked))
+    if (m->found_for == TL_FOR_STEPS || !m->detect)
         return true;
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
@@ -70,46 +79,42 @@ static void drop_other_rules(tl_model *m)
 
 tl_status tl_asked_begin(tl_model *m)
 {
-    if (!tl_detect_lasting(m) || !has_begun(m)) {
-        if (!tl_asked_note(m))
-            return tl_fail_memory(&m->error);
+    tl_detect *lasting = tl_detect_lasting(m);
+    if (!tl_asked_note(m))
+        return tl_fail_memory(&m->error);
+    if (!lasting || !has_begun(lasting)) {
         drop_other_rules(m);
-        m->only_asked = true;
+        m->found_for = TL_FOR_QUERIES;
         return TL_OK;
     }
-    tl_detect *copy = tl_detect_copy(tl_detect_lasting(m));
+    tl_detect *copy = tl_detect_copy(lasting);
     if (!copy)
         return tl_fail_memory(&m->error);
-    if (m->stepped && !tl_asked_note(m)) {
-        tl_detect_destroy(copy);
-        return tl_fail_memory(&m->error);
-    }
-    if (m->stepped)
+    if (m->found_for == TL_FOR_QUERIES_IN_COPY)
         tl_detect_destroy(m->detect);
-    else
-        m->stepped = m->detect;
+    m->stepped = lasting;
     m->detect = copy;
+    m->found_for = TL_FOR_QUERIES_IN_COPY;
     go_on_counting(m);
     return TL_OK;
 }
 
 void tl_asked_step_failed(tl_model *m)
 {
-    m->only_asked = m->only_asked || (m->detect && !has_begun(m));
+    if (m->detect && !has_begun(m->detect))
+        m->found_for = TL_FOR_QUERIES;
 }
 
 void tl_asked_end(tl_model *m)
 {
     (void)tl_asked_note(m); /* without the memory for it contacts get other ids */
-    if (m->stepped) {
-        tl_detect_destroy(m->detect);
+    if (m->found_for != TL_FOR_STEPS) {
+        if (m->detect)
+            tl_detect_destroy(m->detect);
         m->detect = m->stepped;
         m->stepped = NULL;
-    } else if (m->detect && m->only_asked) {
-        tl_detect_destroy(m->detect);
-        m->detect = NULL;
+        m->found_for = TL_FOR_STEPS;
     }
-    m->only_asked = false;
     if (m->detect)
         go_on_counting(m);
 }
@@ -127,9 +132,9 @@ bool tl_asked_name(tl_model *m)
     if (born && !name)
         return false;
     for (size_t i = 0; born && i < c->table.rows; i++) {
-        tl_asked_id one = {m->blocks.id[c->a[i]], m->blocks.id[c->b[i]], 0};
         if (c->id[i] < first)
             continue;
+        tl_asked_id one = {m->blocks.id[c->a[i]], m->blocks.id[c->b[i]], 0};
         const tl_asked_id *known = bsearch(&one, m->asked_ids, m->asked_count, sizeof one, compare);
         name[c->id[i] - first] = known ? known->contact : UNKNOWN;
     }

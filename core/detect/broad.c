@@ -11,6 +11,7 @@
 #include "detect/broad.h"
 
 #include "detect/pairs.h"
+#include "geometry/measure.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -197,12 +198,6 @@ static tl_status fill(tl_model *m, struct tl_broad *g)
     return TL_OK; /* now entries of cell c are [cell_start[c], cell_start[c + 1]) */
 }
 
-static bool overlap(const tl_bounds *a, const tl_bounds *b)
-{
-    return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y &&
-           b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
-}
-
 static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
 {
     if (!tl_grow(&g->next, &g->next_capacity, *count + 1, sizeof *g->next))
@@ -223,7 +218,7 @@ static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const 
                 for (uint32_t e = g->cell_start[cell]; e < g->cell_start[cell + 1]; e++) {
                     const tl_bounds *its = &g->bounds[g->entries[e]];
                     uint32_t other = g->row[g->entries[e]];
-                    if ((entered && other <= row) || !overlap(mine, its) ||
+                    if ((entered && other <= row) || !tl_bounds_meet(mine, its) ||
                         m->blocks.body[row] == m->blocks.body[other])
                         continue;
                     cell_range q = range_of(g, its);
@@ -245,7 +240,7 @@ static bool may_meet(const tl_model *m, const struct tl_broad *g, uint32_t row)
     tl_vec3 place = tl_body_place(&m->bodies, body);
     double radius = m->bodies.radius[body] * (1 + BALL_MARGIN) + BALL_MARGIN * tl_v3_norm(place);
     tl_bounds ball = grown((tl_bounds){place, place}, radius + growth_of(m, g, row));
-    return overlap(&ball, &g->all);
+    return tl_bounds_meet(&ball, &g->all);
 }
 
 /* Pairs of the blocks that are entered with those that are not. */
@@ -260,7 +255,7 @@ static bool pairs_with_others(const tl_model *m, struct tl_broad *g, size_t *cou
         if (!may_meet(m, g, row))
             continue;
         tl_bounds bounds = grown(block_bounds(m, row), growth_of(m, g, row));
-        if (overlap(&bounds, &g->all) && !pairs_of(m, g, row, &bounds, false, count))
+        if (tl_bounds_meet(&bounds, &g->all) && !pairs_of(m, g, row, &bounds, false, count))
             return false;
     }
     return true;
@@ -289,14 +284,15 @@ static tl_status list_pairs(tl_model *m, struct tl_broad *g, bool whole, size_t 
     return TL_OK;
 }
 
-/* Gives back the room that the list has to spare. */
-static void trim(struct tl_broad *g, size_t count)
+/* Makes room for the chunks of so many pairs, none of which is known to sleep; false: out of memory. */
+static bool restart_chunks(tl_detect *d, size_t pairs)
 {
-    tl_pair *list = count ? realloc(g->next, count * sizeof *list) : NULL;
-    if (list) {
-        g->next = list;
-        g->next_capacity = count;
-    }
+    const size_t chunks = pairs / TL_PAIR_CHUNK + 1;
+    if (!tl_fit(&d->chunks, &d->chunk_capacity, chunks, sizeof *d->chunks))
+        return false;
+    for (size_t i = 0; i < chunks; i++)
+        d->chunks[i] = (tl_pair_chunk){.wake = -INFINITY};
+    return true;
 }
 
 /* Merges the old list into the new one: what was known of a pair stays, and a pair with a contact
@@ -322,18 +318,14 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
     }
     if (count > fresh)
         qsort(g->next, count, sizeof *g->next, compare_pair);
-    size_t chunks = count / TL_PAIR_CHUNK + 1;
-    if (!tl_fit(&d->chunks, &d->chunk_capacity, chunks, sizeof *d->chunks))
+    if (!restart_chunks(d, count))
         return tl_fail_memory(&m->error);
-    for (size_t i = 0; i < chunks; i++)
-        d->chunks[i] = (tl_pair_chunk){.wake = -INFINITY};
-    trim(g, count);
+    tl_pair *trimmed = count ? realloc(g->next, count * sizeof *trimmed) : NULL;
     free(d->pairs);
-    d->pairs = g->next;
-    d->pair_capacity = g->next_capacity;
+    d->pairs = trimmed ? trimmed : g->next;
+    d->pair_capacity = trimmed ? count : g->next_capacity;
     d->pair_count = count;
     g->next = NULL;
-    g->next_capacity = 0;
     for (uint32_t i = 0; i < count; i++)
         if (!tl_pair_is_apart(&d->pairs[i]))
             d->contacts.pair[d->pairs[i].contact] = i;
@@ -356,9 +348,8 @@ static tl_status insert(tl_model *m, struct tl_broad *g, size_t fresh)
 {
     tl_detect *d = m->detect;
     fresh = unknown_pairs(d, g->next, fresh);
-    size_t from = d->pair_count, to = from + fresh, chunks = to / TL_PAIR_CHUNK + 1;
-    if (!tl_fit(&d->pairs, &d->pair_capacity, to, sizeof *d->pairs) ||
-        !tl_fit(&d->chunks, &d->chunk_capacity, chunks, sizeof *d->chunks))
+    size_t from = d->pair_count, to = from + fresh;
+    if (!tl_fit(&d->pairs, &d->pair_capacity, to, sizeof *d->pairs) || !restart_chunks(d, to))
         return tl_fail_memory(&m->error);
     while (fresh) {
         bool old = from && compare_pair(&d->pairs[from - 1], &g->next[fresh - 1]) > 0;
@@ -367,8 +358,6 @@ static tl_status insert(tl_model *m, struct tl_broad *g, size_t fresh)
             d->contacts.pair[d->pairs[to].contact] = (uint32_t)to;
         d->pair_count += !old;
     }
-    for (size_t i = 0; i < chunks; i++)
-        d->chunks[i] = (tl_pair_chunk){.wake = -INFINITY};
     return TL_OK;
 }
 

@@ -321,7 +321,7 @@ static void find_laws(tl_model *m)
         if (c->pending[row] == TL_PENDING_NONE && law != c->law[row])
             c->pending[row] = TL_PENDING_MOVE;
         if (lacks_volumes(m, row, law))
-            c->points_valid_to[row] = -INFINITY;
+            c->points_valid_to[row] = TL_OUTDATED;
     }
 }
 
@@ -719,7 +719,7 @@ tl_status tl_detect_refresh(tl_model *m)
     const tl_detect *d = m->detect;
     bool listed =
         d && !d->rows_changed && d->indexed == d->contacts.table.rows; /* no step failed */
-    bool ruled = !m->only_asked || !d ||
+    bool ruled = m->found_for != TL_FOR_QUERIES || !d ||
                  (d->rules == m->rules && d->contact_points == m->config.contact_points);
     if (listed && ruled && d->structure == m->structure && d->laws == m->laws)
         return TL_OK;

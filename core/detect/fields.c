@@ -218,7 +218,7 @@ static bool is_listed(tl_model *m, uint32_t c, const tl_press_row *row)
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
     if (odometer <= contacts->faces_valid_to[c])
         return true;
-    if (contacts->faces_valid_to[c] == -INFINITY) /* it is to be looked at in any case */
+    if (contacts->faces_valid_to[c] == TL_OUTDATED) /* it is to be looked at in any case */
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     double moved = tl_pair_moved(&view, &row->listed_at) + fabs(row->shift - row->listed_shift);
@@ -242,9 +242,8 @@ static bool has_slopes(const tl_model *m, uint32_t c, const tl_press_row *row)
     uint32_t law = m->detect->contacts.law[c];
     bool tells =
         law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]); /* slopes are of the energy only */
-    /* -INFINITY: its rules are others now */
     return row->by_slope && !tells && m->config.reuse_geometry &&
-           m->detect->contacts.points_valid_to[c] != -INFINITY;
+           m->detect->contacts.points_valid_to[c] != TL_OUTDATED;
 }
 
 /* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs. They go
@@ -316,7 +315,7 @@ bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     const tl_press_query query = tl_manifold_query(&view, &region, &rule, &before);
     row->by_slope = false;
     row->mesh = (tl_field_mesh){0};
-    contacts->faces_valid_to[c] = contacts->points_valid_to[c] = -INFINITY;
+    contacts->faces_valid_to[c] = contacts->points_valid_to[c] = TL_OUTDATED;
     return tl_press_find(&query, 1, scratch, &row->press, &row->extra);
 }
 

@@ -31,14 +31,6 @@
  * (kn 1e7) come to 1.06. Test: lua/test_limits. */
 #define TL_DEEPEST 1.25
 
-/* Whether no force can move either block. More than tl_blocks_held_still (contacts.h): bodies that a drive carries along, or
- * that still have a velocity, do not feel what their overlap would do. */
-static bool both_held(const tl_model *m, uint32_t a, uint32_t b)
-{
-    const uint8_t *fixed = m->bodies.fixed;
-    return fixed[m->blocks.body[a]] == TL_FIX_ALL && fixed[m->blocks.body[b]] == TL_FIX_ALL;
-}
-
 /* Extent of a body along a direction in its frame. */
 static double width_along(const tl_model *m, uint32_t body, tl_vec3 n)
 {
@@ -105,17 +97,24 @@ bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_re
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
 {
     contacts->deep[contact] = born ? TL_DEEP_BORN : TL_DEEP_SUNK;
-    contacts->faces_valid_to[contact] = -INFINITY;
+    contacts->faces_valid_to[contact] = TL_OUTDATED;
+}
+
+/* The region of a contact's blocks; false: out of memory. */
+static bool find_region(tl_model *m, uint32_t a, uint32_t b, tl_pair_view *view, tl_region *region)
+{
+    tl_narrow_scratch *scratch = &m->detect->narrow[0];
+    *view = tl_pair_view_of(m, a, b);
+    return tl_pair_place(view, scratch) && tl_region_find(view, 0, scratch, region);
 }
 
 bool tl_overlap_measure(tl_model *m, uint32_t contact, tl_overlap_share *out)
 {
     const tl_contacts *c = &m->detect->contacts;
     uint32_t a = c->a[contact], b = c->b[contact];
-    tl_pair_view view = tl_pair_view_of(m, a, b);
-    tl_narrow_scratch *scratch = &m->detect->narrow[0];
+    tl_pair_view view;
     tl_region region;
-    if (!tl_pair_place(&view, scratch) || !tl_region_find(&view, 0, scratch, &region))
+    if (!find_region(m, a, b, &view, &region))
         return false;
     double of_a = width_along(m, m->blocks.body[a], region.n);
     double of_b = width_along(m, m->blocks.body[b], tl_m3_tmul(&view.turn, region.n));
@@ -127,10 +126,9 @@ static tl_status report(tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
     uint32_t a = c->a[contact], b = c->b[contact];
-    tl_pair_view view = tl_pair_view_of(m, a, b);
-    tl_narrow_scratch *scratch = &m->detect->narrow[0];
+    tl_pair_view view;
     tl_region region;
-    if (!tl_pair_place(&view, scratch) || !tl_region_find(&view, 0, scratch, &region))
+    if (!find_region(m, a, b, &view, &region))
         return tl_fail_memory(&m->error);
     char name[320];
     tl_contact_name(m, contact, name, sizeof name);
@@ -161,14 +159,11 @@ tl_status tl_overlaps_check(tl_model *m)
     uint32_t first = TL_NO_ROW;
     bool marked = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->deep[row] == TL_DEEP_NOT)
+        marked = marked || c->deep[row] != TL_DEEP_NOT;
+        if (c->deep[row] == TL_DEEP_NOT || tl_blocks_fixed(m, c->a[row], c->b[row]))
             continue;
-        marked = true;
-        if (both_held(m, c->a[row], c->b[row]))
-            continue;                        /* until one of them is free */
-        c->points_valid_to[row] = -INFINITY; /* look again when the step is repeated */
-        if (first == TL_NO_ROW)
-            first = row;
+        c->points_valid_to[row] = TL_OUTDATED; /* look again when the step is repeated */
+        first = first == TL_NO_ROW ? row : first;
     }
     if (first != TL_NO_ROW)
         return report(m, first);

@@ -42,16 +42,10 @@ static double travel_of(const sweep *s, uint32_t body)
 
 /* ---------------------------------------------------------------- swept bounds ----------- */
 
-static void include(tl_swept *box, tl_vec3 x)
+static void include(tl_bounds *box, tl_vec3 x)
 {
     box->min = tl_v3_min(box->min, x);
     box->max = tl_v3_max(box->max, x);
-}
-
-static bool meet(const tl_swept *a, const tl_swept *b)
-{
-    return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y &&
-           b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
 }
 
 static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
@@ -61,7 +55,7 @@ static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
     const tl_mat3 *r = &s->m->bodies.pose[body].r;
     const tl_step_motion *by = &s->motion[body];
     tl_vec3 place = tl_body_place(&s->m->bodies, body);
-    tl_swept box = {place, place, row, moves};
+    tl_bounds box = {place, place};
     for (uint32_t i = 0; i < shape->vertex_count; i++) {
         tl_vec3 arm = tl_m3_mul(r, shape->vertex[i]), x = tl_v3_add(place, arm);
         if (i == 0)
@@ -69,13 +63,13 @@ static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
         include(&box, x);
         include(&box, tl_v3_add(x, tl_v3_add(by->shift, tl_v3_cross(by->turn, arm))));
     }
-    return box;
+    return (tl_swept){box, row, moves};
 }
 
 static int compare_swept(const void *a, const void *b)
 {
     const tl_swept *x = a, *y = b;
-    int along = (x->min.x > y->min.x) - (x->min.x < y->min.x);
+    int along = (x->box.min.x > y->box.min.x) - (x->box.min.x < y->box.min.x);
     return along ? along : (x->row > y->row) - (x->row < y->row);
 }
 
@@ -83,13 +77,13 @@ static int compare_swept(const void *a, const void *b)
 static void list_swept(sweep *s, double far)
 {
     const tl_model *m = s->m;
-    tl_swept all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, true};
+    tl_bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         if (!(travel_of(s, m->blocks.body[row]) > far))
             continue;
-        tl_swept box = s->list[s->count++] = sweep_block(s, row, true);
-        include(&all, box.min);
-        include(&all, box.max);
+        tl_swept swept = s->list[s->count++] = sweep_block(s, row, true);
+        include(&all, swept.box.min);
+        include(&all, swept.box.max);
     }
     for (uint32_t row = 0; s->count > 0 && row < m->blocks.table.rows; row++) {
         uint32_t body = m->blocks.body[row];
@@ -97,8 +91,8 @@ static void list_swept(sweep *s, double far)
             continue;
         double reach = m->bodies.radius[body] + far;
         tl_vec3 grow = {reach, reach, reach}, place = tl_body_place(&m->bodies, body);
-        tl_swept ball = {tl_v3_sub(place, grow), tl_v3_add(place, grow), row, false};
-        if (meet(&ball, &all))
+        tl_bounds ball = {tl_v3_sub(place, grow), tl_v3_add(place, grow)};
+        if (tl_bounds_meet(&ball, &all))
             s->list[s->count++] = sweep_block(s, row, false);
     }
     if (s->count > 0)
@@ -115,18 +109,12 @@ typedef struct side {
     tl_step_motion by;
 } side;
 
-static side side_of(const sweep *s, const tl_pair_view *view, uint32_t body_a, uint32_t body,
-                    bool of_b)
+/* How the step moves a body, in the frame of another one. */
+static tl_step_motion motion_in(const sweep *s, uint32_t frame, uint32_t body)
 {
-    const tl_mat3 *r = &s->m->bodies.pose[body_a].r;
-    tl_step_motion by = s->motion[body];
-    side out = {.shape = of_b ? view->b : view->a, .turn = tl_m3_identity(), .centre = {0, 0, 0}};
-    if (of_b) {
-        out.turn = view->turn;
-        out.centre = view->shift;
-    }
-    out.by = (tl_step_motion){tl_m3_tmul(r, by.shift), tl_m3_tmul(r, by.turn)};
-    return out;
+    const tl_mat3 *r = &s->m->bodies.pose[frame].r;
+    const tl_step_motion *by = &s->motion[body];
+    return (tl_step_motion){tl_m3_tmul(r, by->shift), tl_m3_tmul(r, by->turn)};
 }
 
 /* Farthest reach of a block along a direction, before the step and after it. */
@@ -147,9 +135,12 @@ static reach reach_along(const side *s, tl_vec3 n)
     return out;
 }
 
-/* Gap of a pair along the outward normal of a face of one of them, before the step and after it. */
-static reach gap_along(const side *owner, const side *other, uint32_t face)
+/* Gap of a pair along the outward normal of a face, before the step and after it. The faces of B come after those of A. */
+static reach gap_along(const side *a, const side *b, uint32_t face)
 {
+    const bool of_b = face >= a->shape->face_count;
+    const side *owner = of_b ? b : a, *other = of_b ? a : b;
+    face -= of_b ? a->shape->face_count : 0;
     tl_vec3 n = tl_m3_mul(&owner->turn, owner->shape->plane[face].normal);
     reach own = reach_along(owner, n), its = reach_along(other, tl_v3_neg(n));
     return (reach){-its.before - own.before, -its.after - own.after};
@@ -158,16 +149,13 @@ static reach gap_along(const side *owner, const side *other, uint32_t face)
 /* The part of the step after which a pair has closed by what is allowed: INFINITY when it does not in this step. */
 static double part_of_step(const side *a, const side *b, double allowed, double *deeper)
 {
+    const uint32_t faces = a->shape->face_count + b->shape->face_count;
     double widest = -INFINITY, part = 0;
-    for (uint32_t f = 0; f < a->shape->face_count + b->shape->face_count; f++) {
-        bool of_b = f >= a->shape->face_count;
-        reach gap = of_b ? gap_along(b, a, f - a->shape->face_count) : gap_along(a, b, f);
-        widest = fmax(widest, gap.before);
-    }
+    for (uint32_t f = 0; f < faces; f++)
+        widest = fmax(widest, gap_along(a, b, f).before);
     double deepest = fmax(-widest, 0) + allowed; /* that the overlap may become */
-    for (uint32_t f = 0; f < a->shape->face_count + b->shape->face_count; f++) {
-        bool of_b = f >= a->shape->face_count;
-        reach gap = of_b ? gap_along(b, a, f - a->shape->face_count) : gap_along(a, b, f);
+    for (uint32_t f = 0; f < faces; f++) {
+        reach gap = gap_along(a, b, f);
         if (gap.before < -deepest)
             continue;
         if (gap.after >= -deepest)
@@ -185,8 +173,8 @@ static bool may_pass(const sweep *s, const tl_swept *a, const tl_swept *b)
 {
     const tl_model *m = s->m;
     uint32_t body_a = m->blocks.body[a->row], body_b = m->blocks.body[b->row];
-    return body_a != body_b && (a->moves || b->moves) && meet(a, b) &&
-           !(m->bodies.fixed[body_a] == TL_FIX_ALL && m->bodies.fixed[body_b] == TL_FIX_ALL) &&
+    return body_a != body_b && (a->moves || b->moves) && tl_bounds_meet(&a->box, &b->box) &&
+           !tl_blocks_fixed(m, a->row, b->row) &&
            travel_of(s, body_a) + travel_of(s, body_b) >
                s->share * fmin(tl_least_thickness(m, a->row), tl_least_thickness(m, b->row));
 }
@@ -197,8 +185,9 @@ static void look_at(const sweep *s, uint32_t a, uint32_t b, tl_passing *out)
     const tl_model *m = s->m;
     const tl_pair_view view = tl_pair_view_of(m, a, b);
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
-    side side_a = side_of(s, &view, body_a, body_a, false);
-    side side_b = side_of(s, &view, body_a, body_b, true);
+    const tl_vec3 zero = {0, 0, 0};
+    side side_a = {view.a, tl_m3_identity(), zero, motion_in(s, body_a, body_a)};
+    side side_b = {view.b, view.turn, view.shift, motion_in(s, body_a, body_b)};
     double thickness = fmin(tl_poly_thickness(view.a), tl_poly_thickness(view.b)), deeper = 0;
     double part = part_of_step(&side_a, &side_b, s->share * thickness, &deeper);
     bool lower = a < out->a || (a == out->a && b < out->b);
@@ -213,7 +202,7 @@ tl_passing tl_passing_find(const tl_model *m, const tl_step_motion *motion, doub
     tl_passing out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0, 0};
     list_swept(&s, 0.5 * share * thinnest);
     for (size_t i = 0; i < s.count; i++)
-        for (size_t j = i + 1; j < s.count && s.list[j].min.x <= s.list[i].max.x; j++)
+        for (size_t j = i + 1; j < s.count && s.list[j].box.min.x <= s.list[i].box.max.x; j++)
             if (may_pass(&s, &s.list[i], &s.list[j])) {
                 uint32_t a = s.list[i].row, b = s.list[j].row;
                 look_at(&s, a < b ? a : b, a < b ? b : a, &out);

@@ -20,7 +20,7 @@ typedef struct tl_passing {
 
 /* Bounds of a block over a step. */
 typedef struct tl_swept {
-    tl_vec3 min, max;
+    tl_bounds box;
     uint32_t row;
     bool moves; /* far enough to be one of a pair that passes */
 } tl_swept;

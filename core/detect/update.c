@@ -179,7 +179,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     const tl_manifold *g = &scratch->manifold;
     if (!tl_kind_find(m, contacts->a[c], contacts->b[c], &view, &region, &rule, &before, scratch))
         return false;
-    contacts->faces_valid_to[c] = scratch->reframed ? -INFINITY : odometer + g->valid;
+    contacts->faces_valid_to[c] = scratch->reframed ? TL_OUTDATED : odometer + g->valid;
     contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);
     const double over = row ? TL_PARTED * before.reach : before.holds ? 0 : before.over;
     if (g->point_count == 0 && !is_near(&view, region.gap, over, &way)) {
@@ -390,7 +390,7 @@ static bool is_valid(const tl_model *m, uint32_t c, double *valid_to,
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
     if (odometer <= *valid_to)
         return true;
-    if (*valid_to == -INFINITY || !is_patch(contacts, c))
+    if (*valid_to == TL_OUTDATED || !is_patch(contacts, c))
         return false;
     double left = way_left(m, c);
     if (left > 0)
@@ -474,8 +474,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
 static bool touches_still(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    /* -INFINITY: its rules are others now */
-    if (contacts->point_count[c] || contacts->points_valid_to[c] == -INFINITY)
+    if (contacts->point_count[c] || contacts->points_valid_to[c] == TL_OUTDATED)
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     if (tl_touch_rule_of(m, &view, contacts->tag[c], 0).min_area > 0)

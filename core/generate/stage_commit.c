@@ -544,7 +544,7 @@ typedef struct commit_scratch {
 /* Whether contacts are kept of blocks: those of their parts take them over. */
 static bool has_contacts(const tl_model *m)
 {
-    return m->detect && !m->only_asked;
+    return m->detect && m->found_for != TL_FOR_QUERIES;
 }
 
 /* Notes what blocks were cut out of, where there is room for it. */

@@ -164,6 +164,13 @@ void tl_law_clear(tl_law *law)
     *law = (tl_law){0};
 }
 
+const char *tl_pattern_name(tl_model *m, tl_tag tag)
+{
+    if (tag.joint == 0)
+        return "*";
+    return tag.plane == 0 ? m->joints[tag.joint - 1].name : tl_tag_name(m, tag);
+}
+
 const char *tl_tag_name(tl_model *m, tl_tag tag)
 {
     static const char none[] = "";

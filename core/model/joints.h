@@ -12,6 +12,8 @@ uint32_t tl_joint_find(const tl_model *m, const char *name);
 uint32_t tl_joint_intern(tl_model *m, const char *name);
 /* Parses "*", "J1" or "J1:3"; fails with a sentence (nearest name) when the joint does not exist. */
 tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag);
+/* The same text for a tag; valid until the next call. */
+const char *tl_pattern_name(tl_model *m, tl_tag tag);
 /* True when `pattern` ("*": 0,0; set: j,0; plane: j,p) covers `tag`. */
 bool tl_tag_matches(tl_tag pattern, tl_tag tag);
 /* The joint law that rules a contact of this tag, or NULL. */

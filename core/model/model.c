@@ -12,13 +12,11 @@
 
 void tl_damping_clear(tl_model *m)
 {
-    if (m->damping) {
-        const tl_damping_ops *ops = m->damping->ops;
-        if (ops->destroy && m->damping_self != m->damping_params) {
-            tl_enter(m->damping, "destroy");
-            ops->destroy(m->damping_self);
-            tl_leave();
-        }
+    const tl_damping_ops *ops = m->damping ? m->damping->ops : NULL;
+    if (ops && ops->destroy && m->damping_self != m->damping_params) {
+        tl_enter(m->damping, "destroy");
+        ops->destroy(m->damping_self);
+        tl_leave();
     }
     free(m->damping_params);
     free(m->damping_state);
@@ -182,30 +180,23 @@ void tl_model_interrupt_if(tl_model *m, bool (*asked)(void))
 
 /* ---------------------------------------------------------------- rows ------------------- */
 
-static int compare_heir(const void *x, const void *y)
+/* Of records that begin with an id. */
+static int compare_ids(const void *x, const void *y)
 {
-    const tl_heir *p = x, *q = y;
-    return (p->id > q->id) - (p->id < q->id);
+    const tl_id *p = x, *q = y;
+    return (*p > *q) - (*p < *q);
 }
 
 const tl_heir *tl_heir_of(const tl_model *m, tl_id id)
 {
-    const tl_heir wanted = {.id = id};
-    return m->heir_count ? bsearch(&wanted, m->heirs, m->heir_count, sizeof wanted, compare_heir)
+    return m->heir_count ? bsearch(&id, m->heirs, m->heir_count, sizeof *m->heirs, compare_ids)
                          : NULL;
-}
-
-static int compare_split(const void *x, const void *y)
-{
-    const tl_split *p = x, *q = y;
-    return (p->block > q->block) - (p->block < q->block);
 }
 
 tl_id tl_split_of(const tl_model *m, tl_id block)
 {
-    const tl_split wanted = {.block = block};
     const tl_split *split =
-        m->split_count ? bsearch(&wanted, m->splits, m->split_count, sizeof wanted, compare_split)
+        m->split_count ? bsearch(&block, m->splits, m->split_count, sizeof *split, compare_ids)
                        : NULL;
     return split ? split->whole : TL_NO_ID;
 }
@@ -255,31 +246,22 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
 
 static const tl_base no_base = {{0, 0, 0}, {1, 0, 0, 0}};
 
-/* A column that is there now: where it was not, nothing has shift or turn. */
-static void begin_base(tl_base *column, bool there, size_t rows)
-{
-    for (size_t row = 0; row < rows && !there; row++)
-        column[row] = no_base;
-}
-
 bool tl_blocks_hold_base(tl_model *m)
 {
     tl_blocks *b = &m->blocks;
-    const bool there = b->base;
-    if (!TL_COLUMN_NEED(&b->table, b, base, 0))
-        return false;
-    begin_base(b->base, there, b->table.rows);
-    return true;
+    const bool there = b->base, enough = TL_COLUMN_NEED(&b->table, b, base, 0);
+    for (size_t row = 0; row < b->table.rows && enough && !there; row++)
+        b->base[row] = no_base;
+    return enough;
 }
 
 bool tl_blocks_hold_made(tl_model *m)
 {
     tl_blocks *b = &m->blocks;
-    const bool there = b->made;
-    if (!TL_COLUMN_NEED(&b->table, b, made, 0))
-        return false;
-    begin_base(b->made, there, b->table.rows);
-    return true;
+    const bool there = b->made, enough = TL_COLUMN_NEED(&b->table, b, made, 0);
+    for (size_t row = 0; row < b->table.rows && enough && !there; row++)
+        b->made[row] = no_base;
+    return enough;
 }
 
 tl_base tl_block_base(const tl_model *m, uint32_t row)

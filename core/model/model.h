@@ -154,6 +154,13 @@ typedef enum tl_remark {
     TL_REMARK_UNDECIDED /* a run for equilibrium has ended before it, without failure */
 } tl_remark;
 
+/* For what the contacts in `detect` were found: asked.c. */
+typedef enum tl_found_for {
+    TL_FOR_STEPS,          /* the next step goes on from them */
+    TL_FOR_QUERIES,        /* no step has used them: the next one finds all anew */
+    TL_FOR_QUERIES_IN_COPY /* the next step goes on from `stepped` */
+} tl_found_for;
+
 /* A contact that somebody has asked for, by the ids of its blocks. */
 typedef struct tl_asked_id {
     tl_id a, b, contact;
@@ -234,8 +241,8 @@ struct tl_model {
     tl_profile profile; /* so far; the counts of contacts are made when asked for */
 
     struct tl_detect *detect;  /* of the module contact */
-    struct tl_detect *stepped; /* before somebody asked after edits: asked.c; or NULL */
-    bool only_asked;           /* no step has used it yet */
+    struct tl_detect *stepped; /* of the last step; NULL but for TL_FOR_QUERIES_IN_COPY */
+    tl_found_for found_for;
     tl_asked_id *asked_ids; /* of contacts that were asked for and are to be found again: asked.c */
     size_t asked_count;
     tl_id next_contact; /* the last that was given to one of them */
@@ -256,6 +263,13 @@ static inline bool tl_model_interrupted(const tl_model *m)
 static inline const uint32_t *tl_body_blocks(const tl_model *m, uint32_t body)
 {
     return &m->members[m->bodies.member_start[body]];
+}
+
+/* Whether the bodies of two blocks are held in every component: no force can move them. */
+static inline bool tl_blocks_fixed(const tl_model *m, uint32_t a, uint32_t b)
+{
+    const uint8_t *fixed = m->bodies.fixed;
+    return fixed[m->blocks.body[a]] == TL_FIX_ALL && fixed[m->blocks.body[b]] == TL_FIX_ALL;
 }
 
 /* Present place of a body's centroid, relative to the origin. */

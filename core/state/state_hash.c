@@ -142,7 +142,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     struct tl_detect *own = m->detect, *stepped = m->stepped;
     const struct tl_detect *lasting = tl_detect_lasting(m);
     struct tl_detect *copy = lasting ? tl_detect_copy(lasting) : NULL;
-    bool only_asked = m->only_asked;
+    tl_found_for found_for = m->found_for;
     tl_asked_id *asked_ids = m->asked_ids;
     size_t asked_count = m->asked_count, heir_count = m->heir_count;
     tl_id next_contact = m->next_contact;
@@ -151,6 +151,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
         return tl_fail_memory(&m->error);
     m->detect = copy;
     m->stepped = NULL;
+    m->found_for = TL_FOR_STEPS;
     m->asked_ids = NULL;
     m->asked_count = 0;
     m->log = say_nothing;
@@ -164,7 +165,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
         tl_detect_destroy(m->detect);
     m->detect = own;
     m->stepped = stepped;
-    m->only_asked = only_asked;
+    m->found_for = found_for;
     free(m->asked_ids); /* of a detection that failed */
     m->asked_ids = asked_ids;
     m->asked_count = asked_count;
