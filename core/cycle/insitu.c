@@ -1,11 +1,19 @@
-/* insitu.c - initial stress put on the contacts of a model (stress.c), and what is improbable about it. */
+/* insitu.c - initial stress put on the contacts of a model: tractions sigma n on the face patches that exist now.
+ *
+ * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets
+ * f_n = -(n . sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now.
+ * Field contacts begin without force, and so do faces with rock between them and contacts made later, but those of blocks
+ * that are cut (contact/estate.c). What is improbable about a stress is told. */
+#include "base/columns.h"
+#include "contact/across_gap.h"
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
+#include "contact/detection.h"
+#include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
 #include "cycle/undo.h"
 #include "detect/detect.h"
-#include "force/stress.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
 #include "model/options.h"
@@ -21,6 +29,52 @@
 /* Limit: largest component of a stress, Pa, and of its gradient, Pa/m, that is taken: forces and their energies stay
  * finite. Test: lua/test_insitu. */
 #define MOST_STRESS 1e50
+
+/* The stress at a height. */
+static tl_sym3 stress_at(const tl_insitu *s, double z)
+{
+    double h = z - s->at.z;
+    return (tl_sym3){s->stress.xx + h * s->gradient.xx, s->stress.yy + h * s->gradient.yy,
+                     s->stress.zz + h * s->gradient.zz, s->stress.xy + h * s->gradient.xy,
+                     s->stress.yz + h * s->gradient.yz, s->stress.zx + h * s->gradient.zx};
+}
+
+/* Whether the faces of a patch are together: in the mean over its area not farther apart than blocks in contact are. Faces
+ * with a wedge of rock between them touch along its edge and have a patch, but the wedge carries their stress. */
+static bool faces_meet(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double area = 0, apart = 0;
+    for (size_t i = 0; i < contacts->point_count[c]; i++) {
+        size_t point = tl_point_row(contacts, c, i);
+        area += p->area[point];
+        apart -= p->area[point] * (m->detect->lanes[0].closure[i] + p->reference[point]);
+    }
+    return apart <= TL_CONTACT_TOLERANCE * size * area;
+}
+
+/* Puts the stress on a contact, whose points have initial forces. */
+static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_point_lanes *lanes = &m->detect->lanes[0];
+    double centroid_z = m->origin.z + tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]).z;
+    tl_contact_places(m, c, lanes);
+    m->detect->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
+    if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
+        return;
+    contacts->stored[c] = NAN;
+    double opening[TL_LANES];
+    for (size_t i = 0; i < contacts->point_count[c]; i++) {
+        if (i % TL_LANES == 0)
+            tl_contact_point_openings(m, c, i, opening);
+        tl_sym3 stress = stress_at(s, centroid_z + lanes->arm[2][i]);
+        tl_point_load(&m->detect->points, tl_point_row(contacts, c, i), &stress,
+                      tl_columns_get(lanes->normal, i), lanes->closure[i], opening[i % TL_LANES]);
+    }
+}
 
 /* Says so when the stress pulls at faces: most likely its sign is that of compression. */
 static void say_tension(tl_model *m, const tl_insitu *s)
@@ -94,7 +148,7 @@ static double face_traction(const tl_model *m, const tl_insitu *s, uint32_t row,
     const tl_poly *shape = m->blocks.shape[row];
     tl_vec3 n = tl_m3_mul(&m->bodies.pose[body].r, shape->plane[face].normal);
     double z = tl_model_point(m, body, tl_poly_face_centroid(shape, face)).z;
-    return tl_v3_norm(tl_s3_mul(tl_insitu_stress(s, z), n));
+    return tl_v3_norm(tl_s3_mul(stress_at(s, z), n));
 }
 
 /* Sets *outer when the stress would act on a bare part of the block's surface. Tractions below `least` are none. */
@@ -182,7 +236,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
         return tl_fail_memory(&m->error);
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; i < c->table.rows; i++)
-        tl_insitu_load(m, insitu, i);
+        load_contact(m, insitu, i);
     m->laws++; /* contacts hold another energy */
     tl_undo_by_hand(m);
     tl_held_wake(m);

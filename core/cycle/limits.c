@@ -15,13 +15,76 @@
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "cycle/cycle_data.h"
-#include "cycle/kicked.h"
+#include "cycle/kick.h"
 #include "cycle/undo.h"
 #include "model/loads.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
 #include <talus/number.h>
+
+/* ---------------------------------------------------------------- velocities ------------- */
+
+/* The times of a step, s: of the drift, and of the kick before it. */
+typedef struct step_span {
+    double dt, span;
+} step_span;
+
+typedef struct velocities {
+    tl_vec3 v, w;
+} velocities;
+
+/* Forces on a body with those of the damping, and the inertia they meet. */
+typedef struct push {
+    tl_vec3 force, moment;
+    double mass, alpha, scale, turn_scale;
+} push;
+
+static inline push push_of(const tl_model *m, uint32_t body)
+{
+    const struct tl_cycle *c = m->cycle;
+    const tl_bodies *b = &m->bodies;
+    push p = {b->force[body], b->moment[body], b->mass[body], 0, 1, 1};
+    if (tl_inertia_scaled(c)) {
+        p.scale = tl_inertia_scale(c, body);
+        p.turn_scale = tl_turn_scale(c, body);
+    }
+    if (tl_loads_lag(m)) {
+        tl_wrench lag = tl_load_lag(m, body);
+        p.force = tl_v3_sub(p.force, lag.force);
+        p.moment = tl_v3_sub(p.moment, lag.moment);
+    }
+    if (m->damping) {
+        p.force = tl_v3_add(p.force, tl_columns_get(c->damping_force, body));
+        p.moment = tl_v3_add(p.moment, tl_columns_get(c->damping_moment, body));
+        p.alpha = c->alpha[body];
+    }
+    return p;
+}
+
+/* Velocities after the kick, as the move makes them; with a span of 0 those that the body has, or that its drive gives. */
+static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
+{
+    const tl_bodies *b = &m->bodies;
+    velocities out = {b->v[body], b->w[body]};
+    if (b->fixed[body] == TL_FIX_ALL) {
+        const tl_drive_record *drive = b->drive[body] ? &m->drives[b->drive[body] - 1] : NULL;
+        return drive ? (velocities){drive->velocity, drive->angular_velocity} : out;
+    }
+    if (!(k->span > 0))
+        return out;
+    push p = push_of(m, body);
+    out.v = tl_kick(out.v, p.force, k->span / (p.mass * p.scale), p.alpha, k->span);
+    if (b->fixed[body] & TL_FIX_ROTATION)
+        return out;
+    tl_quat axes = tl_q_mul(b->q[body], b->axes[body]);
+    tl_vec3 turn = tl_q_rotate(tl_q_conj(axes), p.moment), i = b->moments[body];
+    if (m->config.rotation == TL_ROTATION_PAPER)
+        i = tl_v3(b->round[body], b->round[body], b->round[body]);
+    turn = tl_q_rotate(axes, tl_v3(turn.x / i.x, turn.y / i.y, turn.z / i.z));
+    out.w = tl_kick(out.w, turn, k->span / p.turn_scale, p.alpha, k->span);
+    return out;
+}
 
 /* ---------------------------------------------------------------- travel ------------------
  *
@@ -75,7 +138,7 @@ bool tl_travel_may_matter(const tl_model *m, double dt)
 
 /* What the step does to each body, with a place for the bounds of each block; NULL: out of memory. The memory is kept for the steps
  * that follow: blocks that are fast in one step are so in the next. */
-static tl_step_motion *motions_of(tl_model *m, const tl_step_span *span)
+static tl_step_motion *motions_of(tl_model *m, const step_span *span)
 {
     struct tl_cycle *c = m->cycle;
     size_t bodies = m->bodies.table.rows, blocks = m->blocks.table.rows;
@@ -83,20 +146,10 @@ static tl_step_motion *motions_of(tl_model *m, const tl_step_span *span)
         !tl_fit(&c->swept, &c->swept_capacity, blocks + 1, sizeof *c->swept))
         return NULL;
     for (uint32_t body = 0; body < bodies; body++) {
-        tl_vec3 v, w;
-        tl_kicked(m, body, span, &v, &w);
-        c->motion[body] = (tl_step_motion){tl_v3_scale(span->dt, v), tl_v3_scale(span->dt, w)};
+        velocities at = kicked(m, body, span);
+        c->motion[body] = (tl_step_motion){tl_v3_scale(span->dt, at.v), tl_v3_scale(span->dt, at.w)};
     }
     return c->motion;
-}
-
-/* What a part of the step does. */
-static void scale_motions(const tl_model *m, tl_step_motion *motion, double part)
-{
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        motion[body].shift = tl_v3_scale(part, motion[body].shift);
-        motion[body].turn = tl_v3_scale(part, motion[body].turn);
-    }
 }
 
 /* The body that turns the most, or TL_NO_ROW. */
@@ -118,11 +171,7 @@ static uint32_t widest_turn(const tl_model *m, const tl_step_motion *motion, dou
 static uint32_t faster_of(const tl_model *m, const tl_step_motion *motion, uint32_t a, uint32_t b)
 {
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
-    double far_a = tl_v3_norm(motion[body_a].shift) +
-                   tl_v3_norm(motion[body_a].turn) * m->bodies.radius[body_a];
-    double far_b = tl_v3_norm(motion[body_b].shift) +
-                   tl_v3_norm(motion[body_b].turn) * m->bodies.radius[body_b];
-    return far_b > far_a ? body_b : body_a;
+    return tl_step_travel(m, motion, body_b) > tl_step_travel(m, motion, body_a) ? body_b : body_a;
 }
 
 tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
@@ -131,14 +180,17 @@ tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
     if (!tl_travel_may_matter(m, *dt))
         return TL_OK;
     const double least = SHORTEST * *dt;
-    tl_step_motion *motion = motions_of(m, &(tl_step_span){*dt, 0});
+    tl_step_motion *motion = motions_of(m, &(step_span){*dt, 0});
     if (!motion)
         return tl_fail_memory(&m->error);
     double turn;
     uint32_t turns = widest_turn(m, motion, &turn);
     if (turn > TURN_AIM) {
-        scale_motions(m, motion, TURN_AIM / turn);
-        *dt *= TURN_AIM / turn;
+        const double part = TURN_AIM / turn;
+        for (uint32_t i = 0; i < m->bodies.table.rows; i++)
+            motion[i] = (tl_step_motion){tl_v3_scale(part, motion[i].shift),
+                                         tl_v3_scale(part, motion[i].turn)};
+        *dt *= part;
         *body = turns;
     }
     const tl_passing passing =
@@ -192,7 +244,7 @@ static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const
 }
 
 /* Fails with a sentence when the step would carry or turn a block too far. `span`: of the step, after its forces. */
-static tl_status travel_check(tl_model *m, const tl_step_span *span)
+static tl_status travel_check(tl_model *m, const step_span *span)
 {
     tl_step_motion *motion = motions_of(m, span);
     if (!motion)
@@ -218,7 +270,7 @@ static tl_status travel_check(tl_model *m, const tl_step_span *span)
 
 typedef struct limit_job {
     tl_model *m;
-    tl_step_span span;
+    step_span span;
     bool held;        /* bodies whose motion is given, or those that forces move */
     atomic_bool fast; /* some body is */
     tl_speed_bounds bounds[TL_MAX_THREADS]; /* of the bodies that a thread has looked at */
@@ -232,11 +284,11 @@ static void widen(tl_speed_bounds *bounds, tl_speed_bounds by)
 
 /* Whether a body that can move is so far from the limit that a bound without roots tells: squares of sums are at most
  * twice the sums of squares. Where numbers leave their range it tells nothing. The bounds take these squares. */
-static bool surely_slow(const tl_model *m, uint32_t body, const tl_step_span *k,
+static bool surely_slow(const tl_model *m, uint32_t body, const step_span *k,
                         tl_speed_bounds *bounds)
 {
     const tl_bodies *b = &m->bodies;
-    tl_push p = tl_push_of(m, body);
+    push p = push_of(m, body);
     tl_vec3 i = b->moments[body];
     double least = i.x < i.y ? i.x : i.y, r = b->radius[body];
     least = i.z < least ? i.z : least;
@@ -249,22 +301,10 @@ static bool surely_slow(const tl_model *m, uint32_t body, const tl_step_span *k,
     return (v2 + w2 * r * r) * (motion * motion) < limit * limit && p.alpha >= 0;
 }
 
-/* Takes up a body whose motion is given: whole speeds, so that the bounds hold with room to spare. */
-static void bound_given(const tl_model *m, uint32_t body, const tl_step_span *k,
-                        tl_speed_bounds *bounds)
-{
-    tl_vec3 v, w;
-    tl_kicked(m, body, k, &v, &w);
-    double v2 = tl_v3_norm2(v), w2 = tl_v3_norm2(w), r = m->bodies.radius[body];
-    widen(bounds, (tl_speed_bounds){v2 + w2 * r * r, w2});
-}
-
 /* How far the farthest vertex may move in the step: no number when it cannot be told. */
-static double travel_of(const tl_model *m, uint32_t body, const tl_step_span *k)
+static double travel_of(velocities at, double radius, double dt)
 {
-    tl_vec3 v, w;
-    tl_kicked(m, body, k, &v, &w);
-    return (tl_v3_norm(v) + tl_v3_norm(w) * m->bodies.radius[body]) * k->dt;
+    return (tl_v3_norm(at.v) + tl_v3_norm(at.w) * radius) * dt;
 }
 
 static bool too_far(const tl_model *m, uint32_t body, double travel)
@@ -273,7 +313,7 @@ static bool too_far(const tl_model *m, uint32_t body, double travel)
 }
 
 /* How far a load alone may move the body in a step, whichever way it comes to point as the body turns. */
-static double load_travel(const tl_model *m, uint32_t body, const tl_step_span *k)
+static double load_travel(const tl_model *m, uint32_t body, const step_span *k)
 {
     const tl_bodies *b = &m->bodies;
     const tl_body_load *load = &b->load[body];
@@ -301,9 +341,11 @@ static void check_range(void *user, size_t begin, size_t end, size_t chunk, unsi
         if (held != job->held ||
             (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->span, &bounds)))
             continue;
-        if (held)
-            bound_given(m, body, &job->span, &bounds);
-        double travel = travel_of(m, body, &job->span);
+        const velocities at = kicked(m, body, &job->span);
+        const double r = m->bodies.radius[body], w2 = tl_v3_norm2(at.w);
+        if (held) /* whole speeds, so that the bounds hold with much to spare */
+            widen(&bounds, (tl_speed_bounds){tl_v3_norm2(at.v) + w2 * r * r, w2});
+        double travel = travel_of(at, r, job->span.dt);
         if (too_far(m, body, travel / TL_FAST))
             atomic_store(&job->fast, true);
         if (too_far(m, body, travel)) {
@@ -351,15 +393,15 @@ static double length(tl_vec3 v)
 }
 
 /* Of velocity, gravity, load, contacts and damping. */
-static cause find_cause(const tl_model *m, uint32_t body, const tl_step_span *k, double contact)
+static cause find_cause(const tl_model *m, uint32_t body, const step_span *k, double contact)
 {
     const tl_bodies *b = &m->bodies;
     cause most = {-1, ""};
-    tl_vec3 v, w;
-    tl_kicked(m, body, &(tl_step_span){k->dt, 0}, &v, &w);
-    double r = b->radius[body], per_mass = k->span * k->dt / b->mass[body];
-    note_cause(&most, length(v) * k->dt, "its velocity is", length(v), "m/s");
-    note_cause(&most, length(w) * r * k->dt, "its angular velocity is", length(w), "rad/s");
+    const velocities own = kicked(m, body, &(step_span){k->dt, 0});
+    const double r = b->radius[body], per_mass = k->span * k->dt / b->mass[body];
+    const double v = length(own.v), w = length(own.w);
+    note_cause(&most, v * k->dt, "its velocity is", v, "m/s");
+    note_cause(&most, w * r * k->dt, "its angular velocity is", w, "rad/s");
     if (b->fixed[body] == TL_FIX_ALL)
         return most;
     double gravity = length(m->config.gravity);
@@ -381,11 +423,12 @@ static cause find_cause(const tl_model *m, uint32_t body, const tl_step_span *k,
 }
 
 /* The sentence of a body that would move too far. */
-static tl_status report(tl_model *m, uint32_t body, const tl_step_span *k)
+static tl_status report(tl_model *m, uint32_t body, const step_span *k)
 {
     const tl_bodies *b = &m->bodies;
     char by[400], far[120];
-    double force, travel = travel_of(m, body, k), diameter = 2 * b->radius[body];
+    double force, diameter = 2 * b->radius[body];
+    double travel = travel_of(kicked(m, body, k), b->radius[body], k->dt);
     uint32_t contact = hardest_contact(m, body, &force);
     if (contact == TL_NO_ROW) {
         snprintf(by, sizeof by, "no contact presses on it");
@@ -412,13 +455,10 @@ static tl_status report(tl_model *m, uint32_t body, const tl_step_span *k)
 /* Bounds of the bodies whose motion is given count besides those of the last step, until all are known. */
 static void keep_bounds(struct tl_cycle *c, const limit_job *job, unsigned threads)
 {
-    tl_speed_bounds found = {0, 0};
+    tl_speed_bounds *found = job->held ? &c->given : &c->speeds;
+    *found = (tl_speed_bounds){0, 0};
     for (unsigned i = 0; i < threads; i++)
-        widen(&found, job->bounds[i]);
-    if (job->held)
-        c->given = found;
-    else
-        c->speeds = found;
+        widen(found, job->bounds[i]);
     widen(&c->speeds, c->given);
 }
 
@@ -429,7 +469,7 @@ tl_status tl_motion_check(tl_model *m, double dt, bool held)
     limit_job
         job; /* its bounds are kilobytes, of which only those of the threads there are count */
     job.m = m;
-    job.span = (tl_step_span){dt, 0.5 * (m->dt + dt)};
+    job.span = (step_span){dt, 0.5 * (m->dt + dt)};
     job.held = held;
     for (unsigned i = 0; i < threads; i++)
         job.bounds[i] = (tl_speed_bounds){0, 0};

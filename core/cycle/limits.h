@@ -3,7 +3,6 @@
 #define TL_CYCLE_LIMITS_H
 
 #include "cycle/cycle_data.h"
-#include "cycle/kicked.h"
 
 /* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
  * not: those that forces move or, with `held`, after the drives have been evaluated, those whose motion is given. */

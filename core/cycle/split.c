@@ -164,11 +164,12 @@ static tl_wrench precondition(const tl_split_part *p, tl_wrench x)
 /* Solves K way = -lacks: springs bring -K w. Overwrites `lacks`. */
 static void solve_linear(tl_split_system *s)
 {
+    const tl_wrench none = {{0, 0, 0}, {0, 0, 0}};
     double rz = 0;
     for (size_t i = 0; i < s->part_count; i++) {
         tl_split_part *p = &s->parts[i];
-        p->lacks = plus((tl_wrench){{0, 0, 0}, {0, 0, 0}}, -1, p->lacks);
-        p->way = (tl_wrench){{0, 0, 0}, {0, 0, 0}};
+        p->lacks = plus(none, -1, p->lacks);
+        p->way = none;
         p->step = precondition(p, p->lacks);
         rz += dot(&p->lacks, &p->step);
     }
@@ -221,11 +222,9 @@ static double find_lacking(tl_split_system *s)
         add(&s->parts[p->a].lacks, p->area, t, p->arm_a);
         add(&s->parts[p->b].lacks, -p->area, t, p->arm_b);
     }
-    for (size_t i = 0; i < s->part_count; i++) {
-        const tl_split_part *p = &s->parts[i];
+    for (const tl_split_part *p = s->parts; p < s->parts + s->part_count; p++)
         sum += (tl_v3_norm2(p->lacks.force) + tl_v3_norm2(p->lacks.moment) / (p->size * p->size)) /
                p->mass;
-    }
     return sum;
 }
 
@@ -301,10 +300,8 @@ static double go_on(tl_split_system *s, bool search, double lacking, tl_traction
 static bool split_solve(tl_split_system *s)
 {
     double wanted = 0, least = INFINITY, lacking;
-    for (size_t i = 0; i < s->part_count; i++) {
-        const tl_split_part *p = &s->parts[i];
+    for (const tl_split_part *p = s->parts; p < s->parts + s->part_count; p++)
         wanted += (tl_v3_norm2(p->wanted.force) + tl_v3_norm2(p->outer.force)) / p->mass;
-    }
     memcpy(s->given, s->start, s->point_count * sizeof *s->start);
     memcpy(s->borne, s->start, s->point_count * sizeof *s->start);
     stiffen(s);
@@ -330,7 +327,7 @@ static bool split_solve(tl_split_system *s)
     return !isnan(lacking) && split_bear(s); /* once more, for the energy */
 }
 
-/* ---------------------------------------------------------------- parts ------------------- */
+/* ---------------------------------------------------------------- what there is ---------- */
 
 struct tl_split_work {
     tl_split_part *parts; /* whole by whole, by ascending body in each */
@@ -339,8 +336,6 @@ struct tl_split_work {
     tl_traction *tractions; /* four for each point */
     size_t part_count, contact_count, point_count;
 };
-
-/* ---------------------------------------------------------------- what there is ---------- */
 
 /* The body that all blocks of a body were in, or TL_NO_ID. */
 static tl_id whole_of(const tl_model *m, uint32_t body)
@@ -383,10 +378,11 @@ static tl_mat3 inertia_of(const tl_model *m, uint32_t body)
 }
 
 /* Lists the parts, by ascending body: blocks ascend with them. */
-static void list_parts(const tl_model *m, struct tl_split_work *w)
+static bool list_parts(const tl_model *m, struct tl_split_work *w)
 {
     const tl_bodies *b = &m->bodies;
-    for (size_t i = 0; i < m->split_count; i++) {
+    w->parts = malloc((m->split_count + 1) * sizeof *w->parts);
+    for (size_t i = 0; i < m->split_count && w->parts; i++) {
         uint32_t row = tl_block_row_quiet(m, m->splits[i].block);
         uint32_t body = row == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[row];
         if (row == TL_NO_ROW || *tl_body_blocks(m, body) != row || whole_of(m, body) == TL_NO_ID)
@@ -401,6 +397,7 @@ static void list_parts(const tl_model *m, struct tl_split_work *w)
                             .place = tl_body_place(b, body)};
         w->part_count++;
     }
+    return w->parts;
 }
 
 /* The first of the parts that hang together with one. */
@@ -634,14 +631,6 @@ static tl_sym3 mean_stress(const tl_model *m, const tl_split_part *parts, size_t
     return tl_s3_scale(1 / volume, sum);
 }
 
-/* Puts a point back to how it was made. In this step its law has been given roundings of closure and motion: what it has made of them,
- * an opening or a bond that is lost, would be there by chance. */
-static void begin_point(tl_points_table *p, size_t row, const tl_law *law)
-{
-    p->flags[row] &= TL_POINT_APART;
-    tl_point_initial_state(p, row, law->kind);
-}
-
 /* The points of the contacts of a system, with the tractions of a stress. */
 static void list_points(const tl_split_system *s, const tl_sym3 *stress)
 {
@@ -656,7 +645,9 @@ static void list_points(const tl_split_system *s, const tl_sym3 *stress)
             tl_vec3 arm = tl_columns_get(lanes->arm, k), n = tl_columns_get(lanes->normal, k);
             size_t row = tl_point_row(&d->contacts, c->row, k);
             double area = d->points.area[row];
-            begin_point(&d->points, row, &s->m->joint_laws[d->contacts.law[c->row]]);
+            /* as it was made: what its law has made of roundings in this step would be there by chance */
+            d->points.flags[row] &= TL_POINT_APART;
+            tl_point_initial_state(&d->points, row, s->m->joint_laws[d->contacts.law[c->row]].kind);
             *p = (tl_split_point){.a = c->a, .b = c->b, .area = area, .arm_a = arm, .n = n};
             p->arm_b = tl_v3_sub(arm, tl_v3_sub(b->place, a->place));
             a->area += area;
@@ -700,13 +691,6 @@ static void load_contacts(tl_model *m, const tl_split_system *s)
 
 /* ---------------------------------------------------------------- the step --------------- */
 
-/* Of a system whose parts cannot all move: the tractions of the mean stress, as far as the laws bear them. */
-static bool load_held(tl_split_system *s)
-{
-    memcpy(s->given, s->start, s->point_count * sizeof *s->given);
-    return split_bear(s);
-}
-
 static bool some_held(const tl_model *m, const tl_split_part *parts, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -740,7 +724,8 @@ static tl_split_system system_of(const tl_model *m, const struct tl_split_work *
     return s;
 }
 
-/* Lets the parts of a whole go on as it does; `stressed`: there is an initial stress. */
+/* Lets the parts of a whole go on as it does. Where they cannot all move and there is an initial stress, they get the tractions of
+ * the mean stress, as far as the laws bear them. */
 static bool hold(tl_model *m, tl_split_system *s, bool stressed, double dt)
 {
     bool held = some_held(m, s->parts, s->part_count);
@@ -748,9 +733,11 @@ static bool hold(tl_model *m, tl_split_system *s, bool stressed, double dt)
         return true;
     const tl_sym3 stress = mean_stress(m, s->parts, s->part_count);
     list_points(s, &stress);
-    if (!held)
+    if (held)
+        memcpy(s->given, s->start, s->point_count * sizeof *s->given);
+    else
         find_wanted(m, s->parts, s->part_count, dt);
-    if (held ? !load_held(s) : !split_solve(s))
+    if (held ? !split_bear(s) : !split_solve(s))
         return false;
     load_contacts(m, s);
     for (size_t i = 0; i < s->part_count; i++)
@@ -785,11 +772,7 @@ static bool hold_all(tl_model *m, struct tl_split_work *w, double dt)
 /* The parts and what is between them; false: out of memory. */
 static bool find_parts(const tl_model *m, struct tl_split_work *w)
 {
-    w->parts = malloc((m->split_count + 1) * sizeof *w->parts);
-    if (!w->parts)
-        return false;
-    list_parts(m, w);
-    if (!list_contacts(m, w) || !sort_wholes(w))
+    if (!list_parts(m, w) || !list_contacts(m, w) || !sort_wholes(w))
         return false;
     w->points = malloc((w->point_count + 1) * sizeof *w->points);
     w->tractions = calloc(4 * w->point_count + 1, sizeof *w->tractions);

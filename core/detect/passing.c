@@ -33,13 +33,6 @@ double tl_least_thickness(const tl_model *m, uint32_t row)
     return 2 * b->volume[row] / (b->mean_face[row] * b->shape[row]->face_count);
 }
 
-/* No corner of the body moves farther. */
-static double travel_of(const sweep *s, uint32_t body)
-{
-    const tl_step_motion *by = &s->motion[body];
-    return tl_v3_norm(by->shift) + tl_v3_norm(by->turn) * s->m->bodies.radius[body];
-}
-
 /* ---------------------------------------------------------------- swept bounds ----------- */
 
 static void include(tl_bounds *box, tl_vec3 x)
@@ -79,7 +72,7 @@ static void list_swept(sweep *s, double far)
     const tl_model *m = s->m;
     tl_bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
-        if (!(travel_of(s, m->blocks.body[row]) > far))
+        if (!(tl_step_travel(m, s->motion, m->blocks.body[row]) > far))
             continue;
         tl_swept swept = s->list[s->count++] = sweep_block(s, row, true);
         include(&all, swept.box.min);
@@ -87,7 +80,7 @@ static void list_swept(sweep *s, double far)
     }
     for (uint32_t row = 0; s->count > 0 && row < m->blocks.table.rows; row++) {
         uint32_t body = m->blocks.body[row];
-        if (travel_of(s, body) > far)
+        if (tl_step_travel(m, s->motion, body) > far)
             continue;
         double reach = m->bodies.radius[body] + far;
         tl_vec3 grow = {reach, reach, reach}, place = tl_body_place(&m->bodies, body);
@@ -175,7 +168,7 @@ static bool may_pass(const sweep *s, const tl_swept *a, const tl_swept *b)
     uint32_t body_a = m->blocks.body[a->row], body_b = m->blocks.body[b->row];
     return body_a != body_b && (a->moves || b->moves) && tl_bounds_meet(&a->box, &b->box) &&
            !tl_blocks_fixed(m, a->row, b->row) &&
-           travel_of(s, body_a) + travel_of(s, body_b) >
+           tl_step_travel(m, s->motion, body_a) + tl_step_travel(m, s->motion, body_b) >
                s->share * fmin(tl_least_thickness(m, a->row), tl_least_thickness(m, b->row));
 }
 

@@ -9,6 +9,12 @@ typedef struct tl_step_motion {
     tl_vec3 shift, turn;
 } tl_step_motion;
 
+/* How far a corner of a body moves in the step, at the most, m. */
+static inline double tl_step_travel(const tl_model *m, const tl_step_motion *motion, uint32_t body)
+{
+    return tl_v3_norm(motion[body].shift) + tl_v3_norm(motion[body].turn) * m->bodies.radius[body];
+}
+
 /* The pair of blocks that a step carries into each other by most of what is allowed. */
 typedef struct tl_passing {
     double

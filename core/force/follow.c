@@ -56,8 +56,6 @@ typedef struct tl_frame_rows {
     double dt;                               /* of the last step */
 } tl_frame_rows;
 
-/* ---------------------------------------------------------------- bodies ----------------- */
-
 /* The square of an angle by which a body turned is small enough for the series. */
 TL_INLINE bool is_small(double a2)
 {
@@ -75,18 +73,6 @@ static double tangent_of(double a2)
     return is_small(a2) ? tangent_series(a2) : tl_tan(0.5 * sqrt(a2)) / sqrt(a2);
 }
 
-/* Square of the angle by which a body turned in a step. */
-TL_INLINE double angle2(tl_vec3 w, double dt)
-{
-    return tl_v3_norm2(tl_v3_scale(dt, w));
-}
-
-/* Its axis times the tangent of half of it. */
-TL_INLINE tl_vec3 half_turn(tl_vec3 w, double tangent, double dt)
-{
-    return tl_v3_scale(tangent, tl_v3_scale(dt, w));
-}
-
 /* What a point has moved beside the centroid, as it acts on its arm from there now: 2 / (1 + h^2) ([h] - [h]^2), where h is
  * axis times the tangent of half the angle of the turn. Exact, so a rolling contact and one that is turned as a
  * whole gather no slip. */
@@ -101,10 +87,10 @@ TL_INLINE tl_mat3 turn_back(tl_vec3 h)
 /* ---------------------------------------------------------------- lanes ------------------ */
 
 /* What is known of a contact and its bodies, a lane each, before the lanes work out together what follows from it. */
-typedef struct eight {
+typedef struct known_lanes {
     double a[TL_POSE_ROW][TL_LANES], b[TL_POSE_ROW][TL_LANES]; /* tl_pose */
     double facet[TL_FACET_ROW][TL_LANES];                      /* tl_facet */
-} eight;
+} known_lanes;
 
 /* Where the members of a facet and of a pose are in their rows. */
 #define AT(type, member) (offsetof(type, member) / sizeof(double))
@@ -120,7 +106,7 @@ enum {
     U = AT(tl_pose, u),
     V_MOVED = AT(tl_pose, v_moved),
     W_MOVED = AT(tl_pose, w_moved),
-    POSE_END = AT(tl_pose, unused)
+    POSE_DOUBLES = (AT(tl_pose, unused) + 1) / 2 * 2 /* with r at its begin; an even number */
 };
 static_assert(sizeof(tl_facet) >= TL_FACET_ROW * sizeof(double), "a facet is shorter than its row");
 static_assert(sizeof(tl_pose) == TL_POSE_ROW * sizeof(double), "a pose is not its row");
@@ -164,12 +150,6 @@ TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *r
         put_octet(to[k], &low[0], &high[0]);
         put_octet(to[k + 1], &low[1], &high[1]);
     }
-}
-
-/* The poses of a body in each lane. */
-TL_INLINE void transpose_poses(double (*restrict to)[TL_LANES], const double *const *row)
-{
-    transpose(to, row, (POSE_END + 1) / 2 * 2);
 }
 
 TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
@@ -226,31 +206,24 @@ TL_INLINE void put_places(tl_frames *f, tl_arms *arms, size_t l, double (*facet)
     f->offset[l] -= tl_v3_dot(tl_lanes3_get(&f->plane, l), place.at);
 }
 
+/* The turn of a body in the last step, in lane l: axis times angle. */
+TL_INLINE tl_vec3 turn_of(double (*row)[TL_LANES], size_t l, double dt)
+{
+    return tl_v3_scale(dt, row_vec3(row, W_MOVED, l));
+}
+
 /* tan(a/2) / a of the turns of a body in each lane. */
 TL_INLINE void put_tangents(double *restrict tangent, double (*row)[TL_LANES], double dt)
 {
     double wide = 0;
 #pragma omp simd reduction(+ : wide)
     for (size_t l = 0; l < TL_LANES; l++) {
-        double a2 = angle2(row_vec3(row, W_MOVED, l), dt);
+        double a2 = tl_v3_norm2(turn_of(row, l, dt));
         tangent[l] = tangent_series(a2);
         wide += is_small(a2) ? 0 : 1;
     }
     for (size_t l = 0; wide > 0 && l < TL_LANES; l++)
-        tangent[l] = tangent_of(angle2(row_vec3(row, W_MOVED, l), dt));
-}
-
-/* From A's body to B's in lane l. */
-TL_INLINE tl_vec3 rows_apart(double (*a)[TL_LANES], double (*b)[TL_LANES], size_t l)
-{
-    return tl_apart(row_vec3(a, X_REF, l), row_vec3(a, U, l), row_vec3(b, X_REF, l),
-                    row_vec3(b, U, l));
-}
-
-/* The way of B against A in the last step, at their centroids. */
-TL_INLINE tl_vec3 way_between(tl_vec3 v_a, tl_vec3 v_b, double dt)
-{
-    return tl_v3_scale(dt, tl_v3_sub(v_b, v_a));
+        tangent[l] = tangent_of(tl_v3_norm2(turn_of(row, l, dt)));
 }
 
 /* Motion of B against A in the last step, by half their turns; `d` is the way from A's centroid to B's. */
@@ -264,33 +237,26 @@ TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, tl_vec3 half_b
     tl_lanes9_put(&f->m, l, &moved);
 }
 
-/* The same of the bodies of lane l, whose turns have these tangents. */
-TL_INLINE void put_rows_motion(tl_frames *f, size_t l, double (*a)[TL_LANES], double (*b)[TL_LANES],
-                               double tangent_a, double tangent_b, double dt, tl_vec3 d,
-                               double ride)
-{
-    tl_vec3 half_a = half_turn(row_vec3(a, W_MOVED, l), tangent_a, dt);
-    tl_vec3 half_b = half_turn(row_vec3(b, W_MOVED, l), tangent_b, dt);
-    put_motion(f, l, half_a, half_b,
-               way_between(row_vec3(a, V_MOVED, l), row_vec3(b, V_MOVED, l), dt), d, ride);
-}
-
 /* `field` is a constant at each call. */
 TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows, bool field,
                        tl_arms *restrict arms)
 {
     double tangent_a[TL_LANES], tangent_b[TL_LANES];
-    eight p;
-    transpose_poses(p.a, rows->a);
-    transpose_poses(p.b, rows->b);
+    known_lanes p;
+    transpose(p.a, rows->a, POSE_DOUBLES);
+    transpose(p.b, rows->b, POSE_DOUBLES);
     transpose(p.facet, rows->facet, field ? TL_FIELD_ROW : TL_FACET_ROW);
     put_tangents(tangent_a, p.a, rows->dt);
     put_tangents(tangent_b, p.b, rows->dt);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = rows_apart(p.a, p.b, l);
+        tl_vec3 d = tl_apart(row_vec3(p.a, X_REF, l), row_vec3(p.a, U, l), row_vec3(p.b, X_REF, l),
+                             row_vec3(p.b, U, l));
+        tl_vec3 v = tl_v3_sub(row_vec3(p.b, V_MOVED, l), row_vec3(p.a, V_MOVED, l));
         double ride = field ? 0.5 : p.facet[RIDE][l];
-        put_rows_motion(f, l, p.a, p.b, tangent_a[l], tangent_b[l], rows->dt, d, ride);
+        put_motion(f, l, tl_v3_scale(tangent_a[l], turn_of(p.a, l, rows->dt)),
+                   tl_v3_scale(tangent_b[l], turn_of(p.b, l, rows->dt)), tl_v3_scale(rows->dt, v),
+                   d, ride);
         tl_mat3 ra = row_mat3(p.a, l), rb = row_mat3(p.b, l);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
@@ -321,23 +287,12 @@ TL_VECTORIZED static void put_fields(tl_frames *restrict f, const tl_frame_rows 
     put_all(f, rows, true, arms);
 }
 
-/* Brings patches, or field contacts, into their present place. */
-static void frames_put(tl_frames *f, const tl_frame_rows *rows, bool field, tl_arms *arms)
-{
-    if (field)
-        put_fields(f, rows, arms);
-    else
-        put_patches(f, rows, arms);
-}
-
-/* ---------------------------------------------------------------- the points of contacts --- */
+/* ---------------------------------------------------------------- points ----------------- */
 
 /* Tolerance: closure, over the distance of the point from the body's centroid, up to which walls just touch: roundings
  * of that distance and of the plane's. Else they would decide whether a joint that bears nothing yet is closed, and
  * what slip opens of it. Test: lua/test_touching_walls. */
 #define TOUCHING 1e-14
-
-/* ---------------------------------------------------------------- points ----------------- */
 
 /* Columns of points and lanes, row 0 of both the first of a SIMD group. */
 typedef struct columns {
@@ -361,11 +316,6 @@ static columns columns_at(const tl_points_table *p, size_t row, const tl_point_l
     };
 }
 
-TL_INLINE void put(double *const column[3], size_t i, tl_vec3 v)
-{
-    tl_columns_put(column, i, v);
-}
-
 TL_VECTORIZED static void follow_points(const columns *c, size_t slots, const tl_frames *restrict f)
 {
     for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
@@ -378,8 +328,8 @@ TL_VECTORIZED static void follow_points(const columns *c, size_t slots, const tl
             tl_vec3 x = tl_m3_mul(&to, tl_columns_get(c->p, i));
             tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
             double du_n = tl_v3_dot(du, n);
-            put(c->arm, i, x);
-            put(c->normal, i, n);
+            tl_columns_put(c->arm, i, x);
+            tl_columns_put(c->normal, i, n);
             double offset = f->offset[l];
             double closure = offset - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
             c->closure[i] =
@@ -387,8 +337,8 @@ TL_VECTORIZED static void follow_points(const columns *c, size_t slots, const tl
                     ? closure
                     : 0;
             c->du_n[i] = du_n;
-            put(c->du_s, i, tl_v3_madd(du, -du_n, n));
-            put(c->f_s, i, tl_m3_mul(&turn, tl_columns_get(c->f_s, i)));
+            tl_columns_put(c->du_s, i, tl_v3_madd(du, -du_n, n));
+            tl_columns_put(c->f_s, i, tl_m3_mul(&turn, tl_columns_get(c->f_s, i)));
         }
 }
 
@@ -431,17 +381,17 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
         tl_vec3 less = tl_m3_mul(&motion, tl_lanes3_get(&rows->half, l));
         double less_n = tl_v3_dot(less, n);
         c->du_n[shear] -= less_n;
-        put(c->du_s, shear,
+        tl_columns_put(c->du_s, shear,
             tl_v3_sub(tl_columns_get(c->du_s, shear), tl_v3_madd(less, -less_n, n)));
         tl_vec3 turn =
             tl_v3(0.5 * (motion.m[2][1] - motion.m[1][2]), 0.5 * (motion.m[0][2] - motion.m[2][0]),
                   0.5 * (motion.m[1][0] - motion.m[0][1]));
-        put(c->normal, i, tl_facing_aside(n));
+        tl_columns_put(c->normal, i, tl_facing_aside(n));
         c->closure[i] -= rows->opened[l];
-        put(c->du_s, i, tl_v3_scale(rows->radius[l] * tl_v3_dot(turn, n), n));
+        tl_columns_put(c->du_s, i, tl_v3_scale(rows->radius[l] * tl_v3_dot(turn, n), n));
         tl_vec3 last = tl_lanes3_get(&f->last, l);
         bool still = (last.x == n.x) & (last.y == n.y) & (last.z == n.z);
-        put(c->f_s, i,
+        tl_columns_put(c->f_s, i,
             still ? tl_lanes3_get(&torsion->force, l) : tl_v3_scale(torsion->size[l], n));
     }
 }
@@ -511,7 +461,7 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
     field_rows fields;
     torsions torsion;
     if (look_up(m, group, &rows)) {
-        frames_put(&f, &rows, field, arms);
+        (field ? put_fields : put_patches)(&f, &rows, arms);
     } else { /* inert, but finite */
         memset(&f, 0, sizeof f);
         memset(arms, 0, sizeof *arms);

@@ -105,24 +105,18 @@ static void ask(const cells *of, answer *at)
     }
 }
 
-/* The two closures that stand for all of a cell. */
-static void choose(const tl_cell *cell, double *one, double *two)
-{
-    const double moment[] = {cell->pressed_volume, cell->pressed_second, cell->pressed_third,
-                             cell->pressed_fourth};
-    double closure[2];
-    tl_two_closures(moment, closure);
-    *one = closure[0];
-    *two = closure[1];
-}
-
+/* The two closures that stand for all of each cell. */
 static void choose_all(const cells *of, answer *one, answer *two)
 {
     for (size_t i = 0; i < of->count; i++) {
         const tl_cell *cell = &of->t->cell[of->lane + i];
-        one->u[i] = two->u[i] = 0;
+        const double moment[] = {cell->pressed_volume, cell->pressed_second, cell->pressed_third,
+                                 cell->pressed_fourth};
+        double closure[2] = {0, 0};
         if ((of->parts >> i % TL_LANES & 1) && cell->pressed_volume > 0)
-            choose(cell, &one->u[i], &two->u[i]);
+            tl_two_closures(moment, closure);
+        one->u[i] = closure[0];
+        two->u[i] = closure[1];
     }
 }
 
@@ -325,8 +319,8 @@ typedef struct range {
 } range;
 
 /* Of a + sign b. */
-TL_INLINE range range_of(const double *restrict area, const double *restrict a,
-                         const double *restrict b, const double sign, size_t slots)
+TL_VECTORIZED static range range_of(const double *restrict area, const double *restrict a,
+                                    const double *restrict b, const double sign, size_t slots)
 {
     range r;
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -342,18 +336,6 @@ TL_INLINE range range_of(const double *restrict area, const double *restrict a,
             r.high[l] = over > r.high[l] ? over : r.high[l];
         }
     return r;
-}
-
-TL_VECTORIZED static void find_sums(const double *area, const double *a, const double *b,
-                                    size_t slots, range *out)
-{
-    *out = range_of(area, a, b, 1, slots);
-}
-
-TL_VECTORIZED static void find_differences(const double *area, const double *a, const double *b,
-                                           size_t slots, range *out)
-{
-    *out = range_of(area, a, b, -1, slots);
 }
 
 /* How far corners may be beyond the points of lane l, whose overlaps these are. */
@@ -375,11 +357,9 @@ static spread find_spread(const tl_points_table *p, const tl_simd_group *group,
     const double *area = p->area + group->start, *closure = t->closure + lane;
     const double *lift = t->lift + lane;
     const double *from = p->reference ? p->reference + group->start : t->zero + lane;
-    range overlap, lifted;
-    spread out;
-    find_sums(area, closure, lift, group->slots, &out.u);
-    find_sums(area, closure, from, group->slots, &overlap);
-    find_differences(area, lift, from, group->slots, &lifted);
+    spread out = {.u = range_of(area, closure, lift, 1, group->slots)};
+    const range overlap = range_of(area, closure, from, 1, group->slots);
+    const range lifted = range_of(area, lift, from, -1, group->slots);
     for (size_t l = 0; l < TL_LANES; l++)
         out.beyond[l] = corners_beyond(&overlap, l) + UNEVEN * (lifted.high[l] - lifted.low[l]);
     return out;
@@ -398,9 +378,9 @@ static uint32_t opening_lanes(const spread *of)
 static bool is_closed(const tl_points_table *p, const tl_simd_group *group, const tl_point_lanes *t,
                       size_t lane)
 {
-    range o;
     uint32_t open = 0;
-    find_sums(p->area + group->start, t->closure + lane, t->zero + lane, group->slots, &o);
+    const range o =
+        range_of(p->area + group->start, t->closure + lane, t->zero + lane, 1, group->slots);
     for (size_t l = 0; l < TL_LANES; l++)
         open |= (uint32_t)(o.low[l] - corners_beyond(&o, l) < 0);
     return open == 0;
@@ -416,7 +396,7 @@ static holds holds_of(const tl_cell_patch *of)
 {
     holds out = {1, 0};
     for (size_t k = 0; k <= 2 * of->corners; k++) {
-        double hold = of->lanes->hold[of->lane + k * TL_LANES];
+        double hold = of->lanes->hold[tl_cell_lane(of, k)];
         out.least = fmin(out.least, hold);
         out.most = fmax(out.most, hold);
     }
@@ -438,7 +418,7 @@ static double lift_of(const tl_cell_patch *of, size_t k)
 static void find_cells(const tl_cell_patch *of, bool curved)
 {
     for (size_t k = 0; k <= 2 * of->corners; k++) {
-        size_t i = of->lane + k * TL_LANES;
+        size_t i = tl_cell_lane(of, k);
         of->lanes->cell[i].closure = of->lanes->closure[i] + reference_of(of, k);
         of->lanes->cell[i].lift = lift_of(of, k);
         of->lanes->cell[i].hold = of->lanes->hold[i];
@@ -451,9 +431,9 @@ static double share_of_cells(const tl_cell_patch *of)
 {
     double share = 0;
     for (size_t k = 0; k <= 2 * of->corners; k++) {
-        const tl_cell *cell = &of->lanes->cell[of->lane + k * TL_LANES];
+        const tl_cell *cell = &of->lanes->cell[tl_cell_lane(of, k)];
         double sum = cell->pressed_volume + cell->apart_volume;
-        double loose = 1 - of->lanes->hold[of->lane + k * TL_LANES];
+        double loose = 1 - of->lanes->hold[tl_cell_lane(of, k)];
         share = fmax(share, sum > 0 ? loose * (cell->apart_volume / sum) : 0);
     }
     return share;
@@ -464,7 +444,7 @@ static double share_of_cells(const tl_cell_patch *of)
 static void leave_rest(const tl_cell_patch *of, size_t k, double p, double q, const double whole[2])
 {
     const tl_point_lanes *t = of->lanes;
-    tl_cell *cell = &t->cell[of->lane + k * TL_LANES];
+    tl_cell *cell = &t->cell[tl_cell_lane(of, k)];
     tl_vec3 arm = tl_v3_sub(tl_cell_arm(of, k), tl_cell_arm(of, 2 * of->corners));
     double area = tl_cell_area(of, k);
     double pressed = p > 0 ? area * p : 0, apart = p > 0 ? area * q : -area * p;
@@ -482,7 +462,7 @@ static void leave_rest(const tl_cell_patch *of, size_t k, double p, double q, co
 static void put_means(const tl_cell_patch *of, size_t k, double share, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
-    size_t i = of->lane + k * TL_LANES;
+    size_t i = tl_cell_lane(of, k);
     tl_cell *cell = &t->cell[i];
     double area = tl_cell_area(of, k), u = t->closure[i] + t->lift[i];
     double more = (cell->pressed_volume - cell->apart_volume) / area - u;
@@ -510,8 +490,8 @@ static void put_means(const tl_cell_patch *of, size_t k, double share, bool curv
 static void leave_found(const tl_cell_patch *of, size_t k, double apart, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
-    tl_cell *cell = &t->cell[of->lane + k * TL_LANES];
-    double closure = t->closure[of->lane + k * TL_LANES] + t->lift[of->lane + k * TL_LANES];
+    tl_cell *cell = &t->cell[tl_cell_lane(of, k)];
+    double closure = t->closure[tl_cell_lane(of, k)] + t->lift[tl_cell_lane(of, k)];
     double whole[2] = {cell->pressed_volume, cell->apart_volume};
     const tl_bent *bent = &cell->bent;
     if (curved) {
@@ -596,7 +576,7 @@ static bool has_opened(const tl_cell_patch *of)
 {
     bool out = false;
     for (size_t k = 0; k <= 2 * of->corners && !out; k++) {
-        size_t i = of->lane + k * TL_LANES;
+        size_t i = tl_cell_lane(of, k);
         out = lift_of(of, k) != of->lanes->cell[i].lift;
     }
     return out;
@@ -624,7 +604,7 @@ static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_g
     for (uint32_t left = opened; left; left &= left - 1) {
         const tl_cell_patch of = patch_at(m, group, t, lane, (size_t)__builtin_ctz(left));
         for (size_t k = 0; k <= 2 * of.corners; k++)
-            leave_found(&of, k, t->apart[of.lane + k * TL_LANES], curved);
+            leave_found(&of, k, t->apart[tl_cell_lane(&of, k)], curved);
     }
     return opened;
 }
@@ -661,7 +641,7 @@ static tl_part_sums sum_cells(const tl_cell_patch *of, const tl_law *law, tl_vec
     tl_part_sums out = {.stored = 0};
     tl_vec3 sum = {0, 0, 0};
     for (size_t k = 0; k <= 2 * of->corners; k++) {
-        size_t i = of->lane + k * TL_LANES;
+        size_t i = tl_cell_lane(of, k);
         const tl_cell *cell = &t->cell[i];
         double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
         double straight = tl_law_is_linear(law) ? law->kn : 0;
