@@ -1,14 +1,15 @@
 /* added_mass.c - partial mass scaling: inertia added to the bodies that would make the step short.
  *
- * A step dt is stable for a body, with the fraction f of the critical step that is asked for, when its rate (timestep.c) is no
- * higher than 2 f^2 / dt^2. A body in contact whose rate is higher gets mass and moments of inertia multiplied by the same
- * factor, rate over limit: its rate, a sum over 1/M and 1/I, is then the limit. Its weight, and all that laws and loads do to
- * it, stay those of its own mass. A body without contact points has no stiffness and gets none: it falls as it would.
+ * Let f be the fraction of the critical step that is asked for. A step dt is stable for a body when its rate
+ * (timestep.c) is no higher than 2 f^2 / dt^2. A body in contact whose rate is higher gets mass and moments of inertia
+ * multiplied by the same factor, rate over limit: its rate, a sum over 1/M and 1/I, is then the limit. Its weight, and
+ * all that laws and loads do to it, stay those of its own mass. A body without contact points has no stiffness and gets
+ * none: it falls as it would.
  *
- * The factor follows from the rates of each step. When it changes, the velocity stays, as with all mass scaling: what is added
- * comes with the velocity that the body has, and goes with it. Were the momentum kept, a contact that opens and closes would
- * drive and brake the body. Energies count the inertia that moves, and what comes and goes with a change of it is external
- * work (energy.c), as when velocities are set. */
+ * The factor follows from the rates of each step. When it changes, the velocity stays, as with all mass scaling: what
+ * is added comes with the velocity that the body has, and goes with it. Were the momentum kept, a contact that opens
+ * and closes would drive and brake the body. Energies count the inertia that moves, and what comes and goes with a
+ * change of it is external work (energy.c), as when velocities are set. */
 #include "cycle/added_mass.h"
 
 #include "cycle/contributors.h"

@@ -1,9 +1,9 @@
 /* insitu.c - initial stress put on the contacts of a model: tractions sigma n on the face patches that exist now.
  *
- * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets
- * f_n = -(n . sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now.
- * Field contacts begin without force, and so do faces with rock between them and contacts made later, but those of blocks
- * that are cut (contact/estate.c). What is improbable about a stress is told. */
+ * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets f_n = -(n .
+ * sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now. Field contacts begin
+ * without force, and so do faces with rock between them and contacts made later, but those of blocks that are cut
+ * (contact/estate.c). What is improbable about a stress is told. */
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/body_contacts.h"
@@ -39,8 +39,8 @@ static tl_sym3 stress_at(const tl_insitu *s, double z)
                      s->stress.yz + h * s->gradient.yz, s->stress.zx + h * s->gradient.zx};
 }
 
-/* Whether the faces of a patch are together: in the mean over its area not farther apart than blocks in contact are. Faces
- * with a wedge of rock between them touch along its edge and have a patch, but the wedge carries their stress. */
+/* Whether the faces of a patch are together: in the mean over its area not farther apart than blocks in contact are.
+ * Faces with a wedge of rock between them touch along its edge and have a patch, but the wedge carries their stress. */
 static bool faces_meet(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;

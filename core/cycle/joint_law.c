@@ -19,9 +19,9 @@
  *
  * Field contacts that come under another law keep their normal force.
  *
- * What an edge or a corner presses with follows from how far it overlaps; what can be chosen is how far the two faces are moved out
- * (detect/fields.c). So they are moved, outward or inward, until the new law gives the force of the last step. The force grows with
- * the way, from nothing where the faces part. */
+ * What an edge or a corner presses with follows from how far it overlaps. What can be chosen is how far the two faces
+ * are moved out (detect/fields.c). So they are moved, outward or inward, until the new law gives the force of the last
+ * step. The force grows with the way, from nothing where the faces part. */
 
 /* Tolerance: force that is missed, of the force, and how often the faces are moved at the most. Test:
  * lua/test_moved_faces. */
@@ -46,8 +46,8 @@ static double excess(trial *t, double shift)
     return t->failed ? 0 : tl_press_force(t->law, row, t->state) - t->wanted;
 }
 
-/* Moves the faces until the force is that wanted: between two shifts with less and with more, by the rule of false position after
- * Illinois. */
+/* Moves the faces until the force is that wanted: between two shifts with less and with more, by the rule of false
+ * position after Illinois. */
 static void find_shift(trial *t)
 {
     const tl_press_row *row = tl_press_row_of(t->m, t->contact);
@@ -132,8 +132,8 @@ static void keep_shear(trial *t, double radius)
                    tl_v3_scale(radius / press->radius, tl_columns_get(p->f_s, torsion)));
 }
 
-/* Moves the faces of a field contact so that the law that its joint has now gives the force of the last step. false: out of
- * memory. */
+/* Moves the faces of a field contact so that the law that its joint has now gives the force of the last step. false:
+ * out of memory. */
 static bool keep_field_force(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
@@ -181,8 +181,8 @@ static bool find_fields(tl_model *m, const tl_law *law, fields *out)
     return out->contact && enough;
 }
 
-/* Brings contacts up to the present places, where a step that failed has left them already, and makes room for what a
- * law needs of their points: all that can fail before it takes its place. */
+/* Brings contacts up to the present places, where a step that failed has left them already, and holds the columns that
+ * a law needs. All that can fail is done before the law takes its place. */
 static tl_status prepare_contacts(tl_model *m, const tl_law *law, fields *out)
 {
     tl_asked_end(m);

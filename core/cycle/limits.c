@@ -1,12 +1,12 @@
 /* limits.c - how far a body may move in one step: the last look before anything moves.
  *
  * A step that would take a body farther than TL_TRAVEL times its diameter, or nowhere that is a number, has no meaning:
- * the body would turn by several radians at a time, and lose the digits of its place. Such a
- * step fails before the move, so places and velocities of a model are finite numbers always. The bound is on
- * (|v| + |w| r) dt, v and w the velocities that the kick would give (motion.c), r the farthest vertex.
+ * the body would turn by several radians at a time, and lose the digits of its place. Such a step fails before the
+ * move, so places and velocities of a model are finite numbers always. The bound is on (|v| + |w| r) dt, v and w the
+ * velocities that the kick would give (motion.c), r the farthest vertex.
  *
- * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. What it finds is
- * kept as a bound on all speeds, which tells whether blocks may pass each other. */
+ * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. What it
+ * finds is kept as a bound on all speeds, which tells whether blocks may pass each other. */
 #include "cycle/limits.h"
 
 #include "base/columns.h"
@@ -62,7 +62,8 @@ static inline push push_of(const tl_model *m, uint32_t body)
     return p;
 }
 
-/* Velocities after the kick, as the move makes them; with a span of 0 those that the body has, or that its drive gives. */
+/* Velocities after the kick, as the move makes them; with a span of 0 those that the body has, or that its drive
+ * gives. */
 static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
 {
     const tl_bodies *b = &m->bodies;
@@ -90,16 +91,17 @@ static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
  *
  * A step heeds what moves: v dt and w dt.
  *
- * Stiffness bounds the step of blocks in contact. Between contacts a block travels by v dt whatever that is. Two things go wrong
- * when it is far: the block passes another, or goes in so deep that no contact can tell which way it came (passing.c); and a
- * turn by an angle t in a step makes central differences of what turns with the block wrong by a share of t^2 / 6.
+ * Stiffness bounds the step of blocks in contact. Between contacts a block travels by v dt whatever that is. Two things
+ * go wrong when it is far. The block passes another, or goes in so deep that no contact can tell which way it came
+ * (passing.c). And a turn by an angle t in a step makes central differences of what turns with the block wrong by a
+ * share of t^2 / 6.
  *
- * A step that the program chooses is made as short as both ask, and no block is slowed down in empty space: only what a block
- * may meet in the step counts. A step that is given stays as it is. Either is looked at once more when the forces are known, with
- * limits that are some twice as wide, and fails when it exceeds them, before anything moves.
+ * A step that the program chooses is made as short as both ask, and no block is slowed down in empty space: only what a
+ * block may meet in the step counts. A step that is given stays as it is. Either is tested once more when the forces
+ * are known, with limits some twice as wide. A step that exceeds them fails before anything moves.
  *
- * The bodies are gone through only when the fastest of them may be too fast for the thinnest block of the model, or after something
- * was set by hand. Blocks at rest pay one comparison a step. */
+ * Bodies are looked at only when the fastest may be too fast for the thinnest block, or after something was set by
+ * hand. Blocks at rest pay one comparison a step. */
 
 /* Limit: by how much the overlap of two blocks may grow in a step, over the thickness of the thinner one. The first is
  * aimed at, the second is the most. A contact that is born with half of the thickness still knows which way it came
@@ -136,8 +138,8 @@ bool tl_travel_may_matter(const tl_model *m, double dt)
     return !slow || tl_set_by_hand(m);
 }
 
-/* What the step does to each body, with a place for the bounds of each block; NULL: out of memory. The memory is kept for the steps
- * that follow: blocks that are fast in one step are so in the next. */
+/* What the step does to each body, with a place for the bounds of each block; NULL: out of memory. The memory is kept
+ * for the steps that follow: blocks that are fast in one step are so in the next. */
 static tl_step_motion *motions_of(tl_model *m, const step_span *span)
 {
     struct tl_cycle *c = m->cycle;
@@ -147,7 +149,8 @@ static tl_step_motion *motions_of(tl_model *m, const step_span *span)
         return NULL;
     for (uint32_t body = 0; body < bodies; body++) {
         velocities at = kicked(m, body, span);
-        c->motion[body] = (tl_step_motion){tl_v3_scale(span->dt, at.v), tl_v3_scale(span->dt, at.w)};
+        c->motion[body] =
+            (tl_step_motion){tl_v3_scale(span->dt, at.v), tl_v3_scale(span->dt, at.w)};
     }
     return c->motion;
 }
@@ -371,7 +374,8 @@ static uint32_t hardest_contact(const tl_model *m, uint32_t body, double *force)
     return found;
 }
 
-/* What a body moves by in a step, m: of its own velocity, or at the most by what kicks it. The largest names the cause. */
+/* What a body moves by in a step, m: of its own velocity, or at the most by what kicks it. The largest names the
+ * cause. */
 typedef struct cause {
     double travel;
     char text[160];

@@ -1,21 +1,20 @@
 /* motion.c - the law of motion: velocities kicked by forces, places drifting with velocities.
  *
- * Velocities live half-way between the steps, so a kick spans half of the last step and half of this one;
- * the first from rest is half a step (free fall then follows g t^2 / 2 at whole steps). (23) of Hart,
- * Cundall and Lemos (1988): v <- (D1 v + F/m h) D2, D1 = 1 - alpha h/2, D2 = 1/(1 + alpha h/2).
+ * Velocities live half-way between the steps, so a kick spans half of the last step and half of this one. The first
+ * from rest is half a step: free fall then follows g t^2 / 2 at whole steps. (23) of Hart, Cundall and Lemos (1988): v
+ * <- (D1 v + F/m h) D2, D1 = 1 - alpha h/2, D2 = 1/(1 + alpha h/2).
  *
- * Rotation, exact: the kick acts on the angular momentum L; the drift is the free motion of a rigid body
- * with L constant in space, split into turns about the principal axes (turn.h): time-reversible, keeps L to
- * rounding and the energy without drift. The angular velocity kept is that of L in the attitude at the end
- * of the drift, so L is recovered from it.
- * Rotation, paper: one moment of inertia, w <- (D1 w + M/I h) D2 (20), (23); the attitude turns exactly
- * about w.
+ * Rotation, exact: the kick acts on the angular momentum L. The drift is the free motion of a rigid body with L
+ * constant in space, split into turns about the principal axes (turn.h). It is time-reversible, keeps L to rounding and
+ * the energy without drift. The angular velocity kept is that of L in the attitude at the end of the drift, so L is
+ * recovered from it. Rotation, paper: one moment of inertia, w <- (D1 w + M/I h) D2 (20), (23); the attitude turns
+ * exactly about w.
  *
- * Free bodies go through a step in groups of TL_LANES, those of a chunk together: their columns are copied into lanes, by
- * whole vectors where the bodies of a group are side by side, and their poses one by one; loops over the lanes kick and
- * turn all of them, stage by stage; the energy ledger books what happened, and the lanes are copied back. Bodies held in
- * some components, and all with the paper's rotation, get their rotation one by one; those held in every component are
- * in no group and cost nothing as long as they stand. */
+ * Free bodies go through a step in groups of TL_LANES, those of a chunk together. Their columns are copied into lanes,
+ * by whole vectors where the bodies of a group are side by side, and their poses one by one. Loops over the lanes kick
+ * and turn all of them, stage by stage. The energy ledger books what happened, and the lanes are copied back. Bodies
+ * held in some components, and all with the paper's rotation, get their rotation one by one. Those held in every
+ * component are in no group and cost nothing as long as they stand. */
 #include "cycle/motion.h"
 
 #include "base/columns.h"
@@ -35,8 +34,8 @@ TL_INLINE tl_vec3 times(tl_vec3 a, tl_vec3 b)
     return tl_v3(a.x * b.x, a.y * b.y, a.z * b.z);
 }
 
-/* From principal axes to the model's. Trimmed, since the rounding of `axes` is the same in every step and its
- * stretch would add up. */
+/* From principal axes to the model's. Trimmed, since the rounding of `axes` is the same in every step and its stretch
+ * would add up. */
 TL_INLINE tl_mat3 attitude_of(tl_quat q, tl_quat axes)
 {
     return tl_q_matrix(tl_q_trim(tl_q_mul(q, axes)));
@@ -109,8 +108,8 @@ TL_INLINE void put_attitude(tl_body_group *g, size_t i, double drift, bool serie
     g->speed[i] = speed_of(g, i);
 }
 
-/* Kicks and turns groups of bodies by the exact rule. Stage by stage: what follows from each other in one group is worked
- * out while that of the next is under way. */
+/* Kicks and turns groups of bodies by the exact rule. Stage by stage: what follows from each other in one group is
+ * worked out while that of the next is under way. */
 TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, double kick,
                                         double drift)
 {
@@ -127,8 +126,8 @@ TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, dou
             put_attitude(&groups[k], i, drift, true);
 }
 
-/* What the ledger needs of a body's spin before the kick and after it, in the attitude before, and after the
- * drift. The paper's rotation has one moment of inertia in all directions. */
+/* What the ledger needs of a body's spin before the kick and after it, in the attitude before, and after the drift. The
+ * paper's rotation has one moment of inertia in all directions. */
 static void put_spins(tl_body_group *g, size_t i, bool paper)
 {
     tl_vec3 moments = tl_lanes3_get(&g->moments, i),

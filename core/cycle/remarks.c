@@ -1,8 +1,8 @@
 /* remarks.c - what is legal and yet improbable: said once a model, with what to do.
  *
- * Units are any consistent set, so only ratios tell. Under its own weight a block of density rho and size L closes a face
- * contact by about rho g L / kn: rho g / kn of its size, whatever the units. Gravity near 10 tells metres and seconds; then
- * densities have a unit of mass, t or kg, that goes with kN or N. */
+ * Units are any consistent set, so only ratios tell. Under its own weight a block of density rho and size L closes a
+ * face contact by about rho g L / kn: rho g / kn of its size, whatever the units. Gravity near 10 tells metres and
+ * seconds; then densities have a unit of mass, t or kg, that goes with kN or N. */
 #include "cycle/remarks.h"
 
 #include "base/params.h"

@@ -1,10 +1,11 @@
 /* sliver.c - a remark on blocks so small or thin that they make the time step short, with a filter that suffices.
  *
- * The step goes with 1 / sqrt(rate) of the body that controls it. The bodies are sorted by how small and how thin they are, into cells between
- * limits of volume and aspect. A filter takes those beyond its limits, and the highest rate of those that it leaves tells by how much longer
- * the step would be. Of the filters that take little of the rock, the one is told that takes least and gains nearly the most. Where no shape
- * is the reason, but a stiff law or a light rock, no filter gains anything, and nothing is said. Of bodies that could all be joined the largest
- * stays: so does one that has nothing beside it but what is held. */
+ * The step goes with 1 / sqrt(rate) of the body that controls it. The bodies are sorted by how small and how thin they
+ * are, into cells between limits of volume and aspect. A filter takes those beyond its limits, and the highest rate of
+ * those that it leaves tells by how much longer the step would be. Of the filters that take little of the rock, the one
+ * is told that takes least and gains nearly the most. Where no shape is the reason, but a stiff law or a light rock, no
+ * filter gains anything, and nothing is said. Of bodies that could all be joined the largest stays: so does one that
+ * has nothing beside it but what is held. */
 #include "cycle/sliver.h"
 
 #include "base/groups.h"

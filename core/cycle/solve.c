@@ -19,13 +19,13 @@
  * Telling steady failure from settling.
  *
  * The motion of each free body is followed in legs, each a share of the body's size long. A body fails steadily when it
- * has gone LEGS legs in one direction, none of them slower than the one before, and the mean unbalanced force on it
- * pushes it that way. A body that settles or swings slows
- * down; one that is carried along feels no force. Legs are lengths, so neither the time step nor the damping nor the stiffness decides how far
- * a body has gone when it is told.
+ * has gone LEGS legs in one direction, none slower than the one before, and the mean unbalanced force pushes it that
+ * way. A body that settles or swings slows down; one that is carried along feels no force. Legs are lengths, so neither
+ * the time step nor the damping nor the stiffness decides how far a body has gone when it is told.
  *
- * Blocks on soft joints settle by more than a share of their size. So a leg is not shorter than a share of how far the model
- * may settle: the mean closure of its loaded contacts, weighted by their forces, times the number of blocks on end.
+ * Blocks on soft joints settle by more than a share of their size. So a leg is not shorter than a share of how far the
+ * model may settle: the mean closure of its loaded contacts, weighted by their forces, times the number of blocks on
+ * end.
  *
  * Bodies that touched nothing when the run began fall until they land, and tumble on. They are followed only while
  * something bears them, and in longer legs: what is poured has not failed. */
@@ -374,8 +374,8 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
                  r->failing, speed, r->ratio_local, r->ratio);
 }
 
-/* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for. Names
- * the body that has gone the farthest over its size, of those that touched something then. */
+/* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for.
+ * Names the body that has gone the farthest over its size, of those that touched something then. */
 static void say_gone(tl_model *m, const tl_watch *w)
 {
     double way = 0, most = FAILED_SHARE, least = SETTLED_SHARE * settlement(w, m);

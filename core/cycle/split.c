@@ -1,7 +1,7 @@
 /* split.c - the parts of a body that cuts have split go on as the whole did.
  *
- * In the step after a cut the forces on the faces that were there are known, at the present places; they are those on the whole. Newton
- * and Euler give its acceleration a and angular acceleration, r from the whole's centroid:
+ * In the step after a cut the forces on the faces that were there are known: those on the whole, at the present places.
+ * Newton and Euler give its acceleration a and angular acceleration, r from the whole's centroid:
  *
  *     a = F / M,    I alpha + w x I w = T
  *
@@ -9,12 +9,13 @@
  *
  *     F_p = m_p [a + alpha x r_p + w x (w x r_p)],    T_p = I_p alpha + w x I_p w
  *
- * That is what acts on it in this step. So its parts go on as the whole over all of the kick, also over the half of the last step in which
- * they were one. What the new faces press on each other with to bring that is found at the same time: as far as the laws
- * bear it, it is their force at the beginning, and from the next step on it is the laws' word what becomes of it. Only then may parts
- * that no joint can hold begin to move on their own.
+ * That is what acts on it in this step. So its parts go on as the whole over all of the kick: that spans half of the
+ * last step, in which they were one. What the new faces press on each other with to bring that is found at the same
+ * time. As far as the laws bear it, it is their force at the beginning. From the next step on the laws decide. Only
+ * then may parts that no joint can hold begin to move on their own.
  *
- * Parts of a body some of whose motion is held get the tractions of its mean stress, where the model has an initial stress. */
+ * Parts of a body some of whose motion is held get the tractions of its mean stress, where the model has an initial
+ * stress. */
 #include "cycle/split.h"
 
 #include "base/columns.h"
@@ -62,7 +63,8 @@ typedef struct tl_split_part {
     tl_wrench lacks, preconditioned;
 } tl_split_part;
 
-/* Parts that new contacts hold together. start: tractions before; given: those asked for; borne: what the laws make of them. */
+/* Parts that new contacts hold together. start: tractions before; given: those asked for; borne: what the laws make of
+ * them. */
 typedef struct tl_split_system {
     const tl_model *m;
     tl_split_part *parts;
@@ -77,8 +79,8 @@ typedef struct tl_split_system {
  *
  * The tractions on the new faces of a body that was split.
  *
- * Wanted are tractions t that the laws bear and that bring to each part the force and moment it lacks. Of those the nearest to the
- * tractions t0 of the mean stress are taken, in the mean of squares over the faces:
+ * Wanted are tractions t that the laws bear and that bring to each part the force and moment it lacks. Of those the
+ * nearest to the tractions t0 of the mean stress are taken, in the mean of squares over the faces:
  *
  *     least  int |t - t0|^2 dA    with    sum over the faces of a part of (t, x cross t) = what it lacks
  *
@@ -86,10 +88,10 @@ typedef struct tl_split_system {
  *
  *     t(x) = t0 + w_A(x) - w_B(x),    K w = what is lacking
  *
- * K is that of springs over all faces. Conjugate gradients solve it: linear tractions, in few steps, for a tree of cuts exactly. Where a
- * law does not bear t (a joint that cannot pull, or slips), its points lose that stiffness and the rest is found again, by Newton's
- * method with a line search. It ends when nothing lacks. Where no tractions do that the best is kept that was met: it leaves the
- * least acceleration of the parts, in the mean of m a^2. */
+ * K is that of springs over all faces. Conjugate gradients solve it: linear tractions, in few steps, for a tree of cuts
+ * exactly. Where a law does not bear t (a joint that cannot pull, or slips), its points lose that stiffness. The rest
+ * is found again, by Newton's method with a line search. It ends when nothing lacks. Where no tractions do that the
+ * best is kept that was met: it leaves the least acceleration of the parts, in the mean of m a^2. */
 
 /* Tolerance: stiffness of springs that hold each part, over that of its faces: motions that no face resists stay
  * bounded. What lacks is wrong by that share at the most. Test: lua/test_cut_keeps. */
@@ -272,8 +274,8 @@ static double try_step(tl_split_system *s, const tl_traction *from, double by)
     return split_bear(s) ? find_lacking(s) : NAN;
 }
 
-/* Goes on from the tractions that were given by what brings what lacks. With `search` by less until less lacks, or by more as long as
- * ever less does, or not at all. `from` is scratch. Returns what lacks then, or NAN: a law failed. */
+/* Goes on from the tractions that were given by what brings what lacks. With `search` by less until less lacks, or by
+ * more as long as ever less does, or not at all. `from` is scratch. Returns what lacks then, or NAN: a law failed. */
 static double go_on(tl_split_system *s, bool search, double lacking, tl_traction *from)
 {
     memcpy(from, s->given, s->point_count * sizeof *from);
@@ -296,7 +298,8 @@ static double go_on(tl_split_system *s, bool search, double lacking, tl_traction
     return now < lacking || isnan(now) ? now : try_step(s, from, 0);
 }
 
-/* Finds tractions that the laws bear and that bring what the parts lack, or come as near to it as they can; false: a law failed. */
+/* Finds tractions that the laws bear and that bring what the parts lack, or come as near to it as they can; false: a
+ * law failed. */
 static bool split_solve(tl_split_system *s)
 {
     double wanted = 0, least = INFINITY, lacking;
@@ -553,9 +556,10 @@ static tl_vec3 turn_of(tl_vec3 angular, tl_vec3 spin, tl_vec3 r)
     return tl_v3_add(tl_v3_cross(angular, r), tl_v3_cross(spin, tl_v3_cross(spin, r)));
 }
 
-/* The forces of this step lie in the middle of the kick. Where they turn with the body that is wrong by what the turn in the two
- * half steps does to velocities: those of the parts are cut with their arms at the present places, and are to be those of the middle of
- * the next step, dt, in which the whole would turn freely. Finds what is to be added for that. */
+/* The forces of this step lie in the middle of the kick. Where they turn with the body that is wrong by what the turn
+ * in the two half steps does to velocities. Those of the parts are found with their arms at the present places. They
+ * are to be those of the middle of the next step, dt, in which the whole would turn freely. Finds what is to be added
+ * for that. */
 static void find_turn(const whole *all, tl_split_part *p, tl_vec3 spin_before, double h, double dt)
 {
     tl_vec3 r = tl_v3_sub(p->place, all->centre), w = all->spin_after;
@@ -699,7 +703,8 @@ static bool some_held(const tl_model *m, const tl_split_part *parts, size_t coun
     return false;
 }
 
-/* A whole whose contacts and points are those from the first given on; its counts are those of its parts and contacts. */
+/* A whole whose contacts and points are those from the first given on; its counts are those of its parts and
+ * contacts. */
 static tl_split_system system_of(const tl_model *m, const struct tl_split_work *w, size_t part,
                                  size_t contact, size_t point)
 {
@@ -724,8 +729,8 @@ static tl_split_system system_of(const tl_model *m, const struct tl_split_work *
     return s;
 }
 
-/* Lets the parts of a whole go on as it does. Where they cannot all move and there is an initial stress, they get the tractions of
- * the mean stress, as far as the laws bear them. */
+/* Lets the parts of a whole go on as it does. Parts that cannot all move get the tractions of the mean stress, as far
+ * as the laws bear them, where there is an initial stress. */
 static bool hold(tl_model *m, tl_split_system *s, bool stressed, double dt)
 {
     bool held = some_held(m, s->parts, s->part_count);

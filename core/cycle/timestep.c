@@ -1,12 +1,12 @@
 /* timestep.c - the stable time step.
  *
- * "paper": dt = FRAC 2 (M_min / (2 K_max))^1/2, K_max the largest max(kn, ks) A_c of a contact (27).
- * "body":  dt = FRAC 2 (1 / (2 rate))^1/2 with the highest rate of a body: no motion of a body and its
+ * "paper": dt = FRAC 2 (M_min / (2 K_max))^1/2, K_max the largest max(kn, ks) A_c of a contact (27). "body":  dt = FRAC
+ * 2 (1 / (2 rate))^1/2 with the highest rate of a body: no motion of a body and its
  *          neighbours is faster, so FRAC 1 is stable.
- * By either rule no body's step is longer than its largest face allows, whatever areas its contacts have.
- * A step that would carry or turn a block too far is made shorter (limits.c); the one in use stays, for when it has gone by.
- * Mass scaling gives every free body the bound of the one that has the most; with a step asked for it adds inertia to the
- * bodies that need it (added_mass.c), and that step is taken. */
+ * By either rule no body's step is longer than its largest face allows, whatever areas its contacts have. A step that
+ * would carry or turn a block too far is made shorter (limits.c). The one in use stays, for the steps after that. Mass
+ * scaling gives every free body the bound of the one that has the most. With a step asked for it adds inertia to the
+ * bodies that need it (added_mass.c), and takes that step. */
 #include "cycle/timestep.h"
 
 #include "base/columns.h"
@@ -27,7 +27,8 @@
 #include <string.h>
 
 /* A search for the row of the largest value: user data of a parallel loop, and the first member of what a search adds
- * to it. Of several rows with equal values the first one counts, so which thread took which rows makes no difference. */
+ * to it. Of several rows with equal values the first one counts, so which thread took which rows makes no
+ * difference. */
 typedef struct row_search {
     tl_model *m;
     tl_row_value found[TL_MAX_THREADS];
@@ -38,23 +39,23 @@ typedef struct row_search {
  * What each body asks of the time step: its rate.
  *
  * The rate of a body is sum k (1/M + r^2/I) over its contact points: k the stiffness of a point at distance r from the
- * centroid, I the smallest moment of inertia. Twice the highest rate is no less than the square of any frequency.
- * Mass scaling has two rates instead: sum 2 k/M of the translation and sum 2 k r^2/I of the rotation, which scale masses
- * and moments of inertia each by itself. Since |v + w r|^2 <= 2 (|v|^2 + |w r|^2), twice the higher one is no less
- * either. So what turns easily, as a slender block, is not made too heavy to move.
+ * centroid, I the smallest moment of inertia. Twice the highest rate is no less than the square of any frequency. Mass
+ * scaling has two rates instead: sum 2 k/M of the translation and sum 2 k r^2/I of the rotation, which scale masses and
+ * moments of inertia each by itself. Since |v + w r|^2 <= 2 (|v|^2 + |w r|^2), twice the higher one is no less either.
+ * So what turns easily, as a slender block, is not made too heavy to move.
  *
- * A body that lands finds the step that its landing needs, for a step that shrinks while a body lands costs energy: no rate is
- * below that of the body standing on its largest face under the stiffest law of its contacts, or, without a contact, of
- * the model. Where it stands on corners or edges, with overlaps o, and these go on with a velocity v, a part of that is
- * enough: the further overlap v / omega over o, omega^2 being the rate on the face, within FLOOR and 1. So a contact whose
- * area vanishes, or that is about to be another, never makes the step long. The stiffness of corners and edges counts as it will be when they are pressed
- * in twice as deep.
+ * A body that lands finds the step that its landing needs, for a step that shrinks while a body lands costs energy. So
+ * no rate is below that of the body standing on its largest face. The law is the stiffest of its contacts or, without a
+ * contact, of the model. Where it stands on corners or edges, with overlaps o, and these go on with a velocity v, a
+ * part of that is enough: the further overlap v / omega over o, omega^2 being the rate on the face, within FLOOR and 1.
+ * So a contact whose area vanishes, or that is about to be another, never makes the step long. The stiffness of corners
+ * and edges counts as it will be when they are pressed in twice as deep.
  *
- * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
- * reused for, they cost nothing. Who asks for the rates above some limit only is spared most of the rest: a body asks for no more
- * than it would with the areas of its contacts as far away as its farthest corner. Kept rates follow from the contacts as they
- * were when the body was rated, not as they are:
- * where the step follows from them they are part of the model's state. */
+ * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas
+ * are reused for, they cost nothing. Who asks for the rates above some limit only is spared most of the rest: a body
+ * asks for no more than it would with the areas of its contacts as far away as its farthest corner. Kept rates follow
+ * from the contacts as they were when the body was rated, not as they are: where the step follows from them they are
+ * part of the model's state. */
 
 /* Tolerance: part of its largest face that a body stands on at least, if it rests on corners and edges. A longer step
  * would shrink while it lands. */
@@ -217,8 +218,8 @@ static double rate_stiffness(const tl_model *m, uint32_t body)
 
 /* ---------------------------------------------------------------- all bodies ------------- */
 
-/* The rate of a body that stands on its largest face, for a stiffness per area of 1. Where points do not count, as by the
- * paper's rule, turning does not either. */
+/* The rate of a body that stands on its largest face, for a stiffness per area of 1. Where points do not count, as by
+ * the paper's rule, turning does not either. */
 static step_rates rate_on_face(const tl_model *m, uint32_t body)
 {
     tl_spread face = largest_face(m, body);
@@ -312,8 +313,8 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     row_search_note(&s->search, thread, found);
 }
 
-/* Notes the bodies whose contacts have points that were placed in this step or, beyond that, others than before; true when there are
- * any. */
+/* Notes the bodies whose contacts have points that were placed in this step or, beyond that, others than before; true
+ * when there are any. */
 static bool touch_new_points(tl_model *m, uint8_t least)
 {
     tl_detect *d = m->detect;
@@ -331,8 +332,9 @@ static bool touch_new_points(tl_model *m, uint8_t least)
     return any;
 }
 
-/* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this step;
- * otherwise, and with mass scaling, when a contact has gone or has other points; with mass scaling, all now and then. */
+/* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this
+ * step. Else, and with mass scaling, they are when a contact has gone or has other points. With mass scaling all are,
+ * now and then. */
 static tl_row_value rates_keep(tl_model *m, double known)
 {
     struct tl_cycle *c = m->cycle;
@@ -532,9 +534,9 @@ static void say_long(tl_model *m, double stable, uint32_t body)
         m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[body]);
 }
 
-/* Notes whether the step that was given is far above the longest that is stable whatever the rule, that of the body
- * which is the fastest now, and says so once. All are looked at when there are more contacts than ever, and now and then:
- * an impact lasts one such step. */
+/* Notes whether the given step is far above the longest that is stable whatever the rule, that of the body with the
+ * highest rate. Says so once. All are looked at when there are more contacts than ever, and now and then: an impact
+ * lasts one such step. */
 static void judge_step(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
@@ -574,8 +576,8 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     return TL_OK;
 }
 
-/* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale of the
- * inertia alone. */
+/* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale
+ * of the inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;

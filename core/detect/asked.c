@@ -1,9 +1,9 @@
 /* asked.c - contacts found for somebody who asks.
  *
- * After edits contacts are made anew, and what they carry is rounded. That must not be done whenever somebody asks: later
- * steps would then have other digits, and a law that is set would find contacts that no step has found. So what is asked
- * for after edits is found in a copy. The next step, or what is put on contacts, goes on from the contacts as the last step
- * left them, through all edits at once. m->found_for tells which contacts m->detect has:
+ * After edits contacts are made anew, and what they carry is rounded. That must not be done whenever somebody asks:
+ * later steps would then have other digits, and a law that is set would find contacts that no step has found. So what
+ * is asked for after edits is found in a copy. The next step, or what is put on contacts, goes on from the contacts as
+ * the last step left them, through all edits at once. m->found_for tells which contacts m->detect has:
  *
  *     TL_FOR_STEPS ----------- query after edits ----------> TL_FOR_QUERIES_IN_COPY   (m->stepped: the last step's)
  *       |  ^  ^                                                |
@@ -12,8 +12,8 @@
  *       |                                                      |
  *       +----- no step has been made: query, failed step ----> TL_FOR_QUERIES
  *
- * Only the ids that contacts were asked by stay theirs, in what is copied and saved, too. Contacts that nobody has asked
- * for count on from these, in the order of their births. */
+ * Only the ids that contacts were asked by stay theirs, in what is copied and saved, too. Contacts that nobody has
+ * asked for count on from these, in the order of their births. */
 #include "detect/asked.h"
 
 #include "contact/store.h"

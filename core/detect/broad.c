@@ -1,10 +1,10 @@
 /* broad.c - the broad phase: a uniform grid that turns bounds into candidate pairs.
  *
  * Cells are as large as the median extent, or so much larger that there are no more cells than blocks: a scattered
- * model needs no huge grid. A block is entered in every cell its bounds overlap; blocks lie beside each other, so that
- * those of all sizes come to a few entries a cell. Two blocks that share several cells are reported once, from the cell
- * that holds the low corner of their common bounds. Bounds are grown by `reach`, so the list holds until some body has
- * moved that far, and by half of the block's own contact tolerance: a pair's is that of its smaller block, so a huge block
+ * model needs no huge grid. A block is entered in every cell its bounds overlap. Blocks lie beside each other, so those
+ * of all sizes come to a few entries a cell. Two blocks that share several cells are reported once, from the cell that
+ * holds the low corner of their common bounds. Bounds are grown by `reach`, so the list holds until some body has moved
+ * that far, and by half of the block's own contact tolerance: a pair's is that of its smaller block, so a huge block
  * must not make the small ones neighbours of each other.
  *
  * After edits only the blocks that have come or changed are entered, and the others looked up among them. */
@@ -206,7 +206,8 @@ static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
     return true;
 }
 
-/* Pairs of a block with those that are entered in the cells its bounds overlap; with rows above its own, if it is one of them. */
+/* Pairs of a block with those that are entered in the cells its bounds overlap. If it is one of them: with rows above
+ * its own. */
 static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const tl_bounds *mine,
                      bool entered, size_t *count)
 {
@@ -233,7 +234,8 @@ static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const 
     return true;
 }
 
-/* A look whether a block may be among those that are entered: the ball of its body, or if that is of several, the block. */
+/* A look whether a block may be among those that are entered: the ball of its body, or if that is of several, the
+ * block. */
 static bool may_meet(const tl_model *m, const struct tl_broad *g, uint32_t row)
 {
     uint32_t body = m->blocks.body[row];
@@ -295,9 +297,8 @@ static bool restart_chunks(tl_detect *d, size_t pairs)
     return true;
 }
 
-/* Merges the old list into the new one: what was known of a pair stays, and a pair with a contact
- * stays whatever its bounds say. The old list goes: a list lasts for many steps, and two would take as much
- * memory as the shapes. */
+/* Merges the old list into the new one: what was known of a pair stays, and a pair with a contact stays whatever its
+ * bounds say. The old list goes: a list lasts for many steps, and two would take as much memory as the shapes. */
 static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
 {
     tl_detect *d = m->detect;

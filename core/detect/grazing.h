@@ -9,8 +9,8 @@
 void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p);
 /* Whether neither of the two faces is overlapped, so that the pair has nothing in common under any rule. */
 bool tl_grazing_only_touches(const tl_pair_view *view, const tl_pair *p);
-/* How far the pair may move before it may carry more than goes unseen, or is as near as a contact; negative when it
- * may do so now. `gap` gets the larger one of the two faces. */
+/* How far the pair may move before it may carry more than goes unseen, or is as near as a contact. Negative: it may do
+ * so now. `gap` gets the larger one of the two faces. */
 double tl_grazing_margin(const tl_pair_view *view, const tl_pair *p, double *gap);
 
 #endif

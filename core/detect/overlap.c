@@ -1,21 +1,21 @@
 /* overlap.c - blocks that overlap so deeply that no contact can tell how to part them.
  *
- * An overlap is measured along the normal of the face along which it is least (region.h). Two lengths limit what it means. At
- * half the sum of both bodies' widths along that normal their middles have met, and the way out is the one on the far side.
- * At the diameter of the smaller body that one is wholly inside the other. A seam is no way out. But where parts have only a
- * sliver in common along one, they do not overlap deeply whatever the way along their faces.
+ * An overlap is measured along the normal of the face along which it is least (region.h). Two lengths limit what it
+ * means. At half the sum of both bodies' widths along that normal their middles have met: the way out is on the far
+ * side. At the diameter of the smaller body that one is wholly inside the other. A seam is no way out. But where parts
+ * have only a sliver in common along one, they do not overlap deeply whatever the way along their faces.
  *
- * A contact that is born so deep comes of blocks that were placed into each other, or thrown into each other in one step:
- * nobody knows which way they came. One that was born at the surface and sinks in is followed on its way; soft contacts of
- * vertices and edges let stones sink in by a diameter. Only when the smaller block is gone inside the larger is it given
- * up, or one that is found wholly inside at the birth of their contact, for nothing presses it. A step that finds such an
- * overlap fails before its forces are made. Two blocks that are both held may overlap as they like: nothing comes of it.
+ * A contact that is born so deep comes of blocks that were placed into each other, or thrown into each other in one
+ * step: nobody knows which way they came. One that was born at the surface and sinks in is followed on its way: soft
+ * contacts of vertices and edges let stones sink in by a diameter. It is given up only when the smaller block is gone
+ * inside the larger. So is a block that is wholly inside at the birth of the contact, for nothing presses it. A step
+ * that finds such an overlap fails before its forces are made. Two blocks that are both held may overlap as they like:
+ * nothing comes of it.
  *
- * The overlap is known wherever the faces of a pair are listed, which is after a motion of TL_LIST_MARGIN of the size at the
- * latest (update.c), so the look costs next to nothing. The faces of a contact that is marked are listed in every
- * step. The mark tells which limit was exceeded, and stays until the overlap is within that limit: what was born too deep
- * is still nobody's way in when it is looked at again, and what has sunk in is still followed when blocks elsewhere come or
- * go. */
+ * The overlap is known wherever the faces of a pair are listed, so the test costs next to nothing. They are listed
+ * after a motion of TL_LIST_MARGIN of the size at the latest (update.c). The faces of a contact that is marked are
+ * listed in every step. The mark tells which limit was exceeded, and stays until the overlap is within that limit. So
+ * what was born too deep stays refused, and what has sunk in is still followed when blocks elsewhere come or go. */
 #include "detect/overlap.h"
 
 #include "contact/contacts.h"
@@ -59,8 +59,8 @@ static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, ui
     return TL_DEEPEST_BORN * fmin(middles, diameter);
 }
 
-/* Whether all corners of a block lie behind all faces of another, given as planes with these normals in the same frame; `origin` is
- * that of the other block. */
+/* Whether all corners of a block lie behind all faces of another, which have these normals in the same frame. `origin`:
+ * of the other block. */
 static bool lies_behind(const tl_vec3 *corner, uint32_t corners, const tl_poly *other,
                         const tl_vec3 *normal, size_t stride, tl_vec3 origin)
 {

@@ -19,8 +19,8 @@ bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_re
 bool tl_overlap_is_whole(const tl_pair_view *view, const tl_region *region);
 /* Marks a contact whose blocks do, so that its faces are listed whenever it is looked at. */
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born);
-/* How far a contact's blocks overlap along the face along which they do so the least, m, and the extent of the thinner of both
- * bodies along its normal, m, with a row of its blocks. */
+/* How far a contact's blocks overlap along the face along which they do so the least, m. The thickness, m, is the
+ * extent of the thinner body along its normal; `thinner`: a row of its blocks. */
 typedef struct tl_overlap_share {
     double overlap, thickness;
     uint32_t thinner;
@@ -28,7 +28,8 @@ typedef struct tl_overlap_share {
 
 /* false: out of memory. */
 bool tl_overlap_measure(tl_model *m, uint32_t contact, tl_overlap_share *out);
-/* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can move. */
+/* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can
+ * move. */
 tl_status tl_overlaps_check(tl_model *m);
 
 #endif

@@ -1,10 +1,10 @@
 /* pairs.c - when pairs without a contact are tested.
  *
- * A pair that was tested and is not near sleeps until its blocks, together, may have moved as far as they are apart. How
- * far a block can have moved is told by its body's odometer: by the path length since the broad phase was made, so
- * that single precision is enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a pair be
- * tested too early. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two
- * blocks have moved nothing is read. */
+ * A pair that was tested and is not near sleeps until its blocks, together, may have moved as far as they are apart.
+ * How far a block can have moved is told by its body's odometer: by the path length since the broad phase was made, so
+ * that single precision is enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a
+ * pair be tested too early. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two blocks
+ * have moved nothing is read. */
 #include "detect/pairs.h"
 
 #include "base/inline.h"
@@ -136,8 +136,9 @@ void tl_pair_wake(tl_detect *d, uint32_t i)
     tl_pair_forget_faces(p);
 }
 
-/* How far a pair may move that is apart by the gap of its region before it may become a contact; below 0: it may be one. Only
- * a patch is born across a gap, of faces within its limit of tilt by then: so its points know that they were apart. */
+/* How far a pair may move that is apart by the gap of its region before it may become a contact; below 0: it may be
+ * one. Only a patch is born across a gap, of faces within its limit of tilt by then: so its points know that they were
+ * apart. */
 static double way_to_contact(const tl_pair_view *view, const tl_region *r, bool corners)
 {
     const double most_tilt = tl_flush_limits_of(corners).tilt;
@@ -149,8 +150,8 @@ static double way_to_contact(const tl_pair_view *view, const tl_region *r, bool 
     return r->gap > 0 && !parallel ? r->gap : -1;
 }
 
-/* How far a pair may move that only edges part before it may touch; 0: it may touch already. By coarse tests with reaches twice as long
- * each, up to the longest with which it is known to be near. */
+/* How far a pair may move that only edges part before it may touch; 0: it may touch already. By coarse tests with
+ * reaches twice as long each, up to the longest with which it is known to be near. */
 static double way_to_edges(const tl_pair_view *view, double longest)
 {
     double tolerance = TL_CONTACT_TOLERANCE * view->size, reach = tolerance;

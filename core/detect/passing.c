@@ -1,7 +1,8 @@
 /* passing.c - blocks that a step would carry into each other too far.
  *
  * Contacts are looked for at the end of a step only. So a block that travels far in one step may end on the far side of
- * another, or so deep in it that the nearest way out is not the one it came. Where a step may do that is told before the step:
+ * another. Or it ends so deep in it that the nearest way out is not the one it came. Where a step may do that is told
+ * before the step:
  *
  *   1. A body that travels by less than half of what the thinnest block allows is none of those that pass.
  *   2. The bounds of blocks are swept from where they are to where the step takes them. They are sorted along x, and pairs
@@ -10,8 +11,8 @@
  *      its overlap is large already. The gap along a fixed normal is a concave function of time, as no corner moves on a curve, so
  *      the straight line between the gaps before and after the step is below it.
  *
- * Two blocks that are both held may overlap as they like, and blocks of one body do not move against each other. Turns are
- * taken as small. All is serial and in the order of rows, and nothing is done while all blocks are slow. */
+ * Two blocks that are both held may overlap as they like, and blocks of one body do not move against each other. Turns
+ * are taken as small. All is serial and in the order of rows, and nothing is done while all blocks are slow. */
 #include "detect/passing.h"
 
 #include "contact/pair_view.h"
@@ -128,7 +129,8 @@ static reach reach_along(const side *s, tl_vec3 n)
     return out;
 }
 
-/* Gap of a pair along the outward normal of a face, before the step and after it. The faces of B come after those of A. */
+/* Gap of a pair along the outward normal of a face, before the step and after it. The faces of B come after those of
+ * A. */
 static reach gap_along(const side *a, const side *b, uint32_t face)
 {
     const bool of_b = face >= a->shape->face_count;

@@ -1,11 +1,12 @@
 /* bear.c - what a law bears at the points of a contact.
  *
- * The law is asked as in a step, with copies of the points: initial normal forces and shear forces are those that are given, the
- * closure counts from the present place and nothing moves. What it gives back is what it bears.
+ * The law is asked as in a step, with copies of the points: initial normal forces and shear forces are those that are
+ * given, the closure counts from the present place and nothing moves. What it gives back is what it bears.
  *
- * A law whose slip opens the joint answers to more shear than it bears by slipping, and so presses more than is given: as much more as was
- * asked for too much. No wall has moved, so that is none of what it bears. Such points are asked again for a share of the shear, until
- * they press as is given: the surplus goes with the share in a line for a law that is linear, and is squeezed in for others. */
+ * A law whose slip opens the joint answers to more shear than it bears by slipping, and so presses more than is given:
+ * as much more as was asked for too much. No wall has moved, so that is none of what it bears. Such points are asked
+ * again for a share of the shear, until they press as is given: the surplus goes with the share in a line for a law
+ * that is linear, and is squeezed in for others. */
 #include "force/bear.h"
 
 #include "base/columns.h"
@@ -19,8 +20,8 @@
 #define MOST_ASKED 12
 #define FOUND 1e-10
 
-/* Columns of lanes of points that are asked again: the share of the shear that is asked for, the largest that was borne, the least that
- * was not, and by how much the law then pressed more. */
+/* Columns of lanes of points that are asked again, shares of the shear: asked for, the largest borne, the least not
+ * borne; and by how much the law pressed more at that. */
 typedef struct shares {
     double *now, *borne, *beyond, *surplus;
 } shares;
@@ -106,8 +107,8 @@ static double surplus_of(const tl_traction *given, const tl_traction *borne)
     return more > SAME_FORCE * borne->normal ? more : 0;
 }
 
-/* The first shares to ask for again, from what the whole has come to; how many points press more than is given. A strength that goes with
- * the pressure falls to that of the given one; any more that it has is found. */
+/* The first shares to ask for again, from what the whole has come to; how many points press more than is given. A
+ * strength that goes with the pressure falls to that of the given one; any more that it has is found. */
 static size_t begin_shares(const tl_traction *given, const tl_traction *borne, size_t count,
                            const shares *s)
 {

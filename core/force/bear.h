@@ -4,19 +4,19 @@
 
 #include "model/model.h"
 
-/* Tractions on B at the points of a contact, whose walls do not move from here: normal n, compression positive, and shear in the
- * common plane, Pa. */
+/* Tractions on B at the points of a contact, whose walls do not move from here: normal n, compression positive, and
+ * shear in the common plane, Pa. */
 typedef struct tl_traction {
     double normal;
     tl_vec3 shear;
 } tl_traction;
 
-/* Sets `borne` to what the law of a patch makes of tractions that were there before: what it can bear of them. *stored: the energy of
- * the springs then, J. [point_count] each. The contact is left as it is. false: the law failed. */
+/* Sets `borne` to what the law of a patch makes of tractions that were there before: what it can bear of them. *stored:
+ * the energy of the springs then, J. [point_count] each. The contact is left as it is. false: the law failed. */
 bool tl_contact_bear(const tl_model *m, uint32_t contact, const tl_traction *given,
                      tl_traction *borne, double *stored);
-/* Which share of the shear that its law bears at the present normal stresses a contact carries, at the points where it carries some; NaN
- * where it carries none or the law has no limit. The contact is left as it is. */
+/* The shear that a contact carries over that which its law bears at the present normal stresses. NaN where it carries
+ * none or the law has no limit. The contact is left as it is. */
 double tl_contact_shear_used(const tl_model *m, uint32_t contact);
 
 #endif

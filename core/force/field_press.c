@@ -1,21 +1,22 @@
 /* field_press.c - normal force, moment and energy of a field contact.
  *
- * A law that is linear has the energy 2 kn G; another one tells its energy per area, or only its force. What slip opens in a step moves
- * the faces in the next one; until then it presses on beside the field.
+ * A law that is linear has the energy 2 kn G; another one tells its energy per area, or only its force. What slip opens
+ * in a step moves the faces in the next one; until then it presses on beside the field.
  *
- * Between flush faces that overlap by u the integral of d^n over K is that of (u / 2)^(n + 1) 2 / (n + 1) over their area. So the integrals
- * of d^0 .. d^3 are moments of an overlap,
+ * Between flush faces that overlap by u the integral of d^n over K is that of (u / 2)^(n + 1) 2 / (n + 1) over their
+ * area. So the integrals of d^0 .. d^3 are moments of an overlap,
  *
  *     I_1 = V,  I_2 = 4 G,  I_3 = 12 int d^2 dV,  I_4 = 32 int d^3 dV,    I_n = int u^n dA
  *
- * of any field. With the energy Phi per area that the law tells at the two closures of these (closures.c), and the stress Phi' there,
- * Phi / u is a cubic p_0 + p_1 u + p_2 u^2 + p_3 u^3 that meets both. The energy is
+ * of any field. At the two closures of these (closures.c) the law tells the energy per area Phi and the stress Phi'.
+ * The cubic p_0 + p_1 u + p_2 u^2 + p_3 u^3 of Phi / u meets both. The energy is
  *
  *     U = sum p_k I_(k+1)
  *
- * which is exact for stresses up to u^3, as in the cells of a patch, and 2 kn G for a linear one. What the moments change of the
- * closures changes nothing of U: that is what makes them those of Gauss. So U has the slopes p_k by I_(k+1). A minimum area A_m makes it
- * larger by (1 + (A_m / A_e)^2)^(1/2), with A_e = V^2 / (4 G) as for a linear law. */
+ * which is exact for stresses up to u^3, as in the cells of a patch, and 2 kn G for a linear one. What the moments
+ * change of the closures changes nothing of U: that is what makes them those of Gauss. So U has the slopes p_k by
+ * I_(k+1). A minimum area A_m makes it larger by (1 + (A_m / A_e)^2)^(1/2), with A_e = V^2 / (4 G) as for a linear
+ * law. */
 #include "force/field_press.h"
 
 #include "base/inside.h"
@@ -59,7 +60,8 @@ static tl_law_batch batch_of(const tl_model *m, size_t first, size_t count,
                           .flags = p->flags + first};
 }
 
-/* Energies, J, of `count` points from row `first` at the closures given, by a law that tells of them: tl_law_presses. */
+/* Energies, J, of `count` points from row `first` at the closures given, by a law that tells of them:
+ * tl_law_presses. */
 static void law_energies(const tl_model *m, const tl_law *law, size_t first, size_t count,
                          const tl_point_lanes *lanes, const double *closure, double *energy)
 {
@@ -172,7 +174,8 @@ bool tl_law_same_curve(const tl_law *one, const tl_law *other)
 
 /* ---------------------------------------------------------------- presses ----------------- */
 
-/* What slip pays for moving two faces apart by what it did in the last step, here: as if all of the law's force were on them. */
+/* What slip pays for moving two faces apart by what it did in the last step, here: as if all of the law's force were on
+ * them. */
 static double pays_for_lift(const tl_press_row *row, double whole)
 {
     return whole * row->opened * (1 - 0.5 * row->opened / row->press.overlap);
@@ -220,8 +223,8 @@ static void find_closures(const tl_press_row *row, double closure[2])
 /* Rows of the points of a SIMD group of field contacts. */
 enum { FIELD_ROWS = TL_FIELD_POINTS * TL_LANES };
 
-/* Energies and stresses per area at the two closures of each press, without what slip has opened in this step: each is asked for
- * at one of the two points. */
+/* Energies and stresses per area at the two closures of each press, without what slip has opened in this step: each is
+ * asked for at one of the two points. */
 static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                         const tl_point_lanes *t, const double lift[FIELD_ROWS],
                         tl_told_press by[TL_LANES])
@@ -289,8 +292,8 @@ static double find_slopes(const tl_press_row *row, double area, const tl_told_pr
     return more * all;
 }
 
-/* Adds what slip opens in this step at the overlap 4 G / V of the area: it adds to the force by m = F o / U of an energy U ~ o^m of the
- * closure o, dF = (F - U / o) dU / U. Gives that. */
+/* Adds what slip opens in this step at the overlap 4 G / V of the area: it adds to the force by m = F o / U of an
+ * energy U ~ o^m of the closure o, dF = (F - U / o) dU / U. Gives that. */
 static double add_rise(const tl_press_row *row, double area, const double f_n[TL_FIELD_POINTS],
                        const tl_told_press *by, tl_field_press *out)
 {

@@ -1,21 +1,22 @@
-/* follow.c - what a step does with every contact whose points stand: gaps, normals and relative motion of its points in the
- * present place.
+/* follow.c - what a step does with every contact whose points stand: gaps, normals and relative motion of its points in
+ * the present place.
  *
- * Shear forces are turned with the common plane, exactly from the old normal to the new and by its spin about it; (5) of
- * Hart, Cundall and Lemos (1988) is the first order of this. Two bodies that turn as one make no slip, and their forces turn
- * with them.
+ * Shear forces are turned with the common plane, exactly from the old normal to the new and by its spin about it. (5)
+ * of Hart, Cundall and Lemos (1988) is the first order of this. Two bodies that turn as one make no slip, and their
+ * forces turn with them.
  *
- * The points of a patch ride: they lie between where A and B have carried them since they were laid, nearer to B by the share
- * s, `ride` of the facet. The common plane turns with A by s and with B by 1 - s. Then normal forces are the gradient of the energy
- * of the points' overlaps, and the tangent stiffness is symmetric under any normal and shear force. Points that stayed in A's
- * frame with forces along the bisector would give and take energy.
+ * The points of a patch ride: they lie between where A and B have carried them since they were laid, nearer to B by the
+ * share s, `ride` of the facet. The common plane turns with A by s and with B by 1 - s. Then normal forces are the
+ * gradient of the energy of the points' overlaps, and the tangent stiffness is symmetric under any normal and shear
+ * force. Points that stayed in A's frame with forces along the bisector would give and take energy.
  *
- * The centre of pressure of a field contact moves. Its shear force before the step acted at the old centre, that after it acts at the
- * new one. So the motion is taken half-way between: the work of the mean force is then right to the second order of the step.
+ * The centre of pressure of a field contact moves. Its shear force before the step acted at the old centre, that after
+ * it acts at the new one. So the motion is taken half-way between: the work of the mean force is then right to the
+ * second order of the step.
  *
- * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought into
- * matrices first, one in each lane, so that what is left for a point are a few products, in loops over
- * columns without a branch. */
+ * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought
+ * into matrices first, one in each lane. What is left for a point are a few products, in loops over columns without a
+ * branch. */
 #include "force/follow.h"
 
 #include "base/columns.h"
@@ -42,8 +43,8 @@ typedef struct tl_frames {
     tl_lanes3 n, plane;
     double offset[TL_LANES]; /* tl_facing */
     tl_lanes3 last;          /* normal in the last step */
-    /* the motion of B against A in the last step at an arm: way + m arm; the spin of the
-     * common plane, as axis times the tangent of half its angle: B's by the share by which points stay with A, A's by the rest */
+    /* the motion of B against A in the last step at an arm: way + m arm; the spin of the common plane, as axis times
+     * the tangent of half its angle: B's by the share by which points stay with A, A's by the rest */
     tl_lanes3 way, half;
     tl_lanes9 m;
     tl_lanes9 turn; /* how shear forces turn, from the last common plane into the present one */
@@ -73,8 +74,8 @@ static double tangent_of(double a2)
     return is_small(a2) ? tangent_series(a2) : tl_tan(0.5 * sqrt(a2)) / sqrt(a2);
 }
 
-/* What a point has moved beside the centroid, as it acts on its arm from there now: 2 / (1 + h^2) ([h] - [h]^2), where h is
- * axis times the tangent of half the angle of the turn. Exact, so a rolling contact and one that is turned as a
+/* What a point has moved beside the centroid, as it acts on its arm from there now: 2 / (1 + h^2) ([h] - [h]^2), where
+ * h is axis times the tangent of half the angle of the turn. Exact, so a rolling contact and one that is turned as a
  * whole gather no slip. */
 TL_INLINE tl_mat3 turn_back(tl_vec3 h)
 {
@@ -132,8 +133,8 @@ TL_INLINE void put_octet(double *to, const quad *low, const quad *high)
     memcpy(to, &all, sizeof all);
 }
 
-/* Turns `count` doubles, an even number, of a row for each lane into a row of lanes for each double. What is loaded
- * as one vector is stored as one: a load cannot wait for two stores. */
+/* Turns `count` doubles, an even number, of a row for each lane into a row of lanes for each double. What is loaded as
+ * one vector is stored as one: a load cannot wait for two stores. */
 TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *row, size_t count)
 {
 #pragma GCC unroll 1
@@ -160,8 +161,8 @@ TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
 }
 
 /* How shear forces turn: from the normal `from` of the last step to n, then by twice the angle of tangent w about that.
- * With h = from x n + w (from + n) that is 1 + p [h] + p q [h]^2, p = 1 / (1 + w^2), q = 1 / (1 + from . n). What has not
- * turned stays as it is, to the bit. */
+ * With h = from x n + w (from + n) that is 1 + p [h] + p q [h]^2, p = 1 / (1 + w^2), q = 1 / (1 + from . n). What has
+ * not turned stays as it is, to the bit. */
 TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 from)
 {
     tl_vec3 n = tl_lanes3_get(&f->n, l);
@@ -359,16 +360,16 @@ TL_VECTORIZED static void read_torsion(const columns *c, const tl_frames *restri
     }
 }
 
-/* What a field contact keeps that its points of torsion are followed by: the radius, and by how much more than at those of shear
- * slip has opened the joint there. Both carry the same normal force. */
+/* What a field contact keeps that its points of torsion are followed by: the radius, and by how much more than at those
+ * of shear slip has opened the joint there. Both carry the same normal force. */
 typedef struct field_rows {
     double radius[TL_LANES], opened[TL_LANES];
     tl_lanes3 half; /* half of the way of the centre in the step */
 } field_rows;
 
-/* The points of torsion of field contacts: what is a shear to the law is the turn about the normal, times the radius. The
- * law is given a normal that is perpendicular to it. While the contact's own does not turn, the force is not made anew: it
- * would be off by a rounding, and never rest. */
+/* The points of torsion of field contacts: what is a shear to the law is the turn about the normal, times the radius.
+ * The law is given a normal that is perpendicular to it. While the contact's own does not turn, the force is not made
+ * anew: it would be off by a rounding, and never rest. */
 TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *restrict f,
                                          const field_rows *restrict rows,
                                          const torsions *restrict torsion)
@@ -382,7 +383,7 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
         double less_n = tl_v3_dot(less, n);
         c->du_n[shear] -= less_n;
         tl_columns_put(c->du_s, shear,
-            tl_v3_sub(tl_columns_get(c->du_s, shear), tl_v3_madd(less, -less_n, n)));
+                       tl_v3_sub(tl_columns_get(c->du_s, shear), tl_v3_madd(less, -less_n, n)));
         tl_vec3 turn =
             tl_v3(0.5 * (motion.m[2][1] - motion.m[1][2]), 0.5 * (motion.m[0][2] - motion.m[2][0]),
                   0.5 * (motion.m[1][0] - motion.m[0][1]));
@@ -392,7 +393,8 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
         tl_vec3 last = tl_lanes3_get(&f->last, l);
         bool still = (last.x == n.x) & (last.y == n.y) & (last.z == n.z);
         tl_columns_put(c->f_s, i,
-            still ? tl_lanes3_get(&torsion->force, l) : tl_v3_scale(torsion->size[l], n));
+                       still ? tl_lanes3_get(&torsion->force, l)
+                             : tl_v3_scale(torsion->size[l], n));
     }
 }
 

@@ -1,9 +1,10 @@
 /* joint_laws.c - a law and its properties, for a joint, and what becomes of the contacts that come under it.
  *
- * A new law, kn, ks or curve leaves the forces of its contacts as they are, with what slip has opened. Where one spring takes the place of
- * another, walls are moved so that they are pressed in, or apart, as much less as it is stiffer: that keeps the pressure everywhere, in
- * patches that are open in part, too. By a curve the present normal force of a point becomes the initial one where its walls are now,
- * and a point that is open keeps the gap at which it closes. Other properties, as friction, leave the walls as they are. */
+ * A new law, kn, ks or curve leaves the forces of its contacts as they are, with what slip has opened. Where one spring
+ * takes the place of another, walls are moved so that closures are as much smaller as it is stiffer. That keeps the
+ * pressure everywhere, in patches that are open in part, too. By a curve the present normal force of a point becomes
+ * the initial one where its walls are now. A point that is open keeps the gap at which it closes. Other properties, as
+ * friction, leave the walls as they are. */
 
 #include "force/joint_laws.h"
 
@@ -107,8 +108,8 @@ static void rebase_point(tl_points_table *p, size_t i, double closure, double li
     p->f_n0[i] = open ? 0 : p->f_n[i];
 }
 
-/* From springs to springs: closure and lift, pressed or apart, take `ratio` of what they were. So they are 0 along the same line of a patch
- * that is open in part, and pressures are the same everywhere. */
+/* From springs to springs: closure and lift, pressed or apart, take `ratio` of what they were. So they are 0 along the
+ * same line of a patch that is open in part, and pressures are the same everywhere. */
 static void rebase_spring(tl_points_table *p, size_t i, double closure, double lift, double opening,
                           double ratio)
 {
@@ -141,8 +142,8 @@ static void rebase_patch(tl_model *m, uint32_t c, const tl_law *law)
     }
 }
 
-/* Whether there are forces to keep: a contact that no step has seen begins under the new law, and so does one that carries
- * nothing and has no initial force, of which there is nothing to keep. */
+/* Whether there are forces to keep. A contact that no step has seen begins under the new law, and so does one that
+ * carries nothing and has no initial force. */
 static bool has_forces(const tl_detect *d, uint32_t c)
 {
     const tl_points_table *p = &d->points;

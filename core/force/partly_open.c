@@ -1,32 +1,33 @@
 /* partly_open.c - patches of which a part is closed and a part apart: their pressure integrated exactly.
  *
- * A point stands for a cell (cells.c), over which the law's state is that of the point. Its walls press where u > 0, and a bond pulls
- * elsewhere. The law gets the means
+ * A point stands for a cell (cells.c), over which the law's state is that of the point. Its walls press where u > 0,
+ * and a bond pulls elsewhere. The law gets the means
  *
  *     p = 1/A int max(0, u) dA,    q = 1/A int max(0, -u) dA
  *
- * as closure = p - lift and closure_apart = q, and gives the force of both parts, kn A (p - hold q) for a linear spring.
- * What the cell has beside that force at its point is added to the contact:
+ * as closure = p - lift and closure_apart = q, and gives the force of both parts, kn A (p - hold q) for a linear
+ * spring. What the cell has beside that force at its point is added to the contact:
  *
  *     M = k [int_{u>0} u (x - x_p) dA + hold int_{u<0} u (x - x_p) dA] cross n
  *     U = k/2 [int_{u>0} u^2 dA - A p^2 + hold (int_{u<0} u^2 dA - A q^2)]
  *
- * k is kn. So force, moment and energy are the exact integrals over the polygon, whatever part of it is closed. Where a part of
- * the points holds and another does not, that serves for patches that are wholly apart, too. Where all points hold, the points' own
- * rule is exact, and there are no cells. In the step in which some of it breaks, the cells are found after the law: then a force,
- * k (P - hold Q) less that of the point, comes to the moment and the energy.
+ * k is kn. So force, moment and energy are the exact integrals over the polygon, whatever part of it is closed. Where a
+ * part of the points holds and another does not, that serves for patches that are wholly apart, too. Where all points
+ * hold, the points' own rule is exact, and there are no cells. In the step in which some of it breaks, the cells are
+ * found after the law: then a force, k (P - hold Q) less that of the point, comes to the moment and the energy.
  *
- * A tension that a bond loses takes its part of U with it, and the work of this step, by the mean of the forces of both ends. With u'
- * before the step and u after it that is k/2 int_{u<0} u u' dA of the share lost: heat. The law has counted that of the means.
+ * A tension that a bond loses takes its part of U with it. It also takes the work of this step, by the mean of the
+ * forces of both ends. With u' before the step and u after it that is k/2 int_{u<0} u u' dA of the share lost: heat.
+ * The law has counted that of the means.
  *
- * As slip opens points in a step, u changes everywhere. So the cells are found once more after the law: then forces are the gradient of what is
- * stored, and the heat is what was stored, less what is stored then and less the work of the step. What a stress changes of this that is no
- * line in u is in partly_open.c.
+ * As slip opens points in a step, u changes everywhere. So the cells are found once more after the law. Then forces are
+ * the gradient of what is stored. The heat is what was stored, less what is stored then and less the work of the step.
+ * What a stress changes of this that is no line in u is in partly_open.c.
  *
- * The mean of u over a cell is not u at its point: they differ by r, and sum A r = 0 over the patch. While all is closed the
- * points' own u serve, as exactly. The means take (1 - t) r less, where t grows from 0 to 1 while the first cell opens. So no
- * point's closure jumps, and the sums are the same for any t. Under a curved law they are not: there t is 1 and all patches have cells,
- * also those that are closed. */
+ * The mean of u over a cell is not u at its point: they differ by r, and sum A r = 0 over the patch. While all is
+ * closed the points' own u serve, as exactly. The means take (1 - t) r less, where t grows from 0 to 1 while the first
+ * cell opens. So no point's closure jumps, and the sums are the same for any t. Under a curved law they are not: there
+ * t is 1 and all patches have cells, also those that are closed. */
 #include "force/partly_open.h"
 
 #include "base/columns.h"
@@ -53,18 +54,18 @@
  *
  * Cells of patches under a stress that is no line in the closure.
  *
- * A law that is not linear tells the energy E(u) of what presses, A int s du; so its stress s follows from two energies. Over the
- * closed part of a cell two closures stand for all (closures.c), with its moments I_n = int u^n dA. With the cubic of E / (A u) that
- * meets energies and stresses at both, p_0 + p_1 u + p_2 u^2 + p_3 u^3, the cell has
+ * A law that is not linear tells the energy E(u) of what presses, A int s du; so its stress s follows from two
+ * energies. Over the closed part of a cell two closures stand for all (closures.c), with its moments I_n = int u^n dA.
+ * With the cubic of E / (A u) that meets energies and stresses at both, p_0 + p_1 u + p_2 u^2 + p_3 u^3, the cell has
  *
  *     energy  U = sum p_n I_(n+1)
  *     force   int s dA   = sum (n + 1) p_n I_n              I_0 = int dA
  *     moment  int s x dA = sum (n + 1) p_n int u^n x dA
  *
- * which is exact for any stress up to u^3. The force is the gradient of the energy, for what the moments change of the two closures changes
- * nothing of U: those of Gauss are so. The law gets a closure p at which its whole cell presses with nearly that force, A s(p) = int s dA:
- * 1/s is taken to be linear in 1/u between two closures, as it is of lines and hyperbolas. The cell keeps what force, moment and
- * energy are beside those of its point. */
+ * which is exact for any stress up to u^3. The force is the gradient of the energy, for what the moments change of the
+ * two closures changes nothing of U: those of Gauss are so. The law gets a closure p at which its whole cell presses
+ * with nearly that force, A s(p) = int s dA: 1/s is taken to be linear in 1/u between two closures, as it is of lines
+ * and hyperbolas. The cell keeps what force, moment and energy are beside those of its point. */
 
 /* Tolerance: closures that are tried for that of the law, and how near its stress is to be to the mean one, relative.
  * Test: lua/test_curved_slides. */
@@ -136,8 +137,8 @@ static bent_whole whole_of(const tl_cell *cell, const double at[2], const double
     return out;
 }
 
-/* A closure at which the stress may be the mean one, between two of which the stresses are known; below both, by the power n of the closure with
- * which the stress goes, n + 1 = s u / E, at least a line. */
+/* A closure at which the stress may be the mean one, between two of which the stresses are known. Below both it follows
+ * from the power n of the closure with which the stress goes, n + 1 = s u / E, at least a line. */
 static double closure_at(double mean, const answer *one, const answer *two, size_t i)
 {
     double u = one->u[i], s = one->stress[i], v = two->u[i], t = two->stress[i];
@@ -181,8 +182,8 @@ static tl_bent bent_of(const tl_cell *cell, const bent_whole *by, double area, d
     };
 }
 
-/* The one that was tried takes the place of that on its side of the mean. The same side twice is a curve with a knee: the next one is in the
- * middle. */
+/* The one that was tried takes the place of that on its side of the mean. The same side twice is a curve with a knee:
+ * the next one is in the middle. */
 static double next(double mean, answer *one, answer *two, const answer *even, size_t i, int *side)
 {
     const bool above = even->stress[i] >= mean;
@@ -249,8 +250,9 @@ static void bend(const cells *of)
     }
 }
 
-/* Of the cells of the patches in the lanes `parts` of a SIMD group, whose integrals are known: what the stress of a law changes that
- * tells the energy of what presses (tl_law_presses). `found`: of points at their closures, else of closures that suit the cells. */
+/* Of the cells of the patches in the lanes `parts` of a SIMD group, whose integrals are known: what the stress of a law
+ * changes that tells the energy of what presses (tl_law_presses). `found`: of points at their closures, else of
+ * closures that suit the cells. */
 static void cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                        const tl_point_lanes *lanes, size_t lane, uint32_t parts, bool found)
 {
@@ -270,7 +272,8 @@ static void cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group
 
 /* ---------------------------------------------------------------- edges ------------------ */
 
-/* The least of a linear closure over a cell whose outer side begins at the values given: it is there, or on its inner side. */
+/* The least of a linear closure over a cell whose outer side begins at the values given: it is there, or on its inner
+ * side. */
 static double lowest(double centre, double outer)
 {
     return outer < centre ? outer : centre + TL_CELL_INNER * (outer - centre);
@@ -344,8 +347,8 @@ static double corners_beyond(const range *overlap, size_t l)
     return (1 / tl_point_rule_of(false).reach - 1) * (overlap->high[l] - overlap->low[l]);
 }
 
-/* What is known of the points of a SIMD group: u, and how far corners may be beyond it: by the overlaps of the faces, and by the slope of the
- * lifts from these. */
+/* What is known of the points of a SIMD group: u, and how far corners may be beyond it: by the overlaps of the faces,
+ * and by the slope of the lifts from these. */
 typedef struct spread {
     range u;
     double beyond[TL_LANES];
@@ -386,8 +389,8 @@ static bool is_closed(const tl_points_table *p, const tl_simd_group *group, cons
     return open == 0;
 }
 
-/* The least and the largest share of what is apart that the points of a patch hold. Where that is 1 throughout, the points' own
- * rule is exact. */
+/* The least and the largest share of what is apart that the points of a patch hold. Where that is 1 throughout, the
+ * points' own rule is exact. */
 typedef struct holds {
     double least, most;
 } holds;
@@ -439,8 +442,8 @@ static double share_of_cells(const tl_cell_patch *of)
     return share;
 }
 
-/* Leaves in a cell what it has beside that which the law has been given of it: p and q, or only p < 0 of what is apart as a whole.
- * `whole`: the volumes that the forces of the cell have. */
+/* Leaves in a cell what it has beside that which the law has been given of it: p and q, or only p < 0 of what is apart
+ * as a whole. `whole`: the volumes that the forces of the cell have. */
 static void leave_rest(const tl_cell_patch *of, size_t k, double p, double q, const double whole[2])
 {
     const tl_point_lanes *t = of->lanes;
@@ -458,7 +461,8 @@ static void leave_rest(const tl_cell_patch *of, size_t k, double p, double q, co
     cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
 }
 
-/* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has beside that. */
+/* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has
+ * beside that. */
 static void put_means(const tl_cell_patch *of, size_t k, double share, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
@@ -485,8 +489,8 @@ static void put_means(const tl_cell_patch *of, size_t k, double share, bool curv
     cell->pressed_second += second;
 }
 
-/* What the cell of a point has beside that which the law has found there, when cells are found anew after the law. `apart`: the mean
- * that the law was given of it. */
+/* What the cell of a point has beside that which the law has found there, when cells are found anew after the law.
+ * `apart`: the mean that the law was given of it. */
 static void leave_found(const tl_cell_patch *of, size_t k, double apart, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
@@ -502,8 +506,8 @@ static void leave_found(const tl_cell_patch *of, size_t k, double apart, bool cu
     cell->pressed_second += curved ? bent->second : 0;
 }
 
-/* The patches of a SIMD group whose points get means: those of which a part may be apart, and under a curved law all. Gives how many, and
- * the lanes of these and of those that hold throughout. */
+/* The patches of a SIMD group whose points get means: those of which a part may be apart, and under a curved law all.
+ * Gives how many, and the lanes of these and of those that hold throughout. */
 static size_t find_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                          const tl_point_lanes *t, size_t lane, const spread *by,
                          tl_cell_patch out[TL_LANES], tl_part_lanes *lanes)
@@ -582,8 +586,8 @@ static bool has_opened(const tl_cell_patch *of)
     return out;
 }
 
-/* Finds the cells of those of the lanes `parts` anew that slip has opened in this step, so that forces are the gradient of what is stored
- * then. Gives these lanes. */
+/* Finds the cells anew of those of the lanes `parts` that slip has opened in this step. Forces are then the gradient of
+ * what is stored. Gives these lanes. */
 static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                            const tl_point_lanes *t, size_t lane, uint32_t parts)
 {
@@ -609,7 +613,8 @@ static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_g
     return opened;
 }
 
-/* Finds the cells of those of the lanes `held` in which some of a bond may have broken in this step. Gives these lanes. */
+/* Finds the cells of those of the lanes `held` in which some of a bond may have broken in this step. Gives these
+ * lanes. */
 static uint32_t break_held(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
                            size_t lane, uint32_t held)
 {
@@ -646,7 +651,8 @@ static tl_part_sums sum_cells(const tl_cell_patch *of, const tl_law *law, tl_vec
         double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
         double straight = tl_law_is_linear(law) ? law->kn : 0;
         double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
-        /* what slip has opened in this step presses at the point: it is not in the volume, which may be next to nothing */
+        /* what slip has opened in this step presses at the point: it is not in the volume, which may be next to
+         * nothing */
         double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : straight;
         spring = fmax(0, fmin(spring, SAME_STIFFNESS * law->kn));
         double moved = du * cell->apart_more + tl_v3_dot(tl_v3_cross(turn, cell->apart), n);

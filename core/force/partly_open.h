@@ -9,14 +9,14 @@
 void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes,
                          size_t lane);
 
-/* Lanes of a SIMD group, a bit each, in which something is apart: of patches whose points stand for cells, and of those that hold
- * all of it, whose points go by their own closures. */
+/* Lanes of a SIMD group, a bit each, in which something is apart: of patches whose points stand for cells, and of those
+ * that hold all of it, whose points go by their own closures. */
 typedef struct tl_part_lanes {
     uint32_t parts, held;
 } tl_part_lanes;
 
-/* After a SIMD group of patches has been followed: gives the points of patches that are partly open, or of which a part holds, the
- * mean closures of their cells. `closure_apart` of the group's rows is valid when there is such a patch. */
+/* After a SIMD group of patches has been followed: gives the points of patches that are partly open, or of which a part
+ * holds, the mean closures of their cells. `closure_apart` of the group's rows is valid when there is such a patch. */
 tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                                  const tl_point_lanes *lanes, size_t lane);
 
@@ -28,13 +28,14 @@ typedef struct tl_part_sums {
     double stored, dissipated;
 } tl_part_sums;
 
-/* Lanes in which patches have something beside their points after the law, and of these those that slip has opened in this step. */
+/* Lanes in which patches have something beside their points after the law, and of these those that slip has opened in
+ * this step. */
 typedef struct tl_found_lanes {
     uint32_t parts, opened;
 } tl_found_lanes;
 
-/* After the law: what patches have beside their points, into out[TL_LANES]. turn[TL_LANES], rad: of B against A in the step, in the lanes
- * given. */
+/* After the law: what patches have beside their points, into out[TL_LANES]. turn[TL_LANES], rad: of B against A in the
+ * step, in the lanes given. */
 tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law,
                                       const tl_simd_group *group, const tl_point_lanes *lanes,
                                       size_t lane, tl_part_lanes given, const tl_vec3 *turn,

@@ -12,12 +12,14 @@
  *
  * What tractions on faces put on blocks, kept so that their parts get their shares.
  *
- * Of a load that comes of a traction on a face, force F and moment M about the centroid c of the face are noted. Parts of the face get
- * what brings a uniform plate along that F and M act on: with the area A and its second moments I, each part p
+ * Of a load that comes of a traction on a face, force F and moment M about the centroid c of the face are noted. Parts
+ * of the face get what brings a uniform plate along that F and M act on: with the area A and its second moments I, each
+ * part p
  *
  *     F_p = A_p (F/A + w x (c_p - c)),    M_p = I_p w,    I w = M
  *
- * A traction that is uniform, or normal to the face and linear, is the same on each part. Sums are those of the whole for any. */
+ * A traction that is uniform, or normal to the face and linear, is the same on each part. Sums are those of the whole
+ * for any. */
 
 /* ---------------------------------------------------------------- lumps ------------------ */
 

@@ -1,18 +1,18 @@
 /* model.h - what a model is made of, for the modules above it (contact, force, cycle, io ...).
  *
- * Blocks are shapes; bodies move. A body is one block or several joined ones. All kinematics lives in
- * the bodies' columns: a block's shape is kept in its body's frame, whose origin is the body's
- * centroid, so a point p of a shape is at
+ * Blocks are shapes; bodies move. A body is one block or several joined ones. All kinematics lives in the bodies'
+ * columns: a block's shape is kept in its body's frame, whose origin is the body's centroid, so a point p of a shape is
+ * at
  *
  *     origin + x_ref + u + R p
  *
- * `origin` is a point of the model rounded to a coarse power of two, so that a model far from the
- * coordinates' zero loses no digits; x_ref is the body's centroid when the body was made and u its
- * displacement since, kept apart so that a step far below the rounding of x_ref still counts.
+ * `origin` is a point of the model rounded to a coarse power of two, so that a model far from the coordinates' zero
+ * loses no digits. x_ref is the body's centroid when the body was made and u its displacement since. They are kept
+ * apart so that a step far below the rounding of x_ref still counts.
  *
- * Rows of blocks and bodies are in ascending order of id. Rows change when blocks are created, cut,
- * joined or deleted; `structure` counts these changes, and a block that came or changed bears the count.
- * Rows of blocks that were deleted go when rows are next gone through (tl_rows_tidy). Ids never change and are never used again. */
+ * Rows of blocks and bodies are in ascending order of id. Rows change when blocks are created, cut, joined or deleted;
+ * `structure` counts these changes, and a block that came or changed bears the count. Rows of blocks that were deleted
+ * go when rows are next gone through (tl_rows_tidy). Ids never change and are never used again. */
 #ifndef TL_MODEL_MODEL_H
 #define TL_MODEL_MODEL_H
 
@@ -42,7 +42,8 @@ typedef struct tl_blocks {
     double *density; /* kg/m3 */
     double *volume;  /* m3 */
     tl_vec3 *local;  /* centroid in the body's frame, zero for a body of one block; NULL: all are */
-    /* From where displacements count, after reset_displacement or when bodies were joined; NULL: from where it was made. */
+    /* From where displacements count, after reset_displacement or when bodies were joined; NULL: from where it was
+     * made. */
     tl_base *base;
     /* Where it was made, once bodies were joined; NULL: where the frame of its body has neither shift nor turn. */
     tl_base *made;
@@ -67,7 +68,7 @@ typedef struct tl_wrench {
 } tl_wrench;
 
 /* Where a body is and how it came there in the last step: what contacts need of it. They come to bodies in no order
- * that memory knows, so all of it lies together, in three of the lines that memory hands over at a time, and not in
+ * that memory knows. So all of it lies together, in three of the lines that memory hands over at a time, and not in
  * columns. A row of TL_POSE_ROW doubles. */
 typedef struct tl_pose {
     tl_mat3 r;        /* the rotation q as a matrix */
@@ -392,8 +393,8 @@ void tl_model_say(tl_model *m, const char *format, ...) TL_PRINTF(2, 3);
 bool tl_model_says(tl_model *m, tl_remark remark);
 /* Refuses with TL_E_STATE while a callback runs; `what` is "create blocks". */
 tl_status tl_model_may_change(tl_model *m, const char *what);
-/* Refuses with TL_E_STATE while a drive's function runs, which is in the middle of a step; `what` is "fix blocks". All that
- * detection, the step, laws, damping or motion depend on asks this before it is changed. */
+/* Refuses with TL_E_STATE while a drive's function runs, which is in the middle of a step; `what` is "fix blocks". All
+ * that detection, the step, laws, damping or motion depend on asks this before it is changed. */
 tl_status tl_model_may_set(tl_model *m, const char *what);
 
 #endif

@@ -1,5 +1,4 @@
-/* select.c - which blocks: the filters of a selection. Positions are the present ones and boundaries
- * are included. */
+/* select.c - which blocks: the filters of a selection. Positions are the present ones and boundaries are included. */
 #include "geometry/measure.h"
 #include "model/joints.h"
 #include "model/model.h"
