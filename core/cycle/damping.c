@@ -1,8 +1,7 @@
 /* damping.c - the damping plugin: chosen by name, called on batches of bodies.
  *
  * The plugin's states are numbers of the model, kept here and given to it. Where it asks for them, so are the forces of
- * the step before: a change of damping begins with those of the last step. The kinetic energy and its rate are sums
- * made by gather.c. */
+ * the step before: a change of damping begins with those of the last step. gather.c sums the kinetic energy. */
 #include "cycle/damping.h"
 
 #include "base/parallel.h"

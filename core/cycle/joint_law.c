@@ -46,8 +46,7 @@ static double excess(trial *t, double shift)
     return t->failed ? 0 : tl_press_force(t->law, row, t->state) - t->wanted;
 }
 
-/* Moves the faces until the force is that wanted: between two shifts with less and with more, by the rule of false
- * position after Illinois. */
+/* Moves the faces until the force is that wanted: between two shifts with less and more, by the Illinois rule. */
 static void find_shift(trial *t)
 {
     const tl_press_row *row = tl_press_row_of(t->m, t->contact);
@@ -132,24 +131,21 @@ static void keep_shear(trial *t, double radius)
                    tl_v3_scale(radius / press->radius, tl_columns_get(p->f_s, torsion)));
 }
 
-/* Moves the faces of a field contact so that the law that its joint has now gives the force of the last step. false:
- * out of memory. */
-static bool keep_field_force(tl_model *m, uint32_t c)
+/* Moves the faces of a field contact so that the law of its joint gives the force of the last step. */
+static void keep_field_force(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
     const tl_points_table *p = &m->detect->points;
     const double radius = tl_press_row_of(m, c)->press.radius;
-    const tl_vec3 shear = {p->f_s[0][first], p->f_s[1][first], p->f_s[2][first]};
     trial t = {.m = m, .contact = c, .law = tl_law_of(m, contacts->tag[c])};
-    t.wanted = tl_v3_norm(tl_v3_sub(contacts->force[c], shear));
+    t.wanted = tl_v3_norm(tl_v3_sub(contacts->force[c], tl_columns_get(p->f_s, first)));
     read_state(&t);
     note_openings(&t);
     if (t.wanted > 0 && tl_press_row_of(m, c)->press.overlap > 0)
         find_shift(&t);
     if (!t.failed)
         keep_shear(&t, radius);
-    return !t.failed;
 }
 
 /* ---------------------------------------------------------------- laws of joints ---------- */
@@ -194,19 +190,42 @@ static tl_status prepare_contacts(tl_model *m, const tl_law *law, fields *out)
     return tl_law_reserve(m, law) && find_fields(m, law, out) ? TL_OK : tl_fail_memory(&m->error);
 }
 
-/* After the law has taken its place. */
-static void keep_forces(tl_model *m, const fields *of)
-{
-    for (size_t k = 0; k < of->count; k++)
-        keep_field_force(m, of->contact[k]);
-}
-
-static tl_law *exact_law(tl_model *m, tl_tag tag)
+/* The law of just this joint or plane, or a place for it behind the others; NULL: out of memory. */
+static tl_law *place_of(tl_model *m, tl_tag tag)
 {
     for (size_t i = 0; i < m->joint_law_count; i++)
         if (m->joint_laws[i].tag.joint == tag.joint && m->joint_laws[i].tag.plane == tag.plane)
             return &m->joint_laws[i];
-    return NULL;
+    tl_law *laws = realloc(m->joint_laws, (m->joint_law_count + 1) * sizeof *laws);
+    if (!laws)
+        return NULL;
+    m->joint_laws = laws;
+    laws[m->joint_law_count] = (tl_law){.kind = NULL};
+    return &laws[m->joint_law_count];
+}
+
+/* Puts a law in its place, which it owns then; after a failure nothing has changed. */
+static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
+{
+    fields kept = {NULL, 0};
+    tl_law *place = place_of(m, law->tag);
+    tl_status status = place ? prepare_contacts(m, law, &kept) : tl_fail_memory(&m->error);
+    if (status == TL_OK) {
+        tl_remark_friction(m, joint, law);
+        tl_law_rebase(m, law);
+        const uint32_t row = (uint32_t)(place - m->joint_laws);
+        if (row == m->joint_law_count)
+            m->joint_law_count++;
+        else if (place->kind != law->kind)
+            tl_law_reset(m, row, law->kind);
+        tl_law_clear(place);
+        *place = *law;
+        for (size_t k = 0; k < kept.count; k++)
+            keep_field_force(m, kept.contact[k]);
+        m->laws++;
+    }
+    free(kept.contact);
+    return status;
 }
 
 tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl_args *args)
@@ -232,36 +251,10 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     status = tl_law_make_for(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
     if (status != TL_OK)
         return status;
-    tl_law *place = exact_law(m, tag);
-    if (!place) {
-        tl_law *joint_laws = realloc(m->joint_laws, (m->joint_law_count + 1) * sizeof *joint_laws);
-        if (!joint_laws) {
-            tl_law_clear(&fresh);
-            return tl_fail_memory(&m->error);
-        }
-        m->joint_laws = joint_laws;
-    }
-    fields kept = {NULL, 0};
-    status = prepare_contacts(m, &fresh, &kept);
-    if (status != TL_OK) {
-        free(kept.contact);
+    status = put_law(m, joint, &fresh);
+    if (status != TL_OK)
         tl_law_clear(&fresh);
-        return status;
-    }
-    tl_remark_friction(m, joint, &fresh);
-    tl_law_rebase(m, &fresh);
-    if (place) {
-        if (place->kind != fresh.kind)
-            tl_law_reset(m, (uint32_t)(place - m->joint_laws), fresh.kind);
-        tl_law_clear(place);
-        *place = fresh;
-    } else {
-        m->joint_laws[m->joint_law_count++] = fresh;
-    }
-    keep_forces(m, &kept);
-    free(kept.contact);
-    m->laws++;
-    if (m->cycle)
+    else if (m->cycle)
         m->cycle->dt = 0;
-    return TL_OK;
+    return status;
 }

@@ -62,8 +62,7 @@ static inline push push_of(const tl_model *m, uint32_t body)
     return p;
 }
 
-/* Velocities after the kick, as the move makes them; with a span of 0 those that the body has, or that its drive
- * gives. */
+/* Velocities after the kick, as the move makes them; with a span of 0 those of the body, or of its drive. */
 static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
 {
     const tl_bodies *b = &m->bodies;
@@ -374,8 +373,7 @@ static uint32_t hardest_contact(const tl_model *m, uint32_t body, double *force)
     return found;
 }
 
-/* What a body moves by in a step, m: of its own velocity, or at the most by what kicks it. The largest names the
- * cause. */
+/* What a body moves by in a step, m: by its velocity, or at the most by what kicks it. The largest names the cause. */
 typedef struct cause {
     double travel;
     char text[160];

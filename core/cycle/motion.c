@@ -34,8 +34,7 @@ TL_INLINE tl_vec3 times(tl_vec3 a, tl_vec3 b)
     return tl_v3(a.x * b.x, a.y * b.y, a.z * b.z);
 }
 
-/* From principal axes to the model's. Trimmed, since the rounding of `axes` is the same in every step and its stretch
- * would add up. */
+/* From principal axes to the model's. Trimmed: the rounding of `axes` is the same in every step and would add up. */
 TL_INLINE tl_mat3 attitude_of(tl_quat q, tl_quat axes)
 {
     return tl_q_matrix(tl_q_trim(tl_q_mul(q, axes)));

@@ -14,8 +14,7 @@
  * time. As far as the laws bear it, it is their force at the beginning. From the next step on the laws decide. Only
  * then may parts that no joint can hold begin to move on their own.
  *
- * Parts of a body some of whose motion is held get the tractions of its mean stress, where the model has an initial
- * stress. */
+ * Parts of a body that is partly held get the tractions of its mean stress, where the model has an initial stress. */
 #include "cycle/split.h"
 
 #include "base/columns.h"
@@ -63,7 +62,7 @@ typedef struct tl_split_part {
     tl_wrench lacks, preconditioned;
 } tl_split_part;
 
-/* Parts that new contacts hold together. start: tractions before; given: those asked for; borne: what the laws make of
+/* Parts that new contacts hold together. Tractions: `start` before, `given` asked for, `borne` what laws make of
  * them. */
 typedef struct tl_split_system {
     const tl_model *m;
@@ -298,8 +297,7 @@ static double go_on(tl_split_system *s, bool search, double lacking, tl_traction
     return now < lacking || isnan(now) ? now : try_step(s, from, 0);
 }
 
-/* Finds tractions that the laws bear and that bring what the parts lack, or come as near to it as they can; false: a
- * law failed. */
+/* Finds tractions that the laws bear and that bring what the parts lack, or as much as can be; false: a law failed. */
 static bool split_solve(tl_split_system *s)
 {
     double wanted = 0, least = INFINITY, lacking;
@@ -703,8 +701,7 @@ static bool some_held(const tl_model *m, const tl_split_part *parts, size_t coun
     return false;
 }
 
-/* A whole whose contacts and points are those from the first given on; its counts are those of its parts and
- * contacts. */
+/* A whole whose parts, contacts and points are those from the first given on. */
 static tl_split_system system_of(const tl_model *m, const struct tl_split_work *w, size_t part,
                                  size_t contact, size_t point)
 {

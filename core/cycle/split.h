@@ -9,8 +9,7 @@
 
 /* Before the gather; false: out of memory. */
 bool tl_split_prepare(tl_model *m);
-/* After the gather: gives the parts the forces that let them do so, and their new faces the tractions that bring
- * these. */
+/* After the gather: gives the parts the forces for that, and their new faces the tractions that bring these. */
 tl_status tl_split_hold(tl_model *m, double dt);
 /* Before the move: corrects the velocities of the parts for arms that turn. */
 void tl_split_turn(tl_model *m);

@@ -27,8 +27,7 @@
 #include <string.h>
 
 /* A search for the row of the largest value: user data of a parallel loop, and the first member of what a search adds
- * to it. Of several rows with equal values the first one counts, so which thread took which rows makes no
- * difference. */
+ * to it. Of rows with equal values the first one counts, whichever thread took it. */
 typedef struct row_search {
     tl_model *m;
     tl_row_value found[TL_MAX_THREADS];
@@ -313,8 +312,7 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     row_search_note(&s->search, thread, found);
 }
 
-/* Notes the bodies whose contacts have points that were placed in this step or, beyond that, others than before; true
- * when there are any. */
+/* Notes the bodies whose contacts have points as new as that: TL_POINTS_*. true when there are any. */
 static bool touch_new_points(tl_model *m, uint8_t least)
 {
     tl_detect *d = m->detect;
@@ -333,8 +331,8 @@ static bool touch_new_points(tl_model *m, uint8_t least)
 }
 
 /* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this
- * step. Else, and with mass scaling, they are when a contact has gone or has other points. With mass scaling all are,
- * now and then. */
+ * step. Else, and with mass scaling, when a contact has gone or has other points. With mass scaling all are, now and
+ * then. */
 static tl_row_value rates_keep(tl_model *m, double known)
 {
     struct tl_cycle *c = m->cycle;
@@ -535,8 +533,8 @@ static void say_long(tl_model *m, double stable, uint32_t body)
 }
 
 /* Notes whether the given step is far above the longest that is stable whatever the rule, that of the body with the
- * highest rate. Says so once. All are looked at when there are more contacts than ever, and now and then: an impact
- * lasts one such step. */
+ * highest rate. Says so once. Looks when there are more contacts than ever, and now and then: an impact lasts one such
+ * step. */
 static void judge_step(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
@@ -576,8 +574,7 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     return TL_OK;
 }
 
-/* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale
- * of the inertia alone. */
+/* The step; 0 where nothing can move or does. A report gets `by`, what controls it, and leaves the inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;

@@ -7,12 +7,10 @@
 /* Before contacts are found for somebody who asks after edits: from here on they are found in a copy, or for the first
  * time. TL_E_MEMORY: nothing has changed. */
 tl_status tl_asked_begin(tl_model *m);
-/* Before contacts are found for a step, or for what is put on them: from those of the last step, of which there may be
- * none. */
+/* Before contacts are found for a step, or for what is put on them: goes back to those of the last step, if any. */
 void tl_asked_end(tl_model *m);
 /* After a step that failed: contacts of a model that has not begun, which it has found, are those of somebody who
- * asked. Else the next edit would have something to go on from, and answers would depend on whether somebody had asked
- * before. */
+ * asked. Else the next edit would go on from them, and answers would depend on earlier ones. */
 void tl_asked_step_failed(tl_model *m);
 /* Notes the ids by which contacts were asked for, before they are found once more, or copied, or saved; false when out
  * of memory: then only the ids above them are known. */

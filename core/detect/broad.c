@@ -206,8 +206,8 @@ static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
     return true;
 }
 
-/* Pairs of a block with those that are entered in the cells its bounds overlap. If it is one of them: with rows above
- * its own. */
+/* Pairs of a block with those entered in the cells its bounds overlap; if it is one of them, with rows above its
+ * own. */
 static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const tl_bounds *mine,
                      bool entered, size_t *count)
 {
@@ -234,8 +234,7 @@ static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const 
     return true;
 }
 
-/* A look whether a block may be among those that are entered: the ball of its body, or if that is of several, the
- * block. */
+/* Whether a block may be near those that are entered, by the ball of its body. */
 static bool may_meet(const tl_model *m, const struct tl_broad *g, uint32_t row)
 {
     uint32_t body = m->blocks.body[row];

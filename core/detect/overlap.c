@@ -59,8 +59,7 @@ static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, ui
     return TL_DEEPEST_BORN * fmin(middles, diameter);
 }
 
-/* Whether all corners of a block lie behind all faces of another, which have these normals in the same frame. `origin`:
- * of the other block. */
+/* Whether all corners of a block lie behind all faces of another with these normals and origin in the same frame. */
 static bool lies_behind(const tl_vec3 *corner, uint32_t corners, const tl_poly *other,
                         const tl_vec3 *normal, size_t stride, tl_vec3 origin)
 {

@@ -11,8 +11,7 @@
  * Test: lua/test_limits. */
 #define TL_SHALLOW 0.01
 
-/* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less is enough for one that is
- * just born. */
+/* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less if it is just born. */
 bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born);
 /* Whether one block lies wholly inside the other: no face of it is crossed, so nothing presses. */
@@ -28,8 +27,7 @@ typedef struct tl_overlap_share {
 
 /* false: out of memory. */
 bool tl_overlap_measure(tl_model *m, uint32_t contact, tl_overlap_share *out);
-/* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can
- * move. */
+/* After a step's contacts have been settled: the sentence of the first that is marked and can move. */
 tl_status tl_overlaps_check(tl_model *m);
 
 #endif

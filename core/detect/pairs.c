@@ -3,8 +3,8 @@
  * A pair that was tested and is not near sleeps until its blocks, together, may have moved as far as they are apart.
  * How far a block can have moved is told by its body's odometer: by the path length since the broad phase was made, so
  * that single precision is enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a
- * pair be tested too early. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two blocks
- * have moved nothing is read. */
+ * pair be tested too early. Most pairs sleep in most steps. Of a chunk that sleeps longer than any two blocks have
+ * moved nothing is read. */
 #include "detect/pairs.h"
 
 #include "base/inline.h"
@@ -137,8 +137,7 @@ void tl_pair_wake(tl_detect *d, uint32_t i)
 }
 
 /* How far a pair may move that is apart by the gap of its region before it may become a contact; below 0: it may be
- * one. Only a patch is born across a gap, of faces within its limit of tilt by then: so its points know that they were
- * apart. */
+ * one. Only a patch is born across a gap, of faces within its limit of tilt. */
 static double way_to_contact(const tl_pair_view *view, const tl_region *r, bool corners)
 {
     const double most_tilt = tl_flush_limits_of(corners).tilt;

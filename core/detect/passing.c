@@ -129,8 +129,7 @@ static reach reach_along(const side *s, tl_vec3 n)
     return out;
 }
 
-/* Gap of a pair along the outward normal of a face, before the step and after it. The faces of B come after those of
- * A. */
+/* Gap of a pair along the outward normal of a face, before the step and after it. B's faces come after those of A. */
 static reach gap_along(const side *a, const side *b, uint32_t face)
 {
     const bool of_b = face >= a->shape->face_count;

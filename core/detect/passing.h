@@ -31,8 +31,7 @@ typedef struct tl_swept {
     bool moves; /* far enough to be one of a pair that passes */
 } tl_swept;
 
-/* Least thickness that a block can have, m, from its volume V and surface S: a convex body holds a ball of radius V /
- * S. */
+/* Least thickness that a block of volume V and surface S can have, m: a convex body holds a ball of radius V / S. */
 double tl_least_thickness(const tl_model *m, uint32_t row);
 /* Finds the pair whose overlap would first grow by more than `share` of the thinner block's thickness. `motion`: of
  * each body; `thinnest`: the least thickness of all blocks, m; `list`: a place for each block, overwritten. */

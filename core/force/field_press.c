@@ -15,8 +15,7 @@
  *
  * which is exact for stresses up to u^3, as in the cells of a patch, and 2 kn G for a linear one. What the moments
  * change of the closures changes nothing of U: that is what makes them those of Gauss. So U has the slopes p_k by
- * I_(k+1). A minimum area A_m makes it larger by (1 + (A_m / A_e)^2)^(1/2), with A_e = V^2 / (4 G) as for a linear
- * law. */
+ * I_(k+1). A minimum area A_m makes it larger by (1 + (A_m / A_e)^2)^(1/2), A_e = V^2 / (4 G). */
 #include "force/field_press.h"
 
 #include "base/inside.h"
@@ -60,8 +59,7 @@ static tl_law_batch batch_of(const tl_model *m, size_t first, size_t count,
                           .flags = p->flags + first};
 }
 
-/* Energies, J, of `count` points from row `first` at the closures given, by a law that tells of them:
- * tl_law_presses. */
+/* Energies, J, of `count` points from row `first` at the closures given, by a law that tells them: tl_law_presses. */
 static void law_energies(const tl_model *m, const tl_law *law, size_t first, size_t count,
                          const tl_point_lanes *lanes, const double *closure, double *energy)
 {
@@ -174,8 +172,7 @@ bool tl_law_same_curve(const tl_law *one, const tl_law *other)
 
 /* ---------------------------------------------------------------- presses ----------------- */
 
-/* What slip pays for moving two faces apart by what it did in the last step, here: as if all of the law's force were on
- * them. */
+/* What slip pays for moving two faces apart as in the last step: as if all of the law's force were on them. */
 static double pays_for_lift(const tl_press_row *row, double whole)
 {
     return whole * row->opened * (1 - 0.5 * row->opened / row->press.overlap);

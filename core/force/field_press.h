@@ -26,8 +26,7 @@ typedef struct tl_told_press {
 void tl_press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                   const tl_point_lanes *t, size_t lane, tl_told_press by[TL_LANES]);
 
-/* With an energy 2 kn G. What slip opens in this step presses on as what it opened in the last step does now, or as at
- * the centre. */
+/* With an energy 2 kn G. What slip opens in this step presses as what it opened in the last, or as at the centre. */
 tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area, double f_n,
                                  double same);
 
@@ -55,8 +54,7 @@ enum { TL_PRESSED_ROWS = 8 * TL_LANES };
 void tl_law_press(const tl_model *m, const tl_law *law, size_t first, size_t count,
                   const tl_point_lanes *lanes, const double *u, const double *lift, double *energy,
                   double *force);
-/* The same of points of one area and of the same states, that have come together across a gap: energies and forces per
- * area. */
+/* The same of points of one area and state that have come together across a gap: energies and forces per area. */
 void tl_law_press_alone(const tl_law *law, double area, const double state[TL_STATE_COLUMNS],
                         const double u[], size_t count, double energy[], double stress[]);
 

@@ -15,7 +15,7 @@
  * second order of the step.
  *
  * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought
- * into matrices first, one in each lane. What is left for a point are a few products, in loops over columns without a
+ * into matrices first, one in each lane. For a point a few products are left, in loops over columns without a
  * branch. */
 #include "force/follow.h"
 
@@ -75,8 +75,7 @@ static double tangent_of(double a2)
 }
 
 /* What a point has moved beside the centroid, as it acts on its arm from there now: 2 / (1 + h^2) ([h] - [h]^2), where
- * h is axis times the tangent of half the angle of the turn. Exact, so a rolling contact and one that is turned as a
- * whole gather no slip. */
+ * h is axis times the tangent of half the angle of the turn. Exact: rolling contacts gather no slip. */
 TL_INLINE tl_mat3 turn_back(tl_vec3 h)
 {
     tl_vec3 s = tl_v3_scale(2 / (1 + tl_v3_norm2(h)), h);

@@ -272,8 +272,7 @@ static void cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group
 
 /* ---------------------------------------------------------------- edges ------------------ */
 
-/* The least of a linear closure over a cell whose outer side begins at the values given: it is there, or on its inner
- * side. */
+/* The least of a linear closure over a cell from its values at the centre and on the outer side. */
 static double lowest(double centre, double outer)
 {
     return outer < centre ? outer : centre + TL_CELL_INNER * (outer - centre);
@@ -389,8 +388,7 @@ static bool is_closed(const tl_points_table *p, const tl_simd_group *group, cons
     return open == 0;
 }
 
-/* The least and the largest share of what is apart that the points of a patch hold. Where that is 1 throughout, the
- * points' own rule is exact. */
+/* The least and the largest share of what is apart that the points of a patch hold. At 1 their own rule is exact. */
 typedef struct holds {
     double least, most;
 } holds;
@@ -461,8 +459,7 @@ static void leave_rest(const tl_cell_patch *of, size_t k, double p, double q, co
     cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
 }
 
-/* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has
- * beside that. */
+/* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps the rest. */
 static void put_means(const tl_cell_patch *of, size_t k, double share, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
@@ -613,8 +610,7 @@ static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_g
     return opened;
 }
 
-/* Finds the cells of those of the lanes `held` in which some of a bond may have broken in this step. Gives these
- * lanes. */
+/* Finds the cells of those of the lanes `held` in which a bond may have broken in this step. Gives these lanes. */
 static uint32_t break_held(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
                            size_t lane, uint32_t held)
 {
@@ -651,8 +647,7 @@ static tl_part_sums sum_cells(const tl_cell_patch *of, const tl_law *law, tl_vec
         double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
         double straight = tl_law_is_linear(law) ? law->kn : 0;
         double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
-        /* what slip has opened in this step presses at the point: it is not in the volume, which may be next to
-         * nothing */
+        /* what slip has opened in this step presses at the point: it is not in the volume, which may be tiny */
         double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : straight;
         spring = fmax(0, fmin(spring, SAME_STIFFNESS * law->kn));
         double moved = du * cell->apart_more + tl_v3_dot(tl_v3_cross(turn, cell->apart), n);

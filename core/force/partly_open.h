@@ -28,14 +28,12 @@ typedef struct tl_part_sums {
     double stored, dissipated;
 } tl_part_sums;
 
-/* Lanes in which patches have something beside their points after the law, and of these those that slip has opened in
- * this step. */
+/* Lanes in which patches have something beside their points after the law; of these those that slip opened just now. */
 typedef struct tl_found_lanes {
     uint32_t parts, opened;
 } tl_found_lanes;
 
-/* After the law: what patches have beside their points, into out[TL_LANES]. turn[TL_LANES], rad: of B against A in the
- * step, in the lanes given. */
+/* After the law: what patches have beside their points, in the lanes given. turn, rad: of B against A in the step. */
 tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law,
                                       const tl_simd_group *group, const tl_point_lanes *lanes,
                                       size_t lane, tl_part_lanes given, const tl_vec3 *turn,

@@ -22,8 +22,7 @@ double tl_body_size(const tl_model *m, uint32_t body)
     return tl_cbrt(tl_body_volume(m, body));
 }
 
-/* The hull of points, which it spoils, as many at a time as a polyhedron can have; NULL: it has more corners than
- * that. */
+/* The hull of points, which it spoils, as many at a time as a polyhedron can have; NULL: it has more corners. */
 static tl_status hull_of_many(tl_vec3 *points, size_t count, tl_poly **hull)
 {
     tl_error error;

@@ -42,8 +42,7 @@ typedef struct tl_blocks {
     double *density; /* kg/m3 */
     double *volume;  /* m3 */
     tl_vec3 *local;  /* centroid in the body's frame, zero for a body of one block; NULL: all are */
-    /* From where displacements count, after reset_displacement or when bodies were joined; NULL: from where it was
-     * made. */
+    /* From where displacements count, after a reset or when bodies were joined; NULL: from where it was made. */
     tl_base *base;
     /* Where it was made, once bodies were joined; NULL: where the frame of its body has neither shift nor turn. */
     tl_base *made;
