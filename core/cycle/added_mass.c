@@ -113,34 +113,33 @@ tl_status tl_added_find(tl_model *m, double limit)
 
 tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *given)
 {
-    tl_mass_scaling read;
-    const tl_mass_scaling *scaling = &read;
-    tl_status status = TL_OPTIONS_READ(tl_mass_scaling, given, &read, &m->error);
+    tl_mass_scaling scaling;
+    tl_status status = TL_OPTIONS_READ(tl_mass_scaling, given, &scaling, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set mass_scaling");
     if (status != TL_OK)
         return status;
-    bool adds = !isnan(scaling->dt);
-    double most = isnan(scaling->most) ? TL_MOST_ADDED : scaling->most;
-    if (!adds && !isnan(scaling->most))
+    bool adds = !isnan(scaling.dt);
+    double most = isnan(scaling.most) ? TL_MOST_ADDED : scaling.most;
+    if (!adds && !isnan(scaling.most))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "mass_scaling: most = %g is the most that a given step may add: give dt, "
                        "the step, s, with it",
-                       scaling->most);
-    if (adds && !scaling->on)
+                       scaling.most);
+    if (adds && !scaling.on)
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "mass_scaling: dt = %g s asks for scaling and on = false for none: leave "
                        "one of them out",
-                       scaling->dt);
-    if (adds && !(scaling->dt >= TL_STEP_LEAST && scaling->dt <= 1 / TL_STEP_LEAST))
+                       scaling.dt);
+    if (adds && !(scaling.dt >= TL_STEP_LEAST && scaling.dt <= 1 / TL_STEP_LEAST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "mass_scaling: dt = %g s is outside [%g, %g]",
-                       scaling->dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
+                       scaling.dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
     if (adds && !(most >= 0 && isfinite(most)))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "mass_scaling: most = %g must be a finite number that is not negative",
                        most);
-    m->mass_scaling = scaling->on && !adds;
-    m->added_dt = adds ? scaling->dt : NAN;
+    m->mass_scaling = scaling.on && !adds;
+    m->added_dt = adds ? scaling.dt : NAN;
     m->added_most = adds ? most : NAN;
     m->constraints++;
     if (m->cycle) {

@@ -213,14 +213,13 @@ static bool is_bearable(tl_sym3 t)
 
 tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
 {
-    tl_insitu read;
-    const tl_insitu *insitu = &read;
-    tl_status status = TL_OPTIONS_READ(tl_insitu, given, &read, &m->error);
+    tl_insitu insitu;
+    tl_status status = TL_OPTIONS_READ(tl_insitu, given, &insitu, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "put stress on contacts");
     if (status != TL_OK)
         return status;
-    if (!is_bearable(insitu->stress) || !is_bearable(insitu->gradient) || !tl_v3_finite(insitu->at))
+    if (!is_bearable(insitu.stress) || !is_bearable(insitu.gradient) || !tl_v3_finite(insitu.at))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "insitu: stress, Pa, gradient, Pa/m, and at must be finite numbers, the "
                        "first two of at most %g",
@@ -229,18 +228,18 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
     status = tl_detect_update(m);
     outer_blocks outer;
     if (status == TL_OK)
-        status = find_outer(m, insitu, &outer);
+        status = find_outer(m, &insitu, &outer);
     if (status != TL_OK)
         return status;
     if (!tl_detect_hold_initial(m->detect))
         return tl_fail_memory(&m->error);
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; i < c->table.rows; i++)
-        load_contact(m, insitu, i);
+        load_contact(m, &insitu, i);
     m->laws++; /* contacts hold another energy */
     tl_undo_by_hand(m);
     tl_held_wake(m);
     say_outer(m, &outer);
-    say_tension(m, insitu);
+    say_tension(m, &insitu);
     return TL_OK;
 }

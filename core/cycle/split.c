@@ -451,15 +451,13 @@ static bool list_contacts(const tl_model *m, struct tl_split_work *w)
 static int compare_part(const void *x, const void *y)
 {
     const tl_split_part *p = x, *q = y;
-    return p->whole != q->whole ? (p->whole > q->whole) - (p->whole < q->whole)
-                                : (p->body > q->body) - (p->body < q->body);
+    return tl_pair_order(p->whole, p->body, q->whole, q->body);
 }
 
 static int compare_contact(const void *x, const void *y)
 {
     const tl_split_contact *p = x, *q = y;
-    return p->a != q->a ? (p->a > q->a) - (p->a < q->a)
-                        : (p->first > q->first) - (p->first < q->first);
+    return tl_pair_order(p->a, (uint32_t)p->first, q->a, (uint32_t)q->first);
 }
 
 /* Puts parts and contacts in the order of the wholes. */

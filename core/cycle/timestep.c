@@ -80,13 +80,6 @@ static void keep_extreme(tl_row_value *kept, tl_row_value other)
         *kept = other;
 }
 
-/* Notes the best row of a range. */
-static void row_search_note(row_search *s, unsigned thread, tl_row_value found)
-{
-    if (found.row != TL_NO_ROW)
-        keep_extreme(&s->found[thread], found);
-}
-
 static tl_row_value row_search_run(row_search *s, size_t rows, size_t chunk, tl_range_fn range)
 {
     unsigned threads = tl_pool_threads(s->m->pool);
@@ -309,7 +302,7 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         if (of.rate > 0 && value > found.value)
             found = (tl_row_value){value, body};
     }
-    row_search_note(&s->search, thread, found);
+    keep_extreme(&s->search.found[thread], found);
 }
 
 /* Notes the bodies whose contacts have points as new as that: TL_POINTS_*. true when there are any. */
@@ -433,7 +426,7 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
                                 tl_body_counts(m, m->blocks.body[c->b[i]])))
             found = (tl_row_value){k, i};
     }
-    row_search_note(s, thread, found);
+    keep_extreme(&s->found[thread], found);
 }
 
 /* M_min / (2 K_max), with K_max over the contacts of free bodies; no bound where none has an area. */
@@ -630,22 +623,20 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
 
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
 {
-    tl_timestep read;
-    const tl_timestep *timestep = &read;
-    tl_status status = TL_OPTIONS_READ(tl_timestep, given, &read, &m->error);
+    tl_timestep timestep;
+    tl_status status = TL_OPTIONS_READ(tl_timestep, given, &timestep, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set timestep");
     if (status != TL_OK)
         return status;
-    if (!isnan(timestep->fraction) &&
-        !(timestep->fraction >= TL_FRACTION_LEAST && timestep->fraction <= TL_FRACTION_MOST))
+    if (!isnan(timestep.fraction) &&
+        !(timestep.fraction >= TL_FRACTION_LEAST && timestep.fraction <= TL_FRACTION_MOST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside [%g, %g]",
-                       timestep->fraction, TL_FRACTION_LEAST, TL_FRACTION_MOST);
-    if (!isnan(timestep->dt) &&
-        !(timestep->dt >= TL_STEP_LEAST && timestep->dt <= 1 / TL_STEP_LEAST))
+                       timestep.fraction, TL_FRACTION_LEAST, TL_FRACTION_MOST);
+    if (!isnan(timestep.dt) && !(timestep.dt >= TL_STEP_LEAST && timestep.dt <= 1 / TL_STEP_LEAST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s is outside [%g, %g]",
-                       timestep->dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
-    m->timestep = *timestep;
+                       timestep.dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
+    m->timestep = timestep;
     if (m->cycle) {
         m->cycle->dt = 0;
         m->cycle->stiffness_rates.version = 0; /* another rule asks something else of contacts */

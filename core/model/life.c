@@ -55,30 +55,29 @@ static void bodies_init(tl_bodies *b)
 tl_status tl_model_create(const tl_model_config *given, tl_model **model, tl_error *error)
 {
     *model = NULL;
-    tl_model_config read;
-    const tl_model_config *config = &read;
-    tl_status status = TL_OPTIONS_READ(tl_model_config, given, &read, error);
+    tl_model_config config;
+    tl_status status = TL_OPTIONS_READ(tl_model_config, given, &config, error);
     if (status != TL_OK)
         return status;
-    if (config->threads < 1 || config->threads > TL_MAX_THREADS)
+    if (config.threads < 1 || config.threads > TL_MAX_THREADS)
         return tl_fail(error, TL_E_ARGUMENT, "model: threads = %lld is outside [1, %d]",
-                       (long long)config->threads, TL_MAX_THREADS);
-    if (!tl_v3_finite(config->gravity))
+                       (long long)config.threads, TL_MAX_THREADS);
+    if (!tl_v3_finite(config.gravity))
         return tl_fail(error, TL_E_ARGUMENT, "model: gravity must be three finite numbers");
-    status = tl_check_choice(error, "model: rotation", config->rotation, TL_ROTATION_PAPER);
+    status = tl_check_choice(error, "model: rotation", config.rotation, TL_ROTATION_PAPER);
     if (status == TL_OK)
-        status = tl_check_choice(error, "model: contact_points", config->contact_points,
+        status = tl_check_choice(error, "model: contact_points", config.contact_points,
                                  TL_POINTS_CORNERS);
     if (status != TL_OK)
         return status;
     tl_model *m = calloc(1, sizeof *m);
-    tl_pool *pool = tl_pool_create((unsigned)config->threads);
+    tl_pool *pool = tl_pool_create((unsigned)config.threads);
     if (!m || !pool) {
         free(m);
         tl_pool_destroy(pool);
         return tl_fail_memory(error);
     }
-    m->config = *config;
+    m->config = config;
     m->pool = pool;
     m->next_id = 1;
     m->min_area = (tl_min_area_rule){TL_AREA_FRACTION, NAN};

@@ -178,16 +178,15 @@ void tl_load_begins_anew(tl_model *m, uint32_t body)
 
 tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_load *given)
 {
-    tl_load read;
-    const tl_load *load = &read;
-    tl_status status = TL_OPTIONS_READ(tl_load, given, &read, &m->error);
+    tl_load load;
+    tl_status status = TL_OPTIONS_READ(tl_load, given, &load, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "load blocks");
     if (status != TL_OK)
         return status;
-    bool placed = !isnan(load->at.x);
-    if (!tl_v3_finite(load->force) || !tl_v3_finite(load->moment) ||
-        (placed && !tl_v3_finite(load->at)))
+    bool placed = !isnan(load.at.x);
+    if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) ||
+        (placed && !tl_v3_finite(load.at)))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "load: force, moment and at must be finite numbers");
     status = check_blocks(m, ids, count);
@@ -201,13 +200,32 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         tl_vec3 from = tl_v3_sub(tl_v3_sub(load->at, m->origin), tl_body_place(&m->bodies, body));
         m->bodies.load[body] =
-            (tl_body_load){load->force, load->moment,
+            (tl_body_load){load.force, load.moment,
                            placed ? tl_m3_tmul(&m->bodies.pose[body].r, from) : tl_v3(0, 0, 0)};
         if (m->bodies.fixed[body])
             tl_load_begins_anew(m, body);
     }
     m->constraints++; /* not as it was in the last step */
     return TL_OK;
+}
+
+void tl_load_add(tl_model *m, uint32_t body, tl_wrench more, tl_vec3 place)
+{
+    tl_body_load *load = &m->bodies.load[body];
+    const tl_mat3 *r = &m->bodies.pose[body].r;
+    tl_vec3 to = tl_v3_sub(place, tl_body_place(&m->bodies, body)), at = tl_m3_mul(r, load->arm);
+    double had = tl_v3_norm(load->force), has = tl_v3_norm(more.force), all = had + has;
+    if (had == 0) { /* without roundings */
+        *load = (tl_body_load){more.force, tl_v3_add(load->moment, more.moment), tl_m3_tmul(r, to)};
+        return;
+    }
+    tl_vec3 arm = tl_v3_add(tl_v3_scale(had, at), tl_v3_scale(has, to));
+    arm = tl_v3_scale(all > 0 ? 1 / all : 0, arm);
+    tl_vec3 moment = tl_v3_add(load->moment, tl_v3_cross(at, load->force));
+    moment = tl_v3_add(moment, tl_v3_add(more.moment, tl_v3_cross(to, more.force)));
+    load->force = tl_v3_add(load->force, more.force);
+    load->moment = tl_v3_sub(moment, tl_v3_cross(arm, load->force));
+    load->arm = tl_m3_tmul(r, arm);
 }
 
 void tl_loads_stepped(tl_model *m)
@@ -289,30 +307,29 @@ static tl_drive_record *new_record(tl_model *m)
 
 tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_drive *given)
 {
-    tl_drive read;
-    const tl_drive *drive = &read;
-    tl_status status = TL_OPTIONS_READ(tl_drive, given, &read, &m->error);
+    tl_drive drive;
+    tl_status status = TL_OPTIONS_READ(tl_drive, given, &drive, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "drive blocks");
     if (status != TL_OK)
         return status;
-    status = tl_check_motion(&m->error, "drive", drive->velocity, drive->angular_velocity);
+    status = tl_check_motion(&m->error, "drive", drive.velocity, drive.angular_velocity);
     if (status == TL_OK)
         status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count == 0) {
-        if (drive->release)
-            drive->release(drive->user);
+        if (drive.release)
+            drive.release(drive.user);
         return TL_OK;
     }
     tl_drive_record *record = new_record(m);
     if (!record)
         return tl_fail_memory(&m->error);
     record->bodies = 1; /* held while bodies leave their old drives */
-    record->drive = *drive;
-    record->velocity = drive->velocity;
-    record->angular_velocity = drive->angular_velocity;
+    record->drive = drive;
+    record->velocity = drive.velocity;
+    record->angular_velocity = drive.angular_velocity;
     uint32_t index = (uint32_t)(record - m->drives) + 1;
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
@@ -321,8 +338,8 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
         tl_drive_leave(m, body);
         m->bodies.drive[body] = index;
         m->bodies.fixed[body] = TL_FIX_ALL;
-        m->bodies.v[body] = drive->velocity;
-        m->bodies.w[body] = drive->angular_velocity;
+        m->bodies.v[body] = drive.velocity;
+        m->bodies.w[body] = drive.angular_velocity;
         record->bodies++;
     }
     record->bodies--;
@@ -330,47 +347,20 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
     return TL_OK;
 }
 
-static bool evaluate(tl_model *m, double t)
-{
-    for (size_t i = 0; i < m->drive_count; i++) {
-        tl_drive_record *r = &m->drives[i];
-        if (r->bodies == 0)
-            continue;
-        const tl_drive *d = &r->drive;
-        if ((d->velocity_at && !d->velocity_at(d->user, t, &r->velocity)) ||
-            (d->angular_velocity_at && !d->angular_velocity_at(d->user, t, &r->angular_velocity)))
-            return false;
-    }
-    return true;
-}
-
 bool tl_drives_evaluate(tl_model *m, double t)
 {
+    bool known = true;
     m->running = m->driving = true;
-    bool told = evaluate(m, t);
-    m->running = m->driving = false;
-    return told;
-}
-
-/* ---------------------------------------------------------------- loads ------------------ */
-
-void tl_load_add(tl_model *m, uint32_t body, tl_wrench more, tl_vec3 place)
-{
-    tl_body_load *load = &m->bodies.load[body];
-    const tl_mat3 *r = &m->bodies.pose[body].r;
-    tl_vec3 to = tl_v3_sub(place, tl_body_place(&m->bodies, body)), at = tl_m3_mul(r, load->arm);
-    double had = tl_v3_norm(load->force), has = tl_v3_norm(more.force), all = had + has;
-    if (had == 0) { /* without roundings */
-        *load = (tl_body_load){more.force, tl_v3_add(load->moment, more.moment), tl_m3_tmul(r, to)};
-        return;
+    for (size_t i = 0; i < m->drive_count && known; i++) {
+        tl_drive_record *r = &m->drives[i];
+        const tl_drive *d = &r->drive;
+        if (r->bodies > 0 && d->velocity_at)
+            known = d->velocity_at(d->user, t, &r->velocity);
+        if (r->bodies > 0 && d->angular_velocity_at && known)
+            known = d->angular_velocity_at(d->user, t, &r->angular_velocity);
     }
-    tl_vec3 arm = tl_v3_add(tl_v3_scale(had, at), tl_v3_scale(has, to));
-    arm = tl_v3_scale(all > 0 ? 1 / all : 0, arm);
-    tl_vec3 moment = tl_v3_add(load->moment, tl_v3_cross(at, load->force));
-    moment = tl_v3_add(moment, tl_v3_add(more.moment, tl_v3_cross(to, more.force)));
-    load->force = tl_v3_add(load->force, more.force);
-    load->moment = tl_v3_sub(moment, tl_v3_cross(arm, load->force));
-    load->arm = tl_m3_tmul(r, arm);
+    m->running = m->driving = false;
+    return known;
 }
 
 /* ---------------------------------------------------------------- motions that users set --- */

@@ -69,19 +69,18 @@ tl_status tl_blocks_select(tl_model *m, const tl_block_filter *given, tl_id **id
     *ids = NULL;
     *count = 0;
     tl_tag joint = {0, 0};
-    tl_block_filter read;
-    const tl_block_filter *filter = &read;
-    tl_status status = TL_OPTIONS_READ(tl_block_filter, given, &read, &m->error);
+    tl_block_filter filter;
+    tl_status status = TL_OPTIONS_READ(tl_block_filter, given, &filter, &m->error);
     if (status != TL_OK)
         return status;
-    if (filter->joint) {
-        status = tl_joint_parse(m, filter->joint, &joint);
+    if (filter.joint) {
+        status = tl_joint_parse(m, filter.joint, &joint);
         if (status != TL_OK)
             return status;
     }
     uint32_t begin = 0, end;
-    if (filter->id != TL_NO_ID) { /* one block at most, and other rows may be untidy */
-        begin = tl_block_row_quiet(m, filter->id);
+    if (filter.id != TL_NO_ID) { /* one block at most, and other rows may be untidy */
+        begin = tl_block_row_quiet(m, filter.id);
         end = begin == TL_NO_ROW ? begin : begin + 1;
     } else {
         tl_rows_tidy(m);
@@ -92,7 +91,7 @@ tl_status tl_blocks_select(tl_model *m, const tl_block_filter *given, tl_id **id
         return tl_fail_memory(&m->error);
     size_t n = 0;
     for (uint32_t row = begin; row < end; row++)
-        if (passes(m, filter, joint, row))
+        if (passes(m, &filter, joint, row))
             list[n++] = m->blocks.id[row];
     *ids = list;
     *count = n;
