@@ -40,7 +40,7 @@ typedef struct push {
     double mass, alpha, scale, turn_scale;
 } push;
 
-static inline push push_of(const tl_model *m, uint32_t body)
+TL_INLINE push push_of(const tl_model *m, uint32_t body)
 {
     const struct tl_cycle *c = m->cycle;
     const tl_bodies *b = &m->bodies;

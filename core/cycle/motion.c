@@ -189,11 +189,10 @@ static void mend_lanes(tl_body_group *g, const move_job *job)
     }
 }
 
-TL_INLINE void put_damping(tl_body_group *g, size_t i, const tl_model *m, size_t body)
+TL_INLINE void put_damping(tl_body_group *restrict g, size_t i, const struct tl_cycle *restrict c,
+                           bool damped, size_t body)
 {
-    const struct tl_cycle *c = m->cycle;
     const tl_vec3 none = {0, 0, 0};
-    bool damped = m->damping != NULL;
     tl_lanes3_put(&g->damping_force, i, damped ? tl_columns_get(c->damping_force, body) : none);
     tl_lanes3_put(&g->damping_moment, i, damped ? tl_columns_get(c->damping_moment, body) : none);
     g->alpha[i] = damped ? c->alpha[body] : 0;
@@ -220,14 +219,14 @@ static void load_lane(tl_body_group *g, size_t i, const tl_model *m)
     g->scale[i] = tl_inertia_scale(c, body);
     g->energy_scale[i] = tl_energy_scale(c, body);
     g->turn_scale[i] = tl_turn_scale(c, body);
-    put_damping(g, i, m, body);
+    put_damping(g, i, c, m->damping, body);
 }
 
 /* The same of bodies that are side by side from `first` on, without mass scaling. */
 TL_VECTORIZED static void load_row(tl_body_group *restrict g, const tl_model *m, size_t first)
 {
     const tl_bodies *b = &m->bodies;
-    bool paper = m->config.rotation == TL_ROTATION_PAPER;
+    bool damped = m->damping, paper = m->config.rotation == TL_ROTATION_PAPER;
     tl_lanes4_load(&g->q, b->q + first);
     tl_lanes4_load(&g->axes, b->axes + first);
     tl_lanes3_load(&g->moments, b->moments + first);
@@ -243,8 +242,10 @@ TL_VECTORIZED static void load_row(tl_body_group *restrict g, const tl_model *m,
         g->radius[i] = b->radius[first + i];
         g->scale[i] = g->turn_scale[i] = g->energy_scale[i] = 1;
     }
-    for (size_t i = 0; i < TL_LANES; i++)
-        put_damping(g, i, m, first + i);
+    for (size_t i = 0; damped && i < TL_LANES; i++)
+        put_damping(g, i, m->cycle, true, first + i);
+    for (size_t i = 0; !damped && i < TL_LANES; i++)
+        put_damping(g, i, m->cycle, false, first + i);
 }
 
 /* A lane without a body: one that rests, and to which nothing happens. */

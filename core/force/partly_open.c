@@ -321,8 +321,8 @@ typedef struct range {
 } range;
 
 /* Of a + sign b. */
-TL_VECTORIZED static range range_of(const double *restrict area, const double *restrict a,
-                                    const double *restrict b, const double sign, size_t slots)
+TL_INLINE range range_of(const double *restrict area, const double *restrict a,
+                         const double *restrict b, const double sign, size_t slots)
 {
     range r;
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -353,8 +353,8 @@ typedef struct spread {
     double beyond[TL_LANES];
 } spread;
 
-static spread find_spread(const tl_points_table *p, const tl_simd_group *group,
-                          const tl_point_lanes *t, size_t lane)
+TL_VECTORIZED static spread find_spread(const tl_points_table *p, const tl_simd_group *group,
+                                        const tl_point_lanes *t, size_t lane)
 {
     const double *area = p->area + group->start, *closure = t->closure + lane;
     const double *lift = t->lift + lane;
@@ -377,8 +377,8 @@ static uint32_t opening_lanes(const spread *of)
 }
 
 /* Whether the faces lie on each other throughout: slip only lifts them. */
-static bool is_closed(const tl_points_table *p, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane)
+TL_VECTORIZED static bool is_closed(const tl_points_table *p, const tl_simd_group *group,
+                                    const tl_point_lanes *t, size_t lane)
 {
     uint32_t open = 0;
     const range o =
