@@ -23,18 +23,17 @@ static void note_forces(tl_bodies *b, size_t begin, size_t end)
     }
 }
 
-static bool hold_forces(tl_bodies *b)
-{
-    return TL_COLUMN_NEED(&b->table, b, moment_before, TL_COLUMN_STEP) &&
-           TL_COLUMN_NEED(&b->table, b, force_before, TL_COLUMN_STEP);
-}
-
 tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args, const void *from)
 {
     const tl_damping_ops *ops = kind->ops;
     void *params = calloc(1, kind->params_size + 1), *self = params;
     double *state = calloc(kind->state_count + 1u, sizeof *state);
-    if (!params || !state || (ops->before && !hold_forces(&m->bodies))) {
+    tl_bodies *b = &m->bodies;
+    bool enough = params && state;
+    if (enough && ops->before)
+        enough = TL_COLUMN_NEED(&b->table, b, moment_before, TL_COLUMN_STEP) &&
+                 TL_COLUMN_NEED(&b->table, b, force_before, TL_COLUMN_STEP);
+    if (!enough) {
         free(params);
         free(state);
         return tl_fail_memory(&m->error);
@@ -133,27 +132,23 @@ TL_VECTORIZED static void fill_columns(body_columns *s, const tl_bodies *b, size
         s->mass[i] = s->inertia[i] = 1;
 }
 
-/* Whether what the plugin gave a body are numbers. */
-static bool gave_numbers(const struct tl_cycle *c, size_t body)
-{
-    double sum = c->alpha[body];
-    for (int k = 0; k < 3; k++)
-        sum += fabs(c->damping_force[k][body]) + fabs(c->damping_moment[k][body]);
-    return isfinite(sum);
-}
-
 /* What the damping gave must be numbers: one that is not would spread over the model. */
 static void check_numbers(tl_model *m, size_t begin, size_t end, size_t chunk)
 {
-    for (size_t body = begin; body < end; body++)
-        if (!gave_numbers(m->cycle, body)) {
-            char text[120];
-            snprintf(text, sizeof text,
-                     "what it gives block %u is no finite number (a force, a moment or alpha)",
-                     m->bodies.id[body]);
-            tl_failure_note(&m->cycle->failure, chunk, TL_E_NUMERIC, body, text);
-            return;
-        }
+    struct tl_cycle *c = m->cycle;
+    for (size_t body = begin; body < end; body++) {
+        double sum = c->alpha[body];
+        for (int k = 0; k < 3; k++)
+            sum += fabs(c->damping_force[k][body]) + fabs(c->damping_moment[k][body]);
+        if (isfinite(sum))
+            continue;
+        char text[120];
+        snprintf(text, sizeof text,
+                 "what it gives block %u is no finite number (a force, a moment or alpha)",
+                 m->bodies.id[body]);
+        tl_failure_note(&c->failure, chunk, TL_E_NUMERIC, body, text);
+        return;
+    }
 }
 
 static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)

@@ -1,4 +1,4 @@
-/* prepare.c - what the phases of a step keep between them: made, given room for the bodies, and let go of. */
+/* prepare.c - what the phases of a step keep between them: made, sized for the bodies, and freed. */
 #include "cycle/prepare.h"
 
 #include "base/parallel.h"

@@ -21,7 +21,7 @@
  * The motion of each free body is followed in legs, each a share of the body's size long. A body fails steadily when it
  * has gone LEGS legs in one direction, none slower than the one before, and the mean unbalanced force pushes it that
  * way. A body that settles or swings slows down; one that is carried along feels no force. Legs are lengths, so neither
- * the time step nor the damping nor the stiffness decides how far a body has gone when it is told.
+ * the time step nor the damping nor the stiffness decides how far a body has gone when it is found.
  *
  * Blocks on soft joints settle by more than a share of their size. So a leg is not shorter than a share of how far the
  * model may settle: the mean closure of its loaded contacts, weighted by their forces, times the number of blocks on

@@ -228,9 +228,10 @@ static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (m->bodies.face_rate[body] != 0)
             continue;
-        step_rates on_face = rate_on_face(m, body);
-        m->bodies.face_rate[body] = on_face.rate;
-        m->bodies.face_turn[body] = on_face.turn;
+        const area_sums face = largest_face(m, body);
+        const inverse_inertia per = inverse_of(m, body);
+        m->bodies.face_rate[body] = tl_rates_points(m) ? rate_of(face, per) : face.area * per.mass;
+        m->bodies.face_turn[body] = face.area_r2 * per.moment;
     }
 }
 

@@ -285,7 +285,7 @@ static tl_status list_pairs(tl_model *m, struct tl_broad *g, bool whole, size_t 
     return TL_OK;
 }
 
-/* Makes room for the chunks of so many pairs, none of which is known to sleep; false: out of memory. */
+/* Reserves the chunks of so many pairs, none of which is known to sleep; false: out of memory. */
 static bool restart_chunks(tl_detect *d, size_t pairs)
 {
     const size_t chunks = pairs / TL_PAIR_CHUNK + 1;

@@ -33,12 +33,6 @@ static bool is_across(tl_vec3 n, tl_vec3 other)
     return 2 * c * c <= 1;
 }
 
-/* A face of A or B as a number: see tl_pair. */
-static uint32_t face_number(bool of_b, uint32_t face)
-{
-    return 2 * face + of_b;
-}
-
 /* How far the other block is from the plane of a face, negative where it lies under it. */
 static double gap_from(const tl_pair_view *view, uint32_t number)
 {
@@ -78,10 +72,10 @@ static bool is_flush(const tl_pair_view *view, uint32_t number)
 static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number)
 {
     double best = -INFINITY;
-    for (int of_b = 0; of_b < 2; of_b++) {
+    for (uint32_t of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? view->b : view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
-            uint32_t one = face_number(of_b, f);
+            uint32_t one = 2 * f + of_b; /* tl_pair_faces */
             double gap = is_across(normal_of(view, one), than) ? gap_from(view, one) : -INFINITY;
             if (gap > best && is_flush(view, one)) {
                 best = gap;

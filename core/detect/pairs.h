@@ -6,7 +6,7 @@
 #include "model/model.h"
 #include "narrow/manifold.h"
 
-/* Makes room for what is kept of the model's blocks and bodies; their path lengths begin at 0. */
+/* Reserves what is kept of the blocks and bodies of the model; their path lengths begin at 0. */
 tl_status tl_pairs_restart(tl_model *m);
 /* Notes how far each block can have moved since the broad phase was made. */
 void tl_pairs_measure_paths(tl_model *m);

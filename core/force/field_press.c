@@ -69,7 +69,7 @@ static void law_energies(const tl_model *m, const tl_law *law, size_t first, siz
     ask(law, &batch, energy);
 }
 
-/* Asks at the closures u - lift, and for forces that are not told at those of a little less and more. */
+/* Asks at the closures u - lift, and for forces that the law does not give at those of a little less and more. */
 static void press(const tl_law *law, tl_law_batch *batch, const double *u, const double *lift,
                   double *energy, double *force)
 {

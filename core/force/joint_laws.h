@@ -16,7 +16,7 @@ tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *cont
 /* Makes the law of a joint from a plugin's law and arguments; with `from`, properties not given are taken from it. */
 tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
                           const tl_args *args, const tl_law *from, tl_law *out);
-/* Makes room for what a law needs of the points of contacts; false when out of memory. */
+/* Adds the columns that a law needs of the points of contacts; false when out of memory. */
 bool tl_law_reserve(tl_model *m, const tl_law *law);
 /* Whether a contact comes under another stiffness, curve or plugin by a law, and has forces that are to stay. */
 bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t contact);
