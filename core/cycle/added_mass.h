@@ -4,8 +4,7 @@
 
 #include "cycle/cycle_data.h"
 
-/* Finds the inertia that the bodies need to be stable at a step that allows rates up to `limit`, from the rates that
- * are kept. A failure changes nothing. */
+/* Finds the inertia that bodies need so that no kept rate is above `limit`. A failure changes nothing. */
 tl_status tl_added_find(tl_model *m, double limit);
 
 #endif

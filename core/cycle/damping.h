@@ -4,8 +4,8 @@
 
 #include "cycle/cycle_data.h"
 
-/* Puts a damping in the place of the model's, with its states as they begin. With `from`, params of the same kind, what
- * is not given is taken from it. */
+/* Replaces the model's damping, with initial states. With `from`, params of the same kind, what is not given is taken
+ * from it. */
 tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args, const void *from);
 tl_status tl_damping_apply(tl_model *m, double dt);
 

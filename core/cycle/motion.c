@@ -107,8 +107,7 @@ TL_INLINE void put_attitude(tl_body_group *g, size_t i, double drift, bool serie
     g->speed[i] = speed_of(g, i);
 }
 
-/* Kicks and turns groups of bodies by the exact rule. Stage by stage: what follows from each other in one group is
- * worked out while that of the next is under way. */
+/* Kicks and turns groups of bodies by the exact rule. Stage by stage, so that groups overlap in the processor. */
 TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, double kick,
                                         double drift)
 {

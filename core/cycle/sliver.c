@@ -4,8 +4,7 @@
  * are, into cells between limits of volume and aspect. A filter takes those beyond its limits, and the highest rate of
  * those that it leaves tells by how much longer the step would be. Of the filters that take little of the rock, the one
  * is told that takes least and gains nearly the most. Where no shape is the reason, but a stiff law or a light rock, no
- * filter gains anything, and nothing is said. Of bodies that could all be joined the largest stays: so does one that
- * has nothing beside it but what is held. */
+ * filter gains anything, and nothing is said. Of bodies that could all be joined the largest stays. */
 #include "cycle/sliver.h"
 
 #include "base/groups.h"

@@ -479,24 +479,17 @@ tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *ca
 {
     if (cycles < 0)
         return tl_fail(&m->error, TL_E_ARGUMENT, "cycle: %lld must be >= 0", (long long)cycles);
-    const tl_solve silent = tl_solve_default();
-    calls = calls ? calls : &silent;
-    const tl_solve plain = {.max_cycles = cycles,
-                            .max_time = NAN,
-                            .velocity = NAN,
-                            .measure = TL_RATIO_LOCAL,
-                            .every = calls->every,
-                            .each = calls->each,
-                            .progress = calls->progress,
-                            .stop = calls->stop,
-                            .user = calls->user,
-                            .between = calls->between};
+    tl_solve plain = calls ? *calls : tl_solve_default();
+    plain.max_cycles = cycles;
+    plain.max_time = plain.velocity = NAN;
+    plain.measure = TL_RATIO_LOCAL;
+    plain.ratio = plain.stop_at_failure = 0;
     return run(m, &plain, result);
 }
 
 tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)
 {
-    return tl_model_cycle_calling(m, cycles, &(const tl_solve){0}, result);
+    return tl_model_cycle_calling(m, cycles, NULL, result);
 }
 
 tl_balance tl_model_balance(const tl_model *m)

@@ -62,8 +62,7 @@ typedef struct tl_split_part {
     tl_wrench lacks, preconditioned;
 } tl_split_part;
 
-/* Parts that new contacts hold together. Tractions: `start` before, `given` asked for, `borne` what laws make of
- * them. */
+/* Parts that new contacts hold together. Tractions: `start` before, `given` asked for, `borne` by the laws. */
 typedef struct tl_split_system {
     const tl_model *m;
     tl_split_part *parts;
@@ -554,8 +553,7 @@ static tl_vec3 turn_of(tl_vec3 angular, tl_vec3 spin, tl_vec3 r)
 
 /* The forces of this step lie in the middle of the kick. Where they turn with the body that is wrong by what the turn
  * in the two half steps does to velocities. Those of the parts are found with their arms at the present places. They
- * are to be those of the middle of the next step, dt, in which the whole would turn freely. Finds what is to be added
- * for that. */
+ * are to be those of the middle of the next step, dt, in which the whole would turn freely. Finds the difference. */
 static void find_turn(const whole *all, tl_split_part *p, tl_vec3 spin_before, double h, double dt)
 {
     tl_vec3 r = tl_v3_sub(p->place, all->centre), w = all->spin_after;

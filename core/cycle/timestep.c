@@ -324,9 +324,8 @@ static bool touch_new_points(tl_model *m, uint8_t least)
     return any;
 }
 
-/* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this
- * step. Else, and with mass scaling, when a contact has gone or has other points. With mass scaling all are, now and
- * then. */
+/* Where contact points count, bodies are rated anew when a contact has points that were placed in this step. Else, and
+ * with mass scaling, when one has gone or has other points; with mass scaling all are, now and then. */
 static tl_row_value rates_keep(tl_model *m, double known)
 {
     struct tl_cycle *c = m->cycle;
@@ -527,8 +526,7 @@ static void say_long(tl_model *m, double stable, uint32_t body)
 }
 
 /* Notes whether the given step is far above the longest that is stable whatever the rule, that of the body with the
- * highest rate. Says so once. Looks when there are more contacts than ever, and now and then: an impact lasts one such
- * step. */
+ * highest rate. Looks when there are more contacts than ever, and now and then: an impact lasts one such step. */
 static void judge_step(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;

@@ -4,8 +4,8 @@
 
 #include "model/model.h"
 
-/* Before contacts are found for somebody who asks after edits: from here on they are found in a copy, or for the first
- * time. TL_E_MEMORY: nothing has changed. */
+/* Before contacts are found for a query after edits: in a copy, or for the first time. TL_E_MEMORY: nothing has
+ * changed. */
 tl_status tl_asked_begin(tl_model *m);
 /* Before contacts are found for a step, or for what is put on them: goes back to those of the last step, if any. */
 void tl_asked_end(tl_model *m);
@@ -15,8 +15,8 @@ void tl_asked_step_failed(tl_model *m);
 /* Notes the ids by which contacts were asked for, before they are found once more, or copied, or saved; false when out
  * of memory: then only the ids above them are known. */
 bool tl_asked_note(tl_model *m);
-/* After contacts have been found: those that somebody has asked for get the ids that they had for them. false when out
- * of memory: to be tried again. */
+/* After contacts have been found: those that were queried get the ids they had then. false: out of memory, try
+ * again. */
 bool tl_asked_name(tl_model *m);
 
 #endif

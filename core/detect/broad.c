@@ -198,16 +198,15 @@ static tl_status fill(tl_model *m, struct tl_broad *g)
     return TL_OK; /* now entries of cell c are [cell_start[c], cell_start[c + 1]) */
 }
 
-static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
+static bool push(struct tl_broad *g, size_t *count, tl_pair pair)
 {
     if (!tl_grow(&g->next, &g->next_capacity, *count + 1, sizeof *g->next))
         return false;
-    g->next[(*count)++] = (tl_pair){.a = a, .b = b, .contact = TL_PAIR_APART, .wake = -1};
+    g->next[(*count)++] = pair;
     return true;
 }
 
-/* Pairs of a block with those entered in the cells its bounds overlap; if it is one of them, with rows above its
- * own. */
+/* Pairs of a block with those entered in the cells of its bounds; if it is one of them, with rows above its own. */
 static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const tl_bounds *mine,
                      bool entered, size_t *count)
 {
@@ -227,7 +226,11 @@ static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const 
                         y != (q.lo[1] > r.lo[1] ? q.lo[1] : r.lo[1]) ||
                         z != (q.lo[2] > r.lo[2] ? q.lo[2] : r.lo[2]))
                         continue;
-                    if (!push(g, count, row < other ? row : other, row < other ? other : row))
+                    const tl_pair pair = {.a = row < other ? row : other,
+                                          .b = row < other ? other : row,
+                                          .contact = TL_PAIR_APART,
+                                          .wake = -1};
+                    if (!push(g, count, pair))
                         return false;
                 }
             }
@@ -310,10 +313,8 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
             g->next[j] = *old;
             if (tl_pair_is_apart(old)) /* path lengths begin anew */
                 tl_pair_rebase(d, &g->next[j]);
-        } else if (!tl_pair_is_apart(old)) {
-            if (!push(g, &count, old->a, old->b))
-                return tl_fail_memory(&m->error);
-            g->next[count - 1] = *old;
+        } else if (!tl_pair_is_apart(old) && !push(g, &count, *old)) {
+            return tl_fail_memory(&m->error);
         }
     }
     if (count > fresh)

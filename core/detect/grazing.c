@@ -4,8 +4,7 @@
  * Two faces that are far from parallel show it. What the blocks have in common lies under both, in a prism as wide as
  * the overlaps o1 and o2 along their normals. Springs carry kn o1 o2 a metre of it. That goes unseen up to o1 o2 = u^2
  * with u = UNSEEN times the size: the force of a share UNSEEN of a face that overlaps by u. After motion m it is (o1 +
- * m) (o2 + m) at most. Both faces are flush with one of the other block, or else edges and corners would carry more
- * than the area in common does. */
+ * m) (o2 + m) at most. Both faces are flush with one of the other block, or else edges and corners would carry more. */
 #include "detect/grazing.h"
 
 #include "narrow/press.h"

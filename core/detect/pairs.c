@@ -1,10 +1,9 @@
 /* pairs.c - when pairs without a contact are tested.
  *
  * A pair that was tested and is not near sleeps until its blocks, together, may have moved as far as they are apart.
- * How far a block can have moved is told by its body's odometer: by the path length since the broad phase was made, so
- * that single precision is enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a
- * pair be tested too early. Most pairs sleep in most steps. Of a chunk that sleeps longer than any two blocks have
- * moved nothing is read. */
+ * How far a block can have moved follows from its body's odometer, since the broad phase was made: single precision is
+ * enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a pair be tested too early.
+ * Most pairs sleep in most steps. Of a chunk that sleeps longer than any two blocks have moved nothing is read. */
 #include "detect/pairs.h"
 
 #include "base/inline.h"

@@ -12,8 +12,7 @@ tl_status tl_pairs_restart(tl_model *m);
 void tl_pairs_measure_paths(tl_model *m);
 /* Tests the pairs without a contact that may have come near: chunks and pairs tell which were found. */
 void tl_pairs_test(tl_model *m);
-/* What is known of a pair without a contact, which has been placed, before its contact is made: that it holds across a
- * gap, where it takes over from one that did. */
+/* What is known of a placed pair before its contact is made: that it holds across a gap, if it takes over from one. */
 tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *pair, const tl_pair_view *view,
                                   tl_narrow_scratch *scratch);
 /* Lets a pair sleep until its blocks, together, have moved `way` more. */

@@ -4,8 +4,7 @@
 
 #include "model/model.h"
 
-/* Tractions on B at the points of a contact, whose walls do not move from here: normal n, compression positive, and
- * shear in the common plane, Pa. */
+/* Tractions on B at the points of a contact, Pa: normal, compression positive, and shear in the common plane. */
 typedef struct tl_traction {
     double normal;
     tl_vec3 shear;

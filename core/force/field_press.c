@@ -220,8 +220,7 @@ static void find_closures(const tl_press_row *row, double closure[2])
 /* Rows of the points of a SIMD group of field contacts. */
 enum { FIELD_ROWS = TL_FIELD_POINTS * TL_LANES };
 
-/* Energies and stresses per area at the two closures of each press, without what slip has opened in this step: each is
- * asked for at one of the two points. */
+/* Energies and stresses per area at the two closures of each press, one for each point, before slip opens more. */
 static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                         const tl_point_lanes *t, const double lift[FIELD_ROWS],
                         tl_told_press by[TL_LANES])

@@ -15,8 +15,7 @@
  * second order of the step.
  *
  * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought
- * into matrices first, one in each lane. For a point a few products are left, in loops over columns without a
- * branch. */
+ * into matrices first, one in each lane. For a point a few products are left, without a branch. */
 #include "force/follow.h"
 
 #include "base/columns.h"
@@ -161,7 +160,7 @@ TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
 
 /* How shear forces turn: from the normal `from` of the last step to n, then by twice the angle of tangent w about that.
  * With h = from x n + w (from + n) that is 1 + p [h] + p q [h]^2, p = 1 / (1 + w^2), q = 1 / (1 + from . n). What has
- * not turned stays as it is, to the bit. */
+ * not turned stays, to the bit. */
 TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 from)
 {
     tl_vec3 n = tl_lanes3_get(&f->n, l);

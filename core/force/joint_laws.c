@@ -3,8 +3,8 @@
  * A new law, kn, ks or curve leaves the forces of its contacts as they are, with what slip has opened. Where one spring
  * takes the place of another, walls are moved so that closures are as much smaller as it is stiffer. That keeps the
  * pressure everywhere, in patches that are open in part, too. By a curve the present normal force of a point becomes
- * the initial one where its walls are now. A point that is open keeps the gap at which it closes. Other properties, as
- * friction, leave the walls as they are. */
+ * the initial one where its walls are now. A point that is open keeps the gap at which it closes. Other properties
+ * leave the walls as they are. */
 
 #include "force/joint_laws.h"
 
@@ -142,8 +142,8 @@ static void rebase_patch(tl_model *m, uint32_t c, const tl_law *law)
     }
 }
 
-/* Whether there are forces to keep. A contact that no step has seen begins under the new law, and so does one that
- * carries nothing and has no initial force. */
+/* Whether there are forces to keep. A contact that carries nothing and has no initial force begins under the new
+ * law. */
 static bool has_forces(const tl_detect *d, uint32_t c)
 {
     const tl_points_table *p = &d->points;

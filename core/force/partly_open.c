@@ -182,8 +182,7 @@ static tl_bent bent_of(const tl_cell *cell, const bent_whole *by, double area, d
     };
 }
 
-/* The one that was tried takes the place of that on its side of the mean. The same side twice is a curve with a knee:
- * the next one is in the middle. */
+/* The closure tried replaces that on its side of the mean. The same side twice is a knee: the next is the middle. */
 static double next(double mean, answer *one, answer *two, const answer *even, size_t i, int *side)
 {
     const bool above = even->stress[i] >= mean;
@@ -250,9 +249,8 @@ static void bend(const cells *of)
     }
 }
 
-/* Of the cells of the patches in the lanes `parts` of a SIMD group, whose integrals are known: what the stress of a law
- * changes that tells the energy of what presses (tl_law_presses). `found`: of points at their closures, else of
- * closures that suit the cells. */
+/* What the stress of a law that tells its energy (tl_law_presses) changes in cells of the lanes `parts`, whose
+ * integrals are known. `found`: of points at their closures, else of closures that suit the cells. */
 static void cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                        const tl_point_lanes *lanes, size_t lane, uint32_t parts, bool found)
 {
@@ -346,8 +344,8 @@ static double corners_beyond(const range *overlap, size_t l)
     return (1 / tl_point_rule_of(false).reach - 1) * (overlap->high[l] - overlap->low[l]);
 }
 
-/* What is known of the points of a SIMD group: u, and how far corners may be beyond it: by the overlaps of the faces,
- * and by the slope of the lifts from these. */
+/* Of the points of a SIMD group: u, and how far corners may be beyond it, by overlaps of the faces and slopes of
+ * lifts. */
 typedef struct spread {
     range u;
     double beyond[TL_LANES];
@@ -486,8 +484,8 @@ static void put_means(const tl_cell_patch *of, size_t k, double share, bool curv
     cell->pressed_second += second;
 }
 
-/* What the cell of a point has beside that which the law has found there, when cells are found anew after the law.
- * `apart`: the mean that the law was given of it. */
+/* What a cell has beside what the law found at its point, when cells are found after the law. `apart`: its mean
+ * then. */
 static void leave_found(const tl_cell_patch *of, size_t k, double apart, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
@@ -583,8 +581,7 @@ static bool has_opened(const tl_cell_patch *of)
     return out;
 }
 
-/* Finds the cells anew of those of the lanes `parts` that slip has opened in this step. Forces are then the gradient of
- * what is stored. Gives these lanes. */
+/* Finds the cells anew of those of the lanes `parts` that slip has opened in this step, and gives these lanes. */
 static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                            const tl_point_lanes *t, size_t lane, uint32_t parts)
 {

@@ -62,8 +62,7 @@ tl_wrench tl_lump_share(const tl_lump *part, const tl_lump *all, tl_wrench whole
 /* A face of a block as a plate whose mass is its area. */
 tl_lump tl_face_plate(const tl_model *m, uint32_t row, uint32_t face);
 
-/* Puts a list, which the model then owns, in the place of its own: sorted by block and face, those of one face
- * added. */
+/* Replaces the model's list by one that it then owns: sorted by block and face, those of one face added. */
 void tl_face_loads_set(tl_model *m, tl_face_load *list, size_t count, size_t capacity);
 /* Adds a force and a moment about a place, relative to the origin, to the load of a body. The load acts at the mean of
  * the places, weighted by the lengths of their forces. */

@@ -50,10 +50,10 @@ typedef struct tl_blocks {
     double *mean_face; /* mean face area, m2 */
     uint64_t *lineage; /* key of the block's descent, for random draws */
     uint8_t *hidden;
-    uint8_t *
-        stays; /* 0: it is deleted, and its row goes when rows are next tidied; its shape has gone */
-    uint64_t
-        *changed; /* count of `structure` with which it came, or got another shape, frame or tags */
+    /* 0: it is deleted, and its row goes when rows are next tidied; its shape has gone */
+    uint8_t *stays;
+    /* count of `structure` with which it came, or got another shape, frame or tags */
+    uint64_t *changed;
 } tl_blocks;
 
 typedef struct tl_body_load {
@@ -99,13 +99,12 @@ typedef struct tl_bodies {
     tl_vec3 *moment;
     /* unbalanced, in the last damped step; NULL: no damping has asked for them */
     tl_vec3 *force_before, *moment_before;
-    tl_body_load *load; /* of the user's; NULL: none has ever been set */
-    tl_wrench *
-        load_before; /* what it was in the last step; NULL as it is, and good while loads_changed */
-    uint32_t *drive; /* index into drives + 1, or 0 */
-    double *odometer; /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
-    double *
-        face_rate; /* what it asks of the time step on its largest face: cycle/timestep.c. 0: not known */
+    tl_body_load *load;     /* of the user's; NULL: none has ever been set */
+    tl_wrench *load_before; /* in the last step; NULL as `load` is, and valid while loads_changed */
+    uint32_t *drive;        /* index into drives + 1, or 0 */
+    double *odometer;       /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
+    /* what it asks of the time step on its largest face: cycle/timestep.c. 0: not known */
+    double *face_rate;
     double *face_turn; /* its rotation's part of that */
 } tl_bodies;
 
