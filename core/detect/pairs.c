@@ -177,49 +177,38 @@ tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_
     return out;
 }
 
-static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
+/* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of memory. */
+static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
 {
-    tl_detect *d = m->detect;
+    const double reach = m->detect->reach;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
     tl_face_pair moved;
     double shift = fmax(0, tl_estate_shift(m, p->a, p->b, &moved));
     bool holds = tl_estate_holds(m, p->a, p->b) || shift > 0;
     double gap, margin = holds ? -1 : tl_grazing_margin(&view, p, &gap);
-    if (margin >= 0) {
-        tl_pair_sleep(d, p, margin);
-        return;
-    }
+    if (margin >= 0)
+        return margin;
     tl_pair_forget_faces(p);
-    if (!tl_pair_place(&view, scratch)) {
-        scratch->failed = true;
-        return;
-    }
+    if (!tl_pair_place(&view, scratch))
+        return NAN;
     double tolerance = TL_CONTACT_TOLERANCE * view.size;
-    if (!holds && !tl_coarse_test(&view, tolerance + d->reach)) {
-        tl_pair_sleep(d, p, d->reach);
-        return;
-    }
+    if (!holds && !tl_coarse_test(&view, tolerance + reach))
+        return reach;
     tl_region region;
-    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region)) {
-        scratch->failed = true;
-        return;
-    }
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region))
+        return NAN;
     const tl_manifold_before before = tl_pair_before(m, p, &view, scratch);
     const bool corners = m->config.contact_points == TL_POINTS_CORNERS;
     holds = before.holds || (shift > 0 && region.gap <= shift);
     double way = holds ? -1 : way_to_contact(&view, &region, corners);
-    if (way > 0) {
-        tl_pair_sleep(d, p, way);
-        return;
-    }
+    if (way > 0)
+        return way;
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), before.over);
     if (!holds && !(rule.min_area > 0)) {
         tl_grazing_choose_faces(&view, p);
         margin = tl_grazing_margin(&view, p, &gap);
-        if (margin >= 0) {
-            tl_pair_sleep(d, p, margin);
-            return;
-        }
+        if (margin >= 0)
+            return margin;
         tl_pair_forget_faces(p);
     }
     way = holds || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + d->reach);
@@ -233,9 +222,8 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
     }
     if (scratch->manifold.point_count > 0 || tl_overlap_is_whole(&view, &region)) {
         p->wake = TL_PAIR_FOUND;
-        return;
-    }
-    tl_pair_sleep(d, p, TL_STILL * view.size); /* edges part the blocks by next to nothing */
+    else
+        tl_pair_sleep(m->detect, p, way);
 }
 
 /* None of its pairs without a contact can have come near, whichever two blocks have moved the farthest. */

@@ -5,11 +5,11 @@
  * before the step:
  *
  *   1. A body that travels by less than half of what the thinnest block allows is none of those that pass.
- *   2. The bounds of blocks are swept from where they are to where the step takes them. They are sorted along x, and pairs
+ *   2. The bounds of blocks are swept from where they are to where the step takes them, and sorted along x. Pairs
  *      whose swept bounds meet are looked at: the others cannot touch in this step.
- *   3. A pair may close along a face that parts it now, or along which it overlaps the least. Along the normal of any other face
- *      its overlap is large already. The gap along a fixed normal is a concave function of time, as no corner moves on a curve, so
- *      the straight line between the gaps before and after the step is below it.
+ *   3. A pair may close along a face that parts it now, or along which it overlaps the least. Along the normal of any
+ *      other face its overlap is large already. The gap along a fixed normal is a concave function of time, as no
+ *      corner moves on a curve. So the straight line between the gaps before and after the step is below it.
  *
  * Two blocks that are both held may overlap as they like, and blocks of one body do not move against each other. Turns
  * are taken as small. All is serial and in the order of rows, and nothing is done while all blocks are slow. */

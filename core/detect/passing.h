@@ -17,8 +17,7 @@ static inline double tl_step_travel(const tl_model *m, const tl_step_motion *mot
 
 /* The pair of blocks that a step carries into each other by most of what is allowed. */
 typedef struct tl_passing {
-    double
-        part; /* of the step, after which they overlap by as much as is allowed; INFINITY: none do */
+    double part;    /* of the step, at which they overlap by what is allowed; INFINITY: none do */
     uint32_t a, b;  /* rows of the blocks, a < b */
     double deeper;  /* by how much they overlap more after the whole step, m */
     double allowed; /* by how much they may, m */

@@ -381,8 +381,7 @@ static double way_of_points(const tl_model *m, uint32_t c)
     return stands - points_moved(m, c);
 }
 
-/* Whether the odometers have not run out, or the blocks of a patch have some way left to go against each other. -INFINITY: all is to
- * be looked at in any case. */
+/* Whether the odometers have not run out, or the blocks of a patch have some way left to go against each other. */
 static bool is_valid(const tl_model *m, uint32_t c, double *valid_to,
                      double way_left(const tl_model *m, uint32_t c))
 {

@@ -11,8 +11,8 @@ double tl_body_size(const tl_model *m, uint32_t body);
 /* Of a body of several parts: of their convex hull. One of thousands of corners counts as round, without edges. */
 typedef struct tl_body_shape {
     double edge; /* the shortest, m */
-    double
-        aspect; /* diameter over thickness: the largest distance of corners over the least extent along the normal of a face */
+    /* diameter over thickness: the largest distance of corners over the least extent along a face's normal */
+    double aspect;
 } tl_body_shape;
 
 /* Of a body whose rows are tidy. false: out of memory. */
