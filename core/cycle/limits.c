@@ -92,8 +92,8 @@ static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
  *
  * Stiffness bounds the step of blocks in contact. Between contacts a block travels by v dt whatever that is. Two things
  * go wrong when it is far. The block passes another, or goes in so deep that no contact can tell which way it came
- * (passing.c). And a turn by an angle t in a step makes central differences of what turns with the block wrong by a
- * share of t^2 / 6.
+ * (passing.c). And after a turn by an angle t central differences of what turns with the block are wrong by a share of
+ * t^2 / 6.
  *
  * A step that the program chooses is made as short as both ask, and no block is slowed down in empty space: only what a
  * block may meet in the step counts. A step that is given stays as it is. Either is tested once more when the forces

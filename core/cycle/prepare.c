@@ -56,20 +56,14 @@ tl_status tl_cycle_prepare(tl_model *m)
     }
     struct tl_cycle *c = m->cycle;
     size_t bodies = m->bodies.table.rows, chunks = bodies / TL_BODY_CHUNK + 1;
-    if (chunks > c->chunk_capacity) {
-        tl_sums *sums = realloc(c->chunk_sums, chunks * sizeof *sums);
-        if (!sums)
-            return tl_fail_memory(&m->error);
-        c->chunk_sums = sums;
-        tl_status status = tl_energy_prepare(m, chunks);
-        if (status != TL_OK)
-            return status;
-        c->chunk_capacity = chunks;
-    }
     /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */
-    return tl_table_resize(&c->table, (bodies + TL_LANES - 1) / TL_LANES * TL_LANES)
-               ? TL_OK
-               : tl_fail_memory(&m->error);
+    size_t rows = (bodies + TL_LANES - 1) / TL_LANES * TL_LANES;
+    tl_status status = chunks > c->chunk_capacity ? tl_energy_prepare(m, chunks) : TL_OK;
+    if (status == TL_OK &&
+        !(tl_fit(&c->chunk_sums, &c->chunk_capacity, chunks, sizeof *c->chunk_sums) &&
+          tl_table_resize(&c->table, rows)))
+        status = tl_fail_memory(&m->error);
+    return status;
 }
 
 bool tl_model_moves(const tl_model *m)

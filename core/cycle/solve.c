@@ -19,7 +19,7 @@
  * Telling steady failure from settling.
  *
  * The motion of each free body is followed in legs, each a share of the body's size long. A body fails steadily when it
- * has gone LEGS legs in one direction, none slower than the one before, and the mean unbalanced force pushes it that
+ * has gone LEGS legs in one direction, none slower than the one before. The mean unbalanced force must push it that
  * way. A body that settles or swings slows down; one that is carried along feels no force. Legs are lengths, so neither
  * the time step nor the damping nor the stiffness decides how far a body has gone when it is found.
  *

@@ -26,13 +26,6 @@
 
 #include <string.h>
 
-/* A search for the row of the largest value: user data of a parallel loop, and the first member of what a search adds
- * to it. Of rows with equal values the first one counts, whichever thread took it. */
-typedef struct row_search {
-    tl_model *m;
-    tl_row_value found[TL_MAX_THREADS];
-} row_search;
-
 /* ---------------------------------------------------------------- rates -------------------
  *
  * What each body asks of the time step: its rate.
@@ -73,6 +66,13 @@ static double stiffest_law(const tl_model *m)
 }
 
 /* ---------------------------------------------------------------- search ----------------- */
+
+/* A search for the row of the largest value: user data of a parallel loop, and the first member of what a search adds
+ * to it. Of rows with equal values the first one counts, whichever thread took it. */
+typedef struct row_search {
+    tl_model *m;
+    tl_row_value found[TL_MAX_THREADS];
+} row_search;
 
 static void keep_extreme(tl_row_value *kept, tl_row_value other)
 {
@@ -516,15 +516,6 @@ static tl_status no_step(tl_model *m, double dt)
                    dt, way_out);
 }
 
-static void say_long(tl_model *m, double stable, uint32_t body)
-{
-    tl_model_say(
-        m,
-        "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block %u sets: "
-        "contact forces will grow without bound; give a shorter one, or leave dt out",
-        m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[body]);
-}
-
 /* Notes whether the given step is far above the longest that is stable whatever the rule, that of the body with the
  * highest rate. Looks when there are more contacts than ever, and now and then: an impact lasts one such step. */
 static void judge_step(tl_model *m)
@@ -540,7 +531,11 @@ static void judge_step(tl_model *m)
     double stable = 2 * sqrt(0.5 / fastest.value);
     c->long_step = fastest.row != TL_NO_ROW && fastest.value > bearable;
     if (c->long_step && tl_model_says(m, TL_REMARK_STEP))
-        say_long(m, stable, fastest.row);
+        tl_model_say(
+            m,
+            "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block %u "
+            "sets: contact forces will grow without bound; give a shorter one, or leave dt out",
+            m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
 }
 
 /* The step that inertia is added for, or a shorter one that is given as well. */

@@ -5,12 +5,11 @@
  * is asked for after edits is found in a copy. The next step, or what is put on contacts, goes on from the contacts as
  * the last step left them, through all edits at once. m->found_for tells which contacts m->detect has:
  *
- *     TL_FOR_STEPS ----------- query after edits ----------> TL_FOR_QUERIES_IN_COPY   (m->stepped: the last step's)
- *       |  ^  ^                                                |
- *       |  |  +--- next step, stress or law: drops the copy ---+
- *       |  +------ next step, stress or law: drops all --------+
- *       |                                                      |
- *       +----- no step has been made: query, failed step ----> TL_FOR_QUERIES
+ *     TL_FOR_STEPS  -- query after edits -------------------------->  TL_FOR_QUERIES_IN_COPY  (steps: m->stepped)
+ *                   <- next step, stress or law: drops the copy -----
+ *
+ *     TL_FOR_STEPS  -- query, or failed step, before a first step --->  TL_FOR_QUERIES  (steps: nothing yet)
+ *                   <- next step, stress or law: drops all ----------
  *
  * Only the ids that contacts were asked by stay theirs, in what is copied and saved, too. Contacts that nobody has
  * asked for count on from these, in the order of their births. */
@@ -101,7 +100,7 @@ tl_status tl_asked_begin(tl_model *m)
 
 void tl_asked_step_failed(tl_model *m)
 {
-    if (m->detect && !has_begun(m->detect))
+    if (m->found_for == TL_FOR_STEPS && m->detect && !has_begun(m->detect))
         m->found_for = TL_FOR_QUERIES;
 }
 
