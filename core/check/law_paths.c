@@ -230,7 +230,7 @@ void tl_law_check_energy(tl_law_trial *t)
 #define FINE 96
 #define TIME (FINE * TL_CHECK_DT)
 /* Tolerance: share of the force by which the two may differ, for the path in few steps is not exact. Where a joint jumps they
- * differ by more, so that most points that slip must, and some number of them. */
+ * differ by more, so that most points that slip must, and some number of them. Test: unit/test_check. */
 #define DIFFERENCE 0.1
 #define SOME 12
 /* Tolerance: share of the stress that the path leads to below which a stress is none. */

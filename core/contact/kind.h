@@ -65,7 +65,7 @@ typedef struct tl_kind_make {
     /* Whether contacts of two blocks are always of this kind; NULL: their shapes decide (narrow/manifold.c). `find` then tells what they
      * are in the present place, into the thread's manifold. false: out of memory. */
     bool (*claims)(const tl_model *m, uint32_t block_a, uint32_t block_b);
-    bool (*find)(tl_model *m, const tl_pair_view *view, tl_narrow_scratch *scratch);
+    bool (*find)(const tl_model *m, const tl_pair_view *view, tl_narrow_scratch *scratch);
     /* Puts the manifold in the place of a contact of the same kind, which has the room. `same`: its points are the same. false: out of
      * memory. */
     bool (*take)(tl_model *m, uint32_t contact, bool same, tl_narrow_scratch *scratch,
@@ -86,7 +86,7 @@ static inline const tl_contact_kind *tl_contact_kind_of(const tl_detect *d, uint
 
 /* Facet and points of the contact of two blocks that have been placed, into the thread's manifold: tl_manifold_find, unless a kind of
  * contact claims them. false: out of memory. */
-static inline bool tl_kind_find(tl_model *m, uint32_t block_a, uint32_t block_b,
+static inline bool tl_kind_find(const tl_model *m, uint32_t block_a, uint32_t block_b,
                                 const tl_pair_view *view, const tl_region *region,
                                 const tl_touch_rule *rule, const tl_manifold_before *before,
                                 tl_narrow_scratch *scratch)

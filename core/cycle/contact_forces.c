@@ -1,6 +1,7 @@
 /* contact_forces.c - contacts act on bodies by the laws of their joints: the first contributor of a step. */
 #include "cycle/contact_forces.h"
 
+#include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/kind.h"
@@ -89,15 +90,12 @@ static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     tl_acting sum = *on;
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + k];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            bool is_b = c->b[i] == row;
-            sum.force = tl_v3_madd(sum.force, is_b ? 1 : -1, c->force[i]);
-            sum.moment = tl_v3_add(sum.moment, tl_contact_moment(m, i, is_b));
-            sum.magnitude += tl_v3_norm(c->force[i]);
-        }
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        uint32_t i = at.contact;
+        bool is_b = c->b[i] == at.block;
+        sum.force = tl_v3_madd(sum.force, is_b ? 1 : -1, c->force[i]);
+        sum.moment = tl_v3_add(sum.moment, tl_contact_moment(m, i, is_b));
+        sum.magnitude += tl_v3_norm(c->force[i]);
     }
     *on = sum;
 }
@@ -135,14 +133,11 @@ static double stiffness(const tl_model *m, uint32_t body)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     double sum = 0;
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
-                continue;
-            sum += tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
-        }
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        uint32_t i = at.contact;
+        if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
+            continue;
+        sum += tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
     }
     return sum;
 }
@@ -163,20 +158,17 @@ static void hold(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
 {
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW)
-                continue;
-            double law = tl_law_stiffness(&m->joint_laws[c->law[i]]);
-            sum->law = fmax(sum->law, law);
-            if (points && c->point_count[i] > 0) {
-                tl_spread next = bounds_of(m, i, c->b[i] == row);
-                sum->presses = true;
-                sum->stiffness.sum += law * next.sum;
-                sum->stiffness.r2 += law * next.r2;
-            }
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        uint32_t i = at.contact;
+        if (c->law[i] == TL_NO_ROW)
+            continue;
+        double law = tl_law_stiffness(&m->joint_laws[c->law[i]]);
+        sum->law = fmax(sum->law, law);
+        if (points && c->point_count[i] > 0) {
+            tl_spread next = bounds_of(m, i, c->b[i] == at.block);
+            sum->presses = true;
+            sum->stiffness.sum += law * next.sum;
+            sum->stiffness.r2 += law * next.r2;
         }
     }
 }
@@ -191,20 +183,17 @@ static void hold_most(const tl_model *m, uint32_t body, tl_holding *sum)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     double radius = BEYOND * m->bodies.radius[body];
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW)
-                continue;
-            tl_spread on = {c->area[i], c->area[i] * radius * radius};
-            if (tl_contact_kind_of(d, i)->place->quick)
-                on = bounds_of(m, i, c->b[i] == row);
-            double k = tl_law_stiffness(&m->joint_laws[c->law[i]]);
-            sum->law = fmax(sum->law, k);
-            sum->stiffness.sum += k * on.sum;
-            sum->stiffness.r2 += k * on.r2;
-        }
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        uint32_t i = at.contact;
+        if (c->law[i] == TL_NO_ROW)
+            continue;
+        tl_spread on = {c->area[i], c->area[i] * radius * radius};
+        if (tl_contact_kind_of(d, i)->place->quick)
+            on = bounds_of(m, i, c->b[i] == at.block);
+        double k = tl_law_stiffness(&m->joint_laws[c->law[i]]);
+        sum->law = fmax(sum->law, k);
+        sum->stiffness.sum += k * on.sum;
+        sum->stiffness.r2 += k * on.r2;
     }
 }
 
@@ -230,14 +219,11 @@ static double approach(const tl_model *m, uint32_t body)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     double out = 0;
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
-                continue;
-            out = fmax(out, approach_of(m, i, tl_law_stiffness(&m->joint_laws[c->law[i]])));
-        }
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        uint32_t i = at.contact;
+        if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
+            continue;
+        out = fmax(out, approach_of(m, i, tl_law_stiffness(&m->joint_laws[c->law[i]])));
     }
     return out;
 }

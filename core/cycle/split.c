@@ -598,7 +598,7 @@ static void add_stress(const tl_model *m, uint32_t body, tl_vec3 centre, tl_sym3
         tl_contact_places(m, c, lanes);
         tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[c]]);
         size_t count = tl_contact_areas(d, c);
-        double sign = d->contacts.b[c] == row ? 1 : -1;
+        double sign = d->contacts.b[c] == at.block ? 1 : -1;
         for (size_t k = 0; k < count; k++) {
             size_t i = tl_point_row(&d->contacts, c, k);
             tl_vec3 f = tl_v3_madd(tl_columns_get(d->points.f_s, i), d->points.f_n[i],
@@ -620,12 +620,12 @@ static tl_sym3 mean_stress(const tl_model *m, const tl_split_part *parts, size_t
 {
     tl_sym3 sum = {0, 0, 0, 0, 0, 0};
     double volume = 0;
-    for (size_t i = 0; i < count; i++)
-        for (uint32_t k = 0; k < m->bodies.member_count[parts[i].body]; k++) {
-            uint32_t row = m->members[m->bodies.member_start[parts[i].body] + k];
-            add_stress(m, row, parts[0].place, &sum);
-            volume += m->blocks.volume[row];
-        }
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t body = parts[i].body;
+        add_stress(m, body, parts[0].place, &sum);
+        for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
+            volume += m->blocks.volume[tl_body_blocks(m, body)[k]];
+    }
     return tl_s3_scale(1 / volume, sum);
 }
 

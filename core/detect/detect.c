@@ -375,9 +375,9 @@ static void find_rules(tl_model *m)
             continue;
         bool patch = stays_patch(m, row);
         if (all || !patch)
-            c->points_valid_to[row] = -INFINITY;
+            c->points_valid_to[row] = TL_OUTDATED;
         if (!patch && tl_facet_is_patch(&c->facet[row]))
-            c->faces_valid_to[row] = -INFINITY;
+            c->faces_valid_to[row] = TL_OUTDATED;
     }
 }
 

@@ -211,16 +211,22 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scra
             return margin;
         tl_pair_forget_faces(p);
     }
-    way = holds || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + d->reach);
-    if (way > 0) {
-        tl_pair_sleep(d, p, way);
-        return;
-    }
-    if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch)) {
-        scratch->failed = true; /* what was found is not all there is: test again */
-        return;
-    }
-    if (scratch->manifold.point_count > 0 || tl_overlap_is_whole(&view, &region)) {
+    way = holds || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + reach);
+    if (way > 0)
+        return way;
+    if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))
+        return NAN; /* what was found is not all there is */
+    if (scratch->manifold.point_count > 0 || tl_overlap_is_whole(&view, &region))
+        return -1;
+    return TL_STILL * view.size; /* edges part the blocks by next to nothing */
+}
+
+static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
+{
+    const double way = way_to_test(m, p, scratch);
+    if (isnan(way))
+        scratch->failed = true;
+    else if (way < 0)
         p->wake = TL_PAIR_FOUND;
     else
         tl_pair_sleep(m->detect, p, way);

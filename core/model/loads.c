@@ -198,7 +198,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
         note_loads(m);
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
-        tl_vec3 from = tl_v3_sub(tl_v3_sub(load->at, m->origin), tl_body_place(&m->bodies, body));
+        tl_vec3 from = tl_v3_sub(tl_v3_sub(load.at, m->origin), tl_body_place(&m->bodies, body));
         m->bodies.load[body] =
             (tl_body_load){load.force, load.moment,
                            placed ? tl_m3_tmul(&m->bodies.pose[body].r, from) : tl_v3(0, 0, 0)};

@@ -45,7 +45,7 @@ static uint32_t face_along(const tl_poly *shape, double z)
 }
 
 /* One point in the middle of the top of A, under the cube B. */
-static bool find(tl_model *m, const tl_pair_view *view, tl_narrow_scratch *scratch)
+static bool find(const tl_model *m, const tl_pair_view *view, tl_narrow_scratch *scratch)
 {
     (void)m;
     tl_manifold *g = &scratch->manifold;
