@@ -343,9 +343,10 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind)
     tl_contact_places(m, contact, lanes);
     for (size_t k = 0; k < c->point_count[contact]; k++) {
         size_t i = tl_point_row(c, contact, k);
-        bool apart = tl_facet_is_field(&c->facet[contact]) || /* edges and corners have no bonds */
-                     (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
-        tl_point_begin(&d->points, i, kind);
+        bool apart =
+            c->facet[contact].kind == TL_FACET_FIELD || /* edges and corners have no bonds */
+            (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
+        tl_point_initial_state(&d->points, i, kind);
         d->points.flags[i] = apart ? TL_POINT_APART : 0;
     }
 }
@@ -592,25 +593,6 @@ void tl_simd_group_note(tl_detect *d, uint32_t contact, uint32_t row)
  *
  * A state is copied, split by area, or reset when the point's polygon changes, as its law declares. */
 
-const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
-{
-    return (const tl_state *)(const void *)((const char *)kind->states +
-                                            (size_t)k * kind->state_stride);
-}
-
-static uint32_t state_width(const tl_state *state)
-{
-    return state->kind == TL_STATE_TANGENT ? 3 : 1;
-}
-
-uint32_t tl_kind_state_columns(const tl_kind *kind)
-{
-    uint32_t columns = 0;
-    for (uint32_t k = 0; k < kind->state_count; k++)
-        columns += state_width(tl_kind_state(kind, k));
-    return columns;
-}
-
 void tl_point_clear(tl_points_table *p, size_t i)
 {
     p->area[i] = p->f_n[i] = 0;
@@ -658,76 +640,39 @@ void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
 {
     for (uint32_t k = 0; k < p->state_columns; k++)
         p->state[k][i] = 0;
-    uint32_t column = 0;
-    for (uint32_t k = 0; kind && k < kind->state_count && column < p->state_columns; k++) {
-        const tl_state *state = tl_kind_state(kind, k);
-        if (state->kind == TL_STATE_SCALAR)
-            p->state[column][i] = state->initial;
-        column += state_width(state);
-    }
-}
-
-void tl_point_begin(tl_points_table *p, size_t i, const tl_kind *kind)
-{
-    p->flags[i] = 0;
-    tl_point_initial_state(p, i, kind);
-}
-
-/* Scales the split states to the new area; with `reset` false, states to be reset are kept. Energies go by their sum: tl_shear_keep. */
-static void take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                       double old_area, bool reset)
-{
-    uint32_t column = 0;
-    for (uint32_t k = 0; kind && k < kind->state_count && column < p->state_columns; k++) {
-        const tl_state *state = tl_kind_state(kind, k);
-        uint32_t width = state_width(state);
-        double scale = 1;
-        if (state->transfer == TL_TRANSFER_SPLIT)
-            scale = old_area > 0 ? p->area[i] / old_area : 0;
-        bool anew = state->transfer == TL_TRANSFER_RESET || state->transfer == TL_TRANSFER_ENERGY;
-        if (!anew || !reset)
-            for (uint32_t w = 0; w < width; w++)
-                p->state[column + w][i] = scale * old[column + w];
-        column += width;
-    }
+    for (tl_state_columns at = {0}; tl_state_next(kind, p->state_columns, &at);)
+        if (at.count == 1)
+            p->state[at.begin][i] = at.state->initial;
 }
 
 void tl_point_take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                         double old_area)
+                         double old_area, bool stays)
 {
-    take_state(p, i, kind, old, old_area, true);
-}
-
-void tl_point_keep_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                         double old_area)
-{
-    take_state(p, i, kind, old, old_area, false);
-}
-
-void tl_point_clear_vectors(tl_points_table *p, size_t i, const tl_kind *kind)
-{
-    uint32_t column = 0;
-    for (uint32_t k = 0; kind && k < kind->state_count && column < p->state_columns; k++) {
-        const tl_state *state = tl_kind_state(kind, k);
-        if (state->kind == TL_STATE_TANGENT)
-            tl_columns_put(&p->state[column], i, tl_v3(0, 0, 0));
-        column += state_width(state);
+    for (tl_state_columns at = {0}; tl_state_next(kind, p->state_columns, &at);) {
+        uint32_t rule = at.state->transfer;
+        double scale = 1;
+        if (rule == TL_TRANSFER_SPLIT)
+            scale = old_area > 0 ? p->area[i] / old_area : 0;
+        if (stays || (rule != TL_TRANSFER_RESET && rule != TL_TRANSFER_ENERGY))
+            for (uint32_t w = at.begin; w < at.begin + at.count; w++)
+                p->state[w][i] = scale * old[w];
     }
 }
 
-void tl_point_turn_states(tl_points_table *p, size_t i, const tl_kind *kind, tl_vec3 from,
-                          tl_vec3 to)
+tl_vec3 tl_into_plane(tl_vec3 v, tl_vec3 from, tl_vec3 to)
 {
-    uint32_t column = 0;
-    bool turned = from.x != to.x || from.y != to.y || from.z != to.z;
-    for (uint32_t k = 0; kind && turned && k < kind->state_count && column < p->state_columns;
-         k++) {
-        const tl_state *state = tl_kind_state(kind, k);
-        if (state->kind == TL_STATE_TANGENT) {
-            tl_vec3 v = tl_v3_turn(tl_columns_get(&p->state[column], i), from, to);
-            tl_columns_put(&p->state[column], i, tl_v3_madd(v, -tl_v3_dot(v, to), to));
-        }
-        column += state_width(state);
+    v = tl_v3_turn(v, from, to);
+    return tl_v3_madd(v, -tl_v3_dot(v, to), to);
+}
+
+void tl_states_turn(const tl_kind *kind, uint32_t columns, double *state, tl_vec3 from, tl_vec3 to)
+{
+    for (tl_state_columns at = {0}; tl_state_next(kind, columns, &at);) {
+        double *v = &state[at.begin];
+        if (at.count < 3)
+            continue;
+        tl_vec3 turned = tl_into_plane(tl_v3(v[0], v[1], v[2]), from, to);
+        v[0] = turned.x, v[1] = turned.y, v[2] = turned.z;
     }
 }
 

@@ -3,6 +3,7 @@
 #define TL_CONTACT_CONTACTS_H
 
 #include "contact/detection.h"
+#include "contact/law_states.h"
 #include "contact/layout.h"
 #include "contact/old_point.h"
 #include "contact/tables.h"
@@ -70,28 +71,21 @@ tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *c
  * now. n from A to B. */
 void tl_point_load(tl_points_table *points, size_t point, const tl_sym3 *stress, tl_vec3 n,
                    double closure, double opening);
-/* The law's states of a point, at their initial values, or taken from an old point of some area. */
+/* The law's states of a point, at their initial values. */
 void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
-void tl_point_begin(tl_points_table *p, size_t point, const tl_kind *kind); /* and no flags */
+/* The same taken from an old point of some area. With `stays` the point keeps its place: what a change of polygon resets
+ * goes on. Energies go by their sum: tl_shear_keep. */
 void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
-                         double old_area);
-/* The same for a point that keeps its place: what is reset on a change of polygon stays. */
-void tl_point_keep_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
-                         double old_area);
-/* Sets the vectors among a point's states to 0. */
-void tl_point_clear_vectors(tl_points_table *points, size_t point, const tl_kind *kind);
-/* Turns the vectors among a point's states with its normal, from the old one into the plane of the new. */
-void tl_point_turn_states(tl_points_table *points, size_t point, const tl_kind *kind, tl_vec3 from,
-                          tl_vec3 to);
-/* Columns of the states of a kind of law. */
-uint32_t tl_kind_state_columns(const tl_kind *kind);
+                         double old_area, bool stays);
+/* Turns a vector in the plane of a normal into that of another. */
+tl_vec3 tl_into_plane(tl_vec3 v, tl_vec3 from, tl_vec3 to);
+/* The same for the vectors among a point's states. */
+void tl_states_turn(const tl_kind *kind, uint32_t columns, double *state, tl_vec3 from, tl_vec3 to);
 /* Makes sure that one table of points has that many state columns; false when out of memory (nothing changed). Both
  * tables need the same: tl_detect_hold_states. */
 bool tl_points_hold_states(tl_points_table *points, uint32_t columns);
 /* The same for initial forces and the overlaps they belong to. */
 bool tl_points_hold_initial(tl_points_table *points);
-/* State descriptor k of a kind. */
-const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k);
 
 /* Whether the bodies of two blocks are held still. */
 bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b);

@@ -58,10 +58,10 @@ typedef struct tl_detect {
     uint32_t *by_id;  /* contact rows by ascending id; made when asked for */
     size_t by_id_capacity;
     bool by_id_fresh;
-    /* of contacts that have ended because a block was cut, until those of the parts are made: estate.c */
-    tl_estate *estates;
-    tl_old_point *left_points;
-    size_t estate_count, estate_capacity, left_count, left_capacity;
+    /* that have ended because a block was cut, until those of the parts are made: cut_contacts.c */
+    tl_cut_contact *cut_contacts;
+    tl_old_point *cut_points;
+    size_t cut_count, cut_capacity, cut_point_count, cut_point_capacity;
     tl_id next_contact, stepped_contact; /* the last that was born; when the last step was made */
     tl_narrow_scratch *narrow;           /* [threads] */
     tl_point_lanes *lanes;               /* [threads]: a tile, or the largest SIMD group */

@@ -12,28 +12,14 @@
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
-#include "contact/detection.h"
-#include "contact/estate.h"
+#include "contact/cut_contacts.h"
 #include "contact/lean.h"
 #include "contact/places.h"
 #include "contact/presses.h"
+#include "contact/shear.h"
 #include "contact/transfer.h"
 
 #include <string.h>
-
-/* Shear of a contact: force, and torsion about its normal through a centre. */
-typedef struct shear {
-    double area;
-    tl_vec3 normal, force, centre;
-    double torsion;
-    double energy; /* of its springs, times 2 ks */
-} shear;
-
-/* A shear spring: twice its energy times ks. */
-static double energy_of(double f2, double area)
-{
-    return area > 0 ? f2 / area : 0;
-}
 
 /* An arm of a contact before A's last turn. The forces are as they were then: so must the arms be, or the torsion is
  * another one for B. */
@@ -54,52 +40,47 @@ static tl_vec3 arm_of_old(const tl_model *m, uint32_t c, tl_vec3 old, tl_vec3 ce
     return tl_v3_add(arm_before(m, c, arm), tl_v3_cross(back, arm));
 }
 
-/* Where the shear of a contact acts: a field's at its centre of pressure, a patch's at the centroid of its points. */
+/* The centroid of a contact's points, whose arms are in the lanes: of a field contact its centre of pressure. */
 static tl_vec3 centre_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    if (tl_facet_is_field(&contacts->facet[c]))
+    const tl_detect *d = m->detect;
+    if (tl_contact_is_field(d, c))
         return tl_columns_get(lanes->arm, TL_FIELD_SHEAR);
     tl_vec3 sum = {0, 0, 0};
-    double area = 0;
-    for (size_t k = 0; k < contacts->point_count[c]; k++) {
-        double part = m->detect->points.area[tl_point_row(contacts, c, k)];
-        area += part;
-        sum = tl_v3_madd(sum, part, tl_columns_get(lanes->arm, k));
-    }
+    double area = tl_contact_area_of_points(d, c);
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++)
+        sum = tl_v3_madd(sum, d->points.area[tl_point_row(&d->contacts, c, k)],
+                         tl_columns_get(lanes->arm, k));
     return tl_v3_scale(area > 0 ? 1 / area : 0, sum);
 }
 
+/* Energy of the springs of a field contact, times 2 ks, and its torsion. */
+static tl_shear field_springs(const tl_model *m, uint32_t c)
+{
+    const tl_press_row *row = tl_press_row_of(m, c);
+    tl_shear out = {.area = 0};
+    tl_shear_add_field(m, c, &out);
+    out.energy += row->spare[0] + row->spare[1];
+    return out;
+}
+
 /* Of the points as they are, whose arms are in the lanes. */
-static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
+static tl_shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    const tl_facet *f = &contacts->facet[c];
-    size_t count = contacts->point_count[c];
-    shear out = {.normal = f->last, .centre = lanes ? centre_of(m, c, lanes) : tl_v3(0, 0, 0)};
-    if (count && tl_facet_is_field(f)) {
-        size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
-        size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
-        out.area = p->area[torsion];
-        out.force = tl_columns_get(p->f_s, first);
-        out.torsion = tl_press_row_of(m, c)->press.radius *
-                      tl_v3_dot(f->last, tl_columns_get(p->f_s, torsion));
-        for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
-            size_t i = tl_point_row(contacts, c, k);
-            out.energy += energy_of(tl_v3_norm2(tl_columns_get(p->f_s, i)), p->area[i]);
-        }
-        out.energy += tl_press_row_of(m, c)->spare[0] + tl_press_row_of(m, c)->spare[1];
+    bool springs = contacts->point_count[c] && tl_contact_is_field(m->detect, c);
+    tl_shear out = springs ? field_springs(m, c) : tl_shear_of(m, c);
+    out.normal = contacts->facet[c].last;
+    out.centre = centre_of(m, c, lanes);
+    if (springs) {
+        out.area = p->area[tl_point_row(contacts, c, TL_FIELD_TORSION)];
+        out.force = tl_columns_get(p->f_s, tl_point_row(contacts, c, TL_FIELD_SHEAR));
         return out;
     }
-    for (size_t k = 0; k < count; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        tl_vec3 force = tl_columns_get(p->f_s, i);
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), out.centre);
-        arm = arm_before(m, c, arm);
-        out.force = tl_v3_add(out.force, force);
-        out.area += p->area[i];
-        out.energy += energy_of(tl_v3_norm2(force), p->area[i]);
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        tl_vec3 force = tl_columns_get(p->f_s, tl_point_row(contacts, c, k));
+        tl_vec3 arm = arm_before(m, c, tl_v3_sub(tl_columns_get(lanes->arm, k), out.centre));
         out.torsion += tl_v3_dot(out.normal, tl_v3_cross(arm, force));
     }
     return out;
@@ -158,24 +139,17 @@ void tl_contact_let_go(tl_model *m, uint32_t c, double lift)
         row->shift = lift;
 }
 
-/* What the law keeps of a contact: means over what presses. */
-typedef struct law_state {
-    double state[TL_STATE_COLUMNS], area;
-    tl_vec3 normal;
-    uint32_t flags;
-    bool known;
-} law_state;
-
-static law_state state_of(const tl_model *m, uint32_t c)
+/* What the law keeps of a contact, as an old point: means over what presses. */
+static tl_old_point mean_point(const tl_model *m, uint32_t c)
 {
     const tl_points_table *p = &m->detect->points;
     const tl_contacts *contacts = &m->detect->contacts;
-    size_t count = tl_facet_is_patch(&contacts->facet[c]) ? contacts->point_count[c] : 1;
-    law_state out = {.known = contacts->point_count[c] > 0, .normal = contacts->facet[c].last};
+    size_t count = tl_contact_area_points(m->detect, c);
+    tl_old_point out = {.normal = contacts->facet[c].last};
     double force = 0, sum = 0;
-    for (size_t k = 0; k < count && out.known; k++)
+    for (size_t k = 0; k < count; k++)
         force += fmax(0, p->f_n[tl_point_row(contacts, c, k)]);
-    for (size_t k = 0; k < count && out.known; k++) {
+    for (size_t k = 0; k < count; k++) {
         size_t i = tl_point_row(contacts, c, k);
         double share = force > 0 ? fmax(0, p->f_n[i]) : p->area[i];
         sum += share;
@@ -190,64 +164,56 @@ static law_state state_of(const tl_model *m, uint32_t c)
     return out;
 }
 
-/* By how much more than its mean the lift of a field contact is at a point. */
-static double lean_at(const tl_model *m, uint32_t c, tl_vec3 p)
+/* Gives new points flags and, with `known`, law states of an old point, in the plane in which they are. The torsion of a field
+ * contact begins without a vector: its plane is another one. */
+static void give_states(tl_model *m, uint32_t c, tl_old_point old, bool known)
 {
-    const tl_press_row *row = tl_press_row_of(m, c);
-    return tl_lean_at(m, c, row->lean, row->shifted_at, p);
-}
-
-static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const law_state *old,
-                         double reference, bool lean)
-{
-    tl_contacts *contacts = &m->detect->contacts;
+    const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
     uint32_t law = contacts->law[c];
     const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
-    for (size_t k = g->point_count; k < contacts->point_capacity[c]; k++)
-        tl_point_clear(p, tl_point_row(contacts, c, k));
-    contacts->point_count[c] = (uint16_t)g->point_count;
-    for (size_t k = 0; k < g->point_count; k++) {
+    tl_vec3 n = contacts->facet[c].last;
+    if (old.normal.x != n.x || old.normal.y != n.y || old.normal.z != n.z)
+        tl_states_turn(kind, p->state_columns, old.state, old.normal, n);
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        tl_columns_put(p->p, i, g->points[k].p);
-        tl_columns_put(p->f_s, i, tl_v3(0, 0, 0));
-        p->area[i] = g->points[k].area;
-        p->key[i] = g->points[k].key;
-        p->f_n[i] = 0;
-        if (p->f_n0) {
-            p->f_n0[i] = 0;
-            p->reference[i] = reference - (lean ? lean_at(m, c, g->points[k].p) : 0);
-        }
-        p->flags[i] = old->flags;
-        tl_point_initial_state(p, i, kind);
-        if (old->known)
-            tl_point_take_state(p, i, kind, old->state, old->area);
+        tl_state_columns at = {0};
+        while (tl_contact_is_field(m->detect, c) && k == TL_FIELD_TORSION &&
+               tl_state_next(kind, p->state_columns, &at))
+            if (at.count == 3)
+                memset(&old.state[at.begin], 0, 3 * sizeof *old.state);
+        p->flags[i] = old.flags;
+        if (known)
+            tl_point_take_state(p, i, kind, old.state, old.area, false);
     }
 }
 
-/* Turns what laws keep of the points into the plane in which they are now. The torsion of a field contact begins without a vector:
- * its plane is another one. */
-static void turn_states(tl_model *m, uint32_t c, const law_state *old)
+/* Lets the points of a patch count their overlaps from a lift: of faces that lean, from that at their places. */
+static void refer_to_lift(tl_model *m, uint32_t c, double lift)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    bool field = tl_facet_is_field(&contacts->facet[c]);
-    uint32_t law = contacts->law[c];
-    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
-    for (size_t k = 0; k < contacts->point_count[c] && old->known; k++) {
+    tl_points_table *p = &m->detect->points;
+    const tl_press_row *row = tl_press_row_of(m, c);
+    for (size_t k = 0; k < contacts->point_count[c] && p->reference; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        if (field && k == TL_FIELD_TORSION)
-            tl_point_clear_vectors(&m->detect->points, i, kind);
-        else
-            tl_point_turn_states(&m->detect->points, i, kind, old->normal, contacts->facet[c].last);
+        p->reference[i] = -lift;
+        if (row && row->leans)
+            p->reference[i] -=
+                tl_lean_at(m, c, row->lean, row->shifted_at, tl_columns_get(p->p, i));
     }
+}
+
+/* Share of the force f of springs of some energy that stays on an area, without more energy. Energies times 2 ks. */
+static double share_on(double f2, double energy, double area)
+{
+    return f2 > energy * area ? energy * area / f2 : 1;
 }
 
 /* Shear of what is left of it on a new area, as in `resized`, with an arm from the new centre to the old. */
-static shear carried(const shear *old, double area, tl_vec3 normal, tl_vec3 arm)
+static tl_shear left_on(const tl_shear *old, double area, tl_vec3 normal, tl_vec3 arm)
 {
-    double f2 = tl_v3_norm2(old->force);
-    double part = f2 > old->energy * area ? old->energy * area / f2 : 1;
-    shear out = {.area = area, .normal = normal};
+    double part = share_on(tl_v3_norm2(old->force), old->energy, area);
+    tl_shear out = {.area = area, .energy = old->energy, .normal = normal};
     if (old->area > 0)
         out.force = tl_v3_scale(part, tl_v3_turn(old->force, old->normal, normal));
     out.force = tl_v3_madd(out.force, -tl_v3_dot(out.force, normal), normal);
@@ -255,40 +221,41 @@ static shear carried(const shear *old, double area, tl_vec3 normal, tl_vec3 arm)
     return out;
 }
 
-/* Torsion that springs of a polar moment of area may have beside a force, of the energy there is. */
-static double allowed_torsion(const shear *now, double energy, double polar)
+/* Torsion that springs may have beside a force, of the energy there is. */
+static double allowed_torsion(const tl_shear *now)
 {
-    double most = polar * fmax(0, energy - energy_of(tl_v3_norm2(now->force), now->area));
+    double rest = now->energy - tl_shear_energy(tl_v3_norm2(now->force), now->area);
+    double most = now->polar * fmax(0, rest);
     return now->torsion * now->torsion > most ? copysign(sqrt(most), now->torsion) : now->torsion;
 }
 
-static void spread_over_patch(tl_model *m, uint32_t c, const shear *s, double energy,
-                              const tl_point_lanes *lanes)
+static void spread_over_patch(tl_model *m, uint32_t c, tl_shear *s, const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
     size_t count = contacts->point_count[c];
-    double polar = 0;
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), s->centre);
-        polar += p->area[tl_point_row(contacts, c, k)] * tl_v3_norm2(arm);
+        s->polar += p->area[tl_point_row(contacts, c, k)] * tl_v3_norm2(arm);
     }
-    double torsion = allowed_torsion(s, energy, polar);
+    double torsion = allowed_torsion(s);
     for (size_t k = 0; k < count; k++) {
         size_t i = tl_point_row(contacts, c, k);
         tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), s->centre);
         tl_vec3 f = tl_v3_scale(p->area[i] / s->area, s->force);
-        f = tl_v3_madd(f, polar > 0 ? p->area[i] * torsion / polar : 0,
+        f = tl_v3_madd(f, s->polar > 0 ? p->area[i] * torsion / s->polar : 0,
                        tl_v3_cross(s->normal, arm));
         tl_columns_put(p->f_s, i, f);
     }
 }
 
-static void put_on_field(tl_model *m, uint32_t c, const shear *s, double energy, double radius)
+static void put_on_field(tl_model *m, uint32_t c, tl_shear *s)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    double torsion = allowed_torsion(s, energy, s->area * radius * radius);
+    double radius = tl_press_row_of(m, c)->press.radius;
+    s->polar = s->area * radius * radius;
+    double torsion = allowed_torsion(s);
     tl_columns_put(p->f_s, tl_point_row(contacts, c, TL_FIELD_SHEAR), s->force);
     tl_columns_put(p->f_s, tl_point_row(contacts, c, TL_FIELD_TORSION),
                    tl_v3_scale(radius > 0 ? torsion / radius : 0, s->normal));
@@ -315,45 +282,45 @@ static void begin_field(tl_model *m, uint32_t c, const tl_manifold *g)
 
 /* A new field contact of parts of blocks takes its area's share over of what that of the whole carried, and what the law has kept of
  * the point nearest to it. */
-static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_estate *estate,
+static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_cut_contact *cut,
                        const tl_point_lanes *lanes)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[contacts->a[c]]].r, g->points[0].p);
-    shear whole = {.area = 0};
+    tl_contact_place_points(m, c, g, lanes);
+    tl_vec3 at = tl_columns_get(lanes->arm, 0);
     tl_old_point nearest = {.area = 0};
-    for (size_t k = 0; k < estate->count; k++) {
-        tl_old_point point = tl_estate_point(m, estate, c, k);
-        tl_vec3 force = tl_v3_scale(point.area, point.shear);
-        whole.normal = point.normal;
-        whole.area += point.area;
-        whole.force = tl_v3_add(whole.force, force);
-        whole.energy += energy_of(tl_v3_norm2(force), point.area);
+    for (size_t k = 0; k < cut->count; k++) {
+        tl_old_point point = tl_cut_contact_point(m, cut, c, k);
         if (k == 0 ||
-            tl_v3_norm2(tl_v3_sub(point.arm, arm)) < tl_v3_norm2(tl_v3_sub(nearest.arm, arm)))
+            tl_v3_norm2(tl_v3_sub(point.arm, at)) < tl_v3_norm2(tl_v3_sub(nearest.arm, at)))
             nearest = point;
     }
-    if (estate->field) {
-        whole.energy = estate->energy;
-        whole.torsion = estate->torsion;
-    }
-    law_state state = {
-        .area = nearest.area, .flags = nearest.flags, .known = tl_estate_is_of_law(m, estate, c)};
-    memcpy(state.state, nearest.state, sizeof state.state);
-    if (!state.known)
-        state.flags = 0;
-    contacts->facet[c] = g->facet;
-    write_points(m, c, g, &state, 0, false);
+    tl_shear whole = cut->whole;
+    whole.normal = nearest.normal;
+    whole.force = tl_v3_scale(tl_cut_contact_sign(m, cut, c), whole.force);
+    bool known = tl_cut_contact_is_of_law(m, cut, c);
+    nearest.normal = tl_v3(0, 0, 0); /* vectors are brought into the plane, and not turned */
+    nearest.flags = known ? nearest.flags : 0;
+    give_states(m, c, nearest, known);
     begin_field(m, c, g);
-    tl_contact_begin(m, c, lanes);
-    turn_states(m, c, &state);
-    tl_shear_keep(m, c, tl_estate_kept(m, estate, c));
+    tl_shear_keep(m, c, tl_cut_contact_kept(m, cut, c));
     double area = g->points[0].area, share = whole.area > 0 ? fmin(1, area / whole.area) : 0;
     whole.force = tl_v3_scale(share, whole.force);
     whole.torsion *= share * share;
     whole.energy *= share;
-    shear now = carried(&whole, area, contacts->facet[c].last, tl_v3(0, 0, 0));
-    put_on_field(m, c, &now, whole.energy, g->press->radius);
+    tl_shear now = left_on(&whole, area, m->detect->contacts.facet[c].last, tl_v3(0, 0, 0));
+    put_on_field(m, c, &now);
+}
+
+/* Moves the faces of a patch apart as its points are lifted. */
+static void lift_faces(tl_model *m, uint32_t c, const tl_point_lanes *lanes)
+{
+    const tl_facet *facet = &m->detect->contacts.facet[c];
+    tl_press_row *row = tl_press_row_of(m, c);
+    const tl_lean lean = tl_contact_lean(m, c, lanes);
+    row->shift = lean.mean;
+    row->leans = lean.leans;
+    memcpy(row->lean, lean.face, sizeof row->lean);
+    tl_press_shift_faces(m, c, (tl_face_pair){facet->ia, facet->ib});
 }
 
 void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
@@ -361,57 +328,47 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
-    const tl_estate *estate =
-        contacts->point_count[c] ? NULL : tl_estate_of(m, contacts->a[c], contacts->b[c]);
-    if (estate && g->point_count && tl_facet_is_field(&g->facet)) {
-        take_share(m, c, g, estate, lanes);
+    bool field = g->facet.kind == TL_FACET_FIELD, held = contacts->point_count[c] > 0;
+    const tl_cut_contact *cut = held ? NULL : tl_cut_contact_of(m, contacts->a[c], contacts->b[c]);
+    if (cut && g->point_count && field) {
+        take_share(m, c, g, cut, lanes);
         return;
     }
-    bool was_patch = tl_facet_is_patch(&contacts->facet[c]);
     tl_contact_places(m, c, lanes);
-    shear old = shear_of(m, c, lanes);
-    law_state state = state_of(m, c);
+    tl_shear old = shear_of(m, c, lanes);
+    tl_old_point mean = mean_point(m, c);
     double kept = tl_shear_kept(m, c);
-    bool held = contacts->point_count[c] > 0;
-    bool field = tl_facet_is_field(&g->facet);
-    if (row && was_patch && held) {
-        const tl_lean lean = tl_contact_lean(m, c, lanes);
-        row->shift = lean.mean;
-        row->leans = lean.leans;
-        memcpy(row->lean, lean.face, sizeof row->lean);
-        tl_press_shift_faces(m, c, (tl_face_pair){contacts->facet[c].ia, contacts->facet[c].ib});
-    }
-    state.flags |=
-        TL_POINT_APART; /* bonds end with their patch, and walls that meet at an edge have none */
-    contacts->facet[c] = g->facet;
+    if (row && held && !tl_contact_is_field(m->detect, c))
+        lift_faces(m, c, lanes);
     double lift = row ? row->shift - row->opening[TL_FIELD_SHEAR] : 0;
-    write_points(m, c, g, &state, field ? 0 : -lift, row && row->leans && !field);
+    tl_contact_place_points(m, c, g, lanes);
+    /* bonds end with their patch, and walls that meet at an edge have none */
+    mean.flags |= TL_POINT_APART;
+    give_states(m, c, mean, held);
     if (row)
         row->spare[0] = row->spare[1] = 0;
     if (field)
         begin_field(m, c, g);
-    tl_contact_begin(m, c, lanes);
-    turn_states(m, c, &state);
+    else
+        refer_to_lift(m, c, lift);
     tl_shear_keep(m, c, kept);
     if (g->point_count == 0)
         tl_contact_let_go(m, c, lift);
     contacts->handed_over[c] = held && g->point_count > 0;
     if (!contacts->handed_over[c])
         return;
-    double area = 0;
-    for (size_t k = 0; k < (field ? 1 : g->point_count); k++)
-        area += g->points[k].area;
     tl_vec3 centre = centre_of(m, c, lanes), arm = arm_of_old(m, c, old.centre, centre);
     if (reframed) {
         old.torsion = 0;
         arm = tl_v3(0, 0, 0);
     }
-    shear now = carried(&old, area, contacts->facet[c].last, arm);
+    double area = tl_contact_area_of_points(m->detect, c);
+    tl_shear now = left_on(&old, area, contacts->facet[c].last, arm);
     now.centre = centre;
     if (field)
-        put_on_field(m, c, &now, old.energy, row->press.radius);
+        put_on_field(m, c, &now);
     else
-        spread_over_patch(m, c, &now, old.energy, lanes);
+        spread_over_patch(m, c, &now, lanes);
 }
 
 /* Gives a shear spring of force f and area `old` another area. What comes carries nothing until it is sheared, so that the
@@ -421,9 +378,9 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
  * swings costs nothing from the second time on. Energies times 2 ks. Returns the share of the force that stays. */
 static double resized(double f2, double old, double now, double *spare)
 {
-    double energy = energy_of(f2, old) + *spare;
-    double part = f2 > energy * now ? energy * now / f2 : 1;
-    *spare = fmax(0, energy - energy_of(f2, now));
+    double energy = tl_shear_energy(f2, old) + *spare;
+    double part = share_on(f2, energy, now);
+    *spare = fmax(0, energy - tl_shear_energy(f2, now));
     return part;
 }
 
@@ -458,16 +415,17 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_vec3 force = tl_columns_get(p->f_s, first);
     tl_vec3 twist = tl_v3_scale(r0, tl_columns_get(p->f_s, torsion));
     double f2 = tl_v3_norm2(force), t2 = tl_v3_norm2(twist);
-    double lost = energy_of(f2, old) + energy_of(t2, polar) + row->spare[0] + row->spare[1];
+    double lost =
+        tl_shear_energy(f2, old) + tl_shear_energy(t2, polar) + row->spare[0] + row->spare[1];
     /* what slips is at its limit everywhere, under a pressure that is not uniform */
     if (p->flags[first] & TL_POINT_SLIPPING)
-        row->spare[0] = fmin(row->spare[0], energy_of(f2, old));
+        row->spare[0] = fmin(row->spare[0], tl_shear_energy(f2, old));
     if (p->flags[torsion] & TL_POINT_SLIPPING)
-        row->spare[1] = fmin(row->spare[1], energy_of(t2, polar));
+        row->spare[1] = fmin(row->spare[1], tl_shear_energy(t2, polar));
     double stays = resized(f2, old, area, &row->spare[0]);
     double stays_turned = resized(t2, polar, now, &row->spare[1]);
-    lost -= energy_of(stays * stays * f2, area) + energy_of(stays_turned * stays_turned * t2, now) +
-            row->spare[0] + row->spare[1];
+    lost -= tl_shear_energy(stays * stays * f2, area) +
+            tl_shear_energy(stays_turned * stays_turned * t2, now) + row->spare[0] + row->spare[1];
     double work = stays < 1 || stays_turned < 1 ? work_on(m, c, g, tl_v3_scale(1 - stays, force),
                                                           tl_v3_scale(1 - stays_turned, twist))
                                                 : 0;
@@ -521,5 +479,6 @@ double tl_contact_sheared(const tl_model *m, uint32_t c)
     if (!tl_facet_is_field(&contacts->facet[c]) || contacts->law[c] == TL_NO_ROW)
         return 0;
     double ks = m->joint_laws[contacts->law[c]].ks;
-    return tl_shear_kept(m, c) + (ks > 0 ? 0.5 * shear_of(m, c, NULL).energy / ks : 0);
+    return tl_shear_kept(m, c) +
+           (ks > 0 && contacts->point_count[c] ? 0.5 * field_springs(m, c).energy / ks : 0);
 }

@@ -66,6 +66,17 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
     }
 }
 
+tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t body_a = m->blocks.body[contacts->a[c]], body_b = m->blocks.body[contacts->b[c]];
+    const tl_pose *a = &m->bodies.pose[body_a], *b = &m->bodies.pose[body_b];
+    tl_vec3 apart = tl_body_apart(&m->bodies, body_a, body_b);
+    tl_vec3 way = tl_v3_sub(tl_v3_sub(b->v_moved, tl_v3_cross(b->w_moved, apart)), a->v_moved);
+    return (tl_contact_motion){tl_v3_scale(m->dt, way),
+                               tl_v3_scale(m->dt, tl_v3_sub(b->w_moved, a->w_moved))};
+}
+
 tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k)
 {
     const tl_contacts *contacts = &m->detect->contacts;

@@ -14,6 +14,12 @@ tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k);
 void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap);
 /* The same as tl_contact_places for a contact whose points are new: forces turn from here. */
 void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
+/* The motion of B against A in the last step: at an arm from A's centroid, `way` + `turn` x arm. */
+typedef struct tl_contact_motion {
+    tl_vec3 way, turn;
+} tl_contact_motion;
+
+tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t contact);
 /* How far, at most, points of a patch have been carried apart by their blocks since they were laid, and how far along the faces new ones
  * of the same keys lie from where they have gone: squares, in A's frame. */
 typedef struct tl_contact_run {

@@ -215,12 +215,12 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
 }
 
 /* What contacts of blocks that were cut have left. */
-static bool estates_are_sound(const tl_model *m, const tl_detect *d)
+static bool cut_contacts_are_sound(const tl_model *m, const tl_detect *d)
 {
-    for (size_t i = 0; i < d->estate_count; i++) {
-        const tl_estate *e = &d->estates[i];
-        if (e->first > d->left_count || e->count > d->left_count - e->first || e->field > 1 ||
-            e->holds_over_gap > 1 || e->pressed > 1 || e->reframed > 1 ||
+    for (size_t i = 0; i < d->cut_count; i++) {
+        const tl_cut_contact *e = &d->cut_contacts[i];
+        if (e->first > d->cut_point_count || e->count > d->cut_point_count - e->first ||
+            e->field > 1 || e->holds_over_gap > 1 || e->pressed > 1 || e->reframed > 1 ||
             (e->field && e->count != 1) || e->count > UINT16_MAX ||
             (e->law != TL_NO_ROW && e->law >= m->joint_law_count))
             return false;
@@ -297,7 +297,7 @@ const char *tl_detect_unsound(const tl_model *m, const tl_detect *d, unsigned ch
             return "a contact does not fit its blocks";
     if (!pairs_are_sound(m, d))
         return "pairs do not fit the blocks";
-    if (!estates_are_sound(m, d) || (m->asked_count && d->next_contact > m->next_contact))
+    if (!cut_contacts_are_sound(m, d) || (m->asked_count && d->next_contact > m->next_contact))
         return "what was left or asked for does not fit the contacts";
     if (!presses_are_sound(m, d, used))
         return "what field contacts keep does not fit them";

@@ -3,7 +3,7 @@
 
 #include "base/entries.h"
 #include "contact/contacts.h"
-#include "contact/estate.h"
+#include "contact/cut_contacts.h"
 #include "contact/index.h"
 #include "contact/walk.h"
 
@@ -57,7 +57,7 @@ void tl_detect_destroy(tl_detect *d)
     free(d->by_block);
     free(d->by_block_start);
     free(d->by_id);
-    tl_estates_end(d);
+    tl_cut_contacts_end(d);
     free(d);
 }
 

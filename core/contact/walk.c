@@ -41,8 +41,8 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     TABLE(STATE, points, points);
     LIST(STATE, press, press_count, press_capacity, facets);
     VALUE(CACHE, press_free);
-    LIST(STATE, estates, estate_count, estate_capacity, other);
-    LIST(STATE, left_points, left_count, left_capacity, other);
+    LIST(STATE, cut_contacts, cut_count, cut_capacity, other);
+    LIST(STATE, cut_points, cut_point_count, cut_point_capacity, other);
     VALUE(STATE, parted);
     VALUE(CACHE, laid_at);
     VALUE(CACHE, spare_share);

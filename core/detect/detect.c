@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "contact/contacts.h"
-#include "contact/estate.h"
+#include "contact/cut_contacts.h"
 #include "contact/handover.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
@@ -22,7 +22,7 @@
 #include "detect/overlap.h"
 #include "detect/pairs.h"
 #include "detect/update.h"
-#include "force/heirs.h"
+#include "force/cut_parts.h"
 #include "model/body_shape.h"
 #include "model/joints.h"
 #include "model/rows.h"
@@ -67,7 +67,7 @@ static tl_status ensure(tl_model *m)
  *
  * A block bears the count of structure with which it came, or got another shape, frame or tags. What is newer than the
  * count that detection has seen is treated as if it were new; all else that is known of pairs and contacts stays. What contacts of
- * blocks that were cut carry is left to those of their parts (contact/estate.c). */
+ * blocks that were cut carry is left to those of their parts (contact/cut_contacts.c). */
 
 /* Tolerance: minimum area over that of a patch from which the patch may be none: below MOST_MIN_AREA of
  * narrow/manifold.c. */
@@ -78,7 +78,7 @@ static tl_status ensure(tl_model *m)
 /* What is made before anything is changed. */
 typedef struct rows_scratch {
     uint32_t *row;      /* [blocks seen] the present row, or TL_NO_ROW */
-    uint32_t *heir;     /* [blocks seen] of one that was cut: one of its parts, or TL_NO_ROW */
+    uint32_t *part;     /* [blocks seen] of one that was cut: one of its parts, or TL_NO_ROW */
     double *odometer_0; /* [bodies] */
     uint8_t *touched;   /* [bodies] */
     tl_known_block *known_blocks; /* [blocks] */
@@ -89,11 +89,11 @@ static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
     tl_detect *d = m->detect;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
     *scratch = (rows_scratch){.row = malloc((d->known_block_count + 1) * sizeof *scratch->row),
-                              .heir = malloc((d->known_block_count + 1) * sizeof *scratch->heir),
+                              .part = malloc((d->known_block_count + 1) * sizeof *scratch->part),
                               .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
                               .touched = malloc(bodies + 1),
                               .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
-    if (scratch->row && scratch->heir && scratch->odometer_0 && scratch->touched &&
+    if (scratch->row && scratch->part && scratch->odometer_0 && scratch->touched &&
         scratch->known_blocks && tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
         tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
         return true;
@@ -103,7 +103,7 @@ static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
 static void free_scratch(rows_scratch *scratch)
 {
     free(scratch->row);
-    free(scratch->heir);
+    free(scratch->part);
     free(scratch->odometer_0);
     free(scratch->touched);
     free(scratch->known_blocks);
@@ -133,11 +133,11 @@ static int compare_known(const void *x, const void *y)
 }
 
 /* Finds a part of each block that was cut. */
-static void find_heirs(const tl_model *m, const rows_scratch *scratch)
+static void find_parts(const tl_model *m, const rows_scratch *scratch)
 {
     const tl_detect *d = m->detect;
     for (size_t old = 0; old < d->known_block_count; old++)
-        scratch->heir[old] = TL_NO_ROW;
+        scratch->part[old] = TL_NO_ROW;
     for (size_t i = 0; i < m->heir_count && d->known_block_count; i++) {
         tl_known_block root = {.id = m->heirs[i].root};
         if (tl_block_row_quiet(m, m->heirs[i].id) == TL_NO_ROW)
@@ -145,7 +145,7 @@ static void find_heirs(const tl_model *m, const rows_scratch *scratch)
         const tl_known_block *known =
             bsearch(&root, d->known_blocks, d->known_block_count, sizeof root, compare_known);
         if (known)
-            scratch->heir[known - d->known_blocks] = (uint32_t)i;
+            scratch->part[known - d->known_blocks] = (uint32_t)i;
     }
 }
 
@@ -154,23 +154,23 @@ static bool leaves(const tl_detect *d, const rows_scratch *scratch, const tl_pai
 {
     bool a_ends = scratch->row[p->a] == TL_NO_ROW, b_ends = scratch->row[p->b] == TL_NO_ROW;
     return (a_ends || b_ends) && !tl_pair_is_apart(p) &&
-           (!a_ends || scratch->heir[p->a] != TL_NO_ROW) &&
-           (!b_ends || scratch->heir[p->b] != TL_NO_ROW) &&
+           (!a_ends || scratch->part[p->a] != TL_NO_ROW) &&
+           (!b_ends || scratch->part[p->b] != TL_NO_ROW) &&
            d->contacts.pending[p->contact] != TL_PENDING_DIE &&
            d->contacts.point_count[p->contact] > 0;
 }
 
-static tl_testator testator_of(const tl_model *m, const rows_scratch *scratch, uint32_t seen)
+static tl_cut_side side_of(const tl_model *m, const rows_scratch *scratch, uint32_t seen)
 {
     tl_id id = m->detect->known_blocks[seen].id;
     uint32_t row = scratch->row[seen];
     if (row == TL_NO_ROW) {
-        const tl_heir *heir = &m->heirs[scratch->heir[seen]];
-        uint32_t part = m->blocks.body[tl_block_row_quiet(m, heir->id)];
-        return (tl_testator){.id = id, .r = &heir->r, .place = heir->place, .body = part};
+        const tl_heir *part = &m->heirs[scratch->part[seen]];
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, part->id)];
+        return (tl_cut_side){.id = id, .r = &part->r, .place = part->place, .body = body};
     }
     uint32_t body = m->blocks.body[row];
-    return (tl_testator){.id = id,
+    return (tl_cut_side){.id = id,
                          .r = &m->bodies.pose[body].r,
                          .place = tl_body_place(&m->bodies, body),
                          .body = body,
@@ -178,36 +178,29 @@ static tl_testator testator_of(const tl_model *m, const rows_scratch *scratch, u
 }
 
 /* Keeps what contacts of blocks that were cut leave; false when out of memory (nothing changed). */
-static bool keep_estates(tl_model *m, const rows_scratch *scratch)
+static bool keep_cut_contacts(tl_model *m, const rows_scratch *scratch)
 {
     tl_detect *d = m->detect;
-    size_t estates = 0, points = 0;
+    size_t contacts = 0, points = 0;
     for (size_t i = 0; i < d->pair_count && m->heir_count; i++)
         if (leaves(d, scratch, &d->pairs[i])) {
-            estates++;
-            points += tl_estate_size(d, d->pairs[i].contact);
+            contacts++;
+            points += d->contacts.point_count[d->pairs[i].contact];
         }
-    if (estates == 0)
+    if (contacts == 0)
         return true;
-    if (!tl_estates_reserve(d, estates, points) ||
+    if (!tl_cut_contacts_reserve(d, contacts, points) ||
         !tl_detect_hold_initial(d)) /* for the references of what the parts press with */
         return false;
     for (size_t i = 0; i < d->pair_count; i++) {
         const tl_pair *p = &d->pairs[i];
         if (!leaves(d, scratch, p))
             continue;
-        tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
-        tl_estate_keep(m, p->contact, &one, &other);
+        tl_cut_side a = side_of(m, scratch, p->a), b = side_of(m, scratch, p->b);
+        tl_cut_contact_foresee(m, p->contact, tl_cut_contact_keep(m, p->contact, &a, &b), &a, &b);
+        tl_cut_contact_empty(m, p->contact);
     }
-    tl_estates_sort(d);
-    for (size_t i = 0; i < d->pair_count; i++) {
-        const tl_pair *p = &d->pairs[i];
-        if (!leaves(d, scratch, p))
-            continue;
-        tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
-        tl_estate_weigh(m, p->contact, tl_estate_left(d, one.id, other.id), &one, &other);
-        tl_estate_leave(m, p->contact);
-    }
+    tl_cut_contacts_sort(d);
     return true;
 }
 
@@ -276,8 +269,8 @@ static tl_status edited_rows(tl_model *m)
     for (size_t old = 0; there && old < d->known_block_count; old++)
         scratch.row[old] = tl_block_row_quiet(m, d->known_blocks[old].id);
     if (there)
-        find_heirs(m, &scratch);
-    if (!there || !keep_estates(m, &scratch)) {
+        find_parts(m, &scratch);
+    if (!there || !keep_cut_contacts(m, &scratch)) {
         free_scratch(&scratch);
         return tl_fail_memory(&m->error);
     }
@@ -286,7 +279,7 @@ static tl_status edited_rows(tl_model *m)
     for (size_t row = 0; row < blocks; row++)
         scratch.known_blocks[row] = (tl_known_block){m->blocks.id[row], m->blocks.body[row]};
     free(scratch.row);
-    free(scratch.heir);
+    free(scratch.part);
     free(d->odometer_0);
     free(d->touched);
     free(d->known_blocks);
@@ -498,7 +491,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     }
     double overlap = tl_facet_is_field(&g->facet) ? g->press->deepest : -region.gap;
     /* parts of blocks go on in the overlap of these */
-    bool meet = !tl_estate_of(m, d->pairs[pair].a, d->pairs[pair].b);
+    bool meet = !tl_cut_contact_of(m, d->pairs[pair].a, d->pairs[pair].b);
     if (meet && overlap > TL_SHALLOW * view.size &&
         overlap > TL_SHALLOW * size_of_bodies(m, &d->pairs[pair]) && deep->count++ == 0)
         deep->pair = pair;
@@ -659,12 +652,12 @@ static tl_status settle(tl_model *m)
             status != TL_OK; /* contacts are not what they seem until all is settled */
     }
     if (status == TL_OK) {
-        tl_estates_balance(m);
-        d->rows_changed = !tl_heirs_carry(m);
+        tl_cut_contacts_balance(m);
+        d->rows_changed = !tl_cut_parts_correct(m);
         if (d->rows_changed)
             return tl_fail_memory(&m->error);
-        tl_estates_sum(m);
-        tl_estates_end(d);
+        tl_cut_contacts_sum(m);
+        tl_cut_contacts_end(d);
     }
     return status;
 }

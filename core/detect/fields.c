@@ -6,12 +6,12 @@
 
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
-#include "contact/estate.h"
+#include "contact/cut_contacts.h"
 #include "contact/handover.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
+#include "contact/places.h"
 #include "contact/presses.h"
-#include "contact/transfer.h"
 #include "narrow/flush.h"
 #include "narrow/place.h"
 #include "narrow/press.h"
@@ -78,12 +78,13 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
     const tl_press_row *row = tl_press_row_of(m, c);
     tl_manifold_before out = {.kind = (tl_facet_kind)facet->kind,
                               .faces = {facet->ia, facet->ib},
-                              .born_tilt = tl_estate_tilt(m, contacts->a[c], contacts->b[c])};
+                              .born_tilt = tl_cut_contact_tilt(m, contacts->a[c], contacts->b[c])};
     bool patch =
         out.kind == TL_FACET_PATCH && (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
     if (patch) {
         tl_contact_across across = tl_contact_across_gap(m, c);
-        bool unseen = contacts->point_count[c] == 0; /* of an estate, until it has got its room */
+        bool unseen =
+            contacts->point_count[c] == 0; /* of a cut contact, until it has got its room */
         out.holds = reframed || unseen || across.bonded;
         out.most_tilt = across.bonded && !reframed ? bonded_tilt(m, c) : INFINITY;
         out.over = out.holds ? INFINITY : TL_PARTED * across.most;
@@ -200,7 +201,7 @@ bool tl_field_take_row(tl_model *m, uint32_t c)
     if (contacts->press[c] == TL_NO_ROW)
         return false;
     tl_face_pair faces;
-    double shift = tl_estate_shift(m, contacts->a[c], contacts->b[c], &faces);
+    double shift = tl_cut_contact_shift(m, contacts->a[c], contacts->b[c], &faces);
     if (shift != 0) {
         tl_press_shift_faces(m, c, faces);
         tl_press_row_of(m, c)->shift = shift;

@@ -7,8 +7,7 @@
 #include "detect/pairs.h"
 
 #include "base/inline.h"
-#include "contact/estate.h"
-#include "contact/kind.h"
+#include "contact/cut_contacts.h"
 #include "contact/pair_view.h"
 #include "detect/grazing.h"
 #include "detect/overlap.h"
@@ -164,16 +163,16 @@ tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_
                                   tl_narrow_scratch *scratch)
 {
     tl_manifold_before out = {.kind = TL_FACET_PATCH, .most_tilt = INFINITY};
-    uint32_t face_a, face_b;
-    out.born_tilt = tl_estate_tilt(m, p->a, p->b);
-    out.shift = tl_estate_shift(m, p->a, p->b, &out.shifted);
+    tl_face_pair faces;
+    out.born_tilt = tl_cut_contact_tilt(m, p->a, p->b);
+    out.shift = tl_cut_contact_shift(m, p->a, p->b, &out.shifted);
     out.reach = fmax(0, out.shift);
-    if (!tl_estate_holds(m, p->a, p->b) || !tl_estate_faces(m, p->a, p->b, &face_a, &face_b))
+    if (!tl_cut_contact_holds(m, p->a, p->b) || !tl_cut_contact_faces(m, p->a, p->b, &faces))
         return out;
-    tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[face_a], INFINITY);
+    tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[faces.a], INFINITY);
     out.over = INFINITY;
-    out.holds = tl_patch_lay(view, face_a, face_b, &rule, scratch) > 0;
-    out.faces = (tl_face_pair){(uint16_t)face_a, (uint16_t)face_b};
+    out.holds = tl_patch_lay(view, faces.a, faces.b, &rule, scratch) > 0;
+    out.faces = faces;
     return out;
 }
 
@@ -183,8 +182,8 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scra
     const double reach = m->detect->reach;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
     tl_face_pair moved;
-    double shift = fmax(0, tl_estate_shift(m, p->a, p->b, &moved));
-    bool holds = tl_estate_holds(m, p->a, p->b) || shift > 0;
+    double shift = fmax(0, tl_cut_contact_shift(m, p->a, p->b, &moved));
+    bool holds = tl_cut_contact_holds(m, p->a, p->b) || shift > 0;
     double gap, margin = holds ? -1 : tl_grazing_margin(&view, p, &gap);
     if (margin >= 0)
         return margin;

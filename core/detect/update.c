@@ -9,13 +9,13 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
-#include "contact/estate.h"
 #include "contact/facing.h"
 #include "contact/handover.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/presses.h"
+#include "contact/shear.h"
 #include "contact/store.h"
 #include "contact/transfer.h"
 #include "detect/fields.h"
@@ -105,7 +105,7 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
         if (kind && g->points[k].area != old) {
             for (uint32_t column = 0; column < p->state_columns; column++)
                 state[column] = p->state[column][i];
-            tl_point_keep_state(p, i, kind, state, old);
+            tl_point_take_state(p, i, kind, state, old, true);
         }
     }
     tl_shear now = tl_shear_of(m, c);
@@ -745,7 +745,8 @@ static tl_shear shear_in(const shear_lanes *s, const tl_patch_batch *batch, uint
     tl_mat3 turn = tl_lanes9_get(&batch->r_a, l);
     tl_vec3 arm = tl_m3_mul(&turn, tl_lanes3_get(&batch->centroid.p, l));
     tl_vec3 force = tl_lanes3_get(&s->force, l);
-    return (tl_shear){area, s->energy[l], force, tl_v3_cross(arm, force)};
+    return (tl_shear){
+        .area = area, .energy = s->energy[l], .force = force, .moment = tl_v3_cross(arm, force)};
 }
 
 /* What else a contact keeps of its patch. */

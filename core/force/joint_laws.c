@@ -61,18 +61,16 @@ static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *c
         tl_law_clear(out);
         return TL_E_PLUGIN;
     }
-    uint32_t column = 0;
+    tl_state_columns at = {0};
     out->energy = TL_NO_ROW;
-    for (uint32_t k = 0; k < kind->state_count; k++) {
-        bool tangent = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;
-        out->tangents |= tangent ? 1u << column : 0;
-        out->splits = out->splits || tl_kind_state(kind, k)->transfer == TL_TRANSFER_SPLIT;
-        if (tl_kind_state(kind, k)->transfer == TL_TRANSFER_ENERGY)
-            out->energy = column;
-        column += tangent ? 3 : 1;
+    while (tl_state_next(kind, UINT32_MAX, &at)) {
+        out->tangents |= at.count == 3 ? 1u << at.begin : 0;
+        out->splits = out->splits || at.state->transfer == TL_TRANSFER_SPLIT;
+        if (at.state->transfer == TL_TRANSFER_ENERGY)
+            out->energy = at.begin;
     }
     tl_enter(kind, "stateless");
-    out->columns = ops->stateless && ops->stateless(out->self) ? 0 : column;
+    out->columns = ops->stateless && ops->stateless(out->self) ? 0 : at.begin;
     tl_leave();
     tl_enter(kind, "pulls");
     out->pulls = ops->pulls ? ops->pulls(out->self) : TL_PULL_ANY;

@@ -316,13 +316,10 @@ static tl_status begin(bench *b)
     sample *now = &b->now;
     now->c[TL_AT_AREA][0] = 1;
     for (size_t l = 0; l < TL_LANES; l++)
-        now->c[TL_AT_NORMAL + 2][l] = 1;
-    uint32_t column = 0;
-    for (uint32_t k = 0; k < b->law.kind->state_count && b->law.columns > 0; k++) {
-        const tl_state *state = tl_kind_state(b->law.kind, k);
-        for (uint32_t c = state->kind == TL_STATE_TANGENT ? 3 : 1; c > 0; c--)
-            now->c[TL_AT_STATE + column++][0] = state->initial;
-    }
+        now->normal[2][l] = 1;
+    for (tl_state_columns at = {0}; tl_state_next(b->law.kind, b->law.columns, &at);)
+        for (uint32_t w = at.begin; w < at.begin + at.count; w++)
+            now->state[w][0] = at.state->initial;
     b->stress = by_stress(b->test) ? b->test->normal_stress : 0;
     tl_status status = make_step(b, &(motion){0, 0}, 0);
     b->start = now->c[TL_AT_CLOSURE][0];

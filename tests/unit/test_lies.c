@@ -42,20 +42,20 @@ static void add_edits(tl_model *m)
     m->heirs = calloc(1, sizeof *m->heirs);
     m->splits = calloc(1, sizeof *m->splits);
     m->asked_ids = calloc(1, sizeof *m->asked_ids);
-    d->estates = calloc(1, sizeof *d->estates);
-    d->left_points = calloc(1, sizeof *d->left_points);
+    d->cut_contacts = calloc(1, sizeof *d->cut_contacts);
+    d->cut_points = calloc(1, sizeof *d->cut_points);
     m->face_loads = calloc(1, sizeof *m->face_loads);
-    if (!CHECK(m->heirs && m->splits && m->asked_ids && d->estates && d->left_points &&
+    if (!CHECK(m->heirs && m->splits && m->asked_ids && d->cut_contacts && d->cut_points &&
                m->face_loads))
         exit(1);
     m->heirs[0] = (tl_heir){.id = 2, .root = 1, .r = tl_m3_identity()};
     m->splits[0] = (tl_split){.block = 2, .whole = 1};
     m->asked_ids[0] = (tl_asked_id){1, 2, 1};
-    d->estates[0] = (tl_estate){.a = 1, .b = 2, .law = TL_NO_ROW, .count = 1};
+    d->cut_contacts[0] = (tl_cut_contact){.a = 1, .b = 2, .law = TL_NO_ROW, .count = 1};
     m->face_loads[0] = (tl_face_load){.block = 2};
     m->face_load_count = m->face_load_capacity = 1;
     m->heir_count = m->heir_capacity = m->split_count = m->split_capacity = m->asked_count = 1;
-    d->estate_count = d->estate_capacity = d->left_count = d->left_capacity = 1;
+    d->cut_count = d->cut_capacity = d->cut_point_count = d->cut_point_capacity = 1;
     m->next_contact = d->next_contact;
 }
 
@@ -359,14 +359,14 @@ static const lie lies[] = {
     LIE("model.heirs", offsetof(tl_heir, place), infinite),
     LIE("model.splits", offsetof(tl_split, block), far_row),
     LIE("model.splits", offsetof(tl_split, whole), far_row),
-    LIE("detect.estates", offsetof(tl_estate, first), most),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, first), most),
     LIE("detect.next_contact", 0, far_row),
-    LIE("detect.estates", offsetof(tl_estate, count), far_row),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, count), far_row),
     LIE("model.asked_ids", offsetof(tl_asked_id, contact), far_row),
-    LIE("detect.estates", offsetof(tl_estate, law), far_row),
-    LIE("detect.estates", offsetof(tl_estate, field), two),
-    LIE("detect.estates", offsetof(tl_estate, holds_over_gap), two),
-    LIE("detect.estates", offsetof(tl_estate, reframed), two),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, law), far_row),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, field), two),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, holds_over_gap), two),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, reframed), two),
     LIE("model.heirs", offsetof(tl_heir, root), two_row),
     LIE("model.splits", offsetof(tl_split, block), row_0),
     LIE("model.splits", offsetof(tl_split, whole), row_0),
@@ -376,8 +376,8 @@ static const lie lies[] = {
     LIE("model.face_loads", offsetof(tl_face_load, moment), infinite),
     LIE("model.asked_ids", offsetof(tl_asked_id, contact), row_0),
     LIE("model.asked_ids", offsetof(tl_asked_id, b), row_1),
-    LIE("detect.estates", offsetof(tl_estate, count), two_row),
-    LIE("detect.estates", offsetof(tl_estate, pressed), two),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, count), two_row),
+    LIE("detect.cut_contacts", offsetof(tl_cut_contact, pressed), two),
     /* histories */
     LIE("histories", 0, no_end),
     LIE("histories.0.cycles", 0, long_ago),

@@ -360,16 +360,13 @@ TEST(states_are_copied_split_or_reset)
     const double old[TL_STATE_COLUMNS] = {10, 20, 30, 40, 50, 60, 0, 0};
     const double taken[] = {10, 5, 7.5, 10, 12.5, 3}, kept[] = {10, 5, 7.5, 10, 12.5, 60};
     p.area[0] = p.area[1] = 0.5; /* a quarter of the old point's */
-    tl_point_take_state(&p, 0, &kind, old, 2);
+    tl_point_take_state(&p, 0, &kind, old, 2, false);
     for (int k = 0; k < 6; k++)
         CHECK_NEAR(p.state[k][0], taken[k], 1e-14);
     tl_point_initial_state(&p, 1, &kind);
-    tl_point_keep_state(&p, 1, &kind, old, 2);
+    tl_point_take_state(&p, 1, &kind, old, 2, true);
     for (int k = 0; k < 6; k++)
         CHECK_NEAR(p.state[k][1], kept[k], 1e-14);
-    tl_point_clear_vectors(&p, 1, &kind);
-    for (int k = 0; k < 6; k++)
-        CHECK_NEAR(p.state[k][1], k >= 2 && k < 5 ? 0 : kept[k], 1e-14);
     tl_table_free(&p.table);
     tl_table_free(&contacts.table);
 }

@@ -1,0 +1,437 @@
+/* cut_contacts.c - what a contact leaves to those of its blocks' parts when a block of it is cut.
+ *
+ * A part of a wall carries what it carried before: stresses, law states, an initial stress. So a contact that ends because a block of
+ * it was cut leaves its points, and each contact between parts of the two blocks takes its share of them over when it is made,
+ * in the same detection. What a part is of, its root, the model tells (tl_heir). */
+#include "contact/cut_contacts.h"
+
+#include "base/columns.h"
+#include "contact/across_gap.h"
+#include "contact/contacts.h"
+#include "contact/facing.h"
+#include "contact/lean.h"
+#include "contact/pair_view.h"
+#include "contact/places.h"
+#include "contact/presses.h"
+#include "contact/shear.h"
+#include "narrow/flush.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* Normals of a part's face and of the whole's are off each other by rounding. */
+#define SAME_FACE 1e-9
+
+bool tl_cut_contacts_reserve(tl_detect *d, size_t contacts, size_t points)
+{
+    return tl_fit(&d->cut_contacts, &d->cut_capacity, d->cut_count + contacts,
+                  sizeof *d->cut_contacts) &&
+           tl_fit(&d->cut_points, &d->cut_point_capacity, d->cut_point_count + points,
+                  sizeof *d->cut_points);
+}
+
+/* The points in the places where their blocks have carried them, and their sums. */
+static void keep_points(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
+                        tl_cut_contact *cut)
+{
+    tl_detect *d = m->detect;
+    const tl_facet *facet = &d->contacts.facet[c];
+    uint32_t column = tl_shear_kept_column(m, cut->law);
+    tl_shear *whole = &cut->whole;
+    tl_facing_place to = {*a->r, {0, 0, 0}};
+    if (!cut->field)
+        to = tl_facing_ride(a->r, b->r, tl_v3_sub(b->place, a->place), &facet->laid.turn,
+                            facet->laid.shift, facet->ride);
+    for (size_t k = 0; k < cut->count; k++) {
+        tl_vec3 p = tl_columns_get(d->points.p, tl_point_row(&d->contacts, c, k));
+        tl_vec3 place = tl_v3_add(tl_v3_add(a->place, to.at), tl_m3_mul(&to.to, p));
+        tl_old_point point = tl_point_as_old(&d->points, &d->contacts, c, k, place);
+        tl_shear_add(whole, point.area, place, tl_v3_scale(point.area, point.shear));
+        whole->centre = tl_v3_madd(whole->centre, point.area, place);
+        whole->normal = point.normal;
+        cut->kept += column == TL_NO_ROW ? 0 : point.state[column];
+        d->cut_points[d->cut_point_count++] = point;
+    }
+    whole->centre = tl_v3_scale(whole->area > 0 ? 1 / whole->area : 0, whole->centre);
+}
+
+/* The springs of a field contact, and how far an initial stress has moved its face, as a patch has that. */
+static void keep_field(tl_model *m, uint32_t c, tl_cut_contact *cut)
+{
+    const tl_press_row *row = tl_press_row_of(m, c);
+    tl_old_point *point = &m->detect->cut_points[cut->first];
+    cut->whole.energy = row->spare[0] + row->spare[1];
+    tl_shear_add_field(m, c, &cut->whole);
+    point->n0 = 0;
+    point->reference = -row->shift;
+}
+
+/* The overlap of the walls at a place: of faces with the sum `offset` of their offsets. */
+static double overlap_at(const tl_cut_contact *cut, double offset, const tl_cut_side *a,
+                         const tl_cut_side *b, tl_vec3 place)
+{
+    return offset - tl_v3_dot(cut->face[0], tl_v3_sub(place, a->place)) -
+           tl_v3_dot(cut->face[1], tl_v3_sub(place, b->place));
+}
+
+/* Takes what slip has opened out of the references of a patch's points, and notes their closures. */
+static void keep_closures(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
+                          tl_cut_contact *cut)
+{
+    double offset = m->detect->contacts.facet[c].offset, opening[TL_LANES];
+    for (size_t k = 0; k < cut->count; k++) {
+        tl_old_point *p = &m->detect->cut_points[cut->first + k];
+        if (k % TL_LANES == 0)
+            tl_contact_point_openings(m, c, k, opening);
+        p->closure = overlap_at(cut, offset, a, b, p->arm) - p->reference;
+        p->reference -= opening[k % TL_LANES];
+    }
+}
+
+/* The faces of a patch, or those of a field contact that are moved out, where they lie, and how far they are moved. */
+static void keep_faces(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
+                       tl_cut_contact *cut)
+{
+    const tl_facet *facet = &m->detect->contacts.facet[c];
+    const tl_press_row *row = tl_press_row_of(m, c);
+    tl_vec3 na = facet->na, nb = facet->nb;
+    double offset = facet->offset;
+    if (cut->field) {
+        na = row->shifted_at[0].normal;
+        nb = row->shifted_at[1].normal;
+        offset = row->shifted_at[0].offset + row->shifted_at[1].offset;
+    }
+    cut->shift = cut->field ? row->shift : tl_contact_mean_lift(m, c);
+    cut->face[0] = tl_m3_mul(a->r, na);
+    cut->face[1] = tl_m3_mul(b->r, nb);
+    cut->overlap = overlap_at(cut, offset, a, b, m->detect->cut_points[cut->first].arm);
+}
+
+tl_cut_contact *tl_cut_contact_keep(tl_model *m, uint32_t c, const tl_cut_side *a,
+                                    const tl_cut_side *b)
+{
+    tl_detect *d = m->detect;
+    bool field = tl_contact_is_field(d, c);
+    tl_cut_contact *cut = &d->cut_contacts[d->cut_count++];
+    *cut = (tl_cut_contact){.a = a->id,
+                            .b = b->id,
+                            .law = d->contacts.law[c],
+                            .count = (uint32_t)tl_contact_area_points(d, c),
+                            .first = d->cut_point_count,
+                            .field = field,
+                            .holds_over_gap = !field && d->contacts.holds_over_gap[c],
+                            .pressed = !field && !tl_v3_is_zero(d->contacts.force[c]),
+                            .reframed = a->reframed};
+    keep_points(m, c, a, b, cut);
+    keep_faces(m, c, a, b, cut);
+    if (field)
+        keep_field(m, c, cut);
+    else
+        keep_closures(m, c, a, b, cut);
+    return cut;
+}
+
+void tl_cut_contact_empty(tl_model *m, uint32_t c)
+{
+    tl_detect *d = m->detect;
+    tl_press_row *row = tl_press_row_of(m, c);
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++)
+        tl_columns_put(d->points.f_s, tl_point_row(&d->contacts, c, k), tl_v3(0, 0, 0));
+    if (row)
+        row->spare[0] = row->spare[1] = 0;
+    d->contacts.released[c] = 0;
+}
+
+static int compare(const void *x, const void *y)
+{
+    const tl_cut_contact *p = x, *q = y;
+    return tl_pair_order(p->a, p->b, q->a, q->b);
+}
+
+void tl_cut_contacts_sort(tl_detect *d)
+{
+    if (d->cut_count > 1)
+        qsort(d->cut_contacts, d->cut_count, sizeof *d->cut_contacts, compare);
+}
+
+/* ---------------------------------------------------------------- taken over ------------- */
+
+static tl_id root_of(const tl_model *m, uint32_t row)
+{
+    const tl_heir *heir = tl_heir_of(m, m->blocks.id[row]);
+    return heir ? heir->root : m->blocks.id[row];
+}
+
+tl_cut_contact *tl_cut_contact_of(const tl_model *m, uint32_t block_a, uint32_t block_b)
+{
+    const tl_detect *d = m->detect;
+    if (d->cut_count == 0)
+        return NULL;
+    tl_id a = root_of(m, block_a), b = root_of(m, block_b);
+    tl_cut_contact wanted = {.a = a < b ? a : b, .b = a < b ? b : a};
+    return bsearch(&wanted, d->cut_contacts, d->cut_count, sizeof wanted, compare);
+}
+
+bool tl_cut_contact_holds(const tl_model *m, uint32_t block_a, uint32_t block_b)
+{
+    const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
+    return cut && cut->holds_over_gap;
+}
+
+double tl_cut_contact_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b)
+{
+    const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
+    tl_face_pair faces;
+    if (!cut || !cut->pressed)
+        return 0;
+    bool corners = tl_cut_contact_faces(m, block_a, block_b, &faces) &&
+                   tl_pair_at_corners(m, block_a, faces.a, block_b, faces.b);
+    return tl_flush_limits_of(corners).field_tilt;
+}
+
+/* The face of a block with an outward normal; TL_NO_ROW: it has none. A convex block has one at the most. */
+static uint32_t face_of(const tl_model *m, uint32_t block, tl_vec3 normal)
+{
+    const tl_poly *shape = m->blocks.shape[block];
+    tl_vec3 n = tl_m3_tmul(&m->bodies.pose[m->blocks.body[block]].r, normal);
+    for (uint32_t f = 0; f < shape->face_count; f++)
+        if (tl_v3_norm2(tl_v3_sub(shape->plane[f].normal, n)) < SAME_FACE * SAME_FACE)
+            return f;
+    return TL_NO_ROW;
+}
+
+/* How far a face of a block lies beyond a place, along its normal. */
+static double beyond(const tl_model *m, uint32_t block, uint32_t face, tl_vec3 place)
+{
+    const tl_plane *plane = &m->blocks.shape[block]->plane[face];
+    uint32_t body = m->blocks.body[block];
+    tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, body));
+    return plane->offset - tl_v3_dot(plane->normal, tl_m3_tmul(&m->bodies.pose[body].r, arm));
+}
+
+/* Faces parallel to those of the whole are parts of them, but for one that a cut has made inside the whole: that lies behind
+ * the whole's face, so it overlaps the other block's by less. */
+bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b,
+                          tl_face_pair *faces)
+{
+    const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
+    if (!cut)
+        return false;
+    bool other_way = root_of(m, block_a) != cut->a;
+    uint32_t face_a = face_of(m, block_a, cut->face[other_way]);
+    uint32_t face_b = face_of(m, block_b, cut->face[!other_way]);
+    if (face_a == TL_NO_ROW || face_b == TL_NO_ROW)
+        return false;
+    *faces = (tl_face_pair){(uint16_t)face_a, (uint16_t)face_b};
+    tl_vec3 first = m->detect->cut_points[cut->first].arm;
+    double overlap = beyond(m, block_a, face_a, first) + beyond(m, block_b, face_b, first);
+    double size = fmin(m->blocks.size[block_a], m->blocks.size[block_b]);
+    return fabs(overlap - cut->overlap) < TL_STILL * size;
+}
+
+double tl_cut_contact_shift(const tl_model *m, uint32_t block_a, uint32_t block_b,
+                            tl_face_pair *faces)
+{
+    const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
+    if (cut && cut->shift != 0 && tl_cut_contact_faces(m, block_a, block_b, faces))
+        return cut->shift;
+    *faces = (tl_face_pair){0, 0};
+    return 0;
+}
+
+/* Whether a contact on a facet is on parts of the faces of the whole. */
+static bool is_on(const tl_model *m, uint32_t c, const tl_facet *facet)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_face_pair faces;
+    return tl_cut_contact_faces(m, contacts->a[c], contacts->b[c], &faces) &&
+           faces.a == facet->ia && faces.b == facet->ib;
+}
+
+tl_cut_contact *tl_cut_contact_on(const tl_model *m, uint32_t c, const tl_facet *facet)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_cut_contact *cut = tl_cut_contact_of(m, contacts->a[c], contacts->b[c]);
+    return cut && (cut->field || is_on(m, c, facet)) ? cut : NULL;
+}
+
+static const tl_kind *kind_of(const tl_model *m, uint32_t law)
+{
+    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
+}
+
+bool tl_cut_contact_is_of_law(const tl_model *m, const tl_cut_contact *cut, uint32_t c)
+{
+    return kind_of(m, cut->law) == kind_of(m, m->detect->contacts.law[c]);
+}
+
+double tl_cut_contact_sign(const tl_model *m, const tl_cut_contact *cut, uint32_t c)
+{
+    return root_of(m, m->detect->contacts.a[c]) == cut->a ? 1 : -1;
+}
+
+/* The part of the whole's area that an area is. */
+static double part_of(const tl_cut_contact *cut, double area)
+{
+    return cut->whole.area > 0 ? fmin(1, area / cut->whole.area) : 0;
+}
+
+double tl_cut_contact_kept(const tl_model *m, const tl_cut_contact *cut, uint32_t c)
+{
+    return tl_cut_contact_is_of_law(m, cut, c)
+               ? cut->kept * part_of(cut, tl_contact_area_of_points(m->detect, c))
+               : 0;
+}
+
+/* The same as the other block sees it. */
+static void turn_round(const tl_kind *kind, tl_old_point *point)
+{
+    point->normal = tl_v3_neg(point->normal);
+    point->shear = tl_v3_neg(point->shear);
+    for (tl_state_columns at = {0}; tl_state_next(kind, TL_STATE_COLUMNS, &at);)
+        for (uint32_t w = at.begin; w < at.begin + at.count && at.count == 3; w++)
+            point->state[w] = -point->state[w];
+}
+
+tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, uint32_t c,
+                                  size_t k)
+{
+    const tl_detect *d = m->detect;
+    tl_old_point out = d->cut_points[cut->first + k];
+    if (cut->field && out.reference != 0 && !is_on(m, c, &d->contacts.facet[c]))
+        out.reference = 0;
+    out.arm = tl_v3_sub(out.arm, tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[c]]));
+    if (tl_cut_contact_sign(m, cut, c) < 0)
+        turn_round(kind_of(m, cut->law), &out);
+    return out;
+}
+
+/* ---------------------------------------------------------------- all parts -------------- */
+
+tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t c)
+{
+    tl_cut_contact *cut = tl_cut_contact_on(m, c, &m->detect->contacts.facet[c]);
+    return cut && !cut->field && !tl_contact_is_field(m->detect, c) ? cut : NULL;
+}
+
+/* Adds what the patches of the parts carry, and of parts of a field contact the areas with which they have taken over. */
+static void sum_taken(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    for (size_t i = 0; i < d->cut_count; i++)
+        d->cut_contacts[i].taken = (tl_shear){.area = 0};
+    for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
+        tl_cut_contact *cut = tl_cut_contact_on(m, c, &d->contacts.facet[c]);
+        if (cut && cut->field)
+            cut->taken.area += fmin(tl_contact_area_of_points(d, c), cut->whole.area);
+        if (!cut || cut->field || tl_contact_is_field(d, c))
+            continue;
+        double sign = tl_cut_contact_sign(m, cut, c);
+        for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+            size_t i = tl_point_row(&d->contacts, c, k);
+            tl_vec3 force = tl_v3_scale(sign, tl_columns_get(d->points.f_s, i));
+            tl_shear_add(&cut->taken, d->points.area[i], tl_v3(0, 0, 0), force);
+        }
+    }
+}
+
+/* Parts that touch on patches where the whole touched on a smaller area have each taken over what was on all of it. They share it. */
+static void share_out(tl_detect *d, uint32_t c, const tl_cut_contact *cut)
+{
+    tl_points_table *p = &d->points;
+    if (!(cut->taken.area > cut->whole.area))
+        return;
+    double by = cut->whole.area / cut->taken.area;
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        p->f_n[i] *= by;
+        if (p->f_n0)
+            p->f_n0[i] *= by;
+        tl_columns_put(p->f_s, i, tl_v3_scale(by, tl_columns_get(p->f_s, i)));
+    }
+}
+
+/* Shear forces of a patch become `keep` times what they are, and a force over an area more. */
+static void add_traction(const tl_detect *d, uint32_t c, double keep, tl_vec3 force, double over)
+{
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        tl_vec3 now = tl_v3_scale(keep, tl_columns_get(d->points.f_s, i));
+        tl_columns_put(d->points.f_s, i, tl_v3_madd(now, d->points.area[i] / over, force));
+    }
+}
+
+/* Adds a uniform traction to a patch, of which its share, in its plane, makes up for what the parts lack. */
+static void add_lacking(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
+{
+    const tl_shear *whole = &cut->whole, *taken = &cut->taken;
+    tl_vec3 lacks = tl_v3_sub(tl_v3_scale(part_of(cut, taken->area), whole->force), taken->force);
+    tl_vec3 n = m->detect->contacts.facet[c].last;
+    lacks = tl_v3_scale(tl_cut_contact_sign(m, cut, c), lacks);
+    lacks = tl_v3_madd(lacks, -tl_v3_dot(lacks, n), n);
+    if (taken->area > 0)
+        add_traction(m->detect, c, 1, lacks, taken->area);
+}
+
+/* Where the parts' springs have more energy than the whole's had, brings their stresses nearer to the mean: of one force a uniform stress
+ * has the least. */
+static void limit_energy(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
+{
+    const tl_shear *taken = &cut->taken;
+    double most = cut->whole.energy * part_of(cut, taken->area);
+    if (!(taken->energy > most))
+        return;
+    double least = tl_v3_norm2(taken->force) / taken->area;
+    double keep = sqrt(fmax(0, most - least) / fmax(taken->energy - least, DBL_MIN));
+    double sign = tl_cut_contact_sign(m, cut, c);
+    add_traction(m->detect, c, keep, tl_v3_scale(sign * (1 - keep) / taken->area, taken->force), 1);
+}
+
+void tl_cut_contacts_balance(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    for (int step = 0; step < 2 && d->cut_count > 0; step++) {
+        sum_taken(m);
+        for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
+            const tl_cut_contact *cut = tl_cut_contact_on(m, c, &d->contacts.facet[c]);
+            if (!cut || (!cut->field && tl_contact_is_field(d, c)))
+                continue;
+            if (!cut->field && step == 0)
+                add_lacking(m, c, cut);
+            else if (!cut->field)
+                limit_energy(m, c, cut);
+            else if (step == 0)
+                share_out(d, c, cut);
+        }
+    }
+}
+
+void tl_cut_contacts_sum(tl_model *m)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    const tl_point_lanes *lanes = &m->detect->lanes[0];
+    for (uint32_t c = 0; m->detect->cut_count > 0 && c < contacts->table.rows; c++) {
+        if (!tl_cut_contact_of(m, contacts->a[c], contacts->b[c]))
+            continue;
+        tl_contact_places(m, c, lanes);
+        tl_shear sum = {.area = 0};
+        for (size_t k = 0; k < contacts->point_count[c]; k++) {
+            size_t i = tl_point_row(contacts, c, k);
+            tl_vec3 n = tl_columns_get(lanes->normal, k);
+            tl_shear_add(&sum, p->area[i], tl_columns_get(lanes->arm, k),
+                         tl_v3_madd(tl_columns_get(p->f_s, i), p->f_n[i], n));
+        }
+        contacts->force[c] = sum.force;
+        contacts->moment[c] = sum.moment;
+    }
+}
+
+void tl_cut_contacts_end(tl_detect *d)
+{
+    free(d->cut_contacts);
+    free(d->cut_points);
+    d->cut_contacts = NULL;
+    d->cut_points = NULL;
+    d->cut_count = d->cut_capacity = d->cut_point_count = d->cut_point_capacity = 0;
+}
