@@ -68,32 +68,30 @@ typedef struct sample {
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } sample;
 
-/* TL_LANES points from `first`; beyond the last they have no area. Of states only those that the law keeps are there. */
-static void read_points(const tl_points_table *p, const tl_contacts *contacts, uint32_t c,
-                        const tl_law *law, size_t first, sample *s)
+/* Asks a law for TL_LANES points from `first`, with the initial forces there are, or without; beyond the last they have no area. Of
+ * states only those that the law keeps are there. */
+static void ask_points(const tl_model *m, const tl_law *law, uint32_t c, size_t first, bool initial,
+                       sample *s)
 {
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    double *state[TL_STATE_COLUMNS];
     for (size_t l = 0; l < TL_LANES; l++) {
         bool is = first + l < contacts->point_count[c];
         size_t i = is ? tl_point_row(contacts, c, first + l) : 0;
         s->area[l] = is ? p->area[i] : 0;
-        s->f_n0[l] = is && p->f_n0 ? p->f_n0[i] : 0;
+        s->f_n0[l] = is && p->f_n0 && initial ? p->f_n0[i] : 0;
         s->reference[l] = is && p->reference ? p->reference[i] : 0;
         s->flags[l] = is ? p->flags[i] : 0;
         for (uint32_t k = 0; k < law->columns; k++)
             s->state[k][l] = is ? p->state[k][i] : 0;
     }
-}
-
-/* With the initial forces there are, or without. */
-static void ask(const tl_law *law, const double *f_n0, sample *s)
-{
-    double *state[TL_STATE_COLUMNS];
     for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
         state[k] = k < law->columns ? s->state[k] : (double *)(uintptr_t)zeros;
     const tl_law_batch batch = {.size = sizeof batch,
                                 .count = TL_LANES,
                                 .area = s->area,
-                                .f_n0 = f_n0,
+                                .f_n0 = s->f_n0,
                                 .state = state,
                                 .flags = s->flags};
     across_gap(law, &batch, s->lift, s->hold);
@@ -122,8 +120,7 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     out.whole = true;
     for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
         sample s;
-        read_points(&d->points, &d->contacts, c, law, first, &s);
-        ask(law, s.f_n0, &s);
+        ask_points(m, law, c, first, true, &s);
         for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++) {
             out.most = fmax(out.most, s.lift[l] - s.reference[l]);
             out.bonded = out.bonded || s.hold[l] > 0;
@@ -145,47 +142,32 @@ bool tl_contact_is_lifted(const tl_model *m, uint32_t c)
     return law && m->detect->contacts.point_count[c] > 0 && !is_plain(m->detect, law);
 }
 
+/* The lifts of TL_LANES points from `first`, with those of initial forces or without; 0 without a law and beyond the last point. */
+static void find_lifts(const tl_model *m, const tl_law *law, uint32_t c, size_t first, bool initial,
+                       double lift[TL_LANES])
+{
+    sample s;
+    memset(lift, 0, TL_LANES * sizeof *lift);
+    if (!law)
+        return;
+    ask_points(m, law, c, first, initial, &s);
+    for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++)
+        lift[l] = s.lift[l];
+}
+
 void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t c, size_t first,
                            double opening[TL_LANES])
 {
-    const tl_detect *d = m->detect;
-    sample s;
-    for (size_t l = 0; l < TL_LANES; l++)
-        opening[l] = 0;
-    read_points(&d->points, &d->contacts, c, law, first, &s);
-    ask(law, zeros, &s);
-    for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++)
-        opening[l] = s.lift[l];
+    find_lifts(m, law, c, first, false, opening);
 }
 
 void tl_contact_point_openings(const tl_model *m, uint32_t c, size_t first,
                                double opening[TL_LANES])
 {
-    if (tl_contact_opens(m, c))
-        tl_law_point_openings(m, law_of(m, c), c, first, opening);
-    else
-        memset(opening, 0, TL_LANES * sizeof *opening);
+    find_lifts(m, tl_contact_opens(m, c) ? law_of(m, c) : NULL, c, first, false, opening);
 }
 
 void tl_contact_point_lifts(const tl_model *m, uint32_t c, size_t first, double lift[TL_LANES])
 {
-    const tl_detect *d = m->detect;
-    const tl_law *law = law_of(m, c);
-    for (size_t l = 0; l < TL_LANES; l++)
-        lift[l] = 0;
-    if (!law)
-        return;
-    sample s;
-    read_points(&d->points, &d->contacts, c, law, first, &s);
-    ask(law, s.f_n0, &s);
-    for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++)
-        lift[l] = s.lift[l];
-}
-
-void tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
-{
-    double lanes[TL_LANES];
-    tl_contact_point_openings(m, c, 0, lanes);
-    for (size_t k = 0; k < TL_FIELD_POINTS; k++)
-        opening[k] = lanes[k];
+    find_lifts(m, law_of(m, c), c, first, true, lift);
 }

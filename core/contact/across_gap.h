@@ -41,7 +41,5 @@ void tl_contact_point_openings(const tl_model *m, uint32_t contact, size_t first
 /* The same of all that lifts them. */
 void tl_contact_point_lifts(const tl_model *m, uint32_t contact, size_t first,
                             double lift[TL_LANES]);
-/* The openings by slip of the points of a field contact, m; 0 where nothing ever opens them. */
-void tl_contact_openings(const tl_model *m, uint32_t contact, double opening[TL_FIELD_POINTS]);
 
 #endif

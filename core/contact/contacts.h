@@ -33,6 +33,11 @@ bool tl_contact_place(tl_detect *d, uint32_t contact);
 void tl_contact_remove(tl_detect *d, uint32_t contact);
 /* Index of the joint law that rules a tag, or TL_NO_ROW. */
 uint32_t tl_law_row(const tl_model *m, tl_tag tag);
+/* The kind of a joint law; NULL without one. */
+static inline const tl_kind *tl_law_kind(const tl_model *m, uint32_t law)
+{
+    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
+}
 /* "contact of blocks 3 and 7, joint J1:2" */
 void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size);
 /* Moment of a contact's forces on A, or on B, about that block's body's centroid. */

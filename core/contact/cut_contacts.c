@@ -255,14 +255,9 @@ tl_cut_contact *tl_cut_contact_on(const tl_model *m, uint32_t c, const tl_facet 
     return cut && (cut->field || is_on(m, c, facet)) ? cut : NULL;
 }
 
-static const tl_kind *kind_of(const tl_model *m, uint32_t law)
-{
-    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
-}
-
 bool tl_cut_contact_is_of_law(const tl_model *m, const tl_cut_contact *cut, uint32_t c)
 {
-    return kind_of(m, cut->law) == kind_of(m, m->detect->contacts.law[c]);
+    return tl_law_kind(m, cut->law) == tl_law_kind(m, m->detect->contacts.law[c]);
 }
 
 double tl_cut_contact_sign(const tl_model *m, const tl_cut_contact *cut, uint32_t c)
@@ -302,16 +297,23 @@ tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, 
         out.reference = 0;
     out.arm = tl_v3_sub(out.arm, tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[c]]));
     if (tl_cut_contact_sign(m, cut, c) < 0)
-        turn_round(kind_of(m, cut->law), &out);
+        turn_round(tl_law_kind(m, cut->law), &out);
     return out;
 }
 
 /* ---------------------------------------------------------------- all parts -------------- */
 
-tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t c)
+/* What a contact has taken over from; not a field contact from a patch. */
+static tl_cut_contact *source_of(const tl_model *m, uint32_t c)
 {
     tl_cut_contact *cut = tl_cut_contact_on(m, c, &m->detect->contacts.facet[c]);
-    return cut && !cut->field && !tl_contact_is_field(m->detect, c) ? cut : NULL;
+    return cut && (cut->field || !tl_contact_is_field(m->detect, c)) ? cut : NULL;
+}
+
+tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t c)
+{
+    tl_cut_contact *cut = source_of(m, c);
+    return cut && !cut->field ? cut : NULL;
 }
 
 /* Adds what the patches of the parts carry, and of parts of a field contact the areas with which they have taken over. */
@@ -321,13 +323,11 @@ static void sum_taken(tl_model *m)
     for (size_t i = 0; i < d->cut_count; i++)
         d->cut_contacts[i].taken = (tl_shear){.area = 0};
     for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
-        tl_cut_contact *cut = tl_cut_contact_on(m, c, &d->contacts.facet[c]);
+        tl_cut_contact *cut = source_of(m, c);
+        double sign = cut ? tl_cut_contact_sign(m, cut, c) : 0;
         if (cut && cut->field)
             cut->taken.area += fmin(tl_contact_area_of_points(d, c), cut->whole.area);
-        if (!cut || cut->field || tl_contact_is_field(d, c))
-            continue;
-        double sign = tl_cut_contact_sign(m, cut, c);
-        for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+        for (size_t k = 0; cut && !cut->field && k < d->contacts.point_count[c]; k++) {
             size_t i = tl_point_row(&d->contacts, c, k);
             tl_vec3 force = tl_v3_scale(sign, tl_columns_get(d->points.f_s, i));
             tl_shear_add(&cut->taken, d->points.area[i], tl_v3(0, 0, 0), force);
@@ -336,9 +336,10 @@ static void sum_taken(tl_model *m)
 }
 
 /* Parts that touch on patches where the whole touched on a smaller area have each taken over what was on all of it. They share it. */
-static void share_out(tl_detect *d, uint32_t c, const tl_cut_contact *cut)
+static void share_out(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
 {
-    tl_points_table *p = &d->points;
+    const tl_detect *d = m->detect;
+    const tl_points_table *p = &d->points;
     if (!(cut->taken.area > cut->whole.area))
         return;
     double by = cut->whole.area / cut->taken.area;
@@ -393,15 +394,11 @@ void tl_cut_contacts_balance(tl_model *m)
     for (int step = 0; step < 2 && d->cut_count > 0; step++) {
         sum_taken(m);
         for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
-            const tl_cut_contact *cut = tl_cut_contact_on(m, c, &d->contacts.facet[c]);
-            if (!cut || (!cut->field && tl_contact_is_field(d, c)))
-                continue;
-            if (!cut->field && step == 0)
-                add_lacking(m, c, cut);
-            else if (!cut->field)
+            const tl_cut_contact *cut = source_of(m, c);
+            if (cut && step == 0)
+                (cut->field ? share_out : add_lacking)(m, c, cut);
+            else if (cut && !cut->field)
                 limit_energy(m, c, cut);
-            else if (step == 0)
-                share_out(d, c, cut);
         }
     }
 }

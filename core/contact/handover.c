@@ -90,8 +90,8 @@ static tl_shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *la
 static double lift_field(tl_model *m, uint32_t c, tl_press_row *row)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    double opening[TL_FIELD_POINTS];
-    tl_contact_openings(m, c, opening);
+    double opening[TL_LANES];
+    tl_contact_point_openings(m, c, 0, opening);
     if (row->lifted_at != m->cycles)
         row->opened = row->paid = 0;
     row->lifted_at = m->cycles;
@@ -170,8 +170,7 @@ static void give_states(tl_model *m, uint32_t c, tl_old_point old, bool known)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    uint32_t law = contacts->law[c];
-    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
+    const tl_kind *kind = tl_law_kind(m, contacts->law[c]);
     tl_vec3 n = contacts->facet[c].last;
     if (old.normal.x != n.x || old.normal.y != n.y || old.normal.z != n.z)
         tl_states_turn(kind, p->state_columns, old.state, old.normal, n);
@@ -272,11 +271,10 @@ static void keep_press(tl_press_row *row, const tl_manifold *g)
 static void begin_field(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_press_row *row = tl_press_row_of(m, c);
+    double opening[TL_LANES];
     keep_press(row, g);
-    if (g->point_count)
-        tl_contact_openings(m, c, row->opening);
-    else
-        memset(row->opening, 0, sizeof row->opening);
+    tl_contact_point_openings(m, c, 0, opening); /* 0 without points */
+    memcpy(row->opening, opening, sizeof row->opening);
     m->detect->contacts.facet[c].offset -= row->opening[TL_FIELD_SHEAR];
 }
 

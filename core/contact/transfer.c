@@ -19,6 +19,7 @@
 #include "contact/places.h"
 #include "contact/shear.h"
 #include "narrow/corner.h"
+#include "narrow/frame2.h"
 #include "narrow/view.h"
 
 #include <float.h>
@@ -35,12 +36,13 @@ typedef struct tl_ring_cell {
     double turn;     /* direction of the point from the centroid, 0 to 4 */
     double swept;    /* share of the patch from the first cell's point to this one's */
     double from, to; /* where the cell begins and ends, as `swept` */
+    tl_point2 mean;  /* of a new cell: the mean place of the old ones that it lies on */
 } ring_cell;
 
 typedef struct ring {
-    ring_cell *cell;      /* by their directions */
-    size_t count, around; /* the last ones are inside */
-    double inside;        /* their share of the patch */
+    ring_cell *cell; /* by their directions */
+    size_t around;   /* the ones after these are inside */
+    double inside;   /* their share of the patch */
 } ring;
 
 /* Second moments of areas about their centroid. */
@@ -64,7 +66,7 @@ static bool reserve(tl_narrow_scratch *scratch, size_t count)
     old_point *old = realloc(scratch->old, 2 * count * sizeof *old);
     if (old)
         scratch->old = old;
-    double *value = realloc(scratch->value, 4 * count * sizeof *value);
+    double *value = realloc(scratch->value, 2 * count * sizeof *value);
     if (value)
         scratch->value = value;
     ring_cell *cell = realloc(scratch->cell, 2 * count * sizeof *cell);
@@ -74,12 +76,6 @@ static bool reserve(tl_narrow_scratch *scratch, size_t count)
         return false;
     scratch->old_capacity = 2 * count;
     return true;
-}
-
-static const tl_kind *kind_of(const tl_model *m, uint32_t c)
-{
-    uint32_t law = m->detect->contacts.law[c];
-    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
 }
 
 /* The points of a contact, in the places where `lanes` has them. */
@@ -104,7 +100,7 @@ void tl_contact_place_points(tl_model *m, uint32_t c, const tl_manifold *g,
         tl_columns_put(p->p, i, g->points[k].p);
         p->area[i] = g->points[k].area;
         p->key[i] = g->points[k].key;
-        tl_point_initial_state(p, i, kind_of(m, c));
+        tl_point_initial_state(p, i, tl_law_kind(m, contacts->law[c]));
     }
     tl_contact_begin(m, c, lanes); /* positions and normals in the present place */
 }
@@ -208,7 +204,7 @@ static void sort(ring_cell *cell, size_t count)
 /* Of cells with their points; those within `place` of the centroid are inside. */
 static ring ring_of_cells(ring_cell *cell, size_t count, double place)
 {
-    ring out = {.cell = cell, .count = count};
+    ring out = {.cell = cell};
     double area[2] = {0};
     for (size_t i = 0; i < count; i++) {
         cell[i].inside = cell[i].x * cell[i].x + cell[i].y * cell[i].y <= place * place;
@@ -303,7 +299,6 @@ typedef struct relay {
     size_t old_count, count;
     const tl_shear *total; /* before and after */
     ring before, after;
-    double *across;   /* of each new point: the mean place of the old cells that it lies on */
     spread spread[2]; /* of the areas before and after */
     bool planes;      /* places tell how stresses vary */
     bool states;      /* are of the law */
@@ -328,17 +323,17 @@ static ring ring_of(const old_point *point, size_t count, tl_vec3 centre, const 
 
 /* Gives the point of a new cell the means of old ones by their weights, to the bit where they are the same, and its flags: those of the
  * heaviest. */
-static void take_means(const relay *r, const ring_cell *cell, const double *weight)
+static void take_means(const relay *r, ring_cell *cell, const double *weight)
 {
     old_point *now = &r->now[cell->point];
-    double *across = &r->across[2 * cell->point], sum = 0, apart = 0;
+    double sum = 0, apart = 0;
     size_t most = 0;
     for (size_t j = 0; j < r->old_count; j++) {
         sum += weight[j];
         most = weight[j] > weight[most] ? j : most;
     }
     old_point *heaviest = &r->old[r->before.cell[most].point];
-    across[0] = across[1] = 0;
+    cell->mean = (tl_point2){0, 0};
     for (int column = 0; column < TL_OLD_COLUMNS; column++)
         if (r->rule[column] != LEFT)
             now->column[column] = heaviest->column[column];
@@ -349,8 +344,8 @@ static void take_means(const relay *r, const ring_cell *cell, const double *weig
             if (r->rule[column] != LEFT)
                 now->column[column] +=
                     by * (r->old[from->point].column[column] - heaviest->column[column]);
-        across[0] += by * from->x;
-        across[1] += by * from->y;
+        cell->mean.x += by * from->x;
+        cell->mean.y += by * from->y;
         apart += r->old[from->point].flags & TL_POINT_APART ? by : 0;
     }
     now->flags = heaviest->flags & ~(uint32_t)TL_POINT_APART;
@@ -361,7 +356,7 @@ static void take_means(const relay *r, const ring_cell *cell, const double *weig
 static void relay_means(const relay *r, double *weight)
 {
     for (size_t k = 0; k < r->count; k++) {
-        const ring_cell *cell = &r->after.cell[k];
+        ring_cell *cell = &r->after.cell[k];
         double sum = 0, least = INFINITY;
         size_t nearest = 0;
         for (size_t j = 0; j < r->old_count; j++) {
@@ -380,22 +375,17 @@ static void relay_means(const relay *r, double *weight)
     }
 }
 
-/* Slopes of a plane. */
-typedef struct slopes {
-    double x, y;
-} slopes;
-
-static slopes slopes_of(const relay *r, int side, double x, double y)
+static tl_point2 slopes_of(const relay *r, int side, double x, double y)
 {
     const spread *i = &r->spread[side];
     double det = i->xx * i->yy - i->xy * i->xy;
-    return r->planes ? (slopes){(x * i->yy - y * i->xy) / det, (y * i->xx - x * i->xy) / det}
-                     : (slopes){0, 0};
+    return r->planes ? (tl_point2){(x * i->yy - y * i->xy) / det, (y * i->xx - x * i->xy) / det}
+                     : (tl_point2){0, 0};
 }
 
 /* What is added to the means of a column: the plane of the old points less its means, and what restores sum and moments. */
 typedef struct addition {
-    slopes old, now;
+    tl_point2 old, now; /* slopes */
     double level;
 } addition;
 
@@ -418,9 +408,8 @@ static addition addition_of(const relay *r, int column)
     y *= follow;
     for (size_t k = 0; k < r->count; k++) {
         const ring_cell *cell = &r->after.cell[k];
-        const double *across = &r->across[2 * cell->point];
-        double rest = r->now[cell->point].column[column] - mean - out.old.x * across[0] -
-                      out.old.y * across[1];
+        double rest = r->now[cell->point].column[column] - mean - out.old.x * cell->mean.x -
+                      out.old.y * cell->mean.y;
         off += cell->area * rest;
         x -= cell->area * rest * cell->x;
         y -= cell->area * rest * cell->y;
@@ -430,11 +419,10 @@ static addition addition_of(const relay *r, int column)
     return out;
 }
 
-static double added(const relay *r, const addition *more, const ring_cell *cell)
+static double added(const addition *more, const ring_cell *cell)
 {
-    const double *across = &r->across[2 * cell->point];
-    return more->level + more->now.x * cell->x + more->now.y * cell->y - more->old.x * across[0] -
-           more->old.y * across[1];
+    return more->level + more->now.x * cell->x + more->now.y * cell->y -
+           more->old.x * cell->mean.x - more->old.y * cell->mean.y;
 }
 
 /* Adds to the means of `width` columns, those of a vector or one, the same part of its addition at all points, so that their sum stays:
@@ -453,10 +441,10 @@ static void restore_planes(const relay *r, int column, int width)
     }
     for (size_t k = 0; k < r->count; k++) {
         const ring_cell *cell = &r->after.cell[k];
-        double size = 0, step = added(r, &more[0], cell);
+        double size = 0, step = added(&more[0], cell);
         double value = r->now[cell->point].column[column];
         for (int w = 0; w < width; w++)
-            size += added(r, &more[w], cell) * added(r, &more[w], cell);
+            size += added(&more[w], cell) * added(&more[w], cell);
         size = sqrt(size);
         part = size > largest ? fmin(part, largest / size) : part;
         if (r->rule[column] == PLANE_ABOVE && value + step < 0)
@@ -465,7 +453,7 @@ static void restore_planes(const relay *r, int column, int width)
     for (size_t k = 0; k < r->count; k++)
         for (int w = 0; w < width; w++)
             r->now[r->after.cell[k].point].column[column + w] +=
-                part * added(r, &more[w], &r->after.cell[k]);
+                part * added(&more[w], &r->after.cell[k]);
 }
 
 /* Sets the rules of the states of a law, and makes those that go with the area stresses, or with `back` what they were. */
@@ -504,7 +492,7 @@ static void find_axes(const relay *r, double place, tl_vec3 axis[2])
 static void relay_fields(tl_model *m, uint32_t c, relay *r, const tl_narrow_scratch *scratch)
 {
     const tl_shear *t = r->total;
-    const tl_kind *kind = r->states ? kind_of(m, c) : NULL;
+    const tl_kind *kind = r->states ? tl_law_kind(m, m->detect->contacts.law[c]) : NULL;
     uint32_t columns = m->detect->points.state_columns;
     double place = place_of(m, c);
     tl_vec3 axis[2], centre = r->match == NEAREST ? t[0].centre : t[1].centre;
@@ -516,7 +504,6 @@ static void relay_fields(tl_model *m, uint32_t c, relay *r, const tl_narrow_scra
     ring_align(&r->before, &r->after);
     r->planes = r->planes && spans(&r->spread[0], t[0].area, place) &&
                 (r->match == NEAREST || spans(&r->spread[1], t[1].area, place));
-    r->across = scratch->value + r->old_count;
     for (int column = 0; column < TL_OLD_STATES; column++)
         r->rule[column] = PLANE;
     for (size_t j = 0; j < r->old_count; j++) {

@@ -538,7 +538,7 @@ static void change_law(tl_model *m, uint32_t c)
     tl_detect *d = m->detect;
     uint32_t old = d->contacts.law[c], law = tl_law_row(m, d->contacts.tag[c]);
     d->contacts.law[c] = law;
-    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
+    const tl_kind *kind = tl_law_kind(m, law);
     if (old != TL_NO_ROW && m->joint_laws[old].kind == kind)
         return;
     tl_contact_begin_law(m, c, kind);
