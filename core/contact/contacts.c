@@ -334,10 +334,10 @@ static void clear_points(tl_detect *d, uint32_t contact)
         tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
 }
 
-void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind)
+void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
+                          const tl_point_lanes *lanes)
 {
     tl_detect *d = m->detect;
-    const tl_point_lanes *lanes = &d->lanes[0];
     const tl_contacts *c = &d->contacts;
     double size = fmin(m->blocks.size[c->a[contact]], m->blocks.size[c->b[contact]]);
     tl_contact_places(m, contact, lanes);

@@ -25,7 +25,8 @@ tl_status tl_contacts_repack(tl_model *m);
 /* Gives back the room that contacts came from when they were laid out anew last, once the layout has lasted. */
 void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
 /* The points of a contact begin under a law. Walls that are apart and do not pull on each other are not bonded by it. */
-void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind);
+void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
+                          const tl_point_lanes *lanes);
 /* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its span;
  * false when there is none: lay all out anew. */
 bool tl_contact_place(tl_detect *d, uint32_t contact);

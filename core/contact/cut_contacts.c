@@ -22,14 +22,6 @@
 /* Normals of a part's face and of the whole's are off each other by rounding. */
 #define SAME_FACE 1e-9
 
-bool tl_cut_contacts_reserve(tl_detect *d, size_t contacts, size_t points)
-{
-    return tl_fit(&d->cut_contacts, &d->cut_capacity, d->cut_count + contacts,
-                  sizeof *d->cut_contacts) &&
-           tl_fit(&d->cut_points, &d->cut_point_capacity, d->cut_point_count + points,
-                  sizeof *d->cut_points);
-}
-
 /* The points in the places where their blocks have carried them, and their sums. */
 static void keep_points(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
                         tl_cut_contact *cut)
@@ -112,11 +104,16 @@ tl_cut_contact *tl_cut_contact_keep(tl_model *m, uint32_t c, const tl_cut_side *
 {
     tl_detect *d = m->detect;
     bool field = tl_contact_is_field(d, c);
+    size_t count = tl_contact_area_points(d, c);
+    if (!tl_grow(&d->cut_contacts, &d->cut_capacity, d->cut_count + 1, sizeof *d->cut_contacts) ||
+        !tl_grow(&d->cut_points, &d->cut_point_capacity, d->cut_point_count + count,
+                 sizeof *d->cut_points))
+        return NULL;
     tl_cut_contact *cut = &d->cut_contacts[d->cut_count++];
     *cut = (tl_cut_contact){.a = a->id,
                             .b = b->id,
                             .law = d->contacts.law[c],
-                            .count = (uint32_t)tl_contact_area_points(d, c),
+                            .count = (uint32_t)count,
                             .first = d->cut_point_count,
                             .field = field,
                             .holds_over_gap = !field && d->contacts.holds_over_gap[c],

@@ -14,9 +14,7 @@ typedef struct tl_cut_side {
     bool reframed; /* that is another frame than the contact's */
 } tl_cut_side;
 
-/* Makes room for so many contacts and points more; false when out of memory (nothing changed). */
-bool tl_cut_contacts_reserve(tl_detect *d, size_t contacts, size_t points);
-/* Keeps what a contact leaves, whose first block is `a`; there is room for it. */
+/* Keeps what a contact leaves, whose first block is `a`; NULL when out of memory. */
 tl_cut_contact *tl_cut_contact_keep(tl_model *m, uint32_t contact, const tl_cut_side *a,
                                     const tl_cut_side *b);
 /* After it is kept: the contact that ends takes nothing of it along. */

@@ -36,6 +36,7 @@ typedef struct tl_ring_cell {
     double turn;     /* direction of the point from the centroid, 0 to 4 */
     double swept;    /* share of the patch from the first cell's point to this one's */
     double from, to; /* where the cell begins and ends, as `swept` */
+    double weight;   /* of an old cell in the means of the point that is looked at */
     tl_point2 mean;  /* of a new cell: the mean place of the old ones that it lies on */
 } ring_cell;
 
@@ -58,24 +59,11 @@ static bool spans(const spread *i, double area, double place)
 
 typedef tl_old_point old_point;
 
-/* Makes room for so many points before and after, and what goes with each. */
+/* Makes room for so many points before and after, and their cells. */
 static bool reserve(tl_narrow_scratch *scratch, size_t count)
 {
-    if (count <= scratch->old_capacity)
-        return true;
-    old_point *old = realloc(scratch->old, 2 * count * sizeof *old);
-    if (old)
-        scratch->old = old;
-    double *value = realloc(scratch->value, 2 * count * sizeof *value);
-    if (value)
-        scratch->value = value;
-    ring_cell *cell = realloc(scratch->cell, 2 * count * sizeof *cell);
-    if (cell)
-        scratch->cell = cell;
-    if (!old || !value || !cell)
-        return false;
-    scratch->old_capacity = 2 * count;
-    return true;
+    return tl_grow(&scratch->old, &scratch->old_capacity, count, sizeof *scratch->old) &&
+           tl_grow(&scratch->cell, &scratch->cell_capacity, count, sizeof *scratch->cell);
 }
 
 /* The points of a contact, in the places where `lanes` has them. */
@@ -323,23 +311,23 @@ static ring ring_of(const old_point *point, size_t count, tl_vec3 centre, const 
 
 /* Gives the point of a new cell the means of old ones by their weights, to the bit where they are the same, and its flags: those of the
  * heaviest. */
-static void take_means(const relay *r, ring_cell *cell, const double *weight)
+static void take_means(const relay *r, ring_cell *cell)
 {
     old_point *now = &r->now[cell->point];
+    const ring_cell *from = r->before.cell;
     double sum = 0, apart = 0;
     size_t most = 0;
     for (size_t j = 0; j < r->old_count; j++) {
-        sum += weight[j];
-        most = weight[j] > weight[most] ? j : most;
+        sum += from[j].weight;
+        most = from[j].weight > from[most].weight ? j : most;
     }
-    old_point *heaviest = &r->old[r->before.cell[most].point];
+    old_point *heaviest = &r->old[from[most].point];
     cell->mean = (tl_point2){0, 0};
     for (int column = 0; column < TL_OLD_COLUMNS; column++)
         if (r->rule[column] != LEFT)
             now->column[column] = heaviest->column[column];
-    for (size_t j = 0; j < r->old_count; j++) {
-        const ring_cell *from = &r->before.cell[j];
-        double by = weight[j] / sum;
+    for (size_t j = 0; j < r->old_count; j++, from++) {
+        double by = from->weight / sum;
         for (int column = 0; column < TL_OLD_COLUMNS && by > 0; column++)
             if (r->rule[column] != LEFT)
                 now->column[column] +=
@@ -353,25 +341,25 @@ static void take_means(const relay *r, ring_cell *cell, const double *weight)
 }
 
 /* Gives all new points such means. */
-static void relay_means(const relay *r, double *weight)
+static void relay_means(const relay *r)
 {
     for (size_t k = 0; k < r->count; k++) {
         ring_cell *cell = &r->after.cell[k];
         double sum = 0, least = INFINITY;
         size_t nearest = 0;
         for (size_t j = 0; j < r->old_count; j++) {
-            const ring_cell *from = &r->before.cell[j];
+            ring_cell *from = &r->before.cell[j];
             const old_point *old = &r->old[from->point], *now = &r->now[cell->point];
             double apart = tl_v3_norm2(tl_v3_sub(old->arm, now->arm));
             nearest = apart < least ? j : nearest;
             least = fmin(least, apart);
-            weight[j] = r->match == BY_AREA ? ring_common(&r->after, cell, &r->before, from)
-                                            : r->match == BY_KEY && old->key == now->key;
-            sum += weight[j];
+            from->weight = r->match == BY_AREA ? ring_common(&r->after, cell, &r->before, from)
+                                               : r->match == BY_KEY && old->key == now->key;
+            sum += from->weight;
         }
         if (!(sum > 0))
-            weight[nearest] = 1;
-        take_means(r, cell, weight);
+            r->before.cell[nearest].weight = 1;
+        take_means(r, cell);
     }
 }
 
@@ -511,7 +499,7 @@ static void relay_fields(tl_model *m, uint32_t c, relay *r, const tl_narrow_scra
         tl_states_turn(kind, columns, r->old[j].state, r->old[j].normal, t[1].normal);
     }
     rule_states(r, kind, columns, false);
-    relay_means(r, scratch->value);
+    relay_means(r);
     restore_planes(r, TL_OLD_SHEAR, 3);
     for (int column = TL_OLD_NORMAL; column < TL_OLD_COLUMNS; column++)
         if (r->rule[column] >= PLANE)
@@ -622,16 +610,6 @@ static void take_share(tl_model *m, uint32_t c, const tl_cut_contact *cut,
     tl_shear_keep(m, c, tl_cut_contact_kept(m, cut, c));
 }
 
-/* Walls of a new contact that are apart are not bonded. */
-static void begin_points(tl_model *m, uint32_t c, const tl_point_lanes *lanes)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    for (size_t k = 0; k < contacts->point_count[c]; k++)
-        m->detect->points.flags[tl_point_row(contacts, c, k)] =
-            lanes->closure[k] < -TL_STILL * size ? TL_POINT_APART : 0;
-}
-
 /* Points of a contact take over from those that it had, which carried `kept` of energy beyond their springs. */
 static void take_over(tl_model *m, uint32_t c, const tl_narrow_scratch *scratch, relay *r,
                       tl_shear t[2], double kept)
@@ -671,6 +649,6 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     else if (cut && r.count > 0)
         take_share(m, c, cut, scratch, &r);
     else
-        begin_points(m, c, lanes);
+        tl_contact_begin_law(m, c, tl_law_kind(m, m->detect->contacts.law[c]), lanes);
     return true;
 }

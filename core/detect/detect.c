@@ -181,25 +181,29 @@ static tl_cut_side side_of(const tl_model *m, const rows_scratch *scratch, uint3
 static bool keep_cut_contacts(tl_model *m, const rows_scratch *scratch)
 {
     tl_detect *d = m->detect;
-    size_t contacts = 0, points = 0;
-    for (size_t i = 0; i < d->pair_count && m->heir_count; i++)
-        if (leaves(d, scratch, &d->pairs[i])) {
-            contacts++;
-            points += d->contacts.point_count[d->pairs[i].contact];
-        }
-    if (contacts == 0)
-        return true;
-    if (!tl_cut_contacts_reserve(d, contacts, points) ||
-        !tl_detect_hold_initial(d)) /* for the references of what the parts press with */
-        return false;
-    for (size_t i = 0; i < d->pair_count; i++) {
+    size_t contacts = d->cut_count, points = d->cut_point_count;
+    bool there = true;
+    for (size_t i = 0; i < d->pair_count && m->heir_count && there; i++) {
         const tl_pair *p = &d->pairs[i];
         if (!leaves(d, scratch, p))
             continue;
         tl_cut_side a = side_of(m, scratch, p->a), b = side_of(m, scratch, p->b);
-        tl_cut_contact_foresee(m, p->contact, tl_cut_contact_keep(m, p->contact, &a, &b), &a, &b);
-        tl_cut_contact_empty(m, p->contact);
+        tl_cut_contact *cut = tl_cut_contact_keep(m, p->contact, &a, &b);
+        there = cut != NULL;
+        if (there)
+            tl_cut_contact_foresee(m, p->contact, cut, &a, &b);
     }
+    if (d->cut_count == contacts)
+        return there;
+    /* for the references of what the parts press with */
+    if (!there || !tl_detect_hold_initial(d)) {
+        d->cut_count = contacts;
+        d->cut_point_count = points;
+        return false;
+    }
+    for (size_t i = 0; i < d->pair_count; i++)
+        if (leaves(d, scratch, &d->pairs[i]))
+            tl_cut_contact_empty(m, d->pairs[i].contact);
     tl_cut_contacts_sort(d);
     return true;
 }
@@ -541,7 +545,7 @@ static void change_law(tl_model *m, uint32_t c)
     const tl_kind *kind = tl_law_kind(m, law);
     if (old != TL_NO_ROW && m->joint_laws[old].kind == kind)
         return;
-    tl_contact_begin_law(m, c, kind);
+    tl_contact_begin_law(m, c, kind, &d->lanes[0]);
 }
 
 /* Notes that the contacts of two bodies are no longer what they were. Of those that ended with their blocks it was noted when

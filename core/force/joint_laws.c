@@ -212,7 +212,8 @@ void tl_law_rebase(tl_model *m, const tl_law *law)
         if (!alike && is_patch(m, c))
             rebase_patch(m, c, law);
         if (before->kind == law->kind && tl_law_opens(before) && !tl_law_opens(law))
-            tl_contact_begin_law(m, c, law->kind); /* how far it is open is in its walls now */
+            tl_contact_begin_law(m, c, law->kind,
+                                 &d->lanes[0]); /* how far it is open is in its walls now */
     }
 }
 
@@ -221,5 +222,5 @@ void tl_law_reset(tl_model *m, uint32_t law, const tl_kind *kind)
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++)
         if (d->contacts.law[c] == law)
-            tl_contact_begin_law(m, c, kind);
+            tl_contact_begin_law(m, c, kind, &d->lanes[0]);
 }

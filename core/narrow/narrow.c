@@ -12,7 +12,6 @@ void tl_narrow_scratch_free(tl_narrow_scratch *n)
     free(n->manifold.points);
     free(n->old);
     free(n->cell);
-    free(n->value);
     free(n->plane);
     free(n->press);
     free(n->face);

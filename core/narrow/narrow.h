@@ -76,8 +76,7 @@ typedef struct tl_narrow_scratch {
     bool deep;                /* met a contact whose blocks overlap too deeply: overlap.c */
     struct tl_old_point *old; /* transfer.c */
     struct tl_ring_cell *cell;
-    double *value;
-    size_t old_capacity;
+    size_t old_capacity, cell_capacity;
     double *plane, *press; /* region.c, press.c */
     uint16_t *face;        /* of a region */
     size_t plane_capacity, press_capacity, face_capacity;

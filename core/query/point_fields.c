@@ -4,6 +4,7 @@
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "contact/index.h"
+#include "contact/law_states.h"
 #include "contact/places.h"
 #include "detect/detect.h"
 #include "model/fields.h"
@@ -46,27 +47,12 @@ static bool is_taken(const char *name)
     return false;
 }
 
-static uint32_t width_of(const tl_state *state)
-{
-    return state->kind == TL_STATE_TANGENT ? 3 : 1;
-}
-
-static const tl_state *state_at(const tl_kind *kind, uint32_t k)
-{
-    return (const tl_state *)(const void *)((const char *)kind->states +
-                                            (size_t)k * kind->state_stride);
-}
-
 /* First column of the state of a law that an entry stands for, or TL_NO_ROW. */
 static uint32_t column_in(const tl_kind *kind, const tl_law_state *of)
 {
-    uint32_t column = 0;
-    for (uint32_t k = 0; k < kind->state_count; k++) {
-        const tl_state *state = state_at(kind, k);
-        if (strcmp(state->name, of->state->name) == 0 && width_of(state) == of->width)
-            return column;
-        column += width_of(state);
-    }
+    for (tl_state_columns at = {0}; tl_state_next(kind, UINT32_MAX, &at);)
+        if (strcmp(at.state->name, of->state->name) == 0 && at.count == of->width)
+            return at.begin;
     return TL_NO_ROW;
 }
 
@@ -80,18 +66,19 @@ static bool seen_before(const tl_model *m, size_t law)
 }
 
 /* Adds a state of a law unless an entry stands for it. There is room. */
-static void add(tl_law_states *states, const tl_kind *kind, const tl_state *state)
+static void add(tl_law_states *states, const tl_kind *kind, const tl_state_columns *columns)
 {
+    const tl_state *state = columns->state;
     bool shared = false; /* its name is that of another entry */
     for (size_t i = 0; i < states->count; i++) {
         if (strcmp(states->at[i].state->name, state->name) != 0)
             continue;
-        if (states->at[i].width == width_of(state))
+        if (states->at[i].width == columns->count)
             return;
         shared = true;
     }
     tl_law_state *entry = &states->at[states->count++];
-    *entry = (tl_law_state){.state = state, .width = width_of(state)};
+    *entry = (tl_law_state){.state = state, .width = columns->count};
     snprintf(entry->name, sizeof entry->name, "%.60s%s%.60s",
              shared                  ? kind->name
              : is_taken(state->name) ? "law"
@@ -112,8 +99,9 @@ tl_status tl_law_states_list(tl_model *m, tl_law_states *states)
     if (!states->at)
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < m->joint_law_count; i++)
-        for (uint32_t k = 0; k < m->joint_laws[i].kind->state_count && !seen_before(m, i); k++)
-            add(states, m->joint_laws[i].kind, state_at(m->joint_laws[i].kind, k));
+        for (tl_state_columns at = {0};
+             !seen_before(m, i) && tl_state_next(m->joint_laws[i].kind, UINT32_MAX, &at);)
+            add(states, m->joint_laws[i].kind, &at);
     states->column = malloc(m->joint_law_count * states->count * sizeof *states->column);
     if (!states->column) {
         tl_law_states_free(states);

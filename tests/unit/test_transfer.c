@@ -90,7 +90,6 @@ static void transfer(tl_model *m, const tl_contact_point *points, size_t count)
     free(scratch.manifold.points);
     free(scratch.old);
     free(scratch.cell);
-    free(scratch.value);
 }
 
 /* The contact's points as they are, and as a rule for another polygon of the same area and centroid: the
