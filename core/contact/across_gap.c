@@ -1,8 +1,9 @@
 /* across_gap.c - what contact points carry where their walls are apart.
  *
- * A point presses at closures above -lift. What lifts it is an initial force, f_n0 / (kn A), and what slip has opened; a law
- * for which that is otherwise tells so itself. A bond holds a share of the tension beyond. A law that does not tell knows nothing of
- * areas that are apart in part: it has bonds, but its force is that of the closed part alone. */
+ * A point presses at closures above -lift. It is lifted by an initial force, f_n0 / (kn A), and by what slip
+ * has opened; a law for which that is otherwise tells so itself. A bond holds a share of the tension beyond. A
+ * law that does not tell knows nothing of areas that are apart in part: it has bonds, but its force is that of
+ * the closed part alone. */
 #include "contact/across_gap.h"
 
 #include "base/inside.h"
@@ -68,8 +69,8 @@ typedef struct sample {
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } sample;
 
-/* Asks a law for TL_LANES points from `first`, with the initial forces there are, or without; beyond the last they have no area. Of
- * states only those that the law keeps are there. */
+/* Asks a law for TL_LANES points from `first`, with the initial forces there are, or without. Points beyond the
+ * last have no area. States are there that the law keeps. */
 static void ask_points(const tl_model *m, const tl_law *law, uint32_t c, size_t first, bool initial,
                        sample *s)
 {
@@ -142,7 +143,8 @@ bool tl_contact_is_lifted(const tl_model *m, uint32_t c)
     return law && m->detect->contacts.point_count[c] > 0 && !is_plain(m->detect, law);
 }
 
-/* The lifts of TL_LANES points from `first`, with those of initial forces or without; 0 without a law and beyond the last point. */
+/* The lifts of TL_LANES points from `first`, with those of initial forces or without. They are 0 without a law
+ * and beyond the last point. */
 static void find_lifts(const tl_model *m, const tl_law *law, uint32_t c, size_t first, bool initial,
                        double lift[TL_LANES])
 {

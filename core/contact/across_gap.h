@@ -1,12 +1,13 @@
-/* across_gap.h - what contact points carry where their walls are apart: what slip and initial forces have lifted, and bonds. */
+/* across_gap.h - what contact points carry where their walls are apart: lifts by slip and initial forces, and
+ * bonds. */
 #ifndef TL_CONTACT_ACROSS_GAP_H
 #define TL_CONTACT_ACROSS_GAP_H
 
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* The lift, m, and the share of tension that is held, 0 to 1, of `count` points from row `first`, a multiple of TL_LANES; see
- * tl_law_ops. */
+/* The lift, m, and the share of tension that is held, 0 to 1, of `count` points from row `first`, a multiple of
+ * TL_LANES: see tl_law_ops. */
 void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size_t first,
                           size_t count, double *lift, double *hold);
 
@@ -32,7 +33,8 @@ static inline bool tl_contact_opens(const tl_model *m, uint32_t contact)
     return law != TL_NO_ROW && tl_law_opens(&m->joint_laws[law]);
 }
 
-/* The openings by slip of TL_LANES points of a contact from its `first` one, as a law of its kind has them, m; 0 beyond the last. */
+/* The openings by slip of TL_LANES points of a contact from `first`, as a law of its kind has them, m; 0 beyond
+ * the last. */
 void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t contact, size_t first,
                            double opening[TL_LANES]);
 /* The same as its own law has them; 0 where nothing ever opens them. */

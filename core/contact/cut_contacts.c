@@ -1,8 +1,9 @@
 /* cut_contacts.c - what a contact leaves to those of its blocks' parts when a block of it is cut.
  *
- * A part of a wall carries what it carried before: stresses, law states, an initial stress. So a contact that ends because a block of
- * it was cut leaves its points, and each contact between parts of the two blocks takes its share of them over when it is made,
- * in the same detection. What a part is of, its root, the model tells (tl_heir). */
+ * A part of a wall carries what it carried before: stresses, law states, an initial stress. So a contact that
+ * ends because a block of it was cut leaves its points. Each contact between parts of the two blocks takes over
+ * its share of them when it is made, in the same detection. Which block a part comes from, its root, the model
+ * tells (tl_heir). */
 #include "contact/cut_contacts.h"
 
 #include "base/columns.h"
@@ -169,12 +170,6 @@ tl_cut_contact *tl_cut_contact_of(const tl_model *m, uint32_t block_a, uint32_t 
     return bsearch(&wanted, d->cut_contacts, d->cut_count, sizeof wanted, compare);
 }
 
-bool tl_cut_contact_holds(const tl_model *m, uint32_t block_a, uint32_t block_b)
-{
-    const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
-    return cut && cut->holds_over_gap;
-}
-
 double tl_cut_contact_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b)
 {
     const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
@@ -206,8 +201,8 @@ static double beyond(const tl_model *m, uint32_t block, uint32_t face, tl_vec3 p
     return plane->offset - tl_v3_dot(plane->normal, tl_m3_tmul(&m->bodies.pose[body].r, arm));
 }
 
-/* Faces parallel to those of the whole are parts of them, but for one that a cut has made inside the whole: that lies behind
- * the whole's face, so it overlaps the other block's by less. */
+/* Faces parallel to those of the whole are parts of them, but for one that a cut has made inside the whole.
+ * That one lies behind the whole's face, so it overlaps the other block's by less. */
 bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b,
                           tl_face_pair *faces)
 {
@@ -262,16 +257,10 @@ double tl_cut_contact_sign(const tl_model *m, const tl_cut_contact *cut, uint32_
     return root_of(m, m->detect->contacts.a[c]) == cut->a ? 1 : -1;
 }
 
-/* The part of the whole's area that an area is. */
-static double part_of(const tl_cut_contact *cut, double area)
-{
-    return cut->whole.area > 0 ? fmin(1, area / cut->whole.area) : 0;
-}
-
 double tl_cut_contact_kept(const tl_model *m, const tl_cut_contact *cut, uint32_t c)
 {
     return tl_cut_contact_is_of_law(m, cut, c)
-               ? cut->kept * part_of(cut, tl_contact_area_of_points(m->detect, c))
+               ? cut->kept * tl_cut_contact_share(cut, tl_contact_area_of_points(m->detect, c))
                : 0;
 }
 
@@ -313,7 +302,8 @@ tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t c)
     return cut && !cut->field ? cut : NULL;
 }
 
-/* Adds what the patches of the parts carry, and of parts of a field contact the areas with which they have taken over. */
+/* Adds what the patches of the parts carry; of parts of a field contact, the areas with which they have taken
+ * over. */
 static void sum_taken(tl_model *m)
 {
     tl_detect *d = m->detect;
@@ -332,7 +322,7 @@ static void sum_taken(tl_model *m)
     }
 }
 
-/* Parts that touch on patches where the whole touched on a smaller area have each taken over what was on all of it. They share it. */
+/* Parts that touch on a larger area than the whole have each taken over what was on all of it. They share it. */
 static void share_out(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
 {
     const tl_detect *d = m->detect;
@@ -363,7 +353,8 @@ static void add_traction(const tl_detect *d, uint32_t c, double keep, tl_vec3 fo
 static void add_lacking(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
 {
     const tl_shear *whole = &cut->whole, *taken = &cut->taken;
-    tl_vec3 lacks = tl_v3_sub(tl_v3_scale(part_of(cut, taken->area), whole->force), taken->force);
+    tl_vec3 lacks =
+        tl_v3_sub(tl_v3_scale(tl_cut_contact_share(cut, taken->area), whole->force), taken->force);
     tl_vec3 n = m->detect->contacts.facet[c].last;
     lacks = tl_v3_scale(tl_cut_contact_sign(m, cut, c), lacks);
     lacks = tl_v3_madd(lacks, -tl_v3_dot(lacks, n), n);
@@ -371,12 +362,12 @@ static void add_lacking(const tl_model *m, uint32_t c, const tl_cut_contact *cut
         add_traction(m->detect, c, 1, lacks, taken->area);
 }
 
-/* Where the parts' springs have more energy than the whole's had, brings their stresses nearer to the mean: of one force a uniform stress
- * has the least. */
+/* Where the parts' springs have more energy than the whole's had, brings their stresses nearer to the mean. Of
+ * one force a uniform stress has the least. */
 static void limit_energy(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
 {
     const tl_shear *taken = &cut->taken;
-    double most = cut->whole.energy * part_of(cut, taken->area);
+    double most = cut->whole.energy * tl_cut_contact_share(cut, taken->area);
     if (!(taken->energy > most))
         return;
     double least = tl_v3_norm2(taken->force) / taken->area;

@@ -21,14 +21,12 @@ tl_cut_contact *tl_cut_contact_keep(tl_model *m, uint32_t contact, const tl_cut_
 void tl_cut_contact_empty(tl_model *m, uint32_t contact);
 /* Puts them in the order in which they are looked up. */
 void tl_cut_contacts_sort(tl_detect *d);
-/* What a new contact of two blocks takes over from, of which one at least is a part of one that was cut; NULL: nothing. */
+/* What a new contact of two blocks takes over from, one at least a part of a block that was cut; NULL: nothing. */
 tl_cut_contact *tl_cut_contact_of(const tl_model *m, uint32_t block_a, uint32_t block_b);
-/* Whether it holds across a gap, as a patch did. */
-bool tl_cut_contact_holds(const tl_model *m, uint32_t block_a, uint32_t block_b);
 /* Tilt, as a sine, up to which they take over as a patch from one that bore a force; 0: there is none. */
 double tl_cut_contact_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b);
-/* The faces of two blocks that are parts of the faces of the patch that they take over from, or of those that the field contact had
- * moved out; false: they have none. */
+/* The faces of two blocks that are parts of the faces of the whole, as a field contact had moved them out.
+ * false: they have none. */
 bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b,
                           tl_face_pair *faces);
 /* How far these are moved out, m; 0: there are none. */
@@ -43,6 +41,11 @@ tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, 
 bool tl_cut_contact_is_of_law(const tl_model *m, const tl_cut_contact *cut, uint32_t contact);
 /* 1 when the contact's first block is a part of `a`; else -1, and its shear is the other way round. */
 double tl_cut_contact_sign(const tl_model *m, const tl_cut_contact *cut, uint32_t contact);
+/* The share of the whole's area that an area is, at the most 1. */
+static inline double tl_cut_contact_share(const tl_cut_contact *cut, double area)
+{
+    return cut->whole.area > 0 ? fmin(1, area / cut->whole.area) : 0;
+}
 /* What a contact that has its points takes over of the energy of shear beyond springs, J: by its share of the area. */
 double tl_cut_contact_kept(const tl_model *m, const tl_cut_contact *cut, uint32_t contact);
 /* The patch that a patch has taken a share of, or NULL. */

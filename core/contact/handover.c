@@ -1,12 +1,14 @@
-/* handover.c - a contact that was a patch becomes a field contact, or the other way round, and a field contact that has
- * moved.
+/* handover.c - a contact that was a patch becomes a field contact, or the other way round, and a field contact
+ * that has moved.
  *
- * The shear of a field contact is one force and one torsion about the centre of its pressure, that of a patch a force at
- * each point. Force and moment are carried over; the moment no further than the energy of the springs goes. Area that comes
- * brings no shear. Of the area that is there that goes first which carries the least (resized). Neither makes energy. An
- * initial stress of a patch, and slip that has opened its joint, move both faces outward, half each, by as much together as its
- * springs would be pressed where the faces just meet: by the plane that fits its lifts less the overlaps that belong to them (lean.c).
- * There the faces stay. */
+ * The shear of a field contact is one force and one torsion about the centre of its pressure. That of a patch
+ * is a force at each point. Force and moment go over; the moment no further than the energy of the springs
+ * goes. Area that comes brings no shear. Of the area that is there that goes first which carries the least
+ * (resized). Neither makes energy.
+ *
+ * An initial stress of a patch, and slip that has opened its joint, move both faces outward, half each.
+ * Together they move by as much as the springs would be pressed where the faces just meet: by the plane that
+ * fits the lifts (lean.c). There the faces stay. */
 #include "contact/handover.h"
 
 #include "base/columns.h"
@@ -29,8 +31,8 @@ static tl_vec3 arm_before(const tl_model *m, uint32_t c, tl_vec3 arm)
     return tl_v3_sub(arm, tl_v3_scale(m->dt, tl_v3_cross(turned, arm)));
 }
 
-/* From the centre of the new points to that of the old, which has gone half with A and half with B, before their last turns:
- * so that it is the same whichever block is A. */
+/* From the centre of the new points to that of the old, before their last turns. The old one has gone half with
+ * A and half with B, so it is the same whichever block is A. */
 static tl_vec3 arm_of_old(const tl_model *m, uint32_t c, tl_vec3 old, tl_vec3 centre)
 {
     tl_contact_motion moved = tl_contact_moved(m, c);
@@ -86,11 +88,16 @@ static tl_shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *la
     return out;
 }
 
-/* Brings the shift of a field up to how far slip has opened its joint; returns by how much in the last step. */
-static double lift_field(tl_model *m, uint32_t c, tl_press_row *row)
+double tl_contact_lift_field(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
     double opening[TL_LANES];
+    if (!row || contacts->facet[c].kind != TL_FACET_FIELD || contacts->point_count[c] == 0)
+        return 0;
+    bool is_flat = row->opened == 0 && row->opening[0] == 0 && row->opening[1] == 0;
+    if (is_flat && !tl_contact_opens(m, c))
+        return 0;
     tl_contact_point_openings(m, c, 0, opening);
     if (row->lifted_at != m->cycles)
         row->opened = row->paid = 0;
@@ -105,16 +112,6 @@ static double lift_field(tl_model *m, uint32_t c, tl_press_row *row)
         row->shift += by;
     }
     return row->opened;
-}
-
-double tl_contact_lift_field(tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    tl_press_row *row = tl_press_row_of(m, c);
-    if (!row || !tl_facet_is_field(&contacts->facet[c]) || contacts->point_count[c] == 0)
-        return 0;
-    bool is_flat = row->opened == 0 && row->opening[0] == 0 && row->opening[1] == 0;
-    return is_flat && !tl_contact_opens(m, c) ? 0 : lift_field(m, c, row);
 }
 
 double tl_contact_lost(const tl_model *m, uint32_t c, tl_vec3 force, tl_vec3 moment, double stored)
@@ -164,7 +161,7 @@ static tl_old_point mean_point(const tl_model *m, uint32_t c)
     return out;
 }
 
-/* Gives new points flags and, with `known`, law states of an old point, in the plane in which they are. The torsion of a field
+/* Gives new points flags and, with `known`, law states of an old point, in their plane. The torsion of a field
  * contact begins without a vector: its plane is another one. */
 static void give_states(tl_model *m, uint32_t c, tl_old_point old, bool known)
 {
@@ -278,8 +275,8 @@ static void begin_field(tl_model *m, uint32_t c, const tl_manifold *g)
     m->detect->contacts.facet[c].offset -= row->opening[TL_FIELD_SHEAR];
 }
 
-/* A new field contact of parts of blocks takes its area's share over of what that of the whole carried, and what the law has kept of
- * the point nearest to it. */
+/* A new field contact of parts of blocks takes its area's share of what the whole carried. The law's states are
+ * those of the point nearest to it. */
 static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_cut_contact *cut,
                        const tl_point_lanes *lanes)
 {
@@ -301,7 +298,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_c
     give_states(m, c, nearest, known);
     begin_field(m, c, g);
     tl_shear_keep(m, c, tl_cut_contact_kept(m, cut, c));
-    double area = g->points[0].area, share = whole.area > 0 ? fmin(1, area / whole.area) : 0;
+    double area = g->points[0].area, share = tl_cut_contact_share(cut, area);
     whole.force = tl_v3_scale(share, whole.force);
     whole.torsion *= share * share;
     whole.energy *= share;
@@ -369,11 +366,12 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
         spread_over_patch(m, c, &now, lanes);
 }
 
-/* Gives a shear spring of force f and area `old` another area. What comes carries nothing until it is sheared, so that the
- * energy stays with what was there: `spare` is by how much it is more than that of the same force spread over all. What
- * goes is what carries the least, which costs nothing while the energy of the force on what is left is not more than there
- * is; then the stress stays, and the force goes with the area. All of it is continuous in area and force, and an area that
- * swings costs nothing from the second time on. Energies times 2 ks. Returns the share of the force that stays. */
+/* Gives a shear spring of force f and area `old` another area, `now`. Area that comes carries nothing until it
+ * is sheared, so the energy stays with what was there: `spare` is by how much it is more than that of the same
+ * force spread over all. Area that goes carries the least, which costs nothing while the force on what is left
+ * has no more energy than there is. From then on the stress stays, and the force goes with the area. All of it
+ * is continuous in area and force, and an area that swings costs nothing from the second time on. Energies
+ * times 2 ks. Returns the share of the force that stays. */
 static double resized(double f2, double old, double now, double *spare)
 {
     double energy = tl_shear_energy(f2, old) + *spare;
@@ -434,8 +432,9 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     p->area[first] = p->area[torsion] = area;
 }
 
-/* Notes half of the way of the centre of pressure in the last step; the old one has gone half with A and half with B. A step that is
- * made again finds the points where it left them, and keeps what it has noted. A contact that goes by slopes has stayed where it is. */
+/* Notes half of the way of the centre of pressure in the last step. The old one has gone half with A and half
+ * with B. A step that is made again finds the points where it left them, and keeps what it has noted. A contact
+ * that goes by slopes has stayed where it is. */
 static void note_way(tl_model *m, uint32_t c, tl_vec3 centre)
 {
     const tl_contacts *contacts = &m->detect->contacts;

@@ -1,9 +1,10 @@
 /* lean.c - the plane that stands for the lifts of the points of a patch.
  *
- * A field contact has no points that could be lifted each by its own amount: its faces are moved. A plane has three numbers, and so
- * force and moments go on where the patch hands over: a plane wall presses with u > 0 over some part of the patch, and int u, int u x are
- * those of the patch. Of all overlaps with these the plane one has the least energy. So what is off it is lost, and none is made. Where
- * nothing presses the plane fits the lifts of all points. Each face leans by half of it, and goes with its own body from then on. */
+ * A field contact has no points that could be lifted each by its own amount: its faces are moved. A plane has
+ * three numbers, so force and moments go on where the patch hands over. A plane wall presses with u > 0 over
+ * some part of the patch, with the int u and int u x of the patch. Of all overlaps with these the plane one has
+ * the least energy, so what is off it is lost, and none is made. Where nothing presses the plane fits the lifts
+ * of all points. Each face leans by half of it, and goes with its own body from then on. */
 #include "contact/lean.h"
 
 #include "contact/across_gap.h"
@@ -21,8 +22,8 @@
 /* Tolerance: planes tried for what bears, and the change over the size at which one is found. */
 #define MOST_TRIED 60
 #define FOUND 1e-12
-/* Size of the smaller block, times this, within which a face that leans may be farther out, per unit of its lean: both lean, about places
- * up to a size away. */
+/* Size of the smaller block, times this, within which a face that leans may be farther out, per unit of its
+ * lean. Both faces lean, about places up to a size away. */
 #define LEVER 4
 
 /* Weighted sums of the lifts l over points at x, y in the plane. */
@@ -152,7 +153,8 @@ static void add_edge(moments *to, tl_point2 p, tl_point2 q)
     to->yy += twelfth * (p.y * p.y + q.y * q.y + y * y);
 }
 
-/* A linear overlap, by its value at the centroid and its slope; or a force and moments over a stiffness: int u, int u x, int u y. */
+/* A linear overlap, by its value at the centroid and its slope. Or a force and moments over a stiffness: int u,
+ * int u x, int u y. */
 typedef struct linear {
     double one, x, y;
 } linear;
@@ -206,8 +208,9 @@ static bool solve(const moments *of, const linear *sum, linear *u)
     return true;
 }
 
-/* The overlap u whose closed part, int max(0, u), has the integrals `sum`: each time the one that has them over the part where the last one is
- * closed. That is Newton's method for the least of int max(0, u)^2 / 2 - sum u. false: none is found. */
+/* The overlap u whose closed part, int max(0, u), has the integrals `sum`. Each step takes the one that has
+ * them over the part where the last one is closed: Newton's method for the least of int max(0, u)^2 / 2 - sum
+ * u. false: none is found. */
 static bool find_bearing(const tl_cell_patch *of, const axes *plane, const linear *sum, linear *u)
 {
     *u = (linear){1, 0, 0};
@@ -266,8 +269,8 @@ static linear sum_pressed(const tl_cell_patch *of, const axes *plane, linear *ov
     return out;
 }
 
-/* The plane of lifts with which a wall bears what the patch does: the same force, at the same place. false: nothing presses, or the patch has
- * no cells. */
+/* The plane of lifts with which a wall bears what the patch does: the same force, at the same place. false:
+ * nothing presses, or the patch has no cells. */
 static bool fit_bearing(const tl_model *m, uint32_t c, const tl_point_lanes *lanes,
                         const axes *plane, fit *out)
 {

@@ -6,8 +6,9 @@
 #include "model/model.h"
 #include "narrow/press.h"
 
-/* What points of a patch are lifted by, as a plane: how far it moves the faces apart, m, in the mean of those that press or of all where none
- * does; and where it is not the same everywhere both faces as they lean for it, each by half. */
+/* What points of a patch are lifted by, as a plane. `mean` is how far it moves the faces apart, m, in the mean
+ * of those that press, or of all where none does. Where it is not the same everywhere both faces lean, each by
+ * half. */
 typedef struct tl_lean {
     double mean;
     bool leans;
@@ -17,8 +18,8 @@ typedef struct tl_lean {
 /* The mean alone, m. It reads no block: the rows of the contact may be those of a former state of the model. */
 double tl_contact_mean_lift(const tl_model *m, uint32_t contact);
 tl_lean tl_contact_lean(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
-/* How far apart blocks may be whose faces press, m: moved out by `shift` together and, with `face` not NULL, leaning so from the normal n of
- * A's face. `size`: of the smaller block. */
+/* How far apart blocks may be whose faces press, m. They are moved out by `shift` together and, with `face` not
+ * NULL, lean so from the normal n of A's face. `size`: of the smaller block. */
 double tl_lean_reach(double shift, const tl_plane *face, tl_vec3 n, double size);
 /* By how much leaning faces are farther out at a point of A's frame than those of the blocks, together, m. */
 double tl_lean_at(const tl_model *m, uint32_t contact, const tl_plane lean[2],

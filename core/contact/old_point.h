@@ -1,12 +1,13 @@
-/* old_point.h - contact points that new ones take over from: of a contact whose polygon has changed, or of one that has ended
- * because a block of it was cut. */
+/* old_point.h - contact points that new ones take over from, of a contact whose polygon has changed or whose
+ * block was cut. */
 #ifndef TL_CONTACT_OLD_POINT_H
 #define TL_CONTACT_OLD_POINT_H
 
 #include <stdbool.h>
 #include <talus/plugin.h>
 
-/* Columns of what a point carries by its place: shear stress, normal stress, initial normal stress, reference, states. */
+/* Columns of what a point carries by its place: shear stress, normal stress, initial normal stress, reference,
+ * states. */
 enum { TL_OLD_SHEAR, TL_OLD_NORMAL = 3, TL_OLD_INITIAL, TL_OLD_REFERENCE, TL_OLD_STATES };
 #define TL_OLD_COLUMNS (TL_OLD_STATES + TL_STATE_COLUMNS)
 
@@ -19,7 +20,8 @@ typedef struct tl_old_point {
         struct {
             tl_vec3 shear;
             double f_n; /* normal stress */
-            /* Initial normal stress, and the overlap that it belongs to; of a cut contact this less what slip has opened. */
+            /* Initial normal stress, and the overlap that it belongs to; of a cut contact this less what slip
+             * has opened. */
             double n0, reference;
             double state[TL_STATE_COLUMNS];
         };
@@ -38,8 +40,9 @@ typedef struct tl_shear {
         polar; /* about the normal through the centre: moment of the force, second moment of the area */
 } tl_shear;
 
-/* What a patch would have carried in the next step, in six numbers, N: what it would have pressed with, force along its normal and what tells of
- * the moments along two directions; and its shear, forces along both and torsion. */
+/* What a patch would have carried in the next step, in six numbers, N. Three tell what it would have pressed
+ * with: the force along its normal, and the moments along two directions. Three tell its shear: the forces
+ * along both, and the torsion. */
 enum { TL_NEXT_PRESS = 3, TL_NEXT_SUMS = 6 };
 
 typedef struct tl_next_step {
@@ -48,8 +51,8 @@ typedef struct tl_next_step {
     double sum[TL_NEXT_SUMS];
 } tl_next_step;
 
-/* What a contact of a block that was cut has left: its points from `first` on in a list of all such. Of a field contact there is
- * one, at the centre of its pressure. */
+/* What a contact of a block that was cut has left: its points from `first` on in a list of all such. Of a field
+ * contact there is one, at the centre of its pressure. */
 typedef struct tl_cut_contact {
     tl_id a, b; /* its blocks, a < b */
     uint32_t law, count;

@@ -41,20 +41,21 @@ double tl_contact_area_of_points(const tl_detect *d, uint32_t contact);
 tl_shear tl_shear_of(const tl_model *m, uint32_t contact);
 /* Adds the energy of both springs of a field contact, and has its torsion. */
 void tl_shear_add_field(const tl_model *m, uint32_t contact, tl_shear *sum);
-/* After points have been given other areas, stresses as they were, which makes `now` of `before`. What comes into contact
- * brings no shear, and what goes takes its own with it: where the area has grown, the shear force is brought down to
- * what it was; the springs never have more energy than before. What they have less is heat. */
+/* After points have been given other areas, stresses as they were, which makes `now` of `before`. Area that
+ * comes brings no shear, and area that goes takes its own. Where the area has grown, the shear force is brought
+ * down to what it was. The springs never have more energy than before; what they have less is heat. */
 void tl_shear_resized(tl_model *m, uint32_t contact, const tl_shear *before, const tl_shear *now);
-/* Notes as heat what the springs have lost, and half of the work in the last step's motion of the forces that are less: the
- * ledger has the mean of the forces at both ends of a step work, and those of its beginning were still whole. */
+/* Notes as heat what the springs have lost, and half of the work in the last step's motion of the forces that
+ * are less. For the ledger has the mean of the forces at both ends of a step work, and those of its beginning
+ * were still whole. */
 void tl_shear_release(tl_model *m, uint32_t contact, const tl_shear *before, const tl_shear *now);
 
 /* Column of the energy that shear holds beyond its springs, J, under a law; none: TL_NO_ROW. */
 uint32_t tl_shear_kept_column(const tl_model *m, uint32_t law);
 /* The sum of it over the points of a contact. */
 double tl_shear_kept(const tl_model *m, uint32_t contact);
-/* Gives new points, whose state is 0, that sum: those of a patch by their areas, in a field contact the point of shear. Without points it is
- * heat. */
+/* Gives new points, whose state is 0, that sum: those of a patch by their areas, in a field contact the point
+ * of shear. Without points it is heat. */
 void tl_shear_keep(tl_model *m, uint32_t contact, double energy);
 
 #endif

@@ -1,15 +1,22 @@
-/* transfer.c - new contact points in the place of old ones, where the contact polygon has changed or its points have run along it.
+/* transfer.c - new contact points in the place of old ones, where the contact polygon has changed or its points
+ * have run along it.
  *
- * What points carry belongs to places of the faces: each new point's cell gets the mean of the old cells that it lies on, by their
- * common areas. So sums over the area stay, and nothing goes beyond what there was: a bond that is lost does not come back.
- * Means wear down what varies over the face. So of stresses, and of states that are linear in the force, the plane fitted through the
- * old points is taken out before and put back after, with the same sum and moments: a linear field stays what it is to rounding, and,
- * since the points integrate squares of it exactly, so does its energy; that of what is off the plane can only become less.
- * Sum and moments are taken about the centroids of the areas and follow the area, so a uniform stress stays uniform when the
- * area changes. What comes into contact brings no shear, and what goes takes its own with it: where the area shrinks total shear
- * force follows it, where it grows the force stays; so does the shear's moment about the normal, with the second moment of the area.
- * The shear springs never have more energy than before; what they have less is heat.
- * Points of a part of a block that was cut take the stresses and states at their places: of the nearest, by the plane. */
+ * What points carry belongs to places of the faces. A new point gets the mean of the old points, by the areas
+ * that its cell has in common with theirs. So sums over the area stay, and nothing goes beyond what there was:
+ * a bond that is lost does not come back.
+ *
+ * Means wear down what varies over the face. So of stresses, and of states that are linear in the force, the
+ * plane fitted through the old points is taken out before and put back after, with the same sum and moments. A
+ * linear field stays what it is to rounding. So does its energy, for the points integrate squares of it
+ * exactly; that of what is off the plane can only become less. Sum and moments are taken about the centroids of
+ * the areas and follow the area, so a uniform stress stays uniform when the area changes.
+ *
+ * Area that comes into contact brings no shear, and area that goes takes its own. Where the area shrinks total
+ * shear force follows it, where it grows the force stays. The shear's moment about the normal does so with the
+ * second moment of the area. The shear springs never have more energy than before; what they have less is heat.
+ *
+ * Points of a part of a block that was cut take the stresses and states at their places: of the nearest, by the
+ * plane. */
 #include "contact/transfer.h"
 
 #include "base/columns.h"
@@ -27,7 +34,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The cell of a point: its share of the patch. That of the centroid lies inside; around it the others follow each other. */
+/* The cell of a point: its share of the patch. That of the centroid lies inside; the others follow each other
+ * around it. */
 typedef struct tl_ring_cell {
     double x, y, area; /* of the point, about the centroid of the patch */
     uint32_t point;
@@ -51,7 +59,7 @@ typedef struct spread {
     double xx, xy, yy;
 } spread;
 
-/* Whether points span a plane; within about `place` of a line slopes would be quotients of rounding. */
+/* Whether points span a plane. Within about `place` of a line slopes would be quotients of rounding. */
 static bool spans(const spread *i, double area, double place)
 {
     return i->xx * i->yy - i->xy * i->xy > area * place * place * (i->xx + i->yy);
@@ -155,12 +163,13 @@ static double place_of(const tl_model *m, uint32_t c)
  *
  * Where the cells of contact points lie in their patch.
  *
- * The patch is the star of the triangles between its centroid and its edges. A point at the centroid has a share of each of them
- * inside; of what lies around it each other point has the part between two rays from the centroid, its cell. The rule of the points
- * (narrow/patch.c) gives cells of edges that lie evenly about their points; by how much those of corners do not adds up to 0 over the
- * patch. The share of the patch that a ray sweeps from one point to the next is that of the triangle between them, for
- * points of corners and of edges are drawn in by the same factors all around. So places and areas of the points alone tell where
- * their cells are. */
+ * The patch is the star of the triangles between its centroid and its edges. A point at the centroid has a
+ * share of each of them inside. Each other point has a cell of what lies around it: the part between two rays
+ * from the centroid. By the rule of the points (narrow/patch.c) the cells of edges lie evenly about their
+ * points. Those of corners do not, by amounts that add up to 0 over the patch. The share of the patch that a
+ * ray sweeps from one point to the next is that of the triangle between them: points of corners and of edges
+ * are drawn in by the same factors all around. So places and areas of the points alone tell where their cells
+ * are. */
 
 /* Tolerance: parts of a patch below this share of it are rounding of the places of points. */
 #define SLIVER 1e-11
@@ -277,8 +286,8 @@ static double ring_common(const ring *now, const ring_cell *a, const ring *old, 
 /* How a column is taken over: not at all; as means; as means beside a plane, of any sign or not below 0. */
 typedef enum relay_rule { LEFT, MEAN, PLANE, PLANE_ABOVE } relay_rule;
 
-/* Of which old points a new one takes the mean: those with which its cell has area in common; where places are not known, that of the same
- * key; where the old patch is a whole of which this is a part, the nearest. */
+/* Which old points a new one takes the mean of. Those with which its cell has area in common; that of the same
+ * key, where places are not known; the nearest, for a part of the old patch. */
 typedef enum relay_match { BY_AREA, BY_KEY, NEAREST } relay_match;
 
 /* Old points and new ones of one patch, each with its cell: places are about the centroids. */
@@ -309,8 +318,8 @@ static ring ring_of(const old_point *point, size_t count, tl_vec3 centre, const 
     return ring_of_cells(cell, count, place);
 }
 
-/* Gives the point of a new cell the means of old ones by their weights, to the bit where they are the same, and its flags: those of the
- * heaviest. */
+/* Gives the point of a new cell the means of old ones by their weights, to the bit where they are the same. Its
+ * flags are those of the heaviest. */
 static void take_means(const relay *r, ring_cell *cell)
 {
     old_point *now = &r->now[cell->point];
@@ -371,7 +380,8 @@ static tl_point2 slopes_of(const relay *r, int side, double x, double y)
                      : (tl_point2){0, 0};
 }
 
-/* What is added to the means of a column: the plane of the old points less its means, and what restores sum and moments. */
+/* What is added to the means of a column: the plane of the old points less its means, and what restores sum and
+ * moments. */
 typedef struct addition {
     tl_point2 old, now; /* slopes */
     double level;
@@ -413,8 +423,9 @@ static double added(const addition *more, const ring_cell *cell)
            more->old.x * cell->mean.x - more->old.y * cell->mean.y;
 }
 
-/* Adds to the means of `width` columns, those of a vector or one, the same part of its addition at all points, so that their sum stays:
- * where points have hardly an area, planes through them would ask for any stress. */
+/* Adds to the means of `width` columns, those of a vector or one, a part of their additions. It is the same at
+ * all points, so that the sum stays. Where points have hardly an area, planes through them would ask for any
+ * stress. */
 static void restore_planes(const relay *r, int column, int width)
 {
     addition more[3];
@@ -444,7 +455,8 @@ static void restore_planes(const relay *r, int column, int width)
                 part * added(&more[w], &r->after.cell[k]);
 }
 
-/* Sets the rules of the states of a law, and makes those that go with the area stresses, or with `back` what they were. */
+/* Sets the rules of the states of a law. Makes those that go with the area stresses, or with `back` what they
+ * were. */
 static void rule_states(relay *r, const tl_kind *kind, uint32_t columns, bool back)
 {
     static const relay_rule rules[] = {[TL_TRANSFER_COPY] = MEAN,
@@ -521,8 +533,9 @@ static void add_traction(old_point *point, size_t count, const tl_shear *now, do
     }
 }
 
-/* Brings the energy of the shear springs down to `most`. Of all stresses of the same force and torsion a uniform traction
- * with a twist has the least energy, and what else there is has an energy of its own: that is made less. */
+/* Brings the energy of the shear springs down to `most`. A uniform traction with a twist has the least energy
+ * of all stresses of the same force and torsion. Stresses beside it have an energy of their own, which is made
+ * less. */
 static void limit_energy(old_point *point, size_t count, tl_shear *now, double most, bool turns)
 {
     sum_shear(point, count, now);
@@ -541,8 +554,9 @@ static void limit_energy(old_point *point, size_t count, tl_shear *now, double m
     }
 }
 
-/* Brings shear force and torsion to what they are to be: what comes into contact brings none, what goes takes its own with it; a
- * twist goes with the second moment of area as traction does with the area. The springs get no more energy than there was. */
+/* Brings shear force and torsion to what they are to be. Area that comes brings none, area that goes takes its
+ * own. A twist goes with the second moment of area as traction does with the area. The springs get no more
+ * energy than there was. */
 static void correct_shear(old_point *point, size_t count, tl_shear *now, const tl_shear *before,
                           bool turns)
 {
@@ -558,23 +572,22 @@ static void correct_shear(old_point *point, size_t count, tl_shear *now, const t
 
 /* ---------------------------------------------------------------- new contacts ------------ */
 
-/* What slip has opened at points of other places than the law's states are of is not what it has opened there: the references make up
- * for it, so that what was between the points of the whole is between the walls. */
+/* Adds what slip has opened at new points, by states of other places, to their references. So what was between
+ * the points of the whole is between the walls. */
 static void refer_to_openings(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
     double opening[TL_LANES];
-    if (!p->reference || !tl_contact_opens(m, c))
-        return;
-    for (size_t first = 0; first < contacts->point_count[c]; first += TL_LANES) {
-        tl_contact_point_openings(m, c, first, opening);
-        for (size_t l = 0; l < TL_LANES && first + l < contacts->point_count[c]; l++)
-            p->reference[tl_point_row(contacts, c, first + l)] += opening[l];
+    bool opens = p->reference && tl_contact_opens(m, c);
+    for (size_t k = 0; k < contacts->point_count[c] && opens; k++) {
+        if (k % TL_LANES == 0)
+            tl_contact_point_openings(m, c, k, opening);
+        p->reference[tl_point_row(contacts, c, k)] += opening[k % TL_LANES];
     }
 }
 
-/* Old points of a contact, or of the one of the whole blocks, in the places where they are; they are followed by the new ones. */
+/* Finds the old points, of the contact or of the whole that it is a part of, and behind them the new ones. */
 static void gather(tl_model *m, uint32_t c, const tl_cut_contact *cut,
                    const tl_narrow_scratch *scratch, const tl_point_lanes *lanes, relay *r)
 {
@@ -588,8 +601,8 @@ static void gather(tl_model *m, uint32_t c, const tl_cut_contact *cut,
     read_points(m, c, lanes, r->now);
 }
 
-/* A contact that was made for parts of a block takes its share over of what that of the whole carried: the stresses at its own
- * points. Where the area has become more than that of the whole, of which nothing is known, it carries no more than there was. */
+/* A new contact of parts of a block takes its share of what the whole carried: the stresses at its own points.
+ * Where its area is more than that of the whole, it carries no more than there was. */
 static void take_share(tl_model *m, uint32_t c, const tl_cut_contact *cut,
                        const tl_narrow_scratch *scratch, relay *r)
 {
@@ -610,7 +623,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_cut_contact *cut,
     tl_shear_keep(m, c, tl_cut_contact_kept(m, cut, c));
 }
 
-/* Points of a contact take over from those that it had, which carried `kept` of energy beyond their springs. */
+/* The points take over from those that the contact had. `kept`: the energy that shear held beyond its springs. */
 static void take_over(tl_model *m, uint32_t c, const tl_narrow_scratch *scratch, relay *r,
                       tl_shear t[2], double kept)
 {

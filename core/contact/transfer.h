@@ -10,13 +10,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Puts the manifold's points in the place of the contact's, carrying over state so that total force
- * and moment follow the area; the points fit into the contact's room. */
+/* Puts the manifold's points in the place of the contact's, for which there is room. State goes over so that
+ * total force and moment follow the area. false: out of memory. */
 bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow_scratch *scratch,
                          const tl_point_lanes *lanes);
 
-/* Puts the points of a manifold in the place of a contact's, without stress, their states at the beginning. Their arms and normals
- * are in the lanes. */
+/* Puts the points of a manifold in the place of a contact's, without stress, their states at the beginning.
+ * Arms and normals are in the lanes. */
 void tl_contact_place_points(tl_model *m, uint32_t contact, const tl_manifold *manifold,
                              const tl_point_lanes *lanes);
 

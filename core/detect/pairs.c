@@ -163,11 +163,12 @@ tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_
                                   tl_narrow_scratch *scratch)
 {
     tl_manifold_before out = {.kind = TL_FACET_PATCH, .most_tilt = INFINITY};
+    const tl_cut_contact *cut = tl_cut_contact_of(m, p->a, p->b);
     tl_face_pair faces;
     out.born_tilt = tl_cut_contact_tilt(m, p->a, p->b);
     out.shift = tl_cut_contact_shift(m, p->a, p->b, &out.shifted);
     out.reach = fmax(0, out.shift);
-    if (!tl_cut_contact_holds(m, p->a, p->b) || !tl_cut_contact_faces(m, p->a, p->b, &faces))
+    if (!cut || !cut->holds_over_gap || !tl_cut_contact_faces(m, p->a, p->b, &faces))
         return out;
     tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[faces.a], INFINITY);
     out.over = INFINITY;
@@ -182,8 +183,9 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scra
     const double reach = m->detect->reach;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
     tl_face_pair moved;
+    const tl_cut_contact *cut = tl_cut_contact_of(m, p->a, p->b);
     double shift = fmax(0, tl_cut_contact_shift(m, p->a, p->b, &moved));
-    bool holds = tl_cut_contact_holds(m, p->a, p->b) || shift > 0;
+    bool holds = (cut && cut->holds_over_gap) || shift > 0;
     double gap, margin = holds ? -1 : tl_grazing_margin(&view, p, &gap);
     if (margin >= 0)
         return margin;

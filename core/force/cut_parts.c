@@ -1,20 +1,23 @@
 /* cut_parts.c - the parts of a patch carry what the whole carried.
  *
- * The parts' points lie elsewhere than those of the whole. What is between these nobody knows: how far slip has opened them, each by another
- * way, what is left of a bond, which of them bear how much shear. So to the closures c and shear tractions t of all parts' points together,
- * as they lie between the points of the whole, a closure and a traction are added,
+ * The parts' points lie elsewhere than those of the whole. Nobody knows what is between these: how far slip has
+ * opened them, each by another way, what is left of a bond, which of them bear how much shear. So a closure and
+ * a traction are added to the closures c and shear tractions t of all parts' points, as they lie between the
+ * points of the whole,
  *
  *     c + q1 + q2 x + q3 y,    t + (w1 - w3 y, w2 + w3 x)
  *
- * with which they press as the whole would have pressed in the next step, with the same force and moments, and have its shear and
- * torsion. What presses the law says, with the motion that it is going to be told of and the cells of patches that are
- * partly open. A point keeps no more shear than it bears: what it loses, others get; and if it slipped it would open the joint.
+ * With these they press as the whole would have pressed in the next step, with the same force and moments, and
+ * have its shear and torsion. The law says what presses, with the motion of the step to come and the cells of
+ * patches that are partly open. A point keeps no more shear than it bears: what it loses, others get; and if it
+ * slipped it would open the joint.
  *
- * What the parts carry rises with these six numbers, so Newton's steps find them, with slopes that are mended by what steps bring (Broyden
- * 1965), or found by differences where that is little. Each step is halved until less is lacking.
- * Springs are to hold no more energy than those of the whole: of one force and torsion a uniform traction with a twist has the least,
- * so the parts then keep less of t. Where points between those of the whole bear so little that others have to hold more, the least there
- * is serves: what stands goes on standing. Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
+ * What the parts carry rises with these six numbers, so Newton's steps find them. Slopes are mended by what
+ * steps bring (Broyden 1965), or found by differences where that is little. Each step is halved until less is
+ * lacking. Springs are to hold no more energy than those of the whole. Of one force and torsion a uniform
+ * traction with a twist has the least, so the parts then keep less of t. Where points between those of the
+ * whole bear little, others have to hold more. There the least there is serves: what stands goes on standing.
+ * Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
 #include "force/cut_parts.h"
 
 #include "base/columns.h"
@@ -38,8 +41,8 @@ typedef struct pressing {
  *
  * What the law of a patch says that it carries in the step to come.
  *
- * It is asked as in the step, its cells found where some of the patch is apart, but with copies of the points: what it changes is
- * forgotten. Bonds that break in the step break at their points only. */
+ * It is asked as in the step, its cells found where some of the patch is apart. It is given copies of the
+ * points: what it changes is forgotten. Bonds that break in the step break at their points only. */
 
 /* The contact alone in its place of its SIMD group. */
 static tl_simd_group alone(const tl_contacts *contacts, uint32_t c, size_t l)
@@ -135,8 +138,8 @@ static void add_cells(tl_model *m, const tl_simd_group *group, size_t l, const t
     to->moment = tl_v3_add(to->moment, tl_v3_cross(more->arm, force));
 }
 
-/* Asks the law of a patch. In the first lanes are arms, normals, closures and motions of the points, and in `before` from 1 on their shear
- * forces; there those after are given. false: the law failed, or what it says is no number. */
+/* Asks the law of a patch. Arms, normals, closures and motions of the points are in the first lanes, and in
+ * `before` from 1 on their shear forces before and after. false: the law failed, or what it says is no number. */
 static bool ask_patch(tl_model *m, uint32_t c, const tl_point_lanes *t, pressing *out)
 {
     const tl_detect *d = m->detect;
@@ -253,14 +256,15 @@ void tl_cut_contact_foresee(tl_model *m, uint32_t c, tl_cut_contact *cut, const 
 
 /* ---------------------------------------------------------------- parts ------------------ */
 
-/* Times that a law is asked at the most until no point has more shear than it bears; by which share it may have more. */
+/* Times that a law is asked at the most until no point has more shear than it bears; by which share it may have
+ * more. */
 #define PASSES 12
 #define TOO_MUCH 1e-9
 /* Slope of what a point bears over what it has, up to which it tells where both are the same. */
 #define STEEP 0.9
 
-/* The point of a part: its shear force and how much closure it gets, and the magnitudes of the shear that the law was asked with the time
- * before and of what it answered; 0: none. */
+/* The point of a part: its shear force and how much closure it gets. `asked`, `borne`: magnitudes of the shear
+ * that the law was asked with the time before, and of its answer; 0: none. */
 typedef struct given {
     tl_vec3 shear;
     double closure, asked, borne;
@@ -280,8 +284,9 @@ typedef struct parts {
     size_t count;
     given *points;
     double keep; /* share of their shear that they keep beside what they are given */
-    int sought; /* numbers that are looked for: all six, or those of closure, and they keep all shear, whether they bear it or not */
-    six at;     /* where a search begins, and, after it, where it has come to */
+    /* Numbers that are looked for: all six, or those of closure, when points keep shear whether they bear it or not. */
+    int sought;
+    six at; /* where a search begins, and, after it, where it has come to */
 } parts;
 
 static size_t point_count(const parts *of, size_t i)
@@ -417,7 +422,8 @@ static bool find_lack(const parts *of, const six *more, six *lacks)
 #define HALVINGS 10
 /* Step of differences, over the forces. */
 #define SMALL 1e-6
-/* Share of what is lacking that is left after a good step: after another slopes are found anew. With fresh slopes that one leaves no hope. */
+/* Share of what is lacking that is left after a good step: after another slopes are found anew. And after a
+ * step with fresh slopes that leaves no hope. */
 #define GOOD 0.3
 #define HOPELESS 0.9
 /* What is added to the slopes: the numbers may not tell all. */
@@ -437,7 +443,8 @@ static double size_of(const six *x, int count)
     return sqrt(sum);
 }
 
-/* Solves slopes x = right, `count` equations, by elimination, the largest of each column first. false: they cannot be solved. */
+/* Solves slopes x = right, `count` equations, by elimination, the largest of each column first. false: they
+ * cannot be solved. */
 static bool solve(slopes by, six right, int count, six *x)
 {
     *x = (six){{0}};
@@ -484,7 +491,8 @@ static bool find_slopes(const parts *of, const six *lacks, slopes *out)
     return true;
 }
 
-/* Goes the step or a share of it, so that less is lacking; halves it so often at the most. Returns the share, 0: none. */
+/* Goes the step or a share of it, so that less is lacking; halves it so often at the most. Returns the share,
+ * 0: none. */
 static double go(parts *of, const six *step, int halvings, six *lacks)
 {
     double by = 1;
@@ -517,8 +525,8 @@ static void mend_slopes(slopes *by, int count, const six *step, double share, co
         }
 }
 
-/* Looks for the numbers with which the parts lack the least, and gives the points what goes with them. *found: they lack nothing. false: a
- * law failed. */
+/* Looks for the numbers with which the parts lack the least, and gives the points what goes with them. *found:
+ * they lack nothing. false: a law failed. */
 static bool search(parts *of, bool *found)
 {
     const int count = of->sought;
@@ -549,13 +557,13 @@ static bool search(parts *of, bool *found)
 
 /* ---------------------------------------------------------------- giving ----------------- */
 
-/* Share of t by which parts keep less each time; by which their springs may hold more energy, and by which they may if there is no way
- * with less. */
+/* Share of t by which parts keep less each time. Shares by which their springs may hold more energy, and by
+ * which they may if there is no way with less. */
 #define LESS 0.25
 #define MORE_ENERGY 5e-4
 #define MOST_ENERGY 0.5
-/* Tolerance: areas that are the same, over each other: parts that lack some of the whole go by what is between its
- * points alone. */
+/* Areas that are the same, over each other: parts that lack some of the whole go by what is between its points
+ * alone. */
 #define SAME_AREA 1e-3
 
 /* Puts what has been found into the points. */
@@ -584,8 +592,8 @@ static tl_shear sum_given(const parts *of)
     return sum;
 }
 
-/* Looks for all six numbers, from some, with ever less of t, and gives the points what goes with them, which may have so much more
- * energy. *done: it has. false: a law failed. */
+/* Looks for all six numbers, from some, with ever less of t, and gives the points what goes with them. They may
+ * have so much more energy. *done: it has. false: a law failed. */
 static bool correct_all(parts *of, six from, double more, bool *done)
 {
     const double whole = of->cut->whole.energy;
@@ -654,7 +662,8 @@ static int compare(const void *x, const void *y)
     return (p->contact > q->contact) - (p->contact < q->contact);
 }
 
-/* Forgets what patches carried whose parts are not all patches of its law: what they take over of it is not known yet. */
+/* Forgets what patches carried whose parts are not all patches of its law: what they take over is not known
+ * yet. */
 static void forget_mixed(tl_model *m)
 {
     tl_detect *d = m->detect;
