@@ -10,9 +10,9 @@
 #include "force/bear.h"
 
 #include "base/columns.h"
-#include "base/inside.h"
 #include "contact/detection.h"
 #include "contact/places.h"
+#include "force/joint_laws.h"
 
 /* Tolerance: share of a normal force that a law may add to it by rounding. */
 #define SAME_FORCE 1e-12
@@ -66,28 +66,12 @@ static bool ask(const tl_model *m, uint32_t c, const tl_traction *given, tl_trac
     const tl_law *law = &m->joint_laws[d->contacts.law[c]];
     size_t count = d->contacts.point_count[c], lanes = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
     copy_points(m, c, given, l, lanes);
-    tl_law_batch batch = {.size = sizeof batch,
-                          .count = (uint32_t)lanes,
-                          .dt = m->dt,
-                          .area = l->arm[0],
-                          .closure = l->closure,
-                          .f_n0 = l->edge,
-                          .normal = {l->normal[0], l->normal[1], l->normal[2]},
-                          .du_n = l->du_n,
-                          .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
-                          .f_n = l->before[0],
-                          .f_s = {l->before[1], l->before[2], l->before[3]},
-                          .state = &l->before[4],
-                          .flags = l->flags_before,
-                          .stored = l->stored,
-                          .dissipated = l->dissipated,
-                          .closure_edge = l->closure,
-                          .closure_apart = l->closure}; /* none: 0 as well */
-    tl_report report = {.size = sizeof report};
-    const tl_law_ops *ops = law->kind->ops;
-    tl_enter(law->kind, "update");
-    tl_status status = ops->update(law->self, &batch, &report);
-    tl_leave();
+    tl_law_batch batch = tl_lanes_batch(m, l, lanes);
+    batch.area = l->arm[0];
+    batch.f_n0 = l->edge;
+    batch.closure_edge = batch.closure_apart = l->closure; /* none: 0 as well */
+    tl_report report;
+    tl_status status = tl_law_update(law, &batch, &report);
     *stored = 0;
     for (size_t k = 0; k < count && status == TL_OK; k++) {
         double area = l->arm[0][k], per = area > 0 ? 1 / area : 0;

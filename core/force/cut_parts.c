@@ -21,10 +21,10 @@
 #include "force/cut_parts.h"
 
 #include "base/columns.h"
-#include "base/inside.h"
 #include "contact/detection.h"
 #include "contact/places.h"
 #include "contact/shear.h"
+#include "force/joint_laws.h"
 #include "force/partly_open.h"
 
 #include <math.h>
@@ -83,35 +83,6 @@ static void copy_points(const tl_points_table *p, size_t first, size_t rows,
     memcpy(t->flags_before, p->flags + first, rows * sizeof *t->flags_before);
 }
 
-static bool ask_law(const tl_model *m, const tl_law *law, size_t first, size_t rows, bool partly,
-                    const tl_point_lanes *t)
-{
-    const tl_points_table *p = &m->detect->points;
-    tl_law_batch batch = {.size = sizeof batch,
-                          .count = (uint32_t)rows,
-                          .dt = m->dt,
-                          .area = p->area + first,
-                          .closure = t->closure,
-                          .f_n0 = p->f_n0 ? p->f_n0 + first : t->zero,
-                          .normal = {t->normal[0], t->normal[1], t->normal[2]},
-                          .du_n = t->du_n,
-                          .du_s = {t->du_s[0], t->du_s[1], t->du_s[2]},
-                          .f_n = t->before[0],
-                          .f_s = {t->before[1], t->before[2], t->before[3]},
-                          .state = &t->before[4],
-                          .flags = t->flags_before,
-                          .stored = t->stored,
-                          .dissipated = t->dissipated,
-                          .closure_edge = law->pulls != TL_PULL_NONE ? t->edge : t->closure,
-                          .closure_apart = partly ? t->apart : t->zero};
-    tl_report report = {.size = sizeof report};
-    const tl_law_ops *ops = law->kind->ops;
-    tl_enter(law->kind, "update");
-    tl_status status = ops->update(law->self, &batch, &report);
-    tl_leave();
-    return status == TL_OK;
-}
-
 /* Exchanges the normal forces of the points for those in the lanes. */
 static void exchange(tl_detect *d, uint32_t c, size_t l, const tl_point_lanes *t)
 {
@@ -152,7 +123,13 @@ static bool ask_patch(tl_model *m, uint32_t c, const tl_point_lanes *t, pressing
         tl_simd_group_edges(m, &group, t, 0);
     const bool partly = tl_simd_group_part(m, law, &group, t, 0).parts != 0;
     copy_points(&d->points, group.start, count * TL_LANES, t);
-    if (!ask_law(m, law, group.start, count * TL_LANES, partly, t))
+    tl_law_batch batch = tl_lanes_batch(m, t, count * TL_LANES);
+    batch.area = d->points.area + group.start;
+    batch.f_n0 = d->points.f_n0 ? d->points.f_n0 + group.start : t->zero;
+    batch.closure_edge = law->pulls != TL_PULL_NONE ? t->edge : t->closure;
+    batch.closure_apart = partly ? t->apart : t->zero;
+    tl_report report;
+    if (tl_law_update(law, &batch, &report) != TL_OK)
         return false;
     for (size_t k = 0; k < count; k++) {
         size_t i = k * TL_LANES + l;
@@ -429,9 +406,9 @@ static bool find_lack(const parts *of, const six *more, six *lacks)
 /* What is added to the slopes: the numbers may not tell all. */
 #define FAINT 1e-9
 
-/* How fast what is lacking falls with each number: [of what][with which]. */
+/* How fast what is lacking falls with each number: [of what][with which]. Behind them there is a column for `solve`. */
 typedef struct slopes {
-    double of[TL_NEXT_SUMS][TL_NEXT_SUMS];
+    double of[TL_NEXT_SUMS][TL_NEXT_SUMS + 1];
 } slopes;
 
 /* The root of the sum of squares. */
@@ -443,32 +420,30 @@ static double size_of(const six *x, int count)
     return sqrt(sum);
 }
 
-/* Solves slopes x = right, `count` equations, by elimination, the largest of each column first. false: they
- * cannot be solved. */
-static bool solve(slopes by, six right, int count, six *x)
+/* Solves slopes x = right, `count` equations, by elimination, the largest of each column first. false: they cannot be
+ * solved. */
+static bool solve(slopes by, const six *right, int count, six *x)
 {
     *x = (six){{0}};
+    for (int i = 0; i < count; i++)
+        by.of[i][count] = right->v[i];
     for (int j = 0; j < count; j++) {
         int best = j;
         for (int i = j + 1; i < count; i++)
             best = fabs(by.of[i][j]) > fabs(by.of[best][j]) ? i : best;
-        for (int k = j; k < count; k++) {
+        for (int k = j; k <= count; k++) {
             double was = by.of[j][k];
             by.of[j][k] = by.of[best][k];
             by.of[best][k] = was;
         }
-        double was = right.v[j];
-        right.v[j] = right.v[best];
-        right.v[best] = was;
         for (int i = j + 1; i < count; i++) {
             double share = by.of[i][j] / by.of[j][j];
-            for (int k = j; k < count; k++)
+            for (int k = j; k <= count; k++)
                 by.of[i][k] -= share * by.of[j][k];
-            right.v[i] -= share * right.v[j];
         }
     }
     for (int j = count - 1; j >= 0; j--) {
-        double sum = right.v[j];
+        double sum = by.of[j][count];
         for (int k = j + 1; k < count; k++)
             sum -= by.of[j][k] * x->v[k];
         x->v[j] = sum / by.of[j][j];
@@ -541,7 +516,7 @@ static bool search(parts *of, bool *found)
     for (int k = 0; k < STEPS && size_of(&lacks, count) > EXACT; k++) {
         const six before = lacks;
         double share = 0;
-        if (solve(by, lacks, count, &step))
+        if (solve(by, &lacks, count, &step))
             share = go(of, &step, fresh ? HALVINGS : 0, &lacks);
         if (share > 0)
             mend_slopes(&by, count, &step, share, &before, &lacks);

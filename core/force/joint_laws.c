@@ -190,6 +190,33 @@ bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t c)
     return takes_over(m, law, c) && !presses_alike(&m->joint_laws[m->detect->contacts.law[c]], law);
 }
 
+tl_law_batch tl_lanes_batch(const tl_model *m, const tl_point_lanes *l, size_t count)
+{
+    return (tl_law_batch){.size = sizeof(tl_law_batch),
+                          .count = (uint32_t)count,
+                          .dt = m->dt,
+                          .closure = l->closure,
+                          .normal = {l->normal[0], l->normal[1], l->normal[2]},
+                          .du_n = l->du_n,
+                          .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
+                          .f_n = l->before[0],
+                          .f_s = {l->before[1], l->before[2], l->before[3]},
+                          .state = &l->before[4],
+                          .flags = l->flags_before,
+                          .stored = l->stored,
+                          .dissipated = l->dissipated};
+}
+
+tl_status tl_law_update(const tl_law *law, const tl_law_batch *batch, tl_report *report)
+{
+    const tl_law_ops *ops = law->kind->ops;
+    *report = (tl_report){.size = sizeof *report};
+    tl_enter(law->kind, "update");
+    tl_status status = ops->update(law->self, batch, report);
+    tl_leave();
+    return status;
+}
+
 bool tl_law_reserve(tl_model *m, const tl_law *law)
 {
     bool rebased = false;

@@ -5,10 +5,7 @@
  *
  *     f_n(c) = s + K (c_start - c)
  *
- * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work
- * is summed by the trapezoidal rule. */
-#include "base/inside.h"
-#include "base/law_columns.h"
+ * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work is summed by the trapezoidal rule. */
 #include "contact/contacts.h"
 #include "force/joint_laws.h"
 #include "model/joints.h"
@@ -57,21 +54,34 @@ static const char *place(const bench *b, char text[40])
 /* The law after a motion to `closure`, from the present point. */
 static tl_status try_closure(const bench *b, const motion *by, double closure, sample *out)
 {
-    const tl_law_ops *ops = b->law.kind->ops;
     double *state[TL_STATE_COLUMNS];
     char where[40];
     *out = b->now;
-    out->c[TL_AT_DU_N][0] = out->c[TL_AT_CLOSURE][0] - closure;
-    out->c[TL_AT_CLOSURE][0] = out->c[TL_AT_EDGE][0] = closure;
-    out->c[TL_AT_DU_S][0] = by->du;
-    out->c[TL_AT_STORED][0] = out->c[TL_AT_DISSIPATED][0] = 0;
-    tl_law_batch batch = tl_law_batch_of(out->c[0], TL_LANES, out->flags, state, TL_STATE_COLUMNS);
-    batch.count = TL_LANES;
-    batch.dt = by->dt;
-    tl_report report = {.size = sizeof report};
-    tl_enter(b->law.kind, "update");
-    tl_status status = ops->update(b->law.self, &batch, &report);
-    tl_leave();
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = out->state[k];
+    out->du_n[0] = out->closure[0] - closure;
+    out->closure[0] = closure;
+    out->du_s[0][0] = by->du;
+    out->stored[0] = out->heat[0] = 0;
+    tl_law_batch batch = {.size = sizeof batch,
+                          .count = TL_LANES,
+                          .dt = by->dt,
+                          .area = out->area,
+                          .closure = out->closure,
+                          .f_n0 = out->f_n0,
+                          .normal = {out->normal[0], out->normal[1], out->normal[2]},
+                          .du_n = out->du_n,
+                          .du_s = {out->du_s[0], out->du_s[1], out->du_s[2]},
+                          .f_n = out->f_n,
+                          .f_s = {out->f_s[0], out->f_s[1], out->f_s[2]},
+                          .state = state,
+                          .flags = out->flags,
+                          .stored = out->stored,
+                          .dissipated = out->heat,
+                          .closure_edge = out->closure,
+                          .closure_apart = out->apart};
+    tl_report report;
+    tl_status status = tl_law_update(&b->law, &batch, &report);
     if (status != TL_OK)
         return tl_fail(b->error, status, "law_test, %s: law '%s': %s", place(b, where),
                        b->law.kind->name, tl_report_text(&report, status));
