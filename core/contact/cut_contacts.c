@@ -20,7 +20,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Normals of a part's face and of the whole's are off each other by rounding. */
+/* Tolerance: normals of a part's face and of the whole's are off each other by rounding. */
 #define SAME_FACE 1e-9
 
 /* The points in the places where their blocks have carried them, and their sums. */

@@ -5,7 +5,7 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* Changes of a contact's area up to this part of it are rounding. */
+/* Tolerance: changes of a contact's area up to this part of it are rounding. */
 #define TL_SAME_AREA 1e-12
 
 /* Twice the energy of a shear spring of the force f, times ks. */

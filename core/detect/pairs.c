@@ -8,6 +8,7 @@
 
 #include "base/inline.h"
 #include "contact/cut_contacts.h"
+#include "contact/kind.h"
 #include "contact/pair_view.h"
 #include "detect/grazing.h"
 #include "detect/overlap.h"

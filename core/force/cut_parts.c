@@ -233,11 +233,11 @@ void tl_cut_contact_foresee(tl_model *m, uint32_t c, tl_cut_contact *cut, const 
 
 /* ---------------------------------------------------------------- parts ------------------ */
 
-/* Times that a law is asked at the most until no point has more shear than it bears; by which share it may have
+/* Tolerance: times that a law is asked at the most until no point has more shear than it bears; by which share it may have
  * more. */
 #define PASSES 12
 #define TOO_MUCH 1e-9
-/* Slope of what a point bears over what it has, up to which it tells where both are the same. */
+/* Tolerance: slope of what a point bears over what it has, up to which it tells where both are the same. */
 #define STEEP 0.9
 
 /* The point of a part: its shear force and how much closure it gets. `asked`, `borne`: magnitudes of the shear
@@ -391,19 +391,19 @@ static bool find_lack(const parts *of, const six *more, six *lacks)
 
 /* ---------------------------------------------------------------- search ----------------- */
 
-/* Over the forces: what is lacking by this is not, and error with which the numbers are found. */
+/* Tolerance: tolerance: over the forces: what is lacking by this is not, and error with which the numbers are found. */
 #define EXACT 1e-11
 #define FOUND 1e-8
 /* Steps that are made at the most, and halvings of each. */
 #define STEPS 60
 #define HALVINGS 10
-/* Step of differences, over the forces. */
+/* Tolerance: step of differences, over the forces. */
 #define SMALL 1e-6
-/* Share of what is lacking that is left after a good step: after another slopes are found anew. And after a
+/* Tolerance: share of what is lacking that is left after a good step: after another slopes are found anew. And after a
  * step with fresh slopes that leaves no hope. */
 #define GOOD 0.3
 #define HOPELESS 0.9
-/* What is added to the slopes: the numbers may not tell all. */
+/* Tolerance: what is added to the slopes: the numbers may not tell all. */
 #define FAINT 1e-9
 
 /* How fast what is lacking falls with each number: [of what][with which]. Behind them there is a column for `solve`. */
@@ -532,12 +532,12 @@ static bool search(parts *of, bool *found)
 
 /* ---------------------------------------------------------------- giving ----------------- */
 
-/* Share of t by which parts keep less each time. Shares by which their springs may hold more energy, and by
- * which they may if there is no way with less. */
+/* Tolerance: share of t by which parts keep less each time. Shares by which their springs may hold more energy, and by
+ * which they may if there is no way with less. Test: lua/test_cut_keeps. */
 #define LESS 0.25
 #define MORE_ENERGY 5e-4
 #define MOST_ENERGY 0.5
-/* Areas that are the same, over each other: parts that lack some of the whole go by what is between its points
+/* Tolerance: areas that are the same, over each other: parts that lack some of the whole go by what is between its points
  * alone. */
 #define SAME_AREA 1e-3
 

@@ -5,7 +5,10 @@
  *
  *     f_n(c) = s + K (c_start - c)
  *
- * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work is summed by the trapezoidal rule. */
+ * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work
+ * is summed by the trapezoidal rule. */
+#include "base/inside.h"
+#include "base/law_columns.h"
 #include "contact/contacts.h"
 #include "force/joint_laws.h"
 #include "model/joints.h"
@@ -54,34 +57,21 @@ static const char *place(const bench *b, char text[40])
 /* The law after a motion to `closure`, from the present point. */
 static tl_status try_closure(const bench *b, const motion *by, double closure, sample *out)
 {
+    const tl_law_ops *ops = b->law.kind->ops;
     double *state[TL_STATE_COLUMNS];
     char where[40];
     *out = b->now;
-    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
-        state[k] = out->state[k];
-    out->du_n[0] = out->closure[0] - closure;
-    out->closure[0] = closure;
-    out->du_s[0][0] = by->du;
-    out->stored[0] = out->heat[0] = 0;
-    tl_law_batch batch = {.size = sizeof batch,
-                          .count = TL_LANES,
-                          .dt = by->dt,
-                          .area = out->area,
-                          .closure = out->closure,
-                          .f_n0 = out->f_n0,
-                          .normal = {out->normal[0], out->normal[1], out->normal[2]},
-                          .du_n = out->du_n,
-                          .du_s = {out->du_s[0], out->du_s[1], out->du_s[2]},
-                          .f_n = out->f_n,
-                          .f_s = {out->f_s[0], out->f_s[1], out->f_s[2]},
-                          .state = state,
-                          .flags = out->flags,
-                          .stored = out->stored,
-                          .dissipated = out->heat,
-                          .closure_edge = out->closure,
-                          .closure_apart = out->apart};
-    tl_report report;
-    tl_status status = tl_law_update(&b->law, &batch, &report);
+    out->c[TL_AT_DU_N][0] = out->c[TL_AT_CLOSURE][0] - closure;
+    out->c[TL_AT_CLOSURE][0] = out->c[TL_AT_EDGE][0] = closure;
+    out->c[TL_AT_DU_S][0] = by->du;
+    out->c[TL_AT_STORED][0] = out->c[TL_AT_DISSIPATED][0] = 0;
+    tl_law_batch batch = tl_law_batch_of(out->c[0], TL_LANES, out->flags, state, TL_STATE_COLUMNS);
+    batch.count = TL_LANES;
+    batch.dt = by->dt;
+    tl_report report = {.size = sizeof report};
+    tl_enter(b->law.kind, "update");
+    tl_status status = ops->update(b->law.self, &batch, &report);
+    tl_leave();
     if (status != TL_OK)
         return tl_fail(b->error, status, "law_test, %s: law '%s': %s", place(b, where),
                        b->law.kind->name, tl_report_text(&report, status));
@@ -326,10 +316,13 @@ static tl_status begin(bench *b)
     sample *now = &b->now;
     now->c[TL_AT_AREA][0] = 1;
     for (size_t l = 0; l < TL_LANES; l++)
-        now->normal[2][l] = 1;
-    for (tl_state_columns at = {0}; tl_state_next(b->law.kind, b->law.columns, &at);)
-        for (uint32_t w = at.begin; w < at.begin + at.count; w++)
-            now->state[w][0] = at.state->initial;
+        now->c[TL_AT_NORMAL + 2][l] = 1;
+    uint32_t column = 0;
+    for (uint32_t k = 0; k < b->law.kind->state_count && b->law.columns > 0; k++) {
+        const tl_state *state = tl_kind_state(b->law.kind, k);
+        for (uint32_t c = state->kind == TL_STATE_TANGENT ? 3 : 1; c > 0; c--)
+            now->c[TL_AT_STATE + column++][0] = state->initial;
+    }
     b->stress = by_stress(b->test) ? b->test->normal_stress : 0;
     tl_status status = make_step(b, &(motion){0, 0}, 0);
     b->start = now->c[TL_AT_CLOSURE][0];
