@@ -7,13 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Checks of one type of kind. */
-typedef struct checks {
-    const tl_check_rule *rules;
-    tl_status (*check)(tl_checker *c);
-} checks;
-
-static tl_status check_kind(tl_checker *c, const checks *of, tl_check_fn tell, void *user,
+static tl_status check_kind(tl_checker *c, const tl_check_type *of, tl_check_fn tell, void *user,
                             size_t *faults)
 {
     tl_status status = of->check(c);
@@ -64,11 +58,10 @@ static tl_status check_given(const tl_plugin *plugin, const tl_args *args, tl_er
 tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tell, void *user,
                           size_t *faults, tl_error *error)
 {
-    static const checks of[] = {
-        [TL_KIND_LAW] = {tl_check_law_rules, tl_check_law_kind},
-        [TL_KIND_DAMPING] = {tl_check_damping_rules, tl_check_damping_kind},
-        [TL_KIND_GENERATOR] = {tl_check_generator_rules, tl_check_generator_kind},
-        [TL_KIND_SCREEN] = {tl_check_screen_rules, tl_check_screen_kind}};
+    static const tl_check_type *const of[] = {[TL_KIND_LAW] = &tl_check_laws,
+                                              [TL_KIND_DAMPING] = &tl_check_dampings,
+                                              [TL_KIND_GENERATOR] = &tl_check_generators,
+                                              [TL_KIND_SCREEN] = &tl_check_screens};
     *faults = 0;
     const tl_plugin *plugin = loaded_from(path);
     tl_status status = plugin ? TL_OK : tl_plugin_load(path, error);
@@ -84,7 +77,7 @@ tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tel
         c->kind = kind;
         c->args = args;
         c->error = error;
-        status = check_kind(c, &of[kind->type], tell, user, faults);
+        status = check_kind(c, of[kind->type], tell, user, faults);
         free(c);
     }
     return status;

@@ -36,6 +36,12 @@ typedef struct tl_checker {
     char fault[TL_CHECK_MOST][TL_ERROR_TEXT];
 } tl_checker;
 
+/* The checks of one type of kind: `rules` ends with one without a name. */
+typedef struct tl_check_type {
+    const tl_check_rule *rules;
+    tl_status (*check)(tl_checker *c);
+} tl_check_type;
+
 /* A set of parameters as values. Set 0 has the given ones, and a plausible one of each that is required; later sets
  * draw what is not given. The parameter `varied`, unless TL_CHECK_NONE, has another value than it would. `*values`, and
  * `*held`, in which vectors are, are to be freed after the last use, on failure too. */

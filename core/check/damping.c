@@ -41,7 +41,7 @@ enum {
     PARAMETERS
 };
 
-const tl_check_rule tl_check_damping_rules[] = {
+static const tl_check_rule rules[] = {
     [RUNS] = {"runs", "begin() and update() return TL_OK, always when never_fails is set"},
     [REPEATS] = {"repeats", "the same call gives the same bits"},
     [ALONE] = {"one by one", "a body alone gets the bits that it gets in a batch"},
@@ -533,7 +533,7 @@ static tl_status try_set(tl_checker *c, void *params, void *user)
     return TL_OK;
 }
 
-tl_status tl_check_damping_kind(tl_checker *c)
+static tl_status check_kind(tl_checker *c)
 {
     trial *t = calloc(1, sizeof *t);
     if (!t)
@@ -547,3 +547,5 @@ tl_status tl_check_damping_kind(tl_checker *c)
     free(t);
     return status;
 }
+
+const tl_check_type tl_check_dampings = {rules, check_kind};

@@ -14,7 +14,7 @@
 
 enum { REPEATS, KEEPS, PASSES_ON };
 
-const tl_check_rule tl_check_generator_rules[] = {
+static const tl_check_rule rules[] = {
     [REPEATS] = {"repeats", "the same parameters and seed give the same model"},
     [KEEPS] = {"parameters", "parameters are not written to"},
     [PASSES_ON] = {"failures", "a failure of a service is passed on at once"},
@@ -199,7 +199,7 @@ static tl_status run_trial(trial *t)
     return TL_OK;
 }
 
-tl_status tl_check_generator_kind(tl_checker *c)
+static tl_status check_kind(tl_checker *c)
 {
     trial t = {.c = c};
     tl_kind *kind =
@@ -223,3 +223,5 @@ tl_status tl_check_generator_kind(tl_checker *c)
     free(held);
     return status;
 }
+
+const tl_check_type tl_check_generators = {rules, check_kind};

@@ -30,7 +30,7 @@
 /* Tolerance: share of the motion by which points are moved for the stiffness. */
 #define SMALL (1. / 16)
 
-const tl_check_rule tl_check_law_rules[] = {
+static const tl_check_rule rules[] = {
     [TL_LAW_RUNS] = {"runs", "update() returns TL_OK, always when never_fails is set"},
     [TL_LAW_REPEATS] = {"repeats", "the same call gives the same bits"},
     [TL_LAW_ALONE] = {"one by one", "a point alone gets the bits that it gets in a batch"},
@@ -655,7 +655,6 @@ static void run_trial(trial *t, tl_check_law varied[], const bool open[])
         if (tl_check_failed(t->c, TL_LAW_FINITE))
             return;
         tl_law_check_normal(t, step);
-        tl_law_check_flags(t);
         check_states(t);
         check_reads(t);
         check_area(t);
@@ -667,8 +666,7 @@ static void run_trial(trial *t, tl_check_law varied[], const bool open[])
         check_stiffness(t, step, true);
         t->now = t->out;
     }
-    tl_law_check_energy(t);
-    tl_law_check_steps(t);
+    tl_law_check_paths(t);
 }
 
 /* Columns of the declared states. */
@@ -760,7 +758,7 @@ static tl_status try_set(tl_checker *c, void *params, void *user)
     return status;
 }
 
-tl_status tl_check_law_kind(tl_checker *c)
+static tl_status check_kind(tl_checker *c)
 {
     trial *t = calloc(1, sizeof *t);
     if (!t)
@@ -772,3 +770,5 @@ tl_status tl_check_law_kind(tl_checker *c)
     free(t);
     return status;
 }
+
+const tl_check_type tl_check_laws = {rules, check_kind};

@@ -152,6 +152,27 @@ static void check_gap(tl_law_trial *t, const point *p, size_t i)
         t->unmet[i] = false;
 }
 
+static void check_flags(tl_law_trial *t)
+{
+    const uint32_t known = TL_POINT_SLIPPING | TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        uint32_t was = t->in.flags[i], is = t->out.flags[i];
+        double shear = tl_v3_norm(tl_check_vec(t->out.c[TL_AT_F_S], i)),
+               f_n = t->out.c[TL_AT_F_N][i];
+        if (is & ~known)
+            tl_check_note(t->c, TL_LAW_FLAGS, "flags are %u, of which only %u have a meaning", is,
+                          known);
+        if (is & TL_POINT_OPEN && (f_n != 0 || shear != 0))
+            tl_check_note(t->c, TL_LAW_FLAGS,
+                          "a point that is flagged as open carries f_n = %g N, |f_s| = %g N", f_n,
+                          shear);
+        if (was & ~is & TL_POINT_FAILED)
+            tl_check_note(t->c, TL_LAW_FLAGS,
+                          "a point that had failed is whole again: the flag is to stay");
+        t->seen.slips |= (is & TL_POINT_SLIPPING) != 0;
+    }
+}
+
 void tl_law_check_normal(tl_law_trial *t, int step)
 {
     const tl_law_ops *ops = t->law.ops;
@@ -175,25 +196,5 @@ void tl_law_check_normal(tl_law_trial *t, int step)
             tl_check_note(t->c, TL_LAW_PRESSES,
                           "pressed() tells the forces of some points and not of others");
     }
-}
-
-void tl_law_check_flags(tl_law_trial *t)
-{
-    const uint32_t known = TL_POINT_SLIPPING | TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART;
-    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        uint32_t was = t->in.flags[i], is = t->out.flags[i];
-        double shear = tl_v3_norm(tl_check_vec(t->out.c[TL_AT_F_S], i)),
-               f_n = t->out.c[TL_AT_F_N][i];
-        if (is & ~known)
-            tl_check_note(t->c, TL_LAW_FLAGS, "flags are %u, of which only %u have a meaning", is,
-                          known);
-        if (is & TL_POINT_OPEN && (f_n != 0 || shear != 0))
-            tl_check_note(t->c, TL_LAW_FLAGS,
-                          "a point that is flagged as open carries f_n = %g N, |f_s| = %g N", f_n,
-                          shear);
-        if (was & ~is & TL_POINT_FAILED)
-            tl_check_note(t->c, TL_LAW_FLAGS,
-                          "a point that had failed is whole again: the flag is to stay");
-        t->seen.slips |= (is & TL_POINT_SLIPPING) != 0;
-    }
+    check_flags(t);
 }

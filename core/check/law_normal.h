@@ -4,8 +4,7 @@
 
 #include "check/law_points.h"
 
-/* After a step from t->in to t->out. */
+/* After a step from t->in to t->out: the normal force and the flags. */
 void tl_law_check_normal(tl_law_trial *t, int step);
-void tl_law_check_flags(tl_law_trial *t);
 
 #endif

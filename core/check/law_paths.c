@@ -201,7 +201,7 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
     }
 }
 
-void tl_law_check_energy(tl_law_trial *t)
+static void check_energy(tl_law_trial *t)
 {
     walk w = {.law = &t->law, .seen = &t->seen};
     double stored[TL_CHECK_POINTS];
@@ -273,7 +273,7 @@ static bool shear_in(tl_law_trial *t, int steps, tl_check_points *p,
     return true;
 }
 
-void tl_law_check_steps(tl_law_trial *t)
+static void check_steps(tl_law_trial *t)
 {
     tl_check_points coarse, fine;
     double before[TL_CHECK_POINTS];
@@ -306,4 +306,10 @@ void tl_law_check_steps(tl_law_trial *t)
                       COARSE, tl_v3_norm(tl_check_vec(coarse.c[TL_AT_F_S], worst)),
                       coarse.c[TL_AT_F_N][worst], FINE,
                       tl_v3_norm(tl_check_vec(fine.c[TL_AT_F_S], worst)), fine.c[TL_AT_F_N][worst]);
+}
+
+void tl_law_check_paths(tl_law_trial *t)
+{
+    check_energy(t);
+    check_steps(t);
 }

@@ -4,9 +4,8 @@
 
 #include "check/law_points.h"
 
-/* The work on paths of motion is stored or turned to heat, and closed ones give no energy. */
-void tl_law_check_energy(tl_law_trial *t);
-/* The same path in steps of other lengths. */
-void tl_law_check_steps(tl_law_trial *t);
+/* The work on paths of motion is stored or turned to heat, closed ones give no energy, and shear in steps of another
+ * length leads to the same forces. */
+void tl_law_check_paths(tl_law_trial *t);
 
 #endif

@@ -18,7 +18,7 @@
 
 enum { OPENS, ADDRESS, NOBODY, SHOWS, WAITS, WRITES };
 
-const tl_check_rule tl_check_screen_rules[] = {
+static const tl_check_rule rules[] = {
     [OPENS] = {"opens", "open() returns TL_OK, again after close()"},
     [ADDRESS] = {"address", "address() gives a text"},
     [NOBODY] = {"nobody looks", "watchers() is 0"},
@@ -123,7 +123,7 @@ static void run_trial(tl_checker *c, void *self)
     tl_leave();
 }
 
-tl_status tl_check_screen_kind(tl_checker *c)
+static tl_status check_kind(tl_checker *c)
 {
     size_t size = c->kind->params_size;
     char *params = malloc(2 * size + 1);
@@ -147,3 +147,5 @@ tl_status tl_check_screen_kind(tl_checker *c)
     free(params);
     return status;
 }
+
+const tl_check_type tl_check_screens = {rules, check_kind};

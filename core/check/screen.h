@@ -4,7 +4,6 @@
 
 #include "check/checker.h"
 
-extern const tl_check_rule tl_check_screen_rules[];
-tl_status tl_check_screen_kind(tl_checker *c);
+extern const tl_check_type tl_check_screens;
 
 #endif
