@@ -5,6 +5,7 @@
 #ifndef TALUS_KIT_H
 #define TALUS_KIT_H
 
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -279,13 +280,15 @@ TL_IN_LOOP double tl_law_snap_work(double gone, double spring, double du_n)
     return 0.5 * gone * (held > 0 ? held : 0) / (spring > 0 ? spring : 1);
 }
 
-/* Puts flags that were noted as numbers into the batch: a loop over columns of two widths is not vectorised for every
- * machine. */
+/* Puts flags that were noted as numbers into the batch. A law notes them so because a loop over columns of two widths
+ * is not vectorised for every machine. */
 TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                                  const double *mark)
 {
+    uint32_t *flags = batch->flags + begin;
+    TL_EACH_ALONE
     for (uint32_t i = 0; i < lanes; i++)
-        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+        flags[i] = (uint32_t)(int32_t)mark[i];
 }
 
 /* Puts the elastic energy, J, of linear springs kn and ks into the batch, if it is asked for; 0 for a lane of no area.
@@ -346,6 +349,43 @@ static inline tl_status tl_update_alpha_state(const void *self, const tl_damping
     TL_KIND(TL_KIND_GENERATOR,                                                                     \
             ((const tl_generator_ops){.size = sizeof(tl_generator_ops), .generate = generate_}),   \
             __VA_ARGS__)
+
+/* Bytes of a file that are read at once, at least. */
+#define TL_FILE_PART ((size_t)64 << 10)
+
+/* Reads a whole file of at most `most` bytes: *count bytes, and a zero byte after them. Free *bytes, after a failure
+ * too. */
+static inline tl_status tl_file_bytes(const tl_host *host, const char *file, size_t most,
+                                      char **bytes, size_t *count)
+{
+    tl_status status = TL_OK;
+    size_t capacity = 0;
+    *bytes = NULL;
+    *count = 0;
+    FILE *stream = fopen(file, "rb");
+    if (!stream)
+        return host->fail(host, TL_E_IO, "file '%.200s' cannot be opened: %s", file,
+                          strerror(errno));
+    while (status == TL_OK && !feof(stream)) {
+        char *more = (char *)tl_grown(*bytes, &capacity, *count + TL_FILE_PART, 1);
+        if (!more) {
+            status = host->fail(host, TL_E_MEMORY, "file '%.200s': out of memory", file);
+            break;
+        }
+        *bytes = more;
+        *count += fread(more + *count, 1, capacity - 1 - *count, stream);
+        if (ferror(stream))
+            status = host->fail(host, TL_E_IO, "file '%.200s' cannot be read: %s", file,
+                                strerror(errno));
+        else if (*count > most)
+            status = host->fail(host, TL_E_IO, "file '%.200s' is larger than %zu bytes; divide it",
+                                file, most);
+    }
+    fclose(stream);
+    if (status == TL_OK)
+        (*bytes)[*count] = '\0';
+    return status;
+}
 
 /* ---------------------------------------------------------------- plane polygons --------- */
 

@@ -2,9 +2,7 @@
  * one byte (up to 007f) are taken. */
 #include "json.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/kit.h>
@@ -14,7 +12,6 @@
 /* Letters of the file that a message repeats. */
 #define MOST_SHOWN 12
 #define MOST_BYTES ((size_t)2 << 30)
-#define FIRST_BYTES ((size_t)64 << 10)
 
 typedef struct parser {
     json_tree *tree;
@@ -188,44 +185,10 @@ static tl_status read_value(parser *p, size_t index, int depth)
     return status;
 }
 
-/* The whole file with a zero byte after it. */
-static tl_status read_file(const json_tree *t, char **text, size_t *count)
-{
-    FILE *stream = fopen(t->file, "rb");
-    if (!stream)
-        return t->host->fail(t->host, TL_E_IO, "file '%.200s' cannot be opened: %s", t->file,
-                             strerror(errno));
-    tl_status status = TL_OK;
-    size_t capacity = 0;
-    while (status == TL_OK && !feof(stream)) {
-        if (*count + 1 >= capacity) {
-            capacity = capacity ? 2 * capacity : FIRST_BYTES;
-            bool large = capacity > MOST_BYTES;
-            char *more = large ? NULL : realloc(*text, capacity);
-            if (!more) {
-                status = t->host->fail(t->host, TL_E_MEMORY,
-                                       large ? "file '%.200s' is too large"
-                                             : "out of memory while file '%.200s' is read",
-                                       t->file);
-                break;
-            }
-            *text = more;
-        }
-        *count += fread(*text + *count, 1, capacity - 1 - *count, stream);
-        if (ferror(stream))
-            status = t->host->fail(t->host, TL_E_IO, "file '%.200s' cannot be read: %s", t->file,
-                                   strerror(errno));
-    }
-    fclose(stream);
-    if (status == TL_OK)
-        (*text)[*count] = '\0';
-    return status;
-}
-
 tl_status json_read(json_tree *t, char **text)
 {
-    size_t count = 0;
-    tl_status status = read_file(t, text, &count);
+    size_t count;
+    tl_status status = tl_file_bytes(t->host, t->file, MOST_BYTES, text, &count);
     if (status != TL_OK)
         return status;
     parser p = {.tree = t, .at = *text, .line = 1};

@@ -10,11 +10,9 @@
  * lines and points. */
 #include "mesh.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/number.h>
+#include <talus/kit.h>
 
 /* A whole file, followed by a zero byte. */
 typedef struct bytes {
@@ -34,47 +32,6 @@ typedef struct line {
 
 /* Larger files are refused: no model has blocks for them. */
 #define MOST_BYTES ((size_t)512 << 20)
-#define FIRST_BYTES ((size_t)64 << 10)
-
-static tl_status unread(const mesh *m, const char *what)
-{
-    return m->host->fail(m->host, TL_E_IO, "file '%.200s' cannot be %s: %s", m->file, what,
-                         strerror(errno));
-}
-
-static tl_status read_all(const mesh *m, FILE *stream, bytes *data)
-{
-    size_t capacity = 0;
-    while (!feof(stream)) {
-        if (data->count + 1 >= capacity) {
-            capacity = capacity ? 2 * capacity : FIRST_BYTES;
-            char *more = realloc(data->at, capacity);
-            if (!more)
-                return mesh_no_memory(m);
-            data->at = more;
-        }
-        data->count += fread(data->at + data->count, 1, capacity - 1 - data->count, stream);
-        if (ferror(stream))
-            return unread(m, "read");
-        if (data->count > MOST_BYTES)
-            return m->host->fail(m->host, TL_E_IO,
-                                 "file '%.200s' is larger than %zu bytes; divide it", m->file,
-                                 MOST_BYTES);
-    }
-    data->at[data->count] = '\0';
-    return TL_OK;
-}
-
-static tl_status file_read(const mesh *m, bytes *data)
-{
-    *data = (bytes){NULL, 0};
-    FILE *stream = fopen(m->file, "rb");
-    if (!stream)
-        return unread(m, "opened");
-    tl_status status = read_all(m, stream, data);
-    fclose(stream);
-    return status;
-}
 
 /* Whether a letter is a space of ASCII. */
 static bool text_space(char letter)
@@ -361,7 +318,7 @@ tl_status mesh_read(mesh *m)
     if (!stl && !ends_in(m->file, ".obj"))
         return m->host->fail(m->host, TL_E_ARGUMENT, "file '%.200s' does not end in .stl or .obj",
                              m->file);
-    tl_status status = file_read(m, &data);
+    tl_status status = tl_file_bytes(m->host, m->file, MOST_BYTES, &data.at, &data.count);
     if (status == TL_OK)
         status = stl ? read_stl(m, &data) : read_obj(m, &data);
     free(data.at);

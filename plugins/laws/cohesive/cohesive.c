@@ -161,7 +161,7 @@ TL_IN_LOOP double most_pulled(double kn, double edge, double initial, double mea
 }
 
 /* The law for up to TL_LANES points from `begin`. A NaN goes through all comparisons to the forces, where the host
- * finds it. `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. */
+ * finds it. `mark` is for tl_law_put_flags. */
 TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t begin,
                      uint32_t lanes, double *restrict mark, double *restrict stored,
                      double *restrict dissipated)

@@ -28,9 +28,6 @@
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Lanes worked on at a time: none of them slips, or all are looked at for slip. */
-#define STRIDE TL_LANES
-
 typedef struct params {
     double kn, ks, friction, cohesion, dilation, dilation_limit;
 } params;
@@ -107,20 +104,16 @@ TL_IN_LOOP bool stick(const coulomb *law, const tl_law_batch *batch, uint32_t be
         c.f_z[i] = tz[i];
         mark[i] = total[i] < 0 ? TL_POINT_OPEN : 0;
     }
-    uint32_t *restrict flags = batch->flags + begin;
-#pragma omp simd
-    for (uint32_t i = 0; i < TL_LANES; i++)
-        flags[i] = (uint32_t)(int32_t)mark[i];
+    tl_law_put_flags(batch, begin, TL_LANES, mark);
     if (batch->dissipated)
         memset(batch->dissipated + begin, 0, TL_LANES * sizeof *batch->dissipated);
     return true;
 }
 
-/* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
- * so that the loop exists once for each and none has a branch in it; without dilation the opening of
- * slip in the past still counts. A NaN goes through
- * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
- * over lanes of two widths is not vectorised for every machine. */
+/* The law itself, for up to TL_LANES lanes from `begin`. `heat` and `dilates` are constants at each call, so that the
+ * loop exists once for each and none has a branch in it; without dilation the opening of slip in the past still
+ * counts. A NaN goes through all comparisons to the forces, where the host finds it. `mark` is for
+ * tl_law_put_flags. */
 TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                      double *restrict mark, const int heat, const int dilates)
 {
@@ -158,11 +151,11 @@ TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t beg
     }
 }
 
-/* The law for up to STRIDE lanes from `begin`; a constant number of them at each call. */
+/* The law for up to TL_LANES lanes from `begin`; a constant number of them at each call. */
 TL_IN_LOOP void update_lanes(const coulomb *law, const tl_law_batch *batch, uint32_t begin,
                              uint32_t lanes)
 {
-    double mark[STRIDE];
+    double mark[TL_LANES];
     if (law->dilation.tangent > 0 && batch->dissipated)
         move(law, batch, begin, lanes, mark, 1, 1);
     else if (law->dilation.tangent > 0)
@@ -181,10 +174,10 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
     (void)report;
     const coulomb *law = self;
     uint32_t begin = 0;
-    for (; begin + STRIDE <= batch->count; begin += STRIDE) {
+    for (; begin + TL_LANES <= batch->count; begin += TL_LANES) {
         if (!stick(law, batch, begin))
-            update_lanes(law, batch, begin, STRIDE);
-        tl_law_store_energy(batch, begin, STRIDE, law->kn, law->ks);
+            update_lanes(law, batch, begin, TL_LANES);
+        tl_law_store_energy(batch, begin, TL_LANES, law->kn, law->ks);
     }
     if (begin < batch->count) {
         update_lanes(law, batch, begin, batch->count - begin);

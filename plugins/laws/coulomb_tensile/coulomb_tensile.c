@@ -112,9 +112,9 @@ TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, doub
 /* The law itself, for up to TL_LAW_STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call, so that
  * the loop exists once for each and none has a branch in it; without dilation the opening of slip in the past still
  * counts. A NaN goes through all comparisons to the forces, where the host finds it. `mark` is given 1 of walls that
- * were apart and have not met since, else 0, and takes the flags as doubles: a loop over lanes of two widths is not
- * vectorised for every machine. `more` takes the energy beyond that of the sum f_n: P Q / (kn A) of points of which a
- * part presses and another pulls, and that of a share that pulls alone. */
+ * were apart and have not met since, else 0, and is then for tl_law_put_flags. `more` takes the energy beyond that of
+ * the sum f_n: P Q / (kn A) of points of which a part presses and another pulls, and that of a share that pulls
+ * alone. */
 TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                      double *restrict mark, double *restrict more, const int heat,
                      const int dilates)

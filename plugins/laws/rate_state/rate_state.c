@@ -228,8 +228,7 @@ TL_IN_LOOP void find_rates(const params *given, double dt, uint32_t lanes, trial
     }
 }
 
-/* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not
- * vectorised for every machine. */
+/* Forces, states, energies and flags; `mark` is for tl_law_put_flags. */
 TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, const trial *restrict t, double *restrict mark,
                        double *restrict stored, double *restrict dissipated, const int evolution)

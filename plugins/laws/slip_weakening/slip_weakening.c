@@ -249,8 +249,7 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
     }
 }
 
-/* Forces, heat and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
- * every machine. */
+/* Forces, heat and flags; `mark` is for tl_law_put_flags. */
 TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, const trial *restrict t, double *restrict mark,
                        const int heat)

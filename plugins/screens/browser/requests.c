@@ -8,11 +8,12 @@
  * needs none, for it holds nothing of the run. A body that is not long is read to its end before the answer. A
  * connection that is closed before is reset, and the answer lost. Every answer but the frames closes its connection, so
  * that none is kept for nothing. A request that is no HTTP gets the library's own answer, which holds nothing. */
+#define _DEFAULT_SOURCE /* strcasecmp */
 #include "server.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Bytes of a body that are read, to be thrown away, where a request is refused. */
 #define MOST_READ 65536
@@ -33,23 +34,22 @@ typedef struct request {
 
 /* ---------------------------------------------------------------- answers ---------------- */
 
-static void add_headers(struct MHD_Response *response, const char *type)
+/* Sends a response, which is NULL without memory, and lets go of it. */
+static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned status,
+                                     struct MHD_Response *response, const char *type, bool closes)
 {
     static const char *const headers[][2] = {{"X-Frame-Options", "DENY"},
                                              {"X-Content-Type-Options", "nosniff"},
                                              {"Cross-Origin-Resource-Policy", "same-origin"},
                                              {"Referrer-Policy", "no-referrer"},
                                              {"Cache-Control", "no-store"}};
+    if (!response)
+        return MHD_NO;
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
         MHD_add_response_header(response, headers[i][0], headers[i][1]);
     MHD_add_response_header(response, "Content-Type", type);
-}
-
-static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned status,
-                                     struct MHD_Response *response)
-{
-    if (!response)
-        return MHD_NO;
+    if (closes)
+        MHD_add_response_header(response, "Connection", "close");
     enum MHD_Result result = MHD_queue_response(connection, status, response);
     MHD_destroy_response(response);
     return result;
@@ -61,24 +61,16 @@ static enum MHD_Result say(struct MHD_Connection *connection, unsigned status, c
 {
     struct MHD_Response *response = MHD_create_response_from_buffer(
         strlen(text), (void *)(uintptr_t)text, MHD_RESPMEM_MUST_COPY);
-    if (response) {
-        add_headers(response, "text/plain; charset=utf-8");
-        MHD_add_response_header(response, "Connection", "close");
-        if (allow)
-            MHD_add_response_header(response, "Allow", allow);
-    }
-    return send_response(connection, status, response);
+    if (response && allow)
+        MHD_add_response_header(response, "Allow", allow);
+    return send_response(connection, status, response, "text/plain; charset=utf-8", true);
 }
 
 static enum MHD_Result send_page(const server *s, struct MHD_Connection *connection)
 {
     struct MHD_Response *response =
         MHD_create_response_from_buffer(s->page_length, s->page, MHD_RESPMEM_PERSISTENT);
-    if (response) {
-        add_headers(response, "text/html; charset=utf-8");
-        MHD_add_response_header(response, "Connection", "close");
-    }
-    return send_response(connection, MHD_HTTP_OK, response);
+    return send_response(connection, MHD_HTTP_OK, response, "text/html; charset=utf-8", true);
 }
 
 /* ---------------------------------------------------------------- frames ----------------- */
@@ -142,9 +134,7 @@ static enum MHD_Result send_frames(server *s, struct MHD_Connection *connection,
     MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     struct MHD_Response *response =
         MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, AT_ONCE, read_frames, r->seat, NULL);
-    if (response)
-        add_headers(response, "application/octet-stream");
-    return send_response(connection, MHD_HTTP_OK, response);
+    return send_response(connection, MHD_HTTP_OK, response, "application/octet-stream", false);
 }
 
 /* ---------------------------------------------------------------- commands --------------- */
@@ -181,19 +171,13 @@ static enum MHD_Result find_header(void *cls, enum MHD_ValueKind kind, const cha
 {
     (void)kind;
     header *wanted = cls;
-    for (const char *a = name, *b = wanted->name;; a++, b++) {
-        char lower = *a >= 'A' && *a <= 'Z' ? (char)(*a - 'A' + 'a') : *a;
-        if (lower != *b)
-            return MHD_YES;
-        if (*b == '\0')
-            break;
+    if (strcasecmp(name, wanted->name) == 0) {
+        wanted->value = value ? value : "";
+        wanted->count++;
     }
-    wanted->value = value ? value : "";
-    wanted->count++;
     return MHD_YES;
 }
 
-/* `name` in small letters. */
 static header header_of(struct MHD_Connection *connection, const char *name)
 {
     header wanted = {name, NULL, 0};
