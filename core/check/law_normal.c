@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Tolerance: share of the closures by which the slope of `pressed` is found, and its relative error, and that of an initial
- * force. Test: unit/test_check. */
+/* Tolerance: share of the closures by which the slope of `pressed` is found, and its relative error, and that of an
+ * initial force. Test: unit/test_check. */
 #define SMALL 1e-4
 #define SLOPE_ERROR 1e-3
 /* Tolerance: the same of forces and energies that are compared, which differ by roundings of closures. Test:

@@ -19,9 +19,9 @@
 /* Corners of a path, and steps from one to the next. */
 #define CORNERS 7
 #define STEPS 150
-/* Tolerance: energy that may seem to be made or lost, relative to the work of all steps: the error of the sum, where forces bend,
- * and of steps with heat, in which forces bend less. A heat by the force at the end of a step errs by more.
- * Test: unit/test_check. */
+/* Tolerance: energy that may seem to be made or lost, relative to the work of all steps: the error of the sum, where
+ * forces bend, and of steps with heat, in which forces bend less. A heat by the force at the end of a step errs by
+ * more. Test: unit/test_check. */
 #define ERROR 2e-3
 #define HEAT_ERROR 2e-4
 /* Tolerance: heat of a step, of its work, below which it is rounding. */
@@ -229,8 +229,8 @@ static void check_energy(tl_law_trial *t)
 #define COARSE 12
 #define FINE 96
 #define TIME (FINE * TL_CHECK_DT)
-/* Tolerance: share of the force by which the two may differ, for the path in few steps is not exact. Where a joint jumps they
- * differ by more, so that most points that slip must, and some number of them. Test: unit/test_check. */
+/* Tolerance: share of the force by which the two may differ, for the path in few steps is not exact. Where a joint
+ * jumps they differ by more, so that most points that slip must, and some number of them. Test: unit/test_check. */
 #define DIFFERENCE 0.1
 #define SOME 12
 /* Tolerance: share of the stress that the path leads to below which a stress is none. */

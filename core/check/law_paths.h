@@ -4,7 +4,7 @@
 
 #include "check/law_points.h"
 
-/* The work on paths of motion is stored or turned to heat, closed ones give no energy, and shear in steps of another
+/* The work on paths of motion is stored or turned to heat, and closed ones give no energy. Shear in steps of another
  * length leads to the same forces. */
 void tl_law_check_paths(tl_law_trial *t);
 

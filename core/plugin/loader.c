@@ -401,8 +401,8 @@ typedef struct search {
     dev_t device[MOST_FOLDERS];
     ino_t inode[MOST_FOLDERS];
     size_t count;
-    bool
-        again; /* a search before this one ran out of memory: what it has recorded is not tried again */
+    /* a search before this one ran out of memory: what it has recorded is not tried again */
+    bool again;
     bool short_of_memory; /* something was left out for want of it */
 } search;
 

@@ -1,7 +1,7 @@
 /* talus/boundary.h - the outer faces of a model: which they are, holding their blocks, loading them.
  *
- * A face is an outer face as far as it lies neither on a block of another body nor on one of its own body. All blocks count,
- * hidden ones, too. Faces that are not flush, and gaps wider than contacts reach, leave both sides bare. */
+ * A face is an outer face as far as it lies neither on a block of another body nor on one of its own body. All blocks
+ * count, hidden ones, too. Faces that are not flush, and gaps wider than contacts reach, leave both sides bare. */
 #ifndef TALUS_BOUNDARY_H
 #define TALUS_BOUNDARY_H
 
@@ -69,18 +69,18 @@ typedef struct tl_boundary_result {
     tl_vec3 moment; /* of the load about {0, 0, 0}, N m */
 } tl_boundary_result;
 
-/* Finds the faces of each action, TL_E_NOT_FOUND when there is none, and does what they say: all of them or none. What the
- * actions put on one body adds up; it takes the place of the load the body had or, with `add`, is added to that. As with
- * tl_blocks_load the force keeps its direction and its point goes with the body. Where a face is cut, its parts get their shares:
- * for a traction that is uniform, or normal and linear, what it is on each. Free the results with tl_boundary_free, one
- * by one; a failed call leaves them empty. `results` may be NULL. */
+/* Finds the faces of each action, TL_E_NOT_FOUND when there is none, and does what they say: all of them or none. What
+ * the actions put on one body adds up; it takes the place of the load the body had or, with `add`, is added to that. As
+ * with tl_blocks_load the force keeps its direction and its point goes with the body. Where a face is cut, its parts
+ * get their shares: for a traction that is uniform, or normal and linear, what it is on each. Free the results with
+ * tl_boundary_free, one by one; a failed call leaves them empty. `results` may be NULL. */
 TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count,
                                    bool add, tl_boundary_result *results);
 /* Frees the lists of a result and empties it. NULL and an empty one are left alone. */
 TL_API void tl_boundary_free(tl_boundary_result *result);
 
-/* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts, in the last step,
- * weight and load put on them, the other way. Each body counts once; inertia of driven ones does not. */
+/* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts, in the last
+ * step, weight and load put on them, the other way. Each body counts once; inertia of driven ones does not. */
 TL_API tl_status tl_blocks_reaction(tl_model *model, const tl_id *ids, size_t count,
                                     tl_vec3 *force);
 

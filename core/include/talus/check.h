@@ -1,8 +1,8 @@
 /* talus/check.h - the conformance check of plugins, which `talus check FILE.so` runs.
  *
- * Each law, damping and generator of the file is tried with several sets of parameters: its defaults, the values given, and
- * drawn ones within the ranges it declares. A screen is tried with its defaults and the values given. docs/writing_a_plugin.md
- * says what each check asks. */
+ * Each law, damping and generator of the file is tried with several sets of parameters: its defaults, the values given,
+ * and drawn ones within the ranges it declares. A screen is tried with its defaults and the values given.
+ * docs/writing_a_plugin.md says what each check asks. */
 #ifndef TALUS_CHECK_H
 #define TALUS_CHECK_H
 

@@ -5,7 +5,7 @@
  * define to the bit, in one fixed order. Build with -ffp-contract=off.
  *
  * Each function reduces its argument to a small interval, sums the Taylor series there, and carries the
- * rounding of its largest term in a second number. Each function states its largest error in units in the last
+ * rounding of its largest term along. Each function states its largest error in units in the last
  * place (ulp), which tests/unit/test_elementary.c measures against long double.
  *
  * The functions tl_lane_* are for loops over columns: they have no branch, no call and no fma, so that compilers make
@@ -132,8 +132,8 @@ static inline double tl_tan(double x)
 
 /* ---------------------------------------------------------------- arc tangent, arc sine -- */
 
-/* atan(y / x) for 0 <= y <= x, x > 0 and neither near the ends of the range: atan(k/8) + atan t, with t the tangent of the
- * rest, |t| <= 1/16. */
+/* atan(y / x) for 0 <= y <= x, x > 0 and neither near the ends of the range: atan(k/8) + atan t, with t the tangent of
+ * the rest, |t| <= 1/16. */
 static inline tl_sum2 tl_arc_of(double y, double x)
 {
     static const tl_sum2 table[9] = {{0, 0},

@@ -1,7 +1,7 @@
 /* talus/history.h - samples of a value while a model runs. Included by talus.h.
  *
- * The kernel keeps histories with their model, so that copies and files have them. It takes no sample itself: the program that
- * runs the model does, as `model:history{...}` of Lua. A history changes nothing of a run. */
+ * The kernel keeps histories with their model, so that copies and files have them. It takes no sample itself: the
+ * program that runs the model does, as `model:history{...}` of Lua. A history changes nothing of a run. */
 #ifndef TALUS_HISTORY_H
 #define TALUS_HISTORY_H
 
@@ -53,9 +53,9 @@ typedef struct tl_history {
     double *times, *values;        /* s; width numbers for each sample */
 } tl_history;
 
-/* Makes a history without samples at the end of the model's list: `what` gives its name, asked, every, source, take, selection
- * and ids, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a name that is empty, not of one
- * line, or that of another history; every < 1; no ids. `made` may be NULL. */
+/* Makes a history without samples at the end of the model's list: `what` gives its name, asked, every, source, take,
+ * selection and ids, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a name that is
+ * empty, not of one line, or that of another history; every < 1; no ids. `made` may be NULL. */
 TL_API tl_status tl_history_add(struct tl_model *model, const tl_history *what, tl_history **made);
 /* Ends history i, with its samples. */
 TL_API void tl_history_end(struct tl_model *model, size_t i);

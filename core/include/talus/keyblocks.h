@@ -1,4 +1,5 @@
-/* talus/keyblocks.h - blocks that a translation can move out of the others, and their factors of safety. Included by talus.h.
+/* talus/keyblocks.h - blocks that a translation can move out of the others, and their factors of safety. Included by
+ * talus.h.
  *
  * Source: Goodman and Shi, "Block theory and its application to rock engineering" (1985). */
 #ifndef TALUS_KEYBLOCKS_H
@@ -62,8 +63,8 @@ typedef struct tl_keyblocks {
     size_t edge_count;
 } tl_keyblocks;
 
-/* Finds the removable ones of the bodies that can move and are not driven (Shi's theorem), as they lay when they were
- * made, or as they lie now where they have moved by more than 1 % of their size. */
+/* Finds the removable ones of the bodies that can move and are not driven (Shi's theorem). Bodies are taken as they lay
+ * when they were made, those that have moved by more than 1 % of their size as they lie now. */
 TL_API tl_status tl_model_keyblocks(struct tl_model *model, const tl_keyblock_query *query,
                                     tl_keyblocks *keyblocks);
 /* Frees the lists of a result and empties it. */

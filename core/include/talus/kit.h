@@ -201,8 +201,8 @@ TL_IN_LOOP tl_law_columns tl_law_columns_from(const tl_law_batch *batch, uint32_
  * cache. */
 #define TL_LAW_STRIDE 64u
 typedef double tl_law_scratch[TL_LAW_STRIDE];
-/* Tolerance: scaling a force down to its limit leaves it within 2 roundings of it. Without this margin a point at rest would be
- * scaled down by a rounding in every step. */
+/* Tolerance: scaling a force down to its limit leaves it within 2 roundings of it. Without this margin a point at rest
+ * would be scaled down by a rounding in every step. */
 #define TL_LAW_ROUNDING 1e-15
 
 /* The largest shear force, N, that does not slip at that limit. */

@@ -1,7 +1,7 @@
 /* talus/law_test.h - a joint law tried on one contact point, as a joint is in a laboratory.
  *
- * The point stands for an area of 1 m2 between two flat walls. It is pressed together by a constant normal stress, by
- * surroundings of constant normal stiffness, or by a given closure, and led through a path of legs. Joint stresses and
+ * The point stands for an area of 1 m2 between two flat walls. It is led through a path of legs. A constant
+ * normal stress, surroundings of constant normal stiffness or a given closure press it together. Joint stresses and
  * closure are compression positive. Shear stress and shear displacement of the upper wall have the same sign where the
  * joint resists. */
 #ifndef TALUS_LAW_TEST_H
@@ -37,8 +37,7 @@ typedef struct tl_law_test {
     double stiffness;
     double speed;  /* m/s */
     int64_t steps; /* of a leg */
-    int64_t
-        every; /* steps from one point of the curve to the next; the end of a leg always is one */
+    int64_t every; /* steps from one point of the curve to the next; the end of a leg is one */
     const tl_law_leg *path;
     size_t count;
 } tl_law_test;
@@ -58,8 +57,9 @@ typedef struct tl_law_point {
 
 /* Number of points of the curve: the start, and those of the legs. Fails on a path that cannot be walked. */
 TL_API tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_error *error);
-/* Runs the test. `points` has room for that many; `ends`, unless NULL, gets for each leg the index of its last point, and
- * `law` the kind that was tried. Shear acts along x, the normal is z: a tangent state has its columns in this order. */
+/* Runs the test. `points` has room for that many; `ends`, unless NULL, gets for each leg the index of its last point,
+ * and `law` the kind that was tried. Shear acts along x, the normal is z: a tangent state has its columns in this
+ * order. */
 TL_API tl_status tl_law_test_run(const tl_law_test *test, tl_law_point *points, size_t *ends,
                                  const tl_kind **law, tl_error *error);
 

@@ -1,12 +1,12 @@
-/* number.h - the one reader and the one writer of numbers as text. Neither depends on the locale of the process, which may
- * have a decimal comma.
+/* number.h - the one reader and the one writer of numbers as text. Neither depends on the locale of the process, which
+ * may have a decimal comma.
  *
- * The reader gives the C library no decimal point: it writes 12.5e300 as 125e299 and hands that to strtod, which rounds to the
- * nearest double. The writer hands one conversion after the other to snprintf. In the text of a floating one, whatever is
- * neither digit, letter, sign nor space is the locale's decimal point, and becomes '.'.
+ * The reader gives the C library no decimal point: it writes 12.5e300 as 125e299 and hands that to strtod, which rounds
+ * to the nearest double. The writer hands one conversion after the other to snprintf. In the text of a floating one,
+ * whatever is neither digit, letter, sign nor space is the locale's decimal point, and becomes '.'.
  *
- * Both are functions of their arguments alone: they may be called by several threads, and while the locale changes. They
- * need no memory. */
+ * Both are functions of their arguments alone: they may be called by several threads, and while the locale changes.
+ * They need no memory. */
 #ifndef TALUS_NUMBER_H
 #define TALUS_NUMBER_H
 
@@ -21,11 +21,11 @@
 
 /* ---------------------------------------------------------------- reading ---------------- */
 
-/* Digits that decide how a decimal number is rounded to a double: half-way between two doubles there are at most 767. Of
- * what follows only counts whether it is zero. */
+/* Digits that decide how a decimal number is rounded to a double: half-way between two doubles there are at most 767.
+ * Of what follows only counts whether it is zero. */
 #define TL_DECIMAL_DIGITS 800
-/* Exponents of ten are read up to this; all that is beyond is zero or infinite, with any number of digits that fits into
- * memory. */
+/* Exponents of ten are read up to this; all that is beyond is zero or infinite, with any number of digits that fits
+ * into memory. */
 #define TL_DECIMAL_EXPONENT 1000000000000000
 
 /* Reads an exponent such as e-3 at `text`, if there is one; gives the text after it. */
@@ -91,8 +91,8 @@ static inline const char *tl_decimal_read(const char *text, tl_decimal *d)
     return at;
 }
 
-/* The double nearest to a decimal number. Whole numbers of up to 15 digits and powers of ten up to 22 are doubles, whose
- * product or quotient IEEE 754 rounds as it should be; others are left to strtod. */
+/* The double nearest to a decimal number. Whole numbers of up to 15 digits and powers of ten up to 22 are doubles. IEEE
+ * 754 rounds their product or quotient as it should be; others are left to strtod. */
 static inline double tl_decimal_value(tl_decimal *d)
 {
     static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -145,8 +145,8 @@ static inline double tl_number_read(const char *text, const char **end)
 
 /* ---------------------------------------------------------------- writing ---------------- */
 
-/* Bytes of the longest text of one floating conversion: the 309 digits of the largest double, and as many as anybody wants
- * behind the point. Longer ones are cut off. */
+/* Bytes of the longest text of one floating conversion: the 309 digits of the largest double, and as many as anybody
+ * wants behind the point. Longer ones are cut off. */
 #define TL_DECIMAL_TEXT 512
 
 /* What is written, where, and how long it would be where there is room for all. */

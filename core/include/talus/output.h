@@ -31,8 +31,8 @@ typedef struct tl_vtk_parts {
     const tl_extra_field *block_fields, *contact_fields; /* the latter go to contacts and joints */
     size_t block_field_count, contact_field_count;
 } tl_vtk_parts;
-/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`, and
- * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
+/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`,
+ * and PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
 TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix,
                               const tl_vtk_parts *parts);
 
@@ -54,16 +54,17 @@ typedef struct tl_html {
     const struct tl_keyblocks *keyblocks; /* NULL: none */
     double safety_limit; /* factor of safety that is asked for, marked in the legend; 0: none */
 } tl_html;
-/* Adds a frame to the page PREFIX.html, for a browser (docs/screen.md). The first frame of a model replaces what is there.
- * Later ones go on with the page where it is as the model left it, else they begin it anew. A page of more than 200 MB is
- * refused (TL_E_ARGUMENT). */
+/* Adds a frame to the page PREFIX.html, for a browser (docs/screen.md). The first frame of a model replaces what is
+ * there. Later ones go on with the page where it is as the model left it, else they begin it anew. A page of more than
+ * 200 MB is refused (TL_E_ARGUMENT). */
 TL_API tl_status tl_write_html(struct tl_model *model, const char *prefix, const tl_html *options);
 
 /* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator of
  * that format makes them again. */
 TL_API tl_status tl_write_blocks(struct tl_model *model, const char *path);
 
-/* Writes a file of `length` bytes, whole or not at all, making the folders on the way. Only a regular file is replaced. */
+/* Writes a file of `length` bytes, whole or not at all, making the folders on the way. Only a regular file is
+ * replaced. */
 TL_API tl_status tl_write_file(const char *path, const void *data, size_t length, tl_error *error);
 
 #ifdef __cplusplus

@@ -4,16 +4,16 @@
  *
  *     const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor);
  *
- * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a
- * plugin creates nothing. The descriptor lists *kinds*: laws, dampings, generators and screens, each with its parameters
- * (checked, defaulted and documented by the host from one table), its states (owned, carried over,
- * saved and written by the host) and its operations.
+ * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a plugin creates
+ * nothing. The descriptor lists *kinds*: laws, dampings, generators and screens, each with its parameters, states and
+ * operations. The host checks, defaults and documents parameters from one table. It owns states, carries them over,
+ * saves and writes them.
  *
  * Growth: every struct begins with its `size` and every array carries a stride, so a newer host
  * reads an older plugin. The major version must match; a minor version only appends.
  *
- * Threads: a function marked [main] runs on the main thread, one marked [worker] runs on several
- * threads at once and must be a pure function of what it is given.
+ * Threads: a function marked [main] runs on the main thread. One marked [worker] runs on several threads at once and
+ * must be a pure function of what it is given.
  *
  * Errors: a function returns TL_OK, or another status after putting one sentence (and the first
  * bad index) into the report. The host adds plugin, joint, blocks, cycle and script line. */
@@ -85,11 +85,11 @@ enum {
     TL_PARAM_OPTIONAL = 2, /* may be missing, and has no default */
     TL_PARAM_MIN_OPEN = 4, /* value > min instead of >= */
     TL_PARAM_MAX_OPEN = 8, /* value < max instead of <= */
-    TL_PARAM_FLAT =
-        128, /* since 1.6, of points: rows of two numbers, {{1, 2}, ...}; the third is 0 */
-    TL_PARAM_FILE =
-        16 /* since 1.3, of a string: a file that is read. The host refuses pipes, devices and folders, so that
-                          opening it does not wait */
+    /* since 1.6, of points: rows of two numbers, {{1, 2}, ...}; the third is 0 */
+    TL_PARAM_FLAT = 128,
+    /* since 1.3, of a string: a file that is read. The host refuses pipes, devices and folders, whose opening may
+     * wait */
+    TL_PARAM_FILE = 16
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
@@ -129,9 +129,10 @@ typedef enum tl_state_kind {
 /* What becomes of a state when the contact polygon changes. */
 typedef enum tl_state_transfer {
     TL_TRANSFER_COPY, /* intensive: the mean over the area that the point gets, within what there was */
-    TL_TRANSFER_SPLIT,  /* extensive: the sum goes with the area */
-    TL_TRANSFER_RESET,  /* back to the initial value */
-    TL_TRANSFER_ENERGY, /* 1.8, a scalar, J: what shear holds beyond f^2 / (2 ks area); the host keeps its sum over the points */
+    TL_TRANSFER_SPLIT, /* extensive: the sum goes with the area */
+    TL_TRANSFER_RESET, /* back to the initial value */
+    /* 1.8, a scalar, J: what shear holds beyond f^2 / (2 ks area); the host keeps its sum over the points */
+    TL_TRANSFER_ENERGY,
     TL_TRANSFER_LIFT /* 1.8, >= 0: what the normal force is linear in; its moments over the area stay, too */
 } tl_state_transfer;
 
@@ -146,8 +147,8 @@ typedef struct tl_state {
     double initial;
 } tl_state;
 
-/* Declares one row of a state table: TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"). It is copied from
- * old points and begins at 0, unless .transfer or .initial follow the sentence. */
+/* Declares one row of a state table: TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"). It is copied
+ * from old points and begins at 0, unless .transfer or .initial follow the sentence. */
 #define TL_STATE(kind_, name_, unit_, ...)                                                         \
     {                                                                                              \
         .size = sizeof(tl_state), .kind = (kind_), .name = (name_), .unit = (unit_),               \
@@ -169,19 +170,18 @@ enum {
     TL_POINT_SLIPPING = 1, /* shear force at its limit in this step */
     TL_POINT_OPEN = 2,     /* carries nothing */
     TL_POINT_FAILED = 4,   /* bond lost; stays set */
-    TL_POINT_APART =
-        8 /* set by the host on a point made while the walls were apart (since 1.1): they
-                              were never bonded. The law clears it, or keeps it until they meet */
+    /* since 1.1: set by the host on a point made while the walls were apart: they were never bonded. The law clears it,
+     * or keeps it until they meet */
+    TL_POINT_APART = 8
 };
 
-/* Contact points under the law of one joint, with one set of properties, as columns. Every column has `count` entries, a
- * multiple of TL_LANES, aligned to TL_ALIGN bytes, padded with inert lanes (area 0), so loops need no tail.
+/* Contact points under the law of one joint, with one set of properties, as columns. Every column has `count` entries,
+ * a multiple of TL_LANES, aligned to TL_ALIGN bytes, padded with inert lanes (area 0), so loops need no tail.
  *
- * Signs: the unit normal n points from block A to block B; forces are those on B. Normal force and
- * closure are compression positive; closure is how far the walls have approached since the
- * reference state. du is the motion of B relative to A during dt (1-4 of Hart, Cundall and Lemos
- * 1988), closing is negative du_n. f_s comes in already turned into the new common plane and
- * scaled to the new area (5). */
+ * Signs: the unit normal n points from block A to block B; forces are those on B. Normal force and closure are
+ * compression positive; closure is how far the walls have approached since the reference state. du is the motion of B
+ * relative to A during dt (1-4 of Hart, Cundall and Lemos 1988), closing is negative du_n. f_s comes in already turned
+ * into the new common plane and scaled to the new area (5). */
 typedef struct tl_law_batch {
     uint32_t size;
     uint32_t count;
@@ -198,17 +198,19 @@ typedef struct tl_law_batch {
     uint32_t *flags;         /* in/out */
     double *stored;          /* out, or NULL: elastic energy, J */
     double *dissipated;      /* out, or NULL: energy turned to heat in this step, J */
-    /* since 1.4: m, closure at the outermost fibre of the area that a point stands for, where that is least. Points of a patch
-     * are drawn in from its corners and edges; a bond begins to break there. The closure itself for points that stand alone. */
+    /* since 1.4: m, closure at the outermost fibre of the area that a point stands for, where that is least. Points of
+     * a patch are drawn in from its corners and edges; a bond begins to break there. The closure itself for points that
+     * stand alone. */
     const double *closure_edge;
-    /* since 1.8: m, >= 0. Where a joint opens from one side, the area of a point may be closed in part. Then `closure` is that
-     * of the closed part, and `closure_apart` how far the other part is apart, both as means over the whole area:
+    /* since 1.8: m, >= 0. Where a joint opens from one side, the area of a point may be closed in part. Then `closure`
+     * is that of the closed part, and `closure_apart` how far the other part is apart, both as means over the whole
+     * area:
      *
      *     closure + lift = (1 / A) int max(0, o + lift) dA,    closure_apart = (1 / A) int max(0, -o - lift) dA
      *
-     * with o the closure from place to place and the lift of `across_gap`. A law without tension has the right force from
-     * `closure` alone; one that pulls with a share `hold` of its area takes hold * closure_apart from it. 0 where the area is
-     * wholly closed or wholly apart. */
+     * with o the closure from place to place and the lift of `across_gap`. A law without tension has the right force
+     * from `closure` alone; one that pulls with a share `hold` of its area takes hold * closure_apart from it. 0 where
+     * the area is wholly closed or wholly apart. */
     const double *closure_apart;
 } tl_law_batch;
 
@@ -231,26 +233,29 @@ typedef struct tl_law_ops {
     void (*stiffness)(const void *self, double *kn, double *ks);
     /* [main] */
     void (*destroy)(void *self);
-    /* [main] since 1.2; may be NULL. 1: with these parameters the law does not write to its states, and they are 0 unless
-     * other parameters have made them something else. The host then need not keep them: they are 0 in the batch. */
+    /* [main] since 1.2; may be NULL. 1: with these parameters the law does not write to its states, and they are 0
+     * unless other parameters have made them something else. The host then need not keep them: they are 0 in the
+     * batch. */
     int (*stateless)(const void *self);
-    /* since 1.3; not 0: `update` always returns TL_OK. A step in which a law or the damping fails is undone; of those that
-     * cannot fail the host need not keep what that takes, up to a fifth of the time of a step. */
+    /* since 1.3; not 0: `update` always returns TL_OK. A step in which a law or the damping fails is undone; of those
+     * that cannot fail the host need not keep what that takes, up to a fifth of the time of a step. */
     uint32_t never_fails;
     /* [main] since 1.4; may be NULL, which is TL_PULL_ANY. TL_PULL_*, with these parameters. */
     uint32_t (*pulls)(const void *self);
-    /* [worker] since 1.8; may be NULL. What points carry where their walls are apart, from the batch's area, f_n0, state and
-     * flags; its other columns are NULL. `lift`, m: a point carries no pressure at closures below -lift; NULL gives
-     * f_n0 / (kn A), so a law whose slip opens the joint, or whose initial force does not belong to that closure, has to tell.
-     * `hold`, 0 to 1: the share of the tension in a part apart that the point carries; NULL gives 0. Padding lanes get any
-     * number. */
+    /* [worker] since 1.8; may be NULL. What points carry where their walls are apart, from the batch's area, f_n0,
+     * state and flags; its other columns are NULL. `lift`, m: a point carries no pressure at closures below -lift; NULL
+     * gives f_n0 / (kn A). So a law has to tell whose slip opens the joint, or whose initial force is not that of this
+     * closure. `hold`, 0 to 1: the share of the tension in a part apart that the point carries; NULL gives 0. Padding
+     * lanes get any number. */
     void (*across_gap)(const void *self, const tl_law_batch *batch, double *lift, double *hold);
-    /* since 1.8; not 0: what presses has the normal force kn A u, with the kn of stiffness() and u the closure and lift */
+    /* since 1.8; not 0: what presses has the normal force kn A u, with the kn of stiffness() and u the closure and
+     * lift */
     uint32_t linear;
-    /* since 1.8, for a law that is not linear; may be NULL: energy, J, of what presses at the closure, as it is part of `stored`.
-     * The batch has the columns area, closure, f_n0, state and flags, and f_n, into which the normal force that belongs to the energy
-     * may be written, for all points or for none; without it the host asks at two closures more for their difference. Where edges and
-     * corners press, the host needs this to make the force the gradient of an energy; else some energy is lost or made there. */
+    /* since 1.8, for a law that is not linear; may be NULL: energy, J, of what presses at the closure, as it is part of
+     * `stored`. The batch has the columns area, closure, f_n0, state, flags and f_n. Into f_n the normal force that
+     * belongs to the energy may be written, for all points or for none; without it the host asks at two closures more
+     * for their difference. Where edges and corners press, the host needs this to make the force the gradient of an
+     * energy; else some energy is lost or made there. */
     void (*pressed)(const void *self, const tl_law_batch *batch, double *energy);
 } tl_law_ops;
 
@@ -379,10 +384,9 @@ struct tl_host {
     void (*log)(const tl_host *, const char *format, ...) TL_PRINTF(2, 3);
     /* Puts a sentence into the error and returns `status`. */
     tl_status (*fail)(const tl_host *, tl_status status, const char *format, ...) TL_PRINTF(3, 4);
-    /* since minor 1: as `cut`, by a disc of `radius` about `point` (INFINITY: the whole plane). A block is
-     * in the disc's path when the disc reaches into the polygon in which the plane cuts the block, and
-     * is then cut through. `met`, which may be NULL, gets the number of blocks in the path, whether the
-     * draw had them cut or not. */
+    /* since minor 1: as `cut`, by a disc of `radius` about `point` (INFINITY: the whole plane). A block is in the
+     * disc's path when the disc reaches into the polygon in which the plane cuts the block. It is then cut through.
+     * `met`, which may be NULL, gets the number of blocks in the path, whether the draw had them cut or not. */
     tl_status (*cut_disc)(const tl_host *, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
                           double persistence, size_t *met);
 
@@ -394,8 +398,8 @@ struct tl_host {
     tl_status (*meets)(const tl_host *, size_t index, const tl_half_space *spaces, size_t count,
                        bool *meets);
     /* Cuts one block without a joint: its new faces carry no tag and the two sides stay one body.
-     * *above is the index of the part on the normal's side, or SIZE_MAX when the plane does not divide
-     * the block or would leave a sliver. */
+     * *above is the index of the part on the normal's side; SIZE_MAX: the plane does not divide the block, or would
+     * leave a sliver. */
     tl_status (*cut_block)(const tl_host *, size_t index, tl_vec3 normal, tl_vec3 point,
                            size_t *above);
     tl_status (*set_group)(const tl_host *, size_t index, const char *group);
@@ -427,8 +431,8 @@ typedef struct tl_generator_ops {
 /* The page in which the frames are seen. What it points to is valid during `open`; `check` is valid for ever. */
 typedef struct tl_screen_page {
     uint32_t size;
-    const char *
-        text; /* HTML in UTF-8. It asks for the frames and posts commands as docs/scene_format.md tells */
+    /* HTML in UTF-8. It asks for the frames and posts commands as docs/scene_format.md tells */
+    const char *text;
     size_t length;
     uint32_t commands; /* 0: the screen only shows, and refuses commands */
     /* [worker] 1 when the text, which need not end in a 0, is a command; else 0, with a sentence in `why`, of `room`
@@ -458,9 +462,9 @@ typedef struct tl_screen_ops {
     uint32_t (*watchers)(const void *self);
     /* [main] Shows a frame. It takes a copy and waits for nobody who looks. On failure what was put before stays. */
     tl_status (*put)(void *self, const tl_screen_frame *frame, tl_report *report);
-    /* [main] Takes the next command into `text`, of `room` bytes (TL_SCREEN_COMMAND are enough for any), with a 0 at its
-     * end. Without one it waits `seconds` at the most; with 0 s, as it is asked after every step, it is a read of a number.
-     * 1: there was one. 0: there was none, or somebody has begun to look, which ends the waiting. */
+    /* [main] Takes the next command into `text`, of `room` bytes (TL_SCREEN_COMMAND are enough for any), with a 0 at
+     * its end. Without one it waits `seconds` at the most; with 0 s, as it is asked after every step, it is a read of a
+     * number. 1: there was one. 0: there was none, or somebody has begun to look, which ends the waiting. */
     int (*take)(void *self, char *text, size_t room, double seconds);
     /* [main] Ends. Those who look get what they have not got yet, if they take it within a second. */
     void (*close)(void *self);
@@ -475,7 +479,8 @@ typedef enum tl_kind_type {
     TL_KIND_SCREEN /* since 1.7 */
 } tl_kind_type;
 
-/* One law, damping, generator or screen. `ops` points to tl_law_ops, tl_damping_ops, tl_generator_ops or tl_screen_ops. */
+/* One law, damping, generator or screen. `ops` points to tl_law_ops, tl_damping_ops, tl_generator_ops or
+ * tl_screen_ops. */
 typedef struct tl_kind {
     uint32_t size;
     uint32_t type;    /* tl_kind_type */

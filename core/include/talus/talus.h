@@ -1,17 +1,16 @@
-/* talus/talus.h - the kernel's C interface: build a model, run it, ask it; output.h,
- * write it; state.h, keep it; law_test.h, try a joint law alone.
+/* talus/talus.h - the kernel's C interface: build a model, run it, ask it; output.h, write it; state.h, keep it;
+ * law_test.h, try a joint law alone.
  *
- * Conventions. Coordinates x east, y north, z up; any consistent units (SI in the examples).
- * Stress tensors are tension positive, joint stresses and forces compression positive. Angles of
- * planes in degrees, angular velocities in rad/s.
+ * Conventions. Coordinates x east, y north, z up; any consistent units (SI in the examples). Stress tensors are tension
+ * positive, joint stresses and forces compression positive. Angles of planes in degrees, angular velocities in rad/s.
  *
- * Options. A struct of options begins with its `size`, and `tl_NAME_default()` gives it with the defaults of the library that
- * runs: tl_solve s = tl_solve_default(). A program then stays right when a later library of the same soname appends members.
- * NULL in the place of options means the defaults. Structs of results do not grow within one soname.
+ * Options. A struct of options begins with its `size`, and `tl_NAME_default()` gives it with the defaults of the
+ * library that runs: tl_solve s = tl_solve_default(). A program then stays right when a later library of the same
+ * soname appends members. NULL in the place of options means the defaults. Structs of results do not grow within one
+ * soname.
  *
- * Errors. A function that can fail returns a tl_status; the sentence is then in
- * tl_model_error(model). A failed call leaves the model as it was. Functions are called from one
- * thread per model. */
+ * Errors. A function that can fail returns a tl_status; the sentence is then in tl_model_error(model). A failed call
+ * leaves the model as it was. Functions are called from one thread per model. */
 #ifndef TALUS_TALUS_H
 #define TALUS_TALUS_H
 
@@ -50,8 +49,8 @@ typedef enum tl_rotation_rule {
 /* Where the points of a face-face contact lie. */
 typedef enum tl_contact_points {
     TL_POINTS_CONSISTENT, /* corners, middles of edges, centroid: every linear gap integrated exactly */
-    /* corners only, as in programs whose contacts are vertices on faces: 3 times as stiff against turning for a rectangle,
-     * 4 times for a triangle */
+    /* corners only, as in programs whose contacts are vertices on faces: 3 times as stiff against turning for a
+     * rectangle, 4 times for a triangle */
     TL_POINTS_CORNERS
 } tl_contact_points;
 
@@ -71,13 +70,13 @@ typedef struct tl_model_config {
 /* Remarks and warnings go to this function; NULL restores the default (standard error). */
 typedef void (*tl_log_fn)(void *user, const char *text);
 
-/* Makes an empty model in *model, by *config (NULL: the defaults). TL_E_ARGUMENT with a sentence for a value out of its range, TL_E_MEMORY;
- * then *model is NULL. `error` may be NULL. */
+/* Makes an empty model in *model, by *config (NULL: the defaults). TL_E_ARGUMENT with a sentence for a value out of its
+ * range, TL_E_MEMORY; then *model is NULL. `error` may be NULL. */
 TL_API tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_error *error);
 /* Frees a model and all that belongs to it; NULL is left alone. */
 TL_API void tl_model_destroy(tl_model *model);
-/* Status and sentence of the last call on this model that failed; valid until the next call that fails. Every function that gives a
- * tl_status leaves one. */
+/* Status and sentence of the last call on this model that failed; valid until the next call that fails. Every function
+ * that gives a tl_status leaves one. */
 TL_API const tl_error *tl_model_error(const tl_model *model);
 /* Sends the model's remarks to a function, with `user`. */
 TL_API void tl_model_log(tl_model *model, tl_log_fn log, void *user);
@@ -98,7 +97,8 @@ TL_API tl_status tl_model_set_gravity(tl_model *model, tl_vec3 gravity);
 TL_API tl_status tl_model_set_rotation(tl_model *model, tl_rotation_rule rule);
 /* Whether contacts that rest are used again as they are: faster, the same within 1e-11 of their overlap. */
 TL_API tl_status tl_model_set_reuse_geometry(tl_model *model, bool reuse);
-/* Where patches have their points, one of tl_contact_points (else TL_E_ARGUMENT); contacts are laid anew before the next step. */
+/* Where patches have their points, one of tl_contact_points (else TL_E_ARGUMENT); contacts are laid anew before the
+ * next step. */
 TL_API tl_status tl_model_set_contact_points(tl_model *model, tl_contact_points where);
 /* Simulated time, s. */
 TL_API double tl_model_time(const tl_model *model);
@@ -116,8 +116,8 @@ typedef struct tl_generate_summary {
 /* Runs a generator plugin on the visible blocks; commits its work whole or not at all. `summary` may be NULL. */
 TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_args *args,
                              tl_generate_summary *summary);
-/* The same for several sets of parameters, one after the other on the blocks as the ones before have left them: all or none.
- * A failure names the entry, counted from 1. */
+/* The same for several sets of parameters, one after the other on the blocks as the ones before have left them: all or
+ * none. A failure names the entry, counted from 1. */
 TL_API tl_status tl_generate_list(tl_model *model, const char *generator, const tl_args *args,
                                   size_t count, tl_generate_summary *summary);
 
@@ -162,8 +162,8 @@ typedef struct tl_filter {
     int32_t action;              /* tl_filter_action */
 } tl_filter;
 
-/* A visible body beyond one of the limits. One of several parts is measured as a whole: its volume is that of all parts, edge and aspect are
- * those of their convex hull. */
+/* A visible body beyond one of the limits. One of several parts is measured as a whole: its volume is that of all
+ * parts, edge and aspect are those of their convex hull. */
 typedef struct tl_sliver {
     tl_id block; /* the body's first block */
     double volume, edge, aspect;
@@ -177,7 +177,8 @@ typedef struct tl_filter_result {
     double volume;                 /* of all slivers, m3 */
 } tl_filter_result;
 
-/* Finds the slivers and deletes them, or joins each to the body with which it shares the largest area. `result` may be NULL. */
+/* Finds the slivers and deletes them, or joins each to the body with which it shares the largest area. `result` may be
+ * NULL. */
 TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter,
                                  tl_filter_result *result);
 
@@ -213,13 +214,12 @@ typedef struct tl_timestep {
     int32_t rule;    /* tl_timestep_rule */
     double dt;       /* fixed step, s; NaN: by the rule */
 } tl_timestep;
-/* Sets how the time step is chosen; NULL: by the defaults. TL_E_ARGUMENT with a sentence for a fraction or a step out of the ranges above; then
- * nothing changes. */
+/* Sets how the time step is chosen; NULL: by the defaults. TL_E_ARGUMENT with a sentence for a fraction or a step out
+ * of the ranges above; then nothing changes. */
 TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);
 /* The step the next cycle will use, s; 0 where nothing can move and no law is set. */
 TL_API tl_status tl_model_dt(tl_model *model, double *dt);
 
-/* Where the step comes from. */
 /* Why a block asks for a short step: its mass on its springs, its inertia on them, or its own speed. */
 typedef enum tl_step_by { TL_STEP_BY_PUSH, TL_STEP_BY_TURN, TL_STEP_BY_SPEED } tl_step_by;
 
@@ -227,24 +227,26 @@ typedef struct tl_timestep_report {
     double dt;
     tl_id block, partner; /* the block that controls it, and the block of the contact; 0: none */
     double mass;          /* of the block's body, kg */
-    /* of the contact, of all contacts of the body or of the part of its largest face that counts, N/m; of corners and edges
-     * as it is when they are pressed in twice as deep */
+    /* of the contact, of all contacts of the body or of the part of its largest face that counts, N/m; of corners and
+     * edges as it is when they are pressed in twice as deep */
     double stiffness;
     int32_t by; /* tl_step_by: what of the block is so fast */
 } tl_timestep_report;
 /* What limits the step that the next cycle will use. Detects contacts when the model has changed. */
 TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *report);
 
-/* Scales the inertia (not the weight) of free bodies for a longer step. Without `dt` of all, up to that of the one with the
- * longest stable step, for finding equilibria: paths, times and velocities then mean nothing. With `dt` of those in contact
- * whose own stable step is shorter, so that it is `dt`; a step that would add more than the share `most` fails. */
+/* Scales the inertia (not the weight) of free bodies for a longer step. Without `dt` of all, up to that of the one with
+ * the longest stable step, for finding equilibria: paths, times and velocities then mean nothing. With `dt` of those in
+ * contact whose own stable step is shorter, so that it is `dt`; a step that would add more than the share `most`
+ * fails. */
 typedef struct tl_mass_scaling {
     uint32_t size; /* sizeof(tl_mass_scaling) */
     int32_t on;
     double dt;   /* s, or NaN */
     double most; /* of the mass of the bodies that can move, or NaN: 0.05 */
 } tl_mass_scaling;
-/* Sets mass scaling; NULL: by the defaults, on. TL_E_ARGUMENT for a step or a share out of its range, or without each other. */
+/* Sets mass scaling; NULL: by the defaults, on. TL_E_ARGUMENT for a step or a share out of its range, or without each
+ * other. */
 TL_API tl_status tl_model_mass_scaling(tl_model *model, const tl_mass_scaling *scaling);
 
 /* What the last step has added, with `dt`. */
@@ -265,8 +267,8 @@ typedef struct tl_contact_area {
     double absolute;   /* m2; NaN: by the fraction */
     const char *joint; /* NULL: every joint */
 } tl_contact_area;
-/* Sets the minimum area of contacts of one joint or of all. TL_E_ARGUMENT for one below 0, TL_E_NOT_FOUND for a joint that the model does not
- * have. */
+/* Sets the minimum area of contacts of one joint or of all. TL_E_ARGUMENT for one below 0, TL_E_NOT_FOUND for a joint
+ * that the model does not have. */
 TL_API tl_status tl_model_contact_area(tl_model *model, const tl_contact_area *rule);
 
 /* Called between steps, on the caller's thread; not TL_OK ends the run after the step. */
@@ -322,13 +324,16 @@ typedef struct tl_solve_result {
 TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
 /* "average", "maximum" or "local": the word for a measure. */
 TL_API const char *tl_ratio_measure_name(tl_ratio_measure measure);
-/* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). `result` may be NULL, also below. */
+/* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). `result` may be NULL, also
+ * below. */
 TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
 /* Runs until a limit is met. `*result` is up to date whenever a callback is called. */
 TL_API tl_status tl_model_solve(tl_model *model, const tl_solve *solve, tl_solve_result *result);
-/* Asks a running cycle or solve to end after the step, a generator or writer to fail with TL_E_CANCELLED. Signal-safe. */
+/* Asks a running cycle or solve to end after the step, a generator or writer to fail with TL_E_CANCELLED. Signal-
+ * safe. */
 TL_API void tl_model_interrupt(tl_model *model);
-/* Has the same happen whenever `asked` answers true, which such a call asks often, on the caller's thread. NULL: no more. */
+/* Has the same happen whenever `asked` answers true, which such a call asks often, on the caller's thread. NULL: no
+ * more. */
 TL_API void tl_model_interrupt_if(tl_model *model, bool (*asked)(void));
 
 /* ---------------------------------------------------------------- cost ------------------- */
@@ -456,7 +461,8 @@ typedef struct tl_block_mesh {
     tl_vec3 *normals;
 } tl_block_mesh;
 
-/* Fills *mesh with the shape of a block, in its present place, m. TL_E_STALE for a block that is no more, TL_E_MEMORY. */
+/* Fills *mesh with the shape of a block, in its present place, m. TL_E_STALE for a block that is no more,
+ * TL_E_MEMORY. */
 TL_API tl_status tl_block_mesh_get(tl_model *model, tl_id block, tl_block_mesh *mesh);
 /* Frees the arrays of a mesh and empties it. */
 TL_API void tl_block_mesh_free(tl_block_mesh *mesh);
@@ -486,8 +492,9 @@ typedef struct tl_block_set {
     tl_vec3 velocity, angular_velocity; /* NaN: unchanged */
 } tl_block_set;
 
-/* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those that are listed.
- * TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not finite; then no block is changed. */
+/* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those
+ * that are listed. TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not
+ * finite; then no block is changed. */
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count,
                                const tl_block_set *set);
 
@@ -501,8 +508,8 @@ typedef struct tl_load {
     uint32_t size;  /* sizeof(tl_load) */
     tl_vec3 force;  /* N */
     tl_vec3 moment; /* N m */
-    tl_vec3
-        at; /* where the force acts: a point that goes with the body; NaN: the body's centroid */
+    /* where the force acts: a point that goes with the body; NaN: the body's centroid */
+    tl_vec3 at;
 } tl_load;
 
 /* Puts a load on the body of each block, in the place of the one it had; zero takes it off. */
@@ -534,8 +541,8 @@ typedef struct tl_energy {
     double stored;    /* elastic, in contacts */
     double friction;  /* turned to heat by slip */
     double damping;   /* taken out by the damping */
-    double
-        external; /* work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws */
+    /* work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws */
+    double external;
     double balance; /* error of the sum, relative to the largest change of a term so far */
 } tl_energy;
 
@@ -557,7 +564,8 @@ TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *fi
                                     size_t *count);
 /* The fields a contact has, in the order of the reference; `*count` of them. */
 TL_API const tl_field *tl_contact_fields(size_t *count);
-/* The value of field `index` (of tl_contact_fields) of a contact, as of the last step. TL_E_STALE for a contact that is no more. */
+/* The value of field `index` (of tl_contact_fields) of a contact, as of the last step. TL_E_STALE for a contact that is
+ * no more. */
 TL_API tl_status tl_contact_field(tl_model *model, tl_id contact, size_t index,
                                   tl_field_value *value);
 

@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Bytes of the first letter of a text that is not empty and ends in a 0; 0 when it is none of UTF-8: cut off, longer than it need be,
- * half of a pair or beyond the last one. */
+/* Bytes of the first letter of a text that is not empty and ends in a 0; 0 when it is none of UTF-8: cut off, longer
+ * than it need be, half of a pair or beyond the last one. */
 static inline size_t tl_utf8_next(const char *text)
 {
     static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -35,8 +35,8 @@ static inline bool tl_text_is_utf8(const char *text)
     return true;
 }
 
-/* Bytes of the first letter of a text when a line for people can have it; 0 of what is no UTF-8, and of control characters
- * (of ASCII, and U+0080 to U+009F), which may end the line or hold a terminal's codes. */
+/* Bytes of the first letter of a text when a line for people can have it; 0 of what is no UTF-8, and of control
+ * characters (of ASCII, and U+0080 to U+009F). Those may end the line or hold a terminal's codes. */
 static inline size_t tl_text_shown(const char *text)
 {
     unsigned char first = (unsigned char)*text;
@@ -53,8 +53,8 @@ static inline bool tl_text_is_clean(const char *text)
     return true;
 }
 
-/* Makes one line for people of the text in `size` bytes: what cannot be shown becomes \n, \t, \r, or \x1b and the like for
- * each byte. What then has no room is cut off at the end. */
+/* Makes one line for people of the text in `size` bytes: what cannot be shown becomes \n, \t, \r, or \x1b and the like
+ * for each byte. What then has no room is cut off at the end. */
 static inline void tl_text_clean(char *text, size_t size)
 {
     static const char digits[] = "0123456789abcdef";

@@ -70,8 +70,8 @@ static inline tl_value tl_arg_numbers(const char *key, const double *data, size_
     return value;
 }
 
-/* A vector, and a list of values for a call: TL_ARGS(tl_arg_number("kn", 1e9), tl_arg_text("group", "rock")). In C they last to the end of
- * the block that they are in, in C++ to the end of the call. */
+/* A vector, and a list of values for a call: TL_ARGS(tl_arg_number("kn", 1e9), tl_arg_text("group", "rock")). In C they
+ * last to the end of the block that they are in, in C++ to the end of the call. */
 #ifdef __cplusplus
 } /* extern "C" */
 #include <initializer_list>
@@ -99,9 +99,9 @@ extern "C" {
                       sizeof((const tl_value[]){__VA_ARGS__}) / sizeof(tl_value)})
 #endif
 
-/* Checks `args` against a table of parameters and fills the struct `out`: unknown keys (with the nearest known name),
- * wrong types, values out of range, NaN and infinity, and missing required parameters are refused with a sentence that
- * starts with `context` ("joint 'J1', law 'coulomb'"). With `keep` true only the given parameters are written (a change
+/* Checks `args` against a table of parameters and fills the struct `out`. Refused are unknown keys (with the nearest
+ * known name), wrong types, values out of range, NaN and infinity, and missing required parameters. The sentence starts
+ * with `context` ("joint 'J1', law 'coulomb'"). With `keep` true only the given parameters are written (a change
  * of one property) and nothing is required. On failure `out` is unspecified. Strings and points stay the caller's. */
 TL_API tl_status tl_args_read(const tl_param *params, size_t count, size_t stride,
                               const tl_args *args, bool keep, void *out, const char *context,

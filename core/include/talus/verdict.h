@@ -1,4 +1,5 @@
-/* talus/verdict.h - how a model stands, in one line, and the stage from which its motion counts. Included by talus.h. */
+/* talus/verdict.h - how a model stands, in one line, and the stage from which its motion counts. Included by
+ * talus.h. */
 #ifndef TALUS_VERDICT_H
 #define TALUS_VERDICT_H
 
@@ -15,9 +16,9 @@ struct tl_model;
 /* Longest name of a stage, in bytes. */
 #define TL_STAGE_NAME 63
 
-/* Begins a stage: displacements of all blocks, and so what joints have slipped and opened by the verdict, count from now. What laws keep
- * stays. The name, "" for none, is in verdicts, pages, copies and files. TL_E_ARGUMENT: it is longer than TL_STAGE_NAME, not of one line, or
- * no UTF-8. */
+/* Begins a stage: displacements of all blocks, and so what joints have slipped and opened by the verdict, count from
+ * now. What laws keep stays. The name, "" for none, is in verdicts, pages, copies and files. TL_E_ARGUMENT: it is
+ * longer than TL_STAGE_NAME, not of one line, or no UTF-8. */
 TL_API tl_status tl_model_stage(struct tl_model *model, const char *name);
 
 typedef enum tl_standing {
@@ -28,20 +29,22 @@ typedef enum tl_standing {
     TL_STANDING_FAILED        /* by the criterion of `stop_at_failure`, in the last solve */
 } tl_standing;
 
-/* How a model stands as of its last step. Blocks have moved whose displacement is more than `closed` and more than a twentieth of the largest,
- * and the one that has failed. A body of several parts counts once, with the displacement of its centroid. */
+/* How a model stands as of its last step. Blocks have moved whose displacement is more than `closed` and more than a
+ * twentieth of the largest, and the one that has failed. A body of several parts counts once, with the displacement of
+ * its centroid. */
 typedef struct tl_verdict {
     tl_standing standing;
     double ratio; /* the local unbalanced force ratio; NaN: no step has been made */
-    double
-        closed; /* m: blocks that have not moved, but closed their joints, have displacements up to this */
+    /* m: blocks that have not moved, but closed their joints, have displacements up to this */
+    double closed;
     size_t moved;      /* bodies */
     double volume;     /* of these, m3 */
     tl_vec3 direction; /* of their mean motion by volume, a unit vector; 0: none has moved */
     tl_id farthest; /* first block of the body that has moved the most; TL_NO_ID: there is none */
     double displacement; /* of that, m */
-    double slip,
-        opening; /* the largest since the stage began, m: how far two bodies have moved along and apart where they meet with faces that look the same way, the mean of their contacts by area */
+    /* The largest since the stage began, m: how far two bodies have moved along each other and apart. It is measured
+     * where faces that look the same way meet, as the mean of their contacts by area. */
+    double slip, opening;
     tl_id slipped, opened; /* contacts of these; TL_NO_ID: none */
     size_t contacts, slipping;
     char stage[TL_STAGE_NAME + 1]; /* "": none */

@@ -8,7 +8,8 @@
  *     between two steps  while (tl_view_take(view, 0, &command)) ...
  *     tl_view_close(view);
  *
- * All functions are called on the model's thread but tl_view_command_read, which any thread may call. Nothing here changes the model. */
+ * All functions are called on the model's thread but tl_view_command_read, which any thread may call. Nothing here
+ * changes the model. */
 #ifndef TALUS_VIEW_H
 #define TALUS_VIEW_H
 
@@ -84,21 +85,24 @@ typedef enum tl_view_state {
     TL_VIEW_ENDED    /* told by tl_view_close: a run that ends without it has broken off */
 } tl_view_state;
 
-/* Begins to show a model. `screen`: a kind of the type TL_KIND_SCREEN; NULL: the first there is. `params`: its parameters by name;
- * NULL: none. Nothing is seen before the first tl_view_show. TL_E_NOT_FOUND when no plugin has a screen. */
+/* Begins to show a model. `screen`: a kind of the type TL_KIND_SCREEN; NULL: the first there is. `params`: its
+ * parameters by name; NULL: none. Nothing is seen before the first tl_view_show. TL_E_NOT_FOUND when no plugin has a
+ * screen. */
 TL_API tl_status tl_view_open(struct tl_model *model, const tl_kind *screen, const tl_args *params,
                               const tl_view_options *options, tl_view **view);
 /* Where to look. Valid until tl_view_close. */
 TL_API const char *tl_view_address(const tl_view *view);
-/* Whether a frame is wanted: somebody looks, something has changed, and 1/25 s has passed since the last one, and so much more
- * that frames take no more than their share of the time. `worth`: seconds of work that end now, for which a frame is due at once
- * if it takes no more than that share of them: 0 within a run, INFINITY when nothing else is to be done. */
+/* Whether a frame is wanted: somebody looks, something has changed, and enough time has passed since the last one. That
+ * is 1/25 s, and so much more that frames take no more than their share of the time. `worth`: seconds of work that end
+ * now, for which a frame is due at once if it takes no more than that share of them: 0 within a run, INFINITY when
+ * nothing else is to be done. */
 TL_API bool tl_view_due(tl_view *view, double worth);
 /* Shows the model as it is. `html`: what of it; its title is not read. */
 TL_API tl_status tl_view_show(tl_view *view, const struct tl_html *html);
 /* Takes the next command, waiting for it at most `seconds`. Also false when somebody begins to look. */
 TL_API bool tl_view_take(tl_view *view, double seconds, tl_view_command *command);
-/* Tells with the next frame what the model does and, unless NULL, the line that was done or the sentence why a command was not. */
+/* Tells with the next frame what the model does and, unless NULL, the line that was done or the sentence why a command
+ * was not. */
 TL_API tl_status tl_view_tell(tl_view *view, tl_view_state state, const char *line,
                               const char *refused);
 /* Ends it; NULL is ignored. Those who look get what was shown last. Before the model is destroyed. */

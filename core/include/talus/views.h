@@ -1,11 +1,12 @@
-/* talus/views.h - the columns of a model as they are kept, without a copy: for renderers and for programs that read every step.
+/* talus/views.h - the columns of a model as they are kept, without a copy: for renderers and for programs that read
+ * every step.
  *
- * A view points into the model's memory. It is valid until the next step, or until the model is changed or asked for views
- * again after a change; nobody may write through it. Number k of row i is data[stride * i + k], k < width.
+ * A view points into the model's memory. It is valid until the next step, or until the model is changed or asked for
+ * views again after a change; nobody may write through it. Number k of row i is data[stride * i + k], k < width.
  *
- * Rows are in ascending order of id. tl_structure tells when rows have changed: while it gives the same number, row i is the
- * same block or body, and the mesh of a block is the same in its body's frame. A renderer uploads meshes when the structure
- * changes, and places and rotations of bodies each frame. */
+ * Rows are in ascending order of id. tl_structure tells when rows have changed. While it gives the same number, row i
+ * is the same block or body. The mesh of a block is then the same in its body's frame. A renderer uploads meshes when
+ * the structure changes, and places and rotations of bodies each frame. */
 #ifndef TALUS_VIEWS_H
 #define TALUS_VIEWS_H
 
@@ -38,8 +39,8 @@ typedef struct tl_block_views {
 /* The blocks' columns as they stand: valid until tl_structure changes or the model is stepped. */
 TL_API tl_block_views tl_view_blocks(tl_model *model);
 
-/* A point p of the body's frame is at origin + reference + displacement + R(rotation) p. The three parts of the place are
- * kept apart, so that a small displacement of a body far from zero loses no digits. */
+/* A point p of the body's frame is at origin + reference + displacement + R(rotation) p. The three parts of the place
+ * are kept apart, so that a small displacement of a body far from zero loses no digits. */
 typedef struct tl_body_views {
     tl_vec3 origin;       /* of all bodies, m */
     tl_index_view id;     /* the lowest id of its blocks */
@@ -76,8 +77,8 @@ typedef struct tl_contact_views {
 /* Finds contacts first where blocks have changed, so it can fail. */
 TL_API tl_status tl_view_contacts(tl_model *model, tl_contact_views *views);
 
-/* The shape of a block in the frame of its body, which moves with it: as tl_block_mesh_get, but `vertices` and `normals` are
- * fixed until the structure changes. */
+/* The shape of a block in the frame of its body, which moves with it: as tl_block_mesh_get, but `vertices` and
+ * `normals` are fixed until the structure changes. */
 TL_API tl_status tl_block_mesh_local(tl_model *model, tl_id block, tl_block_mesh *mesh);
 
 #ifdef __cplusplus

@@ -15,16 +15,16 @@ struct tl_model;
 struct tl_solve;
 struct tl_solve_result;
 
-/* From on = true to on = false every call that would change the model or begin a run fails with TL_E_STATE: for functions
- * of the user's that are to read it only (histories). */
+/* From on = true to on = false every call that would change the model or begin a run fails with TL_E_STATE: for
+ * functions of the user's that are to read it only (histories). */
 TL_API void tl_model_only_read(struct tl_model *model, bool on);
 
 /* What a script may give to cycle: the parameters "cycle". */
 typedef struct tl_cycle_args {
     int64_t cycles, every;
 } tl_cycle_args;
-/* tl_model_cycle with the functions of `calls`: each, progress, stop, with every and user. The rest of it is not read. `calls` and `result` may
- * be NULL. */
+/* tl_model_cycle with the functions of `calls`: each, progress, stop, with every and user. The rest of it is not read.
+ * `calls` and `result` may be NULL. */
 TL_API tl_status tl_model_cycle_calling(struct tl_model *model, int64_t cycles,
                                         const struct tl_solve *calls,
                                         struct tl_solve_result *result);
@@ -36,8 +36,8 @@ typedef struct tl_balance {
 /* See tl_balance. Computes nothing that a step has not. */
 TL_API tl_balance tl_model_balance(const struct tl_model *model);
 
-/* How many contacts there are, and how many of them slip (some point is at its shear limit) or are open (no point carries
- * anything), as of the last step. Computes nothing: a run goes on the same whether it is asked or not. */
+/* As of the last step: how many contacts there are, how many slip (some point is at its shear limit), and how many are
+ * open (no point carries anything). Computes nothing: a run goes on the same whether it is asked or not. */
 typedef struct tl_contact_counts {
     size_t contacts, slipping, open;
 } tl_contact_counts;
