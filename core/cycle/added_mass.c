@@ -1,14 +1,15 @@
 /* added_mass.c - partial mass scaling: inertia added to the bodies that would make the step short.
  *
- * A step dt is stable for a body, with the fraction f of the critical step that is asked for, when its rate (timestep.c) is no
- * higher than 2 f^2 / dt^2. A body in contact whose rate is higher gets mass and moments of inertia multiplied by the same
- * factor, rate over limit: its rate, a sum over 1/M and 1/I, is then the limit. Its weight, and all that laws and loads do to
- * it, stay those of its own mass. A body without contact points has no stiffness and gets none: it falls as it would.
+ * Let f be the fraction of the critical step that is asked for. A step dt is stable for a body when its rate
+ * (timestep.c) is no higher than 2 f^2 / dt^2. A body in contact whose rate is higher gets mass and moments of inertia
+ * multiplied by the same factor, rate over limit: its rate, a sum over 1/M and 1/I, is then the limit. Its weight, and
+ * all that laws and loads do to it, stay those of its own mass. A body without contact points has no stiffness and gets
+ * none: it falls as it would.
  *
- * The factor follows from the rates of each step. When it changes, the velocity stays, as with all mass scaling: what is added
- * comes with the velocity that the body has, and goes with it. Were the momentum kept, a contact that opens and closes would
- * drive and brake the body. Energies count the inertia that moves, and what comes and goes with a change of it is external
- * work (energy.c), as when velocities are set. */
+ * The factor follows from the rates of each step. When it changes, the velocity stays, as with all mass scaling: what
+ * is added comes with the velocity that the body has, and goes with it. Were the momentum kept, a contact that opens
+ * and closes would drive and brake the body. Energies count the inertia that moves, and what comes and goes with a
+ * change of it is external work (energy.c), as when velocities are set. */
 #include "cycle/added_mass.h"
 
 #include "cycle/contributors.h"
@@ -114,36 +115,35 @@ tl_status tl_added_find(tl_model *m, double limit)
 
 tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *given)
 {
-    tl_mass_scaling read;
-    const tl_mass_scaling *scaling = &read;
-    tl_status status = TL_OPTIONS_READ(tl_mass_scaling, given, &read, &m->error);
+    tl_mass_scaling scaling;
+    tl_status status = TL_OPTIONS_READ(tl_mass_scaling, given, &scaling, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set mass_scaling");
     if (status != TL_OK)
         return status;
-    bool adds = !isnan(scaling->dt);
-    double most = isnan(scaling->most) ? TL_MOST_ADDED : scaling->most;
-    if (!adds && !isnan(scaling->most))
+    bool adds = !isnan(scaling.dt);
+    double most = isnan(scaling.most) ? TL_MOST_ADDED : scaling.most;
+    if (!adds && !isnan(scaling.most))
         return tl_fail(
             &m->error, TL_E_ARGUMENT,
             "mass_scaling: most = %g is the most that a given step may add: give dt, the "
             "step, s, with it",
-            scaling->most);
-    if (adds && !scaling->on)
+            scaling.most);
+    if (adds && !scaling.on)
         return tl_fail(
             &m->error, TL_E_ARGUMENT,
             "mass_scaling: dt = %g s asks for scaling and on = false for none: leave one "
             "of them out",
-            scaling->dt);
-    if (adds && !(scaling->dt >= TL_STEP_LEAST && scaling->dt <= 1 / TL_STEP_LEAST))
+            scaling.dt);
+    if (adds && !(scaling.dt >= TL_STEP_LEAST && scaling.dt <= 1 / TL_STEP_LEAST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "mass_scaling: dt = %g s is outside [%g, %g]",
-                       scaling->dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
+                       scaling.dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
     if (adds && !(most >= 0 && isfinite(most)))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "mass_scaling: most = %g must be a finite number that is not negative",
                        most);
-    m->mass_scaling = scaling->on && !adds;
-    m->added_dt = adds ? scaling->dt : NAN;
+    m->mass_scaling = scaling.on && !adds;
+    m->added_dt = adds ? scaling.dt : NAN;
     m->added_most = adds ? most : NAN;
     m->constraints++;
     if (m->cycle) {

@@ -23,9 +23,8 @@ static void gather_body(tl_model *m, uint32_t body, const tl_acting *on)
 {
     tl_bodies *b = &m->bodies;
     tl_vec3 force = on->force, moment = on->moment;
-    if (b->fixed[body]) {
+    if (b->fixed[body])
         m->cycle->reaction[m->cycle->reaction_of[body]] = (tl_reaction){force, moment};
-    }
     force = tl_v3_madd(force, b->mass[body], m->config.gravity);
     if (tl_body_loaded(b, body)) {
         tl_wrench load = tl_load_wrench(b, body);

@@ -4,9 +4,9 @@
  * "body":  dt = FRAC 2 (1 / (2 rate))^1/2 with the highest rate of a body: no motion of a body and its
  *          neighbours is faster, so FRAC 1 is stable.
  * By either rule no body's step is longer than its largest face allows, whatever areas its contacts have.
- * A step that would carry or turn a block too far is made shorter (limits.c); the one in use stays, for when it has gone by.
- * Mass scaling gives every free body the bound of the one that has the most; with a step asked for it adds inertia to the
- * bodies that need it (added_mass.c), and that step is taken. */
+ * A step that would carry or turn a block too far is made shorter (limits.c). The one in use stays, for the steps after
+ * that. Mass scaling gives every free body the bound of the one that has the most. With a step asked for it adds inertia
+ * to the bodies that need it (added_mass.c), and takes that step. */
 #include "cycle/timestep.h"
 
 #include "base/columns.h"
@@ -25,35 +25,28 @@
 
 #include <string.h>
 
-/* A search for the row of the largest value: user data of a parallel loop, and the first member of what a search adds
- * to it. Of several rows with equal values the first one counts, so which thread took which rows makes no difference. */
-typedef struct row_search {
-    tl_model *m;
-    tl_row_value found[TL_MAX_THREADS];
-} row_search;
-
 /* ---------------------------------------------------------------- rates -------------------
  *
  * What each body asks of the time step: its rate.
  *
  * The rate of a body is sum k (1/M + r^2/I) over its contact points: k the stiffness of a point at distance r from the
  * centroid, I the smallest moment of inertia. Twice the highest rate is no less than the square of any frequency.
- * Mass scaling has two rates instead: sum 2 k/M of the translation and sum 2 k r^2/I of the rotation, which scale masses
+ * Mass scaling has two rates instead: sum 2 k/M of the translation and sum 2 k r^2/I of the rotation. They scale masses
  * and moments of inertia each by itself. Since |v + w r|^2 <= 2 (|v|^2 + |w r|^2), twice the higher one is no less
  * either. So what turns easily, as a slender block, is not made too heavy to move.
  *
- * A body that lands finds the step that its landing needs, for a step that shrinks while a body lands costs energy: no rate is
- * below that of the body standing on its largest face under the stiffest law of its contacts, or, without a contact, of
- * the model. Where it stands on corners or edges, with overlaps o, and these go on with a velocity v, a part of that is
- * enough: the further overlap v / omega over o, omega^2 being the rate on the face, within FLOOR and 1. So a contact whose
- * area vanishes, or that is about to be another, never makes the step long. The stiffness of corners and edges counts as it will be when they are pressed
- * in twice as deep.
+ * A step that shrinks while a body lands costs energy, so a body finds the step that its landing needs beforehand: no
+ * rate is below that of the body standing on its largest face. The law is the stiffest of its contacts or, without a
+ * contact, of the model. A part of that is enough where it stands on corners or edges, with overlaps o, and these go on
+ * with a velocity v. The part is the further overlap v / omega over o, omega^2 being the rate on the face, within FLOOR
+ * and 1. So a contact whose area vanishes, or that is about to be another, never makes the step long. The stiffness of
+ * corners and edges counts as it will be when they are pressed in twice as deep.
  *
- * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
- * reused for, they cost nothing. Who asks for the rates above some limit only is spared most of the rest: a body asks for no more
- * than it would with the areas of its contacts as far away as its farthest corner. Kept rates follow from the contacts as they
- * were when the body was rated, not as they are:
- * where the step follows from them they are part of the model's state. */
+ * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas
+ * are reused for, they cost nothing. Who asks for the rates above some limit only is spared most of the rest: a body
+ * asks for no more than it would with the areas of its contacts as far away as its farthest corner. Kept rates follow
+ * from the contacts as they were when the body was rated, not as they are: where the step follows from them they are
+ * part of the model's state. */
 
 /* Tolerance: part of its largest face that a body stands on at least, if it rests on corners and edges. A longer step
  * would shrink while it lands. */
@@ -73,17 +66,17 @@ static double stiffest_law(const tl_model *m)
 
 /* ---------------------------------------------------------------- search ----------------- */
 
+/* A search for the row of the largest value: user data of a parallel loop, and the first member of what a search adds
+ * to it. Of rows with equal values the first one counts, whichever thread took it. */
+typedef struct row_search {
+    tl_model *m;
+    tl_row_value found[TL_MAX_THREADS];
+} row_search;
+
 static void keep_extreme(tl_row_value *kept, tl_row_value other)
 {
     if (other.value > kept->value || (other.value == kept->value && other.row < kept->row))
         *kept = other;
-}
-
-/* Notes the best row of a range. */
-static void row_search_note(row_search *s, unsigned thread, tl_row_value found)
-{
-    if (found.row != TL_NO_ROW)
-        keep_extreme(&s->found[thread], found);
 }
 
 static tl_row_value row_search_run(row_search *s, size_t rows, size_t chunk, tl_range_fn range)
@@ -149,7 +142,7 @@ static tl_spread largest_face(const tl_model *m, uint32_t body)
 {
     tl_spread largest = {0, 0};
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
+        const tl_poly *shape = m->blocks.shape[tl_body_blocks(m, body)[k]];
         for (uint32_t f = 0; f < shape->face_count; f++) {
             tl_spread face = shape->covered[f] ? (tl_spread){0, 0} : face_of(shape, f);
             if (face.sum > (1 + AS_LARGE) * largest.sum)
@@ -185,12 +178,10 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
     tl_holding of = tl_body_held(m, body, tl_rates_points(m));
     inverse_inertia per = inverse_of(m, body);
     double law = law_on_face(of, stiffest), face = law * m->bodies.face_rate[body];
-    double turn = law * m->bodies.face_turn[body],
-           part = 0; /* where the contacts ask for more anyway */
+    double turn = law * m->bodies.face_turn[body];
     double pushed = of.stiffness.sum * per.mass, turned = of.stiffness.r2 * per.moment;
     bool more = m->mass_scaling ? pushed < face - turn || turned < turn : pushed + turned < face;
-    if (more)
-        part = least_part(m, body, &of, face);
+    double part = more ? least_part(m, body, &of, face) : 0;
     if (!m->mass_scaling)
         return (step_rates){fmax(pushed + turned, part * face), 0};
     return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
@@ -217,17 +208,8 @@ static double rate_stiffness(const tl_model *m, uint32_t body)
 
 /* ---------------------------------------------------------------- all bodies ------------- */
 
-/* The rate of a body that stands on its largest face, for a stiffness per area of 1. Where points do not count, as by the
- * paper's rule, turning does not either. */
-static step_rates rate_on_face(const tl_model *m, uint32_t body)
-{
-    tl_spread face = largest_face(m, body);
-    inverse_inertia per = inverse_of(m, body);
-    return (step_rates){tl_rates_points(m) ? rate_of(face, per) : face.sum * per.mass,
-                        face.r2 * per.moment};
-}
-
-/* Of the bodies of which it is not known: those that have come or changed. */
+/* The rates of bodies that stand on their largest face, for a stiffness per area of 1. Only those that have come or
+ * changed are unknown. Where points do not count, as by the paper's rule, turning does not either. */
 static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk, (void)thread;
@@ -235,9 +217,10 @@ static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (m->bodies.face_rate[body] != 0)
             continue;
-        step_rates on_face = rate_on_face(m, body);
-        m->bodies.face_rate[body] = on_face.rate;
-        m->bodies.face_turn[body] = on_face.turn;
+        const tl_spread face = largest_face(m, body);
+        const inverse_inertia per = inverse_of(m, body);
+        m->bodies.face_rate[body] = tl_rates_points(m) ? rate_of(face, per) : face.sum * per.mass;
+        m->bodies.face_turn[body] = face.r2 * per.moment;
     }
 }
 
@@ -257,12 +240,11 @@ static void rates_count(tl_model *m)
     c->all_held = true;
     for (uint32_t body = 0; body < b->table.rows && c->all_held; body++)
         c->all_held = b->fixed[body] == TL_FIX_ALL;
-    for (uint32_t body = 0; body < b->table.rows; body++) {
+    for (uint32_t body = 0; body < b->table.rows; body++)
         if (tl_body_counts(m, body) && b->mass[body] < now.least_mass) {
             now.least_mass = b->mass[body];
             now.lightest = body;
         }
-    }
     bool anew = to->version == 0 || to->constraints != now.constraints ||
                 to->rotation != now.rotation || to->points != now.points;
     if (anew && b->table.rows > 0)
@@ -277,8 +259,8 @@ typedef struct rate_search {
     double stiffest; /* of the model's laws */
     bool kept; /* rates are kept in their column, and made anew only where contacts have changed */
     bool all;  /* all rates are made anew */
-    double
-        known; /* of a body that asks for no more than this, what it asks for at the most will do; 0: of none */
+    /* of a body that asks for no more than this, what it asks for at the most will do; 0: of none */
+    double known;
 } rate_search;
 
 static step_rates rate_for(const rate_search *s, uint32_t body)
@@ -310,11 +292,10 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         if (of.rate > 0 && value > found.value)
             found = (tl_row_value){value, body};
     }
-    row_search_note(&s->search, thread, found);
+    keep_extreme(&s->search.found[thread], found);
 }
 
-/* Notes the bodies whose contacts have points that were placed in this step or, beyond that, others than before; true when there are
- * any. */
+/* Notes the bodies whose contacts have points as new as that: TL_POINTS_*. true when there are any. */
 static bool touch_new_points(tl_model *m, uint8_t least)
 {
     tl_detect *d = m->detect;
@@ -332,8 +313,8 @@ static bool touch_new_points(tl_model *m, uint8_t least)
     return any;
 }
 
-/* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this step;
- * otherwise, and with mass scaling, when a contact has gone or has other points; with mass scaling, all now and then. */
+/* Where contact points count, bodies are rated anew when a contact has points that were placed in this step. Else, and
+ * with mass scaling, when one has gone or has other points; with mass scaling all are, now and then. */
 static tl_row_value rates_keep(tl_model *m, double known)
 {
     struct tl_cycle *c = m->cycle;
@@ -372,8 +353,10 @@ void tl_rates_try(tl_model *m, double known, double *rate, double *turn_rate)
     struct tl_stiffness_rates kept = c->stiffness_rates;
     double *own = c->rate, *own_turn = c->turn_rate;
     rates_count(m);
-    for (size_t body = 0; body < m->bodies.table.rows; body++)
-        rate[body] = own[body], turn_rate[body] = own_turn[body];
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+        rate[body] = own[body];
+        turn_rate[body] = own_turn[body];
+    }
     c->rate = rate;
     c->turn_rate = turn_rate;
     rates_keep(m, known);
@@ -414,6 +397,8 @@ typedef struct bound {
     double stiffness;
 } bound;
 
+static const bound no_bound = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+
 static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
@@ -430,7 +415,7 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
                                 tl_body_counts(m, m->blocks.body[c->b[i]])))
             found = (tl_row_value){k, i};
     }
-    row_search_note(s, thread, found);
+    keep_extreme(&s->found[thread], found);
 }
 
 /* M_min / (2 K_max), with K_max over the contacts of free bodies; no bound where none has an area. */
@@ -441,7 +426,7 @@ static bound paper_rule(tl_model *m)
     tl_row_value stiffest =
         row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
     if (stiffest.row == TL_NO_ROW)
-        return (bound){INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+        return no_bound;
     return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row,
                    stiffest.value};
 }
@@ -522,18 +507,8 @@ static tl_status no_step(tl_model *m, double dt)
         dt, way_out);
 }
 
-static void say_long(tl_model *m, double stable, uint32_t body)
-{
-    tl_model_say(m,
-                 "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block "
-                 "%u sets: contact forces will grow without bound; give a shorter one, or leave dt "
-                 "out",
-                 m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[body]);
-}
-
-/* Notes whether the step that was given is far above the longest that is stable whatever the rule, that of the body
- * which is the fastest now, and says so once. All are looked at when there are more contacts than ever, and now and then:
- * an impact lasts one such step. */
+/* Notes whether the given step is far above the longest that is stable whatever the rule, that of the body with the
+ * highest rate. Looks when there are more contacts than ever, and now and then: an impact lasts one such step. */
 static void judge_step(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
@@ -547,7 +522,11 @@ static void judge_step(tl_model *m)
     double stable = 2 * sqrt(0.5 / fastest.value);
     c->long_step = fastest.row != TL_NO_ROW && fastest.value > bearable;
     if (c->long_step && tl_model_says(m, TL_REMARK_STEP))
-        say_long(m, stable, fastest.row);
+        tl_model_say(
+            m,
+            "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block %u "
+            "sets: contact forces will grow without bound; give a shorter one, or leave dt out",
+            m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
 }
 
 /* The step that inertia is added for, or a shorter one that is given as well. */
@@ -574,8 +553,7 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     return TL_OK;
 }
 
-/* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale of the
- * inertia alone. */
+/* The step; 0 where nothing can move or does. A report gets `by`, what controls it, and leaves the inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;
@@ -585,7 +563,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     rates_count(m);
     if (tl_adds_mass(m)) {
         if (by)
-            *by = (bound){INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+            *by = no_bound;
         return choose_added(m, dt, by != NULL);
     }
     c->adds = false;
@@ -631,22 +609,20 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
 
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
 {
-    tl_timestep read;
-    const tl_timestep *timestep = &read;
-    tl_status status = TL_OPTIONS_READ(tl_timestep, given, &read, &m->error);
+    tl_timestep timestep;
+    tl_status status = TL_OPTIONS_READ(tl_timestep, given, &timestep, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set timestep");
     if (status != TL_OK)
         return status;
-    if (!isnan(timestep->fraction) &&
-        !(timestep->fraction >= TL_FRACTION_LEAST && timestep->fraction <= TL_FRACTION_MOST))
+    if (!isnan(timestep.fraction) &&
+        !(timestep.fraction >= TL_FRACTION_LEAST && timestep.fraction <= TL_FRACTION_MOST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside [%g, %g]",
-                       timestep->fraction, TL_FRACTION_LEAST, TL_FRACTION_MOST);
-    if (!isnan(timestep->dt) &&
-        !(timestep->dt >= TL_STEP_LEAST && timestep->dt <= 1 / TL_STEP_LEAST))
+                       timestep.fraction, TL_FRACTION_LEAST, TL_FRACTION_MOST);
+    if (!isnan(timestep.dt) && !(timestep.dt >= TL_STEP_LEAST && timestep.dt <= 1 / TL_STEP_LEAST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s is outside [%g, %g]",
-                       timestep->dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
-    m->timestep = *timestep;
+                       timestep.dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
+    m->timestep = timestep;
     if (m->cycle) {
         m->cycle->dt = 0;
         m->cycle->stiffness_rates.version = 0; /* another rule asks something else of contacts */
