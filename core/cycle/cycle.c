@@ -68,6 +68,16 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     return status == TL_OK ? tl_undo_reserve(m, tl_travel_may_matter(m, *dt)) : status;
 }
 
+/* What gravity and loads do in a step of dt: the mean over its kick. */
+static void begin_loads(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_vec3 now = m->config.gravity;
+    c->share_before = m->dt + dt > 0 ? m->dt / (m->dt + dt) : 0;
+    bool changed = m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(now, m->gravity_before));
+    c->gravity = changed ? tl_acting_mean(c, now, m->gravity_before) : now;
+}
+
 /* Forces on the bodies: undone when a law or the damping fails, or a body would move too far. */
 static tl_status apply_forces(tl_model *m, double dt)
 {
@@ -75,7 +85,7 @@ static tl_status apply_forces(tl_model *m, double dt)
     tl_phase_ends(m, TL_PHASE_LAWS);
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);
-        tl_loads_begin(m, dt);
+        begin_loads(m, dt);
         tl_gather(m);
         status = tl_split_hold(m, dt);
         tl_phase_ends(m, TL_PHASE_GATHER);

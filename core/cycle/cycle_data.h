@@ -17,6 +17,9 @@
 #define TL_READ_CHUNK 256
 #define TL_CONTACT_CHUNK 1024
 
+/* Bytes of the name of a term of energy, with its end. */
+#define TL_TERM_NAME 16
+
 /* Sums over the free bodies, made per chunk and added in chunk order. */
 typedef struct tl_sums {
     double unbalanced;    /* sum of |unbalanced force| */
@@ -105,6 +108,35 @@ typedef struct tl_work {
     double until, after;                         /* half of the step before and of the one after */
 } tl_work;
 
+/* The same of a chunk, or of all bodies. */
+typedef struct tl_work_sums {
+    double kinetic, first, motion0, motion2;
+    double until[TL_WORK_COUNT], after[TL_WORK_COUNT];
+} tl_work_sums;
+
+/* What a contributor stores now, and what it has turned to heat until now, J. */
+typedef struct tl_energy_term {
+    char name[TL_TERM_NAME];
+    double stored, heat;
+} tl_energy_term;
+
+/* The energy ledger: energy.c. */
+typedef struct tl_ledger {
+    tl_energy_term
+        term[TL_MOST_CONTRIBUTORS]; /* in the order in which contributors came; no name: not used */
+    double work[TL_WORK_COUNT];     /* until the end of the half step that follows */
+    double motion;                  /* kinetic energy after the last kick */
+    double start_kinetic, start_stored;
+    double largest;             /* change of a term so far */
+    double by_hand;             /* energy given between steps */
+    double error;               /* of the sum, at the last step */
+    uint64_t structure, laws;   /* of the model, at the last step */
+    double overlaps;            /* stored in the first step by blocks that were made overlapping */
+    tl_id overlap_a, overlap_b; /* those that stored the most */
+    bool started;
+    tl_energy energy;
+} tl_ledger;
+
 /* Of the contacts, on a body that is held. */
 typedef struct tl_reaction {
     tl_vec3 force, moment;
@@ -130,11 +162,13 @@ struct tl_cycle {
     tl_sums sums;
     tl_group_energy *group_energy; /* of each SIMD group of contacts */
     size_t group_capacity;
-    struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
-    double kinetic_before;                   /* of the last step, for its rate */
-    double dt;                               /* the step in use */
-    double share_before; /* of the kick's span, in which gravity and loads of the last step act */
-    tl_vec3 gravity;     /* that acts in this step */
+    tl_work_sums *chunk_work;
+    size_t chunk_work_capacity;
+    tl_ledger ledger;
+    double kinetic_before; /* of the last step, for its rate */
+    double dt;             /* the step in use */
+    double share_before;   /* of the kick's span, in which gravity and loads of the last step act */
+    tl_vec3 gravity;       /* that acts in this step */
     struct tl_step_bounds step_bounds;         /* timestep.c */
     bool all_held;                             /* no body can move */
     struct tl_stiffness_rates stiffness_rates; /* timestep.c */

@@ -1,67 +1,26 @@
 /* energy.c - the energy ledger of the bodies that are free to move.
  *
- * In a central-difference march the sum that is conserved belongs to whole steps: with v- and v+ the
- * velocities before and after the kick at step n, the kinetic energy at n is m v-.v+ / 2, and the work
- * of a force over a step is the mean of its values at both ends times the motion. So each force's work is
- * booked in two halves: F_n.v- times half of the step before belongs to time n, F_n.v+ times half of the
- * step after belongs to what follows. Elastic energy and slip come from the laws with the same mean.
- * The error of the balance is of the second order in omega dt.
+ * In a central-difference march the sum that is conserved belongs to whole steps. Let v- and v+ be the velocities
+ * before and after the kick at step n. The kinetic energy at n is m v-.v+ / 2. The work of a force over a step is the
+ * mean of its values at both ends times the motion. So each force's work is booked in two halves: F_n.v- times half of
+ * the step before belongs to time n, F_n.v+ times half of the step after belongs to what follows. Elastic energy and
+ * slip come from the laws with the same mean. The error of the balance is of the second order in omega dt.
  *
- * Velocities may be set and bodies held, driven or freed between two steps: the kinetic energy this gives or
- * takes counts as external work, and the work until then goes by the motion that was made. So does
- * what partial mass scaling adds to moving bodies and takes from them (added_mass.c), and what contacts lose or gain when blocks are deleted, made, joined or parted, or laws changed: it is what the sum of
- * that step lacks.
+ * Velocities may be set and bodies held, driven or freed between two steps: the kinetic energy this gives or takes
+ * counts as external work, and the work until then goes by the motion that was made. So does what partial mass scaling
+ * adds to moving bodies and takes from them (added_mass.c). What contacts lose or gain counts likewise when blocks are
+ * deleted, made, joined or parted, or laws changed: it is what the sum of that step lacks.
+ *
+ * Each contributor has a term of its own, by its name: what it stores, and what it has turned to heat.
  *
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/energy.h"
 
-#include "base/walk.h"
 #include "contact/detection.h"
-#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 
-#include <stdlib.h>
-
-struct tl_ledger {
-    double kinetic;
-    double until[TL_WORK_COUNT]; /* work of this step's forces until now */
-    double after[TL_WORK_COUNT]; /* and in the half step that follows */
-    double stored, friction;
-    double motion0, motion; /* kinetic energy between two kicks: before a step's, and after it */
-    /* running sums, in the model's own ledger */
-    double sum[TL_WORK_COUNT];
-    double start_kinetic, start_stored;
-    double largest;             /* change of a term so far */
-    double by_hand;             /* energy given between steps */
-    double error;               /* of the sum, at the last step */
-    uint64_t structure, laws;   /* of the model, at the last step */
-    double overlaps;            /* stored in the first step by blocks that were made overlapping */
-    tl_id overlap_a, overlap_b; /* those that stored the most */
-    double first; /* kinetic energy by which the scheme's sum is less in the first step */
-    bool started;
-    tl_energy energy;
-};
-
-size_t tl_ledger_size(void)
-{
-    return sizeof(struct tl_ledger);
-}
-
-bool tl_ledger_is_sound(const struct tl_ledger *ledger)
-{
-    return tl_is_flag(&ledger->started);
-}
-
-tl_status tl_energy_prepare(tl_model *m, size_t chunks)
-{
-    struct tl_cycle *c = m->cycle;
-    struct tl_ledger *list = realloc(c->chunk_ledger, chunks * sizeof *list);
-    if (list)
-        c->chunk_ledger = list;
-    if (!c->ledger)
-        c->ledger = calloc(1, sizeof *c->ledger);
-    return list && c->ledger ? TL_OK : tl_fail_memory(&m->error);
-}
+#include <stdio.h>
+#include <string.h>
 
 /* What a force and a moment on a body do, each in the half step before and the one after. */
 TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_body_group *g, tl_vec3 force,
@@ -73,8 +32,8 @@ TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_body_group *g, t
                                                 tl_v3_dot(moment, tl_lanes3_get(&g->w1, i)));
 }
 
-/* Kinetic energies. With v- and v+ the mean at the forces' time is v- + s (v+ - v-), s the share of the
- * step before in both half steps; what two unequal halves spread about it is taken out. */
+/* Kinetic energies. With v- and v+ the mean at the forces' time is v- + s (v+ - v-). s is the share of the step before
+ * in both half steps. What two unequal halves spread about it is taken out. */
 TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_body_group *g, double share)
 {
     double scale = g->energy_scale[i], mass = scale * g->mass[i], spread = share * (1 - share);
@@ -97,9 +56,9 @@ TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_body_group *g, dou
     work->work_until[TL_WORK_EXTERNAL][i] += share * mass * tl_v3_dot(set, dv);
 }
 
-/* Over a kick of two unequal halves, s and 1 - s of it, the works of all that changes a velocity by dv miss m (2 s - 1) dv^2 / 2 of what the
- * kinetic energy becomes. For forces, which hardly change in a step, that is next to nothing. A damping that stops bodies takes what
- * it makes more of it, dv^2 - dF^2 with dv = dF + dD. */
+/* A kick may have two unequal halves, s and 1 - s of it. Then the works of all that changes a velocity by dv miss
+ * m (2 s - 1) dv^2 / 2 of what the kinetic energy becomes. For forces, which hardly change in a step, that is next to
+ * nothing. A damping that stops bodies takes what it makes more of it, dv^2 - dF^2 with dv = dF + dD. */
 TL_INLINE void book_uneven(tl_work *work, size_t i, const tl_body_group *g)
 {
     tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
@@ -198,119 +157,161 @@ static double sum_lanes(const double lanes[TL_LANES])
 
 void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work)
 {
-    struct tl_ledger *l = &m->cycle->chunk_ledger[chunk];
-    l->kinetic = sum_lanes(work->kinetic);
-    l->first = work->until > 0 ? 0 : sum_lanes(work->first);
-    l->motion0 = sum_lanes(work->motion0);
-    l->motion = sum_lanes(work->motion2);
+    tl_work_sums *sums = &m->cycle->chunk_work[chunk];
+    sums->kinetic = sum_lanes(work->kinetic);
+    sums->first = work->until > 0 ? 0 : sum_lanes(work->first);
+    sums->motion0 = sum_lanes(work->motion0);
+    sums->motion2 = sum_lanes(work->motion2);
     for (int w = 0; w < TL_WORK_COUNT; w++) {
-        l->until[w] = sum_lanes(work->work_until[w]);
-        l->after[w] = sum_lanes(work->work_after[w]);
+        sums->until[w] = sum_lanes(work->work_until[w]);
+        sums->after[w] = sum_lanes(work->work_after[w]);
     }
 }
 
-/* The ledger at the forces' time, and its balance. */
-static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now, bool changed)
+/* ---------------------------------------------------------------- the balance ------------ */
+
+/* The term of a contributor; a new one at the end. Only a file can be full of others: the last one is shared then. */
+static tl_energy_term *term_of(tl_ledger *l, const char *name)
 {
-    tl_energy *e = &total->energy;
-    bool first = !total->started;
-    if (!total->started) {
-        total->started = true;
-        total->start_kinetic = now->kinetic - now->first;
-        /* what a law lets go of an initial stress before anything has moved was stored, too */
-        total->start_stored = now->stored + now->friction;
+    tl_energy_term *term = l->term, *last = l->term + TL_MOST_CONTRIBUTORS - 1;
+    while (term < last && term->name[0] && strncmp(term->name, name, TL_TERM_NAME - 1) != 0)
+        term++;
+    if (!term->name[0])
+        snprintf(term->name, sizeof term->name, "%s", name);
+    return term;
+}
+
+/* Asks all contributors; their sum: stored now, and heat of this step. */
+static tl_energies ask_contributors(tl_model *m)
+{
+    tl_energies sum = {0, 0};
+    for (tl_contributors with = m->cycle->contributor; *with; with++) {
+        if (!(*with)->energies)
+            continue;
+        tl_energies own = (*with)->energies(m);
+        tl_energy_term *term = term_of(&m->cycle->ledger, (*with)->name);
+        term->stored = own.stored;
+        term->heat += own.heat;
+        sum.stored += own.stored;
+        sum.heat += own.heat;
     }
+    return sum;
+}
+
+/* Notes the terms at the forces' time. */
+static void note_terms(tl_ledger *l, const tl_work_sums *now, double stored)
+{
+    tl_energy *e = &l->energy;
     double at[TL_WORK_COUNT];
     for (int w = 0; w < TL_WORK_COUNT; w++) {
-        at[w] = total->sum[w] + now->until[w];
-        total->sum[w] = at[w] + now->after[w];
+        at[w] = l->work[w] + now->until[w];
+        l->work[w] = at[w] + now->after[w];
     }
-    total->friction += now->friction;
     e->kinetic = now->kinetic;
-    e->stored = now->stored;
+    e->stored = stored;
     e->potential = -at[TL_WORK_GRAVITY];
     e->damping = -at[TL_WORK_DAMPING];
-    e->external = at[TL_WORK_EXTERNAL] + total->by_hand;
-    e->friction = total->friction;
-    double gain_kinetic = e->kinetic - total->start_kinetic;
-    double gain_stored = e->stored - total->start_stored;
-    double sum = gain_kinetic + e->potential + gain_stored + e->friction + e->damping - e->external;
+    e->external = at[TL_WORK_EXTERNAL] + l->by_hand;
+    e->friction = 0;
+    for (size_t k = 0; k < TL_MOST_CONTRIBUTORS; k++)
+        e->friction += l->term[k].heat;
+}
+
+/* The balance of the terms. `changed`: by something else than forces. */
+static void balance(tl_ledger *l, bool first, bool changed)
+{
+    tl_energy *e = &l->energy;
+    const double gains[] = {e->kinetic - l->start_kinetic, e->potential,
+                            e->stored - l->start_stored, e->friction, e->damping};
+    double sum = 0, largest = fmax(e->kinetic, l->start_kinetic);
+    for (size_t k = 0; k < sizeof gains / sizeof *gains; k++) {
+        sum += gains[k];
+        largest = fmax(largest, fabs(gains[k]));
+    }
+    sum -= e->external;
     if (changed &&
         !first) { /* what a deleted block's contacts held, or another law of them holds */
-        e->external += sum - total->error;
-        total->by_hand += sum - total->error;
-        sum = total->error;
+        e->external += sum - l->error;
+        l->by_hand += sum - l->error;
+        sum = l->error;
     }
-    total->error = sum;
-    double largest = fmax(fmax(fabs(gain_kinetic), fabs(e->potential)),
-                          fmax(fabs(gain_stored), fabs(e->friction)));
-    largest = fmax(largest, fmax(fabs(e->damping), fabs(e->external)));
-    largest = fmax(largest, fmax(e->kinetic, total->start_kinetic));
+    l->error = sum;
     /* Not of this moment's terms: where all pass through zero at once the ratio would mean nothing. */
     if (!first)
-        total->largest = fmax(total->largest, largest);
-    e->balance = total->largest > 0 ? sum / total->largest : 0;
+        l->largest = fmax(l->largest, fmax(largest, fabs(e->external)));
+    e->balance = l->largest > 0 ? sum / l->largest : 0;
 }
 
 /* What contacts store before anything has moved, but under an initial stress: their blocks were made so. */
-static void note_overlaps(const tl_model *m, struct tl_ledger *total)
+static void note_overlaps(const tl_model *m, tl_ledger *l)
 {
     const tl_contacts *c = &m->detect->contacts;
     double most = 0;
     for (uint32_t row = 0; row < c->table.rows && !m->detect->points.initial; row++) {
         const double stored = c->stored[row] > 0 ? c->stored[row] : 0;
-        total->overlaps += stored;
+        l->overlaps += stored;
         if (stored <= most)
             continue;
         most = stored;
-        total->overlap_a = m->blocks.id[c->a[row]];
-        total->overlap_b = m->blocks.id[c->b[row]];
+        l->overlap_a = m->blocks.id[c->a[row]];
+        l->overlap_b = m->blocks.id[c->b[row]];
     }
 }
 
 bool tl_energy_pushed(const tl_model *m, tl_overlap_push *by)
 {
-    const struct tl_ledger *l = m->cycle->ledger;
+    const tl_ledger *l = &m->cycle->ledger;
     const tl_energy *e = &l->energy;
     *by = (tl_overlap_push){l->overlap_a, l->overlap_b, l->overlaps - e->stored,
                             fmax(0, e->external - e->potential)};
     return by->gave > by->others;
 }
 
-void tl_energy_close(tl_model *m)
+/* Adds what the chunks of bodies have booked, in their order. */
+static tl_work_sums sum_chunks(const tl_model *m)
 {
-    struct tl_cycle *c = m->cycle;
-    struct tl_ledger now = {0}, *total = c->ledger;
+    tl_work_sums all = {0};
     for (size_t chunk = 0; chunk * TL_BODY_CHUNK < m->bodies.table.rows; chunk++) {
-        const struct tl_ledger *l = &c->chunk_ledger[chunk];
-        now.kinetic += l->kinetic;
-        now.first += l->first;
-        now.motion0 += l->motion0;
-        now.motion += l->motion;
+        const tl_work_sums *sums = &m->cycle->chunk_work[chunk];
+        all.kinetic += sums->kinetic;
+        all.first += sums->first;
+        all.motion0 += sums->motion0;
+        all.motion2 += sums->motion2;
         for (int w = 0; w < TL_WORK_COUNT; w++) {
-            now.until[w] += l->until[w];
-            now.after[w] += l->after[w];
+            all.until[w] += sums->until[w];
+            all.after[w] += sums->after[w];
         }
     }
-    /* the same sum as after the last step, so 0 when nobody touched it */
-    if (total->started)
-        total->by_hand += now.motion0 - total->motion;
-    else
-        note_overlaps(m, total);
-    total->motion = now.motion;
-    c->kinetic_before = now.motion0;
-    tl_energies own = tl_contributors_energies(m);
-    now.stored = own.stored;
-    now.friction = own.heat;
-    bool changed = total->structure != m->structure || total->laws != m->laws;
-    total->structure = m->structure;
-    total->laws = m->laws;
-    close_ledger(total, &now, changed);
+    return all;
+}
+
+void tl_energy_close(tl_model *m)
+{
+    tl_ledger *l = &m->cycle->ledger;
+    const tl_work_sums now = sum_chunks(m);
+    const tl_energies own = ask_contributors(m);
+    const bool first = !l->started, changed = l->structure != m->structure || l->laws != m->laws;
+    if (first) {
+        note_overlaps(m, l);
+        l->start_kinetic = now.kinetic - now.first;
+        /* what a law lets go of an initial stress before anything has moved was stored, too */
+        l->start_stored = own.stored + own.heat;
+        l->started = true;
+    } else {
+        l->by_hand +=
+            now.motion0 - l->motion; /* the same sum as then, so 0 when nobody touched it */
+    }
+    l->motion = now.motion2;
+    l->structure = m->structure;
+    l->laws = m->laws;
+    m->cycle->kinetic_before = now.motion0;
+    note_terms(l, &now, own.stored);
+    balance(l, first, changed);
 }
 
 tl_status tl_model_energy(tl_model *m, tl_energy *energy)
 {
-    *energy = m->cycle && m->cycle->ledger ? m->cycle->ledger->energy : (tl_energy){0};
+    *energy = m->cycle ? m->cycle->ledger.energy : (tl_energy){0};
     return TL_OK;
 }
 

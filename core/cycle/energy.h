@@ -6,18 +6,14 @@
 
 /* Twice the rotational energy of a body. */
 double tl_spin_energy2(const tl_model *m, uint32_t body);
-/* Bytes of the ledger, and whether one that was read from a file is none of impossible bits. */
-size_t tl_ledger_size(void);
-bool tl_ledger_is_sound(const struct tl_ledger *ledger);
-/* What blocks that were made overlapping have pushed with: those that did the most, the energy that is no longer stored, and what gravity and all
- * else have done, J. Whether the first is more. */
+/* What blocks that were made overlapping have pushed with: those that did the most, the energy that is no longer
+ * stored, and what gravity and all else have done, J. Whether the first is more. */
 typedef struct tl_overlap_push {
     tl_id a, b;
     double gave, others;
 } tl_overlap_push;
 bool tl_energy_pushed(const tl_model *m, tl_overlap_push *by);
 /* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
-tl_status tl_energy_prepare(tl_model *m, size_t chunks);
 void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work);
 void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned,
                          tl_work *work);

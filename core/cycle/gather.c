@@ -6,7 +6,6 @@
 #include "base/extremes.h"
 #include "base/parallel.h"
 #include "contact/detection.h"
-#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 #include "cycle/rest.h"
@@ -16,6 +15,16 @@ static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
 {
     return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y,
                  fixed & TL_FIX_Z ? 0 : v.z);
+}
+
+/* Asks all contributors what acts on some bodies. */
+static void gather_acting(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
+{
+    for (uint32_t k = 0; k < end - begin; k++)
+        on[k] = (tl_acting){.magnitude = 0};
+    for (tl_contributors with = m->cycle->contributor; *with; with++)
+        if ((*with)->gather)
+            (*with)->gather(m, begin, end, on);
 }
 
 /* Adds to what acts on a body its weight and load. */
@@ -70,7 +79,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     tl_sums sums = {.worst = TL_NO_ROW};
     tl_acting on[TL_BODY_CHUNK];
     const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
-    tl_contributors_gather(m, (uint32_t)begin, (uint32_t)end, on);
+    gather_acting(m, (uint32_t)begin, (uint32_t)end, on);
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (idle && idle[body])
             continue;
@@ -106,15 +115,6 @@ bool tl_gather_prepare(tl_model *m)
         return false;
     c->reactions_for = version;
     return true;
-}
-
-void tl_loads_begin(tl_model *m, double dt)
-{
-    struct tl_cycle *c = m->cycle;
-    tl_vec3 now = m->config.gravity;
-    c->share_before = m->dt + dt > 0 ? m->dt / (m->dt + dt) : 0;
-    bool changed = m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(now, m->gravity_before));
-    c->gravity = changed ? tl_acting_mean(c, now, m->gravity_before) : now;
 }
 
 void tl_gather(tl_model *m)

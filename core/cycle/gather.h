@@ -4,8 +4,6 @@
 
 #include "cycle/cycle_data.h"
 
-/* What gravity and loads do in a step of dt: the mean over its kick. */
-void tl_loads_begin(tl_model *m, double dt);
 /* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
 bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */

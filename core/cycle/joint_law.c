@@ -1,10 +1,10 @@
 /* joint_law.c - setting the law of a joint. */
 #include "base/columns.h"
+#include "base/params.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/presses.h"
 #include "cycle/cycle_data.h"
-#include "cycle/remarks.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
 #include "detect/fields.h"
@@ -14,6 +14,7 @@
 #include "plugin/loader.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* ---------------------------------------------------------------- forces that are kept ----
  *
@@ -204,6 +205,25 @@ static tl_law *place_of(tl_model *m, tl_tag tag)
     return &laws[m->joint_law_count];
 }
 
+/* An angle that is rather a coefficient, or in radians. */
+static void remark_friction(tl_model *m, const char *joint, const tl_law *law)
+{
+    for (uint32_t i = 0; i < law->kind->param_count; i++) {
+        tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
+        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 ||
+            strcmp(p.unit, "deg") != 0)
+            continue;
+        double value;
+        memcpy(&value, (const char *)law->params + p.offset, sizeof value);
+        if (value > 0 && value <= 1 && tl_model_says(m, TL_REMARK_FRICTION))
+            tl_model_say(m,
+                         "joint '%s', law '%s': friction = %g deg is nearly none: it is an angle "
+                         "in degrees; a coefficient of %g is %.3g deg, and %g rad are %.3g deg",
+                         joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI,
+                         value, value * 180 / TL_PI);
+    }
+}
+
 /* Puts a law in its place, which it owns then; after a failure nothing has changed. */
 static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
 {
@@ -211,7 +231,7 @@ static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
     tl_law *place = place_of(m, law->tag);
     tl_status status = place ? prepare_contacts(m, law, &kept) : tl_fail_memory(&m->error);
     if (status == TL_OK) {
-        tl_remark_friction(m, joint, law);
+        remark_friction(m, joint, law);
         tl_law_rebase(m, law);
         const uint32_t row = (uint32_t)(place - m->joint_laws);
         if (row == m->joint_law_count)

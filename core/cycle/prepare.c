@@ -4,7 +4,6 @@
 #include "base/parallel.h"
 #include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
-#include "cycle/energy.h"
 #include "cycle/split.h"
 #include "cycle/undo.h"
 #include "model/rows.h"
@@ -20,8 +19,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
     free(cycle->swept);
     free(cycle->chunk_sums);
     free(cycle->group_energy);
-    free(cycle->chunk_ledger);
-    free(cycle->ledger);
+    free(cycle->chunk_work);
     tl_undo_free(cycle->undo);
     tl_split_free(cycle);
     free(cycle);
@@ -58,12 +56,10 @@ tl_status tl_cycle_prepare(tl_model *m)
     size_t bodies = m->bodies.table.rows, chunks = bodies / TL_BODY_CHUNK + 1;
     /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */
     size_t rows = (bodies + TL_LANES - 1) / TL_LANES * TL_LANES;
-    tl_status status = chunks > c->chunk_capacity ? tl_energy_prepare(m, chunks) : TL_OK;
-    if (status == TL_OK &&
-        !(tl_fit(&c->chunk_sums, &c->chunk_capacity, chunks, sizeof *c->chunk_sums) &&
-          tl_table_resize(&c->table, rows)))
-        status = tl_fail_memory(&m->error);
-    return status;
+    bool enough = tl_fit(&c->chunk_sums, &c->chunk_capacity, chunks, sizeof *c->chunk_sums) &&
+                  tl_fit(&c->chunk_work, &c->chunk_work_capacity, chunks, sizeof *c->chunk_work) &&
+                  tl_table_resize(&c->table, rows);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
 bool tl_model_moves(const tl_model *m)

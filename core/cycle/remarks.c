@@ -5,7 +5,6 @@
  * seconds; then densities have a unit of mass, t or kg, that goes with kN or N. */
 #include "cycle/remarks.h"
 
-#include "base/params.h"
 #include "contact/contacts.h"
 #include "cycle/cycle_data.h"
 #include "detect/overlap.h"
@@ -121,24 +120,6 @@ void tl_remark_units(tl_model *m)
     for (size_t i = 0; i < m->joint_law_count; i++)
         if (m->joint_laws[i].kn > 0)
             remark_stiffness(m, &d, g, &m->joint_laws[i]);
-}
-
-void tl_remark_friction(tl_model *m, const char *joint, const tl_law *law)
-{
-    for (uint32_t i = 0; i < law->kind->param_count; i++) {
-        tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
-        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 ||
-            strcmp(p.unit, "deg") != 0)
-            continue;
-        double value;
-        memcpy(&value, (const char *)law->params + p.offset, sizeof value);
-        if (value > 0 && value <= 1 && tl_model_says(m, TL_REMARK_FRICTION))
-            tl_model_say(m,
-                         "joint '%s', law '%s': friction = %g deg is nearly none: it is an angle "
-                         "in degrees; a coefficient of %g is %.3g deg, and %g rad are %.3g deg",
-                         joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI,
-                         value, value * 180 / TL_PI);
-    }
 }
 
 /* Whether a contact may have closed so far, from its force alone: cheap, and true of few. */

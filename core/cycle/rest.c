@@ -123,9 +123,3 @@ bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio)
         return m->cycle->sums.worst_ratio < ratio && all_rest(m, ratio);
     return tl_unbalanced_ratio(m, measure) < ratio && turning_ratio(m) < ratio;
 }
-
-tl_id tl_worst_body(const tl_model *m)
-{
-    uint32_t worst = m->cycle->sums.worst;
-    return worst == TL_NO_ROW ? TL_NO_ID : m->bodies.id[worst];
-}

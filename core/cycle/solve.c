@@ -277,14 +277,22 @@ typedef struct progress {
     double time_0, wall_0;
 } progress;
 
+/* Id of the body that is farthest from equilibrium by the local measure, or TL_NO_ID. */
+static tl_id worst_body(const tl_model *m)
+{
+    uint32_t worst = m->cycle->sums.worst;
+    return worst == TL_NO_ROW ? TL_NO_ID : m->bodies.id[worst];
+}
+
 static void measure(const tl_model *m, const progress *p)
 {
     tl_solve_result *r = p->result;
-    r->ratio = tl_unbalanced_ratio(m, TL_RATIO_AVERAGE);
-    r->ratio_maximum = tl_unbalanced_ratio(m, TL_RATIO_MAXIMUM);
-    r->ratio_local = tl_unbalanced_ratio(m, TL_RATIO_LOCAL);
-    r->worst = tl_worst_body(m);
-    r->max_velocity = sqrt(m->cycle->sums.max_speed2);
+    const tl_balance now = tl_model_balance(m);
+    r->ratio = now.ratio;
+    r->ratio_maximum = now.ratio_maximum;
+    r->ratio_local = now.ratio_local;
+    r->worst = worst_body(m);
+    r->max_velocity = now.max_velocity;
     r->cycles = m->cycles - p->cycles_0;
     r->time = m->time;
     r->wall = tl_clock() - p->wall_0;
@@ -309,7 +317,7 @@ static bool call_back(tl_model *m, const tl_solve *s, int64_t done, tl_status *s
 static bool at_rest(tl_model *m, const progress *p)
 {
     bool rests = tl_at_rest(m, (tl_ratio_measure)p->solve->measure, p->solve->ratio);
-    p->result->worst = tl_worst_body(m); /* where forces balance, one that still moves */
+    p->result->worst = worst_body(m); /* where forces balance, one that still moves */
     return rests;
 }
 

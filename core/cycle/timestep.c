@@ -13,7 +13,6 @@
 #include "base/parallel.h"
 #include "contact/detection.h"
 #include "cycle/added_mass.h"
-#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/limits.h"
 #include "cycle/prepare.h"
@@ -156,6 +155,35 @@ static tl_spread largest_face(const tl_model *m, uint32_t body)
 
 /* ---------------------------------------------------------------- one body --------------- */
 
+static tl_holding holding_of(const tl_model *m, uint32_t body)
+{
+    tl_holding sum = {.law = 0};
+    for (tl_contributors with = m->cycle->contributor; *with; with++)
+        if ((*with)->hold)
+            (*with)->hold(m, body, tl_rates_points(m), &sum);
+    return sum;
+}
+
+/* A bound of that which is found faster. */
+static tl_holding most_holding_of(const tl_model *m, uint32_t body)
+{
+    tl_holding sum = {.law = 0};
+    for (tl_contributors with = m->cycle->contributor; *with; with++)
+        if ((*with)->hold_most)
+            (*with)->hold_most(m, body, &sum);
+        else if ((*with)->hold)
+            (*with)->hold(m, body, true, &sum);
+    return sum;
+}
+
+static double approach_of(const tl_model *m, uint32_t body)
+{
+    double most = 0;
+    for (tl_contributors with = m->cycle->contributor; *with; with++)
+        most = fmax(most, (*with)->approach ? (*with)->approach(m, body) : 0);
+    return most;
+}
+
 static double law_on_face(tl_holding of, double stiffest)
 {
     return of.law > 0 ? of.law : stiffest;
@@ -164,7 +192,7 @@ static double law_on_face(tl_holding of, double stiffest)
 /* The part of its largest face on which a body stands at least, for the rate on all of it. */
 static double least_part(const tl_model *m, uint32_t body, const tl_holding *of, double face)
 {
-    double more = of->presses ? tl_body_approach(m, body) / sqrt(face) : 1;
+    double more = of->presses ? approach_of(m, body) / sqrt(face) : 1;
     return fmin(fmax(more, FLOOR), 1);
 }
 
@@ -175,7 +203,7 @@ typedef struct step_rates {
 
 static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
-    tl_holding of = tl_body_held(m, body, tl_rates_points(m));
+    tl_holding of = holding_of(m, body);
     inverse_inertia per = inverse_of(m, body);
     double law = law_on_face(of, stiffest), face = law * m->bodies.face_rate[body];
     double turn = law * m->bodies.face_turn[body];
@@ -190,7 +218,7 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
 /* What a body's rate is no higher than, from what is known of its contacts at once. */
 static double most_rate(const tl_model *m, uint32_t body, double stiffest)
 {
-    tl_holding most = tl_body_held_most(m, body);
+    tl_holding most = most_holding_of(m, body);
     double on_face = law_on_face(most, stiffest) * m->bodies.face_rate[body];
     return fmax(rate_of(most.stiffness, inverse_of(m, body)), on_face);
 }
@@ -198,7 +226,7 @@ static double most_rate(const tl_model *m, uint32_t body, double stiffest)
 /* The stiffness that a body's rate comes from, N/m: of its contacts, or of the part of its largest face that counts. */
 static double rate_stiffness(const tl_model *m, uint32_t body)
 {
-    tl_holding of = tl_body_held(m, body, tl_rates_points(m));
+    tl_holding of = holding_of(m, body);
     double law = law_on_face(of, stiffest_law(m)), face = law * m->bodies.face_rate[body];
     double part = least_part(m, body, &of, face);
     if (rate_of(of.stiffness, inverse_of(m, body)) < part * face)
@@ -342,11 +370,6 @@ static tl_row_value rates_keep(tl_model *m, double known)
     return (tl_row_value){c->stiffness_rates.extreme, c->stiffness_rates.body};
 }
 
-bool tl_rates_are_state(const tl_model *m)
-{
-    return tl_mass_scaled(m) || (tl_rates_points(m) && isnan(m->timestep.dt));
-}
-
 void tl_rates_try(tl_model *m, double known, double *rate, double *turn_rate)
 {
     struct tl_cycle *c = m->cycle;
@@ -466,10 +489,17 @@ static double damping_factor(const tl_model *m)
     return factor;
 }
 
-double tl_timestep_rate_limit(const tl_model *m)
+/* The highest rate that is stable at the step for which inertia is added, 1/s2. */
+static double rate_limit(const tl_model *m)
 {
     double share = tl_timestep_fraction(m) * damping_factor(m) / m->added_dt;
-    return tl_adds_mass(m) ? 2 * share * share : 0;
+    return 2 * share * share;
+}
+
+bool tl_rates_are_state(const tl_model *m, double *known)
+{
+    *known = tl_adds_mass(m) ? rate_limit(m) : 0;
+    return tl_mass_scaled(m) || (tl_rates_points(m) && isnan(m->timestep.dt));
 }
 
 /* A plugin's factor is its word: refused when it cannot be. */
@@ -541,7 +571,7 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
             "them only, or the longer one to mass_scaling",
             given, wanted);
     if (!report) {
-        double limit = tl_timestep_rate_limit(m);
+        double limit = rate_limit(m);
         rates_keep(m, limit);
         tl_status status = tl_added_find(m, limit);
         if (status != TL_OK)

@@ -9,16 +9,14 @@
 tl_status tl_timestep_choose(tl_model *m, double *dt);
 /* FRAC of (27): the user's, or that of the rule. */
 double tl_timestep_fraction(const tl_model *m);
-/* The highest rate that is stable at the step for which inertia is added, 1/s2; 0 where none is. */
-double tl_timestep_rate_limit(const tl_model *m);
-
-/* The highest rate, with mass scaling the lowest, all looked at anew and nothing kept. Rates up to `known` are told from above only, as
- * what the body asks for at the most: 0 where all count. */
+/* The highest rate, with mass scaling the lowest, all looked at anew and nothing kept. Of a body whose rate is below
+ * `known` a bound no higher than that will do: 0 where all count. */
 tl_row_value tl_rates_anew(tl_model *m, double known);
-/* The rates that the next step will keep, for the contacts as they are, of all bodies. Kept are those of before; noted in
- * m->detect, a copy that is thrown away, is that bodies have been rated. */
+/* The rates that the next step will keep, for the contacts as they are, of all bodies. Those kept now stay. Notes that
+ * bodies have been rated in m->detect, which is a copy that is thrown away. */
 void tl_rates_try(tl_model *m, double known, double *rate, double *turn_rate);
-/* Whether the step follows from rates that were kept: these are then part of the model's state. */
-bool tl_rates_are_state(const tl_model *m);
+/* Whether the step follows from rates that were kept, which are then part of the model's state. *known: for rates that
+ * are tried. */
+bool tl_rates_are_state(const tl_model *m, double *known);
 
 #endif

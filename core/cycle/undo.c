@@ -99,7 +99,7 @@ void tl_undo_rows(tl_model *m, const tl_table *table, size_t first, size_t count
 /* Of the tables of those who do not keep rows of them themselves, or back of all. */
 static void copy_contributors(tl_model *m, bool back)
 {
-    for (const tl_contributor *const *with = m->cycle->contributor; *with; with++) {
+    for (tl_contributors with = m->cycle->contributor; *with; with++) {
         tl_table *table[TL_CONTRIBUTOR_TABLES];
         size_t count = (*with)->tables ? (*with)->tables(m, table) : 0;
         if (!(*with)->put_back)
@@ -116,7 +116,7 @@ static bool reserve_contributors(tl_model *m)
     struct tl_undo *u = m->cycle->undo;
     size_t all = 0;
     bool enough = true;
-    for (const tl_contributor *const *with = m->cycle->contributor; *with; with++) {
+    for (tl_contributors with = m->cycle->contributor; *with; with++) {
         tl_table **table = &u->table[all];
         size_t count = (*with)->tables ? (*with)->tables(m, table) : 0;
         for (size_t k = 0; k < count; k++)
@@ -177,7 +177,7 @@ bool tl_undo_keeps(const tl_model *m)
 static bool contributors_may_fail(const tl_model *m)
 {
     bool may = false;
-    for (const tl_contributor *const *with = m->cycle->contributor; *with; with++)
+    for (tl_contributors with = m->cycle->contributor; *with; with++)
         may = may || ((*with)->may_fail && (*with)->may_fail(m));
     return may;
 }

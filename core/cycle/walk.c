@@ -2,7 +2,6 @@
 #include "cycle/walk.h"
 
 #include "cycle/cycle_data.h"
-#include "cycle/energy.h"
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "cycle.", c, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "cycle.", c, member)
@@ -38,13 +37,10 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     FLAG(CACHE, fast);
     VALUE(CACHE, failing);
     VALUE(CACHE, rest_ratio);
-    size_t one = c->ledger ? 1 : 0;
-    tl_walk_list(walk, TL_KEEP_STATE, "cycle.ledger", &c->ledger, tl_ledger_size(), &one, NULL,
-                 offsetof(tl_memory, step));
+    VALUE(STATE, ledger);
     LIST(SCRATCH, chunk_sums, &c->chunk_capacity, &c->chunk_capacity, step);
     LIST(SCRATCH, motion, &c->motion_capacity, &c->motion_capacity, step);
     LIST(SCRATCH, swept, &c->swept_capacity, &c->swept_capacity, step);
     LIST(CACHE, group_energy, &c->group_capacity, &c->group_capacity, step);
-    tl_walk_list(walk, TL_KEEP_SCRATCH, "cycle.chunk_ledger", &c->chunk_ledger, tl_ledger_size(),
-                 &c->chunk_capacity, NULL, offsetof(tl_memory, step));
+    LIST(SCRATCH, chunk_work, &c->chunk_work_capacity, &c->chunk_work_capacity, step);
 }

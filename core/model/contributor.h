@@ -36,7 +36,7 @@ typedef struct tl_energies {
 
 /* Functions that are NULL add nothing. Those of a body are called on any thread. */
 typedef struct tl_contributor {
-    const char *name;
+    const char *name; /* of its term in the ledger of energy, too: at most 15 bytes */
     /* Makes room for the step. Nothing has changed when it fails. */
     tl_status (*prepare)(tl_model *m);
     /* Finds the forces at the present places. When it fails the step is undone. */
@@ -60,6 +60,9 @@ typedef struct tl_contributor {
     /* Whether `apply` may fail in any step. */
     bool (*may_fail)(const tl_model *m);
 } tl_contributor;
+
+/* The contributors of a model; NULL ends them. */
+typedef const tl_contributor *const *tl_contributors;
 
 /* Most contributors of a model. */
 #define TL_MOST_CONTRIBUTORS 4

@@ -11,7 +11,6 @@
 #include "contact/store.h"
 #include "contact/walk.h"
 #include "cycle/cycle_data.h"
-#include "cycle/energy.h"
 #include "cycle/prepare.h"
 #include "cycle/walk.h"
 #include "detect/kinds.h"
@@ -472,7 +471,9 @@ static void forget_stale(const tl_model *m, struct tl_cycle *c)
 static const char *cycle_unsound(const tl_model *m, struct tl_cycle *c)
 {
     forget_stale(m, c);
-    bool sound = c->dt >= 0 && isfinite(c->dt) && c->ledger && tl_ledger_is_sound(c->ledger);
+    bool sound = c->dt >= 0 && isfinite(c->dt) && tl_is_flag(&c->ledger.started);
+    for (size_t k = 0; k < TL_MOST_CONTRIBUTORS; k++)
+        sound = sound && memchr(c->ledger.term[k].name, '\0', TL_TERM_NAME);
     return sound ? NULL : "what a step keeps has an impossible value";
 }
 

@@ -120,7 +120,8 @@ static void say_nothing(void *user, const char *text)
 /* Rates as the next step will keep them, for contacts as it will find them. */
 static tl_status hash_rates(tl_hash *hash, tl_model *m)
 {
-    if (!tl_rates_are_state(m))
+    double known;
+    if (!tl_rates_are_state(m, &known))
         return TL_OK;
     tl_status status = tl_cycle_prepare(m);
     if (status != TL_OK)
@@ -129,7 +130,7 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
     double *rate = calloc(2 * bodies + 1, sizeof *rate);
     if (!rate)
         return tl_fail_memory(&m->error);
-    tl_rates_try(m, tl_timestep_rate_limit(m), rate, rate + bodies);
+    tl_rates_try(m, known, rate, rate + bodies);
     tl_hash_numbers(hash, rate, m->mass_scaling ? 2 * bodies : bodies);
     free(rate);
     return TL_OK;

@@ -130,6 +130,10 @@ TEST(a_cube_swings_on_it_and_makes_no_energy)
         low = fmin(low, stretch_of(m, 0));
     }
     CHECK_NEAR(low, -2 * mass * G / K, 1e-4 * mass * G / K);
+    CHECK_TEXT(m->cycle->ledger.term[0].name, "contacts");
+    CHECK_TEXT(m->cycle->ledger.term[1].name, "springs");
+    CHECK(m->cycle->ledger.term[1].stored == springs.stored &&
+          m->cycle->ledger.term[2].name[0] == 0);
     CHECK_NEAR(stretch_of(m, 0), 0, 1e-3 * mass * G / K); /* after one period */
     tl_model_destroy(m);
 }
