@@ -20,8 +20,8 @@ static tl_status prepare(tl_model *m)
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
-/* Of the points of some SIMD groups that follow each other, and of their contacts, rows that follow each other at once: what a failure
- * puts back. */
+/* Of the points of some SIMD groups that follow each other, and of their contacts, rows that follow each other at once:
+ * what a failure puts back. */
 static void copy_groups(tl_model *m, const tl_simd_group *groups, size_t count, bool back)
 {
     const tl_detect *d = m->detect;

@@ -14,11 +14,11 @@
  *     move     velocities and places one step on, work done on bodies     motion.c
  *     energy   the balance of the work                                    energy.c
  *
- * The functions of drives are a user's, and the step has been chosen for the model as it is: what a step depends on cannot
- * be changed in them (tl_model_may_set).
+ * The functions of drives are a user's, and the step has been chosen for the model as it is: what a step depends on
+ * cannot be changed in them (tl_model_may_set).
  *
- * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
- * in fixed chunks, so the bits do not depend on the number of threads. */
+ * Everything computed in parallel is either a pure function of one contact or one body, or a sum made in fixed chunks.
+ * So the bits do not depend on the number of threads. */
 #include "cycle/cycle.h"
 
 #include "contact/contacts.h"
@@ -124,7 +124,7 @@ tl_status tl_step(tl_model *m)
     tl_split_end(m);
     tl_loads_stepped(m);
     m->detect->stepped_contact = m->detect->next_contact;
-    /* velocities are half a step behind the places, but not when all is held and still, as if the model had not begun */
+    /* velocities are half a step behind the places, but not when all is held and still: as before the first step */
     m->dt = tl_model_moves(m) ? dt : 0;
     m->time += dt;
     m->cycles++;

@@ -36,8 +36,8 @@ typedef struct tl_sums {
     double max_speed2; /* largest v.v */
 } tl_sums;
 
-/* Cached for the rules of the time step: the lightest mass of the bodies that count and, with the column face_rate of the bodies,
- * what each asks on its largest face. Valid for one `version` of the bodies. */
+/* Cached for the rules of the time step: the lightest mass of the bodies that count and, with the column face_rate of
+ * the bodies, what each asks on its largest face. Valid for one `version` of the bodies. */
 struct tl_step_bounds {
     uint64_t version;     /* of the bodies; 0: none */
     uint64_t constraints; /* of the model */
@@ -47,7 +47,7 @@ struct tl_step_bounds {
     uint32_t lightest; /* row, or TL_NO_ROW */
 };
 
-/* Cached: the state of the model for which the rates of the bodies (stiffness over mass, 1/s2) hold, and the extreme one. */
+/* Cached: the state of the model for which the rates of the bodies hold, 1/s2, and the extreme one. */
 struct tl_stiffness_rates {
     uint64_t version; /* of the bodies and laws; 0: no rates are known */
     int64_t recheck;  /* of mass scaling: steps over RECHECK_STEPS */
@@ -64,7 +64,7 @@ struct tl_added {
     uint32_t worst; /* row of the body that has it, or TL_NO_ROW */
 };
 
-/* Bounds on the speeds of the bodies after the last kick: (|v| + |w| r)^2 / 4, m2/s2, and |w|^2 / 2, 1/s2, at the most. */
+/* Bounds on the speeds of the bodies after the last kick: of (|v| + |w| r)^2 / 4, m2/s2, and of |w|^2 / 2, 1/s2. */
 typedef struct tl_speed_bounds {
     double speed2, turn2;
 } tl_speed_bounds;
@@ -76,9 +76,8 @@ typedef struct tl_body_group {
     _Alignas(TL_ALIGN) tl_lanes4 q, axes;
     tl_lanes3 moments, per; /* per: 1 / moments */
     double mass[TL_LANES], alpha[TL_LANES];
-    double scale[TL_LANES],
-        turn_scale[TL_LANES];      /* of mass and moments that forces meet, by mass scaling */
-    double energy_scale[TL_LANES]; /* and of that which energies count */
+    /* by mass scaling: of mass and moments that forces meet, and of that which energies count */
+    double scale[TL_LANES], turn_scale[TL_LANES], energy_scale[TL_LANES];
     tl_lanes3 force, moment, damping_force, damping_moment;
     tl_lanes3 moved;                               /* velocity of the last step's motion */
     tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
@@ -122,10 +121,10 @@ typedef struct tl_energy_term {
 
 /* The energy ledger: energy.c. */
 typedef struct tl_ledger {
-    tl_energy_term
-        term[TL_MOST_CONTRIBUTORS]; /* in the order in which contributors came; no name: not used */
-    double work[TL_WORK_COUNT];     /* until the end of the half step that follows */
-    double motion;                  /* kinetic energy after the last kick */
+    /* in the order in which contributors came; without a name: not used */
+    tl_energy_term term[TL_MOST_CONTRIBUTORS];
+    double work[TL_WORK_COUNT]; /* until the end of the half step that follows */
+    double motion;              /* kinetic energy after the last kick */
     double start_kinetic, start_stored;
     double largest;             /* change of a term so far */
     double by_hand;             /* energy given between steps */
@@ -148,12 +147,12 @@ struct tl_cycle {
     /* per body */
     double *contact_force; /* sum of |contact forces| */
     double *rate;          /* what it asks of the time step, 1/s2 (timestep.c); 0: it is held */
-    double *
-        turn_rate; /* with mass scaling what its rotation asks, and `rate` what its translation does */
+    /* with mass scaling what its rotation asks, and `rate` what its translation does */
+    double *turn_rate;
     double *inertia;                                      /* over its own, where `adds` */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
-    uint32_t
-        *reaction_of; /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
+    /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
+    uint32_t *reaction_of;
     tl_reaction *reaction;
     size_t reaction_capacity;
     uint64_t reactions_for; /* version of the bodies; 0: none */
@@ -239,6 +238,21 @@ static inline double tl_turn_scale(const struct tl_cycle *c, uint32_t body)
     return scale > 1 ? scale : 1;
 }
 
+/* The moments of inertia by which a body turns: by the paper's rule there is only one. */
+static inline tl_vec3 tl_moments_of(const tl_model *m, uint32_t body)
+{
+    const double round = m->bodies.round[body];
+    return m->config.rotation == TL_ROTATION_PAPER ? tl_v3(round, round, round)
+                                                   : m->bodies.moments[body];
+}
+
+/* The components of a vector in which a body is not held. */
+static inline tl_vec3 tl_free_part(tl_vec3 v, unsigned fixed)
+{
+    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y,
+                 fixed & TL_FIX_Z ? 0 : v.z);
+}
+
 /* Whether rates count contact points, or only faces. */
 static inline bool tl_rates_points(const tl_model *m)
 {
@@ -250,9 +264,9 @@ static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body
     return c->reaction[c->reaction_of[body]];
 }
 
-/* What gravity and loads do in a step. The kick spans half of the last step and half of this one. What has been set in between
- * acts only in the latter, and what it was in the former, so their mean acts in the whole span. Forces that are told are those at the
- * beginning of the step: kicks and energies take the mean. */
+/* What gravity and loads do in a step. The kick spans half of the last step and half of this one. What has been set in
+ * between acts only in the latter, and what it was in the former. So their mean acts in the whole span. Forces that are
+ * reported are those at the beginning of the step: kicks and energies take the mean. */
 static inline tl_vec3 tl_acting_mean(const struct tl_cycle *c, tl_vec3 now, tl_vec3 before)
 {
     return tl_v3_madd(tl_v3_scale(1 - c->share_before, now), c->share_before, before);

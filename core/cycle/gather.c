@@ -11,12 +11,6 @@
 #include "cycle/rest.h"
 #include "model/loads.h"
 
-static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
-{
-    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y,
-                 fixed & TL_FIX_Z ? 0 : v.z);
-}
-
 /* Asks all contributors what acts on some bodies. */
 static void gather_acting(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
 {
@@ -40,7 +34,7 @@ static void gather_body(tl_model *m, uint32_t body, const tl_acting *on)
         force = tl_v3_add(force, load.force);
         moment = tl_v3_add(moment, load.moment);
     }
-    b->force[body] = free_part(force, b->fixed[body]);
+    b->force[body] = tl_free_part(force, b->fixed[body]);
     b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;
     m->cycle->contact_force[body] = on->magnitude;
 }

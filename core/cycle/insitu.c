@@ -33,10 +33,7 @@
 /* The stress at a height. */
 static tl_sym3 stress_at(const tl_insitu *s, double z)
 {
-    double h = z - s->at.z;
-    return (tl_sym3){s->stress.xx + h * s->gradient.xx, s->stress.yy + h * s->gradient.yy,
-                     s->stress.zz + h * s->gradient.zz, s->stress.xy + h * s->gradient.xy,
-                     s->stress.yz + h * s->gradient.yz, s->stress.zx + h * s->gradient.zx};
+    return tl_s3_madd(s->stress, z - s->at.z, s->gradient);
 }
 
 /* Whether the faces of a patch are together: in the mean over its area not farther apart than blocks in contact are.

@@ -78,9 +78,7 @@ static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
     if (b->fixed[body] & TL_FIX_ROTATION)
         return out;
     tl_quat axes = tl_q_mul(b->q[body], b->axes[body]);
-    tl_vec3 turn = tl_q_rotate(tl_q_conj(axes), p.moment), i = b->moments[body];
-    if (m->config.rotation == TL_ROTATION_PAPER)
-        i = tl_v3(b->round[body], b->round[body], b->round[body]);
+    tl_vec3 turn = tl_q_rotate(tl_q_conj(axes), p.moment), i = tl_moments_of(m, body);
     turn = tl_q_rotate(axes, tl_v3(turn.x / i.x, turn.y / i.y, turn.z / i.z));
     out.w = tl_kick(out.w, turn, k->span / p.turn_scale, p.alpha, k->span);
     return out;
@@ -468,8 +466,8 @@ tl_status tl_motion_check(tl_model *m, double dt, bool held)
 {
     struct tl_cycle *c = m->cycle;
     unsigned threads = tl_pool_threads(m->pool);
-    limit_job
-        job; /* its bounds are kilobytes, of which only those of the threads there are count */
+    /* its bounds are kilobytes, of which only those of the threads there are count */
+    limit_job job;
     job.m = m;
     job.span = (step_span){dt, 0.5 * (m->dt + dt)};
     job.held = held;

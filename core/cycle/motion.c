@@ -43,8 +43,8 @@ TL_INLINE tl_mat3 attitude_of(tl_quat q, tl_quat axes)
 /* The velocity by (23). */
 TL_INLINE void kick_lane(tl_body_group *g, size_t i, double kick)
 {
-    double per_mass =
-        kick / (g->mass[i] * g->scale[i]); /* mass scaling: less motion for the same force */
+    /* mass scaling: less motion for the same force */
+    double per_mass = kick / (g->mass[i] * g->scale[i]);
     tl_vec3 force = tl_v3_add(tl_lanes3_get(&g->force, i), tl_lanes3_get(&g->damping_force, i));
     tl_vec3 v0 = tl_lanes3_get(&g->v0, i);
     tl_lanes3_put(&g->v1, i, tl_kick(v0, force, per_mass, g->alpha[i], kick));
@@ -202,12 +202,9 @@ static void load_lane(tl_body_group *g, size_t i, const tl_model *m)
     const tl_bodies *b = &m->bodies;
     const struct tl_cycle *c = m->cycle;
     uint32_t body = g->body[i];
-    double round = b->round[body];
     tl_lanes4_put(&g->q, i, b->q[body]);
     tl_lanes4_put(&g->axes, i, b->axes[body]);
-    tl_lanes3_put(&g->moments, i,
-                  m->config.rotation == TL_ROTATION_PAPER ? tl_v3(round, round, round)
-                                                          : b->moments[body]);
+    tl_lanes3_put(&g->moments, i, tl_moments_of(m, body));
     tl_lanes3_put(&g->force, i, b->force[body]);
     tl_lanes3_put(&g->moment, i, b->moment[body]);
     tl_lanes3_put(&g->moved, i, b->pose[body].v_moved);

@@ -6,12 +6,12 @@
  *     |F| and |M| / r  <  ratio B          its unbalanced force, and moment over its radius
  *     (m v.v + w.I w) / 2  <  U times the smaller of ratio and S ratio^2
  *
- * with what the body bears, B: the sum of its contact forces, or its weight and load where these are more, and at least
- * what its contacts carry at an overlap that is rounding. U = B^2 / (2 K) is the energy that B stores in the springs of its
- * contacts, of stiffness K: without it a body that swings would be at rest each time it passes through equilibrium,
- * and so would one that flies or slides on without a force. A body that swings on a spring of stiffness K with the force
- * ratio B has ratio^2 U; the whole may swing more softly than its contacts by S (SOFTER). A body without contacts has its share, by mass, of the energy
- * stored in all contacts for U. */
+ * with what the body bears, B: the sum of its contact forces, or its weight and load where these are more. B is at
+ * least what its contacts carry at an overlap that is rounding. U = B^2 / (2 K) is the energy that B stores in the
+ * springs of its contacts, of stiffness K. Without it a body that swings would be at rest each time it passes through
+ * equilibrium. So would one that flies or slides on without a force. A body that swings on a spring of stiffness K with
+ * the force ratio B has ratio^2 U. The whole may swing more softly than its contacts by S (SOFTER). A body without
+ * contacts has its share, by mass, of the energy stored in all contacts for U. */
 #include "cycle/rest.h"
 
 #include "cycle/contributors.h"
@@ -33,31 +33,27 @@ double tl_least_borne(const tl_model *m, uint32_t body)
     return ROUNDED_OVERLAP * m->bodies.radius[body] * tl_body_stiffness(m, body);
 }
 
+/* A sum over the bodies, over that of their contact forces or, without any, their weight. */
+static double ratio_of(const tl_sums *s, double sum)
+{
+    double against = s->contact_force > 0 ? s->contact_force : s->weight;
+    return against > 0 ? sum / against : 0;
+}
+
 double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
 {
     const tl_sums *s = &m->cycle->sums;
     if (measure == TL_RATIO_LOCAL)
         return s->local;
-    double against = s->contact_force > 0 ? s->contact_force : s->weight;
-    double unbalanced =
-        measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced;
-    return against > 0 ? unbalanced / against : 0;
-}
-
-/* The average ratio of the moments, each over its body's radius: a block that spins up is not in equilibrium. */
-static double turning_ratio(const tl_model *m)
-{
-    const tl_sums *s = &m->cycle->sums;
-    double against = s->contact_force > 0 ? s->contact_force : s->weight;
-    return against > 0 ? s->turning / against : 0;
+    return ratio_of(s,
+                    measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced);
 }
 
 static double kinetic_energy(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
     unsigned fixed = b->fixed[body];
-    tl_vec3 v = b->v[body];
-    v = tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y, fixed & TL_FIX_Z ? 0 : v.z);
+    tl_vec3 v = tl_free_part(b->v[body], fixed);
     double spin = fixed & TL_FIX_ROTATION ? 0 : tl_spin_energy2(m, body);
     return 0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * tl_v3_norm2(v) + spin);
 }
@@ -96,8 +92,8 @@ static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     }
 }
 
-/* Whether no body moves any more than `ratio` allows; the first that does is the worst. Looked at only when forces are in
- * equilibrium. */
+/* Whether no body moves any more than `ratio` allows. The first that does is the worst. Looked at only when forces are
+ * in equilibrium. */
 static bool all_rest(tl_model *m, double ratio)
 {
     double mass = 0;
@@ -121,5 +117,7 @@ bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio)
 {
     if (measure == TL_RATIO_LOCAL)
         return m->cycle->sums.worst_ratio < ratio && all_rest(m, ratio);
-    return tl_unbalanced_ratio(m, measure) < ratio && turning_ratio(m) < ratio;
+    /* moments, each over its body's radius: a block that spins up is not in equilibrium */
+    const tl_sums *s = &m->cycle->sums;
+    return tl_unbalanced_ratio(m, measure) < ratio && ratio_of(s, s->turning) < ratio;
 }

@@ -365,11 +365,8 @@ static uint32_t part_of(const struct tl_split_work *w, uint32_t body)
 static tl_mat3 inertia_of(const tl_model *m, uint32_t body)
 {
     tl_mat3 r = tl_q_matrix(tl_q_mul(m->bodies.q[body], m->bodies.axes[body])), out;
-    double scale = tl_turn_scale(m->cycle, body), round = m->bodies.round[body];
-    tl_vec3 own = m->bodies.moments[body];
-    if (m->config.rotation == TL_ROTATION_PAPER)
-        own = tl_v3(round, round, round);
-    const double i[3] = {scale * own.x, scale * own.y, scale * own.z};
+    const tl_vec3 own = tl_v3_scale(tl_turn_scale(m->cycle, body), tl_moments_of(m, body));
+    const double i[3] = {own.x, own.y, own.z};
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
             out.m[j][k] = r.m[j][0] * i[0] * r.m[k][0] + r.m[j][1] * i[1] * r.m[k][1] +
@@ -488,15 +485,10 @@ typedef struct whole {
     tl_mat3 inertia;
 } whole;
 
-static tl_vec3 column(const tl_mat3 *a, int k)
-{
-    return tl_v3(a->m[0][k], a->m[1][k], a->m[2][k]);
-}
-
 /* The solution x of a x = b, a symmetric. */
 static tl_vec3 solve3(const tl_mat3 *a, tl_vec3 b)
 {
-    return tl_solve3(column(a, 0), column(a, 1), column(a, 2), b);
+    return tl_solve3(tl_m3_column(a, 0), tl_m3_column(a, 1), tl_m3_column(a, 2), b);
 }
 
 /* w x I w */

@@ -5,8 +5,8 @@
  *          neighbours is faster, so FRAC 1 is stable.
  * By either rule no body's step is longer than its largest face allows, whatever areas its contacts have.
  * A step that would carry or turn a block too far is made shorter (limits.c). The one in use stays, for the steps after
- * that. Mass scaling gives every free body the bound of the one that has the most. With a step asked for it adds inertia
- * to the bodies that need it (added_mass.c), and takes that step. */
+ * that. Mass scaling gives every free body the bound of the one that has the most. With a step asked for it adds
+ * inertia to the bodies that need it (added_mass.c), and takes that step. */
 #include "cycle/timestep.h"
 
 #include "base/columns.h"
@@ -99,9 +99,8 @@ typedef struct inverse_inertia {
 static inverse_inertia inverse_of(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
-    tl_vec3 i = b->moments[body];
-    double least =
-        m->config.rotation == TL_ROTATION_PAPER ? b->round[body] : fmin(i.x, fmin(i.y, i.z));
+    tl_vec3 i = tl_moments_of(m, body);
+    double least = fmin(i.x, fmin(i.y, i.z));
     return (inverse_inertia){1 / b->mass[body], b->fixed[body] & TL_FIX_ROTATION ? 0 : 1 / least};
 }
 

@@ -1,7 +1,7 @@
 /* turn.h - finite turns of a body, and its free rotation.
  *
- * With `series`, a constant where these functions are called, they are straight-line arithmetic that the compiler
- * can put into SIMD lanes, for half angles below TL_SERIES_HALF_ANGLE; without it they use trigonometry. */
+ * `series` is a constant where these functions are called. With it they are straight-line arithmetic that the compiler
+ * can put into SIMD lanes, for half angles below TL_SERIES_HALF_ANGLE. Without it they use trigonometry. */
 #ifndef TL_CYCLE_TURN_H
 #define TL_CYCLE_TURN_H
 

@@ -1,11 +1,17 @@
 /* undo.c - a step that a law or the damping fails is undone.
  *
- * Laws work on the columns of points in place, so by the time one of them fails others have added the step's motion to
- * their shear forces, and the same step made again would add it twice. What laws and gather overwrite is kept for that,
- * tile by tile on the way, in steps in which something can fail: a plugin that does not say that it never does, numbers
- * so large that a force may not be finite, something that was set by hand since the last step, a body that came near
- * the limit of motion, or a given time step that is not stable. A step of the laws and dampings that come with the program costs nothing more. Detection and the
- * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
+ * Laws work on the columns of points in place. By the time one of them fails others have added the step's motion to
+ * their shear forces. The same step made again would add it twice. So what laws and gather overwrite is kept, tile by
+ * tile on the way, in steps in which something can fail:
+ *
+ *   - a plugin does not say that it never fails;
+ *   - numbers are so large that a force may not be finite;
+ *   - something was set by hand since the last step;
+ *   - a body came near the limit of motion;
+ *   - a given time step is not stable.
+ *
+ * A step of the laws and dampings that come with the program costs nothing more. Detection and the choice of the step
+ * need no undoing, for made again in the same places they change nothing. The move cannot fail. */
 #include "cycle/undo.h"
 
 #include "cycle/cycle_data.h"
@@ -26,6 +32,9 @@ typedef struct shadow {
 
 _Static_assert(TL_TABLE_COLUMNS <= 64, "each column has a bit");
 
+/* Most tables of contributors. */
+#define TABLES (TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES)
+
 struct tl_undo {
     bool keeps;    /* in this step */
     bool gathered; /* bodies have been kept, too */
@@ -36,9 +45,8 @@ struct tl_undo {
     double dt;        /* that the user had fixed then; NAN: none */
     tl_vec3 gravity;  /* then */
     shadow bodies, loads;
-    tl_table
-        *table[TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES]; /* of contributors, in their order */
-    shadow contributor[TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES];
+    tl_table *table[TABLES]; /* of contributors, in their order */
+    shadow contributor[TABLES];
     tl_reaction *reaction;
     size_t reaction_capacity;
     tl_sums sums;
@@ -65,6 +73,13 @@ static void shadow_free(shadow *s)
     *s = (shadow){.memory = NULL};
 }
 
+/* Copies what is here to what is kept, or back. */
+static void copy(void *here, void *kept, size_t bytes, bool back)
+{
+    if (bytes > 0)
+        memcpy(back ? here : kept, back ? kept : here, bytes);
+}
+
 /* Copies rows of the table to its shadow, or back. */
 static void shadow_copy(const shadow *s, const tl_table *table, size_t first, size_t count,
                         bool back)
@@ -72,10 +87,10 @@ static void shadow_copy(const shadow *s, const tl_table *table, size_t first, si
     char *kept = s->memory;
     for (uint64_t left = count ? s->columns : 0; left; left &= left - 1) {
         const tl_column *column = &table->columns[__builtin_ctzll(left)];
-        size_t begin = first * column->size, bytes = count * column->size;
+        size_t begin = first * column->size;
         char *here;
         memcpy(&here, (const char *)table->owner + column->offset, sizeof here);
-        memcpy(back ? here + begin : kept + begin, back ? kept + begin : here + begin, bytes);
+        copy(here + begin, kept + begin, count * column->size, back);
         kept += table->capacity * column->size;
     }
 }
@@ -136,13 +151,9 @@ static void copy_bodies(tl_model *m, bool back)
         held += c->reaction_of[body] != TL_NO_ROW;
     shadow_copy(&u->bodies, &m->bodies.table, 0, m->bodies.table.rows, back);
     shadow_copy(&u->loads, &c->table, 0, c->table.rows, back);
-    if (held > 0)
-        memcpy(back ? c->reaction : u->reaction, back ? u->reaction : c->reaction,
-               held * sizeof *c->reaction);
-    if (states > 0)
-        memcpy(back ? m->damping_state : u->damping_state,
-               back ? u->damping_state : m->damping_state, states * sizeof *m->damping_state);
-    *(back ? &c->sums : &u->sums) = *(back ? &u->sums : &c->sums);
+    copy(c->reaction, u->reaction, held * sizeof *c->reaction, back);
+    copy(m->damping_state, u->damping_state, states * sizeof *m->damping_state, back);
+    copy(&c->sums, &u->sums, sizeof c->sums, back);
 }
 
 void tl_undo_keep_bodies(tl_model *m)
@@ -197,7 +208,7 @@ static void forget(struct tl_undo *u)
 {
     shadow_free(&u->bodies);
     shadow_free(&u->loads);
-    for (size_t i = 0; i < TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES; i++)
+    for (size_t i = 0; i < TABLES; i++)
         shadow_free(&u->contributor[i]);
     free(u->reaction);
     u->reaction = NULL;
@@ -277,7 +288,7 @@ size_t tl_undo_bytes(const struct tl_cycle *c)
         return 0;
     size_t bytes = sizeof *u + u->bodies.capacity + u->loads.capacity +
                    u->reaction_capacity * sizeof *u->reaction;
-    for (size_t i = 0; i < TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES; i++)
+    for (size_t i = 0; i < TABLES; i++)
         bytes += u->contributor[i].capacity;
     return bytes;
 }

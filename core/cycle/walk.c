@@ -1,4 +1,4 @@
-/* walk.c - the entries of what the phases of a step keep. What a step may have to undo is no entry: no call ends in between. */
+/* walk.c - the entries of what the phases of a step keep. What a step may undo is no entry: no call ends within it. */
 #include "cycle/walk.h"
 
 #include "cycle/cycle_data.h"

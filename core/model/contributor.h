@@ -1,7 +1,7 @@
 /* contributor.h - what acts on the bodies in a step beside gravity and loads: their contacts, first of all.
  *
- * A step asks each contributor for the same things, phase by phase, in the order of the model's list. A new one is a file with such a
- * struct, and a line in the list of cycle/contributors.c. */
+ * A step asks each contributor for the same things, phase by phase, in the order of the model's list. A new one is a
+ * file with such a struct, and a line in the list of cycle/contributors.c. */
 #ifndef TL_MODEL_CONTRIBUTOR_H
 #define TL_MODEL_CONTRIBUTOR_H
 
@@ -53,8 +53,9 @@ typedef struct tl_contributor {
     double (*approach)(const tl_model *m, uint32_t body);
     /* Its energies with the forces that `apply` found: asked for once a step, after the bodies have moved. */
     tl_energies (*energies)(tl_model *m);
-    /* The tables whose columns TL_COLUMN_STEP `apply` overwrites, and how many they are. They are kept whole before it and put back after a
-     * failure, unless the contributor keeps rows of them itself (tl_undo_rows): then `put_back` does that. */
+    /* The tables whose columns TL_COLUMN_STEP `apply` overwrites, and how many they are. They are kept whole before it
+     * and put back after a failure, unless the contributor keeps rows of them itself (tl_undo_rows): then `put_back`
+     * does that. */
     size_t (*tables)(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES]);
     void (*put_back)(tl_model *m);
     /* Whether `apply` may fail in any step. */
