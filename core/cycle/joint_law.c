@@ -1,9 +1,11 @@
-/* joint_law.c - setting the law of a joint. */
+/* joint_law.c - setting the law of a joint, and what becomes of the contacts that come under it. */
 #include "base/columns.h"
 #include "base/params.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
+#include "contact/places.h"
 #include "contact/presses.h"
+#include "contact/store.h"
 #include "cycle/cycle_data.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
@@ -16,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---------------------------------------------------------------- forces that are kept ----
+/* ---------------------------------------------------------------- fields ------------------
  *
  * Field contacts that come under another law keep their normal force.
  *
@@ -149,6 +151,146 @@ static void keep_field_force(tl_model *m, uint32_t c)
         keep_shear(&t, radius);
 }
 
+/* ---------------------------------------------------------------- patches -----------------
+ *
+ * A new law, kn, ks or curve leaves the forces of its contacts as they are, with what slip has opened.
+ *
+ * Where one spring takes the place of another, walls are moved so that closures are as much smaller as it is stiffer.
+ * That keeps the pressure everywhere, in patches that are open in part, too. By a curve the present normal force of a
+ * point becomes the initial one where its walls are now. A point that is open keeps the gap at which it closes. Other
+ * properties leave the walls as they are. */
+
+/* Rebases a point that was lifted and which the new law has opened, by a curve: its force becomes the initial one. */
+static void rebase_point(tl_points_table *p, size_t i, double closure, double lift, double opening)
+{
+    bool open = p->flags[i] & TL_POINT_OPEN;
+    p->reference[i] += opening + (open ? -lift : closure);
+    p->f_n0[i] = open ? 0 : p->f_n[i];
+}
+
+/* From springs to springs: closure and lift, pressed or apart, take `ratio` of what they were. So they are 0 along the
+ * same line of a patch that is open in part, and pressures are the same everywhere. */
+static void rebase_spring(tl_points_table *p, size_t i, double closure, double lift, double opening,
+                          double ratio)
+{
+    p->reference[i] += closure + opening - ratio * (closure + lift);
+    p->f_n0[i] = 0;
+}
+
+static void rebase_patch(tl_model *m, uint32_t c, const tl_law *law)
+{
+    tl_detect *d = m->detect;
+    const tl_law *before = &m->joint_laws[d->contacts.law[c]];
+    const bool opened = before->kind == law->kind && tl_law_opens(law);
+    const bool springs = tl_law_is_linear(before) && tl_law_is_linear(law) && law->kn > 0;
+    double lift[TL_LANES], opening[TL_LANES] = {0};
+    tl_contact_places(m, c, &d->lanes[0]);
+    for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
+        tl_contact_point_lifts(m, c, first, lift);
+        if (opened)
+            tl_law_point_openings(m, law, c, first, opening);
+        for (size_t l = 0; l < TL_LANES && first + l < d->contacts.point_count[c]; l++) {
+            size_t i = tl_point_row(&d->contacts, c, first + l);
+            double closure = d->lanes[0].closure[first + l];
+            if (d->points.area[i] <= 0)
+                continue;
+            if (springs)
+                rebase_spring(&d->points, i, closure, lift[l], opening[l], before->kn / law->kn);
+            else
+                rebase_point(&d->points, i, closure, lift[l], opening[l]);
+        }
+    }
+}
+
+/* Whether there are forces to keep. A contact that carries nothing and has no initial force begins under the new
+ * law. */
+static bool has_forces(const tl_detect *d, uint32_t c)
+{
+    const tl_points_table *p = &d->points;
+    if (d->contacts.point_count[c] > 0 && !tl_v3_is_zero(d->contacts.force[c]))
+        return true; /* its points may have been laid since */
+    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        if (p->f_n[i] != 0 || (p->initial && p->f_n0[i] != 0))
+            return true;
+    }
+    return false;
+}
+
+static bool is_patch(const tl_model *m, uint32_t c)
+{
+    return tl_facet_is_patch(&m->detect->contacts.facet[c]);
+}
+
+/* Whether a contact that has forces gets this law in place of another. */
+static bool takes_over(const tl_model *m, const tl_law *law, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    if (contacts->law[c] == TL_NO_ROW || !tl_tag_matches(law->tag, contacts->tag[c]))
+        return false;
+    const tl_law *ruling = tl_law_of(m, contacts->tag[c]);
+    /* a law set for a plane of the joint goes before one set for the whole */
+    if (ruling->tag.joint > 0 && law->tag.joint == 0)
+        return false;
+    if (ruling->tag.plane > 0 && law->tag.plane == 0)
+        return false;
+    return has_forces(m->detect, c);
+}
+
+/* Whether a law presses as the one before it does, at any closure and opening. */
+static bool presses_alike(const tl_law *before, const tl_law *law)
+{
+    if (before->kind != law->kind || before->kn != law->kn)
+        return false;
+    if (tl_law_opens(before) && !tl_law_opens(law))
+        return false;
+    return tl_law_is_linear(law) || (tl_law_presses(law) && tl_law_same_curve(before, law));
+}
+
+/* Whether a contact comes under another stiffness, curve or plugin by a law, and has forces that are to stay. */
+static bool rebases(const tl_model *m, const tl_law *law, uint32_t c)
+{
+    return takes_over(m, law, c) && !presses_alike(&m->joint_laws[m->detect->contacts.law[c]], law);
+}
+
+/* Adds the columns that a law needs of the points of contacts; false: out of memory. */
+static bool reserve(tl_model *m, const tl_law *law)
+{
+    bool rebased = false;
+    for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
+        rebased = is_patch(m, c) && rebases(m, law, c);
+    return tl_detect_hold_states(m->detect, law->columns) &&
+           (!rebased || tl_detect_hold_initial(m->detect));
+}
+
+/* Keeps the forces of patches. What their contacts, and those of fields, have stored is not known any more. */
+static void rebase(tl_model *m, const tl_law *law)
+{
+    tl_detect *d = m->detect;
+    for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
+        if (!takes_over(m, law, c))
+            continue;
+        const tl_law *before = &m->joint_laws[d->contacts.law[c]];
+        bool alike = presses_alike(before, law);
+        if (!alike || before->ks != law->ks || !tl_law_is_linear(law))
+            d->contacts.stored[c] = NAN; /* its springs store another energy */
+        if (!alike && is_patch(m, c))
+            rebase_patch(m, c, law);
+        if (before->kind == law->kind && tl_law_opens(before) && !tl_law_opens(law))
+            /* how far it is open is in its walls now */
+            tl_contact_begin_law(m, c, law->kind, &d->lanes[0]);
+    }
+}
+
+/* Points whose joint law becomes one of another kind begin with the states of that. */
+static void reset(tl_model *m, uint32_t law, const tl_kind *kind)
+{
+    tl_detect *d = m->detect;
+    for (uint32_t c = 0; d && c < d->contacts.table.rows; c++)
+        if (d->contacts.law[c] == law)
+            tl_contact_begin_law(m, c, kind, &d->lanes[0]);
+}
+
 /* ---------------------------------------------------------------- laws of joints ---------- */
 
 static bool is_field(const tl_model *m, uint32_t c)
@@ -171,7 +313,7 @@ static bool find_fields(tl_model *m, const tl_law *law, fields *out)
     bool enough = true;
     out->contact = malloc((rows + 1) * sizeof *out->contact);
     for (uint32_t c = 0; c < rows && out->contact && enough; c++)
-        if (is_field(m, c) && tl_law_rebases(m, law, c)) {
+        if (is_field(m, c) && rebases(m, law, c)) {
             enough = may_keep_field_force(m, c);
             out->contact[out->count++] = c;
         }
@@ -188,7 +330,7 @@ static tl_status prepare_contacts(tl_model *m, const tl_law *law, fields *out)
     tl_status status = tl_detect_update(m);
     if (status != TL_OK)
         return status;
-    return tl_law_reserve(m, law) && find_fields(m, law, out) ? TL_OK : tl_fail_memory(&m->error);
+    return reserve(m, law) && find_fields(m, law, out) ? TL_OK : tl_fail_memory(&m->error);
 }
 
 /* The law of just this joint or plane, or a place for it behind the others; NULL: out of memory. */
@@ -232,12 +374,12 @@ static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
     tl_status status = place ? prepare_contacts(m, law, &kept) : tl_fail_memory(&m->error);
     if (status == TL_OK) {
         remark_friction(m, joint, law);
-        tl_law_rebase(m, law);
+        rebase(m, law);
         const uint32_t row = (uint32_t)(place - m->joint_laws);
         if (row == m->joint_law_count)
             m->joint_law_count++;
         else if (place->kind != law->kind)
-            tl_law_reset(m, row, law->kind);
+            reset(m, row, law->kind);
         tl_law_clear(place);
         *place = *law;
         for (size_t k = 0; k < kept.count; k++)

@@ -22,13 +22,5 @@ tl_status tl_law_update(const tl_law *law, const tl_law_batch *batch, tl_report 
 /* Makes the law of a joint from a plugin's law and arguments; with `from`, properties not given are taken from it. */
 tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
                           const tl_args *args, const tl_law *from, tl_law *out);
-/* Adds the columns that a law needs of the points of contacts; false when out of memory. */
-bool tl_law_reserve(tl_model *m, const tl_law *law);
-/* Whether a contact comes under another stiffness, curve or plugin by a law, and has forces that are to stay. */
-bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t contact);
-/* Keeps the forces of the patches among these. What all of them have stored is not known any more. */
-void tl_law_rebase(tl_model *m, const tl_law *law);
-/* Points whose joint law becomes one of another kind begin with the new kind's states. */
-void tl_law_reset(tl_model *m, uint32_t law, const tl_kind *kind);
 
 #endif
