@@ -348,6 +348,12 @@ const tl_chunk *tl_archive_find(const tl_archive *a, const char *name)
     return NULL;
 }
 
+size_t tl_archive_items(const tl_archive *a, const char *name)
+{
+    const tl_chunk *chunk = tl_archive_find(a, name);
+    return chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
+}
+
 bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size, size_t items)
 {
     const tl_chunk *chunk = tl_archive_find(a, name);

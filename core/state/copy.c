@@ -3,18 +3,14 @@
 #include "contact/detection.h"
 #include "contact/store.h"
 #include "contact/walk.h"
-#include "cycle/damping.h"
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
 #include "cycle/walk.h"
 #include "detect/asked.h"
-#include "force/joint_laws.h"
-#include "geometry/make.h"
 #include "model/joints.h"
 #include "model/rows.h"
 #include "model/walk.h"
-#include "state/drives.h"
-#include "state/histories.h"
+#include "state/parts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,14 +29,6 @@ static bool copy_rows(tl_model *to, tl_model *from)
     return !copy.failed;
 }
 
-static bool copy_shapes(tl_model *to, const tl_model *from)
-{
-    for (size_t row = 0; row < to->blocks.table.rows; row++)
-        if (!(to->blocks.shape[row] = tl_poly_copy(from->blocks.shape[row])))
-            return false;
-    return true;
-}
-
 static bool copy_names(tl_model *to, const tl_model *from)
 {
     for (size_t i = 0; i < from->group_count; i++)
@@ -52,37 +40,6 @@ static bool copy_names(tl_model *to, const tl_model *from)
         to->joints[i].planes = from->joints[i].planes;
     }
     return true;
-}
-
-static tl_status copy_laws(tl_model *to, const tl_model *from)
-{
-    if (from->joint_law_count == 0)
-        return TL_OK;
-    to->joint_laws = calloc(from->joint_law_count, sizeof *to->joint_laws);
-    if (!to->joint_laws)
-        return tl_fail_memory(&to->error);
-    for (size_t i = 0; i < from->joint_law_count; i++) {
-        const tl_law *law = &from->joint_laws[i];
-        const char *joint = law->tag.joint ? tl_tag_name(to, law->tag) : "*";
-        tl_status status = tl_law_make_for(to, law->tag, joint, law->kind, &(tl_args){NULL, 0}, law,
-                                           &to->joint_laws[to->joint_law_count]);
-        if (status != TL_OK)
-            return status;
-        to->joint_law_count++;
-    }
-    return TL_OK;
-}
-
-static tl_status copy_damping(tl_model *to, const tl_model *from)
-{
-    if (!from->damping)
-        return TL_OK;
-    tl_status status =
-        tl_damping_make(to, from->damping, &(tl_args){NULL, 0}, from->damping_params);
-    if (status == TL_OK && from->damping->state_count)
-        memcpy(to->damping_state, from->damping_state,
-               from->damping->state_count * sizeof *to->damping_state);
-    return status;
 }
 
 static tl_status copy_detection(tl_model *to, const tl_model *from)
@@ -109,20 +66,17 @@ static tl_status copy_cycle(tl_model *to, const tl_model *from)
     return copy.failed ? tl_fail_memory(&to->error) : TL_OK;
 }
 
-static tl_status fill(tl_model *to, tl_model *from, tl_drive_again_fn again, void *user)
+static tl_status fill(tl_model *to, tl_model *from, const tl_drives_again *again)
 {
-    if (!copy_rows(to, from) || !copy_shapes(to, from) || !copy_names(to, from))
+    if (!copy_rows(to, from) || !copy_names(to, from))
         return tl_fail_memory(&to->error);
-    tl_status status = copy_laws(to, from);
-    if (status == TL_OK)
-        status = copy_damping(to, from);
+    tl_status status = TL_OK;
+    for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
+        if ((*part)->copy)
+            status = (*part)->copy(to, from, again);
     if (status == TL_OK)
         status = copy_detection(to, from);
-    if (status == TL_OK)
-        status = copy_cycle(to, from);
-    if (status == TL_OK)
-        status = tl_drives_copy(to, from, again, user);
-    return status == TL_OK ? tl_histories_copy(to, from) : status;
+    return status == TL_OK ? copy_cycle(to, from) : status;
 }
 
 tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_model **copy)
@@ -145,7 +99,7 @@ tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_mod
     tl_model_log(to, m->log, m->log_user);
     tl_model_speak_lua(to, m->speaks_lua);
     to->interrupt_asked = m->interrupt_asked;
-    status = fill(to, m, again, user);
+    status = fill(to, m, &(tl_drives_again){again, user});
     if (status != TL_OK) {
         m->error = to->error;
         tl_model_destroy(to);

@@ -1,9 +1,9 @@
 /* drives.c - drives of a copied or restored model. What a function of a script does is the script's: it is asked for
  * again. */
+
 #include "state/drives.h"
 
 #include "model/loads.h"
-
 #include <stdlib.h>
 
 /* What is kept of all drives; NULL when out of memory. */
@@ -38,15 +38,14 @@ static tl_drive_asked asked_of(const tl_model *m, size_t index)
 
 /* Asks for the functions of a drive that had some. */
 static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept,
-                     const tl_drive_record *from, tl_drive_again_fn again, void *user,
-                     tl_drive *drive)
+                     const tl_drive_record *from, const tl_drives_again *again, tl_drive *drive)
 {
     tl_drive_asked asked = asked_of(m, index);
     asked.velocity = kept->velocity_asked;
     asked.angular_velocity = kept->angular_velocity_asked;
     asked.from = from ? &from[index - 1].drive : NULL;
     tl_drive given = tl_drive_default();
-    bool found = again && again(user, &asked, &given);
+    bool found = again->fn && again->fn(again->user, &asked, &given);
     drive->velocity_at = given.velocity_at;
     drive->angular_velocity_at = given.angular_velocity_at;
     drive->user = given.user;
@@ -65,7 +64,7 @@ static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept,
 
 /* `from` has the drives of the original, of a copy; of a file it is NULL. */
 static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count,
-                      const tl_drive_record *from, tl_drive_again_fn again, void *user)
+                      const tl_drive_record *from, const tl_drives_again *again)
 {
     if (count == 0)
         return TL_OK;
@@ -85,31 +84,25 @@ static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count,
         record->angular_velocity = kept[i].angular_velocity_now;
         if (!kept[i].velocity_asked && !kept[i].angular_velocity_asked)
             continue;
-        tl_status status = ask(m, i + 1, &kept[i], from, again, user, &record->drive);
+        tl_status status = ask(m, i + 1, &kept[i], from, again, &record->drive);
         if (status != TL_OK)
             return status;
     }
     return TL_OK;
 }
 
-bool tl_drives_save(const tl_model *m, tl_archive_writer *w)
+static void save_drives(const tl_model *m, tl_archive_writer *w)
 {
     tl_drive_kept *kept = keep_all(m);
     if (kept)
         tl_archive_put(w, "drives", kept, sizeof *kept, m->drive_count);
+    w->lost = w->lost || !kept;
     free(kept);
-    return kept != NULL;
 }
 
-size_t tl_drives_in(const tl_archive *a)
+static tl_status restore_drives(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
-    const tl_chunk *chunk = tl_archive_find(a, "drives");
-    return chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
-}
-
-tl_status tl_drives_restore(tl_model *m, const tl_archive *a, tl_drive_again_fn again, void *user)
-{
-    const size_t count = tl_drives_in(a);
+    const size_t count = tl_archive_items(a, "drives");
     tl_drive_kept *kept = malloc((count + 1) * sizeof *kept);
     if (!kept)
         return tl_fail_memory(&m->error);
@@ -117,7 +110,7 @@ tl_status tl_drives_restore(tl_model *m, const tl_archive *a, tl_drive_again_fn 
     for (size_t i = 0; i < count && read; i++)
         read = tl_v3_finite(kept[i].velocity) && tl_v3_finite(kept[i].angular_velocity) &&
                tl_v3_finite(kept[i].velocity_now) && tl_v3_finite(kept[i].angular_velocity_now);
-    tl_status status = read ? make(m, kept, count, NULL, again, user)
+    tl_status status = read ? make(m, kept, count, NULL, again)
                             : tl_archive_bad(a, &m->error, "'drives' is missing or does not fit");
     free(kept);
     if (status == TL_E_STATE)
@@ -125,12 +118,14 @@ tl_status tl_drives_restore(tl_model *m, const tl_archive *a, tl_drive_again_fn 
     return status;
 }
 
-tl_status tl_drives_copy(tl_model *to, const tl_model *from, tl_drive_again_fn again, void *user)
+static tl_status copy_drives(tl_model *to, const tl_model *from, const tl_drives_again *again)
 {
     tl_drive_kept *kept = keep_all(from);
     if (!kept)
         return tl_fail_memory(&to->error);
-    tl_status status = make(to, kept, from->drive_count, from->drives, again, user);
+    tl_status status = make(to, kept, from->drive_count, from->drives, again);
     free(kept);
     return status;
 }
+
+const tl_state_part tl_drives_part = {save_drives, restore_drives, copy_drives};

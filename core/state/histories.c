@@ -7,10 +7,10 @@
  *     histories.K.values    width numbers for each sample
  *
  * Whether there is a value or field of the name that is asked for is looked at by who samples. */
+
 #include "state/histories.h"
 
 #include "model/histories.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,13 +40,15 @@ static void keep(const tl_history *h, history_kept *kept)
     kept->list = h->list;
 }
 
-bool tl_histories_save(const tl_model *m, tl_archive_writer *w)
+static void save_histories(const tl_model *m, tl_archive_writer *w)
 {
     if (m->history_count == 0)
-        return true;
+        return;
     history_kept *kept = calloc(m->history_count, sizeof *kept);
-    if (!kept)
-        return false;
+    if (!kept) {
+        w->lost = true;
+        return;
+    }
     for (size_t k = 0; k < m->history_count; k++) {
         keep(m->histories[k], &kept[k]);
         for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
@@ -58,7 +60,6 @@ bool tl_histories_save(const tl_model *m, tl_archive_writer *w)
     }
     tl_archive_put(w, "histories", kept, sizeof *kept, m->history_count);
     free(kept);
-    return true;
 }
 
 /* ---------------------------------------------------------------- restoring -------------- */
@@ -143,8 +144,9 @@ static tl_status restore_one(tl_model *m, const tl_archive *a, size_t k, const h
                : tl_archive_bad(a, &m->error, "the samples of history '%s' do not fit", h->name);
 }
 
-tl_status tl_histories_restore(tl_model *m, const tl_archive *a)
+static tl_status restore_histories(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
+    (void)again;
     const tl_chunk *chunk = tl_archive_find(a, "histories");
     if (!chunk)
         return TL_OK;
@@ -163,8 +165,9 @@ tl_status tl_histories_restore(tl_model *m, const tl_archive *a)
 
 /* ---------------------------------------------------------------- copying ---------------- */
 
-tl_status tl_histories_copy(tl_model *to, const tl_model *from)
+static tl_status copy_histories(tl_model *to, const tl_model *from, const tl_drives_again *again)
 {
+    (void)again;
     for (size_t k = 0; k < from->history_count; k++) {
         const tl_history *h = from->histories[k];
         tl_history *copy = tl_history_hold(to, h, h->count);
@@ -178,3 +181,5 @@ tl_status tl_histories_copy(tl_model *to, const tl_model *from)
     }
     return TL_OK;
 }
+
+const tl_state_part tl_histories_part = {save_histories, restore_histories, copy_histories};

@@ -72,7 +72,7 @@ static void put_kind(tl_archive_writer *w, const char *prefix, const tl_kind *ki
     }
 }
 
-void tl_laws_save(const tl_model *m, tl_archive_writer *w)
+static void save_laws(const tl_model *m, tl_archive_writer *w)
 {
     uint64_t count = m->joint_law_count;
     tl_archive_put(w, "laws", &count, sizeof count, 1);
@@ -85,7 +85,7 @@ void tl_laws_save(const tl_model *m, tl_archive_writer *w)
     }
 }
 
-void tl_damping_save(const tl_model *m, tl_archive_writer *w)
+static void save_damping(const tl_model *m, tl_archive_writer *w)
 {
     if (!m->damping)
         return;
@@ -228,8 +228,9 @@ static bool tag_is_sound(const tl_model *m, tl_tag tag)
     return tag.joint <= m->joint_count && (tag.joint > 0 || tag.plane == 0);
 }
 
-tl_status tl_laws_restore(tl_model *m, const tl_archive *a)
+static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
+    (void)again;
     uint64_t count;
     if (!tl_archive_get(a, "laws", &count, sizeof count, 1) || count > a->chunk_count)
         return tl_archive_bad(a, &m->error, "'laws' is missing");
@@ -252,8 +253,9 @@ tl_status tl_laws_restore(tl_model *m, const tl_archive *a)
     return TL_OK;
 }
 
-tl_status tl_damping_restore(tl_model *m, const tl_archive *a)
+static tl_status restore_damping(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
+    (void)again;
     if (!tl_archive_find(a, "damping.kind"))
         return TL_OK;
     tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL);
@@ -264,3 +266,41 @@ tl_status tl_damping_restore(tl_model *m, const tl_archive *a)
         return tl_archive_bad(a, &m->error, "'damping.state' is missing");
     return TL_OK;
 }
+
+/* ---------------------------------------------------------------- copying ---------------- */
+
+static tl_status copy_laws(tl_model *to, const tl_model *from, const tl_drives_again *again)
+{
+    (void)again;
+    if (from->joint_law_count == 0)
+        return TL_OK;
+    to->joint_laws = calloc(from->joint_law_count, sizeof *to->joint_laws);
+    if (!to->joint_laws)
+        return tl_fail_memory(&to->error);
+    for (size_t i = 0; i < from->joint_law_count; i++) {
+        const tl_law *law = &from->joint_laws[i];
+        const char *joint = law->tag.joint ? tl_tag_name(to, law->tag) : "*";
+        tl_status status = tl_law_make_for(to, law->tag, joint, law->kind, &(tl_args){NULL, 0}, law,
+                                           &to->joint_laws[to->joint_law_count]);
+        if (status != TL_OK)
+            return status;
+        to->joint_law_count++;
+    }
+    return TL_OK;
+}
+
+static tl_status copy_damping(tl_model *to, const tl_model *from, const tl_drives_again *again)
+{
+    (void)again;
+    if (!from->damping)
+        return TL_OK;
+    tl_status status =
+        tl_damping_make(to, from->damping, &(tl_args){NULL, 0}, from->damping_params);
+    if (status == TL_OK && from->damping->state_count)
+        memcpy(to->damping_state, from->damping_state,
+               from->damping->state_count * sizeof *to->damping_state);
+    return status;
+}
+
+const tl_state_part tl_laws_part = {save_laws, restore_laws, copy_laws};
+const tl_state_part tl_damping_part = {save_damping, restore_damping, copy_damping};

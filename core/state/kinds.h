@@ -1,15 +1,11 @@
-/* kinds.h - laws and damping in an archive: of which plugin, with which parameters and states, by their names. */
+/* kinds.h - laws and damping: of which plugin, with which parameters and states, by their names. */
 #ifndef TL_STATE_KINDS_H
 #define TL_STATE_KINDS_H
 
-#include "model/model.h"
-#include "state/archive.h"
+#include "state/part.h"
 
-void tl_laws_save(const tl_model *m, tl_archive_writer *w);
-void tl_damping_save(const tl_model *m, tl_archive_writer *w);
-
-/* Make them anew. TL_E_NOT_FOUND: a plugin is not loaded; TL_E_STATE: it is there in another version. */
-tl_status tl_laws_restore(tl_model *m, const tl_archive *archive);
-tl_status tl_damping_restore(tl_model *m, const tl_archive *archive);
+/* TL_E_NOT_FOUND: a plugin is not loaded; TL_E_STATE: it is there in another version. */
+extern const tl_state_part tl_laws_part;
+extern const tl_state_part tl_damping_part;
 
 #endif

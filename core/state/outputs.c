@@ -165,11 +165,9 @@ static bool read_frames(const tl_archive *a, size_t k, size_t count, tl_vtk_seri
 static tl_status restore_series(tl_model *m, size_t k, const tl_archive *a)
 {
     char prefix[LONGEST_PREFIX], kind[LONGEST_KIND], name[TL_CHUNK_NAME];
-    const tl_chunk *chunk = tl_archive_find(a, tl_chunk_name(name, "frames.%zu.times", k));
-    const size_t count = chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
+    const size_t count = tl_archive_items(a, tl_chunk_name(name, "frames.%zu.times", k));
     tl_vtk_series *series = NULL;
     bool read =
-        chunk &&
         tl_archive_text(a, tl_chunk_name(name, "frames.%zu.prefix", k), prefix, sizeof prefix) &&
         tl_archive_text(a, tl_chunk_name(name, "frames.%zu.kind", k), kind, sizeof kind);
     if (read) {
@@ -259,14 +257,17 @@ static tl_status restore_pages(tl_model *m, const tl_archive *a)
 
 /* ---------------------------------------------------------------- both ------------------- */
 
-void tl_outputs_save(const tl_model *m, tl_archive_writer *w)
+static void save_outputs(const tl_model *m, tl_archive_writer *w)
 {
     save_pages(m, w);
     save_frames(m, w);
 }
 
-tl_status tl_outputs_restore(tl_model *m, const tl_archive *a)
+static tl_status restore_outputs(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
+    (void)again;
     tl_status status = restore_frames(m, a);
     return status == TL_OK ? restore_pages(m, a) : status;
 }
+
+const tl_state_part tl_outputs_part = {save_outputs, restore_outputs, NULL};

@@ -5,7 +5,7 @@
 
 #include "base/hash.h"
 #include "model/model.h"
-#include "state/archive.h"
+#include "state/part.h"
 
 #include <sys/types.h>
 
@@ -66,9 +66,8 @@ void tl_vtk_series_add(tl_vtk_series *series, double time, uint32_t parts);
 /* Finds or makes the page of a prefix; NULL when out of memory. */
 tl_page *tl_page_of(tl_model *m, const char *prefix);
 
-/* Adds frames and pages to an archive. */
-void tl_outputs_save(const tl_model *m, tl_archive_writer *w);
-/* Goes on with them where the saved model was; with pages as far as their files still are as they were then. */
-tl_status tl_outputs_restore(tl_model *m, const tl_archive *archive);
+/* A copy begins without: two models do not write into the same files. A restored one goes on with its frames, and
+ * with its pages as far as their files still are as they were then. */
+extern const tl_state_part tl_outputs_part;
 
 #endif

@@ -19,11 +19,7 @@
 #include "model/loads.h"
 #include "model/rows.h"
 #include "model/walk.h"
-#include "state/drives.h"
-#include "state/histories.h"
-#include "state/kinds.h"
-#include "state/outputs.h"
-#include "state/shapes.h"
+#include "state/parts.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -125,8 +121,8 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
  * Whether the rows of a model that were read from a file fit together. Numbers of rows are those of rows that are
  * there, choices are choices, bools are bools, and places are places. */
 
-/* Tolerance: by so much may be off the square of a quaternion's length, and the sum of the sizes of a rotation's nine numbers
- * (at most 3 sqrt 3). A rotation that the program has made is off by its roundings, some 1e-15. */
+/* Tolerance: by so much the square of a quaternion's length may be off 1. The sum of the sizes of a rotation's nine
+ * numbers may exceed 3 sqrt 3 by as much. A rotation that the program has made is off by its roundings, some 1e-15. */
 #define TURN_SLACK 0.01
 #define MOST_MATRIX (5.2 + TURN_SLACK)
 
@@ -431,10 +427,8 @@ static tl_status read_rows(tl_model *m, const tl_archive *a)
     if (status == TL_OK)
         status = read_planes(m, a);
     if (status == TL_OK)
-        status = unsound(a, m, rows_unsound(m, m->group_count, tl_drives_in(a)));
-    if (status == TL_OK)
-        status = tl_shapes_restore(m, a);
-    return status == TL_OK ? derive_rows(m) : status;
+        status = unsound(a, m, rows_unsound(m, m->group_count, tl_archive_items(a, "drives")));
+    return status;
 }
 
 /* ---------------------------------------------------------------- step ------------------- */
@@ -556,22 +550,16 @@ static tl_status read_cycle(tl_model *m, const tl_archive *a)
     return unsound(a, m, cycle_unsound(m, m->cycle));
 }
 
-static tl_status fill(tl_model *m, const tl_archive *a, tl_drive_again_fn again, void *user)
+static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
     tl_status status = read_rows(m, a);
+    for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
+        status = (*part)->restore(m, a, again);
     if (status == TL_OK)
-        status = tl_laws_restore(m, a);
-    if (status == TL_OK)
-        status = tl_damping_restore(m, a);
+        status = derive_rows(m);
     if (status == TL_OK)
         status = read_detection(m, a);
-    if (status == TL_OK)
-        status = read_cycle(m, a);
-    if (status == TL_OK)
-        status = tl_outputs_restore(m, a);
-    if (status == TL_OK)
-        status = tl_histories_restore(m, a);
-    return status == TL_OK ? tl_drives_restore(m, a, again, user) : status;
+    return status == TL_OK ? read_cycle(m, a) : status;
 }
 
 tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_drive_again_fn again,
@@ -584,7 +572,7 @@ tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_driv
     tl_status status = tl_model_create(&config, &m, error);
     if (status != TL_OK)
         return status;
-    status = fill(m, a, again, user);
+    status = fill(m, a, &(tl_drives_again){again, user});
     if (status != TL_OK) {
         *error = m->error;
         tl_model_destroy(m);

@@ -10,11 +10,7 @@
 #include "detect/asked.h"
 #include "model/rows.h"
 #include "model/walk.h"
-#include "state/drives.h"
-#include "state/histories.h"
-#include "state/kinds.h"
-#include "state/outputs.h"
-#include "state/shapes.h"
+#include "state/parts.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -97,14 +93,11 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     const tl_walk walk = {save_entry, w};
     tl_archive_put_text(w, "program", TALUS_VERSION);
     tl_model_walk(m, &walk);
-    bool saved = tl_shapes_save(m, w) && save_names(w, "groups", m->group_count, group_name, m) &&
-                 save_names(w, "joints.names", m->joint_count, joint_name, m) &&
-                 save_planes(w, m) && tl_drives_save(m, w);
-    tl_outputs_save(m, w);
-    saved = tl_histories_save(m, w) && saved;
+    bool saved = save_names(w, "groups", m->group_count, group_name, m) &&
+                 save_names(w, "joints.names", m->joint_count, joint_name, m) && save_planes(w, m);
     w->lost = w->lost || !saved;
-    tl_laws_save(m, w);
-    tl_damping_save(m, w);
+    for (const tl_state_part *const *part = tl_state_parts; *part; part++)
+        (*part)->save(m, w);
     if (tl_detect_lasting(m))
         tl_detect_walk(tl_detect_lasting(m), &walk);
     if (m->cycle)

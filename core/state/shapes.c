@@ -60,7 +60,7 @@ static void *place_of(const tl_poly *p, part which)
 static shape_counts *count_all(const tl_model *m)
 {
     size_t blocks = m->blocks.table.rows;
-    shape_counts *counts = malloc((blocks + 1) * sizeof *counts);
+    shape_counts *counts = calloc(blocks + 1, sizeof *counts);
     for (size_t row = 0; counts && row < blocks; row++) {
         const tl_poly *p = m->blocks.shape[row];
         counts[row] = (shape_counts){p->vertex_count, p->face_count, p->edge_count, p->seams};
@@ -87,17 +87,16 @@ static bool save_part(const tl_model *m, const shape_counts *counts, part which,
     return all != NULL;
 }
 
-bool tl_shapes_save(const tl_model *m, tl_archive_writer *w)
+static void save_shapes(const tl_model *m, tl_archive_writer *w)
 {
     shape_counts *counts = count_all(m);
-    if (!counts)
-        return false;
-    tl_archive_put(w, "shapes.counts", counts, sizeof *counts, m->blocks.table.rows);
-    bool saved = true;
+    bool saved = counts != NULL;
+    if (saved)
+        tl_archive_put(w, "shapes.counts", counts, sizeof *counts, m->blocks.table.rows);
     for (part which = 0; which < PARTS && saved; which++)
         saved = save_part(m, counts, which, w);
     free(counts);
-    return saved;
+    w->lost = w->lost || !saved;
 }
 
 /* ---------------------------------------------------------------- restoring -------------- */
@@ -212,8 +211,10 @@ static tl_status read_counts(tl_model *m, shape_counts *counts, const tl_archive
     return TL_OK;
 }
 
-tl_status tl_shapes_restore(tl_model *m, const tl_archive *archive)
+static tl_status restore_shapes(tl_model *m, const tl_archive *archive,
+                                const tl_drives_again *again)
 {
+    (void)again;
     size_t blocks = m->blocks.table.rows;
     shape_counts *counts = malloc((blocks + 1) * sizeof *counts);
     reading r = {.all = {NULL}};
@@ -227,3 +228,16 @@ tl_status tl_shapes_restore(tl_model *m, const tl_archive *archive)
     free(counts);
     return status;
 }
+
+/* ---------------------------------------------------------------- copying ---------------- */
+
+static tl_status copy_shapes(tl_model *to, const tl_model *from, const tl_drives_again *again)
+{
+    (void)again;
+    for (size_t row = 0; row < to->blocks.table.rows; row++)
+        if (!(to->blocks.shape[row] = tl_poly_copy(from->blocks.shape[row])))
+            return tl_fail_memory(&to->error);
+    return TL_OK;
+}
+
+const tl_state_part tl_shapes_part = {save_shapes, restore_shapes, copy_shapes};
