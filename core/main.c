@@ -5,7 +5,7 @@
 #include "lua/library.h"
 #include "lua/living.h"
 #include "lua/repl.h"
-#include "lua/state.h"
+#include "lua/run.h"
 
 #include <errno.h>
 #include <lualib.h>

@@ -1,13 +1,11 @@
-/* block.c - what selections of blocks and blocks can do beyond what contacts can: filters, verbs,
+/* block.c - what selections of blocks and blocks can do beyond what contacts can: filters, verbs, loads and drives,
  * shape and neighbours. */
 #include "lua/block.h"
 
-#include "lua/action.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
 #include "lua/item.h"
 #include "lua/living.h"
-#include "lua/selection.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -152,22 +150,6 @@ static const tl_halfspace *read_halfspace(lua_State *L, const char *key, tl_half
     return out;
 }
 
-bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *key, tl_bounds *box)
-{
-    static const tl_param params[] = {
-        TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
-        TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
-    };
-    if (tl_lua_option(L, table, key) == LUA_TNIL)
-        return false;
-    tl_lua_spec spec = {lua_pushfstring(L, "%s, %s", function, key), params, TL_LUA_COUNT(params),
-                        NULL};
-    tl_lua_read(L, -2, &spec, false, box);
-    if (box->min.x > box->max.x || box->min.y > box->max.y || box->min.z > box->max.z)
-        tl_lua_fail(L, "%s: every component of min must be at most that of max", spec.context);
-    return true;
-}
-
 /* Ids that are asked for, ascending; `list` is NULL when any will do. */
 typedef struct block_ids {
     tl_id *list;
@@ -260,17 +242,6 @@ static void read_filter(lua_State *L, block_args *args, block_nested *nested,
     filter->above = read_halfspace(L, "above", &nested->above);
     filter->below = read_halfspace(L, "below", &nested->below);
     filter->hidden = read_hidden(L);
-}
-
-int32_t tl_lua_side(lua_State *L, const char *context, const char *name)
-{
-    tl_side side = tl_side_named(name);
-    if (side == TL_SIDE_ANY) {
-        tl_lua_names known = {0};
-        tl_lua_names_list(&known, tl_side_names());
-        tl_lua_unknown(L, lua_pushfstring(L, "%s: unknown side", context), name, &known);
-    }
-    return (int32_t)side;
 }
 
 /* Keeps the blocks with an outer face on a side. Both lists ascend. */
@@ -399,6 +370,219 @@ static int bounds(lua_State *L, const tl_lua_selection *b)
     return 1;
 }
 
+static const char *const key_names[] = {
+    [TL_LUA_VELOCITY] = "velocity",
+    [TL_LUA_ANGULAR_VELOCITY] = "angular_velocity",
+};
+
+const tl_lua_key tl_lua_drive_keys[] = {
+    {"velocity", "{x, y, z} or function(t)",
+     "velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, "
+     "s: the middle of each step. Zero when left out"},
+    {"angular_velocity", "{x, y, z} or function(t)", "angular velocity, rad/s, likewise"},
+    {NULL, NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- drives ------------------
+ *
+ * A drive given by functions of the script is kept as an *anchor*: a userdata whose user values are the functions.
+ * Anchors are in a table that is a user value of the model's userdata. So a function that refers to its model does
+ * not keep it alive. When a drive ends the kernel touches no Lua state: it marks the anchor, which goes with the next
+ * verb.
+ *
+ * The functions are called in a step, on the thread and in the frame of the run, in protected calls. An error ends
+ * the run and is then raised as it was. */
+
+tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index)
+{
+    tl_lua_anchor *a = lua_newuserdatauv(L, sizeof *a, TL_LUA_MOTIONS);
+    a->ended = true;
+    lua_getiuservalue(L, model_index, 1);
+    lua_pushvalue(L, -2);
+    lua_rawsetp(L, -2, a);
+    lua_pop(L, 1);
+    return a;
+}
+
+static void on_release(void *user)
+{
+    tl_lua_anchor *a = user;
+    a->ended = true;
+}
+
+/* ---------------------------------------------------------------- in a step -------------- */
+
+typedef struct call {
+    tl_lua_anchor *anchor;
+    int key;
+    double t;
+    tl_vec3 velocity;
+} call;
+
+/* Raises at the place where the function at index 2 is defined. */
+static int bad_velocity(lua_State *L, const call *c, const char *what)
+{
+    lua_pushnumber(L, c->t);
+    tl_lua_push_number_text(L, -1);
+    return tl_lua_fail_in(L, 2, "drive: %s(%s) must give three finite numbers: it gave %s",
+                          key_names[c->key], lua_tostring(L, -1), what);
+}
+
+/* Three numbers from index `first` on. */
+static tl_vec3 read_velocity(lua_State *L, const call *c, int first)
+{
+    double v[3];
+    for (int k = 0; k < 3; k++) {
+        if (lua_type(L, first + k) != LUA_TNUMBER)
+            bad_velocity(L, c, tl_lua_describe(L, first + k));
+        v[k] = lua_tonumber(L, first + k);
+        if (!isfinite(v[k]))
+            bad_velocity(L, c, tl_lua_describe(L, first + k));
+    }
+    return (tl_vec3){v[0], v[1], v[2]};
+}
+
+/* Runs protected. Arguments: the call, the function. */
+static int call_function(lua_State *L)
+{
+    call *c = lua_touserdata(L, 1);
+    lua_pushvalue(L, 2);
+    lua_pushnumber(L, c->t);
+    lua_call(L, 1, LUA_MULTRET);
+    int given = lua_gettop(L) - 2;
+    luaL_checkstack(L, 16, "too many values");
+    if (given == 1 && lua_istable(L, 3)) {
+        if (lua_rawlen(L, 3) != 3)
+            bad_velocity(L, c, lua_pushfstring(L, "a list of %I", (lua_Integer)lua_rawlen(L, 3)));
+        for (int k = 1; k <= 3; k++)
+            lua_rawgeti(L, 3, k);
+        c->velocity = read_velocity(L, c, 4);
+    } else if (given == 3) {
+        c->velocity = read_velocity(L, c, 3);
+    } else {
+        bad_velocity(L, c,
+                     given == 1 ? tl_lua_describe(L, 3) : lua_pushfstring(L, "%d values", given));
+    }
+    return 0;
+}
+
+static bool evaluate(tl_lua_anchor *a, int key, double t, tl_vec3 *velocity)
+{
+    lua_State *L = tl_lua_run_state();
+    call c = {.anchor = a, .key = key, .t = t};
+    lua_pushcfunction(L, call_function);
+    lua_pushlightuserdata(L, &c);
+    lua_getiuservalue(L, TL_LUA_AT_MODEL, 1);
+    lua_rawgetp(L, -1, a);
+    lua_getiuservalue(L, -1, key);
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+    if (lua_pcall(L, 2, 0, 0) != LUA_OK) {
+        tl_lua_run_keep_error();
+        return false;
+    }
+    *velocity = c.velocity;
+    return true;
+}
+
+static bool velocity_at(void *user, double t, tl_vec3 *velocity)
+{
+    return evaluate(user, TL_LUA_VELOCITY, t, velocity);
+}
+
+static bool angular_velocity_at(void *user, double t, tl_vec3 *velocity)
+{
+    return evaluate(user, TL_LUA_ANGULAR_VELOCITY, t, velocity);
+}
+
+void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive)
+{
+    bool moves = lua_getiuservalue(L, -1, TL_LUA_VELOCITY) == LUA_TFUNCTION;
+    bool turns = lua_getiuservalue(L, -2, TL_LUA_ANGULAR_VELOCITY) == LUA_TFUNCTION;
+    lua_pop(L, 2);
+    *drive = tl_drive_default();
+    drive->velocity_at = moves ? velocity_at : NULL;
+    drive->angular_velocity_at = turns ? angular_velocity_at : NULL;
+    drive->user = a;
+    drive->release = on_release;
+}
+
+/* ---------------------------------------------------------------- loads, drives and reactions ---- */
+
+static tl_status load(lua_State *L, const tl_lua_selection *b)
+{
+    tl_load given = tl_load_default();
+    tl_lua_read_function(L, 2, "load", NULL, &given);
+    if (!lua_istable(L, 2))
+        tl_lua_fail(L, "load: give force, moment and at in a table; load{} takes the load off");
+    return tl_blocks_load(b->owner->model, b->ids, b->count, &given);
+}
+
+/* Reads one of the two velocities of the table at index 2; true when it is given. A function goes to
+ * the anchor at the top of the stack. */
+static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *function,
+                        tl_drive_fn ours)
+{
+    static const tl_param vectors[] = {
+        [TL_LUA_VELOCITY] = TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0}),
+        [TL_LUA_ANGULAR_VELOCITY] =
+            TL_PARAM(TL_PARAM_VEC3, tl_drive, angular_velocity, "rad/s", "", .def = {0.0}),
+    };
+    int type = lua_getfield(L, 2, key_names[key]);
+    if (type == LUA_TFUNCTION) {
+        lua_setiuservalue(L, -2, key);
+        *function = ours;
+        return true;
+    }
+    if (type != LUA_TNIL) {
+        int top = lua_gettop(L);
+        tl_drive read;
+        tl_lua_spec spec = {"drive", &vectors[key], 1, NULL};
+        if (type != LUA_TTABLE)
+            tl_lua_fail(L, "drive: %s must be a list of 3 numbers or a function(t), not %s",
+                        key_names[key], tl_lua_describe(L, -1));
+        tl_lua_read_one(L, top, &spec, key_names[key], &read);
+        *constant = key == TL_LUA_VELOCITY ? read.velocity : read.angular_velocity;
+        lua_settop(L, top);
+    }
+    lua_pop(L, 1);
+    return type != LUA_TNIL;
+}
+
+static tl_status drive(lua_State *L, const tl_lua_selection *b)
+{
+    tl_lua_spec spec = {"drive", NULL, 0, tl_lua_drive_keys};
+    tl_lua_read(L, 2, &spec, false, NULL);
+    lua_settop(L, 2);
+    lua_getiuservalue(L, 1, 1);
+    tl_lua_anchor *a = tl_lua_anchor_push(L, 3);
+    tl_drive given = tl_drive_default();
+    given.user = a;
+    given.release = on_release;
+    bool moves = false;
+    if (lua_istable(L, 2)) {
+        moves = read_motion(L, TL_LUA_VELOCITY, &given.velocity, &given.velocity_at, velocity_at);
+        moves |= read_motion(L, TL_LUA_ANGULAR_VELOCITY, &given.angular_velocity,
+                             &given.angular_velocity_at, angular_velocity_at);
+    }
+    if (!moves)
+        tl_lua_fail(L, "drive: give velocity, angular_velocity or both; to hold blocks use "
+                       "selection:fix(), to let them go selection:free()");
+    tl_status status = tl_blocks_drive(b->owner->model, b->ids, b->count, &given);
+    if (status == TL_OK && b->count > 0)
+        a->ended = false;
+    return status;
+}
+
+int tl_lua_blocks_reaction(lua_State *L, const tl_lua_selection *blocks)
+{
+    tl_model *model = tl_lua_living(L, blocks->owner);
+    tl_vec3 force;
+    tl_lua_ok(L, model, tl_blocks_reaction(model, blocks->ids, blocks->count, &force));
+    tl_lua_push_vec3(L, force);
+    return 1;
+}
+
 static const tl_lua_verb block_verbs[] = {
     {.name = "hide", .plain = hide, .done = "hidden"},
     {.name = "show", .plain = show},
@@ -409,8 +593,8 @@ static const tl_lua_verb block_verbs[] = {
     {.name = "free", .plain = tl_blocks_free, .done = "set free"},
     {.name = "reset_displacement", .plain = tl_blocks_reset_displacement},
     {.name = "set", .arguments = 1, .act = set, .done = "changed"},
-    {.name = "load", .arguments = 1, .act = tl_lua_blocks_load, .done = "loaded"},
-    {.name = "drive", .arguments = 1, .act = tl_lua_blocks_drive, .done = "driven"},
+    {.name = "load", .arguments = 1, .act = load, .done = "loaded"},
+    {.name = "drive", .arguments = 1, .act = drive, .done = "driven"},
     {.name = "reaction", .ask = tl_lua_blocks_reaction},
     {.name = "bounds", .ask = bounds},
     {.name = NULL},
@@ -483,5 +667,14 @@ const tl_lua_topic tl_lua_block_topics[] = {
      .usage = "selection:set{group = \"wedge\", velocity = {0, 0, -1}}",
      .doc = "Changes properties of blocks; what is not named stays.",
      .spec = &set_spec},
+    {.name = "load",
+     .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}",
+     .function = "load"},
+    {.name = "drive",
+     .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
+     .doc = "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
+            "selection:free(). A function is called in the middle of a step: it may read the "
+            "model, but not change it. A body that is driven to turn is not cut in two.",
+     .keys = tl_lua_drive_keys},
     {.name = NULL},
 };

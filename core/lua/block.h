@@ -4,14 +4,17 @@
 
 #include "lua/front.h"
 
-/* The tl_side of a name; raises, beginning with `context`, when there is none. */
-int32_t tl_lua_side(lua_State *L, const char *context, const char *name);
-/* Reads the box `key` of the table at `table`; true when it is given. */
-bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *key,
-                     tl_bounds *box);
 /* Sets a field of the table at the top of the stack to a block of the model at index 1. TL_NO_ID: sets none. */
 void tl_lua_set_block(lua_State *L, const char *name, tl_id id);
 extern const tl_lua_kind tl_lua_block_kind;
+
+extern const tl_lua_key tl_lua_drive_keys[];
+/* The method reaction of selections: pushes a vector. */
+int tl_lua_blocks_reaction(lua_State *L, const tl_lua_selection *blocks);
+/* Pushes a new anchor and hangs it on the model at `model_index`; it counts as ended until the kernel has taken it. */
+tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index);
+/* The functions of a drive for the anchor `a`, which is at the top of the stack: those that it has. */
+void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive);
 
 extern const tl_lua_topic tl_lua_block_topics[];
 

@@ -1,12 +1,11 @@
 /* boundary.c - model:boundary{...}: outer faces of the model, selected, held or loaded. */
 #include "lua/boundary.h"
 
-#include "lua/action.h"
 #include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
+#include "lua/item.h"
 #include "lua/living.h"
-#include "lua/selection.h"
 
 #include <math.h>
 #include <string.h>

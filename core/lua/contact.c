@@ -6,7 +6,6 @@
 #include "lua/fail.h"
 #include "lua/item.h"
 #include "lua/living.h"
-#include "lua/selection.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/boundary.h>
 
 /* Letters of a wrong string that a message repeats. */
 #define LONGEST_SHOWN 60
@@ -472,4 +473,31 @@ void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v)
 {
     tl_lua_push_vec3(L, v);
     lua_setfield(L, -2, name);
+}
+
+bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *key, tl_bounds *box)
+{
+    static const tl_param params[] = {
+        TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
+    };
+    if (tl_lua_option(L, table, key) == LUA_TNIL)
+        return false;
+    tl_lua_spec spec = {lua_pushfstring(L, "%s, %s", function, key), params, TL_LUA_COUNT(params),
+                        NULL};
+    tl_lua_read(L, -2, &spec, false, box);
+    if (box->min.x > box->max.x || box->min.y > box->max.y || box->min.z > box->max.z)
+        tl_lua_fail(L, "%s: every component of min must be at most that of max", spec.context);
+    return true;
+}
+
+int32_t tl_lua_side(lua_State *L, const char *context, const char *name)
+{
+    tl_side side = tl_side_named(name);
+    if (side == TL_SIDE_ANY) {
+        tl_lua_names known = {0};
+        tl_lua_names_list(&known, tl_side_names());
+        tl_lua_unknown(L, lua_pushfstring(L, "%s: unknown side", context), name, &known);
+    }
+    return (int32_t)side;
 }

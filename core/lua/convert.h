@@ -69,4 +69,10 @@ void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params);
 /* Pushes a field's value as Lua sees it. */
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);
 
+/* The tl_side of a name; raises, beginning with `context`, when there is none. */
+int32_t tl_lua_side(lua_State *L, const char *context, const char *name);
+/* Reads the box `key` of the table at `table`; true when it is given. */
+bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *key,
+                     tl_bounds *box);
+
 #endif

@@ -62,7 +62,7 @@ typedef struct tl_lua_model {
     struct tl_lua_viewing *view; /* while it is shown: view.c */
 } tl_lua_model;
 
-/* User values of a model's userdata: functions of drives (action.c) and, by their names, of histories (history.c), and
+/* User values of a model's userdata: functions of drives (block.c) and, by their names, of histories (history.c), and
  * what a view shows (view.c). */
 enum { TL_LUA_DRIVES = 1, TL_LUA_HISTORIES, TL_LUA_VIEW, TL_LUA_USER_VALUES = 3 };
 
@@ -132,7 +132,7 @@ typedef struct tl_lua_selection {
     size_t count;
 } tl_lua_selection;
 
-/* What a drive's functions hang on: action.c. */
+/* What a drive's functions hang on: block.c. */
 typedef struct tl_lua_anchor {
     bool ended;
 } tl_lua_anchor;

@@ -89,19 +89,13 @@ static void history_set_function(lua_State *L, int model_index, const char *name
 /* What a model can be asked for by name. */
 typedef enum origin { OF_ENERGY, OF_BALANCE, OF_CONTACTS } origin;
 
+#define TERM(name, unit, doc) {#name, OF_ENERGY, offsetof(tl_energy, name)},
 static const struct {
     const char *name;
     origin origin;
     size_t offset;
 } quantities[] = {
-    {"kinetic", OF_ENERGY, offsetof(tl_energy, kinetic)},
-    {"potential", OF_ENERGY, offsetof(tl_energy, potential)},
-    {"stored", OF_ENERGY, offsetof(tl_energy, stored)},
-    {"friction", OF_ENERGY, offsetof(tl_energy, friction)},
-    {"damping", OF_ENERGY, offsetof(tl_energy, damping)},
-    {"external", OF_ENERGY, offsetof(tl_energy, external)},
-    {"balance", OF_ENERGY, offsetof(tl_energy, balance)},
-    {"ratio", OF_BALANCE, offsetof(tl_balance, ratio)},
+    TL_ENERGY(TERM){"ratio", OF_BALANCE, offsetof(tl_balance, ratio)},
     {"ratio_maximum", OF_BALANCE, offsetof(tl_balance, ratio_maximum)},
     {"ratio_local", OF_BALANCE, offsetof(tl_balance, ratio_local)},
     {"max_velocity", OF_BALANCE, offsetof(tl_balance, max_velocity)},
@@ -109,6 +103,7 @@ static const struct {
     {"slipping", OF_CONTACTS, offsetof(tl_contact_counts, slipping)},
     {"open", OF_CONTACTS, offsetof(tl_contact_counts, open)},
 };
+#undef TERM
 
 enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 

@@ -1,17 +1,22 @@
-/* item.c - one block or one contact as a Lua object: fields by name, equality, text.
+/* item.c - blocks and contacts as Lua objects: one of them, and a list.
  *
- * An item is no pointer into the kernel but a number that is looked up at every access. So one that
- * was deleted raises and never crashes. */
+ * An item is no pointer into the kernel but a number that is looked up at every access. So one that was deleted
+ * raises and never crashes. A selection is a snapshot: ids in ascending order, taken when it was made. Sums run in
+ * that order, so they are the same bits every time. */
 #include "lua/item.h"
 
 #include "lua/convert.h"
 #include "lua/fail.h"
 #include "lua/living.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+/* ---------------------------------------------------------------- one item --------------- */
+
 /* The item at index 1 of a metamethod, whose upvalue 1 is the kind. */
-static tl_lua_item *self(lua_State *L)
+static tl_lua_item *self_item(lua_State *L)
 {
     const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
     tl_lua_item *item = luaL_testudata(L, 1, kind->item_type);
@@ -66,7 +71,7 @@ static int unknown_field(lua_State *L, const tl_lua_kind *kind, const char *name
 static int item_index(lua_State *L)
 {
     lua_settop(L, 2);
-    tl_lua_item *item = self(L);
+    tl_lua_item *item = self_item(L);
     if (lua_type(L, 2) != LUA_TSTRING)
         return tl_lua_fail(L, "a %s has no field %s", item->kind->item, tl_lua_describe(L, 2));
     const char *name = lua_tostring(L, 2);
@@ -86,7 +91,7 @@ static int item_index(lua_State *L)
 
 static int item_assign(lua_State *L)
 {
-    tl_lua_item *item = self(L);
+    tl_lua_item *item = self_item(L);
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "?";
     if (!item->kind->verbs->name)
         return tl_lua_fail(L, "the fields of a %s can only be read ('%s')", item->kind->item, name);
@@ -107,12 +112,12 @@ static int item_equal(lua_State *L)
 
 static int item_text(lua_State *L)
 {
-    tl_lua_item *item = self(L);
+    tl_lua_item *item = self_item(L);
     lua_pushfstring(L, "%s %I", item->kind->item, (lua_Integer)item->id);
     return 1;
 }
 
-void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind)
+static void open_item(lua_State *L, const tl_lua_kind *kind)
 {
     if (luaL_newmetatable(L, kind->item_type)) {
         lua_pushlightuserdata(L, (void *)(uintptr_t)kind);
@@ -124,4 +129,390 @@ void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind)
         luaL_setfuncs(L, meta, 1);
     }
     lua_pop(L, 1);
+}
+
+/* ---------------------------------------------------------------- selections ------------- */
+
+tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, int model_index)
+{
+    model_index = lua_absindex(L, model_index);
+    tl_lua_selection *selection = lua_newuserdatauv(L, sizeof *selection, 1);
+    *selection = (tl_lua_selection){kind, lua_touserdata(L, model_index), NULL, 0};
+    lua_pushvalue(L, model_index);
+    lua_setiuservalue(L, -2, 1);
+    luaL_setmetatable(L, kind->selection_type);
+    return selection;
+}
+
+/* The selection at index 1 of a method; upvalue 1 is the kind. */
+static tl_lua_selection *self(lua_State *L, const char *method)
+{
+    const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
+    tl_lua_selection *selection = luaL_testudata(L, 1, kind->selection_type);
+    if (!selection)
+        tl_lua_fail(L, "%s: called on %s, not on a selection of %s; write selection:%s(...)",
+                    method, tl_lua_describe(L, 1), kind->items, method);
+    return selection;
+}
+
+static int selection_collect(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "collect");
+    free(selection->ids);
+    selection->ids = NULL;
+    selection->count = 0;
+    return 0;
+}
+
+static int selection_length(lua_State *L)
+{
+    lua_pushinteger(L, (lua_Integer)self(L, "#")->count);
+    return 1;
+}
+
+static int selection_text(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "tostring");
+    lua_pushfstring(L, "selection of %I %s", (lua_Integer)selection->count,
+                    selection->count == 1 ? selection->kind->item : selection->kind->items);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- one field of all --------
+ *
+ * selection:values(field): one field of all blocks or contacts of a selection, as a list. */
+
+/* Whether the second argument of `values` asks for a flat list. */
+static bool wants_flat(lua_State *L)
+{
+    if (lua_isnoneornil(L, 3))
+        return false;
+    if (lua_isboolean(L, 3))
+        return lua_toboolean(L, 3);
+    const char *how = lua_type(L, 3) == LUA_TSTRING ? lua_tostring(L, 3) : "";
+    if (strcmp(how, "flat") != 0 && strcmp(how, "nested") != 0)
+        tl_lua_fail(L, "values: how to list must be \"flat\" or \"nested\", not %s",
+                    tl_lua_describe(L, 3));
+    return strcmp(how, "flat") == 0;
+}
+
+/* Texts, truths, tensors and ids: as single items give them. */
+static void push_items(lua_State *L, const tl_lua_selection *selection, const tl_field *field,
+                       size_t index)
+{
+    lua_createtable(L, (int)selection->count, 0);
+    for (size_t i = 0; i < selection->count; i++) {
+        tl_model *model = tl_lua_living(L, selection->owner);
+        tl_field_value value;
+        tl_lua_ok(L, model, selection->kind->field(model, selection->ids[i], index, &value));
+        tl_lua_push_field(L, field->kind, &value);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* Numbers, one by one. */
+static void push_flat(lua_State *L, const double *values, size_t count, bool whole)
+{
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        if (whole)
+            lua_pushinteger(L, (lua_Integer)values[i]);
+        else
+            lua_pushnumber(L, values[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+static int selection_values(lua_State *L)
+{
+    const tl_lua_selection *selection = self(L, "values");
+    tl_lua_arity(L, 3, "values");
+    const char *name = tl_lua_text(L, 2, "values", "the field's name");
+    bool flat = wants_flat(L);
+    size_t index;
+    const tl_field *field = tl_lua_field_named(selection->kind, name, &index);
+    tl_field_kind kind = field ? field->kind : TL_FIELD_SCALAR;
+    if (kind == TL_FIELD_TEXT || kind == TL_FIELD_BOOL || (kind == TL_FIELD_SYM3 && !flat)) {
+        push_items(L, selection, field, index);
+        return 1;
+    }
+    tl_model *model = tl_lua_living(L, selection->owner);
+    size_t width, count = selection->count;
+    tl_lua_ok(L, model, selection->kind->values(model, NULL, 0, name, NULL, &width));
+    double *values = lua_newuserdatauv(L, (count * width + 1) * sizeof *values, 0);
+    tl_lua_ok(L, model,
+              selection->kind->values(model, selection->ids, count, name, values, &width));
+    if (flat || width == 1)
+        push_flat(L, values, count * width, kind == TL_FIELD_COUNT || kind == TL_FIELD_IDS);
+    else if (kind == TL_FIELD_IDS)
+        push_items(L, selection, field, index);
+    else
+        tl_lua_push_rows(L, values, count, width, width);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- sums and extremes ------ */
+
+/* What sum, max and min work on: a field of numbers, or a state of laws, NaN of contacts whose law has it not. */
+typedef struct column {
+    const tl_field *field; /* NULL: a state */
+    const double *values;  /* of each item as many as the width */
+    size_t width;
+} column;
+
+/* The column named at stack index 2; pushes its values. */
+static column read_column(lua_State *L, const tl_lua_selection *selection, const char *method)
+{
+    const tl_lua_kind *kind = selection->kind;
+    const char *name = tl_lua_text(L, 2, method, "the field's name");
+    tl_lua_arity(L, 2, method);
+    tl_model *model = tl_lua_living(L, selection->owner);
+    size_t index, width;
+    const tl_field *field = tl_lua_field_named(kind, name, &index);
+    if (field && field->kind > TL_FIELD_VEC3)
+        tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
+    if (kind->values(model, NULL, 0, name, NULL, &width) == TL_E_NOT_FOUND) {
+        tl_lua_names names = {0};
+        size_t count;
+        const tl_field *fields = kind->fields(&count);
+        tl_lua_names_fields(&names, fields, count);
+        lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item);
+        tl_lua_unknown(L, lua_tostring(L, -1), name, &names);
+    }
+    double *values = lua_newuserdatauv(L, (selection->count * width + 1) * sizeof *values, 0);
+    tl_lua_ok(L, model,
+              kind->values(model, selection->ids, selection->count, name, values, &width));
+    return (column){field, values, width};
+}
+
+/* Pushes a sum or an extreme of a column. */
+static int push_of_column(lua_State *L, const column *c, const tl_field_value *value)
+{
+    tl_field_kind kind = c->field ? c->field->kind : c->width > 1 ? TL_FIELD_VEC3 : TL_FIELD_SCALAR;
+    tl_lua_push_field(L, kind == TL_FIELD_BOOL ? TL_FIELD_COUNT : kind, value);
+    return 1;
+}
+
+static int selection_sum(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "sum");
+    column c = read_column(L, selection, "sum");
+    tl_field_value sum = {{0}, NULL};
+    for (size_t i = 0; i < selection->count; i++)
+        for (size_t k = 0; k < c.width; k++)
+            if (c.field || !isnan(c.values[i * c.width]))
+                sum.number[k] += c.values[i * c.width + k];
+    return push_of_column(L, &c, &sum);
+}
+
+/* The largest (sign 1) or smallest (sign -1) value of a column of single numbers. */
+static int extreme(lua_State *L, const char *method, double sign)
+{
+    tl_lua_selection *selection = self(L, method);
+    column c = read_column(L, selection, method);
+    const char *name = lua_tostring(L, 2);
+    bool truth = c.field && c.field->kind == TL_FIELD_BOOL;
+    if (c.width > 1 || truth)
+        tl_lua_fail(L, "%s: the %s '%s' is %s; only single numbers are compared", method,
+                    c.field ? "field" : "state", name, truth ? "true or false" : "a vector");
+    if (c.field && selection->count == 0)
+        tl_lua_fail(L, "%s: the selection is empty, so '%s' has no value", method, name);
+    double best = c.field ? c.values[0] : NAN;
+    for (size_t i = 0; i < selection->count; i++)
+        if (sign * c.values[i] > sign * best || (!c.field && isnan(best)))
+            best = c.values[i];
+    if (!c.field && isnan(best))
+        tl_lua_fail(L, "%s: no contact of the selection has a law with the state '%s'", method,
+                    name);
+    return push_of_column(L, &c, &(tl_field_value){{best}, NULL});
+}
+
+static int selection_max(lua_State *L)
+{
+    return extreme(L, "max", 1.0);
+}
+
+static int selection_min(lua_State *L)
+{
+    return extreme(L, "min", -1.0);
+}
+
+/* ---------------------------------------------------------------- verbs of blocks -------------------
+ *
+ * What all verbs of selections of blocks share: whom they act on, and how they end. */
+
+/* Lets go of the functions of drives that have ended. */
+static void sweep_drives(lua_State *L, int model_index)
+{
+    lua_getiuservalue(L, model_index, 1);
+    for (lua_pushnil(L); lua_next(L, -2);) {
+        const tl_lua_anchor *a = lua_touserdata(L, -1);
+        lua_pop(L, 1);
+        if (a->ended) {
+            lua_pushnil(L);
+            lua_rawsetp(L, -3, a);
+        }
+    }
+    lua_pop(L, 1);
+}
+
+/* Says once for each place in a script that a verb had nothing to act on. */
+static void remark_empty(lua_State *L, const char *verb, const char *done)
+{
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, "talus.remarks");
+    tl_lua_push_where(L);
+    lua_pushfstring(L,
+                    "%s: the selection is empty: no block was %s; see what model:blocks{...} finds",
+                    verb, done);
+    lua_concat(L, 2);
+    lua_pushvalue(L, -1);
+    if (lua_rawget(L, -3) == LUA_TNIL) {
+        tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -2));
+        lua_pushvalue(L, -2);
+        lua_pushboolean(L, true);
+        lua_rawset(L, -5);
+    }
+    lua_pop(L, 3);
+}
+
+/* Calls a verb, which is upvalue 2. */
+static int call_verb(lua_State *L)
+{
+    const tl_lua_verb *verb = lua_touserdata(L, lua_upvalueindex(2));
+    tl_lua_selection *blocks = self(L, verb->name);
+    tl_model *model = tl_lua_living(L, blocks->owner);
+    tl_lua_arity(L, verb->arguments + 1, verb->name);
+    lua_settop(L, verb->arguments + 1);
+    if (verb->ask)
+        return verb->ask(L, blocks);
+    tl_status status =
+        verb->plain ? verb->plain(model, blocks->ids, blocks->count) : verb->act(L, blocks);
+    if (verb->done && blocks->count == 0 && status == TL_OK)
+        remark_empty(L, verb->name, verb->done);
+    tl_lua_ok(L, model, status);
+    lua_getiuservalue(L, 1, 1);
+    sweep_drives(L, lua_gettop(L)); /* the verb may have ended a drive */
+    lua_settop(L, 1);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- filter ----------------- */
+
+void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index)
+{
+    tl_lua_selection *selection = lua_touserdata(L, selection_index);
+    lua_getiuservalue(L, selection_index, 1);
+    int model_index = lua_gettop(L);
+    size_t kept = 0;
+    for (size_t i = 0; i < selection->count; i++) {
+        tl_id id = selection->ids[i];
+        lua_pushvalue(L, function_index);
+        tl_lua_item_push(L, selection->kind, model_index, id);
+        lua_call(L, 1, 1);
+        if (lua_toboolean(L, -1))
+            selection->ids[kept++] = id;
+        lua_pop(L, 1);
+    }
+    selection->count = kept;
+    lua_pop(L, 1);
+}
+
+int tl_lua_read_where(lua_State *L, const tl_lua_kind *kind)
+{
+    if (tl_lua_option(L, 2, "where") == LUA_TNIL)
+        return 0;
+    if (lua_type(L, -1) != LUA_TFUNCTION)
+        tl_lua_fail(L, "%s: where must be a function(%s), not %s", kind->items, kind->item,
+                    tl_lua_describe(L, -1));
+    return lua_gettop(L);
+}
+
+static int selection_where(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "where");
+    tl_lua_arity(L, 2, "where");
+    if (lua_type(L, 2) != LUA_TFUNCTION)
+        tl_lua_fail(L, "where: a function(%s) is expected, not %s", selection->kind->item,
+                    tl_lua_describe(L, 2));
+    lua_getiuservalue(L, 1, 1);
+    tl_lua_selection *copy = tl_lua_selection_push(L, selection->kind, 3);
+    copy->ids = malloc((selection->count + 1) * sizeof *copy->ids);
+    if (!copy->ids)
+        return tl_lua_fail(L, "where: out of memory");
+    memcpy(copy->ids, selection->ids, selection->count * sizeof *copy->ids);
+    copy->count = selection->count;
+    tl_lua_selection_filter(L, 4, 2);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- index ------------------ */
+
+static const luaL_Reg methods[] = {
+    {"sum", selection_sum},     {"max", selection_max},       {"min", selection_min},
+    {"where", selection_where}, {"values", selection_values}, {NULL, NULL},
+};
+
+static int unknown_method(lua_State *L, const tl_lua_kind *kind, const char *name)
+{
+    tl_lua_names names = {0};
+    for (const luaL_Reg *method = methods; method->name; method++)
+        tl_lua_names_add(&names, method->name);
+    for (const tl_lua_verb *verb = kind->verbs; verb->name; verb++)
+        tl_lua_names_add(&names, verb->name);
+    return tl_lua_unknown(L, lua_pushfstring(L, "a selection of %s has no method", kind->items),
+                          name, &names);
+}
+
+/* selection[i] and selection:method(). Upvalue 1 is the kind, upvalue 2 the table of methods. */
+static int selection_index(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "index");
+    if (lua_isinteger(L, 2)) {
+        lua_Integer i = lua_tointeger(L, 2);
+        if (i < 1 || (lua_Unsigned)i > selection->count)
+            return 0;
+        lua_getiuservalue(L, 1, 1);
+        tl_lua_item_push(L, selection->kind, 3, selection->ids[i - 1]);
+        return 1;
+    }
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(2)) != LUA_TNIL)
+        return 1;
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return tl_lua_fail(L, "a selection is indexed by whole numbers from 1, not by %s",
+                           tl_lua_describe(L, 2));
+    return unknown_method(L, selection->kind, lua_tostring(L, 2));
+}
+
+static int selection_assign(lua_State *L)
+{
+    return tl_lua_fail(L, "a selection of %s cannot be assigned to",
+                       self(L, "assign")->kind->items);
+}
+
+static void open_selection(lua_State *L, const tl_lua_kind *kind)
+{
+    if (luaL_newmetatable(L, kind->selection_type)) {
+        lua_pushlightuserdata(L, (void *)(uintptr_t)kind);
+        lua_newtable(L);
+        lua_pushvalue(L, -2);
+        luaL_setfuncs(L, methods, 1);
+        for (const tl_lua_verb *verb = kind->verbs; verb->name; verb++) {
+            lua_pushvalue(L, -2);
+            lua_pushlightuserdata(L, (void *)(uintptr_t)verb);
+            lua_pushcclosure(L, call_verb, 2);
+            lua_setfield(L, -2, verb->name);
+        }
+        const luaL_Reg meta[] = {{"__index", selection_index}, {"__newindex", selection_assign},
+                                 {"__len", selection_length},  {"__tostring", selection_text},
+                                 {"__gc", selection_collect},  {NULL, NULL}};
+        luaL_setfuncs(L, meta, 2);
+    }
+    lua_pop(L, 1);
+}
+
+void tl_lua_kind_open(lua_State *L, const tl_lua_kind *kind)
+{
+    open_item(L, kind);
+    open_selection(L, kind);
 }

@@ -13,9 +13,6 @@
 
 #define PREFIX "talus."
 
-/* Modules that the table `talus` holds, each a function; loaded when first used. */
-static const char *const functions[] = {"plot", "stereonet", NULL};
-
 /* Pushes the loader of a module and its path; or one sentence why there is none, and returns 1. */
 static int push_loader(lua_State *L, const char *name)
 {
@@ -91,35 +88,6 @@ void tl_lua_library_open(lua_State *L)
         lua_rawsetp(L, LUA_REGISTRYINDEX, &key);
     }
     lua_pop(L, 2);
-}
-
-/* __index of the table `talus`: the modules it holds. Upvalue 1 is `require`. */
-static int module_index(lua_State *L)
-{
-    lua_settop(L, 2);
-    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
-    for (const char *const *known = functions; *known; known++) {
-        if (strcmp(*known, name) != 0)
-            continue;
-        lua_pushvalue(L, lua_upvalueindex(1));
-        lua_pushfstring(L, PREFIX "%s", name);
-        lua_call(L, 1, 1);
-        lua_pushvalue(L, 2);
-        lua_pushvalue(L, -2);
-        lua_rawset(L, 1);
-        return 1;
-    }
-    return 0;
-}
-
-void tl_lua_library_attach(lua_State *L)
-{
-    tl_lua_library_open(L);
-    lua_createtable(L, 0, 1);
-    lua_getglobal(L, "require");
-    lua_pushcclosure(L, module_index, 1);
-    lua_setfield(L, -2, "__index");
-    lua_setmetatable(L, -2);
 }
 
 static int module_write_file(lua_State *L)

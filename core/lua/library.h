@@ -6,8 +6,6 @@
 
 /* Lets `require` find them; once a state. */
 void tl_lua_library_open(lua_State *L);
-/* Has the table at the top of the stack, the module `talus`, load them when they are first used. */
-void tl_lua_library_attach(lua_State *L);
 
 /* From now on reading a global that was never assigned raises. */
 void tl_lua_strict(lua_State *L);

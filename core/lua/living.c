@@ -127,7 +127,7 @@ int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments)
 
 /* ---------------------------------------------------------------- runs --------------------
  *
- * The run whose step is being made, for functions of the script that are called in it (run.c, action.c). */
+ * The run whose step is being made, for functions of the script that are called in it (run.c, block.c). */
 
 static tl_lua_running *current;
 

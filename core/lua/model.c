@@ -2,12 +2,9 @@
 #include "lua/model.h"
 
 #include "lua/block.h"
-#include "lua/contact.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
-#include "lua/interrupt.h"
 #include "lua/living.h"
-#include "lua/page.h"
 #include "lua/quality.h"
 #include "lua/run.h"
 #include "lua/view.h"
@@ -53,9 +50,6 @@ static int model_text(lua_State *L)
 }
 
 /* ---------------------------------------------------------------- methods ---------------- */
-
-/* What a writer has done that was cancelled. */
-#define NO_FILE "no file was written"
 
 static int model_joint(lua_State *L, tl_model *model)
 {
@@ -173,10 +167,9 @@ static int model_energy(lua_State *L, tl_model *model)
     tl_energy energy;
     tl_lua_ok(L, model, tl_model_energy(model, &energy));
     lua_createtable(L, 0, 7);
-    TL_LUA_SET_NUMBERS(L, {"kinetic", energy.kinetic}, {"potential", energy.potential},
-                       {"stored", energy.stored}, {"friction", energy.friction},
-                       {"damping", energy.damping}, {"external", energy.external},
-                       {"balance", energy.balance});
+#define SET(name, unit, doc) tl_lua_set_number(L, #name, energy.name);
+    TL_ENERGY(SET)
+#undef SET
     return 1;
 }
 
@@ -185,43 +178,6 @@ static int model_contact_area(lua_State *L, tl_model *model)
     tl_contact_area rule = tl_contact_area_default();
     tl_lua_read_function(L, 2, "contact_area", NULL, &rule);
     tl_lua_ok(L, model, tl_model_contact_area(model, &rule));
-    return 0;
-}
-
-static int model_write_vtk(lua_State *L, tl_model *model)
-{
-    const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
-    tl_vtk_parts parts = tl_vtk_parts_default();
-    tl_lua_read_function(L, 3, "write_vtk", tl_lua_field_keys, &parts);
-    parts.block_fields = tl_lua_extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind,
-                                             &parts.block_field_count);
-    parts.contact_fields = tl_lua_extra_fields(L, 3, "contact_fields", "write_vtk",
-                                               &tl_lua_contact_kind, &parts.contact_field_count);
-    tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_lua_ok(
-        L, model,
-        tl_lua_watch_end(L, &watch, tl_write_vtk(model, prefix, &parts), "write_vtk", NO_FILE));
-    return 0;
-}
-
-static int model_write_blocks(lua_State *L, tl_model *model)
-{
-    const char *path = tl_lua_text(L, 2, "write_blocks", "the file's name");
-    tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_lua_ok(L, model,
-              tl_lua_watch_end(L, &watch, tl_write_blocks(model, path), "write_blocks", NO_FILE));
-    return 0;
-}
-
-static int model_write_section(lua_State *L, tl_model *model)
-{
-    const char *prefix = tl_lua_text(L, 2, "write_section", "the prefix");
-    tl_halfspace plane;
-    tl_lua_read_function(L, 3, "write_section", NULL, &plane);
-    tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_lua_ok(L, model,
-              tl_lua_watch_end(L, &watch, tl_write_section(model, prefix, &plane), "write_section",
-                               NO_FILE));
     return 0;
 }
 
@@ -386,18 +342,9 @@ static const tl_lua_key mass_scaling_results[] = {
     {NULL, NULL, NULL},
 };
 
-static const tl_lua_key energy_terms[] = {
-    {"kinetic", "", "of motion, J"},
-    {"potential", "", "minus the work of gravity, J"},
-    {"stored", "", "elastic, in all contacts, those of held blocks, too, J"},
-    {"friction", "", "turned to heat by slip, J"},
-    {"damping", "", "taken out by the damping, J"},
-    {"external", "",
-     "work of loads and driven bodies, and given by setting velocities and by edits of blocks and "
-     "laws, J"},
-    {"balance", "", "error of the sum over the largest change of a term so far"},
-    {NULL, NULL, NULL},
-};
+#define KEY(name, unit, doc) {#name, "", doc},
+static const tl_lua_key energy_terms[] = {TL_ENERGY(KEY){NULL, NULL, NULL}};
+#undef KEY
 
 const tl_lua_topic tl_lua_model_topics[] = {
     {.name = "model",
@@ -464,24 +411,6 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .title = "Fields of the energy",
      .verbs = energy_terms,
      .method = model_energy},
-    {.name = "write_vtk",
-     .usage = "model:write_vtk(\"out/run\", {contacts = false, block_fields = {height = "
-              "function(b) return b.centroid[3] end}})",
-     .function = "write_vtk",
-     .keys = tl_lua_field_keys,
-     .arguments = 2,
-     .method = model_write_vtk},
-    {.name = "write_section",
-     .usage =
-         "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
-     .function = "write_section",
-     .arguments = 2,
-     .method = model_write_section},
-    {.name = "write_blocks",
-     .usage = "model:write_blocks(\"out/blocks.json\")",
-     .function = "write_blocks",
-     .arguments = 1,
-     .method = model_write_blocks},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",
      .doc = "A digest of all that what comes next depends on, settings too: models with the same "

@@ -9,8 +9,9 @@
 #include "lua/lists.h"
 #include "lua/living.h"
 #include "lua/model.h"
-#include "lua/selection.h"
 #include "lua/topics.h"
+
+#include <string.h>
 
 /* talus.help(topic): prints what `talus help TOPIC` prints. */
 static int module_help(lua_State *L)
@@ -50,14 +51,47 @@ static void put_functions(lua_State *L)
     }
 }
 
+/* ---------------------------------------------------------------- modules in Lua --------- */
+
+/* Modules that the table `talus` holds, each a function; loaded when first used. */
+static const char *const functions[] = {"plot", "stereonet", NULL};
+
+/* __index of the table `talus`: the modules it holds. Upvalue 1 is `require`. */
+static int module_index(lua_State *L)
+{
+    lua_settop(L, 2);
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
+    for (const char *const *known = functions; *known; known++) {
+        if (strcmp(*known, name) != 0)
+            continue;
+        lua_pushvalue(L, lua_upvalueindex(1));
+        lua_pushfstring(L, "talus.%s", name);
+        lua_call(L, 1, 1);
+        lua_pushvalue(L, 2);
+        lua_pushvalue(L, -2);
+        lua_rawset(L, 1);
+        return 1;
+    }
+    return 0;
+}
+
+/* Has the table at the top of the stack load them when they are first used. */
+static void attach_library(lua_State *L)
+{
+    tl_lua_library_open(L);
+    lua_createtable(L, 0, 1);
+    lua_getglobal(L, "require");
+    lua_pushcclosure(L, module_index, 1);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+}
+
 int luaopen_talus(lua_State *L)
 {
     if (tl_plugins_load_default() != TL_OK)
         return tl_lua_fail(L, "out of memory while the plugins are loaded");
-    tl_lua_item_open(L, &tl_lua_block_kind);
-    tl_lua_item_open(L, &tl_lua_contact_kind);
-    tl_lua_selection_open(L, &tl_lua_block_kind);
-    tl_lua_selection_open(L, &tl_lua_contact_kind);
+    tl_lua_kind_open(L, &tl_lua_block_kind);
+    tl_lua_kind_open(L, &tl_lua_contact_kind);
     lua_createtable(L, 0, 16);
     lua_newtable(L);
     put_functions(L);
@@ -68,6 +102,6 @@ int luaopen_talus(lua_State *L)
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);
     lua_setfield(L, -2, "version");
-    tl_lua_library_attach(L);
+    attach_library(L);
     return 1;
 }

@@ -1,4 +1,4 @@
-/* page.c - model:write_html(prefix, {...}): a frame of a page for a browser. */
+/* page.c - files of a model for those who look at it: pages for a browser, VTK files, sections, and the blocks. */
 #include "lua/page.h"
 
 #include "lua/block.h"
@@ -9,7 +9,6 @@
 #include "lua/item.h"
 #include "lua/living.h"
 #include "lua/quality.h"
-#include "lua/selection.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,75 +19,6 @@ static const tl_lua_key page_keys[] = {
     {NULL, NULL, NULL},
 };
 
-static int32_t read_contacts(lua_State *L, int table, const char *context)
-{
-    int type = tl_lua_option(L, table, "contacts");
-    int32_t choice = TL_HTML_CONTACTS_FEW;
-    if (type == LUA_TBOOLEAN)
-        choice = lua_toboolean(L, -1) ? TL_HTML_CONTACTS_ALL : TL_HTML_CONTACTS_NONE;
-    else if (type == LUA_TSTRING && strcmp(lua_tostring(L, -1), "slipping") == 0)
-        choice = TL_HTML_CONTACTS_SLIPPING;
-    else if (type != LUA_TNIL)
-        tl_lua_fail(L, "%s: contacts must be true, false or \"slipping\", not %s", context,
-                    tl_lua_describe(L, -1));
-    lua_pop(L, 1);
-    return choice;
-}
-
-/* Pushes the keyblocks that are asked for, or nil. */
-static const tl_keyblocks *push_keyblocks(lua_State *L, int table)
-{
-    if (tl_lua_option(L, table, "keyblocks") == LUA_TNIL)
-        return NULL;
-    lua_pushcfunction(L, tl_lua_keyblocks_find);
-    lua_pushvalue(L, 1);
-    lua_pushvalue(L, -3);
-    lua_call(L, 2, 1);
-    lua_remove(L, -2);
-    return lua_touserdata(L, -1);
-}
-
-/* The factor of safety that is asked for; 0: none. */
-static double read_limit(lua_State *L, int table, const char *context)
-{
-    double limit = 0;
-    if (tl_lua_option(L, table, "safety_limit") != LUA_TNIL) {
-        limit = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
-        if (!(limit > 0) || !isfinite(limit))
-            tl_lua_fail(L, "%s: safety_limit must be a number above 0, not %s", context,
-                        tl_lua_describe(L, -1));
-    }
-    lua_settop(L, table);
-    return limit;
-}
-
-void tl_lua_page_read(lua_State *L, int given, const char *context, tl_html *html)
-{
-    luaL_checkstack(L, 32, "too many values");
-    html->contacts = read_contacts(L, given, context);
-    lua_pushvalue(L, given); /* what is pushed from here on stays */
-    int table = lua_gettop(L);
-    html->safety_limit = read_limit(L, table, context);
-    html->keyblocks = push_keyblocks(L, table);
-    html->block_fields = tl_lua_extra_fields(L, table, "block_fields", context, &tl_lua_block_kind,
-                                             &html->block_field_count);
-    html->contact_fields = tl_lua_extra_fields(L, table, "contact_fields", context,
-                                               &tl_lua_contact_kind, &html->contact_field_count);
-}
-
-static int model_write_html(lua_State *L, tl_model *model)
-{
-    const char *prefix = tl_lua_text(L, 2, "write_html", "the prefix");
-    tl_html html = tl_html_default();
-    tl_lua_read_function(L, 3, "write_html", page_keys, &html);
-    tl_lua_page_read(L, 3, "write_html", &html);
-    tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_lua_ok(L, model,
-              tl_lua_watch_end(L, &watch, tl_write_html(model, prefix, &html), "write_html",
-                               "no frame was written"));
-    return 0;
-}
-
 /* ---------------------------------------------------------------- extra fields ------------
  *
  * Numbers that a script adds to the blocks or contacts of a file or page: fields by name, and functions.
@@ -98,7 +28,7 @@ static int model_write_html(lua_State *L, tl_model *model)
  * All are found before anything is written, in an order that does not depend on the table's: those of the list first,
  * then the others by their names. While a function runs the model may only be read. */
 
-const tl_lua_key tl_lua_field_keys[] = {
+static const tl_lua_key field_keys[] = {
     TL_LUA_FIELD_KEYS,
     {NULL, NULL, NULL},
 };
@@ -264,7 +194,9 @@ static const tl_lua_selection *push_all(lua_State *L, const tl_lua_kind *kind)
     return all;
 }
 
-const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *key,
+/* The fields that the table at `table` asks for under `key`, of all blocks or all contacts of the model at index 1.
+ * `context` names the method. Pushes one value, which must stay on the stack as long as they are used. */
+static const tl_extra_field *extra_fields(lua_State *L, int table, const char *key,
                                           const char *context, const tl_lua_kind *kind,
                                           size_t *count)
 {
@@ -297,6 +229,119 @@ const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *k
     return r.fields;
 }
 
+/* ---------------------------------------------------------------- pages ------------------ */
+
+static int32_t read_contacts(lua_State *L, int table, const char *context)
+{
+    int type = tl_lua_option(L, table, "contacts");
+    int32_t choice = TL_HTML_CONTACTS_FEW;
+    if (type == LUA_TBOOLEAN)
+        choice = lua_toboolean(L, -1) ? TL_HTML_CONTACTS_ALL : TL_HTML_CONTACTS_NONE;
+    else if (type == LUA_TSTRING && strcmp(lua_tostring(L, -1), "slipping") == 0)
+        choice = TL_HTML_CONTACTS_SLIPPING;
+    else if (type != LUA_TNIL)
+        tl_lua_fail(L, "%s: contacts must be true, false or \"slipping\", not %s", context,
+                    tl_lua_describe(L, -1));
+    lua_pop(L, 1);
+    return choice;
+}
+
+/* Pushes the keyblocks that are asked for, or nil. */
+static const tl_keyblocks *push_keyblocks(lua_State *L, int table)
+{
+    if (tl_lua_option(L, table, "keyblocks") == LUA_TNIL)
+        return NULL;
+    lua_pushcfunction(L, tl_lua_keyblocks_find);
+    lua_pushvalue(L, 1);
+    lua_pushvalue(L, -3);
+    lua_call(L, 2, 1);
+    lua_remove(L, -2);
+    return lua_touserdata(L, -1);
+}
+
+/* The factor of safety that is asked for; 0: none. */
+static double read_limit(lua_State *L, int table, const char *context)
+{
+    double limit = 0;
+    if (tl_lua_option(L, table, "safety_limit") != LUA_TNIL) {
+        limit = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
+        if (!(limit > 0) || !isfinite(limit))
+            tl_lua_fail(L, "%s: safety_limit must be a number above 0, not %s", context,
+                        tl_lua_describe(L, -1));
+    }
+    lua_settop(L, table);
+    return limit;
+}
+
+void tl_lua_page_read(lua_State *L, int given, const char *context, tl_html *html)
+{
+    luaL_checkstack(L, 32, "too many values");
+    html->contacts = read_contacts(L, given, context);
+    lua_pushvalue(L, given); /* what is pushed from here on stays */
+    int table = lua_gettop(L);
+    html->safety_limit = read_limit(L, table, context);
+    html->keyblocks = push_keyblocks(L, table);
+    html->block_fields = extra_fields(L, table, "block_fields", context, &tl_lua_block_kind,
+                                      &html->block_field_count);
+    html->contact_fields = extra_fields(L, table, "contact_fields", context, &tl_lua_contact_kind,
+                                        &html->contact_field_count);
+}
+
+static int model_write_html(lua_State *L, tl_model *model)
+{
+    const char *prefix = tl_lua_text(L, 2, "write_html", "the prefix");
+    tl_html html = tl_html_default();
+    tl_lua_read_function(L, 3, "write_html", page_keys, &html);
+    tl_lua_page_read(L, 3, "write_html", &html);
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    tl_lua_ok(L, model,
+              tl_lua_watch_end(L, &watch, tl_write_html(model, prefix, &html), "write_html",
+                               "no frame was written"));
+    return 0;
+}
+
+/* ---------------------------------------------------------------- other files ------------ */
+
+/* What a writer has done that was cancelled. */
+#define NO_FILE "no file was written"
+
+static int model_write_vtk(lua_State *L, tl_model *model)
+{
+    const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
+    tl_vtk_parts parts = tl_vtk_parts_default();
+    tl_lua_read_function(L, 3, "write_vtk", field_keys, &parts);
+    parts.block_fields = extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind,
+                                      &parts.block_field_count);
+    parts.contact_fields = extra_fields(L, 3, "contact_fields", "write_vtk", &tl_lua_contact_kind,
+                                        &parts.contact_field_count);
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    tl_lua_ok(
+        L, model,
+        tl_lua_watch_end(L, &watch, tl_write_vtk(model, prefix, &parts), "write_vtk", NO_FILE));
+    return 0;
+}
+
+static int model_write_blocks(lua_State *L, tl_model *model)
+{
+    const char *path = tl_lua_text(L, 2, "write_blocks", "the file's name");
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    tl_lua_ok(L, model,
+              tl_lua_watch_end(L, &watch, tl_write_blocks(model, path), "write_blocks", NO_FILE));
+    return 0;
+}
+
+static int model_write_section(lua_State *L, tl_model *model)
+{
+    const char *prefix = tl_lua_text(L, 2, "write_section", "the prefix");
+    tl_halfspace plane;
+    tl_lua_read_function(L, 3, "write_section", NULL, &plane);
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    tl_lua_ok(L, model,
+              tl_lua_watch_end(L, &watch, tl_write_section(model, prefix, &plane), "write_section",
+                               NO_FILE));
+    return 0;
+}
+
 const tl_lua_topic tl_lua_page_topics[] = {
     {.name = "write_html",
      .usage =
@@ -305,5 +350,23 @@ const tl_lua_topic tl_lua_page_topics[] = {
      .keys = page_keys,
      .arguments = 2,
      .method = model_write_html},
+    {.name = "write_vtk",
+     .usage = "model:write_vtk(\"out/run\", {contacts = false, block_fields = {height = "
+              "function(b) return b.centroid[3] end}})",
+     .function = "write_vtk",
+     .keys = field_keys,
+     .arguments = 2,
+     .method = model_write_vtk},
+    {.name = "write_section",
+     .usage =
+         "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
+     .function = "write_section",
+     .arguments = 2,
+     .method = model_write_section},
+    {.name = "write_blocks",
+     .usage = "model:write_blocks(\"out/blocks.json\")",
+     .function = "write_blocks",
+     .arguments = 1,
+     .method = model_write_blocks},
     {.name = NULL},
 };

@@ -11,7 +11,6 @@
 #include "lua/interrupt.h"
 #include "lua/item.h"
 #include "lua/living.h"
-#include "lua/state.h"
 #include "lua/view.h"
 
 #include <math.h>
@@ -86,6 +85,41 @@ static void progress_clear(progress *p)
     if (p->drawn)
         fputs("\r\033[K", stderr);
     p->drawn = false;
+}
+
+/* ---------------------------------------------------------------- runs that are saved as they go ---
+ *
+ * `talus run --autosave MINUTES SCRIPT` saves the model that runs, from time to time, in a file beside the script.
+ * After `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the clock. That is no
+ * harm: saving does not change a run. */
+
+#define ENDING ".autosave.talus"
+
+char *tl_lua_autosave_path(const char *script)
+{
+    size_t capacity = strlen(script) + sizeof ENDING;
+    char *path = malloc(capacity);
+    if (path)
+        snprintf(path, capacity, "%s%s", script, ENDING);
+    return path;
+}
+
+static void autosave(tl_lua_options *options, tl_model *model)
+{
+    if (!(options->autosave > 0) || !options->save_path)
+        return;
+    double now = tl_lua_clock();
+    if (options->save_due == 0) /* the first step of all */
+        options->save_due = now + options->autosave;
+    if (now < options->save_due)
+        return;
+    options->save_due = now + options->autosave;
+    /* The run is worth more than its save: a failure is told only. */
+    if (tl_model_save(model, options->save_path) != TL_OK) {
+        char text[TL_ERROR_TEXT + 32];
+        snprintf(text, sizeof text, "autosave: %s", tl_model_error(model)->text);
+        tl_lua_log(options, text);
+    }
 }
 
 /* ---------------------------------------------------------------- a line ----------------- */
@@ -398,7 +432,7 @@ static tl_status on_each(void *user, tl_model *model)
     if (tl_model_cycles(model) >= r->owner->next_sample && !tl_lua_histories_sample(r->L, AT_MODEL))
         return status_of(false);
     if (!r->owner->probe)
-        tl_lua_autosave(r->options, model);
+        autosave(r->options, model);
     return status_of(!r->owner->view || tl_lua_view_step(r->L, 0));
 }
 

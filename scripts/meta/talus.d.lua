@@ -549,38 +549,6 @@ function Model:contact_area(options) end
 ---@return talus.EnergyResult
 function Model:energy() end
 
----@class (exact) talus.WriteVtkOptions
----@field blocks? boolean default true: whether the frame has a file of the blocks
----@field contacts? boolean default true: whether the frame has a file of the contacts
----@field joints? boolean default true: whether the frame has a file of the faces that joints made
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
----@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
-
---- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
----
----     model:write_vtk("out/run", {contacts = false, block_fields = {height = function(b) return b.centroid[3] end}})
----@param path string
----@param options? talus.WriteVtkOptions
-function Model:write_vtk(path, options) end
-
----@class (exact) talus.WriteSectionOptions
----@field dip number deg, in [0, 90]: dip of the plane below horizontal
----@field dip_direction? number deg, in [0, 360], default 0: its dip direction, clockwise from north (+y)
----@field origin? talus.Vector m, default {0, 0, 0}: a point on the plane
-
---- Writes the next frame of a section: the polygons in which a plane cuts the blocks, with their displacements.
----
----     model:write_section("out/cut", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})
----@param path string
----@param options talus.WriteSectionOptions
-function Model:write_section(path, options) end
-
---- Writes all blocks as they stand into a JSON file.
----
----     model:write_blocks("out/blocks.json")
----@param path string name of the file
-function Model:write_blocks(path) end
-
 --- A digest of all that what comes next depends on, settings too: models with the same text go on alike, to the last bit. Takes about as long as a step.
 ---
 ---     text = model:state_hash()
@@ -633,6 +601,29 @@ function Blocks:fix(options) end
 ---@param options? talus.SetOptions
 ---@return talus.Blocks
 function Blocks:set(options) end
+
+---@class (exact) talus.LoadOptions
+---@field force? talus.Vector N, default {0, 0, 0}: force on the body of each block
+---@field moment? talus.Vector N m, default {0, 0, 0}: moment on the body of each block
+---@field at? talus.Vector m: point where the force acts, which goes with the body; its centroid when left out
+
+--- Puts a force and a moment, along the axes of the model, on the bodies of blocks, in the place of what they had; none at all takes the load off.
+---
+---     selection:load{force = {0, 0, -1e3}, at = {x, y, z}}
+---@param options? talus.LoadOptions
+---@return talus.Blocks
+function Blocks:load(options) end
+
+---@class (exact) talus.DriveOptions
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
+---@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
+
+--- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
+---
+---     selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}
+---@param options? talus.DriveOptions
+---@return talus.Blocks
+function Blocks:drive(options) end
 
 ---@class (exact) talus.ContactsOptions
 ---@field joint? string contacts on this joint or plane
@@ -758,29 +749,6 @@ function Model:parameters() end
 ---@param options talus.LawTestOptions
 ---@return talus.LawTestResult
 function talus.law_test(options) end
-
----@class (exact) talus.LoadOptions
----@field force? talus.Vector N, default {0, 0, 0}: force on the body of each block
----@field moment? talus.Vector N m, default {0, 0, 0}: moment on the body of each block
----@field at? talus.Vector m: point where the force acts, which goes with the body; its centroid when left out
-
---- Puts a force and a moment, along the axes of the model, on the bodies of blocks, in the place of what they had; none at all takes the load off.
----
----     selection:load{force = {0, 0, -1e3}, at = {x, y, z}}
----@param options? talus.LoadOptions
----@return talus.Blocks
-function Blocks:load(options) end
-
----@class (exact) talus.DriveOptions
----@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
----@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
-
---- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
----
----     selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}
----@param options? talus.DriveOptions
----@return talus.Blocks
-function Blocks:drive(options) end
 
 ---@class (exact) talus.BoundaryOptions
 ---@field side? string faces in this plane of the box about all blocks: "xmin", "xmax", "ymin", "ymax", "zmin" or "zmax"
@@ -1115,6 +1083,38 @@ function Model:memory() end
 ---@param path string
 ---@param options? talus.WriteHtmlOptions
 function Model:write_html(path, options) end
+
+---@class (exact) talus.WriteVtkOptions
+---@field blocks? boolean default true: whether the frame has a file of the blocks
+---@field contacts? boolean default true: whether the frame has a file of the contacts
+---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
+
+--- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
+---
+---     model:write_vtk("out/run", {contacts = false, block_fields = {height = function(b) return b.centroid[3] end}})
+---@param path string
+---@param options? talus.WriteVtkOptions
+function Model:write_vtk(path, options) end
+
+---@class (exact) talus.WriteSectionOptions
+---@field dip number deg, in [0, 90]: dip of the plane below horizontal
+---@field dip_direction? number deg, in [0, 360], default 0: its dip direction, clockwise from north (+y)
+---@field origin? talus.Vector m, default {0, 0, 0}: a point on the plane
+
+--- Writes the next frame of a section: the polygons in which a plane cuts the blocks, with their displacements.
+---
+---     model:write_section("out/cut", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})
+---@param path string
+---@param options talus.WriteSectionOptions
+function Model:write_section(path, options) end
+
+--- Writes all blocks as they stand into a JSON file.
+---
+---     model:write_blocks("out/blocks.json")
+---@param path string name of the file
+function Model:write_blocks(path) end
 
 ---@class (exact) talus.ViewOptions
 ---@field title? string title of the page

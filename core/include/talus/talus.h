@@ -534,16 +534,24 @@ TL_API tl_status tl_blocks_drive(tl_model *model, const tl_id *ids, size_t count
 
 /* ---------------------------------------------------------------- energy ----------------- */
 
-/* Energy of the bodies that are free to move, J, all at one time and counted from the first step. */
+/* The terms of the ledger: name, unit and what it is. */
+#define TL_ENERGY(X)                                                                               \
+    X(kinetic, "J", "of motion, J")                                                                \
+    X(potential, "J", "minus the work of gravity, J")                                              \
+    X(stored, "J", "elastic, in all contacts, those of held blocks, too, J")                       \
+    X(friction, "J", "turned to heat by slip, J")                                                  \
+    X(damping, "J", "taken out by the damping, J")                                                 \
+    X(external, "J",                                                                               \
+      "work of loads and driven bodies, and given by setting velocities and by edits of blocks "   \
+      "and laws, J")                                                                               \
+    X(balance, "", "error of the sum over the largest change of a term so far")
+
+/* Energy of the bodies that are free to move, J, all at one time and counted from the first step: the terms of
+ * TL_ENERGY, which are numbers. */
 typedef struct tl_energy {
-    double kinetic;
-    double potential; /* minus the work of gravity */
-    double stored;    /* elastic, in contacts */
-    double friction;  /* turned to heat by slip */
-    double damping;   /* taken out by the damping */
-    /* work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws */
-    double external;
-    double balance; /* error of the sum, relative to the largest change of a term so far */
+#define TL_ENERGY_TERM(name, unit, doc) double name;
+    TL_ENERGY(TL_ENERGY_TERM)
+#undef TL_ENERGY_TERM
 } tl_energy;
 
 /* The ledger, as of the last force evaluation. */
