@@ -399,19 +399,33 @@ static bool cut_blocks(const tl_model *m, tl_plane plane, section *s)
     return true;
 }
 
+static void write_int(FILE *file, int32_t value)
+{
+    unsigned char bytes[TL_VTK_INT_BYTES];
+    tl_vtk_put_int(bytes, value);
+    fwrite(bytes, 1, sizeof bytes, file);
+}
+
+static void write_vec3(FILE *file, tl_vec3 value)
+{
+    unsigned char bytes[TL_VTK_VEC3_BYTES];
+    tl_vtk_put_vec3(bytes, value);
+    fwrite(bytes, 1, sizeof bytes, file);
+}
+
 static void put_polygons(const tl_model *m, const section *s, FILE *file)
 {
     fprintf(file, "POINTS %zu double\n", s->points);
     size_t at = 0;
     for (size_t i = 0; i < s->polygons; i++)
         for (; at < s->end[i]; at++)
-            tl_vtk_vec3(file, tl_model_point(m, m->blocks.body[s->row[i]], s->corners[at].at));
+            write_vec3(file, tl_model_point(m, m->blocks.body[s->row[i]], s->corners[at].at));
     fprintf(file, "\nPOLYGONS %zu %zu\n", s->polygons, s->polygons + s->points);
     int32_t next = 0;
     for (size_t i = 0; i < s->polygons; i++) {
-        tl_vtk_int(file, (int32_t)s->end[i] - next);
+        write_int(file, (int32_t)s->end[i] - next);
         while (next < (int32_t)s->end[i])
-            tl_vtk_int(file, next++);
+            write_int(file, next++);
     }
     tl_vtk_line(file);
 }
@@ -437,7 +451,7 @@ static void put_whole(const tl_model *m, const section *s, const char *name, FIL
     for (size_t i = 0; i < s->polygons; i++) {
         double value[6];
         tl_block_numbers(m, s->row[i], tl_block_quantity(name), value);
-        tl_vtk_int(file, (int32_t)(uint32_t)value[0]);
+        write_int(file, (int32_t)(uint32_t)value[0]);
     }
     tl_vtk_line(file);
 }
@@ -448,7 +462,7 @@ static void put_section_cells(const tl_model *m, const section *s, FILE *file)
     put_whole(m, s, "id", file);
     fprintf(file, "VECTORS displacement double\n");
     for (size_t i = 0; i < s->polygons; i++)
-        tl_vtk_vec3(file, middle_displacement(m, s, i));
+        write_vec3(file, middle_displacement(m, s, i));
     tl_vtk_line(file);
     tl_vtk_field(file, "FieldData", 4);
     static const char *const names[] = {"group", "body", "hidden"};
@@ -458,7 +472,7 @@ static void put_section_cells(const tl_model *m, const section *s, FILE *file)
     }
     tl_vtk_array(file, "displacement_in_plane", 3, s->polygons, TL_VTK_DOUBLE);
     for (size_t i = 0; i < s->polygons; i++)
-        tl_vtk_vec3(file, in_plane(s->normal, middle_displacement(m, s, i)));
+        write_vec3(file, in_plane(s->normal, middle_displacement(m, s, i)));
     tl_vtk_line(file);
 }
 
@@ -468,7 +482,7 @@ static void put_displacements(const tl_model *m, const section *s, bool all, FIL
     for (size_t i = 0, at = 0; i < s->polygons; i++)
         for (; at < s->end[i]; at++) {
             tl_vec3 moved = tl_block_point_displacement(m, s->row[i], s->corners[at].at);
-            tl_vtk_vec3(file, all ? moved : in_plane(s->normal, moved));
+            write_vec3(file, all ? moved : in_plane(s->normal, moved));
         }
     tl_vtk_line(file);
 }

@@ -5,24 +5,10 @@
 
 #include <string.h>
 
-void tl_vtk_int(FILE *file, int32_t value)
-{
-    unsigned char bytes[TL_VTK_INT_BYTES];
-    tl_vtk_put_int(bytes, value);
-    fwrite(bytes, 1, sizeof bytes, file);
-}
-
 void tl_vtk_double(FILE *file, double value)
 {
     unsigned char bytes[sizeof value];
     tl_vtk_put_double(bytes, value);
-    fwrite(bytes, 1, sizeof bytes, file);
-}
-
-void tl_vtk_vec3(FILE *file, tl_vec3 value)
-{
-    unsigned char bytes[TL_VTK_VEC3_BYTES];
-    tl_vtk_put_vec3(bytes, value);
     fwrite(bytes, 1, sizeof bytes, file);
 }
 

@@ -31,9 +31,7 @@ void tl_vtk_line(FILE *file);
 tl_status tl_vtk_list(tl_pieces *out, size_t rows, size_t bytes, tl_piece_fn fn, const void *user);
 
 /* One number, vector or text of the array at hand. */
-void tl_vtk_int(FILE *file, int32_t value);
 void tl_vtk_double(FILE *file, double value);
-void tl_vtk_vec3(FILE *file, tl_vec3 value);
 void tl_vtk_string(FILE *file, const char *text);
 
 /* The same of long arrays: put at `to`, they give where the next goes. */

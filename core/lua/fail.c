@@ -93,12 +93,6 @@ void tl_lua_names_list(tl_lua_names *names, const char *const *list)
         tl_lua_names_add(names, *list);
 }
 
-void tl_lua_names_fields(tl_lua_names *names, const tl_field *fields, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        tl_lua_names_add(names, fields[i].name);
-}
-
 int tl_lua_unknown(lua_State *L, const char *what, const char *word, const tl_lua_names *names)
 {
     const char *nearest = tl_nearest_name(word, names->at, names->count);

@@ -15,7 +15,6 @@ int tl_lua_fail_in(lua_State *L, int index, const char *format, ...);
 int tl_lua_raise(lua_State *L, const tl_error *error);
 void tl_lua_names_add(tl_lua_names *names, const char *name);
 void tl_lua_names_list(tl_lua_names *names, const char *const *list);
-void tl_lua_names_fields(tl_lua_names *names, const tl_field *fields, size_t count);
 /* Raises "WHAT 'WORD' ...; did you mean 'NEAREST'?" or, when none is near, lists the known names. */
 int tl_lua_unknown(lua_State *L, const char *what, const char *word, const tl_lua_names *names);
 

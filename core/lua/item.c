@@ -13,6 +13,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void add_fields(tl_lua_names *names, const tl_field *fields, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        tl_lua_names_add(names, fields[i].name);
+}
+
 /* ---------------------------------------------------------------- one item --------------- */
 
 /* The item at index 1 of a metamethod, whose upvalue 1 is the kind. */
@@ -62,7 +68,7 @@ static int unknown_field(lua_State *L, const tl_lua_kind *kind, const char *name
     tl_lua_names names = {0};
     size_t count;
     const tl_field *fields = kind->fields(&count);
-    tl_lua_names_fields(&names, fields, count);
+    add_fields(&names, fields, count);
     for (const tl_lua_key *key = kind->extra_keys; key->name; key++)
         tl_lua_names_add(&names, key->name);
     return tl_lua_unknown(L, lua_pushfstring(L, "a %s has no field", kind->item), name, &names);
@@ -275,7 +281,7 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
         tl_lua_names names = {0};
         size_t count;
         const tl_field *fields = kind->fields(&count);
-        tl_lua_names_fields(&names, fields, count);
+        add_fields(&names, fields, count);
         lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item);
         tl_lua_unknown(L, lua_tostring(L, -1), name, &names);
     }

@@ -8,11 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
-
-/* Constant: s. */
-#define NANOSECOND 1e-9
 
 tl_lua_options *tl_lua_options_of(lua_State *L)
 {
@@ -35,13 +31,6 @@ void tl_lua_log(void *user, const char *text)
     const tl_lua_options *options = user;
     if (!options->quiet)
         fprintf(stderr, "%stalus: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text);
-}
-
-double tl_lua_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + NANOSECOND * (double)t.tv_nsec;
 }
 
 void tl_lua_default_threads(lua_State *L, int64_t *threads)

@@ -8,8 +8,6 @@
 tl_lua_options *tl_lua_options_of(lua_State *L);
 /* Prints a remark of the kernel on standard error, unless the options, its user data, say quiet. */
 void tl_lua_log(void *user, const char *text);
-/* Seconds of a clock that never goes back, from a start of its own: only differences mean something. */
-double tl_lua_clock(void);
 /* Pushes memory, all zero, with a metatable of that name, whose __gc is `release`. */
 void *tl_lua_hold(lua_State *L, size_t size, const char *type, lua_CFunction release);
 /* Pushes an object without a model yet; gives the model that has been put into it its log and its ear for Ctrl-C. */

@@ -1,10 +1,10 @@
 /* repl_complete.c - completion of names at the prompt.
  *
  * What may stand at the cursor follows from what stands before it.
- *   after `x.` or `x:`     fields and methods of what x is
- *   in `f{`, `f("..", {`   keys of the table of options of f, or parameters of the plugin that is named
- *   in quotes              plugins of generate, joint and damping, choices of an option, fields for sum and the like
- *   else                   globals and Lua's words
+ *   after `x.` or `x:`: fields and methods of what x is;
+ *   in `f{`, `f("..", {`: keys of the table of options of f, or parameters of the plugin that is named;
+ *   in quotes: plugins of generate, joint and damping, choices of an option, fields for sum and the like;
+ *   else: globals and Lua's words.
  *
  * Names come from the tables that check a script. Nothing of the script is run: x is found by looking up names
  * without metamethods. What a call gives follows from the name of its function. */

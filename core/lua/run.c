@@ -20,7 +20,19 @@
 #include <sys/ioctl.h>
 #include <talus/elementary.h>
 #include <talus/number.h>
+#include <time.h>
 #include <unistd.h>
+
+/* Constant: s. */
+#define NANOSECOND 1e-9
+
+/* Seconds of a clock that never goes back, from a start of its own: only differences mean something. */
+static double clock_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + NANOSECOND * (double)t.tv_nsec;
+}
 
 /* ---------------------------------------------------------------- the progress line -------
  *
@@ -75,7 +87,7 @@ static void progress_begin(lua_State *L, progress *p, const tl_model *model)
     p->terminal = isatty(STDERR_FILENO) == 1;
     double period = read_period(L);
     p->period = !isnan(period) ? period : p->terminal ? TERMINAL_PERIOD : LOG_PERIOD;
-    p->began = p->shown = tl_lua_clock();
+    p->began = p->shown = clock_seconds();
     p->shown_cycle = tl_model_cycles(model);
     p->first_time = p->shown_time = tl_model_time(model);
 }
@@ -108,7 +120,7 @@ static void autosave(tl_lua_options *options, tl_model *model)
 {
     if (!(options->autosave > 0) || !options->save_path)
         return;
-    double now = tl_lua_clock();
+    double now = clock_seconds();
     if (options->save_due == 0) /* the first step of all */
         options->save_due = now + options->autosave;
     if (now < options->save_due)
@@ -175,7 +187,7 @@ static void write_line(progress *p, const line *l)
     fprintf(stderr, p->terminal ? "\r\033[K%.*s" : "talus: %.*s\n", width, text);
     fflush(stderr);
     p->drawn = p->terminal;
-    p->shown = tl_lua_clock();
+    p->shown = clock_seconds();
 }
 
 static void add_time_left(line *l, double seconds)
@@ -370,7 +382,7 @@ static void count_contacts(progress *p, const tl_model *model, double t)
     if (p->period > 0 && t < p->next_count)
         return;
     p->counts = tl_model_contact_counts(model);
-    double after = tl_lua_clock();
+    double after = clock_seconds();
     p->next_count = after + (after - t) / COUNTING;
 }
 
@@ -380,7 +392,7 @@ static void progress_run(progress *p, const tl_model *model, const tl_solve *lim
 {
     if (!p->on)
         return;
-    double t = tl_lua_clock(), time = tl_model_time(model);
+    double t = clock_seconds(), time = tl_model_time(model);
     int64_t cycle = tl_model_cycles(model), steps = cycle - p->shown_cycle;
     if (t - p->shown < p->period || steps == 0)
         return;
@@ -564,7 +576,7 @@ static int model_cycle(lua_State *L, tl_model *model)
 static void progress_generate(void *user, const tl_generate_progress *done)
 {
     progress *p = user;
-    double t = p->on ? tl_lua_clock() : 0;
+    double t = p->on ? clock_seconds() : 0;
     if (!p->on || t - p->shown < p->period)
         return;
     line l = {.count = 0};
