@@ -3,13 +3,14 @@
  * A part of a wall carries what it carried before: stresses, law states, an initial stress. So a contact that
  * ends because a block of it was cut leaves its points. Each contact between parts of the two blocks takes over
  * its share of them when it is made, in the same detection. Which block a part comes from, its root, the model
- * tells (tl_heir). */
+ * tells (tl_cut_part). */
 #include "contact/cut_contacts.h"
 
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/facing.h"
+#include "contact/kind.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
@@ -104,8 +105,8 @@ tl_cut_contact *tl_cut_contact_keep(tl_model *m, uint32_t c, const tl_cut_side *
                                     const tl_cut_side *b)
 {
     tl_detect *d = m->detect;
-    bool field = tl_contact_is_field(d, c);
-    size_t count = tl_contact_area_points(d, c);
+    bool field = tl_facet_is_field(&d->contacts.facet[c]);
+    size_t count = tl_contact_areas(d, c);
     if (!tl_grow(&d->cut_contacts, &d->cut_capacity, d->cut_count + 1, sizeof *d->cut_contacts) ||
         !tl_grow(&d->cut_points, &d->cut_point_capacity, d->cut_point_count + count,
                  sizeof *d->cut_points))
@@ -156,8 +157,8 @@ void tl_cut_contacts_sort(tl_detect *d)
 
 static tl_id root_of(const tl_model *m, uint32_t row)
 {
-    const tl_heir *heir = tl_heir_of(m, m->blocks.id[row]);
-    return heir ? heir->root : m->blocks.id[row];
+    const tl_cut_part *part = tl_cut_part_of(m, m->blocks.id[row]);
+    return part ? part->root : m->blocks.id[row];
 }
 
 tl_cut_contact *tl_cut_contact_of(const tl_model *m, uint32_t block_a, uint32_t block_b)
@@ -293,7 +294,7 @@ tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, 
 static tl_cut_contact *source_of(const tl_model *m, uint32_t c)
 {
     tl_cut_contact *cut = tl_cut_contact_on(m, c, &m->detect->contacts.facet[c]);
-    return cut && (cut->field || !tl_contact_is_field(m->detect, c)) ? cut : NULL;
+    return cut && (cut->field || !tl_facet_is_field(&m->detect->contacts.facet[c])) ? cut : NULL;
 }
 
 tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t c)

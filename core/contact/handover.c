@@ -15,6 +15,7 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/cut_contacts.h"
+#include "contact/kind.h"
 #include "contact/lean.h"
 #include "contact/places.h"
 #include "contact/presses.h"
@@ -46,7 +47,7 @@ static tl_vec3 arm_of_old(const tl_model *m, uint32_t c, tl_vec3 old, tl_vec3 ce
 static tl_vec3 centre_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 {
     const tl_detect *d = m->detect;
-    if (tl_contact_is_field(d, c))
+    if (tl_facet_is_field(&d->contacts.facet[c]))
         return tl_columns_get(lanes->arm, TL_FIELD_SHEAR);
     tl_vec3 sum = {0, 0, 0};
     double area = tl_contact_area_of_points(d, c);
@@ -71,7 +72,7 @@ static tl_shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *la
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    bool springs = contacts->point_count[c] && tl_contact_is_field(m->detect, c);
+    bool springs = contacts->point_count[c] && tl_facet_is_field(&m->detect->contacts.facet[c]);
     tl_shear out = springs ? field_springs(m, c) : tl_shear_of(m, c);
     out.normal = contacts->facet[c].last;
     out.centre = centre_of(m, c, lanes);
@@ -141,7 +142,7 @@ static tl_old_point mean_point(const tl_model *m, uint32_t c)
 {
     const tl_points_table *p = &m->detect->points;
     const tl_contacts *contacts = &m->detect->contacts;
-    size_t count = tl_contact_area_points(m->detect, c);
+    size_t count = tl_contact_areas(m->detect, c);
     tl_old_point out = {.normal = contacts->facet[c].last};
     double force = 0, sum = 0;
     for (size_t k = 0; k < count; k++)
@@ -174,7 +175,7 @@ static void give_states(tl_model *m, uint32_t c, tl_old_point old, bool known)
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
         tl_state_columns at = {0};
-        while (tl_contact_is_field(m->detect, c) && k == TL_FIELD_TORSION &&
+        while (tl_facet_is_field(&m->detect->contacts.facet[c]) && k == TL_FIELD_TORSION &&
                tl_state_next(kind, p->state_columns, &at))
             if (at.count == 3)
                 memset(&old.state[at.begin], 0, 3 * sizeof *old.state);
@@ -333,7 +334,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     tl_shear old = shear_of(m, c, lanes);
     tl_old_point mean = mean_point(m, c);
     double kept = tl_shear_kept(m, c);
-    if (row && held && !tl_contact_is_field(m->detect, c))
+    if (row && held && !tl_facet_is_field(&m->detect->contacts.facet[c]))
         lift_faces(m, c, lanes);
     double lift = row ? row->shift - row->opening[TL_FIELD_SHEAR] : 0;
     tl_contact_place_points(m, c, g, lanes);

@@ -2,13 +2,14 @@
 #include "contact/shear.h"
 
 #include "base/columns.h"
+#include "contact/kind.h"
 #include "contact/places.h"
 #include "contact/presses.h"
 
 double tl_contact_area_of_points(const tl_detect *d, uint32_t c)
 {
     double area = 0;
-    for (size_t k = 0; k < tl_contact_area_points(d, c); k++)
+    for (size_t k = 0; k < tl_contact_areas(d, c); k++)
         area += d->points.area[tl_point_row(&d->contacts, c, k)];
     return area;
 }
@@ -97,7 +98,7 @@ void tl_shear_keep(tl_model *m, uint32_t c, double energy)
     if (column == TL_NO_ROW)
         return;
     double area = tl_contact_area_of_points(d, c);
-    for (size_t k = 0; k < tl_contact_area_points(d, c) && area > 0; k++) {
+    for (size_t k = 0; k < tl_contact_areas(d, c) && area > 0; k++) {
         size_t i = tl_point_row(&d->contacts, c, k);
         d->points.state[column][i] = energy * (d->points.area[i] / area);
     }

@@ -23,18 +23,6 @@ static inline void tl_shear_add(tl_shear *sum, double area, tl_vec3 arm, tl_vec3
     sum->moment = tl_v3_add(sum->moment, tl_v3_cross(arm, force));
 }
 
-static inline bool tl_contact_is_field(const tl_detect *d, uint32_t contact)
-{
-    return d->contacts.facet[contact].kind == TL_FACET_FIELD;
-}
-
-/* Points among which the area of a contact is shared out: of a field contact the first stands for all of it. */
-static inline size_t tl_contact_area_points(const tl_detect *d, uint32_t contact)
-{
-    size_t count = d->contacts.point_count[contact];
-    return tl_contact_is_field(d, contact) && count ? 1 : count;
-}
-
 double tl_contact_area_of_points(const tl_detect *d, uint32_t contact);
 
 /* Area, energy, force and moment about A's centroid of the points of a patch. */

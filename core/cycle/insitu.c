@@ -3,7 +3,7 @@
  * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets f_n = -(n .
  * sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now. Field contacts begin
  * without force, and so do faces with rock between them and contacts made later, but those of blocks that are cut
- * (contact/estate.c). Improbable stresses are remarked on. */
+ * (contact/cut_contacts.c). Improbable stresses are remarked on. */
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/body_contacts.h"

@@ -138,9 +138,9 @@ static void find_parts(const tl_model *m, const rows_scratch *scratch)
     const tl_detect *d = m->detect;
     for (size_t old = 0; old < d->known_block_count; old++)
         scratch->part[old] = TL_NO_ROW;
-    for (size_t i = 0; i < m->heir_count && d->known_block_count; i++) {
-        tl_known_block root = {.id = m->heirs[i].root};
-        if (tl_block_row_quiet(m, m->heirs[i].id) == TL_NO_ROW)
+    for (size_t i = 0; i < m->cut_part_count && d->known_block_count; i++) {
+        tl_known_block root = {.id = m->cut_parts[i].root};
+        if (tl_block_row_quiet(m, m->cut_parts[i].id) == TL_NO_ROW)
             continue;
         const tl_known_block *known =
             bsearch(&root, d->known_blocks, d->known_block_count, sizeof root, compare_known);
@@ -165,7 +165,7 @@ static tl_cut_side side_of(const tl_model *m, const rows_scratch *scratch, uint3
     tl_id id = m->detect->known_blocks[seen].id;
     uint32_t row = scratch->row[seen];
     if (row == TL_NO_ROW) {
-        const tl_heir *part = &m->heirs[scratch->part[seen]];
+        const tl_cut_part *part = &m->cut_parts[scratch->part[seen]];
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, part->id)];
         return (tl_cut_side){.id = id, .r = &part->r, .place = part->place, .body = body};
     }
@@ -183,7 +183,7 @@ static bool keep_cut_contacts(tl_model *m, const rows_scratch *scratch)
     tl_detect *d = m->detect;
     size_t contacts = d->cut_count, points = d->cut_point_count;
     bool there = true;
-    for (size_t i = 0; i < d->pair_count && m->heir_count && there; i++) {
+    for (size_t i = 0; i < d->pair_count && m->cut_part_count && there; i++) {
         const tl_pair *p = &d->pairs[i];
         if (!leaves(d, scratch, p))
             continue;
@@ -736,6 +736,6 @@ tl_status tl_detect_update(tl_model *m)
     update_contacts(m);
     status = settle_named(m);
     if (status == TL_OK)
-        m->heir_count = 0; /* contacts know them now */
+        m->cut_part_count = 0; /* contacts know them now */
     return status;
 }

@@ -645,7 +645,7 @@ static void forget_mixed(tl_model *m)
     for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
         tl_cut_contact *cut = tl_cut_contact_of(m, d->contacts.a[c], d->contacts.b[c]);
         if (cut && d->contacts.point_count[c] > 0 &&
-            (tl_contact_is_field(d, c) || !tl_cut_contact_is_of_law(m, cut, c)))
+            (tl_facet_is_field(&d->contacts.facet[c]) || !tl_cut_contact_is_of_law(m, cut, c)))
             cut->next.most = 0;
     }
 }

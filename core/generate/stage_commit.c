@@ -548,7 +548,7 @@ static bool has_contacts(const tl_model *m)
 }
 
 /* Notes what blocks were cut out of, where there is room for it. */
-static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
+static void keep_cut_parts(const tl_stage *stage, const commit_scratch *scratch)
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count && has_contacts(m); i++) {
@@ -556,13 +556,13 @@ static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
         if (!is_cut(block))
             continue;
         const source *from = &scratch->sources[scratch->slot[block->source]];
-        const tl_heir *known = tl_heir_of(m, from->id);
-        tl_heir heir = {.root = from->id,
-                        .r = from->pose.r,
-                        .place = tl_v3_add(from->pose.x_ref, from->pose.u)};
-        heir = known ? *known : heir;
-        heir.id = scratch->ids[i];
-        m->heirs[m->heir_count++] = heir;
+        const tl_cut_part *known = tl_cut_part_of(m, from->id);
+        tl_cut_part part = {.root = from->id,
+                            .r = from->pose.r,
+                            .place = tl_v3_add(from->pose.x_ref, from->pose.u)};
+        part = known ? *known : part;
+        part.id = scratch->ids[i];
+        m->cut_parts[m->cut_part_count++] = part;
     }
 }
 
@@ -690,8 +690,8 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
            (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW &&
            reserve_record(stage) && cut_loads_take(stage, &scratch->loads) &&
            (!has_contacts(stage->model) ||
-            tl_grow(&stage->model->heirs, &stage->model->heir_capacity,
-                    stage->model->heir_count + made, sizeof *stage->model->heirs)) &&
+            tl_grow(&stage->model->cut_parts, &stage->model->cut_part_capacity,
+                    stage->model->cut_part_count + made, sizeof *stage->model->cut_parts)) &&
            tl_rows_reserve(stage->model, rows) &&
            (!stage->regroups || tl_rows_set_aside(stage->model, &scratch->aside));
 }
@@ -836,7 +836,7 @@ tl_status tl_stage_commit(tl_stage *stage)
     if (status == TL_OK) {
         cut_loads_give(stage, scratch.ids, &scratch.loads);
         keep_record(stage, scratch.ids);
-        keep_heirs(stage, &scratch);
+        keep_cut_parts(stage, &scratch);
         keep_splits(stage, &scratch);
         for (size_t i = 0; i < scratch.gone_count; i++)
             tl_poly_free(scratch.gone[i]);

@@ -14,11 +14,11 @@ typedef struct tl_cut_record {
 } tl_cut_record;
 
 /* A part of a block that was cut since contacts were brought up to date last: these know the whole, its root. */
-typedef struct tl_heir {
+typedef struct tl_cut_part {
     tl_id id, root;
     tl_mat3 r;     /* rotation of the root's body, */
     tl_vec3 place; /* and its centroid, relative to the origin */
-} tl_heir;
+} tl_cut_part;
 
 /* A block of a body that cuts have split since the last step. Two blocks were in one body in the last step when they have the same
  * `whole`, the id of that body. */

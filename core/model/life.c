@@ -118,7 +118,7 @@ void tl_model_destroy(tl_model *m)
         tl_history_free(m->histories[i]);
     free(m->histories);
     free(m->record.list);
-    free(m->heirs);
+    free(m->cut_parts);
     free(m->splits);
     free(m->face_loads);
     free(m->groups);

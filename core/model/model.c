@@ -187,9 +187,9 @@ static int compare_ids(const void *x, const void *y)
     return (*p > *q) - (*p < *q);
 }
 
-const tl_heir *tl_heir_of(const tl_model *m, tl_id id)
+const tl_cut_part *tl_cut_part_of(const tl_model *m, tl_id id)
 {
-    return m->heir_count ? bsearch(&id, m->heirs, m->heir_count, sizeof *m->heirs, compare_ids)
+    return m->cut_part_count ? bsearch(&id, m->cut_parts, m->cut_part_count, sizeof *m->cut_parts, compare_ids)
                          : NULL;
 }
 

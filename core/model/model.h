@@ -190,8 +190,8 @@ struct tl_model {
     tl_joint_set *joints; /* joint number j is joints[j - 1] */
     size_t joint_count;
     tl_cut_record record;
-    tl_heir *heirs; /* by ascending id */
-    size_t heir_count, heir_capacity;
+    tl_cut_part *cut_parts; /* by ascending id */
+    size_t cut_part_count, cut_part_capacity;
     tl_split *splits; /* by ascending id of the block */
     size_t split_count, split_capacity;
     tl_face_load *face_loads; /* by ascending block and face; of blocks that there were */
@@ -365,7 +365,7 @@ static inline void tl_block_changes(tl_model *m, uint32_t row)
 }
 
 /* What a block was cut out of since contacts were brought up to date last, or NULL. */
-const tl_heir *tl_heir_of(const tl_model *m, tl_id id);
+const tl_cut_part *tl_cut_part_of(const tl_model *m, tl_id id);
 /* The body that a block was in in the last step when cuts have split it since, or TL_NO_ID. */
 tl_id tl_split_of(const tl_model *m, tl_id block);
 

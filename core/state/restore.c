@@ -199,8 +199,8 @@ static bool matrix_is_sound(const tl_mat3 *r)
 /* What blocks that were cut have left, what parts of faces are to get, and the ids by which contacts were asked for. */
 static bool edits_are_sound(const tl_model *m)
 {
-    for (size_t i = 0; i < m->heir_count; i++) {
-        const tl_heir *h = &m->heirs[i];
+    for (size_t i = 0; i < m->cut_part_count; i++) {
+        const tl_cut_part *h = &m->cut_parts[i];
         if (h->id >= m->next_id || h->root == TL_NO_ID || h->root >= h->id ||
             (i && h->id <= h[-1].id) || !matrix_is_sound(&h->r) || !is_place(h->place))
             return false;

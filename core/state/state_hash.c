@@ -145,7 +145,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     struct tl_detect *copy = lasting ? tl_detect_copy(lasting) : NULL;
     tl_found_for found_for = m->found_for;
     tl_asked_id *asked_ids = m->asked_ids;
-    size_t asked_count = m->asked_count, heir_count = m->heir_count;
+    size_t asked_count = m->asked_count, cut_part_count = m->cut_part_count;
     tl_id next_contact = m->next_contact;
     tl_log_fn log = m->log;
     if (lasting && !copy)
@@ -170,7 +170,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     free(m->asked_ids); /* of a detection that failed */
     m->asked_ids = asked_ids;
     m->asked_count = asked_count;
-    m->heir_count = heir_count;
+    m->cut_part_count = cut_part_count;
     m->next_contact = next_contact;
     return status;
 }

@@ -39,22 +39,22 @@ static void add_settings(tl_model *m)
 static void add_edits(tl_model *m)
 {
     tl_detect *d = m->detect;
-    m->heirs = calloc(1, sizeof *m->heirs);
+    m->cut_parts = calloc(1, sizeof *m->cut_parts);
     m->splits = calloc(1, sizeof *m->splits);
     m->asked_ids = calloc(1, sizeof *m->asked_ids);
     d->cut_contacts = calloc(1, sizeof *d->cut_contacts);
     d->cut_points = calloc(1, sizeof *d->cut_points);
     m->face_loads = calloc(1, sizeof *m->face_loads);
-    if (!CHECK(m->heirs && m->splits && m->asked_ids && d->cut_contacts && d->cut_points &&
+    if (!CHECK(m->cut_parts && m->splits && m->asked_ids && d->cut_contacts && d->cut_points &&
                m->face_loads))
         exit(1);
-    m->heirs[0] = (tl_heir){.id = 2, .root = 1, .r = tl_m3_identity()};
+    m->cut_parts[0] = (tl_cut_part){.id = 2, .root = 1, .r = tl_m3_identity()};
     m->splits[0] = (tl_split){.block = 2, .whole = 1};
     m->asked_ids[0] = (tl_asked_id){1, 2, 1};
     d->cut_contacts[0] = (tl_cut_contact){.a = 1, .b = 2, .law = TL_NO_ROW, .count = 1};
     m->face_loads[0] = (tl_face_load){.block = 2};
     m->face_load_count = m->face_load_capacity = 1;
-    m->heir_count = m->heir_capacity = m->split_count = m->split_capacity = m->asked_count = 1;
+    m->cut_part_count = m->cut_part_capacity = m->split_count = m->split_capacity = m->asked_count = 1;
     d->cut_count = d->cut_capacity = d->cut_point_count = d->cut_point_capacity = 1;
     m->next_contact = d->next_contact;
 }
@@ -351,12 +351,12 @@ static const lie lies[] = {
     LIE("detect.layout.groups", 0, far_row),
     LIE("detect.laid_at", 0, long_ago),
     /* edits */
-    LIE("model.heirs", offsetof(tl_heir, id), far_row),
-    LIE("model.heirs", offsetof(tl_heir, root), all_bits),
+    LIE("model.cut_parts", offsetof(tl_cut_part, id), far_row),
+    LIE("model.cut_parts", offsetof(tl_cut_part, root), all_bits),
     LIE("model.asked_ids", offsetof(tl_asked_id, a), far_row),
-    LIE("model.heirs", offsetof(tl_heir, r), huge),
+    LIE("model.cut_parts", offsetof(tl_cut_part, r), huge),
     LIE("model.next_contact", 0, all_bits),
-    LIE("model.heirs", offsetof(tl_heir, place), infinite),
+    LIE("model.cut_parts", offsetof(tl_cut_part, place), infinite),
     LIE("model.splits", offsetof(tl_split, block), far_row),
     LIE("model.splits", offsetof(tl_split, whole), far_row),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, first), most),
@@ -367,7 +367,7 @@ static const lie lies[] = {
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, field), two),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, holds_over_gap), two),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, reframed), two),
-    LIE("model.heirs", offsetof(tl_heir, root), two_row),
+    LIE("model.cut_parts", offsetof(tl_cut_part, root), two_row),
     LIE("model.splits", offsetof(tl_split, block), row_0),
     LIE("model.splits", offsetof(tl_split, whole), row_0),
     LIE("model.face_loads", offsetof(tl_face_load, block), row_0),
