@@ -11,12 +11,406 @@
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/presses.h"
+#include "contact/store.h"
 #include "model/joints.h"
 #include "model/model.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---------------------------------------------------------------- SIMD groups -------------
+ *
+ * Which contacts lie side by side, in the lanes of which SIMD group, and where their points begin.
+ *
+ * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest contact.
+ * They are looked for among neighbours in the order of blocks, so that what a group needs lies close together in memory.
+ * Each joint law has a span of SIMD groups for patches and one for field contacts, and others for contacts between bodies
+ * that are held still. New contacts get a free lane near the end of the span, or the first lane of a new group there. */
+
+/* Contacts, one after the other, among which those of as many points are put together. */
+#define WINDOW 1024
+/* SIMD groups at the end of a span that are looked through for a free lane, ... */
+#define LOOK_BACK 16
+/* ... in which no more than so many points are left to spare. */
+#define MOST_SPARE 8
+/* Points more than it needs that a contact may grow by in a SIMD group that is begun for it. */
+#define GROWTH 2
+/* Rows and SIMD groups that are left to spare in a span at least. */
+#define SPARE_POINTS 1024
+#define SPARE_GROUPS 16
+
+/* A contact that is to get a lane, and the points that it wants room for. */
+typedef struct lane_request {
+    uint32_t points, row;
+} lane_request;
+
+/* By room, largest first, then by row. */
+static int compare_requests(const void *x, const void *y)
+{
+    const lane_request *p = x, *q = y;
+    if (p->points != q->points)
+        return p->points > q->points ? -1 : 1;
+    return (p->row > q->row) - (p->row < q->row);
+}
+
+/* `need` and one in `share` more, or `least` more. */
+static size_t with_spare(size_t need, size_t share, size_t least)
+{
+    size_t more = need / share;
+    return need + (more > least ? more : least);
+}
+
+static tl_simd_group *begin_group(tl_layout *layout, tl_span *span, uint32_t slots)
+{
+    tl_simd_group *group = &layout->groups[span->group_end++];
+    *group = (tl_simd_group){.start = (uint32_t)span->end, .slots = slots};
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        group->contact[l] = TL_NO_ROW;
+    span->end += (size_t)slots * TL_LANES;
+    return group;
+}
+
+/* Gives a window of contacts their lanes. */
+static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_request *requests,
+                         size_t count)
+{
+    if (count > 1)
+        qsort(requests, count, sizeof *requests, compare_requests);
+    tl_simd_group *group = NULL;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t lane = (uint32_t)(i % TL_LANES), row = requests[i].row;
+        if (lane == 0)
+            group = begin_group(layout, span, requests[i].points);
+        group->contact[lane] = row;
+        c->point_start[row] = group->start + lane;
+        c->point_capacity[row] = (uint16_t)group->slots;
+    }
+}
+
+static bool is_of_span(const tl_contacts *c, uint32_t row, const tl_span *span)
+{
+    return c->law[row] == span->law && c->held[row] == span->held && c->kind[row] == span->kind;
+}
+
+/* Lays the span of the contacts from `row` on that are of it; returns the row behind them. */
+static uint32_t lay_span(tl_layout *layout, tl_contacts *c, tl_span *span, uint32_t row)
+{
+    lane_request requests[WINDOW];
+    size_t count = 0;
+    for (; row < c->table.rows && is_of_span(c, row, span); row++) {
+        c->point_start[row] = 0;
+        if (c->point_capacity[row])
+            requests[count++] = (lane_request){c->point_capacity[row], row};
+        if (count == WINDOW) {
+            assign_lanes(layout, c, span, requests, count);
+            count = 0;
+        }
+    }
+    assign_lanes(layout, c, span, requests, count);
+    return row;
+}
+
+/* Gives contacts that are sorted by spans their lanes in an empty layout: sets the start and room of each by the
+ * room it wants, with one in `share` to spare. *points is the number of rows. false when out of memory. */
+static bool make_layout(tl_layout *layout, tl_contacts *c, size_t share, size_t *points)
+{
+    uint32_t rows = (uint32_t)c->table.rows;
+    *points = 0;
+    size_t groups = 0;
+    for (uint32_t row = 0; row < rows;) {
+        if (!tl_grow(&layout->spans, &layout->span_capacity, layout->span_count + 1,
+                     sizeof *layout->spans))
+            return false;
+        tl_span *span = &layout->spans[layout->span_count++];
+        *span = (tl_span){.law = c->law[row],
+                          .held = c->held[row],
+                          .kind = c->kind[row],
+                          .begin = *points,
+                          .group_begin = groups};
+        size_t count = 0;
+        for (uint32_t i = row; i < rows && is_of_span(c, i, span); i++)
+            count += c->point_capacity[i] > 0;
+        span->end = span->begin;
+        span->group_end = groups;
+        /* every window but the last of a span is full */
+        size_t full = (count + TL_LANES - 1) / TL_LANES;
+        span->group_limit = groups = groups + with_spare(full, share, SPARE_GROUPS);
+        if (!tl_grow(&layout->groups, &layout->group_capacity, groups, sizeof *layout->groups))
+            return false;
+        row = lay_span(layout, c, span, row);
+        span->limit = span->begin + with_spare(span->end - span->begin, share, SPARE_POINTS);
+        span->limit = (span->limit + TL_LANES - 1) / TL_LANES * TL_LANES;
+        *points = span->limit;
+    }
+    return true;
+}
+
+static tl_span *span_of(tl_detect *d, uint32_t contact)
+{
+    for (size_t r = 0; r < d->layout.span_count; r++)
+        if (is_of_span(&d->contacts, contact, &d->layout.spans[r]))
+            return &d->layout.spans[r];
+    return NULL;
+}
+
+static bool take_lane(tl_simd_group *group, uint32_t contact, uint32_t *lane)
+{
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        if (group->contact[l] == TL_NO_ROW) {
+            group->contact[l] = contact;
+            *lane = l;
+            return true;
+        }
+    return false;
+}
+
+/* A free lane of a contact's span with room for so many points, taken for it; NULL when there is none. */
+static tl_simd_group *take_group(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane)
+{
+    tl_span *span = span_of(d, contact);
+    if (!span)
+        return NULL;
+    span->rest = TL_SPAN_WOKEN;
+    for (size_t r = span->group_end, back = 0; r-- > span->group_begin && back < LOOK_BACK;
+         back++) {
+        tl_simd_group *group = &d->layout.groups[r];
+        if (group->slots >= points && group->slots <= points + MOST_SPARE &&
+            take_lane(group, contact, lane))
+            return group;
+    }
+    size_t rows = (size_t)(points + GROWTH) * TL_LANES;
+    if (span->group_end == span->group_limit || span->end + rows > span->limit ||
+        rows > d->lane_capacity)
+        return NULL;
+    tl_simd_group *group = begin_group(&d->layout, span, points + GROWTH);
+    take_lane(group, contact, lane);
+    return group;
+}
+
+/* The SIMD group a contact has a lane of, by where its points begin. */
+static tl_simd_group *group_at(tl_detect *d, uint32_t start)
+{
+    const tl_span *span = d->layout.spans;
+    while (start >= span->end)
+        span++;
+    size_t low = span->group_begin,
+           high = span->group_end - 1; /* the last that begins there or before */
+    while (low < high) {
+        size_t middle = (low + high + 1) / 2;
+        if (d->layout.groups[middle].start <= start)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return &d->layout.groups[low];
+}
+
+/* Notes that a contact's lane belongs to that row, or to none. */
+static void note_lane(tl_detect *d, uint32_t contact, uint32_t row)
+{
+    uint32_t start = d->contacts.point_start[contact];
+    if (d->contacts.point_capacity[contact])
+        group_at(d, start)->contact[start % TL_LANES] = row;
+}
+
+/* ---------------------------------------------------------------- points ------------------
+ *
+ * Contact points: cleared, and the states of their law, begun or carried over.
+ *
+ * A state is copied, split by area, or reset when the point's polygon changes, as its law declares. */
+
+void tl_point_clear(tl_points_table *p, size_t i)
+{
+    p->area[i] = p->f_n[i] = 0;
+    if (p->f_n0)
+        p->f_n0[i] = p->reference[i] = 0;
+    p->flags[i] = p->key[i] = 0;
+    for (int k = 0; k < 3; k++)
+        p->p[k][i] = p->f_s[k][i] = 0;
+    for (uint32_t k = 0; k < p->state_columns; k++)
+        p->state[k][i] = 0;
+}
+
+tl_old_point tl_point_as_old(const tl_points_table *p, const tl_contacts *c, uint32_t contact,
+                             size_t k, tl_vec3 arm)
+{
+    size_t i = tl_point_row(c, contact, k);
+    double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
+    tl_old_point out = {.arm = arm,
+                        .normal = c->facet[contact].last,
+                        .shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i)),
+                        .area = p->area[i],
+                        .f_n = per_area * p->f_n[i],
+                        .n0 = p->f_n0 ? per_area * p->f_n0[i] : 0,
+                        .reference = p->f_n0 ? p->reference[i] : 0,
+                        .key = p->key[i],
+                        .flags = p->flags[i]};
+    for (uint32_t s = 0; s < p->state_columns; s++)
+        out.state[s] = p->state[s][i];
+    return out;
+}
+
+void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
+{
+    for (uint32_t k = 0; k < p->state_columns; k++)
+        p->state[k][i] = 0;
+    for (tl_state_columns at = {0}; tl_state_next(kind, p->state_columns, &at);)
+        if (at.count == 1)
+            p->state[at.begin][i] = at.state->initial;
+}
+
+void tl_point_take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
+                         double old_area, bool stays)
+{
+    for (tl_state_columns at = {0}; tl_state_next(kind, p->state_columns, &at);) {
+        uint32_t rule = at.state->transfer;
+        double scale = 1;
+        if (rule == TL_TRANSFER_SPLIT)
+            scale = old_area > 0 ? p->area[i] / old_area : 0;
+        if (stays || (rule != TL_TRANSFER_RESET && rule != TL_TRANSFER_ENERGY))
+            for (uint32_t w = at.begin; w < at.begin + at.count; w++)
+                p->state[w][i] = scale * old[w];
+    }
+}
+
+void tl_states_turn(const tl_kind *kind, uint32_t columns, double *state, tl_vec3 from, tl_vec3 to)
+{
+    for (tl_state_columns at = {0}; tl_state_next(kind, columns, &at);) {
+        double *v = &state[at.begin];
+        if (at.count < 3)
+            continue;
+        tl_vec3 turned = tl_into_plane(tl_v3(v[0], v[1], v[2]), from, to);
+        v[0] = turned.x, v[1] = turned.y, v[2] = turned.z;
+    }
+}
+
+void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
+                          const tl_point_lanes *lanes)
+{
+    tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    double size = fmin(m->blocks.size[c->a[contact]], m->blocks.size[c->b[contact]]);
+    tl_contact_places(m, contact, lanes);
+    for (size_t k = 0; k < c->point_count[contact]; k++) {
+        size_t i = tl_point_row(c, contact, k);
+        bool apart =
+            c->facet[contact].kind == TL_FACET_FIELD || /* edges and corners have no bonds */
+            (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
+        tl_point_initial_state(&d->points, i, kind);
+        d->points.flags[i] = apart ? TL_POINT_APART : 0;
+    }
+}
+
+/* ---------------------------------------------------------------- held on held ------------
+ *
+ * Contacts between two bodies that are held still: told apart from the others, and left alone at rest.
+ *
+ * Such contacts have spans of their own. Their gaps and areas do not change, so they are followed only until a
+ * step finds that their laws leave them exactly as they were. Laws are functions of their points' parameters, states and
+ * motion, so every later step would find the same, and the whole span is passed over. A law that goes on with time at rest
+ * keeps its span followed. Whatever could change that wakes all such spans: blocks that are fixed, freed, driven or
+ * given a velocity, that come or go, another law or initial stress, another contact in the span. */
+
+static bool is_still(const tl_bodies *b, uint32_t body)
+{
+    return b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && tl_v3_is_zero(b->v[body]) &&
+           tl_v3_is_zero(b->w[body]);
+}
+
+/* Whether the bodies of two blocks are held still. */
+static bool blocks_held_still(const tl_model *m, uint32_t a, uint32_t b)
+{
+    return is_still(&m->bodies, m->blocks.body[a]) && is_still(&m->bodies, m->blocks.body[b]);
+}
+
+/* Bodies none of whose contacts can change the sum of their forces. */
+static void find_idle(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        d->idle[body] = is_still(&m->bodies, body);
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        if (c->held[i])
+            continue;
+        d->idle[m->blocks.body[c->a[i]]] = false;
+        d->idle[m->blocks.body[c->b[i]]] = false;
+    }
+}
+
+void tl_held_wake(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    for (size_t r = 0; r < d->layout.span_count; r++)
+        d->layout.spans[r].rest = TL_SPAN_WOKEN;
+    d->any_idle = false;
+}
+
+void tl_held_sort(tl_model *m)
+{
+    tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->pending[row] == TL_PENDING_DIE)
+            continue;
+        bool held = blocks_held_still(m, c->a[row], c->b[row]);
+        if (held != c->held[row] && c->pending[row] == TL_PENDING_NONE)
+            c->pending[row] = TL_PENDING_MOVE;
+        c->held[row] = held;
+    }
+    tl_held_wake(m);
+}
+
+void tl_held_followed(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    bool rests = false, all = true;
+    for (size_t r = 0; r < d->layout.span_count; r++) {
+        tl_span *span = &d->layout.spans[r];
+        if (!span->held || span->rest == TL_SPAN_RESTS)
+            continue;
+        /* the first step may still have met motion from before the bodies were held */
+        span->rest =
+            span->rest == TL_SPAN_WOKEN || span->changed ? TL_SPAN_FOLLOWED : TL_SPAN_RESTS;
+        rests = rests || span->rest == TL_SPAN_RESTS;
+        all = all && span->rest == TL_SPAN_RESTS;
+    }
+    if (!rests || !all)
+        return;
+    find_idle(m);
+    d->any_idle = true;
+}
+
+/* ---------------------------------------------------------------- presses -----------------
+ *
+ * What field contacts keep beside their points, in rows that stay where they are. A row that is given back is the next
+ * to be taken. */
+
+uint32_t tl_press_take(tl_detect *d)
+{
+    uint32_t row = d->press_free;
+    if (d->press_count == 0)
+        row = d->press_free = TL_NO_ROW;
+    if (row != TL_NO_ROW) {
+        d->press_free = d->press[row].next_free;
+    } else {
+        if (!tl_grow(&d->press, &d->press_capacity, d->press_count + 1, sizeof *d->press))
+            return TL_NO_ROW;
+        row = (uint32_t)d->press_count++;
+    }
+    memset(&d->press[row], 0, sizeof *d->press);
+    return row;
+}
+
+static void give_press_back(tl_detect *d, uint32_t row)
+{
+    if (row == TL_NO_ROW)
+        return;
+    d->press[row].next_free = d->press_free;
+    d->press_free = row;
+}
+
+/* ---------------------------------------------------------------- tables ------------------ */
 
 /* Where contacts are laid out anew, there is room for a share more of them, of points of each span, and of facets
  * than is needed, and for some more at least: 1 / SPARE_CALM first, and from then on twice the share each time
@@ -26,85 +420,6 @@
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
 #define SPARE_ROWS 64
-/* Lanes a thread has at least, so that most contacts can grow without a new layout; and not a power of two, or rows of all
- * columns would lie in the same few lines of the nearest cache. */
-#define LEAST_LANES 656
-
-void tl_contacts_init(tl_contacts *c, tl_points_table *p)
-{
-    tl_table *t = &c->table;
-    tl_table_init(t, c);
-    TL_COLUMN(t, c, id, 0);
-    TL_COLUMN(t, c, a, 0);
-    TL_COLUMN(t, c, b, 0);
-    TL_COLUMN(t, c, pair, 0);
-    TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
-    TL_COLUMN(t, c, law, 0);
-    TL_COLUMN(t, c, facet, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, kind, 0);
-    TL_COLUMN(t, c, press, 0);
-    TL_COLUMN(t, c, faces_valid_to, 0);
-    TL_COLUMN(t, c, points_valid_to, 0);
-    TL_COLUMN(t, c, spot, 0);
-    TL_COLUMN(t, c, point_start, 0);
-    TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
-    TL_COLUMN(t, c, point_capacity, 0);
-    TL_COLUMN(t, c, area, 0);
-    TL_COLUMN(t, c, released, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, stored, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, handed_over, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, force, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, moment, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, holds_over_gap, TL_COLUMN_STATE | TL_COLUMN_STEP);
-    TL_COLUMN(t, c, new_points, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, pending, 0);
-    TL_COLUMN(t, c, deep, 0);
-    TL_COLUMN(t, c, held, 0);
-
-    t = &p->table;
-    tl_table_init(t, p);
-    for (int k = 0; k < 3; k++)
-        TL_COLUMN(t, p, p[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
-    TL_COLUMN(t, p, key, 0);
-    TL_COLUMN(t, p, area, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, f_n, TL_COLUMN_STATE | TL_COLUMN_STEP);
-    TL_COLUMN(t, p, flags, TL_COLUMN_STATE | TL_COLUMN_STEP);
-    for (int k = 0; k < 3; k++)
-        TL_COLUMN(t, p, f_s[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
-    p->state_columns = 0;
-}
-
-void tl_point_lanes_init(tl_point_lanes *l)
-{
-    tl_table *t = &l->table;
-    tl_table_init(t, l);
-    for (int k = 0; k < 3; k++) {
-        TL_COLUMN(t, l, arm[k], 0);
-        TL_COLUMN(t, l, normal[k], 0);
-        TL_COLUMN(t, l, du_s[k], 0);
-    }
-    TL_COLUMN(t, l, closure, 0);
-    TL_COLUMN(t, l, edge, 0);
-    TL_COLUMN(t, l, apart, 0);
-    TL_COLUMN(t, l, lift, 0);
-    TL_COLUMN(t, l, hold, 0);
-    TL_COLUMN(t, l, cell, 0);
-    TL_COLUMN(t, l, du_n, 0);
-    TL_COLUMN(t, l, stored, 0);
-    TL_COLUMN(t, l, dissipated, 0);
-    TL_COLUMN(t, l, zero, 0);
-    for (int k = 0; k < 4 + TL_STATE_COLUMNS; k++)
-        TL_COLUMN(t, l, before[k], 0);
-    TL_COLUMN(t, l, flags_before, 0);
-}
-
-bool tl_detect_hold_lanes(tl_detect *d, size_t capacity)
-{
-    for (unsigned i = 0; i < d->threads; i++)
-        if (!tl_table_resize(&d->lanes[i].table, capacity))
-            return false;
-    return true;
-}
 
 uint32_t tl_law_row(const tl_model *m, tl_tag tag)
 {
@@ -136,7 +451,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, 
     c->spot[row] = tl_spot_of(m, p->a, p->b, valid);
     c->pending[row] = TL_PENDING_GROW;
     c->deep[row] = TL_DEEP_NOT;
-    c->held[row] = tl_blocks_held_still(m, p->a, p->b);
+    c->held[row] = blocks_held_still(m, p->a, p->b);
     d->idle[m->blocks.body[p->a]] = d->idle[m->blocks.body[p->b]] = false;
     p->contact = row;
     p->want_points = (uint16_t)want_points;
@@ -249,23 +564,6 @@ static void choose_spare(tl_detect *d, int64_t cycles)
     d->laid_at = cycles;
 }
 
-static size_t larger(size_t a, size_t b)
-{
-    return a > b ? a : b;
-}
-
-bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout)
-{
-    size_t capacity = LEAST_LANES;
-    for (size_t r = 0; r < layout->span_count; r++)
-        for (size_t i = layout->spans[r].group_begin; i < layout->spans[r].group_end; i++)
-            capacity = larger(capacity, (size_t)layout->groups[i].slots * TL_LANES);
-    if (!tl_detect_hold_lanes(d, capacity))
-        return false;
-    d->lane_capacity = larger(capacity, d->lane_capacity);
-    return true;
-}
-
 static void free_spare(tl_detect *d)
 {
     tl_table_free(&d->spare.table);
@@ -302,13 +600,12 @@ tl_status tl_contacts_repack(tl_model *m)
     choose_spare(d, m->cycles);
     fresh->table.rows = 0;
     d->spare_points.table.rows = 0;
-    bool there =
-        tl_table_reserve(&fresh->table, tl_with_spare(count, d->spare_share, SPARE_ROWS)) &&
-        tl_table_resize(&fresh->table, count);
+    bool there = tl_table_reserve(&fresh->table, with_spare(count, d->spare_share, SPARE_ROWS)) &&
+                 tl_table_resize(&fresh->table, count);
     for (uint32_t i = 0; i < count && there; i++)
         copy_contact(d, list[i].row, i);
     tl_layout layout = {0};
-    there = there && tl_layout_make(&layout, fresh, d->spare_share, &points) &&
+    there = there && make_layout(&layout, fresh, d->spare_share, &points) &&
             tl_detect_make_lanes(d, &layout) && tl_table_resize(&d->spare_points.table, points);
     if (there)
         move_points(d, list);
@@ -329,26 +626,9 @@ tl_status tl_contacts_repack(tl_model *m)
 /* Leaves a contact's lane empty. */
 static void clear_points(tl_detect *d, uint32_t contact)
 {
-    tl_simd_group_note(d, contact, TL_NO_ROW);
+    note_lane(d, contact, TL_NO_ROW);
     for (size_t k = 0; k < d->contacts.point_capacity[contact]; k++)
         tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
-}
-
-void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
-                          const tl_point_lanes *lanes)
-{
-    tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    double size = fmin(m->blocks.size[c->a[contact]], m->blocks.size[c->b[contact]]);
-    tl_contact_places(m, contact, lanes);
-    for (size_t k = 0; k < c->point_count[contact]; k++) {
-        size_t i = tl_point_row(c, contact, k);
-        bool apart =
-            c->facet[contact].kind == TL_FACET_FIELD || /* edges and corners have no bonds */
-            (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
-        tl_point_initial_state(&d->points, i, kind);
-        d->points.flags[i] = apart ? TL_POINT_APART : 0;
-    }
 }
 
 bool tl_contact_place(tl_detect *d, uint32_t row)
@@ -360,7 +640,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
         leave_lane(d, c, row);
         return true;
     }
-    const tl_simd_group *group = tl_simd_group_take(d, points, row, &lane);
+    const tl_simd_group *group = take_group(d, points, row, &lane);
     if (!group)
         return false;
     copy_points(&d->points, c->point_start[row], &d->points, group->start + lane,
@@ -376,14 +656,14 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
     tl_contacts *c = &d->contacts;
     uint32_t last = (uint32_t)c->table.rows - 1;
     clear_points(d, row);
-    tl_press_give_back(d, c->press[row]);
+    give_press_back(d, c->press[row]);
     tl_contacts_unlist(d);
     if (c->pair[row] < d->pair_count && d->pairs[c->pair[row]].contact == row)
         d->pairs[c->pair[row]].contact = TL_PAIR_APART;
     if (row != last) {
         tl_table_move(&c->table, row, last);
         d->pairs[c->pair[row]].contact = row;
-        tl_simd_group_note(d, row, row);
+        note_lane(d, row, row);
     }
     c->table.rows = last;
 }
@@ -394,384 +674,4 @@ void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size)
     const char *joint = tl_tag_name(m, contacts->tag[contact]);
     snprintf(text, size, "contact of blocks %u and %u%s%s", m->blocks.id[contacts->a[contact]],
              m->blocks.id[contacts->b[contact]], *joint ? ", joint " : " (no joint)", joint);
-}
-
-/* ---------------------------------------------------------------- SIMD groups -------------
- *
- * Which contacts lie side by side, in the lanes of which SIMD group, and where their points begin.
- *
- * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest contact.
- * They are looked for among neighbours in the order of blocks, so that what a group needs lies close together in memory.
- * Each joint law has a span of SIMD groups for patches and one for field contacts, and others for contacts between bodies
- * that are held still. New contacts get a free lane near the end of the span, or the first lane of a new group there. */
-
-/* Contacts, one after the other, among which those of as many points are put together. */
-#define WINDOW 1024
-/* SIMD groups at the end of a span that are looked through for a free lane, ... */
-#define LOOK_BACK 16
-/* ... in which no more than so many points are left to spare. */
-#define MOST_SPARE 8
-/* Points more than it needs that a contact may grow by in a SIMD group that is begun for it. */
-#define GROWTH 2
-/* Rows and SIMD groups that are left to spare in a span at least. */
-#define SPARE_POINTS 1024
-#define SPARE_GROUPS 16
-
-/* A contact that is to get a lane, and the points that it wants room for. */
-typedef struct lane_request {
-    uint32_t points, row;
-} lane_request;
-
-/* By room, largest first, then by row. */
-static int compare_requests(const void *x, const void *y)
-{
-    const lane_request *p = x, *q = y;
-    if (p->points != q->points)
-        return p->points > q->points ? -1 : 1;
-    return (p->row > q->row) - (p->row < q->row);
-}
-
-static tl_simd_group *begin_group(tl_layout *layout, tl_span *span, uint32_t slots)
-{
-    tl_simd_group *group = &layout->groups[span->group_end++];
-    *group = (tl_simd_group){.start = (uint32_t)span->end, .slots = slots};
-    for (uint32_t l = 0; l < TL_LANES; l++)
-        group->contact[l] = TL_NO_ROW;
-    span->end += (size_t)slots * TL_LANES;
-    return group;
-}
-
-/* Gives a window of contacts their lanes. */
-static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_request *requests,
-                         size_t count)
-{
-    if (count > 1)
-        qsort(requests, count, sizeof *requests, compare_requests);
-    tl_simd_group *group = NULL;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t lane = (uint32_t)(i % TL_LANES), row = requests[i].row;
-        if (lane == 0)
-            group = begin_group(layout, span, requests[i].points);
-        group->contact[lane] = row;
-        c->point_start[row] = group->start + lane;
-        c->point_capacity[row] = (uint16_t)group->slots;
-    }
-}
-
-static bool is_of_span(const tl_contacts *c, uint32_t row, const tl_span *span)
-{
-    return c->law[row] == span->law && c->held[row] == span->held && c->kind[row] == span->kind;
-}
-
-/* Lays the span of the contacts from `row` on that are of it; returns the row behind them. */
-static uint32_t lay_span(tl_layout *layout, tl_contacts *c, tl_span *span, uint32_t row)
-{
-    lane_request requests[WINDOW];
-    size_t count = 0;
-    for (; row < c->table.rows && is_of_span(c, row, span); row++) {
-        c->point_start[row] = 0;
-        if (c->point_capacity[row])
-            requests[count++] = (lane_request){c->point_capacity[row], row};
-        if (count == WINDOW) {
-            assign_lanes(layout, c, span, requests, count);
-            count = 0;
-        }
-    }
-    assign_lanes(layout, c, span, requests, count);
-    return row;
-}
-
-bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *points)
-{
-    uint32_t rows = (uint32_t)c->table.rows;
-    *points = 0;
-    size_t groups = 0;
-    for (uint32_t row = 0; row < rows;) {
-        if (!tl_grow(&layout->spans, &layout->span_capacity, layout->span_count + 1,
-                     sizeof *layout->spans))
-            return false;
-        tl_span *span = &layout->spans[layout->span_count++];
-        *span = (tl_span){.law = c->law[row],
-                          .held = c->held[row],
-                          .kind = c->kind[row],
-                          .begin = *points,
-                          .group_begin = groups};
-        size_t count = 0;
-        for (uint32_t i = row; i < rows && is_of_span(c, i, span); i++)
-            count += c->point_capacity[i] > 0;
-        span->end = span->begin;
-        span->group_end = groups;
-        /* every window but the last of a span is full */
-        size_t full = (count + TL_LANES - 1) / TL_LANES;
-        span->group_limit = groups = groups + tl_with_spare(full, share, SPARE_GROUPS);
-        if (!tl_grow(&layout->groups, &layout->group_capacity, groups, sizeof *layout->groups))
-            return false;
-        row = lay_span(layout, c, span, row);
-        span->limit = span->begin + tl_with_spare(span->end - span->begin, share, SPARE_POINTS);
-        span->limit = (span->limit + TL_LANES - 1) / TL_LANES * TL_LANES;
-        *points = span->limit;
-    }
-    return true;
-}
-
-void tl_layout_free(tl_layout *layout)
-{
-    free(layout->spans);
-    free(layout->groups);
-    *layout = (tl_layout){0};
-}
-
-static tl_span *span_of(tl_detect *d, uint32_t contact)
-{
-    for (size_t r = 0; r < d->layout.span_count; r++)
-        if (is_of_span(&d->contacts, contact, &d->layout.spans[r]))
-            return &d->layout.spans[r];
-    return NULL;
-}
-
-static bool take_lane(tl_simd_group *group, uint32_t contact, uint32_t *lane)
-{
-    for (uint32_t l = 0; l < TL_LANES; l++)
-        if (group->contact[l] == TL_NO_ROW) {
-            group->contact[l] = contact;
-            *lane = l;
-            return true;
-        }
-    return false;
-}
-
-tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane)
-{
-    tl_span *span = span_of(d, contact);
-    if (!span)
-        return NULL;
-    span->rest = TL_SPAN_WOKEN;
-    for (size_t r = span->group_end, back = 0; r-- > span->group_begin && back < LOOK_BACK;
-         back++) {
-        tl_simd_group *group = &d->layout.groups[r];
-        if (group->slots >= points && group->slots <= points + MOST_SPARE &&
-            take_lane(group, contact, lane))
-            return group;
-    }
-    size_t rows = (size_t)(points + GROWTH) * TL_LANES;
-    if (span->group_end == span->group_limit || span->end + rows > span->limit ||
-        rows > d->lane_capacity)
-        return NULL;
-    tl_simd_group *group = begin_group(&d->layout, span, points + GROWTH);
-    take_lane(group, contact, lane);
-    return group;
-}
-
-/* The SIMD group a contact has a lane of, by where its points begin. */
-static tl_simd_group *group_at(tl_detect *d, uint32_t start)
-{
-    const tl_span *span = d->layout.spans;
-    while (start >= span->end)
-        span++;
-    size_t low = span->group_begin,
-           high = span->group_end - 1; /* the last that begins there or before */
-    while (low < high) {
-        size_t middle = (low + high + 1) / 2;
-        if (d->layout.groups[middle].start <= start)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    return &d->layout.groups[low];
-}
-
-void tl_simd_group_note(tl_detect *d, uint32_t contact, uint32_t row)
-{
-    uint32_t start = d->contacts.point_start[contact];
-    if (d->contacts.point_capacity[contact])
-        group_at(d, start)->contact[start % TL_LANES] = row;
-}
-
-/* ---------------------------------------------------------------- points ------------------
- *
- * Contact points: cleared, and the states of their law, begun or carried over.
- *
- * A state is copied, split by area, or reset when the point's polygon changes, as its law declares. */
-
-void tl_point_clear(tl_points_table *p, size_t i)
-{
-    p->area[i] = p->f_n[i] = 0;
-    if (p->f_n0)
-        p->f_n0[i] = p->reference[i] = 0;
-    p->flags[i] = p->key[i] = 0;
-    for (int k = 0; k < 3; k++)
-        p->p[k][i] = p->f_s[k][i] = 0;
-    for (uint32_t k = 0; k < p->state_columns; k++)
-        p->state[k][i] = 0;
-}
-
-tl_old_point tl_point_as_old(const tl_points_table *p, const tl_contacts *c, uint32_t contact,
-                             size_t k, tl_vec3 arm)
-{
-    size_t i = tl_point_row(c, contact, k);
-    double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
-    tl_old_point out = {.arm = arm,
-                        .normal = c->facet[contact].last,
-                        .shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i)),
-                        .area = p->area[i],
-                        .f_n = per_area * p->f_n[i],
-                        .n0 = p->f_n0 ? per_area * p->f_n0[i] : 0,
-                        .reference = p->f_n0 ? p->reference[i] : 0,
-                        .key = p->key[i],
-                        .flags = p->flags[i]};
-    for (uint32_t s = 0; s < p->state_columns; s++)
-        out.state[s] = p->state[s][i];
-    return out;
-}
-
-void tl_point_load(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n, double closure,
-                   double opening)
-{
-    tl_vec3 traction = tl_s3_mul(*stress, n);
-    double normal = tl_v3_dot(n, traction);
-    tl_vec3 shear = tl_v3_madd(traction, -normal, n);
-    p->reference[i] += closure + opening;
-    p->f_n0[i] = p->f_n[i] = -normal * p->area[i];
-    tl_columns_put(p->f_s, i, tl_v3_scale(-p->area[i], shear));
-    p->flags[i] = 0;
-}
-
-void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
-{
-    for (uint32_t k = 0; k < p->state_columns; k++)
-        p->state[k][i] = 0;
-    for (tl_state_columns at = {0}; tl_state_next(kind, p->state_columns, &at);)
-        if (at.count == 1)
-            p->state[at.begin][i] = at.state->initial;
-}
-
-void tl_point_take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                         double old_area, bool stays)
-{
-    for (tl_state_columns at = {0}; tl_state_next(kind, p->state_columns, &at);) {
-        uint32_t rule = at.state->transfer;
-        double scale = 1;
-        if (rule == TL_TRANSFER_SPLIT)
-            scale = old_area > 0 ? p->area[i] / old_area : 0;
-        if (stays || (rule != TL_TRANSFER_RESET && rule != TL_TRANSFER_ENERGY))
-            for (uint32_t w = at.begin; w < at.begin + at.count; w++)
-                p->state[w][i] = scale * old[w];
-    }
-}
-
-tl_vec3 tl_into_plane(tl_vec3 v, tl_vec3 from, tl_vec3 to)
-{
-    v = tl_v3_turn(v, from, to);
-    return tl_v3_madd(v, -tl_v3_dot(v, to), to);
-}
-
-void tl_states_turn(const tl_kind *kind, uint32_t columns, double *state, tl_vec3 from, tl_vec3 to)
-{
-    for (tl_state_columns at = {0}; tl_state_next(kind, columns, &at);) {
-        double *v = &state[at.begin];
-        if (at.count < 3)
-            continue;
-        tl_vec3 turned = tl_into_plane(tl_v3(v[0], v[1], v[2]), from, to);
-        v[0] = turned.x, v[1] = turned.y, v[2] = turned.z;
-    }
-}
-
-bool tl_points_hold_initial(tl_points_table *p)
-{
-    if (p->initial)
-        return true;
-    const tl_column columns[] = {TL_COLUMN_NEW(p, reference, TL_COLUMN_STEP),
-                                 TL_COLUMN_NEW(p, f_n0, TL_COLUMN_STEP)};
-    p->initial = tl_table_widen(&p->table, columns, 2);
-    return p->initial;
-}
-
-bool tl_points_hold_states(tl_points_table *p, uint32_t columns)
-{
-    tl_column more[TL_STATE_COLUMNS];
-    uint32_t count = 0;
-    for (uint32_t k = p->state_columns; k < columns; k++)
-        more[count++] = (tl_column)TL_COLUMN_NEW(p, state[k], TL_COLUMN_STEP);
-    if (count && !tl_table_widen(&p->table, more, count))
-        return false;
-    p->state_columns += count;
-    return true;
-}
-
-/* ---------------------------------------------------------------- held on held ------------
- *
- * Contacts between two bodies that are held still: told apart from the others, and left alone at rest.
- *
- * Such contacts have spans of their own. Their gaps and areas do not change, so they are followed only until a
- * step finds that their laws leave them exactly as they were. Laws are functions of their points' parameters, states and
- * motion, so every later step would find the same, and the whole span is passed over. A law that goes on with time at rest
- * keeps its span followed. Whatever could change that wakes all such spans: blocks that are fixed, freed, driven or
- * given a velocity, that come or go, another law or initial stress, another contact in the span. */
-
-static bool is_still(const tl_bodies *b, uint32_t body)
-{
-    return b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && tl_v3_is_zero(b->v[body]) &&
-           tl_v3_is_zero(b->w[body]);
-}
-
-bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b)
-{
-    return is_still(&m->bodies, m->blocks.body[a]) && is_still(&m->bodies, m->blocks.body[b]);
-}
-
-/* Bodies none of whose contacts can change the sum of their forces. */
-static void find_idle(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        d->idle[body] = is_still(&m->bodies, body);
-    for (uint32_t i = 0; i < c->table.rows; i++) {
-        if (c->held[i])
-            continue;
-        d->idle[m->blocks.body[c->a[i]]] = false;
-        d->idle[m->blocks.body[c->b[i]]] = false;
-    }
-}
-
-void tl_held_wake(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    for (size_t r = 0; r < d->layout.span_count; r++)
-        d->layout.spans[r].rest = TL_SPAN_WOKEN;
-    d->any_idle = false;
-}
-
-void tl_held_sort(tl_model *m)
-{
-    tl_contacts *c = &m->detect->contacts;
-    for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->pending[row] == TL_PENDING_DIE)
-            continue;
-        bool held = tl_blocks_held_still(m, c->a[row], c->b[row]);
-        if (held != c->held[row] && c->pending[row] == TL_PENDING_NONE)
-            c->pending[row] = TL_PENDING_MOVE;
-        c->held[row] = held;
-    }
-    tl_held_wake(m);
-}
-
-void tl_held_followed(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    bool rests = false, all = true;
-    for (size_t r = 0; r < d->layout.span_count; r++) {
-        tl_span *span = &d->layout.spans[r];
-        if (!span->held || span->rest == TL_SPAN_RESTS)
-            continue;
-        /* the first step may still have met motion from before the bodies were held */
-        span->rest =
-            span->rest == TL_SPAN_WOKEN || span->changed ? TL_SPAN_FOLLOWED : TL_SPAN_RESTS;
-        rests = rests || span->rest == TL_SPAN_RESTS;
-        all = all && span->rest == TL_SPAN_RESTS;
-    }
-    if (!rests || !all)
-        return;
-    find_idle(m);
-    d->any_idle = true;
 }

@@ -9,12 +9,6 @@
 #include "contact/tables.h"
 #include "model/model.h"
 
-void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
-void tl_point_lanes_init(tl_point_lanes *lanes);
-/* Gives the threads' lanes room for `capacity` points; false when out of memory. */
-bool tl_detect_hold_lanes(tl_detect *d, size_t capacity);
-/* The same for a tile, or the largest SIMD group of a layout, for every thread. */
-bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout);
 /* Adds a contact of a kind to a pair, without points, wanting room for some, whose faces hold for a path length of `valid`;
  * false when out of memory. */
 bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag,
@@ -52,31 +46,11 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
     return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
 }
 
-/* `need` and one in `share` more, or `least` more. */
-static inline size_t tl_with_spare(size_t need, size_t share, size_t least)
-{
-    size_t more = need / share;
-    return need + (more > least ? more : least);
-}
-
-/* Gives contacts that are sorted by spans their lanes in an empty layout: sets the start and room of each by the
- * room it wants, with one in `share` to spare; *points is the number of rows. false when out of memory. */
-bool tl_layout_make(tl_layout *layout, tl_contacts *contacts, size_t share, size_t *points);
-void tl_layout_free(tl_layout *layout);
-/* A free lane of a contact's span with room for so many points, taken for it; NULL when there is none. */
-tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane);
-/* Notes that a contact's lane belongs to that row, or to none. */
-void tl_simd_group_note(tl_detect *d, uint32_t contact, uint32_t row);
-
 /* A point without force, area or place: an inert lane. */
 void tl_point_clear(tl_points_table *p, size_t point);
 /* Point k of a contact, at an arm, as one that new points take over from. */
 tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *contacts,
                              uint32_t contact, size_t k, tl_vec3 arm);
-/* Gives a point the traction of a stress, tension positive, as its initial force: its closure, and what slip has opened, count from
- * now. n from A to B. */
-void tl_point_load(tl_points_table *points, size_t point, const tl_sym3 *stress, tl_vec3 n,
-                   double closure, double opening);
 /* The law's states of a point, at their initial values. */
 void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
 /* The same taken from an old point of some area. With `stays` the point keeps its place: what a change of polygon resets
@@ -84,17 +58,16 @@ void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kin
 void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
                          double old_area, bool stays);
 /* Turns a vector in the plane of a normal into that of another. */
-tl_vec3 tl_into_plane(tl_vec3 v, tl_vec3 from, tl_vec3 to);
+static inline tl_vec3 tl_into_plane(tl_vec3 v, tl_vec3 from, tl_vec3 to)
+{
+    v = tl_v3_turn(v, from, to);
+    return tl_v3_madd(v, -tl_v3_dot(v, to), to);
+}
 /* The same for the vectors among a point's states. */
 void tl_states_turn(const tl_kind *kind, uint32_t columns, double *state, tl_vec3 from, tl_vec3 to);
-/* Makes sure that one table of points has that many state columns; false when out of memory (nothing changed). Both
- * tables need the same: tl_detect_hold_states. */
-bool tl_points_hold_states(tl_points_table *points, uint32_t columns);
-/* The same for initial forces and the overlaps they belong to. */
-bool tl_points_hold_initial(tl_points_table *points);
+/* A free row for what a field contact keeps; TL_NO_ROW when out of memory. */
+uint32_t tl_press_take(tl_detect *d);
 
-/* Whether the bodies of two blocks are held still. */
-bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b);
 /* Notes which contacts are between bodies that are held still, and wakes their spans. */
 void tl_held_sort(tl_model *m);
 /* All such contacts are followed again, until they are found to rest. */

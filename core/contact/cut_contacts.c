@@ -412,12 +412,3 @@ void tl_cut_contacts_sum(tl_model *m)
         contacts->moment[c] = sum.moment;
     }
 }
-
-void tl_cut_contacts_end(tl_detect *d)
-{
-    free(d->cut_contacts);
-    free(d->cut_points);
-    d->cut_contacts = NULL;
-    d->cut_points = NULL;
-    d->cut_count = d->cut_capacity = d->cut_point_count = d->cut_point_capacity = 0;
-}

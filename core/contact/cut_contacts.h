@@ -54,7 +54,5 @@ tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t contact);
 void tl_cut_contacts_balance(tl_model *m);
 /* Sums what new contacts carry from the beginning, until the laws say it. */
 void tl_cut_contacts_sum(tl_model *m);
-/* All have been taken over. */
-void tl_cut_contacts_end(tl_detect *d);
 
 #endif

@@ -44,7 +44,7 @@ typedef struct tl_detect {
     size_t idle_capacity;
     bool any_idle;
     tl_contacts contacts, spare;
-    tl_press_row *press; /* of field contacts: presses.c */
+    tl_press_row *press; /* of field contacts: contacts.c */
     size_t press_count, press_capacity;
     uint32_t press_free; /* the first free row; valid when there are rows */
     tl_points_table points, spare_points;

@@ -307,6 +307,15 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_c
     put_on_field(m, c, &now);
 }
 
+void tl_press_shift_faces(tl_model *m, uint32_t c, tl_face_pair faces)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
+    row->shifted = faces;
+    row->shifted_at[0] = m->blocks.shape[contacts->a[c]]->plane[faces.a];
+    row->shifted_at[1] = m->blocks.shape[contacts->b[c]]->plane[faces.b];
+}
+
 /* Moves the faces of a patch apart as its points are lifted. */
 static void lift_faces(tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 {

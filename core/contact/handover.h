@@ -5,6 +5,7 @@
 #include "contact/layout.h"
 #include "model/model.h"
 #include "narrow/narrow.h"
+#include "narrow/press.h"
 
 /* Puts the manifold's points in the place of the contact's, for which there is room, and notes the press of a
  * field. Force and moment of the shear are kept as far as the energy of its springs goes. The moment is lost
@@ -22,6 +23,8 @@ double tl_contact_ends(const tl_model *m, uint32_t contact);
 void tl_contact_let_go(tl_model *m, uint32_t contact, double lift);
 /* Puts the manifold of a field contact in the place of what it was. */
 void tl_contact_refit_field(tl_model *m, uint32_t contact, const tl_manifold *manifold);
+/* Says which faces of a contact's blocks its shift moves out. */
+void tl_press_shift_faces(tl_model *m, uint32_t contact, tl_face_pair faces);
 /* Brings the shift of a field contact's faces up to how far slip has opened its joint. Returns by how much in
  * the last step, m. */
 double tl_contact_lift_field(tl_model *m, uint32_t contact);

@@ -4,6 +4,7 @@
 
 #include "base/table.h"
 
+#include <stdlib.h>
 #include <talus/types.h>
 
 /* What a stress that is no line in the closure changes in a cell: force/partly_open.c. */
@@ -91,5 +92,12 @@ typedef struct tl_layout {
     tl_simd_group *groups;
     size_t group_capacity;
 } tl_layout;
+
+static inline void tl_layout_free(tl_layout *layout)
+{
+    free(layout->spans);
+    free(layout->groups);
+    *layout = (tl_layout){0};
+}
 
 #endif

@@ -1,13 +1,83 @@
-/* store.c - the detection as a whole: let go of, and given the columns that laws and initial forces need. */
+/* store.c - the detection as a whole: made, copied, let go of, and given columns and lanes. */
 #include "contact/store.h"
 
 #include "base/entries.h"
-#include "contact/contacts.h"
-#include "contact/cut_contacts.h"
 #include "contact/index.h"
 #include "contact/walk.h"
 
 #include <stdlib.h>
+
+/* Lanes a thread has at least, so that most contacts can grow without a new layout; and not a power of two, or rows of all
+ * columns would lie in the same few lines of the nearest cache. */
+#define LEAST_LANES 656
+
+static void init_contacts(tl_contacts *c, tl_points_table *p)
+{
+    tl_table *t = &c->table;
+    tl_table_init(t, c);
+    TL_COLUMN(t, c, id, 0);
+    TL_COLUMN(t, c, a, 0);
+    TL_COLUMN(t, c, b, 0);
+    TL_COLUMN(t, c, pair, 0);
+    TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, law, 0);
+    TL_COLUMN(t, c, facet, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, kind, 0);
+    TL_COLUMN(t, c, press, 0);
+    TL_COLUMN(t, c, faces_valid_to, 0);
+    TL_COLUMN(t, c, points_valid_to, 0);
+    TL_COLUMN(t, c, spot, 0);
+    TL_COLUMN(t, c, point_start, 0);
+    TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, point_capacity, 0);
+    TL_COLUMN(t, c, area, 0);
+    TL_COLUMN(t, c, released, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, stored, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, handed_over, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, force, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, moment, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, holds_over_gap, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, c, new_points, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, pending, 0);
+    TL_COLUMN(t, c, deep, 0);
+    TL_COLUMN(t, c, held, 0);
+
+    t = &p->table;
+    tl_table_init(t, p);
+    for (int k = 0; k < 3; k++)
+        TL_COLUMN(t, p, p[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, p, key, 0);
+    TL_COLUMN(t, p, area, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, f_n, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, p, flags, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    for (int k = 0; k < 3; k++)
+        TL_COLUMN(t, p, f_s[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
+    p->state_columns = 0;
+}
+
+static void init_lanes(tl_point_lanes *l)
+{
+    tl_table *t = &l->table;
+    tl_table_init(t, l);
+    for (int k = 0; k < 3; k++) {
+        TL_COLUMN(t, l, arm[k], 0);
+        TL_COLUMN(t, l, normal[k], 0);
+        TL_COLUMN(t, l, du_s[k], 0);
+    }
+    TL_COLUMN(t, l, closure, 0);
+    TL_COLUMN(t, l, edge, 0);
+    TL_COLUMN(t, l, apart, 0);
+    TL_COLUMN(t, l, lift, 0);
+    TL_COLUMN(t, l, hold, 0);
+    TL_COLUMN(t, l, cell, 0);
+    TL_COLUMN(t, l, du_n, 0);
+    TL_COLUMN(t, l, stored, 0);
+    TL_COLUMN(t, l, dissipated, 0);
+    TL_COLUMN(t, l, zero, 0);
+    for (int k = 0; k < 4 + TL_STATE_COLUMNS; k++)
+        TL_COLUMN(t, l, before[k], 0);
+    TL_COLUMN(t, l, flags_before, 0);
+}
 
 tl_detect *tl_detect_make(unsigned threads, const tl_contact_kind *const *kinds, uint32_t count)
 {
@@ -19,18 +89,27 @@ tl_detect *tl_detect_make(unsigned threads, const tl_contact_kind *const *kinds,
     d->threads = threads;
     d->narrow = calloc(threads, sizeof *d->narrow);
     d->lanes = calloc(threads, sizeof *d->lanes);
-    tl_contacts_init(&d->contacts, &d->points);
-    tl_contacts_init(&d->spare, &d->spare_points);
+    init_contacts(&d->contacts, &d->points);
+    init_contacts(&d->spare, &d->spare_points);
     if (!d->narrow || !d->lanes) {
         tl_detect_destroy(d);
         return NULL;
     }
     for (unsigned i = 0; i < threads; i++)
-        tl_point_lanes_init(&d->lanes[i]);
+        init_lanes(&d->lanes[i]);
     d->narrow[0].deep =
         true; /* contacts that are copied or read into it may be marked: overlap.c */
     tl_contacts_unlist(d);
     return d;
+}
+
+void tl_cut_contacts_end(tl_detect *d)
+{
+    free(d->cut_contacts);
+    free(d->cut_points);
+    d->cut_contacts = NULL;
+    d->cut_points = NULL;
+    d->cut_count = d->cut_capacity = d->cut_point_count = d->cut_point_capacity = 0;
 }
 
 void tl_detect_destroy(tl_detect *d)
@@ -61,21 +140,70 @@ void tl_detect_destroy(tl_detect *d)
     free(d);
 }
 
+static bool hold_initial(tl_points_table *p)
+{
+    if (p->initial)
+        return true;
+    const tl_column columns[] = {TL_COLUMN_NEW(p, reference, TL_COLUMN_STEP),
+                                 TL_COLUMN_NEW(p, f_n0, TL_COLUMN_STEP)};
+    p->initial = tl_table_widen(&p->table, columns, 2);
+    return p->initial;
+}
+
+/* Makes sure that one table of points has that many state columns; false when out of memory (nothing changed). */
+static bool hold_states(tl_points_table *p, uint32_t columns)
+{
+    tl_column more[TL_STATE_COLUMNS];
+    uint32_t count = 0;
+    for (uint32_t k = p->state_columns; k < columns; k++)
+        more[count++] = (tl_column)TL_COLUMN_NEW(p, state[k], TL_COLUMN_STEP);
+    if (count && !tl_table_widen(&p->table, more, count))
+        return false;
+    p->state_columns += count;
+    return true;
+}
+
 /* The spare table, in which nothing is kept, gets the columns of the other: with no rows that cannot fail. */
 bool tl_detect_hold_initial(tl_detect *d)
 {
-    if (!tl_points_hold_initial(&d->points))
+    if (!hold_initial(&d->points))
         return false;
     tl_table_free(&d->spare_points.table);
-    return tl_points_hold_initial(&d->spare_points);
+    return hold_initial(&d->spare_points);
 }
 
 bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
 {
-    if (!tl_points_hold_states(&d->points, columns))
+    if (!hold_states(&d->points, columns))
         return false;
     tl_table_free(&d->spare_points.table);
-    return tl_points_hold_states(&d->spare_points, columns);
+    return hold_states(&d->spare_points, columns);
+}
+
+/* Gives the threads' lanes room for `capacity` points; false when out of memory. */
+static bool hold_lanes(tl_detect *d, size_t capacity)
+{
+    for (unsigned i = 0; i < d->threads; i++)
+        if (!tl_table_resize(&d->lanes[i].table, capacity))
+            return false;
+    return true;
+}
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout)
+{
+    size_t capacity = LEAST_LANES;
+    for (size_t r = 0; r < layout->span_count; r++)
+        for (size_t i = layout->spans[r].group_begin; i < layout->spans[r].group_end; i++)
+            capacity = larger(capacity, (size_t)layout->groups[i].slots * TL_LANES);
+    if (!hold_lanes(d, capacity))
+        return false;
+    d->lane_capacity = larger(capacity, d->lane_capacity);
+    return true;
 }
 
 /* ---------------------------------------------------------------- copies ------------------
@@ -95,7 +223,7 @@ tl_detect *tl_detect_copy(const tl_detect *from)
     d->spare_points.state_columns = d->points.state_columns; /* it has the same columns */
     d->spare_points.initial = d->points.initial;
     d->lane_capacity = from->lane_capacity;
-    if (!copy.failed && tl_detect_hold_lanes(d, d->lane_capacity))
+    if (!copy.failed && hold_lanes(d, d->lane_capacity))
         return d;
     tl_detect_destroy(d);
     return NULL;

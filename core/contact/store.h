@@ -14,6 +14,11 @@ void tl_detect_destroy(tl_detect *d);
 bool tl_detect_hold_initial(tl_detect *d);
 bool tl_detect_hold_states(tl_detect *d, uint32_t columns);
 
+/* All that contacts of cut blocks have left has been taken over. */
+void tl_cut_contacts_end(tl_detect *d);
+/* Gives the lanes of all threads room for a tile, or the largest SIMD group of a layout; false when out of memory. */
+bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout);
+
 /* What the next step goes on from, or NULL where that finds all anew: what was found for somebody who asked is no part of it. */
 static inline tl_detect *tl_detect_lasting(const tl_model *m)
 {

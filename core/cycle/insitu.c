@@ -52,6 +52,20 @@ static bool faces_meet(const tl_model *m, uint32_t c)
     return apart <= TL_CONTACT_TOLERANCE * size * area;
 }
 
+/* Gives a point the traction of a stress, tension positive, as its initial force. Its closure, and what slip has opened,
+ * count from now. n from A to B. */
+static void load_point(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n,
+                       double closure, double opening)
+{
+    tl_vec3 traction = tl_s3_mul(*stress, n);
+    double normal = tl_v3_dot(n, traction);
+    tl_vec3 shear = tl_v3_madd(traction, -normal, n);
+    p->reference[i] += closure + opening;
+    p->f_n0[i] = p->f_n[i] = -normal * p->area[i];
+    tl_columns_put(p->f_s, i, tl_v3_scale(-p->area[i], shear));
+    p->flags[i] = 0;
+}
+
 /* Puts the stress on a contact, whose points have initial forces. */
 static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
 {
@@ -68,8 +82,8 @@ static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
         if (i % TL_LANES == 0)
             tl_contact_point_openings(m, c, i, opening);
         tl_sym3 stress = stress_at(s, centroid_z + lanes->arm[2][i]);
-        tl_point_load(&m->detect->points, tl_point_row(contacts, c, i), &stress,
-                      tl_columns_get(lanes->normal, i), lanes->closure[i], opening[i % TL_LANES]);
+        load_point(&m->detect->points, tl_point_row(contacts, c, i), &stress,
+                   tl_columns_get(lanes->normal, i), lanes->closure[i], opening[i % TL_LANES]);
     }
 }
 

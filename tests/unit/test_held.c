@@ -1,5 +1,6 @@
 /* test_held.c - contacts between bodies that are held still: passed over once they rest, as if they had been followed. */
 #include "contact/contacts.h"
+#include "contact/store.h"
 #include "contact_scene.h"
 #include "cycle/cycle.h"
 #include "cycle/cycle_data.h"
@@ -236,8 +237,7 @@ static tl_kind ageing_kind(tl_model *m, const tl_law_ops *ops)
     kind.state_stride = sizeof *states;
     kind.ops = ops;
     scene_ok(m, tl_detect_refresh(m));
-    CHECK(tl_points_hold_states(&m->detect->points, 1) &&
-          tl_points_hold_states(&m->detect->spare_points, 1));
+    CHECK(tl_detect_hold_states(m->detect, 1));
     m->joint_laws[0].columns = 1;
     return kind;
 }

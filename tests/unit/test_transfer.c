@@ -344,30 +344,26 @@ TEST(states_are_copied_split_or_reset)
                                  .state_count = 4,
                                  .state_stride = sizeof *states,
                                  .ops = &ops};
-    tl_points_table p;
-    tl_contacts contacts;
-    memset(&p, 0, sizeof p);
-    memset(&contacts, 0, sizeof contacts);
-    tl_contacts_init(&contacts, &p);
+    tl_detect *d = tl_detect_make(1, NULL, 0);
+    tl_points_table *p = &d->points;
     CHECK_INT(tl_kind_state_columns(&kind), 6);
-    if (!CHECK(tl_table_resize(&p.table, 8) && tl_points_hold_states(&p, 6)))
+    if (!CHECK(tl_table_resize(&p->table, 8) && tl_detect_hold_states(d, 6)))
         return;
-    tl_point_initial_state(&p, 0, &kind);
+    tl_point_initial_state(p, 0, &kind);
     const double initial[] = {1, 2, 0, 0, 0, 3};
     for (int k = 0; k < 6; k++)
-        CHECK_NEAR(p.state[k][0], initial[k], 0);
+        CHECK_NEAR(p->state[k][0], initial[k], 0);
     const double old[TL_STATE_COLUMNS] = {10, 20, 30, 40, 50, 60, 0, 0};
     const double taken[] = {10, 5, 7.5, 10, 12.5, 3}, kept[] = {10, 5, 7.5, 10, 12.5, 60};
-    p.area[0] = p.area[1] = 0.5; /* a quarter of the old point's */
-    tl_point_take_state(&p, 0, &kind, old, 2, false);
+    p->area[0] = p->area[1] = 0.5; /* a quarter of the old point's */
+    tl_point_take_state(p, 0, &kind, old, 2, false);
     for (int k = 0; k < 6; k++)
-        CHECK_NEAR(p.state[k][0], taken[k], 1e-14);
-    tl_point_initial_state(&p, 1, &kind);
-    tl_point_take_state(&p, 1, &kind, old, 2, true);
+        CHECK_NEAR(p->state[k][0], taken[k], 1e-14);
+    tl_point_initial_state(p, 1, &kind);
+    tl_point_take_state(p, 1, &kind, old, 2, true);
     for (int k = 0; k < 6; k++)
-        CHECK_NEAR(p.state[k][1], kept[k], 1e-14);
-    tl_table_free(&p.table);
-    tl_table_free(&contacts.table);
+        CHECK_NEAR(p->state[k][1], kept[k], 1e-14);
+    tl_detect_destroy(d);
 }
 
 /* A contact uses the share of its shear strength that its force is of it; with next to no shear none. */
