@@ -131,12 +131,6 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     return out;
 }
 
-bool tl_contact_bonded_whole(const tl_model *m, uint32_t c)
-{
-    const tl_law *law = law_of(m, c);
-    return law && law->pulls != TL_PULL_NONE && tl_contact_across_gap(m, c).whole;
-}
-
 bool tl_contact_is_lifted(const tl_model *m, uint32_t c)
 {
     const tl_law *law = law_of(m, c);

@@ -20,9 +20,6 @@ typedef struct tl_contact_across {
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);
 
-/* Whether every point holds all of its tension. */
-bool tl_contact_bonded_whole(const tl_model *m, uint32_t contact);
-
 /* Whether anything may have lifted the points of a contact. */
 bool tl_contact_is_lifted(const tl_model *m, uint32_t contact);
 

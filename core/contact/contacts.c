@@ -232,6 +232,19 @@ void tl_point_clear(tl_points_table *p, size_t i)
         p->state[k][i] = 0;
 }
 
+void tl_point_resize(tl_points_table *p, size_t i, double area)
+{
+    double by = area / p->area[i];
+    p->area[i] = area;
+    if (by == 1)
+        return;
+    p->f_n[i] *= by;
+    if (p->f_n0)
+        p->f_n0[i] *= by;
+    for (int s = 0; s < 3; s++)
+        p->f_s[s][i] *= by;
+}
+
 tl_old_point tl_point_as_old(const tl_points_table *p, const tl_contacts *c, uint32_t contact,
                              size_t k, tl_vec3 arm)
 {
@@ -290,7 +303,7 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
 {
     tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
-    double size = fmin(m->blocks.size[c->a[contact]], m->blocks.size[c->b[contact]]);
+    double size = tl_contact_size(m, contact);
     tl_contact_places(m, contact, lanes);
     for (size_t k = 0; k < c->point_count[contact]; k++) {
         size_t i = tl_point_row(c, contact, k);

@@ -48,6 +48,8 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
 
 /* A point without force, area or place: an inert lane. */
 void tl_point_clear(tl_points_table *p, size_t point);
+/* Gives a point another area: its stresses stay. */
+void tl_point_resize(tl_points_table *points, size_t point, double area);
 /* Point k of a contact, at an arm, as one that new points take over from. */
 tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *contacts,
                              uint32_t contact, size_t k, tl_vec3 arm);

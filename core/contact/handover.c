@@ -1,5 +1,5 @@
-/* handover.c - a contact that was a patch becomes a field contact, or the other way round, and a field contact
- * that has moved.
+/* handover.c - a manifold takes the place of a contact: a patch becomes a field contact, or the other way round, or its
+ * points are other ones, or have moved.
  *
  * The shear of a field contact is one force and one torsion about the centre of its pressure. That of a patch
  * is a force at each point. Force and moment go over; the moment no further than the energy of the springs
@@ -17,6 +17,7 @@
 #include "contact/cut_contacts.h"
 #include "contact/kind.h"
 #include "contact/lean.h"
+#include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
@@ -129,7 +130,9 @@ double tl_contact_ends(const tl_model *m, uint32_t c)
     return tl_contact_lost(m, c, tl_v3(0, 0, 0), tl_v3(0, 0, 0), 0);
 }
 
-void tl_contact_let_go(tl_model *m, uint32_t c, double lift)
+/* Notes the heat of a contact that is left without points. Its faces stay moved out by `lift`, m: what slip has opened is
+ * forgotten, and of a patch all. */
+static void let_go(tl_model *m, uint32_t c, double lift)
 {
     tl_press_row *row = tl_press_row_of(m, c);
     m->detect->contacts.released[c] = tl_contact_ends(m, c);
@@ -185,6 +188,19 @@ static void give_states(tl_model *m, uint32_t c, tl_old_point old, bool known)
     }
 }
 
+/* By how much leaning faces are farther out at a point of A's frame than those of the blocks, together, m. */
+static double lean_at(const tl_model *m, uint32_t c, const tl_plane lean[2],
+                      const tl_plane faces[2], tl_vec3 p)
+{
+    tl_pair_view b = tl_contact_view(m, c);
+    const tl_vec3 at[] = {p, tl_m3_tmul(&b.turn, tl_v3_sub(p, b.shift))};
+    double out = 0;
+    for (int k = 0; k < 2; k++)
+        out += lean[k].offset - faces[k].offset -
+               tl_v3_dot(tl_v3_sub(lean[k].normal, faces[k].normal), at[k]);
+    return out;
+}
+
 /* Lets the points of a patch count their overlaps from a lift: of faces that lean, from that at their places. */
 static void refer_to_lift(tl_model *m, uint32_t c, double lift)
 {
@@ -195,8 +211,7 @@ static void refer_to_lift(tl_model *m, uint32_t c, double lift)
         size_t i = tl_point_row(contacts, c, k);
         p->reference[i] = -lift;
         if (row && row->leans)
-            p->reference[i] -=
-                tl_lean_at(m, c, row->lean, row->shifted_at, tl_columns_get(p->p, i));
+            p->reference[i] -= lean_at(m, c, row->lean, row->shifted_at, tl_columns_get(p->p, i));
     }
 }
 
@@ -328,8 +343,11 @@ static void lift_faces(tl_model *m, uint32_t c, const tl_point_lanes *lanes)
     tl_press_shift_faces(m, c, (tl_face_pair){facet->ia, facet->ib});
 }
 
-void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
-                          const tl_point_lanes *lanes)
+/* Puts the manifold's points in the place of the contact's, for which there is room, and notes the press of a field.
+ * Force and moment of the shear are kept as far as the energy of its springs goes. The moment is lost where the old points
+ * are `reframed`, in frames that are no more. */
+static void hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
+                      const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
@@ -358,7 +376,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
         refer_to_lift(m, c, lift);
     tl_shear_keep(m, c, kept);
     if (g->point_count == 0)
-        tl_contact_let_go(m, c, lift);
+        let_go(m, c, lift);
     contacts->handed_over[c] = held && g->point_count > 0;
     if (!contacts->handed_over[c])
         return;
@@ -460,7 +478,8 @@ static void note_way(tl_model *m, uint32_t c, tl_vec3 centre)
     row->moved_at = m->cycles;
 }
 
-void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
+/* Puts the manifold of a field contact in the place of what it was. */
+static void refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -489,3 +508,64 @@ double tl_contact_sheared(const tl_model *m, uint32_t c)
     return tl_shear_kept(m, c) +
            (ks > 0 && contacts->point_count[c] ? 0.5 * field_springs(m, c).energy / ks : 0);
 }
+
+/* ---------------------------------------------------------------- taking ----------------- */
+
+/* New places and areas of the same points. */
+static void refit_patch(tl_model *m, uint32_t c, const tl_manifold *g)
+{
+    tl_detect *d = m->detect;
+    tl_points_table *p = &d->points;
+    tl_shear before = tl_shear_of(m, c);
+    tl_vec3 last = d->contacts.facet[c].last;
+    d->contacts.facet[c] = g->facet;
+    d->contacts.facet[c].last = last;
+    uint32_t law = d->contacts.law[c];
+    const tl_kind *kind = NULL; /* of states that go with the area */
+    if (law != TL_NO_ROW && m->joint_laws[law].splits)
+        kind = m->joint_laws[law].kind;
+    for (size_t k = 0; k < g->point_count; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        double old = p->area[i], state[TL_STATE_COLUMNS];
+        tl_columns_put(p->p, i, g->points[k].p);
+        tl_point_resize(p, i, g->points[k].area);
+        if (kind && g->points[k].area != old) {
+            for (uint32_t column = 0; column < p->state_columns; column++)
+                state[column] = p->state[column][i];
+            tl_point_take_state(p, i, kind, state, old, true);
+        }
+    }
+    tl_shear now = tl_shear_of(m, c);
+    tl_shear_resized(m, c, &before, &now);
+}
+
+static bool take_patch(tl_model *m, uint32_t c, bool stays, tl_narrow_scratch *scratch,
+                       const tl_point_lanes *lanes)
+{
+    const tl_manifold *g = &scratch->manifold;
+    bool done = true;
+    if (stays) {
+        refit_patch(m, c, g);
+    } else if (tl_facet_is_field(&m->detect->contacts.facet[c])) {
+        hand_over(m, c, g, scratch->reframed, lanes);
+    } else {
+        done = tl_contact_transfer(m, c, scratch, lanes);
+        if (g->point_count == 0)
+            let_go(m, c, 0);
+    }
+    return done;
+}
+
+static bool take_field(tl_model *m, uint32_t c, bool stays, tl_narrow_scratch *scratch,
+                       const tl_point_lanes *lanes)
+{
+    const tl_manifold *g = &scratch->manifold;
+    if (!stays)
+        hand_over(m, c, g, scratch->reframed, lanes);
+    else if (g->point_count > 0)
+        refit_field(m, c, g);
+    return true;
+}
+
+const tl_kind_make tl_patch_make = {.take = take_patch};
+const tl_kind_make tl_field_make = {.take = take_field};

@@ -66,9 +66,9 @@ typedef struct tl_kind_make {
      * are in the present place, into the thread's manifold. false: out of memory. */
     bool (*claims)(const tl_model *m, uint32_t block_a, uint32_t block_b);
     bool (*find)(const tl_model *m, const tl_pair_view *view, tl_narrow_scratch *scratch);
-    /* Puts the manifold in the place of a contact of the same kind, which has the room. `same`: its points are the same. false: out of
-     * memory. */
-    bool (*take)(tl_model *m, uint32_t contact, bool same, tl_narrow_scratch *scratch,
+    /* Puts the manifold in the place of a contact, which has the room for it. `stays`: its points are the same, and have not
+     * run along the faces. false: out of memory. */
+    bool (*take)(tl_model *m, uint32_t contact, bool stays, tl_narrow_scratch *scratch,
                  const tl_point_lanes *lanes);
 } tl_kind_make;
 

@@ -3,6 +3,7 @@
 
 #include "base/columns.h"
 #include "contact/lean.h"
+#include "contact/pair_view.h"
 #include "contact/presses.h"
 #include "narrow/region.h"
 
@@ -48,7 +49,7 @@ static double patch_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *
     *at = tl_v3(0, 0, 0);
     for (uint32_t k = 0; k < count; k++)
         *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(p->p, tl_point_row(contacts, c, k)));
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double size = tl_contact_size(m, c);
     return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
 }
 

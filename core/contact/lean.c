@@ -128,8 +128,7 @@ static tl_plane leaning(tl_plane face, tl_vec3 slope, tl_vec3 about)
 /* Turn and place of B's frame in A's. */
 static tl_pair_pose pose_of(const tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_contact_view(m, c);
     return (tl_pair_pose){view.turn, view.shift};
 }
 
@@ -313,18 +312,6 @@ tl_lean tl_contact_lean(const tl_model *m, uint32_t c, const tl_point_lanes *lan
     out.face[0] = leaning(m->blocks.shape[contacts->a[c]]->plane[f->ia], g, x);
     out.face[1] = leaning(m->blocks.shape[contacts->b[c]]->plane[f->ib], tl_m3_tmul(&b.turn, g),
                           tl_m3_tmul(&b.turn, tl_v3_sub(x, b.shift)));
-    return out;
-}
-
-double tl_lean_at(const tl_model *m, uint32_t c, const tl_plane lean[2], const tl_plane faces[2],
-                  tl_vec3 p)
-{
-    tl_pair_pose b = pose_of(m, c);
-    const tl_vec3 at[] = {p, tl_m3_tmul(&b.turn, tl_v3_sub(p, b.shift))};
-    double out = 0;
-    for (int k = 0; k < 2; k++)
-        out += lean[k].offset - faces[k].offset -
-               tl_v3_dot(tl_v3_sub(lean[k].normal, faces[k].normal), at[k]);
     return out;
 }
 

@@ -21,8 +21,5 @@ tl_lean tl_contact_lean(const tl_model *m, uint32_t contact, const tl_point_lane
 /* How far apart blocks may be whose faces press, m. They are moved out by `shift` together and, with `face` not
  * NULL, lean so from the normal n of A's face. `size`: of the smaller block. */
 double tl_lean_reach(double shift, const tl_plane *face, tl_vec3 n, double size);
-/* By how much leaning faces are farther out at a point of A's frame than those of the blocks, together, m. */
-double tl_lean_at(const tl_model *m, uint32_t contact, const tl_plane lean[2],
-                  const tl_plane faces[2], tl_vec3 p);
 
 #endif

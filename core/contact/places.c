@@ -33,24 +33,7 @@ static tl_vec3 placed(const tl_facing_place *place, tl_vec3 p)
     return tl_v3_add(tl_m3_mul(&place->to, p), place->at);
 }
 
-tl_contact_run tl_contact_run_to(const tl_facet *laid, const tl_pair_pose *now)
-{
-    tl_mat3 own = tl_m3_identity();
-    return (tl_contact_run){.laid = laid,
-                            .by_b = tl_facing_ride(&own, &now->turn, now->shift, &laid->laid.turn,
-                                                   laid->laid.shift, 1)};
-}
-
-void tl_contact_run_add(tl_contact_run *run, tl_vec3 old, tl_vec3 now)
-{
-    tl_vec3 way = tl_v3_sub(placed(&run->by_b, old), old);
-    tl_vec3 rest = tl_v3_madd(tl_v3_sub(now, old), -run->laid->ride, way);
-    rest = tl_v3_madd(rest, -tl_v3_dot(rest, run->laid->na), run->laid->na);
-    run->way2 = fmax(run->way2, tl_v3_norm2(way));
-    run->run2 = fmax(run->run2, tl_v3_norm2(rest));
-}
-
-void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)
+tl_vec3 tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
@@ -64,6 +47,7 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
         tl_columns_put(l->normal, k, to.n);
         l->closure[k] = to.offset - tl_v3_dot(to.plane, x) - (p->reference ? p->reference[row] : 0);
     }
+    return to.n;
 }
 
 tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t c)
@@ -98,14 +82,6 @@ void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place
         place[k] = tl_v3_add(from, x);
         gap[k] = tl_v3_dot(to.plane, x) - to.offset;
     }
-}
-
-void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
-{
-    tl_facet *f = &m->detect->contacts.facet[contact];
-    tl_body_frames frames = body_frames_of(m, contact);
-    tl_contact_places(m, contact, l);
-    f->last = facing_of(m, contact, &frames).n;
 }
 
 /* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that of its

@@ -23,6 +23,7 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/cut_contacts.h"
+#include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/shear.h"
 #include "narrow/corner.h"
@@ -98,7 +99,7 @@ void tl_contact_place_points(tl_model *m, uint32_t c, const tl_manifold *g,
         p->key[i] = g->points[k].key;
         tl_point_initial_state(p, i, tl_law_kind(m, contacts->law[c]));
     }
-    tl_contact_begin(m, c, lanes); /* positions and normals in the present place */
+    contacts->facet[c].last = tl_contact_places(m, c, lanes);
 }
 
 /* Gives the points of a contact what they carry. */
@@ -155,8 +156,7 @@ static void sum_shear(const old_point *point, size_t count, tl_shear *t)
 /* Distance within which points are one. */
 static double place_of(const tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    return TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    return TL_MERGE * tl_contact_size(m, c);
 }
 
 /* ---------------------------------------------------------------- rings of cells ----------

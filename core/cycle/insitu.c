@@ -9,6 +9,7 @@
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
+#include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
@@ -42,7 +43,7 @@ static bool faces_meet(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double size = tl_contact_size(m, c);
     double area = 0, apart = 0;
     for (size_t i = 0; i < contacts->point_count[c]; i++) {
         size_t point = tl_point_row(contacts, c, i);

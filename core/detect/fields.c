@@ -12,6 +12,7 @@
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/presses.h"
+#include "contact/store.h"
 #include "narrow/flush.h"
 #include "narrow/place.h"
 #include "narrow/press.h"
@@ -31,7 +32,7 @@ static bool is_calm(const tl_model *m, uint32_t c)
 {
     const tl_press_row *row = tl_press_row_of(m, c);
     const tl_contacts *contacts = &m->detect->contacts;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double size = tl_contact_size(m, c);
     const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
     tl_contact_motion by = tl_contact_moved(m, c);
     tl_vec3 there = tl_v3_cross(by.turn, tl_m3_mul(turn, row->press.point));
@@ -50,7 +51,7 @@ static double bonded_tilt(const tl_model *m, uint32_t c)
 static double reach_of(const tl_model *m, uint32_t c, const tl_manifold_before *before)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double size = tl_contact_size(m, c);
     const tl_plane *face = before->leans ? before->lean : NULL;
     tl_vec3 n = {0, 0, 0};
     if (face)
@@ -184,7 +185,9 @@ static tl_region kept_region(tl_press_row *row)
                        .blunt_b = row->blunt_b};
 }
 
-bool tl_field_lacks_reference(const tl_model *m, uint32_t c)
+/* Whether a field contact is to become a patch whose faces are moved apart by more than what slip has opened of its point
+ * of shear: its points need a reference then. */
+static bool lacks_reference(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_press_row *row = tl_press_row_of(m, c);
@@ -192,9 +195,11 @@ bool tl_field_lacks_reference(const tl_model *m, uint32_t c)
            (row->leans || row->shift != row->opening[TL_FIELD_SHEAR]) && !m->detect->points.initial;
 }
 
-bool tl_field_take_row(tl_model *m, uint32_t c)
+bool tl_field_reserve(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
+    if (lacks_reference(m, c) && !tl_detect_hold_initial(m->detect))
+        return false;
     if (contacts->kind[c] != TL_FACET_FIELD || contacts->press[c] != TL_NO_ROW)
         return true;
     contacts->press[c] = tl_press_take(m->detect);
@@ -216,12 +221,12 @@ bool tl_field_take_row(tl_model *m, uint32_t c)
 static bool is_listed(tl_model *m, uint32_t c, const tl_press_row *row)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
+    double odometer = tl_contact_odometer(m, c);
     if (odometer <= contacts->faces_valid_to[c])
         return true;
     if (contacts->faces_valid_to[c] == TL_OUTDATED) /* it is to be looked at in any case */
         return false;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_contact_view(m, c);
     double moved = tl_pair_moved(&view, &row->listed_at) + fabs(row->shift - row->listed_shift);
     double left = TL_LIST_MARGIN * view.size - moved;
     if (left > 0)
@@ -303,7 +308,7 @@ bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_contact_view(m, c);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], 0);
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
     tl_region region;
@@ -322,13 +327,12 @@ bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
 
 void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
     b->asked = 0;
     for (uint32_t k = 0; k < b->count; k++) {
         uint32_t c = b->contact[k];
         const tl_press_row *row = tl_press_row_of(m, c);
         tl_pair_view *view = &b->view[b->asked];
-        *view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+        *view = tl_contact_view(m, c);
         const tl_pair_pose place = {view->turn, view->shift};
         b->near[k] = !lift(m, c) && has_slopes(m, c, row) &&
                      tl_press_near(&row->there, &row->slope, &row->place, &place, &b->press[k]);

@@ -20,12 +20,10 @@ void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region 
 /* What is known of the field, with the numbers that its faces have in a list made anew; nothing where one is not in it. */
 tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *region);
 
-/* Whether a field contact whose faces are moved apart, by more than what slip has opened of its point of shear, is to become a patch:
- * its points need a reference then. */
-bool tl_field_lacks_reference(const tl_model *m, uint32_t contact);
-/* Gives a field contact the row that it needs. The faces of one that takes over from another are moved out as those were. false: out of
+/* Before a contact gets points of another kind: gives a patch that was a field contact the reference that its points need,
+ * and a field contact its row. The faces of one that takes over from another are moved out as those were. false: out of
  * memory. */
-bool tl_field_take_row(tl_model *m, uint32_t contact);
+bool tl_field_reserve(tl_model *m, uint32_t contact);
 /* Finds the press of a field contact where its blocks are now, with its shift, and forgets what is known of others. false: out of
  * memory. */
 bool tl_field_press_anew(tl_model *m, uint32_t contact, tl_narrow_scratch *scratch);

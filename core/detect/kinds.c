@@ -1,8 +1,9 @@
 /* kinds.c - the kinds of contact that there are: patches, where a face lies on a face, and field contacts, all else. */
 #include "detect/kinds.h"
 
+#include "contact/handover.h"
 #include "contact/kinds.h"
-#include "detect/update.h"
+#include "force/field_press.h"
 #include "force/laws.h"
 
 static const tl_contact_kind patch = {

@@ -47,13 +47,6 @@
  * passes through no closure. Test: lua/test_landing, lua/test_new_points. */
 #define BOND_STANDS 5e-4
 
-/* Size of the smaller block of a contact. */
-static double smaller_size(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    return fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-}
-
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 {
     const tl_contacts *contacts = &d->contacts;
@@ -68,48 +61,6 @@ static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
         if (d->points.key[tl_point_row(contacts, c, k)] != g->points[k].key)
             return false;
     return true;
-}
-
-/* Gives a point another area: its stresses stay. */
-static void resize(tl_points_table *p, size_t i, double area)
-{
-    double by = area / p->area[i];
-    p->area[i] = area;
-    if (by == 1)
-        return;
-    p->f_n[i] *= by;
-    if (p->f_n0)
-        p->f_n0[i] *= by;
-    for (int s = 0; s < 3; s++)
-        p->f_s[s][i] *= by;
-}
-
-/* New places and areas of the same points. */
-static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
-{
-    tl_detect *d = m->detect;
-    tl_points_table *p = &d->points;
-    tl_shear before = tl_shear_of(m, c);
-    tl_vec3 last = d->contacts.facet[c].last;
-    d->contacts.facet[c] = g->facet;
-    d->contacts.facet[c].last = last;
-    uint32_t law = d->contacts.law[c];
-    const tl_kind *kind = NULL; /* of states that go with the area */
-    if (law != TL_NO_ROW && m->joint_laws[law].splits)
-        kind = m->joint_laws[law].kind;
-    for (size_t k = 0; k < g->point_count; k++) {
-        size_t i = tl_point_row(&d->contacts, c, k);
-        double old = p->area[i], state[TL_STATE_COLUMNS];
-        tl_columns_put(p->p, i, g->points[k].p);
-        resize(p, i, g->points[k].area);
-        if (kind && g->points[k].area != old) {
-            for (uint32_t column = 0; column < p->state_columns; column++)
-                state[column] = p->state[column][i];
-            tl_point_take_state(p, i, kind, state, old, true);
-        }
-    }
-    tl_shear now = tl_shear_of(m, c);
-    tl_shear_resized(m, c, &before, &now);
 }
 
 /* ---------------------------------------------------------------- looking at all ---------- */
@@ -158,9 +109,9 @@ static void check_depth(tl_model *m, uint32_t c, const tl_pair_view *view, const
 static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]), way;
+    double odometer = tl_contact_odometer(m, c), way;
     tl_contact_lift_field(m, c);
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_contact_view(m, c);
     tl_manifold_before before = tl_contact_before(m, c, scratch->reframed, lanes);
     tl_region region;
     if (!tl_pair_place(&view, scratch) ||
@@ -196,6 +147,38 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     return true;
 }
 
+/* How far, at most, points of a patch have been carried apart by their blocks since they were laid, `way2`. And how far
+ * along the faces new ones of the same keys lie from where they have gone, `run2`: squares, in A's frame. */
+typedef struct contact_run {
+    const tl_facet *laid;
+    tl_facing_place by_b;
+    double way2, run2;
+} contact_run;
+
+static contact_run run_to(const tl_facet *laid, const tl_pair_pose *now)
+{
+    tl_mat3 own = tl_m3_identity();
+    return (contact_run){.laid = laid,
+                         .by_b = tl_facing_ride(&own, &now->turn, now->shift, &laid->laid.turn,
+                                                laid->laid.shift, 1)};
+}
+
+static void run_add(contact_run *run, tl_vec3 old, tl_vec3 now)
+{
+    tl_vec3 way = tl_v3_sub(tl_v3_add(tl_m3_mul(&run->by_b.to, old), run->by_b.at), old);
+    tl_vec3 rest = tl_v3_madd(tl_v3_sub(now, old), -run->laid->ride, way);
+    rest = tl_v3_madd(rest, -tl_v3_dot(rest, run->laid->na), run->laid->na);
+    run->way2 = fmax(run->way2, tl_v3_norm2(way));
+    run->run2 = fmax(run->run2, tl_v3_norm2(rest));
+}
+
+/* Whether points have run along their polygon, farther than their blocks have moved: what they carry belongs to the places where they
+ * have been. `near`: a distance that makes no difference. */
+static bool has_run(const contact_run *run, double near)
+{
+    return run->run2 > run->way2 && run->run2 > near * near;
+}
+
 /* ---------------------------------------------------------------- taking ------------------ */
 
 static void note_manifold(tl_detect *d, uint32_t c, const tl_manifold *g)
@@ -228,11 +211,11 @@ static bool wants_place(tl_detect *d, uint32_t c, const tl_manifold *g, bool ref
 static bool have_run(const tl_model *m, uint32_t c, const tl_manifold *g)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    tl_contact_run run = tl_contact_run_to(&contacts->facet[c], &g->facet.laid);
+    contact_run run = run_to(&contacts->facet[c], &g->facet.laid);
     for (size_t k = 0; k < g->point_count; k++)
-        tl_contact_run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
-                           g->points[k].p);
-    return tl_contact_has_run(&run, TL_MERGE * smaller_size(m, c));
+        run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
+                g->points[k].p);
+    return has_run(&run, TL_MERGE * tl_contact_size(m, c));
 }
 
 static bool is_patch(const tl_contacts *contacts, uint32_t c)
@@ -263,39 +246,9 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     bool same = same_topology(d, c, g);
     if (!same)
         d->contacts.new_points[c] = TL_POINTS_OTHERS;
-    return d->kinds[g->facet.kind]->make->take(m, c, same, scratch, lanes);
+    bool stays = same && (tl_facet_is_field(&g->facet) || scratch->reframed || !have_run(m, c, g));
+    return d->kinds[g->facet.kind]->make->take(m, c, stays, scratch, lanes);
 }
-
-static bool take_patch(tl_model *m, uint32_t c, bool same, tl_narrow_scratch *scratch,
-                       const tl_point_lanes *lanes)
-{
-    const tl_manifold *g = &scratch->manifold;
-    bool done = true;
-    if (!same && tl_facet_is_field(&m->detect->contacts.facet[c])) {
-        tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
-    } else if (same && (scratch->reframed || !have_run(m, c, g))) {
-        refit(m, c, g);
-    } else {
-        done = tl_contact_transfer(m, c, scratch, lanes);
-        if (g->point_count == 0)
-            tl_contact_let_go(m, c, 0);
-    }
-    return done;
-}
-
-static bool take_field(tl_model *m, uint32_t c, bool same, tl_narrow_scratch *scratch,
-                       const tl_point_lanes *lanes)
-{
-    const tl_manifold *g = &scratch->manifold;
-    if (!same)
-        tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
-    else if (g->point_count > 0)
-        tl_contact_refit_field(m, c, g);
-    return true;
-}
-
-const tl_kind_make tl_patch_make = {.take = take_patch};
-const tl_kind_make tl_field_make = {.take = take_field};
 
 /* How far the points of a patch have been carried apart by their blocks since they were laid, the farthest of them. */
 static double points_moved(const tl_model *m, uint32_t c)
@@ -333,7 +286,7 @@ static double faces_moved(const tl_model *m, uint32_t c)
 /* Motion of next to nothing. */
 static double still_way(const tl_model *m, uint32_t c)
 {
-    return TL_STILL * smaller_size(m, c);
+    return TL_STILL * tl_contact_size(m, c);
 }
 
 /* Lets a contact whose points have just been made move a little before they are made anew. */
@@ -345,7 +298,7 @@ static void contact_allow_reuse(tl_model *m, uint32_t c)
     const tl_press *press = field ? &tl_press_row_of(m, c)->press : NULL;
     double most = field ? REUSE_FIELD * fmin(press->overlap, press->deepest) : still_way(m, c);
     if (!patch || contacts->new_points[c] != TL_POINTS_STAY)
-        contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
+        contacts->points_valid_to[c] = tl_contact_odometer(m, c) + most;
     if (!patch)
         return;
     contacts->spot[c] =
@@ -375,8 +328,10 @@ static double least_closure(const tl_model *m, uint32_t c)
 /* Way left to go before the points of a patch are to be laid anew. */
 static double way_of_points(const tl_model *m, uint32_t c)
 {
-    double stands = tl_contact_bonded_whole(m, c)
-                        ? BOND_STANDS * smaller_size(m, c)
+    uint32_t law = m->detect->contacts.law[c];
+    bool pulls = law != TL_NO_ROW && m->joint_laws[law].pulls != TL_PULL_NONE;
+    double stands = pulls && tl_contact_across_gap(m, c).whole
+                        ? BOND_STANDS * tl_contact_size(m, c)
                         : fmax(still_way(m, c), STANDS * least_closure(m, c));
     return stands - points_moved(m, c);
 }
@@ -386,7 +341,7 @@ static bool is_valid(const tl_model *m, uint32_t c, double *valid_to,
                      double way_left(const tl_model *m, uint32_t c))
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
+    double odometer = tl_contact_odometer(m, c);
     if (odometer <= *valid_to)
         return true;
     if (*valid_to == TL_OUTDATED || !is_patch(contacts, c))
@@ -411,7 +366,7 @@ static void refit_patch(tl_model *m, uint32_t c, const tl_patch_points *g, const
     for (size_t k = 0; k < g->count; k++) {
         size_t i = tl_point_row(&m->detect->contacts, c, k);
         tl_columns_put(p->p, i, tl_columns_get(g->p, k));
-        resize(p, i, g->area[k]);
+        tl_point_resize(p, i, g->area[k]);
     }
     *whole = area;
     m->detect->contacts.facet[c].ride = laid->ride;
@@ -447,7 +402,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     const tl_facet *f = &contacts->facet[c];
     if (!contact_is_patch(m, c))
         return false;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_contact_view(m, c);
     tl_touch_rule rule =
         tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c] ? INFINITY : 0);
     scratch->manifold.failed = !tl_pair_place_face(&view, f->ib, scratch);
@@ -475,7 +430,7 @@ static bool touches_still(tl_model *m, uint32_t c)
     tl_contacts *contacts = &m->detect->contacts;
     if (contacts->point_count[c] || contacts->points_valid_to[c] == TL_OUTDATED)
         return false;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_contact_view(m, c);
     if (tl_touch_rule_of(m, &view, contacts->tag[c], 0).min_area > 0)
         return false;
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
@@ -486,7 +441,7 @@ static bool touches_still(tl_model *m, uint32_t c)
     }
     if (margin < 0 || gap > TL_CONTACT_TOLERANCE * view.size)
         return false;
-    contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + margin;
+    contacts->points_valid_to[c] = tl_contact_odometer(m, c) + margin;
     return true;
 }
 
@@ -504,7 +459,7 @@ bool tl_contact_points_hold_yet(tl_model *m, uint32_t c)
     tl_contacts *contacts = &m->detect->contacts;
     if (!is_patch(contacts, c))
         return m->config.reuse_geometry &&
-               tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c];
+               tl_contact_odometer(m, c) <= contacts->points_valid_to[c];
     return is_valid(m, c, &contacts->points_valid_to[c], way_of_points) && faces_hold(m, c);
 }
 
@@ -516,7 +471,7 @@ static bool still_stands(const tl_model *m, uint32_t c, const tl_narrow_scratch 
     const tl_facet *f = &contacts->facet[c], *now = &g->facet;
     return !scratch->reframed && is_patch(contacts, c) && g->point_count > 0 &&
            tl_facet_is_patch(now) && f->ia == now->ia && f->ib == now->ib &&
-           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c];
+           tl_contact_odometer(m, c) <= contacts->points_valid_to[c];
 }
 
 /* Makes all that a contact is anew. Without the memory for it the contact is as it was, so that it can be tried again
@@ -601,9 +556,7 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
     tl_contacts *contacts = &d->contacts;
-    if (tl_field_lacks_reference(m, c) && !tl_detect_hold_initial(d))
-        return false;
-    if (!tl_field_take_row(m, c))
+    if (!tl_field_reserve(m, c))
         return false;
     uint8_t pending = contacts->pending[c];
     contacts->pending[c] = TL_PENDING_NONE;
@@ -792,15 +745,15 @@ static bool group_has_run(const tl_model *m, uint32_t c, const tl_patch_batch *b
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_pair_pose now = {tl_lanes9_get(&batch->turn, l), tl_lanes3_get(&batch->shift, l)};
-    tl_contact_run run = tl_contact_run_to(&contacts->facet[c], &now);
+    contact_run run = run_to(&contacts->facet[c], &now);
     for (uint32_t k = 0; k < n.all; k++) {
         const tl_batch_point *point = k < n.middles               ? &batch->middles[k]
                                       : k < n.middles + n.corners ? &batch->corners[k - n.middles]
                                                                   : &batch->centroid;
-        tl_contact_run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
-                           tl_lanes3_get(&point->p, l));
+        run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
+                tl_lanes3_get(&point->p, l));
     }
-    return tl_contact_has_run(&run, batch->near[l]);
+    return has_run(&run, batch->near[l]);
 }
 
 /* Puts patches into the place of those of the SIMD group that have the same points, and takes their lanes out of `in`: lanes

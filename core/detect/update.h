@@ -8,8 +8,6 @@
 #include "contact/pair_view.h"
 #include "model/model.h"
 
-/* Patches and field contacts, made. */
-extern const tl_kind_make tl_patch_make, tl_field_make;
 /* Whether they are although it has moved. */
 bool tl_contact_points_hold_yet(tl_model *m, uint32_t contact);
 /* Whether a contact's points are still good. */
@@ -19,7 +17,7 @@ static inline bool tl_contact_points_hold(tl_model *m, uint32_t contact)
     /* the blocks of one that ends may be gone; one that wants room is made when it has got it */
     if (c->pending[contact] == TL_PENDING_DIE || tl_pending_waits(c->pending[contact]))
         return true;
-    double odometer = tl_pair_odometer(m, c->a[contact], c->b[contact]);
+    double odometer = tl_contact_odometer(m, contact);
     bool valid = odometer <= c->points_valid_to[contact] && odometer <= c->faces_valid_to[contact];
     return (valid && m->config.reuse_geometry) || tl_contact_points_hold_yet(m, contact);
 }

@@ -18,14 +18,32 @@
  * I_(k+1). A minimum area A_m makes it larger by (1 + (A_m / A_e)^2)^(1/2), A_e = V^2 / (4 G). */
 #include "force/field_press.h"
 
+#include "base/columns.h"
 #include "base/inside.h"
 #include "contact/across_gap.h"
 #include "contact/detection.h"
 #include "contact/presses.h"
 #include "force/closures.h"
+#include "force/follow.h"
 
 #include <math.h>
 #include <string.h>
+
+/* What the normal springs of a field contact make: force on B and moment about A's centroid, in A's frame, the energy,
+ * and that of the law's springs, which counts for nothing. */
+typedef struct field_press {
+    tl_vec3 force, moment;
+    double energy, springs;
+    double whole;                                 /* the force of which these are slopes */
+    double by_energy, by_powers[TL_PRESS_POWERS]; /* change of the energy with those of the press */
+} field_press;
+
+/* What a law tells that is not linear. Stress and energy are per area, at the two closures `at` of the press. Of both
+ * points: what presses them, J, what slip has opened of it in this step, and the closure of their walls. */
+typedef struct told_press {
+    double at[2], stress[2], energy[2];
+    double springs[TL_FIELD_POINTS], rise[TL_FIELD_POINTS], closure[TL_FIELD_POINTS];
+} told_press;
 
 /* ---------------------------------------------------------------- energies that laws tell ---
  *
@@ -182,8 +200,9 @@ static double pays_for_lift(const tl_press_row *row, double whole)
  * better than 1e-7. */
 #define LIFT_KNOWN 1e-8
 
-tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area, double f_n,
-                                 double same)
+/* With an energy 2 kn G. What slip opens in this step presses as what it opened in the last, or as at the centre. */
+static field_press press_linearly(const tl_press_row *row, double kn, double area, double f_n,
+                                  double same)
 {
     const tl_press *press = &row->press;
     double by = 2 * kn, size = tl_v3_norm(press->force), whole = by * size, spring = kn * area;
@@ -196,12 +215,12 @@ tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area
         more = tl_v3_scale(again, row->extra.lifted_force);
         turn = tl_v3_scale(again, row->extra.lifted_moment);
     }
-    return (tl_field_press){.force = tl_v3_madd(more, by, press->force),
-                            .moment = tl_v3_madd(turn, by, press->moment),
-                            .energy = by * press->energy,
-                            .springs = spring > 0 ? whole * whole / spring : 0,
-                            .whole = whole,
-                            .by_energy = by};
+    return (field_press){.force = tl_v3_madd(more, by, press->force),
+                         .moment = tl_v3_madd(turn, by, press->moment),
+                         .energy = by * press->energy,
+                         .springs = spring > 0 ? whole * whole / spring : 0,
+                         .whole = whole,
+                         .by_energy = by};
 }
 
 /* Tolerance: a closure over the other one below which it is none: moments of next to nothing may be roundings. */
@@ -223,7 +242,7 @@ enum { FIELD_ROWS = TL_FIELD_POINTS * TL_LANES };
 /* Energies and stresses per area at the two closures of each press, one for each point, before slip opens more. */
 static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                         const tl_point_lanes *t, const double lift[FIELD_ROWS],
-                        tl_told_press by[TL_LANES])
+                        told_press by[TL_LANES])
 {
     const double *area = m->detect->points.area + group->start;
     double u[FIELD_ROWS] = {0}, energy[FIELD_ROWS], force[FIELD_ROWS];
@@ -242,8 +261,9 @@ static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_grou
     }
 }
 
-void tl_press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                  const tl_point_lanes *t, size_t lane, tl_told_press by[TL_LANES])
+/* Asks a law of the field contacts of a SIMD group, whose first point is in lane `lane`. */
+static void press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                      const tl_point_lanes *t, size_t lane, told_press by[TL_LANES])
 {
     double closure[FIELD_ROWS], lift[FIELD_ROWS], hold[FIELD_ROWS];
     double energy[FIELD_ROWS], before[FIELD_ROWS];
@@ -271,8 +291,8 @@ void tl_press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *gro
 }
 
 /* The energy of the field, and its slopes by G and the powers. */
-static double find_slopes(const tl_press_row *row, double area, const tl_told_press *by,
-                          tl_field_press *out)
+static double find_slopes(const tl_press_row *row, double area, const told_press *by,
+                          field_press *out)
 {
     const tl_field_power *powers = row->extra.powers;
     double g = row->press.energy, v = powers[TL_PRESS_VOLUME].whole, p[4];
@@ -291,7 +311,7 @@ static double find_slopes(const tl_press_row *row, double area, const tl_told_pr
 /* Adds what slip opens in this step at the overlap 4 G / V of the area: it adds to the force by m = F o / U of an
  * energy U ~ o^m of the closure o, dF = (F - U / o) dU / U. Gives that. */
 static double add_rise(const tl_press_row *row, double area, const double f_n[TL_FIELD_POINTS],
-                       const tl_told_press *by, tl_field_press *out)
+                       const told_press *by, field_press *out)
 {
     double g = row->press.energy, v = row->extra.powers[TL_PRESS_VOLUME].whole;
     double own = 0.25 * v * v / g, more[TL_FIELD_POINTS] = {0}, rise = 0;
@@ -307,11 +327,12 @@ static double add_rise(const tl_press_row *row, double area, const double f_n[TL
     return more[TL_FIELD_TORSION];
 }
 
-tl_field_press tl_press_by_law(const tl_press_row *row, double area, double f_n, double same,
-                               const tl_told_press *by)
+/* By the energy that a law tells; f_n and `same` are its forces on the two points. */
+static field_press press_by_law(const tl_press_row *row, double area, double f_n, double same,
+                                const told_press *by)
 {
     const double forces[TL_FIELD_POINTS] = {f_n, same};
-    tl_field_press out = {.springs = by->springs[0] + by->springs[1]};
+    field_press out = {.springs = by->springs[0] + by->springs[1]};
     const tl_press *press = &row->press;
     const tl_field_power *powers = row->extra.powers;
     out.energy = find_slopes(row, area, by, &out);
@@ -325,32 +346,35 @@ tl_field_press tl_press_by_law(const tl_press_row *row, double area, double f_n,
     return out;
 }
 
-tl_field_press tl_press_by_force(const tl_press *press, double kn, double area, double f_n,
-                                 double same)
+/* By the force that a law gives which does not tell of its energy. */
+static field_press press_by_force(const tl_press *press, double kn, double area, double f_n,
+                                  double same)
 {
     double by = f_n / tl_v3_norm(press->force);
-    return (tl_field_press){.force = tl_v3_scale(by, press->force),
-                            .moment = tl_v3_scale(by, press->moment),
-                            .energy = by * press->energy,
-                            .whole = f_n,
-                            .by_energy = by,
-                            .springs = (f_n * f_n + same * same) / (2 * kn * area)};
+    return (field_press){.force = tl_v3_scale(by, press->force),
+                         .moment = tl_v3_scale(by, press->moment),
+                         .energy = by * press->energy,
+                         .whole = f_n,
+                         .by_energy = by,
+                         .springs = (f_n * f_n + same * same) / (2 * kn * area)};
 }
 
 double tl_press_force(const tl_law *law, const tl_press_row *row,
                       const double state[TL_STATE_COLUMNS])
 {
-    tl_told_press by = {.at = {0}};
+    told_press by = {.at = {0}};
     if (!(row->press.area > 0))
         return 0;
     if (!tl_law_presses(law))
         return 2 * law->kn * tl_v3_norm(row->press.force);
     find_closures(row, by.at);
     tl_law_press_alone(law, row->press.area, state, by.at, 2, by.energy, by.stress);
-    return tl_v3_norm(tl_press_by_law(row, row->press.area, 0, 0, &by).force);
+    return tl_v3_norm(press_by_law(row, row->press.area, 0, 0, &by).force);
 }
 
-double tl_lost_lift(const tl_press_row *row, const tl_field_press *by)
+/* What the field has not got of what slip paid for moving two faces apart, where other faces press, too: heat, J. It is
+ * a share of the mean of what slip paid in the step before and would pay here: the lift began there. */
+static double lost_lift(const tl_press_row *row, const field_press *by)
 {
     double pays = pays_for_lift(row, by->whole);
     double gets = by->by_energy * row->press.lifted;
@@ -358,3 +382,63 @@ double tl_lost_lift(const tl_press_row *row, const tl_field_press *by)
         gets += by->by_powers[k] * row->extra.lifted_powers[k];
     return pays != 0 ? 0.5 * (row->paid + pays) * (1 - gets / pays) : 0;
 }
+
+/* ---------------------------------------------------------------- SIMD groups ------------ */
+
+/* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
+ * springs of the law hold pressed is not what the field holds: see tl_press. */
+static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                       const tl_point_lanes *t, size_t lane, const tl_arms *arms,
+                       tl_group_sums *out)
+{
+    (void)arms;
+    const tl_detect *d = m->detect;
+    const tl_contacts *contacts = &d->contacts;
+    const tl_points_table *p = &d->points;
+    const size_t torsion = TL_FIELD_TORSION * TL_LANES;
+    const bool tells = tl_law_presses(law), linear = tl_law_is_linear(law);
+    told_press pressed[TL_LANES];
+    memset(out, 0, sizeof *out);
+    if (tells)
+        press_ask(m, law, group, t, lane, pressed);
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t c = group->contact[l];
+        size_t i = group->start + l, k = lane + l;
+        double area = p->area[i];
+        if (c == TL_NO_ROW || !(area > 0))
+            continue;
+        const tl_press_row *row = &d->press[contacts->press[c]];
+        const tl_press *press = &row->press;
+        const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+        double f_n = p->f_n[i], same = p->f_n[i + torsion];
+        tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
+        tl_vec3 shear = tl_columns_get(p->f_s, i);
+        tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
+        const field_press by = linear  ? press_linearly(row, law->kn, area, f_n, same)
+                               : tells ? press_by_law(row, area, f_n, same, &pressed[l])
+                                       : press_by_force(press, law->kn, area, f_n, same);
+        tl_vec3 force = tl_v3_add(shear, tl_m3_mul(turn, by.force));
+        tl_vec3 moment = tl_v3_add(tl_v3_cross(x, shear), tl_m3_mul(turn, by.moment));
+        moment = tl_v3_madd(moment, press->radius, twist);
+        double spare = law->ks > 0 ? 0.5 * (row->spare[0] + row->spare[1]) / law->ks : 0;
+        for (int axis = 0; axis < 3; axis++) {
+            out->force[axis][l] = (&force.x)[axis];
+            out->moment[axis][l] = (&moment.x)[axis];
+        }
+        out->stored[l] = t->stored[k] + t->stored[k + torsion] - by.springs + by.energy + spare;
+        out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
+        if (press->lifted != 0)
+            out->dissipated[l] += lost_lift(row, &by);
+        out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
+        if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))
+            out->odd[l] += 1;
+    }
+}
+
+static void follow_fields(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
+                          size_t lane, uint32_t tangents, tl_arms *arms)
+{
+    tl_simd_group_follow(m, group, true, t, lane, tangents, arms);
+}
+
+const tl_kind_force tl_field_force = {.follow = follow_fields, .sum = sum_fields};

@@ -10,9 +10,9 @@
 #include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/handover.h"
+#include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/prefetch.h"
-#include "force/field_press.h"
 #include "force/follow.h"
 #include "force/joint_laws.h"
 #include "force/partly_open.h"
@@ -82,8 +82,8 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
 /* Copies of what a law gets and gives, of the points of a SIMD group side by side. */
 typedef struct trial {
     _Alignas(TL_ALIGN) double area[TL_LANES];
-    double closure[TL_LANES], f_n0[TL_LANES], normal[3][TL_LANES];
-    double du_n[TL_LANES], du_s[3][TL_LANES], f_n[TL_LANES], f_s[3][TL_LANES];
+    double closure[TL_LANES], f_n0[TL_LANES], du_n[TL_LANES], f_n[TL_LANES];
+    tl_lanes3 normal, du_s, f_s;
     double state[TL_STATE_COLUMNS][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
     double apart[TL_LANES];
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
@@ -108,26 +108,16 @@ static void copy_points(const place *at, trial *t)
         t->f_n[l] = p->f_n[i];
         t->flags[l] = p->flags[i];
         t->du_n[l] = t->stored[l] = t->dissipated[l] = t->apart[l] = 0;
-        for (int c = 0; c < 3; c++) {
-            t->normal[c][l] = at->lanes->normal[c][k];
-            t->f_s[c][l] = p->f_s[c][i];
-            t->du_s[c][l] = 0;
-        }
+        tl_lanes3_put(&t->normal, l, tl_columns_get(at->lanes->normal, k));
+        tl_lanes3_put(&t->f_s, l, tl_columns_get(p->f_s, i));
+        tl_lanes3_put(&t->du_s, l, tl_v3(0, 0, 0));
         for (uint32_t c = 0; c < TL_STATE_COLUMNS; c++)
             t->state[c][l] = c < p->state_columns ? p->state[c][i] : 0;
     }
 }
 
-static void put_lane(double (*columns)[TL_LANES], size_t l, tl_vec3 v)
-{
-    columns[0][l] = v.x;
-    columns[1][l] = v.y;
-    columns[2][l] = v.z;
-}
-
 static bool call(const place *at, trial *t)
 {
-    const tl_law_ops *ops = at->law->kind->ops;
     double *state[TL_STATE_COLUMNS];
     for (int c = 0; c < TL_STATE_COLUMNS; c++)
         state[c] = t->state[c];
@@ -137,22 +127,19 @@ static bool call(const place *at, trial *t)
                           .area = t->area,
                           .closure = t->closure,
                           .f_n0 = t->f_n0,
-                          .normal = {t->normal[0], t->normal[1], t->normal[2]},
+                          .normal = {t->normal.x, t->normal.y, t->normal.z},
                           .du_n = t->du_n,
-                          .du_s = {t->du_s[0], t->du_s[1], t->du_s[2]},
+                          .du_s = {t->du_s.x, t->du_s.y, t->du_s.z},
                           .f_n = t->f_n,
-                          .f_s = {t->f_s[0], t->f_s[1], t->f_s[2]},
+                          .f_s = {t->f_s.x, t->f_s.y, t->f_s.z},
                           .state = state,
                           .flags = t->flags,
                           .stored = t->stored,
                           .dissipated = t->dissipated,
                           .closure_edge = t->closure,
                           .closure_apart = t->apart};
-    tl_report report = {.size = sizeof report};
-    tl_enter(at->law->kind, "update");
-    tl_status status = ops->update(at->law->self, &batch, &report);
-    tl_leave();
-    return status == TL_OK;
+    tl_report report;
+    return tl_law_update(at->law, &batch, &report) == TL_OK;
 }
 
 /* Forces of the points, from where they are, moved by `move` m along the normal, or along `slide` where it is given. */
@@ -162,7 +149,7 @@ static bool try_law(const place *at, const double *move, const tl_vec3 *slide, t
     for (size_t l = 0; l < TL_LANES; l++) {
         t->closure[l] += slide ? 0 : move[l];
         t->du_n[l] = slide ? 0 : -move[l];
-        put_lane(t->du_s, l, slide ? tl_v3_scale(move[l], slide[l]) : tl_v3(0, 0, 0));
+        tl_lanes3_put(&t->du_s, l, slide ? tl_v3_scale(move[l], slide[l]) : tl_v3(0, 0, 0));
     }
     return call(at, t);
 }
@@ -184,8 +171,7 @@ static bool measure(const place *at, const double *move, const tl_vec3 *slide, s
         found->normal[l] = found->shear[l] = 0;
         if (!(area > 0) || !(move[l] > 0))
             continue;
-        tl_vec3 before = tl_v3(rest.f_s[0][l], rest.f_s[1][l], rest.f_s[2][l]);
-        tl_vec3 after = tl_v3(slid.f_s[0][l], slid.f_s[1][l], slid.f_s[2][l]);
+        tl_vec3 before = tl_lanes3_get(&rest.f_s, l), after = tl_lanes3_get(&slid.f_s, l);
         found->normal[l] = (pressed.f_n[l] - rest.f_n[l]) / (area * move[l]);
         found->shear[l] = tl_v3_dot(tl_v3_sub(before, after), slide[l]) / (area * move[l]);
     }
@@ -249,15 +235,14 @@ static bool try_in_plane(const place *at, double along[TL_LANES])
         tl_vec3 du_s = tl_columns_get(at->lanes->du_s, at->lane + l);
         f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
         du_s = tl_v3_madd(du_s, -tl_v3_dot(du_s, n), n);
-        put_lane(t.f_s, l, f);
-        put_lane(t.du_s, l, du_s);
+        tl_lanes3_put(&t.f_s, l, f);
+        tl_lanes3_put(&t.du_s, l, du_s);
         t.du_n[l] = at->lanes->du_n[at->lane + l];
     }
     if (!call(at, &t))
         return false;
     for (size_t l = 0; l < TL_LANES; l++)
-        along[l] = fabs(t.f_s[0][l] * t.normal[0][l] + t.f_s[1][l] * t.normal[1][l] +
-                        t.f_s[2][l] * t.normal[2][l]);
+        along[l] = fabs(tl_v3_dot(tl_lanes3_get(&t.f_s, l), tl_lanes3_get(&t.normal, l)));
     return true;
 }
 
@@ -266,8 +251,7 @@ static bool is_out_of_plane(const tl_model *m, const tl_law *law, uint32_t c, si
                             double along)
 {
     const tl_points_table *p = &m->detect->points;
-    const tl_contacts *contacts = &m->detect->contacts;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double size = tl_contact_size(m, c);
     double spring = tl_law_stiffness(law) * p->area[row] * size;
     double force = tl_v3_norm(tl_columns_get(p->f_s, row)) + fabs(p->f_n[row]);
     return along > TL_OUT_OF_PLANE * force && along > ROUNDING_FORCE * spring;
@@ -354,12 +338,10 @@ static void law_check_forces(const tl_model *m, tl_failure *failure, const tl_la
 /* Name of the state whose column it is. */
 static const char *state_name(const tl_kind *kind, uint32_t column)
 {
-    uint32_t at = 0;
-    for (uint32_t k = 0; k < kind->state_count; k++) {
-        at += tl_kind_state(kind, k)->kind == TL_STATE_TANGENT ? 3 : 1;
-        if (column < at)
-            return tl_kind_state(kind, k)->name;
-    }
+    tl_state_columns at = {0};
+    while (tl_state_next(kind, column + 1, &at))
+        if (column < at.begin + at.count)
+            return at.state->name;
     return "?";
 }
 
@@ -436,11 +418,8 @@ static bool call_law(const span_job *job, size_t first, size_t count, bool partl
     /* a law need not write its energies: those of the tile before are not its own */
     memset(l->stored, 0, count * sizeof *l->stored);
     memset(l->dissipated, 0, count * sizeof *l->dissipated);
-    const tl_law_ops *ops = job->law->kind->ops;
-    tl_report report = {.size = sizeof report};
-    tl_enter(job->law->kind, "update");
-    tl_status status = ops->update(job->law->self, &batch, &report);
-    tl_leave();
+    tl_report report;
+    tl_status status = tl_law_update(job->law, &batch, &report);
     /* the plugin's word: there need not be such a point */
     size_t bad = report.first_bad < count ? report.first_bad : 0;
     if (status != TL_OK)
@@ -545,56 +524,6 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const tl
     law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
-/* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
- * springs of the law hold pressed is not what the field holds: see tl_press. */
-static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                       const tl_point_lanes *t, size_t lane, const tl_arms *arms,
-                       tl_group_sums *out)
-{
-    (void)arms;
-    const tl_detect *d = m->detect;
-    const tl_contacts *contacts = &d->contacts;
-    const tl_points_table *p = &d->points;
-    const size_t torsion = TL_FIELD_TORSION * TL_LANES;
-    const bool tells = tl_law_presses(law), linear = tl_law_is_linear(law);
-    tl_told_press pressed[TL_LANES];
-    memset(out, 0, sizeof *out);
-    if (tells)
-        tl_press_ask(m, law, group, t, lane, pressed);
-    for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t c = group->contact[l];
-        size_t i = group->start + l, k = lane + l;
-        double area = p->area[i];
-        if (c == TL_NO_ROW || !(area > 0))
-            continue;
-        const tl_press_row *row = &d->press[contacts->press[c]];
-        const tl_press *press = &row->press;
-        const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
-        double f_n = p->f_n[i], same = p->f_n[i + torsion];
-        tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
-        tl_vec3 shear = tl_columns_get(p->f_s, i);
-        tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
-        const tl_field_press by = linear  ? tl_press_linearly(row, law->kn, area, f_n, same)
-                                  : tells ? tl_press_by_law(row, area, f_n, same, &pressed[l])
-                                          : tl_press_by_force(press, law->kn, area, f_n, same);
-        tl_vec3 force = tl_v3_add(shear, tl_m3_mul(turn, by.force));
-        tl_vec3 moment = tl_v3_add(tl_v3_cross(x, shear), tl_m3_mul(turn, by.moment));
-        moment = tl_v3_madd(moment, press->radius, twist);
-        double spare = law->ks > 0 ? 0.5 * (row->spare[0] + row->spare[1]) / law->ks : 0;
-        for (int axis = 0; axis < 3; axis++) {
-            out->force[axis][l] = (&force.x)[axis];
-            out->moment[axis][l] = (&moment.x)[axis];
-        }
-        out->stored[l] = t->stored[k] + t->stored[k + torsion] - by.springs + by.energy + spare;
-        out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
-        if (press->lifted != 0)
-            out->dissipated[l] += tl_lost_lift(row, &by);
-        out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
-        if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))
-            out->odd[l] += 1;
-    }
-}
-
 static void sum_patches(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                         const tl_point_lanes *t, size_t lane, const tl_arms *arms,
                         tl_group_sums *out)
@@ -609,14 +538,7 @@ static void follow_patches(tl_model *m, const tl_simd_group *group, const tl_poi
     tl_simd_group_follow(m, group, false, t, lane, tangents, arms);
 }
 
-static void follow_fields(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
-                          size_t lane, uint32_t tangents, tl_arms *arms)
-{
-    tl_simd_group_follow(m, group, true, t, lane, tangents, arms);
-}
-
 const tl_kind_force tl_patch_force = {.cells = true, .follow = follow_patches, .sum = sum_patches};
-const tl_kind_force tl_field_force = {.follow = follow_fields, .sum = sum_fields};
 
 /* Adds what partly open patches have beside their points. Gives the lanes that slip has opened. */
 static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,

@@ -20,26 +20,12 @@ typedef struct tl_law_phase {
     void (*keep)(tl_model *m, const tl_simd_group *groups, size_t count);
 } tl_law_phase;
 
-/* Of each contact of a SIMD group: force on B of its points, their moment about A's centroid, and the energies of
- * their springs and slip. */
-typedef struct tl_group_sums {
-    double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
-    double holds_over_gap[TL_LANES]; /* above 0 when a force acts across a gap */
-    double odd
-        [TL_LANES]; /* 0, NaN when the force or moment is not finite, 1 when shear forces may leave their planes */
-} tl_group_sums;
-
-/* Patches and field contacts, from places to forces. */
-extern const tl_kind_force tl_patch_force, tl_field_force;
+/* Patches, from places to forces. */
+extern const tl_kind_force tl_patch_force;
 
 /* Calls the laws on their spans of contact points and sums forces per contact. */
 tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase);
 /* Every contact has a law, or a sentence that names one that has not. */
 tl_status tl_laws_check(tl_model *m);
-
-/* Limit: component of a shear force along the normal, relative to the whole force of the point. It holds for all
- * points of a contact together before they are looked at one by one. The host's own reaches 4e-7 where normals change
- * from point to point. Test: lua/test_law_check. */
-#define TL_OUT_OF_PLANE 1e-4
 
 #endif

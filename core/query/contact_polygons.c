@@ -30,8 +30,7 @@ typedef struct job {
 /* Adds a contact's polygons in the frame of its first block's body. */
 static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl_surface *surface)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_contact_view(m, c);
     return tl_pair_place(&view, scratch) &&
            tl_contact_kind_of(m->detect, c)->place->show(m, c, &view, scratch, surface);
 }
