@@ -10,7 +10,6 @@
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "contact/presses.h"
 #include "contact/store.h"
 #include "model/joints.h"
 #include "model/model.h"
@@ -25,8 +24,8 @@
  *
  * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest contact.
  * They are looked for among neighbours in the order of blocks, so that what a group needs lies close together in memory.
- * Each joint law has a span of SIMD groups for patches and one for field contacts, and others for contacts between bodies
- * that are held still. New contacts get a free lane near the end of the span, or the first lane of a new group there. */
+ * Each joint law has a span of SIMD groups for patches and one for field contacts. Contacts between bodies that are held
+ * still have spans of their own. New contacts get a free lane near the end of the span, or the first lane of a new group there. */
 
 /* Contacts, one after the other, among which those of as many points are put together. */
 #define WINDOW 1024
@@ -425,10 +424,9 @@ static void give_press_back(tl_detect *d, uint32_t row)
 
 /* ---------------------------------------------------------------- tables ------------------ */
 
-/* Where contacts are laid out anew, there is room for a share more of them, of points of each span, and of facets
- * than is needed, and for some more at least: 1 / SPARE_CALM first, and from then on twice the share each time
- * that a layout did not last LAYOUT_LASTS steps, as of blocks that fall or slide, up to 1 / SPARE_BUSY, and
- * half of it each time that it did. */
+/* Where contacts are laid out anew, there is room for a share more of them, and of the points of each span, than is needed.
+ * The share is 1 / SPARE_CALM first. It is doubled, up to 1 / SPARE_BUSY, each time that a layout did not last LAYOUT_LASTS
+ * steps, as of blocks that fall or slide. It is halved each time that it did. SPARE_ROWS are left to spare at least. */
 #define SPARE_CALM 64
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100

@@ -7,14 +7,9 @@
 #include "contact/cut_contacts.h"
 
 #include "base/columns.h"
-#include "contact/across_gap.h"
 #include "contact/contacts.h"
-#include "contact/facing.h"
-#include "contact/kind.h"
-#include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "contact/presses.h"
 #include "contact/shear.h"
 #include "narrow/flush.h"
 
@@ -23,123 +18,6 @@
 
 /* Tolerance: normals of a part's face and of the whole's are off each other by rounding. */
 #define SAME_FACE 1e-9
-
-/* The points in the places where their blocks have carried them, and their sums. */
-static void keep_points(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
-                        tl_cut_contact *cut)
-{
-    tl_detect *d = m->detect;
-    const tl_facet *facet = &d->contacts.facet[c];
-    uint32_t column = tl_shear_kept_column(m, cut->law);
-    tl_shear *whole = &cut->whole;
-    tl_facing_place to = {*a->r, {0, 0, 0}};
-    if (!cut->field)
-        to = tl_facing_ride(a->r, b->r, tl_v3_sub(b->place, a->place), &facet->laid.turn,
-                            facet->laid.shift, facet->ride);
-    for (size_t k = 0; k < cut->count; k++) {
-        tl_vec3 p = tl_columns_get(d->points.p, tl_point_row(&d->contacts, c, k));
-        tl_vec3 place = tl_v3_add(tl_v3_add(a->place, to.at), tl_m3_mul(&to.to, p));
-        tl_old_point point = tl_point_as_old(&d->points, &d->contacts, c, k, place);
-        tl_shear_add(whole, point.area, place, tl_v3_scale(point.area, point.shear));
-        whole->centre = tl_v3_madd(whole->centre, point.area, place);
-        whole->normal = point.normal;
-        cut->kept += column == TL_NO_ROW ? 0 : point.state[column];
-        d->cut_points[d->cut_point_count++] = point;
-    }
-    whole->centre = tl_v3_scale(whole->area > 0 ? 1 / whole->area : 0, whole->centre);
-}
-
-/* The springs of a field contact, and how far an initial stress has moved its face, as a patch has that. */
-static void keep_field(tl_model *m, uint32_t c, tl_cut_contact *cut)
-{
-    const tl_press_row *row = tl_press_row_of(m, c);
-    tl_old_point *point = &m->detect->cut_points[cut->first];
-    cut->whole.energy = row->spare[0] + row->spare[1];
-    tl_shear_add_field(m, c, &cut->whole);
-    point->n0 = 0;
-    point->reference = -row->shift;
-}
-
-/* The overlap of the walls at a place: of faces with the sum `offset` of their offsets. */
-static double overlap_at(const tl_cut_contact *cut, double offset, const tl_cut_side *a,
-                         const tl_cut_side *b, tl_vec3 place)
-{
-    return offset - tl_v3_dot(cut->face[0], tl_v3_sub(place, a->place)) -
-           tl_v3_dot(cut->face[1], tl_v3_sub(place, b->place));
-}
-
-/* Takes what slip has opened out of the references of a patch's points, and notes their closures. */
-static void keep_closures(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
-                          tl_cut_contact *cut)
-{
-    double offset = m->detect->contacts.facet[c].offset, opening[TL_LANES];
-    for (size_t k = 0; k < cut->count; k++) {
-        tl_old_point *p = &m->detect->cut_points[cut->first + k];
-        if (k % TL_LANES == 0)
-            tl_contact_point_openings(m, c, k, opening);
-        p->closure = overlap_at(cut, offset, a, b, p->arm) - p->reference;
-        p->reference -= opening[k % TL_LANES];
-    }
-}
-
-/* The faces of a patch, or those of a field contact that are moved out, where they lie, and how far they are moved. */
-static void keep_faces(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
-                       tl_cut_contact *cut)
-{
-    const tl_facet *facet = &m->detect->contacts.facet[c];
-    const tl_press_row *row = tl_press_row_of(m, c);
-    tl_vec3 na = facet->na, nb = facet->nb;
-    double offset = facet->offset;
-    if (cut->field) {
-        na = row->shifted_at[0].normal;
-        nb = row->shifted_at[1].normal;
-        offset = row->shifted_at[0].offset + row->shifted_at[1].offset;
-    }
-    cut->shift = cut->field ? row->shift : tl_contact_mean_lift(m, c);
-    cut->face[0] = tl_m3_mul(a->r, na);
-    cut->face[1] = tl_m3_mul(b->r, nb);
-    cut->overlap = overlap_at(cut, offset, a, b, m->detect->cut_points[cut->first].arm);
-}
-
-tl_cut_contact *tl_cut_contact_keep(tl_model *m, uint32_t c, const tl_cut_side *a,
-                                    const tl_cut_side *b)
-{
-    tl_detect *d = m->detect;
-    bool field = tl_facet_is_field(&d->contacts.facet[c]);
-    size_t count = tl_contact_areas(d, c);
-    if (!tl_grow(&d->cut_contacts, &d->cut_capacity, d->cut_count + 1, sizeof *d->cut_contacts) ||
-        !tl_grow(&d->cut_points, &d->cut_point_capacity, d->cut_point_count + count,
-                 sizeof *d->cut_points))
-        return NULL;
-    tl_cut_contact *cut = &d->cut_contacts[d->cut_count++];
-    *cut = (tl_cut_contact){.a = a->id,
-                            .b = b->id,
-                            .law = d->contacts.law[c],
-                            .count = (uint32_t)count,
-                            .first = d->cut_point_count,
-                            .field = field,
-                            .holds_over_gap = !field && d->contacts.holds_over_gap[c],
-                            .pressed = !field && !tl_v3_is_zero(d->contacts.force[c]),
-                            .reframed = a->reframed};
-    keep_points(m, c, a, b, cut);
-    keep_faces(m, c, a, b, cut);
-    if (field)
-        keep_field(m, c, cut);
-    else
-        keep_closures(m, c, a, b, cut);
-    return cut;
-}
-
-void tl_cut_contact_empty(tl_model *m, uint32_t c)
-{
-    tl_detect *d = m->detect;
-    tl_press_row *row = tl_press_row_of(m, c);
-    for (size_t k = 0; k < d->contacts.point_count[c]; k++)
-        tl_columns_put(d->points.f_s, tl_point_row(&d->contacts, c, k), tl_v3(0, 0, 0));
-    if (row)
-        row->spare[0] = row->spare[1] = 0;
-    d->contacts.released[c] = 0;
-}
 
 static int compare(const void *x, const void *y)
 {

@@ -14,11 +14,6 @@ typedef struct tl_cut_side {
     bool reframed; /* that is another frame than the contact's */
 } tl_cut_side;
 
-/* Keeps what a contact leaves, whose first block is `a`; NULL when out of memory. */
-tl_cut_contact *tl_cut_contact_keep(tl_model *m, uint32_t contact, const tl_cut_side *a,
-                                    const tl_cut_side *b);
-/* After it is kept: the contact that ends takes nothing of it along. */
-void tl_cut_contact_empty(tl_model *m, uint32_t contact);
 /* Puts them in the order in which they are looked up. */
 void tl_cut_contacts_sort(tl_detect *d);
 /* What a new contact of two blocks takes over from, one at least a part of a block that was cut; NULL: nothing. */

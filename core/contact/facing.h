@@ -40,8 +40,8 @@ typedef struct tl_facing_place {
     tl_vec3 at;
 } tl_facing_place;
 
-/* Of the points of a patch: between where A and where B have carried them since B was at `turn` and `shift` in A's frame, nearer to
- * B by the share `ride`. `d` is the way from A's centroid to B's. */
+/* Of the points of a patch: between where A and where B have carried them, nearer to B by the share `ride`. They were laid
+ * when B was at `turn` and `shift` in A's frame. `d` is the way from A's centroid to B's. */
 TL_INLINE tl_facing_place tl_facing_ride(const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d,
                                          const tl_mat3 *turn, tl_vec3 shift, double ride)
 {

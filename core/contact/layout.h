@@ -30,8 +30,8 @@ typedef struct tl_cell {
         centre; /* area times its centroid from that of the patch, m^3; found where lifts differ */
     double pressed_area; /* m^2, and the same of it */
     tl_vec3 pressed_centre;
-    /* of a law that is not linear: int u^3 dA, m^5, int u^4 dA, m^6, int u^2 x dA, m^5, and int u^3 x dA, m^6, of what is closed, and
-     * what its stress changes */
+    /* of a law that is not linear, of what is closed: int u^3 dA, m^5; int u^4 dA, m^6; int u^2 x dA, m^5; int u^3 x dA, m^6;
+     * and what its stress changes */
     double pressed_third, pressed_fourth;
     tl_vec3 pressed_square, pressed_cube;
     tl_bent bent;
@@ -56,8 +56,8 @@ typedef struct tl_point_lanes {
 } tl_point_lanes;
 
 /* A SIMD group: TL_LANES contacts of one joint law whose points lie side by side. Point k of the contact in lane l is row
- * start + TL_LANES k + l. What has to be done for each contact is done for all of a SIMD group at once, one in each lane of the
- * processor's vectors, and so is what has to be done for each point. Lanes without a contact, and rows beyond a
+ * start + TL_LANES k + l. What has to be done for each contact, or for each point, is done for all of a SIMD group at once,
+ * one in each lane of the processor's vectors. Lanes without a contact, and rows beyond a
  * contact's points, are inert: area 0. */
 typedef struct tl_simd_group {
     uint32_t start, slots;      /* points there is room for in each lane */
@@ -71,8 +71,8 @@ typedef struct tl_simd_group {
 /* Whether the contacts of a span are passed over: contacts.c. */
 enum { TL_SPAN_WOKEN, TL_SPAN_FOLLOWED, TL_SPAN_RESTS };
 
-/* A span: the SIMD groups of one joint law, one after the other in the list of SIMD groups, and their points, in rows from `begin`,
- * used up to `end`, with room up to `limit`. Kinds of contact have spans apart. Contacts between
+/* A span: the SIMD groups of one joint law, one after the other in the list of SIMD groups. Their points are in rows from
+ * `begin`, used up to `end`, with room up to `limit`. Kinds of contact have spans apart. Contacts between
  * bodies that are held still have spans of their own. */
 typedef struct tl_span {
     uint32_t law;

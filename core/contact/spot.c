@@ -23,42 +23,25 @@ static tl_relative relative(const tl_model *m, uint32_t block_a, uint32_t block_
                          tl_q_mul(tl_q_conj(bodies->q[a]), bodies->q[b])};
 }
 
-static tl_spot spot_at(const tl_relative *s, double remaining)
+tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b, double remaining)
 {
-    return (tl_spot){{(float)s->centroid.x, (float)s->centroid.y, (float)s->centroid.z},
-                     {(float)s->turn.w, (float)s->turn.x, (float)s->turn.y, (float)s->turn.z},
+    tl_relative s = relative(m, block_a, block_b);
+    return (tl_spot){{(float)s.centroid.x, (float)s.centroid.y, (float)s.centroid.z},
+                     {(float)s.turn.w, (float)s.turn.x, (float)s.turn.y, (float)s.turn.z},
                      (float)remaining};
 }
 
-/* The difference of two unit quaternions is 2 sin of a quarter of the angle between them; a quaternion and its negative are the same
- * rotation. */
-static double moved(const tl_spot *then, const tl_relative *now, double radius)
-{
-    tl_vec3 centroid = {then->centroid[0], then->centroid[1], then->centroid[2]};
-    tl_quat p = {then->turn[0], then->turn[1], then->turn[2], then->turn[3]}, q = now->turn;
-    double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
-    double w = q.w - sign * p.w, x = q.x - sign * p.x, y = q.y - sign * p.y, z = q.z - sign * p.z;
-    double angle = 2 * (sqrt(w * w + x * x + y * y + z * z) + ROUNDED);
-    return tl_v3_norm(tl_v3_sub(now->centroid, centroid)) + ROUNDED * tl_v3_norm(centroid) +
-           angle * radius;
-}
-
-tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b, double remaining)
-{
-    tl_relative now = relative(m, block_a, block_b);
-    return spot_at(&now, remaining);
-}
-
-tl_spot tl_spot_on(const tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b,
-                   double radius)
-{
-    tl_relative now = relative(m, block_a, block_b);
-    return spot_at(&now, (double)then->remaining - moved(then, &now, radius));
-}
-
+/* The difference of two unit quaternions is 2 sin of a quarter of the angle between them. A quaternion and its negative are
+ * the same rotation. */
 double tl_spot_moved(const tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b,
                      double radius)
 {
     tl_relative now = relative(m, block_a, block_b);
-    return moved(then, &now, radius);
+    tl_vec3 centroid = {then->centroid[0], then->centroid[1], then->centroid[2]};
+    tl_quat p = {then->turn[0], then->turn[1], then->turn[2], then->turn[3]}, q = now.turn;
+    double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
+    double w = q.w - sign * p.w, x = q.x - sign * p.x, y = q.y - sign * p.y, z = q.z - sign * p.z;
+    double angle = 2 * (sqrt(w * w + x * x + y * y + z * z) + ROUNDED);
+    return tl_v3_norm(tl_v3_sub(now.centroid, centroid)) + ROUNDED * tl_v3_norm(centroid) +
+           angle * radius;
 }

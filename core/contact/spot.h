@@ -14,9 +14,6 @@ typedef struct tl_spot {
 struct tl_model;
 /* Where the blocks are. */
 tl_spot tl_spot_of(const struct tl_model *m, uint32_t block_a, uint32_t block_b, double remaining);
-/* The same, on the way from another spot: its `remaining` is less by how far points have moved that lie within `radius`. */
-tl_spot tl_spot_on(const struct tl_model *m, const tl_spot *then, uint32_t block_a,
-                   uint32_t block_b, double radius);
 /* How far points have moved since then that lie within `radius` of the centroid of B's body, at the most: what the rounding of
  * the spot may hide is counted. */
 double tl_spot_moved(const struct tl_model *m, const tl_spot *then, uint32_t block_a,

@@ -6,7 +6,7 @@
  * a bond that is lost does not come back.
  *
  * Means wear down what varies over the face. So of stresses, and of states that are linear in the force, the
- * plane fitted through the old points is taken out before and put back after, with the same sum and moments. A
+ * plane fitted through the old points is taken out before. It is put back after, with the same sum and moments. A
  * linear field stays what it is to rounding. So does its energy, for the points integrate squares of it
  * exactly; that of what is off the plane can only become less. Sum and moments are taken about the centroids of
  * the areas and follow the area, so a uniform stress stays uniform when the area changes.

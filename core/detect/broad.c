@@ -312,7 +312,7 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
         if (j < fresh && compare_pair(&g->next[j], old) == 0) {
             g->next[j] = *old;
             if (tl_pair_is_apart(old)) /* path lengths begin anew */
-                tl_pair_rebase(d, &g->next[j]);
+                g->next[j].wake = tl_pair_wake_at((double)old->wake - tl_pair_path(d, old));
         } else if (!tl_pair_is_apart(old) && !push(g, &count, *old)) {
             return tl_fail_memory(&m->error);
         }
@@ -387,6 +387,24 @@ tl_status tl_broad_add(tl_model *m)
     return status;
 }
 
+/* Reserves what is kept of the blocks and bodies of the model; their path lengths begin at 0. */
+static tl_status restart_paths(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+    if (!tl_fit(&d->odometer_0, &d->odometer_capacity, bodies + 1, sizeof *d->odometer_0) ||
+        !tl_fit(&d->touched, &d->touched_capacity, bodies + 1, sizeof *d->touched) ||
+        !tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) ||
+        !tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
+        return tl_fail_memory(&m->error);
+    for (size_t body = 0; body < bodies; body++)
+        d->odometer_0[body] = m->bodies.odometer[body];
+    for (size_t row = 0; row < blocks; row++)
+        d->path[row] = 0;
+    d->longest_path = 0;
+    return TL_OK;
+}
+
 tl_status tl_broad_update(tl_model *m)
 {
     struct tl_broad g = {0};
@@ -400,5 +418,5 @@ tl_status tl_broad_update(tl_model *m)
         return status;
     m->detect->reach = reach;
     m->detect->listed = true;
-    return tl_pairs_restart(m);
+    return restart_paths(m);
 }

@@ -1,22 +1,25 @@
 /* detect.c - the order of contact detection.
  *
- * Phases: after edits rows are found again by id, and what was known of blocks that have changed is dropped; the
- * broad phase lists the neighbours of these, and is made anew when something may have left its skin; pairs without a contact are looked at when they may have come near; contacts are
- * followed, or made anew when they moved more than a margin; births, deaths and growth are then settled
- * serially in the order of pairs. How far anything can have moved is told by the bodies' odometers. */
+ * Phases: after edits rows are found again by id, and what was known of blocks that have changed is dropped (edits.c). The
+ * broad phase lists the neighbours of these, and is made anew when something may have left its skin. Pairs without a contact
+ * are tested when they may have come near. Contacts are followed, or made anew when they moved more than a margin. Births,
+ * deaths and growth are then settled serially in the order of pairs. The bodies' odometers tell how far anything can have
+ * moved. */
 #include "detect/detect.h"
 
+#include "base/inline.h"
 #include "base/parallel.h"
 #include "contact/contacts.h"
 #include "contact/cut_contacts.h"
 #include "contact/handover.h"
 #include "contact/index.h"
+#include "contact/kind.h"
 #include "contact/pair_view.h"
 #include "contact/prefetch.h"
-#include "contact/presses.h"
 #include "contact/store.h"
 #include "detect/asked.h"
 #include "detect/broad.h"
+#include "detect/edits.h"
 #include "detect/grazing.h"
 #include "detect/kinds.h"
 #include "detect/overlap.h"
@@ -24,9 +27,10 @@
 #include "detect/update.h"
 #include "force/cut_parts.h"
 #include "model/body_shape.h"
-#include "model/joints.h"
 #include "model/rows.h"
+#include "narrow/coarse_test.h"
 #include "narrow/manifold.h"
+#include "narrow/patch.h"
 #include "narrow/place.h"
 
 #include <assert.h>
@@ -35,6 +39,8 @@
 
 /* Rows a worker takes at a time. */
 #define CONTACT_CHUNK 256
+/* Blocks a worker takes at a time: there is little to do with each. */
+#define BLOCK_CHUNK 4096
 #define GROUP_CHUNK 8
 /* SIMD groups from one for which the memory is asked to the present one, and from one whose contacts' rows are asked for. */
 #define AHEAD 2
@@ -61,350 +67,214 @@ static tl_status ensure(tl_model *m)
     return TL_OK;
 }
 
-/* ---------------------------------------------------------------- after edits -------------
+/* ---------------------------------------------------------------- pairs -------------------
  *
- * What edits of the model leave of pairs and contacts.
+ * When pairs without a contact are tested.
  *
- * A block bears the count of structure with which it came, or got another shape, frame or tags. What is newer than the
- * count that detection has seen is treated as if it were new; all else that is known of pairs and contacts stays. What contacts of
- * blocks that were cut carry is left to those of their parts (contact/cut_contacts.c). */
+ * A pair that was tested and is not near sleeps until its blocks, together, may have moved as far as they are apart.
+ * How far a block can have moved follows from its body's odometer, since the broad phase was made: single precision is
+ * enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a pair be tested too early.
+ * Most pairs sleep in most steps. Of a chunk that sleeps longer than any two blocks have moved nothing is read. */
 
-/* Tolerance: minimum area over that of a patch from which the patch may be none: below MOST_MIN_AREA of
- * narrow/manifold.c. */
-#define SURE_MIN_AREA 0.01
-
-/* ---------------------------------------------------------------- rows ------------------- */
-
-/* What is made before anything is changed. */
-typedef struct rows_scratch {
-    uint32_t *row;      /* [blocks seen] the present row, or TL_NO_ROW */
-    uint32_t *part;     /* [blocks seen] of one that was cut: one of its parts, or TL_NO_ROW */
-    double *odometer_0; /* [bodies] */
-    uint8_t *touched;   /* [bodies] */
-    tl_known_block *known_blocks; /* [blocks] */
-} rows_scratch;
-
-static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
+/* The bits of a float that is not less than a number which is not negative: those of the next one follow. */
+TL_INLINE uint32_t rounded_up(double x)
 {
-    tl_detect *d = m->detect;
-    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
-    *scratch = (rows_scratch){.row = malloc((d->known_block_count + 1) * sizeof *scratch->row),
-                              .part = malloc((d->known_block_count + 1) * sizeof *scratch->part),
-                              .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
-                              .touched = malloc(bodies + 1),
-                              .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
-    if (scratch->row && scratch->part && scratch->odometer_0 && scratch->touched &&
-        scratch->known_blocks && tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
-        tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
-        return true;
-    return false;
+    float y = (float)x;
+    uint32_t bits;
+    memcpy(&bits, &y, sizeof bits);
+    return bits + ((double)y < x);
 }
 
-static void free_scratch(rows_scratch *scratch)
-{
-    free(scratch->row);
-    free(scratch->part);
-    free(scratch->odometer_0);
-    free(scratch->touched);
-    free(scratch->known_blocks);
-}
+typedef struct path_job {
+    tl_model *m;
+    float longest[TL_MAX_THREADS];
+} path_job;
 
-/* Runs of bodies that have come or changed begin here, and their contacts are not what they were; others keep both. */
-static void keep_bodies(tl_model *m, const rows_scratch *scratch)
+/* Path lengths of blocks; the longest of them. Floats that are not negative are in the order of their bits. */
+TL_VECTORIZED static float measure_paths(float *restrict path, const uint32_t *restrict body,
+                                         const double *restrict odometer,
+                                         const double *restrict odometer_0, size_t count)
 {
-    const tl_detect *d = m->detect;
-    for (size_t body = 0; body < m->bodies.table.rows; body++) {
-        scratch->odometer_0[body] = m->bodies.odometer[body];
-        scratch->touched[body] = true;
+    uint32_t most = 0;
+    float farthest;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits = rounded_up(odometer[body[i]] - odometer_0[body[i]]);
+        memcpy(&path[i], &bits, sizeof bits);
+        most = bits > most ? bits : most;
     }
-    for (size_t old = 0; old < d->known_block_count; old++) {
-        uint32_t row = scratch->row[old], before = d->known_blocks[old].body;
-        if (row == TL_NO_ROW || tl_block_is_new(m, row))
-            continue;
-        scratch->odometer_0[m->blocks.body[row]] = d->odometer_0[before];
-        scratch->touched[m->blocks.body[row]] = d->touched[before];
-    }
+    memcpy(&farthest, &most, sizeof farthest);
+    return farthest;
 }
 
-static int compare_known(const void *x, const void *y)
-{
-    const tl_known_block *p = x, *q = y;
-    return (p->id > q->id) - (p->id < q->id);
-}
-
-/* Finds a part of each block that was cut. */
-static void find_parts(const tl_model *m, const rows_scratch *scratch)
-{
-    const tl_detect *d = m->detect;
-    for (size_t old = 0; old < d->known_block_count; old++)
-        scratch->part[old] = TL_NO_ROW;
-    for (size_t i = 0; i < m->cut_part_count && d->known_block_count; i++) {
-        tl_known_block root = {.id = m->cut_parts[i].root};
-        if (tl_block_row_quiet(m, m->cut_parts[i].id) == TL_NO_ROW)
-            continue;
-        const tl_known_block *known =
-            bsearch(&root, d->known_blocks, d->known_block_count, sizeof root, compare_known);
-        if (known)
-            scratch->part[known - d->known_blocks] = (uint32_t)i;
-    }
-}
-
-/* Whether the contact of a pair, with the rows that detection has seen, ends because a block of it was cut. */
-static bool leaves(const tl_detect *d, const rows_scratch *scratch, const tl_pair *p)
-{
-    bool a_ends = scratch->row[p->a] == TL_NO_ROW, b_ends = scratch->row[p->b] == TL_NO_ROW;
-    return (a_ends || b_ends) && !tl_pair_is_apart(p) &&
-           (!a_ends || scratch->part[p->a] != TL_NO_ROW) &&
-           (!b_ends || scratch->part[p->b] != TL_NO_ROW) &&
-           d->contacts.pending[p->contact] != TL_PENDING_DIE &&
-           d->contacts.point_count[p->contact] > 0;
-}
-
-static tl_cut_side side_of(const tl_model *m, const rows_scratch *scratch, uint32_t seen)
-{
-    tl_id id = m->detect->known_blocks[seen].id;
-    uint32_t row = scratch->row[seen];
-    if (row == TL_NO_ROW) {
-        const tl_cut_part *part = &m->cut_parts[scratch->part[seen]];
-        uint32_t body = m->blocks.body[tl_block_row_quiet(m, part->id)];
-        return (tl_cut_side){.id = id, .r = &part->r, .place = part->place, .body = body};
-    }
-    uint32_t body = m->blocks.body[row];
-    return (tl_cut_side){.id = id,
-                         .r = &m->bodies.pose[body].r,
-                         .place = tl_body_place(&m->bodies, body),
-                         .body = body,
-                         .reframed = tl_block_is_new(m, row)};
-}
-
-/* Keeps what contacts of blocks that were cut leave; false when out of memory (nothing changed). */
-static bool keep_cut_contacts(tl_model *m, const rows_scratch *scratch)
-{
-    tl_detect *d = m->detect;
-    size_t contacts = d->cut_count, points = d->cut_point_count;
-    bool there = true;
-    for (size_t i = 0; i < d->pair_count && m->cut_part_count && there; i++) {
-        const tl_pair *p = &d->pairs[i];
-        if (!leaves(d, scratch, p))
-            continue;
-        tl_cut_side a = side_of(m, scratch, p->a), b = side_of(m, scratch, p->b);
-        tl_cut_contact *cut = tl_cut_contact_keep(m, p->contact, &a, &b);
-        there = cut != NULL;
-        if (there)
-            tl_cut_contact_foresee(m, p->contact, cut, &a, &b);
-    }
-    if (d->cut_count == contacts)
-        return there;
-    /* for the references of what the parts press with */
-    if (!there || !tl_detect_hold_initial(d)) {
-        d->cut_count = contacts;
-        d->cut_point_count = points;
-        return false;
-    }
-    for (size_t i = 0; i < d->pair_count; i++)
-        if (leaves(d, scratch, &d->pairs[i]))
-            tl_cut_contact_empty(m, d->pairs[i].contact);
-    tl_cut_contacts_sort(d);
-    return true;
-}
-
-/* Ends a contact: a block of it has gone, or both have become one body. */
-static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t contact, uint32_t a,
-                        uint32_t b)
-{
-    m->detect->contacts.pending[contact] = TL_PENDING_DIE;
-    if (a != TL_NO_ROW)
-        scratch->touched[m->blocks.body[a]] = true;
-    if (b != TL_NO_ROW)
-        scratch->touched[m->blocks.body[b]] = true;
-}
-
-/* Whether a contact is no more than an answer to somebody who has asked: it has been in no step, and bears no initial stress. Where
- * a block of it changes it is found as if nobody had. */
-static bool is_fresh(const tl_detect *d, uint32_t contact)
-{
-    bool stressed = false;
-    for (size_t k = 0; d->points.initial && k < d->contacts.point_count[contact]; k++)
-        stressed = stressed || d->points.f_n0[tl_point_row(&d->contacts, contact, k)] != 0;
-    return d->contacts.id[contact] > d->stepped_contact && !stressed;
-}
-
-/* Pairs, in their order, with their present rows: ids ascend with rows before and after. */
-static void keep_pairs(tl_model *m, const rows_scratch *scratch)
-{
-    tl_detect *d = m->detect;
-    tl_contacts *c = &d->contacts;
-    size_t kept = 0;
-    for (size_t i = 0; i < d->pair_count; i++) {
-        tl_pair p = d->pairs[i];
-        uint32_t a = scratch->row[p.a], b = scratch->row[p.b];
-        bool parted = a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b];
-        bool changed = !parted && (tl_block_is_new(m, a) || tl_block_is_new(m, b));
-        if (tl_pair_is_apart(&p)) {
-            if (parted || changed)
-                continue; /* the broad phase lists it anew */
-        } else if (parted || (changed && is_fresh(d, p.contact))) {
-            end_contact(m, scratch, p.contact, a, b);
-            continue;
-        } else {
-            c->a[p.contact] = a;
-            c->b[p.contact] = b;
-            c->pair[p.contact] = (uint32_t)kept;
-            if (c->pending[p.contact] == TL_PENDING_DIE)
-                end_contact(m, scratch, p.contact, a, b);
-        }
-        p.a = a;
-        p.b = b;
-        d->pairs[kept++] = p;
-    }
-    d->pair_count = kept;
-    for (size_t chunk = 0; chunk * TL_PAIR_CHUNK < kept; chunk++)
-        d->chunks[chunk] = (tl_pair_chunk){.wake = -INFINITY};
-}
-
-/* Finds the blocks of pairs and contacts again after rows have changed, and drops what was known of those that have come, gone
- * or changed: their pairs without a contact, and contacts of which a block has gone. TL_E_MEMORY: nothing has changed. */
-static tl_status edited_rows(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
-    rows_scratch scratch;
-    bool there = reserve_scratch(m, &scratch);
-    for (size_t old = 0; there && old < d->known_block_count; old++)
-        scratch.row[old] = tl_block_row_quiet(m, d->known_blocks[old].id);
-    if (there)
-        find_parts(m, &scratch);
-    if (!there || !keep_cut_contacts(m, &scratch)) {
-        free_scratch(&scratch);
-        return tl_fail_memory(&m->error);
-    }
-    keep_bodies(m, &scratch);
-    keep_pairs(m, &scratch);
-    for (size_t row = 0; row < blocks; row++)
-        scratch.known_blocks[row] = (tl_known_block){m->blocks.id[row], m->blocks.body[row]};
-    free(scratch.row);
-    free(scratch.part);
-    free(d->odometer_0);
-    free(d->touched);
-    free(d->known_blocks);
-    d->odometer_0 = scratch.odometer_0;
-    d->touched = scratch.touched;
-    d->known_blocks = scratch.known_blocks;
-    d->odometer_capacity = d->touched_capacity = bodies + 1;
-    d->known_block_capacity = blocks + 1;
-    d->known_block_count = blocks;
-    d->any_touched = true;
-    tl_contacts_unlist(d);
-    return TL_OK;
-}
-
-/* ---------------------------------------------------------------- laws ------------------- */
-
-/* Whether a contact's press lacks the volumes that its law asks for now. */
-static bool lacks_volumes(const tl_model *m, uint32_t row, uint32_t law)
-{
-    const tl_press_row *press = tl_press_row_of(m, row);
-    return press && !press->press.powers && law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]);
-}
-
-/* Contacts under another joint law belong in another span. */
-static void find_laws(tl_model *m)
-{
-    tl_contacts *c = &m->detect->contacts;
-    for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->pending[row] == TL_PENDING_DIE)
-            continue;
-        uint32_t law = tl_law_row(m, c->tag[row]);
-        if (c->pending[row] == TL_PENDING_NONE && law != c->law[row])
-            c->pending[row] = TL_PENDING_MOVE;
-        if (lacks_volumes(m, row, law))
-            c->points_valid_to[row] = TL_OUTDATED;
-    }
-}
-
-/* Whether a contact that is a patch remains one whatever the minimum area was before. */
-static bool stays_patch(const tl_model *m, uint32_t row)
-{
-    const tl_contacts *c = &m->detect->contacts;
-    if (c->point_count[row] == 0 || tl_facet_is_field(&c->facet[row]))
-        return false;
-    tl_min_area_rule rule = tl_min_area_of(m, c->tag[row]);
-    double mean = fmin(m->blocks.mean_face[c->a[row]], m->blocks.mean_face[c->b[row]]);
-    double min_area = isnan(rule.absolute) ? rule.fraction * mean : rule.absolute;
-    return min_area <= SURE_MIN_AREA * c->area[row];
-}
-
-/* Pairs that touch without area are tested again, but for those that have nothing in common. */
-static void wake_pairs(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)thread;
-    tl_model *m = user;
-    tl_detect *d = m->detect;
-    for (uint32_t i = (uint32_t)begin; i < end; i++) {
-        tl_pair *p = &d->pairs[i];
-        tl_pair_faces faces = tl_pair_faces_of(p);
-        if (!tl_pair_is_apart(p) || faces.one == faces.other) {
-            tl_pair_wake(d, i);
-            continue;
-        }
-        tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-        if (!tl_grazing_only_touches(&view, p)) {
-            tl_pair_wake(d, i);
-            continue;
-        }
-        tl_pair_forget_faces(p);
-        tl_pair_sleep(d, p, TL_STILL * view.size);
-        if (p->wake < d->chunks[chunk].wake)
-            d->chunks[chunk].wake = p->wake;
-    }
-}
-
-/* Under another minimum area contacts that are no patches, or too small ones, are made anew, and pairs that only touched are
- * looked at again; under another rule for the points of patches, all are made anew. */
-static void find_rules(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    tl_contacts *c = &d->contacts;
-    bool all = d->contact_points != m->config.contact_points;
-    tl_parallel_for(m->pool, d->pair_count, TL_PAIR_CHUNK, wake_pairs, m);
-    for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->pending[row] == TL_PENDING_DIE)
-            continue;
-        bool patch = stays_patch(m, row);
-        if (all || !patch)
-            c->points_valid_to[row] = TL_OUTDATED;
-        if (!patch && tl_facet_is_patch(&c->facet[row]))
-            c->faces_valid_to[row] = TL_OUTDATED;
-    }
-}
-
-/* Marks the contacts that come under another joint law, and those whose facets follow other rules than they did. */
-static void edited_laws(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    if (d->rules != m->rules) /* before contacts note the room they want in the place of faces */
-        find_rules(m);
-    if (d->laws != m->laws)
-        find_laws(m);
-}
-
-/* ---------------------------------------------------------------- frames ----------------- */
-
-static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+static void path_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
-    tl_model *m = user;
-    const tl_contacts *c = &m->detect->contacts;
-    for (uint32_t row = (uint32_t)begin; row < end; row++)
-        if (c->pending[row] != TL_PENDING_DIE &&
-            (tl_block_is_new(m, c->a[row]) || tl_block_is_new(m, c->b[row])))
-            tl_contact_reframe(m, row, thread);
+    path_job *job = user;
+    const tl_model *m = job->m;
+    tl_detect *d = m->detect;
+    float farthest = measure_paths(d->path + begin, m->blocks.body + begin, m->bodies.odometer,
+                                   d->odometer_0, end - begin);
+    job->longest[thread] = farthest > job->longest[thread] ? farthest : job->longest[thread];
 }
 
-/* Makes anew what contacts keep in the frames of bodies that have changed, before anything is computed from it. */
-static void edited_frames(tl_model *m)
+/* Notes how far each block can have moved since the broad phase was made. */
+static void measure_all_paths(tl_model *m)
 {
-    tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
+    path_job job = {.m = m};
+    unsigned threads = tl_pool_threads(m->pool);
+    for (unsigned i = 0; i < threads; i++)
+        job.longest[i] = 0;
+    tl_parallel_for(m->pool, m->blocks.table.rows, BLOCK_CHUNK, path_range, &job);
+    m->detect->longest_path = 0;
+    for (unsigned i = 0; i < threads; i++)
+        m->detect->longest_path =
+            job.longest[i] > m->detect->longest_path ? job.longest[i] : m->detect->longest_path;
+}
+
+/* Notes that a pair has lost its contact. */
+static void note_parted(tl_detect *d, uint32_t pair)
+{
+    tl_pair_chunk *chunk = &d->chunks[pair / TL_PAIR_CHUNK];
+    if (pair < d->pair_count && d->pairs[pair].wake < chunk->wake)
+        chunk->wake = d->pairs[pair].wake;
+}
+
+/* How far a pair may move that is apart by the gap of its region before it may become a contact; below 0: it may be
+ * one. Only a patch is born across a gap, of faces within its limit of tilt. */
+static double way_to_contact(const tl_pair_view *view, const tl_region *r, bool corners)
+{
+    const double most_tilt = tl_flush_limits_of(corners).tilt;
+    double tolerance = TL_CONTACT_TOLERANCE * view->size;
+    if (r->gap > tolerance)
+        return r->gap - tolerance;
+    double tilt = r->flush ? tl_region_tilt(view, r->flush_a, r->flush_b) : INFINITY;
+    bool parallel = (tilt - most_tilt) * view->size <= 2 * r->gap;
+    return r->gap > 0 && !parallel ? r->gap : -1;
+}
+
+/* How far a pair may move that only edges part before it may touch; 0: it may touch already. By coarse tests with
+ * reaches twice as long each, up to the longest with which it is known to be near. */
+static double way_to_edges(const tl_pair_view *view, double longest)
+{
+    double tolerance = TL_CONTACT_TOLERANCE * view->size, reach = tolerance;
+    if (tl_coarse_test(view, reach))
+        return 0;
+    while (2 * reach < longest && !tl_coarse_test(view, 2 * reach))
+        reach *= 2;
+    return fmax(reach - tolerance, tolerance);
+}
+
+/* What is known of a placed pair before its contact is made: that it holds across a gap, if it takes over from one. */
+static tl_manifold_before before_contact(const tl_model *m, const tl_pair *p,
+                                         const tl_pair_view *view, tl_narrow_scratch *scratch)
+{
+    tl_manifold_before out = {.kind = TL_FACET_PATCH, .most_tilt = INFINITY};
+    const tl_cut_contact *cut = tl_cut_contact_of(m, p->a, p->b);
+    tl_face_pair faces;
+    out.born_tilt = tl_cut_contact_tilt(m, p->a, p->b);
+    out.shift = tl_cut_contact_shift(m, p->a, p->b, &out.shifted);
+    out.reach = fmax(0, out.shift);
+    if (!cut || !cut->holds_over_gap || !tl_cut_contact_faces(m, p->a, p->b, &faces))
+        return out;
+    tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[faces.a], INFINITY);
+    out.over = INFINITY;
+    out.holds = tl_patch_lay(view, faces.a, faces.b, &rule, scratch) > 0;
+    out.faces = faces;
+    return out;
+}
+
+/* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of memory. */
+static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
+{
+    const double reach = m->detect->reach;
+    tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
+    tl_face_pair moved;
+    const tl_cut_contact *cut = tl_cut_contact_of(m, p->a, p->b);
+    double shift = fmax(0, tl_cut_contact_shift(m, p->a, p->b, &moved));
+    bool holds = (cut && cut->holds_over_gap) || shift > 0;
+    double gap, margin = holds ? -1 : tl_grazing_margin(&view, p, &gap);
+    if (margin >= 0)
+        return margin;
+    tl_pair_forget_faces(p);
+    if (!tl_pair_place(&view, scratch))
+        return NAN;
+    double tolerance = TL_CONTACT_TOLERANCE * view.size;
+    if (!holds && !tl_coarse_test(&view, tolerance + reach))
+        return reach;
+    tl_region region;
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region))
+        return NAN;
+    const tl_manifold_before before = before_contact(m, p, &view, scratch);
+    const bool corners = m->config.contact_points == TL_POINTS_CORNERS;
+    holds = before.holds || (shift > 0 && region.gap <= shift);
+    double way = holds ? -1 : way_to_contact(&view, &region, corners);
+    if (way > 0)
+        return way;
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), before.over);
+    if (!holds && !(rule.min_area > 0)) {
+        tl_grazing_choose_faces(&view, p);
+        margin = tl_grazing_margin(&view, p, &gap);
+        if (margin >= 0)
+            return margin;
+        tl_pair_forget_faces(p);
+    }
+    way = holds || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + reach);
+    if (way > 0)
+        return way;
+    if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))
+        return NAN; /* what was found is not all there is */
+    if (scratch->manifold.point_count > 0 || tl_overlap_is_whole(&view, &region))
+        return -1;
+    return TL_STILL * view.size; /* edges part the blocks by next to nothing */
+}
+
+static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
+{
+    const double way = way_to_test(m, p, scratch);
+    if (isnan(way))
+        scratch->failed = true;
+    else if (way < 0)
+        p->wake = TL_PAIR_FOUND;
+    else
+        tl_pair_sleep(m->detect, p, way);
+}
+
+/* None of its pairs without a contact can have come near, whichever two blocks have moved the farthest. */
+static bool sleeps(const tl_detect *d, const tl_pair_chunk *chunk)
+{
+    return 2 * (double)d->longest_path < (double)chunk->wake;
+}
+
+static void test_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    tl_model *m = user;
+    tl_detect *d = m->detect;
+    tl_pair_chunk *all = &d->chunks[chunk];
+    if (sleeps(d, all))
+        return;
+    float wake = INFINITY;
+    for (size_t i = begin; i < end; i++) {
+        tl_pair *p = &d->pairs[i];
+        if (!tl_pair_is_apart(p))
+            continue;
+        if (tl_pair_path(d, p) >= (double)p->wake) {
+            test_pair(m, p, &d->narrow[thread]);
+            all->found = all->found || p->wake == TL_PAIR_FOUND;
+        }
+        wake = p->wake < wake ? p->wake : wake;
+    }
+    all->wake = wake;
+}
+
+/* Tests the pairs without a contact that may have come near: chunks and pairs tell which were found. */
+static void test_pairs(tl_model *m)
+{
+    const tl_detect *d = m->detect;
+    bool all_sleep = true;
+    for (size_t chunk = 0; all_sleep && chunk * TL_PAIR_CHUNK < d->pair_count; chunk++)
+        all_sleep = sleeps(d, &d->chunks[chunk]);
+    if (!all_sleep) /* a loop of the threads costs more than to see that there is nothing to do */
+        tl_parallel_for(m->pool, d->pair_count, TL_PAIR_CHUNK, test_range, m);
 }
 
 /* ---------------------------------------------------------------- phases ----------------- */
@@ -477,7 +347,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     tl_pair_view view = tl_pair_view_of(m, d->pairs[pair].a, d->pairs[pair].b);
     if (!tl_pair_place(&view, scratch))
         return tl_fail_memory(&m->error);
-    const tl_manifold_before before = tl_pair_before(m, &d->pairs[pair], &view, scratch);
+    const tl_manifold_before before = before_contact(m, &d->pairs[pair], &view, scratch);
     tl_region region;
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + before.shift, scratch, &region))
         return tl_fail_memory(&m->error);
@@ -577,7 +447,7 @@ static bool settle_rows(tl_model *m)
         if (c->pending[row] == TL_PENDING_DIE) {
             d->parted += tl_contact_sheared(m, row) + c->released[row];
             tl_contact_remove(d, row);
-            tl_pair_parted(d, pair);
+            note_parted(d, pair);
             continue;
         }
         if (c->pending[row] == TL_PENDING_MOVE) {
@@ -683,14 +553,14 @@ static tl_status find_contacts(tl_model *m)
     bool rows = d->structure != m->structure || !d->listed;
     if (rows) {
         d->rows_changed = true;
-        status = edited_rows(m);
+        status = tl_edits_find_rows(m);
         if (status != TL_OK)
             return status;
     }
-    tl_pairs_measure_paths(m);
-    edited_laws(m);
+    measure_all_paths(m);
+    tl_edits_find_laws(m);
     if (rows)
-        edited_frames(m);
+        tl_edits_reframe(m);
     if (rows && lacked_memory(d))
         return tl_fail_memory(&m->error);
     if (rows || d->laws != m->laws || d->constraints != m->constraints)
@@ -706,7 +576,7 @@ static tl_status find_contacts(tl_model *m)
     d->rules = m->rules;
     d->contact_points = m->config.contact_points;
     d->constraints = m->constraints;
-    tl_pairs_test(m);
+    test_pairs(m);
     return TL_OK;
 }
 

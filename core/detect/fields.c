@@ -185,8 +185,8 @@ static tl_region kept_region(tl_press_row *row)
                        .blunt_b = row->blunt_b};
 }
 
-/* Whether a field contact is to become a patch whose faces are moved apart by more than what slip has opened of its point
- * of shear: its points need a reference then. */
+/* Whether a field contact is to become a patch, and its faces are moved apart by more than slip has opened its point of
+ * shear: points need a reference then. */
 static bool lacks_reference(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;

@@ -13,11 +13,8 @@
 #include "contact/handover.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
-#include "contact/places.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
-#include "contact/store.h"
-#include "contact/transfer.h"
 #include "detect/fields.h"
 #include "detect/grazing.h"
 #include "detect/overlap.h"
@@ -283,6 +280,12 @@ static double faces_moved(const tl_model *m, uint32_t c)
     return tl_spot_moved(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
 }
 
+/* Way left to go before the faces of a patch are to be chosen anew. */
+static double way_of_faces(const tl_model *m, uint32_t c)
+{
+    return (double)m->detect->contacts.spot[c].remaining - faces_moved(m, c);
+}
+
 /* Motion of next to nothing. */
 static double still_way(const tl_model *m, uint32_t c)
 {
@@ -301,14 +304,7 @@ static void contact_allow_reuse(tl_model *m, uint32_t c)
         contacts->points_valid_to[c] = tl_contact_odometer(m, c) + most;
     if (!patch)
         return;
-    contacts->spot[c] =
-        tl_spot_on(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
-}
-
-/* Way left to go before the faces of a patch are to be chosen anew. */
-static double way_of_faces(const tl_model *m, uint32_t c)
-{
-    return (double)m->detect->contacts.spot[c].remaining - faces_moved(m, c);
+    contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], way_of_faces(m, c));
 }
 
 /* Closure of a patch, or stretch of its bond, where that is least: normal stress over kn, initial stress included. */

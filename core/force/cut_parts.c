@@ -2,13 +2,12 @@
  *
  * The parts' points lie elsewhere than those of the whole. Nobody knows what is between these: how far slip has
  * opened them, each by another way, what is left of a bond, which of them bear how much shear. So a closure and
- * a traction are added to the closures c and shear tractions t of all parts' points, as they lie between the
- * points of the whole,
+ * a traction are added to the closures c and shear tractions t of all parts' points,
  *
  *     c + q1 + q2 x + q3 y,    t + (w1 - w3 y, w2 + w3 x)
  *
- * With these they press as the whole would have pressed in the next step, with the same force and moments, and
- * have its shear and torsion. The law says what presses, with the motion of the step to come and the cells of
+ * With these they press as the whole would have pressed in the next step, with the same force and moments. They
+ * have its shear and torsion, too. The law says what presses, with the motion of the step to come and the cells of
  * patches that are partly open. A point keeps no more shear than it bears: what it loses, others get; and if it
  * slipped it would open the joint.
  *

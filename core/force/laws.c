@@ -5,7 +5,6 @@
 #include "force/laws.h"
 
 #include "base/columns.h"
-#include "base/inside.h"
 #include "base/parallel.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
@@ -59,9 +58,9 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
  * What a law may return: states that are numbers, a shear force in the common plane, and no more stiffness
  * than it says.
  *
- * The time step follows from stiffness(), so a law that is stiffer blows the model up, which looks like a fault of
- * anything but the law. A contact that begins to carry is therefore asked: its points are given to the law again, as
- * copies, at rest and moved a little, and the rise of the forces is compared with what stiffness() says. That happens
+ * The time step follows from stiffness(). A law that is stiffer blows the model up, which looks like a fault of
+ * anything but the law. A contact that begins to carry is therefore asked. Its points are given to the law again, as
+ * copies, at rest and moved a little. The rise of the forces is compared with what stiffness() says. That happens
  * where it matters, at the contact's own closure and states, and again whenever the contact has parted, which
  * an unstable one does.
  *
@@ -73,7 +72,7 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
 #define ROUNDING_FORCE 1e-12
 
 /* Limit: how many times stiffer than its word a law may be. Up to this a step that is unstable is the fraction's
- * fault, not the law's, and a law that gives a mean for a bound passes. Test: lua/test_law_check. */
+ * fault, not the law's. A law that gives a mean for a bound passes. Test: lua/test_law_check. */
 #define FAR_STIFFER 10
 /* Tolerance: motion of the trial, of the closure and last motion of the point: small against what the force came about
  * by. */
