@@ -1,8 +1,9 @@
-/* body_contacts.h - the contacts of a body or of a block: by ascending block, of each by ascending partner.
+/* body_contacts.h - the contacts of a body or of a block, one after the other: by ascending block, of each by ascending
+ * partner.
  *
  *     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
  *         area += c->area[at.contact];
- */
+ * / */
 #ifndef TL_CONTACT_BODY_CONTACTS_H
 #define TL_CONTACT_BODY_CONTACTS_H
 

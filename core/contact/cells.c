@@ -1,18 +1,20 @@
 /* cells.c - the cells of a patch.
  *
- * A patch of n corners has n points between corners, n at corners, and the centroid, all drawn in towards that (patch.c); so its
- * corners follow from its points. A point stands for a cell, a part of the polygon of the point's area. In the triangle of an edge and
- * the centroid, the centroid's cell is the triangle drawn in by INNER, 7/75 of its area. Beyond it two rays from the centroid go through
- * the shares SIDE and 1 - SIDE of the edge. They part the cells of the two corners, 16/75 each, from that of the edge, 36/75.
+ * A patch of n corners has n points between corners, n at corners, and the centroid, all drawn in towards that
+ * (patch.c); so its corners follow from its points. A point stands for a cell, a part of the polygon of the point's
+ * area. In the triangle of an edge and the centroid, the centroid's cell is the triangle drawn in by INNER, 7/75 of its
+ * area. Beyond it two rays from the centroid go through the shares SIDE and 1 - SIDE of the edge. They part the cells
+ * of the two corners, 16/75 each, from that of the edge, 36/75.
  *
- * The overlap o is linear over the patch. Each point has a lift l_k of its own. In cell k the walls press with u = o + L where that is above
- * 0, and
+ * The overlap o is linear over the patch. Each point has a lift l_k of its own. In cell k the walls press with u = o +
+ * L where that is above 0, and
  *
  *     L(x) = l + g x + f (e_k + b x)        x from the centroid
  *
- * l + g x is the plane that fits the lifts, by the areas of their points, and e_k is what they are off it. b and f give L what
- * the lifts have at their points: the first moments, sum A l_k x_k, and the mean square, sum A l_k^2. So the cells of a patch
- * that is wholly closed have the force, the moment and the energy of its points. Nothing jumps when the first corner opens. */
+ * l + g x is the plane that fits the lifts, by the areas of their points, and e_k is what they are off it. b and f give
+ * L what the lifts have at their points: the first moments, sum A l_k x_k, and the mean square, sum A l_k^2. So the
+ * cells of a patch that is wholly closed have the force, the moment and the energy of its points. Nothing jumps when
+ * the first corner opens. */
 #include "contact/cells.h"
 
 #include "base/inline.h"
@@ -74,8 +76,8 @@ tl_vec3 tl_cell_corner(const tl_cell_patch *of, size_t k)
 
 /* ---------------------------------------------------------------- lifts ------------------ */
 
-/* Finds the centres of all cells. In a triangle of the fan a cell is r ((1 - q) e + q f), r and q between two bounds each.
- * Its area is that of the triangle times 2 r dr dq. */
+/* Finds the centres of all cells. In a triangle of the fan a cell is r ((1 - q) e + q f), r and q between two bounds
+ * each. Its area is that of the triangle times 2 r dr dq. */
 static void find_centres(const tl_cell_patch *of)
 {
     const double near = TL_CELL_SIDE - 0.5 * TL_CELL_SIDE * TL_CELL_SIDE;
@@ -204,8 +206,8 @@ static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e,
     to->pressed_fourth += fan * p->uuuu;
 }
 
-/* The four cells of a triangle of the fan, of which `to` are the points: corner, edge, next corner, centroid. `o`: closures of
- * the centroid, of the corner and of the next. */
+/* The four cells of a triangle of the fan, of which `to` are the points: corner, edge, next corner, centroid. `o`:
+ * closures of the centroid, of the corner and of the next. */
 TL_INLINE void add_triangle_cells(const tl_cell_patch *of, const size_t to[4], const double o[3],
                                   tl_vec3 e, tl_vec3 f, const bool curved)
 {

@@ -11,7 +11,8 @@
 #define TL_CELL_INNER 0.30550504633038933 /* sqrt(7 / 75) */
 #define TL_CELL_SIDE (16.0 / 68)
 
-/* A patch whose points are drawn in towards its centroid, the last of them: n between corners, n at corners, and that. */
+/* A patch whose points are drawn in towards its centroid, the last of them: n between corners, n at corners, and
+ * that. */
 typedef struct tl_cell_patch {
     const tl_points_table *p;
     const tl_point_lanes *lanes; /* arms, normals, lifts and cells */
@@ -38,13 +39,14 @@ static inline double tl_cell_area(const tl_cell_patch *of, size_t k)
 /* The patch of a contact whose points are in the lanes given. false: it is none. */
 bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes, size_t lane,
                       size_t stride, tl_cell_patch *out);
-/* Whether its points are those of all corners and of every two neighbours: where faces hardly overlap some may have had no area. */
+/* Whether its points are those of all corners and of every two neighbours: where faces hardly overlap some may have had
+ * no area. */
 bool tl_cell_patch_is_whole(const tl_cell_patch *of);
 
 /* Where its corner k lies, from the centroid. */
 tl_vec3 tl_cell_corner(const tl_cell_patch *of, size_t k);
-/* Integrals of all cells, of which the overlaps of the faces and the lifts from these are known. Moments are about the centroid. `curved`: of
- * higher powers, too. */
+/* Integrals of all cells, of which the overlaps of the faces and the lifts from these are known. Moments are about the
+ * centroid. `curved`: of higher powers, too. */
 void tl_cells_find(const tl_cell_patch *of, bool curved);
 
 /* Second moments of the area about the centroid, along two axes of the plane. */

@@ -1,8 +1,8 @@
 /* contacts.c - the tables of contacts and contact points, and how they are laid out.
  *
- * The points of a joint law are one span of rows, so a law is called on the columns themselves; a span
- * has room for a few contacts more. Laying out anew sorts the contacts by joint law, apart those between bodies that are held
- * still, and by blocks. */
+ * The points of a joint law are one span of rows, so a law is called on the columns themselves; a span has room for a
+ * few contacts more. Laying out anew sorts the contacts by joint law, apart those between bodies that are held still,
+ * and by blocks. */
 #include "contact/contacts.h"
 
 #include "base/columns.h"
@@ -22,10 +22,11 @@
  *
  * Which contacts lie side by side, in the lanes of which SIMD group, and where their points begin.
  *
- * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest contact.
- * They are looked for among neighbours in the order of blocks, so that what a group needs lies close together in memory.
- * Each joint law has a span of SIMD groups for patches and one for field contacts. Contacts between bodies that are held
- * still have spans of their own. New contacts get a free lane near the end of the span, or the first lane of a new group there. */
+ * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest
+ * contact. They are looked for among neighbours in the order of blocks, so that what a group needs lies close together
+ * in memory. Each joint law has a span of SIMD groups for patches and one for field contacts. Contacts between bodies
+ * that are held still have spans of their own. New contacts get a free lane near the end of the span, or the first lane
+ * of a new group there. */
 
 /* Contacts, one after the other, among which those of as many points are put together. */
 #define WINDOW 1024
@@ -318,11 +319,11 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
  *
  * Contacts between two bodies that are held still: told apart from the others, and left alone at rest.
  *
- * Such contacts have spans of their own. Their gaps and areas do not change, so they are followed only until a
- * step finds that their laws leave them exactly as they were. Laws are functions of their points' parameters, states and
- * motion, so every later step would find the same, and the whole span is passed over. A law that goes on with time at rest
- * keeps its span followed. Whatever could change that wakes all such spans: blocks that are fixed, freed, driven or
- * given a velocity, that come or go, another law or initial stress, another contact in the span. */
+ * Such contacts have spans of their own. Their gaps and areas do not change, so they are followed only until a step
+ * finds that their laws leave them exactly as they were. Laws are functions of their points' parameters, states and
+ * motion, so every later step would find the same, and the whole span is passed over. A law that goes on with time at
+ * rest keeps its span followed. Whatever could change that wakes all such spans: blocks that are fixed, freed, driven
+ * or given a velocity, that come or go, another law or initial stress, another contact in the span. */
 
 static bool is_still(const tl_bodies *b, uint32_t body)
 {
@@ -424,9 +425,10 @@ static void give_press_back(tl_detect *d, uint32_t row)
 
 /* ---------------------------------------------------------------- tables ------------------ */
 
-/* Where contacts are laid out anew, there is room for a share more of them, and of the points of each span, than is needed.
- * The share is 1 / SPARE_CALM first. It is doubled, up to 1 / SPARE_BUSY, each time that a layout did not last LAYOUT_LASTS
- * steps, as of blocks that fall or slide. It is halved each time that it did. SPARE_ROWS are left to spare at least. */
+/* Where contacts are laid out anew, there is room for a share more of them, and of the points of each span, than is
+ * needed. The share is 1 / SPARE_CALM first. It is doubled, up to 1 / SPARE_BUSY, each time that a layout did not last
+ * LAYOUT_LASTS steps, as of blocks that fall or slide. It is halved each time that it did. SPARE_ROWS are left to spare
+ * at least. */
 #define SPARE_CALM 64
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
@@ -520,7 +522,8 @@ static void copy_points(const tl_points_table *from, size_t row, tl_points_table
     }
 }
 
-/* A contact that has lost its points carries nothing. Without a lane for points no law will say so, nor book the heat. */
+/* A contact that has lost its points carries nothing. Without a lane for points no law will say so, nor book the
+ * heat. */
 static void leave_lane(tl_detect *d, tl_contacts *c, uint32_t row)
 {
     c->point_capacity[row] = 0;

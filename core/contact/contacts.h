@@ -9,8 +9,8 @@
 #include "contact/tables.h"
 #include "model/model.h"
 
-/* Adds a contact of a kind to a pair, without points, wanting room for some, whose faces hold for a path length of `valid`;
- * false when out of memory. */
+/* Adds a contact of a kind to a pair, without points, wanting room for some, whose faces hold for a path length of
+ * `valid`; false when out of memory. */
 bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag,
                        size_t want_points);
 /* Lays contacts and points out anew: without those with TL_PENDING_DIE, sorted by joint law and blocks,
@@ -18,7 +18,8 @@ bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, 
 tl_status tl_contacts_repack(tl_model *m);
 /* Gives back the room that contacts came from when they were laid out anew last, once the layout has lasted. */
 void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
-/* The points of a contact begin under a law. Walls that are apart and do not pull on each other are not bonded by it. */
+/* The points of a contact begin under a law. Walls that are apart and do not pull on each other are not bonded by
+ * it. */
 void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
                           const tl_point_lanes *lanes);
 /* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its span;
@@ -55,8 +56,8 @@ tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *c
                              uint32_t contact, size_t k, tl_vec3 arm);
 /* The law's states of a point, at their initial values. */
 void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
-/* The same taken from an old point of some area. With `stays` the point keeps its place: what a change of polygon resets
- * goes on. Energies go by their sum: tl_shear_keep. */
+/* The same taken from an old point of some area. With `stays` the point keeps its place: what a change of polygon
+ * resets goes on. Energies go by their sum: tl_shear_keep. */
 void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
                          double old_area, bool stays);
 /* Turns a vector in the plane of a normal into that of another. */

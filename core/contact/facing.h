@@ -1,7 +1,7 @@
 /* facing.h - facets in the present place of their blocks.
  *
- * The gap of a patch comes from the planes of its faces, carried with their bodies. The overlap of a field contact is the
- * same at both its points.
+ * The gap of a patch comes from the planes of its faces, carried with their bodies. The overlap of a field contact is
+ * the same at both its points.
  *
  * What is here is for a step, which works on eight contacts at a time (follow.c), and for the others, one by one
  * (places.c): with the same operations in the same order, so that they agree to the bit. */
@@ -22,9 +22,9 @@ typedef struct tl_facing {
 } tl_facing;
 
 /* Of a patch, from the normals of its faces in the present place. A point's gap is what it lies above B's face and
- * above A's: less exact than from one plane by nothing, for where the faces lie flush nA + nB is next to 0. The overlap of a
- * point that goes along with the share `ride` of B's motion u against A changes by -push . u: the force is the gradient
- * of the energy of that overlap. */
+ * above A's: less exact than from one plane by nothing, for where the faces lie flush nA + nB is next to 0. The overlap
+ * of a point that goes along with the share `ride` of B's motion u against A changes by -push . u: the force is the
+ * gradient of the energy of that overlap. */
 TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double offset, double ride)
 {
     tl_vec3 mean = tl_v3_sub(tl_v3_scale(ride, na), tl_v3_scale(1 - ride, nb));
@@ -40,8 +40,8 @@ typedef struct tl_facing_place {
     tl_vec3 at;
 } tl_facing_place;
 
-/* Of the points of a patch: between where A and where B have carried them, nearer to B by the share `ride`. They were laid
- * when B was at `turn` and `shift` in A's frame. `d` is the way from A's centroid to B's. */
+/* Of the points of a patch: between where A and where B have carried them, nearer to B by the share `ride`. They were
+ * laid when B was at `turn` and `shift` in A's frame. `d` is the way from A's centroid to B's. */
 TL_INLINE tl_facing_place tl_facing_ride(const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d,
                                          const tl_mat3 *turn, tl_vec3 shift, double ride)
 {

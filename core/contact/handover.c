@@ -130,8 +130,8 @@ double tl_contact_ends(const tl_model *m, uint32_t c)
     return tl_contact_lost(m, c, tl_v3(0, 0, 0), tl_v3(0, 0, 0), 0);
 }
 
-/* Notes the heat of a contact that is left without points. Its faces stay moved out by `lift`, m: what slip has opened is
- * forgotten, and of a patch all. */
+/* Notes the heat of a contact that is left without points. Its faces stay moved out by `lift`, m: what slip has opened
+ * is forgotten, and of a patch all. */
 static void let_go(tl_model *m, uint32_t c, double lift)
 {
     tl_press_row *row = tl_press_row_of(m, c);
@@ -344,8 +344,8 @@ static void lift_faces(tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 }
 
 /* Puts the manifold's points in the place of the contact's, for which there is room, and notes the press of a field.
- * Force and moment of the shear are kept as far as the energy of its springs goes. The moment is lost where the old points
- * are `reframed`, in frames that are no more. */
+ * Force and moment of the shear are kept as far as the energy of its springs goes. The moment is lost where the old
+ * points are `reframed`, in frames that are no more. */
 static void hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
                       const tl_point_lanes *lanes)
 {

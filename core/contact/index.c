@@ -1,8 +1,8 @@
 /* index.c - the contacts of each block, and contacts by id.
  *
- * The contacts of block X are by_block[by_block_start[X] .. by_block_start[X + 1]), ascending by partner, which is the order in
- * which a body adds their forces. Where rows have changed or contacts have gone, all are listed anew; those that are new are
- * put in between the others, for in a large model some are born in most steps. */
+ * The contacts of block X are by_block[by_block_start[X] .. by_block_start[X + 1]), ascending by partner, which is the
+ * order in which a body adds their forces. Where rows have changed or contacts have gone, all are listed anew; those
+ * that are new are put in between the others, for in a large model some are born in most steps. */
 #include "contact/index.h"
 
 #include <stdlib.h>

@@ -5,8 +5,8 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* Lists the contacts of each block, and notes whether some have no rows for points; after contacts have come, gone or been given
- * room. false when out of memory. */
+/* Lists the contacts of each block, and notes whether some have no rows for points; after contacts have come, gone or
+ * been given room. false when out of memory. */
 bool tl_contacts_index(tl_model *m);
 /* Contacts have gone, or rows of contacts or blocks have changed: all are to be listed anew. */
 void tl_contacts_unlist(tl_detect *d);

@@ -1,7 +1,7 @@
 /* kind.h - kinds of contact: what differs between them, as tables of operations.
  *
- * The number of a kind is that of its facets (narrow/facet.h). What a module needs of a kind it asks of its table here; the lists of
- * detect/kinds.c say which kinds there are. A new kind is a file with such tables, and a line there. */
+ * The number of a kind is that of its facets (narrow/facet.h). What a module needs of a kind it asks of its table here;
+ * the lists of detect/kinds.c say which kinds there are. A new kind is a file with such tables, and a line there. */
 #ifndef TL_CONTACT_KIND_H
 #define TL_CONTACT_KIND_H
 
@@ -27,8 +27,8 @@ typedef struct tl_kind_place {
     tl_facing_place (*place)(const tl_facet *facet, const tl_body_frames *frames);
     /* How many of its points have an area of their own: the first ones. */
     uint32_t (*areas)(uint32_t points);
-    /* For the time step: area, m2, as far as it counts, and second moment about a place in A's frame. With `quick` it is known at once, and
-     * the second moment is that of an area at distance `far`. */
+    /* For the time step: area, m2, as far as it counts, and second moment about a place in A's frame. With `quick` it
+     * is known at once, and the second moment is that of an area at distance `far`. */
     tl_spread (*bounds)(const tl_model *m, uint32_t contact, tl_vec3 centre);
     bool quick;
     /* Where it presses in A's frame, and how far it is pressed in under a law of that stiffness. */
@@ -50,8 +50,8 @@ struct tl_law;
 typedef struct tl_kind_force {
     /* Its points have cells of the contact's area: they may be partly open, and have outermost fibres. */
     bool cells;
-    /* Places, overlaps and motions of points, the first point's into lane `lane`. Turns shear forces, and the states of which
-     * `tangents` has a bit, with the normals. */
+    /* Places, overlaps and motions of points, the first point's into lane `lane`. Turns shear forces, and the states of
+     * which `tangents` has a bit, with the normals. */
     void (*follow)(tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes,
                    size_t lane, uint32_t tangents, struct tl_arms *arms);
     /* Force, moment and energies of each contact, of what the law has made of its points. */
@@ -62,12 +62,12 @@ typedef struct tl_kind_force {
 
 /* A contact that is found, and one whose points are to be others. */
 typedef struct tl_kind_make {
-    /* Whether contacts of two blocks are always of this kind; NULL: their shapes decide (narrow/manifold.c). `find` then tells what they
-     * are in the present place, into the thread's manifold. false: out of memory. */
+    /* Whether contacts of two blocks are always of this kind; NULL: their shapes decide (narrow/manifold.c). `find`
+     * then tells what they are in the present place, into the thread's manifold. false: out of memory. */
     bool (*claims)(const tl_model *m, uint32_t block_a, uint32_t block_b);
     bool (*find)(const tl_model *m, const tl_pair_view *view, tl_narrow_scratch *scratch);
-    /* Puts the manifold in the place of a contact, which has the room for it. `stays`: its points are the same, and have not
-     * run along the faces. false: out of memory. */
+    /* Puts the manifold in the place of a contact, which has the room for it. `stays`: its points are the same, and
+     * have not run along the faces. false: out of memory. */
     bool (*take)(tl_model *m, uint32_t contact, bool stays, tl_narrow_scratch *scratch,
                  const tl_point_lanes *lanes);
 } tl_kind_make;
@@ -84,8 +84,8 @@ static inline const tl_contact_kind *tl_contact_kind_of(const tl_detect *d, uint
     return d->kinds[d->contacts.facet[contact].kind];
 }
 
-/* Facet and points of the contact of two blocks that have been placed, into the thread's manifold: tl_manifold_find, unless a kind of
- * contact claims them. false: out of memory. */
+/* Facet and points of the contact of two blocks that have been placed, into the thread's manifold: tl_manifold_find,
+ * unless a kind of contact claims them. false: out of memory. */
 static inline bool tl_kind_find(const tl_model *m, uint32_t block_a, uint32_t block_b,
                                 const tl_pair_view *view, const tl_region *region,
                                 const tl_touch_rule *rule, const tl_manifold_before *before,

@@ -39,8 +39,8 @@ static tl_spread patch_bounds(const tl_model *m, uint32_t c, tl_vec3 centre)
     return out;
 }
 
-/* A patch, whose area counts before it touches, has besides its overlap the gap at which it is born: with that, blocks that come faster
- * may press on by other faces. */
+/* A patch, whose area counts before it touches, has besides its overlap the gap at which it is born: with that, blocks
+ * that come faster may press on by other faces. */
 static double patch_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
 {
     const tl_contacts *contacts = &m->detect->contacts;

@@ -15,23 +15,23 @@ typedef struct tl_bent {
     tl_vec3 moment; /* of the moment, m^4 */
 } tl_bent;
 
-/* What is closed and what is apart of the cell of a point, over which the overlap is linear: force/partly_open.c. Beside the
- * means that the law gets are moments about the point and half second moments of u. */
+/* What is closed and what is apart of the cell of a point, over which the overlap is linear: force/partly_open.c.
+ * Beside the means that the law gets are moments about the point and half second moments of u. */
 typedef struct tl_cell {
     tl_vec3 pressed, apart;              /* m^4 */
     double pressed_volume, apart_volume; /* area times the means, m^3 */
     double pressed_second, apart_second; /* m^4 */
     double pressed_more, apart_more; /* what the volumes are beyond those that the law got, m^3 */
-    /* of the point as the law found it: overlap of the faces, m, its lift from there, less its reference, m, and the share of tension that was
-     * held */
+    /* of the point as the law found it: overlap of the faces, m, its lift from there, less its reference, m, and the
+     * share of tension that was held */
     double closure, lift, hold;
     double level; /* at which its lift lies over the cell, beside the slope of the patch, m */
     tl_vec3
         centre; /* area times its centroid from that of the patch, m^3; found where lifts differ */
     double pressed_area; /* m^2, and the same of it */
     tl_vec3 pressed_centre;
-    /* of a law that is not linear, of what is closed: int u^3 dA, m^5; int u^4 dA, m^6; int u^2 x dA, m^5; int u^3 x dA, m^6;
-     * and what its stress changes */
+    /* of a law that is not linear, of what is closed: int u^3 dA, m^5; int u^4 dA, m^6; int u^2 x dA, m^5; int u^3 x
+     * dA, m^6; and what its stress changes */
     double pressed_third, pressed_fourth;
     tl_vec3 pressed_square, pressed_cube;
     tl_bent bent;
@@ -55,25 +55,25 @@ typedef struct tl_point_lanes {
     uint32_t *flags_before;
 } tl_point_lanes;
 
-/* A SIMD group: TL_LANES contacts of one joint law whose points lie side by side. Point k of the contact in lane l is row
- * start + TL_LANES k + l. What has to be done for each contact, or for each point, is done for all of a SIMD group at once,
- * one in each lane of the processor's vectors. Lanes without a contact, and rows beyond a
- * contact's points, are inert: area 0. */
+/* A SIMD group: TL_LANES contacts of one joint law whose points lie side by side. Point k of the contact in lane l is
+ * row start + TL_LANES k + l. What has to be done for each contact, or for each point, is done for all of a SIMD group
+ * at once: each has a lane of the processor's vectors. Lanes without a contact, and rows beyond a contact's points, are
+ * inert: area 0. */
 typedef struct tl_simd_group {
     uint32_t start, slots;      /* points there is room for in each lane */
     uint32_t contact[TL_LANES]; /* row, or TL_NO_ROW */
 } tl_simd_group;
 
-/* Most points of a tile, which is worked on as a whole, from gaps to sums, while it is in the nearest cache: as many SIMD
- * groups as have room for so many points, or one group. */
+/* Most points of a tile, which is worked on as a whole, from gaps to sums, while it is in the nearest cache: as many
+ * SIMD groups as have room for so many points, or one group. */
 #define TL_TILE 144
 
 /* Whether the contacts of a span are passed over: contacts.c. */
 enum { TL_SPAN_WOKEN, TL_SPAN_FOLLOWED, TL_SPAN_RESTS };
 
-/* A span: the SIMD groups of one joint law, one after the other in the list of SIMD groups. Their points are in rows from
- * `begin`, used up to `end`, with room up to `limit`. Kinds of contact have spans apart. Contacts between
- * bodies that are held still have spans of their own. */
+/* A span: the SIMD groups of one joint law, one after the other in the list of SIMD groups. Their points are in rows
+ * from `begin`, used up to `end`, with room up to `limit`. Kinds of contact have spans apart. Contacts between bodies
+ * that are held still have spans of their own. */
 typedef struct tl_span {
     uint32_t law;
     bool held;    /* between bodies that are held still */

@@ -1,4 +1,5 @@
-/* pair_view.c - what the geometry of a pair gets of the model: where the two blocks are, and the rule of their joint. */
+/* pair_view.c - what the geometry of a pair gets of the model: where the two blocks are, and the rule of their
+ * joint. */
 #include "contact/pair_view.h"
 
 #include "model/joints.h"

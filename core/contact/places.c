@@ -84,8 +84,8 @@ void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place
     }
 }
 
-/* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that of its
- * points. */
+/* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that
+ * of its points. */
 static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *to,
                          const tl_facing_place *place, double gap)
 {

@@ -1,6 +1,6 @@
-/* prefetch.c - prefetches what a SIMD group will need, some SIMD groups before: its contacts' bodies, facets and shapes, and its
- * points, a little of each of some twenty columns. The processor's own prefetchers do not foresee these addresses: without
- * this a step out of cache would wait for memory most of the time. */
+/* prefetch.c - prefetches what a SIMD group will need, some SIMD groups before: its contacts' bodies, facets and
+ * shapes, and its points, a little of each of some twenty columns. The processor's own prefetchers do not foresee these
+ * addresses: without this a step out of cache would wait for memory most of the time. */
 #include "contact/prefetch.h"
 
 #include "base/inline.h"

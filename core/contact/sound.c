@@ -1,6 +1,6 @@
-/* sound.c - whether a detection that was read from a file fits together. The file may hold anything: what is used as the number
- * of a row, a face, a lane or a choice must be one, and a bool must be one. What the numbers of the mechanics are does not matter
- * here, as long as places are finite. */
+/* sound.c - whether a detection that was read from a file fits together. The file may hold anything: what is used as
+ * the number of a row, a face, a lane or a choice must be one, and a bool must be one. What the numbers of the
+ * mechanics are does not matter here, as long as places are finite. */
 #include "contact/sound.h"
 
 #include "base/walk.h"
@@ -10,16 +10,16 @@
 /* A face number that every block may have had which has gone. */
 #define ANY_FACES UINT32_MAX
 
-/* Faces of the block that had a row when the detection last looked: as long as a block lives it keeps them, though not their
- * places and tags. */
+/* Faces of the block that had a row when the detection last looked: as long as a block lives it keeps them, though not
+ * their places and tags. */
 static uint32_t faces_of(const tl_model *m, const tl_detect *d, uint32_t seen)
 {
     uint32_t row = tl_block_row_quiet(m, d->known_blocks[seen].id);
     return row == TL_NO_ROW ? ANY_FACES : m->blocks.shape[row]->face_count;
 }
 
-/* The same of the planes (polyhedron.h), which a block that has come to another body has not kept; contacts of such are made
- * anew. */
+/* The same of the planes (polyhedron.h), which a block that has come to another body has not kept; contacts of such are
+ * made anew. */
 static uint32_t planes_of(const tl_model *m, const tl_detect *d, uint32_t seen)
 {
     uint32_t row = tl_block_row_quiet(m, d->known_blocks[seen].id);
@@ -29,8 +29,8 @@ static uint32_t planes_of(const tl_model *m, const tl_detect *d, uint32_t seen)
 
 /* ---------------------------------------------------------------- pairs ------------------ */
 
-/* Whether the faces of a pair are there. A contact for which something is still to be done may have something else in their place; it
- * forgets that when it is done. */
+/* Whether the faces of a pair are there. A contact for which something is still to be done may have something else in
+ * their place; it forgets that when it is done. */
 static bool pair_faces_are_sound(const tl_model *m, const tl_detect *d, const tl_pair *p)
 {
     const tl_contacts *c = &d->contacts;
@@ -58,7 +58,8 @@ static bool pair_is_sound(const tl_model *m, const tl_detect *d, uint32_t index)
     return pair_faces_are_sound(m, d, p);
 }
 
-/* What is known of blocks and bodies as they were when the detection last looked: as they are, if nothing was edited since. */
+/* What is known of blocks and bodies as they were when the detection last looked: as they are, if nothing was edited
+ * since. */
 static bool seen_are_sound(const tl_model *m, const tl_detect *d)
 {
     size_t blocks = m->blocks.table.rows;

@@ -1,5 +1,5 @@
-/* spot.c - where the blocks of a pair were against each other. Odometers count the motion of both together, as of blocks that
- * ride side by side on others; against each other these may not have moved at all. */
+/* spot.c - where the blocks of a pair were against each other. Odometers count the motion of both together, as of
+ * blocks that ride side by side on others; against each other these may not have moved at all. */
 #include "contact/spot.h"
 
 #include "model/model.h"
@@ -31,8 +31,8 @@ tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b, double
                      (float)remaining};
 }
 
-/* The difference of two unit quaternions is 2 sin of a quarter of the angle between them. A quaternion and its negative are
- * the same rotation. */
+/* The difference of two unit quaternions is 2 sin of a quarter of the angle between them. A quaternion and its negative
+ * are the same rotation. */
 double tl_spot_moved(const tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b,
                      double radius)
 {

@@ -7,8 +7,8 @@
 
 #include <stdlib.h>
 
-/* Lanes a thread has at least, so that most contacts can grow without a new layout; and not a power of two, or rows of all
- * columns would lie in the same few lines of the nearest cache. */
+/* Lanes a thread has at least, so that most contacts can grow without a new layout; and not a power of two, or rows of
+ * all columns would lie in the same few lines of the nearest cache. */
 #define LEAST_LANES 656
 
 static void init_contacts(tl_contacts *c, tl_points_table *p)

@@ -6,7 +6,8 @@
 #include "contact/kind.h"
 #include "model/model.h"
 
-/* A detection without pairs and contacts, for so many threads, that knows some kinds of contact; NULL when out of memory. */
+/* A detection without pairs and contacts, for so many threads, that knows some kinds of contact; NULL when out of
+ * memory. */
 tl_detect *tl_detect_make(unsigned threads, const tl_contact_kind *const *kinds, uint32_t count);
 void tl_detect_destroy(tl_detect *d);
 /* Makes sure that points have initial forces and the overlaps they belong to, or so many columns of states; false when
@@ -19,7 +20,8 @@ void tl_cut_contacts_end(tl_detect *d);
 /* Gives the lanes of all threads room for a tile, or the largest SIMD group of a layout; false when out of memory. */
 bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout);
 
-/* What the next step goes on from, or NULL where that finds all anew: what was found for somebody who asked is no part of it. */
+/* What the next step goes on from, or NULL where that finds all anew: what was found for somebody who asked is no part
+ * of it. */
 static inline tl_detect *tl_detect_lasting(const tl_model *m)
 {
     return m->found_for == TL_FOR_STEPS ? m->detect : m->stepped;

@@ -45,7 +45,8 @@ typedef struct tl_contacts {
 /* What a field contact keeps beside its points. Lengths and forces of the press in A's frame. */
 typedef struct tl_press_row {
     tl_press press;
-    /* How far its faces `shifted` are moved out by an initial stress and by slip, m; what slip has opened of it, by its points. */
+    /* How far its faces `shifted` are moved out by an initial stress and by slip, m; what slip has opened of it, by its
+     * points. */
     double shift, opening[TL_FIELD_POINTS];
     double opened, paid; /* by slip in the step before `lifted_at`, m; with energy of shear, J */
     int64_t lifted_at, moved_at, since;
@@ -59,7 +60,8 @@ typedef struct tl_press_row {
     tl_pair_pose listed_at;                                    /* where they were listed */
     double listed_shift;                                       /* and with which shift */
     bool flush, listed, leans;
-    /* It has stayed near a place since some step: for long, then it goes by slopes of its press there, else by its mesh (fields.c). */
+    /* It has stayed near a place since some step: for long, then it goes by slopes of its press there, else by its mesh
+     * (fields.c). */
     tl_pair_pose place;
     bool by_slope;
     union {
@@ -72,8 +74,9 @@ typedef struct tl_press_row {
     tl_press_extra extra; /* of a press that has more */
 } tl_press_row;
 
-/* GROW: it waits for room for its points; GROW_PATCH: for those of the same two faces, so that it then comes out as it would have
- * with room; REFRAME: besides, its old points are in frames that are no more. MOVE: its points belong in another span. */
+/* GROW: it waits for room for its points; GROW_PATCH: for those of the same two faces, so that it then comes out as it
+ * would have with room; REFRAME: besides, its old points are in frames that are no more. MOVE: its points belong in
+ * another span. */
 enum {
     TL_PENDING_NONE,
     TL_PENDING_GROW,

@@ -1,5 +1,5 @@
-/* triangle_integrals.h - integrals over a triangle, or a corner of it, of powers of an overlap u that is linear there, and of them times
- * the place. */
+/* triangle_integrals.h - integrals of powers of an overlap u, and of them times the place, over a triangle or a corner
+ * of it. u is linear there. */
 #ifndef TL_CONTACT_TRIANGLE_INTEGRALS_H
 #define TL_CONTACT_TRIANGLE_INTEGRALS_H
 
@@ -13,7 +13,8 @@ typedef struct node {
     double a, b;
 } node;
 
-/* Over a part of the triangle, times 1 over its area: integrals of 1 and of powers of u, and of them times the place. */
+/* Over a part of the triangle, times 1 over its area: integrals of 1 and of powers of u, and of them times the
+ * place. */
 typedef struct integrals {
     double one, a, b;
     double u, ua, ub, uu;

@@ -1,5 +1,6 @@
-/* triangle_parts.h - integrals over the parts of a triangle where a linear overlap u is above 0 and below: what presses of a cell of a
- * patch that is partly open, and what is apart (cells.c). The corner that u = 0 cuts off is a triangle again. */
+/* triangle_parts.h - integrals over the parts of a triangle where a linear overlap u is above 0 and below: what presses
+ * of a cell of a patch that is partly open, and what is apart (cells.c). The corner that u = 0 cuts off is a triangle
+ * again. */
 #ifndef TL_CONTACT_TRIANGLE_PARTS_H
 #define TL_CONTACT_TRIANGLE_PARTS_H
 

@@ -1,10 +1,10 @@
 /* detect.c - the order of contact detection.
  *
- * Phases: after edits rows are found again by id, and what was known of blocks that have changed is dropped (edits.c). The
- * broad phase lists the neighbours of these, and is made anew when something may have left its skin. Pairs without a contact
- * are tested when they may have come near. Contacts are followed, or made anew when they moved more than a margin. Births,
- * deaths and growth are then settled serially in the order of pairs. The bodies' odometers tell how far anything can have
- * moved. */
+ * Phases: after edits rows are found again by id, and what was known of blocks that have changed is dropped (edits.c).
+ * The broad phase lists the neighbours of these, and is made anew when something may have left its skin. Pairs without
+ * a contact are tested when they may have come near. Contacts are followed, or made anew when they moved more than a
+ * margin. Births, deaths and growth are then settled serially in the order of pairs. The bodies' odometers tell how far
+ * anything can have moved. */
 #include "detect/detect.h"
 
 #include "base/inline.h"
@@ -42,7 +42,8 @@
 /* Blocks a worker takes at a time: there is little to do with each. */
 #define BLOCK_CHUNK 4096
 #define GROUP_CHUNK 8
-/* SIMD groups from one for which the memory is asked to the present one, and from one whose contacts' rows are asked for. */
+/* SIMD groups from one for which the memory is asked to the present one, and from one whose contacts' rows are asked
+ * for. */
 #define AHEAD 2
 #define FAR_AHEAD 6
 
@@ -183,7 +184,8 @@ static tl_manifold_before before_contact(const tl_model *m, const tl_pair *p,
     return out;
 }
 
-/* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of memory. */
+/* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of
+ * memory. */
 static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
 {
     const double reach = m->detect->reach;
@@ -418,8 +420,8 @@ static void change_law(tl_model *m, uint32_t c)
     tl_contact_begin_law(m, c, kind, &d->lanes[0]);
 }
 
-/* Notes that the contacts of two bodies are no longer what they were. Of those that ended with their blocks it was noted when
- * rows were found. */
+/* Notes that the contacts of two bodies are no longer what they were. Of those that ended with their blocks it was
+ * noted when rows were found. */
 static void touch(tl_model *m, uint32_t row)
 {
     tl_detect *d = m->detect;
@@ -491,7 +493,8 @@ static bool some_pending(const tl_contacts *c)
     return any != TL_PENDING_NONE;
 }
 
-/* Whether there was no memory to look at some pair or to bring some contact up to date; it is as it was, for another time. */
+/* Whether there was no memory to look at some pair or to bring some contact up to date; it is as it was, for another
+ * time. */
 static bool lacked_memory(tl_detect *d)
 {
     bool lacked = false;

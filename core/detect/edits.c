@@ -303,8 +303,8 @@ static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t conta
         scratch->touched[m->blocks.body[b]] = true;
 }
 
-/* Whether a contact is no more than an answer to somebody who has asked: it has been in no step, and bears no initial stress. Where
- * a block of it changes it is found as if nobody had. */
+/* Whether a contact is no more than an answer to somebody who has asked: it has been in no step, and bears no initial
+ * stress. Where a block of it changes it is found as if nobody had. */
 static bool is_fresh(const tl_detect *d, uint32_t contact)
 {
     bool stressed = false;
@@ -453,8 +453,8 @@ static void wake_pairs(void *user, size_t begin, size_t end, size_t chunk, unsig
     }
 }
 
-/* Under another minimum area contacts that are no patches, or too small ones, are made anew, and pairs that only touched are
- * looked at again; under another rule for the points of patches, all are made anew. */
+/* Under another minimum area contacts that are no patches, or too small ones, are made anew, and pairs that only
+ * touched are looked at again; under another rule for the points of patches, all are made anew. */
 static void find_rules(tl_model *m)
 {
     tl_detect *d = m->detect;

@@ -1,7 +1,7 @@
 /* fields.c - field contacts from step to step.
  *
- * A contact that has stayed near a place for some time goes by the slopes that its press has there; another one by its list of
- * faces, while that holds. */
+ * A contact that has stayed near a place for some time goes by the slopes that its press has there; another one by its
+ * list of faces, while that holds. */
 #include "detect/fields.h"
 
 #include "contact/across_gap.h"
@@ -26,8 +26,8 @@
  * normal, whose cosine is wrong by 1e-3 there. */
 #define BONDED_TILT 0.05
 
-/* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.
- * A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
+/* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a
+ * patch. A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
 static bool is_calm(const tl_model *m, uint32_t c)
 {
     const tl_press_row *row = tl_press_row_of(m, c);
@@ -216,8 +216,8 @@ bool tl_field_reserve(tl_model *m, uint32_t c)
 
 /* ---------------------------------------------------------------- places ----------------- */
 
-/* Whether the faces of a contact are listed still. By the odometers, which count the motion of both blocks together, and when
- * that has run out by their motion against each other. */
+/* Whether the faces of a contact are listed still. By the odometers, which count the motion of both blocks together,
+ * and when that has run out by their motion against each other. */
 static bool is_listed(tl_model *m, uint32_t c, const tl_press_row *row)
 {
     tl_contacts *contacts = &m->detect->contacts;
@@ -252,8 +252,8 @@ static bool has_slopes(const tl_model *m, uint32_t c, const tl_press_row *row)
            m->detect->contacts.points_valid_to[c] != TL_OUTDATED;
 }
 
-/* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs. They go
- * by the count of steps, not of looks: a step made again finds the same. false: out of memory. */
+/* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs.
+ * They go by the count of steps, not of looks: a step made again finds the same. false: out of memory. */
 static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press,
                   tl_press_row *row, tl_narrow_scratch *scratch)
 {
@@ -279,7 +279,8 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
     return true;
 }
 
-/* Moves faces apart by what slip has opened. true: it has, so what is known of the field at this place holds no more. */
+/* Moves faces apart by what slip has opened. true: it has, so what is known of the field at this place holds no
+ * more. */
 static bool lift(tl_model *m, uint32_t c)
 {
     double by = tl_contact_lift_field(m, c);

@@ -8,8 +8,8 @@
 #include "narrow/field.h"
 #include "narrow/manifold.h"
 
-/* What is known of a contact before it is looked at. One whose bodies have got other frames stays what it is until its points
- * are in these. */
+/* What is known of a contact before it is looked at. One whose bodies have got other frames stays what it is until its
+ * points are in these. */
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed,
                                      const tl_point_lanes *lanes);
 /* Tolerance: how far walls may part, over how far they are lifted, before the lift is forgotten. As far again they
@@ -17,18 +17,19 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool r
 #define TL_PARTED 2
 /* Keeps the region of a field contact. */
 void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *region);
-/* What is known of the field, with the numbers that its faces have in a list made anew; nothing where one is not in it. */
+/* What is known of the field, with the numbers that its faces have in a list made anew; nothing where one is not in
+ * it. */
 tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *region);
 
-/* Before a contact gets points of another kind: gives a patch that was a field contact the reference that its points need,
- * and a field contact its row. The faces of one that takes over from another are moved out as those were. false: out of
- * memory. */
+/* Before a contact gets points of another kind: gives a patch that was a field contact the reference that its points
+ * need, and a field contact its row. The faces of one that takes over from another are moved out as those were. false:
+ * out of memory. */
 bool tl_field_reserve(tl_model *m, uint32_t contact);
-/* Finds the press of a field contact where its blocks are now, with its shift, and forgets what is known of others. false: out of
- * memory. */
+/* Finds the press of a field contact where its blocks are now, with its shift, and forgets what is known of others.
+ * false: out of memory. */
 bool tl_field_press_anew(tl_model *m, uint32_t contact, tl_narrow_scratch *scratch);
-/* Whether a contact was a field contact in the last step and still has its list of faces; how long it has is found anew when it
- * may have run out. */
+/* Whether a contact was a field contact in the last step and still has its list of faces; how long it has is found anew
+ * when it may have run out. */
 bool tl_field_goes_on(tl_model *m, uint32_t contact);
 
 typedef enum tl_field_result {

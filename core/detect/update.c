@@ -169,8 +169,8 @@ static void run_add(contact_run *run, tl_vec3 old, tl_vec3 now)
     run->run2 = fmax(run->run2, tl_v3_norm2(rest));
 }
 
-/* Whether points have run along their polygon, farther than their blocks have moved: what they carry belongs to the places where they
- * have been. `near`: a distance that makes no difference. */
+/* Whether points have run along their polygon, farther than their blocks have moved: what they carry belongs to the
+ * places where they have been. `near`: a distance that makes no difference. */
 static bool has_run(const contact_run *run, double near)
 {
     return run->run2 > run->way2 && run->run2 > near * near;
@@ -220,7 +220,8 @@ static bool is_patch(const tl_contacts *contacts, uint32_t c)
     return tl_facet_is_patch(&contacts->facet[c]) && contacts->point_count[c] > 0;
 }
 
-/* What a contact without points stays. A patch that is lifted becomes a field whose faces are moved so: they press again there. */
+/* What a contact without points stays. A patch that is lifted becomes a field whose faces are moved so: they press
+ * again there. */
 static tl_facet parted_facet(const tl_model *m, uint32_t c)
 {
     tl_facet facet = m->detect->contacts.facet[c];
@@ -494,8 +495,8 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     return false;
 }
 
-/* Notes from where the points of a contact that has been made may be reused. One that waits for room is made once more: noted twice,
- * the rounding of its spot would count twice. */
+/* Notes from where the points of a contact that has been made may be reused. One that waits for room is made once more:
+ * noted twice, the rounding of its spot would count twice. */
 static void note_made(tl_model *m, uint32_t c)
 {
     if (!tl_pending_waits(m->detect->contacts.pending[c]))
@@ -578,7 +579,8 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
  * and comes out as the SIMD group has its points: slot by slot. Lanes whose polygon has changed, and contacts that are
  * something else, are brought up to date one by one. */
 
-/* Adds a contact's pair of faces to a batch; false when they are none for it. `corners`: the batch has points at corners only. */
+/* Adds a contact's pair of faces to a batch; false when they are none for it. `corners`: the batch has points at
+ * corners only. */
 static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, bool corners,
                          tl_patch_batch *batch)
 {
@@ -752,8 +754,8 @@ static bool group_has_run(const tl_model *m, uint32_t c, const tl_patch_batch *b
     return has_run(&run, batch->near[l]);
 }
 
-/* Puts patches into the place of those of the SIMD group that have the same points, and takes their lanes out of `in`: lanes
- * of as many points together. */
+/* Puts patches into the place of those of the SIMD group that have the same points, and takes their lanes out of `in`:
+ * lanes of as many points together. */
 static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch,
                          uint32_t *in)
 {

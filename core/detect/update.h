@@ -29,8 +29,8 @@ void tl_contact_reframe(tl_model *m, uint32_t contact, unsigned thread);
  * false when out of memory. */
 bool tl_contact_fill(tl_model *m, uint32_t contact);
 
-/* Brings the facets of the contacts of a SIMD group up to the present place, if they are stale; `pending` tells what is left
- * to do. false when none was. */
+/* Brings the facets of the contacts of a SIMD group up to the present place, if they are stale; `pending` tells what is
+ * left to do. false when none was. */
 bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thread);
 
 #endif

@@ -232,8 +232,8 @@ void tl_cut_contact_foresee(tl_model *m, uint32_t c, tl_cut_contact *cut, const 
 
 /* ---------------------------------------------------------------- parts ------------------ */
 
-/* Tolerance: times that a law is asked at the most until no point has more shear than it bears; by which share it may have
- * more. */
+/* Tolerance: times that a law is asked at the most until no point has more shear than it bears; by which share it may
+ * have more. */
 #define PASSES 12
 #define TOO_MUCH 1e-9
 /* Tolerance: slope of what a point bears over what it has, up to which it tells where both are the same. */
@@ -536,8 +536,8 @@ static bool search(parts *of, bool *found)
 #define LESS 0.25
 #define MORE_ENERGY 5e-4
 #define MOST_ENERGY 0.5
-/* Tolerance: areas that are the same, over each other: parts that lack some of the whole go by what is between its points
- * alone. */
+/* Tolerance: areas that are the same, over each other: parts that lack some of the whole go by what is between its
+ * points alone. */
 #define SAME_AREA 1e-3
 
 /* Puts what has been found into the points. */

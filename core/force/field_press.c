@@ -385,8 +385,8 @@ static double lost_lift(const tl_press_row *row, const field_press *by)
 
 /* ---------------------------------------------------------------- SIMD groups ------------ */
 
-/* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
- * springs of the law hold pressed is not what the field holds: see tl_press. */
+/* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again.
+ * What the springs of the law hold pressed is not what the field holds: see tl_press. */
 static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                        const tl_point_lanes *t, size_t lane, const tl_arms *arms,
                        tl_group_sums *out)

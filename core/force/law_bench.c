@@ -88,8 +88,8 @@ static tl_status try_closure(const bench *b, const motion *by, double closure, s
 
 /* ---------------------------------------------------------------- normal stress ---------- */
 
-/* Tolerance: error of the normal stress that counts as none, relative to the stress, and as a closure of the stiffness that the
- * law names: both are far above the rounding of a spring. */
+/* Tolerance: error of the normal stress that counts as none, relative to the stress, and as a closure of the stiffness
+ * that the law names: both are far above the rounding of a spring. */
 #define STRESS_ERROR 1e-12
 #define CLOSURE_ERROR 1e-19
 /* Doublings of the first trial, which the law's stiffness makes too short: up to 1e30 times it. */

@@ -197,8 +197,8 @@ static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group 
     }
 }
 
-/* Of the points of a SIMD group, whose first is in lane `lane`: whether they are stiffer than the law says, those in the lanes of the
- * mask `begins`, and whether shear forces leave the common plane. */
+/* Of the points of a SIMD group, whose first is in lane `lane`: whether they are stiffer than the law says, those in
+ * the lanes of the mask `begins`, and whether shear forces leave the common plane. */
 static void law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_law *law,
                                 const tl_simd_group *group, const tl_point_lanes *lanes,
                                 size_t lane, unsigned begins)
@@ -295,8 +295,8 @@ static point_told told_of(const tl_points_table *p, const tl_point_lanes *lanes,
                         tl_v3_norm(tl_columns_get(p->f_s, row))};
 }
 
-/* Names what is no finite number in the force of the contact in a lane of the SIMD group: what the law was given, what it gave, or
- * the sum. */
+/* Names what is no finite number in the force of the contact in a lane of the SIMD group: what the law was given, what
+ * it gave, or the sum. */
 static void law_check_forces(const tl_model *m, tl_failure *failure, const tl_law *law,
                              const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
                              size_t contact)
@@ -619,8 +619,8 @@ static size_t tile_points(const tl_simd_group *groups, size_t count)
     return groups[count - 1].start + (size_t)groups[count - 1].slots * TL_LANES - groups->start;
 }
 
-/* From the places of the bodies to the forces of the contacts of some SIMD groups, which follow each other. `soon`: how many
- * come next, for which the memory is asked on the way. */
+/* From the places of the bodies to the forces of the contacts of some SIMD groups, which follow each other. `soon`: how
+ * many come next, for which the memory is asked on the way. */
 static void force_tile(const span_job *job, const tl_simd_group *groups, size_t count, size_t soon,
                        const tl_point_lanes *t)
 {
@@ -684,7 +684,8 @@ typedef struct failed_at {
     uint32_t contact;
 } failed_at;
 
-/* The contact in a lane of a SIMD group or, where that is padding, the first one of the SIMD group; TL_NO_ROW: all are. */
+/* The contact in a lane of a SIMD group or, where that is padding, the first one of the SIMD group; TL_NO_ROW: all
+ * are. */
 static uint32_t contact_near(const tl_simd_group *group, size_t lane)
 {
     uint32_t c = group->contact[lane];

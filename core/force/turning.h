@@ -17,8 +17,8 @@ TL_INLINE tl_vec3 tl_turn_between(tl_vec3 from, tl_vec3 to, double twist)
     return tl_v3_madd(tl_v3_madd(swing, twist, to), twist, tl_v3_cross(to, swing));
 }
 
-/* Turns a vector by g, of which `scale` is 2 / (1 + g^2), into the plane of normal n. What has not turned stays as it is, to
- * the bit; `turns` is 0 then, else 1. */
+/* Turns a vector by g, of which `scale` is 2 / (1 + g^2), into the plane of normal n. What has not turned stays as it
+ * is, to the bit; `turns` is 0 then, else 1. */
 TL_INLINE tl_vec3 tl_turn_into(tl_vec3 v, tl_vec3 g, double scale, double turns, tl_vec3 n)
 {
     tl_vec3 t = tl_v3_cross(g, v);
