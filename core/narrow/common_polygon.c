@@ -11,9 +11,6 @@
 
 #include <string.h>
 
-/* Tolerance: longest run of blended corners that is mixed; longer runs belong to round outlines. */
-#define BLEND_RUN 3
-
 /* Area and area centroid, taken about a corner. */
 static double area_of(const tl_corner *c, size_t count, tl_point2 *centroid)
 {
@@ -34,19 +31,6 @@ static double smooth(double x)
     return x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x);
 }
 
-static double turn_over(double turn)
-{
-    return (turn - TL_STRAIGHT) / (TL_CORNER - TL_STRAIGHT);
-}
-
-double tl_corner_share_slope(tl_point2 before, tl_point2 here, tl_point2 after)
-{
-    tl_point2 u = tl_from_to(before, here), v = tl_from_to(here, after);
-    double uv = (u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y);
-    double x = turn_over(tl_asin(fmin(1, fmax(-1, (u.x * v.y - u.y * v.x) / sqrt(uv)))));
-    return x <= 0 || x >= 1 ? 0 : 6 * x * (1 - x) / (TL_CORNER - TL_STRAIGHT);
-}
-
 /* Share of a corner by its turning angle. */
 static double corner_share(tl_point2 before, tl_point2 here, tl_point2 after)
 {
@@ -58,7 +42,7 @@ static double corner_share(tl_point2 before, tl_point2 here, tl_point2 after)
         return 1;
     double turn = tl_asin(fmin(1, fmax(-1, s / sqrt(uv))));
     turn = ahead < 0 ? TL_PI - turn : turn;
-    return smooth(turn_over(turn));
+    return smooth(tl_turn_over(turn));
 }
 
 size_t tl_corners_weigh(tl_common_polygon *p, bool blend)
@@ -105,30 +89,11 @@ void tl_corner_areas(const tl_corner *c, const double *fan, size_t count, double
         double chance = c[i].share, between = 0;
         for (size_t step = 1; step <= count && chance > 0; step++) {
             size_t j = (i + step) % count;
-            double share = step > BLEND_RUN ? 1 : c[j].share;
+            double share = step > TL_BLEND_RUN ? 1 : c[j].share;
             between += fan[(i + step - 1) % count];
             double half = 0.5 * chance * share * between;
             area[i] += half;
             area[j] += half;
-            chance *= 1 - share;
-        }
-    }
-}
-
-void tl_corner_areas_add(const tl_corner *c, const double *fan, const double *share_rate,
-                         size_t count, double *rate)
-{
-    for (size_t i = 0; i < count; i++) {
-        double chance = c[i].share, more = share_rate[i], between = 0;
-        for (size_t step = 1; step <= count && chance > 0; step++) {
-            size_t j = (i + step) % count;
-            bool last = step > BLEND_RUN;
-            double share = last ? 1 : c[j].share, grows = last ? 0 : share_rate[j];
-            between += fan[(i + step - 1) % count];
-            double half = 0.5 * between * (more * share + chance * grows);
-            rate[i] += half;
-            rate[j] += half;
-            more = more * (1 - share) - chance * grows;
             chance *= 1 - share;
         }
     }
@@ -307,18 +272,4 @@ double tl_common_edge_ride(const tl_common_polygon *of, uint32_t edge)
         coincides = tl_edges_coincide(face[i], face[i + 1 == own ? 0 : i + 1], other[j],
                                       other[j + 1 == others ? 0 : j + 1], of->near);
     return tl_edge_ride(of_b, coincides);
-}
-
-double tl_common_polygon_ride(const tl_common_polygon *of)
-{
-    double whole = 0, of_b = 0;
-    for (size_t i = 0; i < of->count; i++) {
-        const tl_corner *here = &of->corner[i],
-                        *after = &of->corner[i + 1 == of->count ? 0 : i + 1];
-        double fan = 0.5 * tl_cross2(of->centroid, here->at, after->at);
-        fan = fan > 0 ? fan : 0;
-        whole += fan;
-        of_b += fan * tl_common_edge_ride(of, here->edge);
-    }
-    return of_b / whole;
 }

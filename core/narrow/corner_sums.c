@@ -213,6 +213,15 @@ static double turn_of(const corners *c, size_t i)
     return cross(u, way) / (u.x * u.x + u.y * u.y);
 }
 
+/* How the share of a corner goes with its turning angle, 1/rad. */
+static double share_slope(tl_point2 before, tl_point2 here, tl_point2 after)
+{
+    tl_point2 u = tl_from_to(before, here), v = tl_from_to(here, after);
+    double uv = (u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y);
+    double x = tl_turn_over(tl_asin(fmin(1, fmax(-1, (u.x * v.y - u.y * v.x) / sqrt(uv)))));
+    return x <= 0 || x >= 1 ? 0 : 6 * x * (1 - x) / (TL_CORNER - TL_STRAIGHT);
+}
+
 /* The rates of the shares of those that stay, by what their edges turn. */
 static void find_share_rates(const corners *c)
 {
@@ -224,7 +233,7 @@ static void find_share_rates(const corners *c)
         c->share_rate[k] = 0;
         if (corner[k].share < 1)
             c->share_rate[k] = (turn_of(c, i) - turn_of(c, last)) *
-                               tl_corner_share_slope(c->at[last], c->at[i], c->at[after(c, i)]);
+                               share_slope(c->at[last], c->at[i], c->at[after(c, i)]);
     }
 }
 
@@ -250,6 +259,26 @@ static tl_point2 centroid_rate(const corners *c)
                        c->rate[0].y + by * (change.y - less * first.y)};
 }
 
+/* Adds to the rates of the areas what the rates of the shares make of them. */
+static void add_by_shares(const tl_corner *c, const double *fan, const double *share_rate,
+                          size_t count, double *rate)
+{
+    for (size_t i = 0; i < count; i++) {
+        double chance = c[i].share, more = share_rate[i], between = 0;
+        for (size_t step = 1; step <= count && chance > 0; step++) {
+            size_t j = (i + step) % count;
+            bool last = step > TL_BLEND_RUN;
+            double share = last ? 1 : c[j].share, grows = last ? 0 : share_rate[j];
+            between += fan[(i + step - 1) % count];
+            double half = 0.5 * between * (more * share + chance * grows);
+            rate[i] += half;
+            rate[j] += half;
+            more = more * (1 - share) - chance * grows;
+            chance *= 1 - share;
+        }
+    }
+}
+
 /* The rates of the areas of those that stay, in the plane. */
 static void find_area_rates(const corners *c)
 {
@@ -265,7 +294,7 @@ static void find_area_rates(const corners *c)
     }
     tl_corner_areas(p->corner, c->fan_rate, p->count, c->area_rate);
     find_share_rates(c);
-    tl_corner_areas_add(p->corner, c->fan, c->share_rate, p->count, c->area_rate);
+    add_by_shares(p->corner, c->fan, c->share_rate, p->count, c->area_rate);
 }
 
 /* The rate of the overlap at a place of the plane that moves. */

@@ -19,11 +19,12 @@
 #include "narrow/field.h"
 
 #include "base/inline.h"
+#include "narrow/apex.h"
 #include "narrow/field_lanes.h"
-#include "narrow/mesh_draft.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <talus/vmath.h>
 
 #define LANES TL_LANES
@@ -51,17 +52,25 @@ typedef struct list {
     uint32_t count;
 } list;
 
+/* Polygons as they are found, before they are put together. */
+typedef struct mesh_draft {
+    bool full; /* there are more than a mesh has room for */
+    uint8_t polygons, labels;
+    uint8_t own[TL_MESH_POLYGONS][2], sides[TL_MESH_POLYGONS];
+    uint8_t label[TL_MESH_SIDES]; /* the plane on the other side of each side; TL_MESH_ZERO: none */
+} mesh_draft;
+
 /* The integrals of one pair. */
 typedef struct pair {
     const tl_field_faces *faces;
     tl_field_sums *sums;
     uint16_t *number;
-    list planes, others;  /* planes that bound polygons; faces that are to bound none */
-    double one_plane;     /* offset within which planes are one */
-    bool beyond;          /* some corner lies beyond one of the others */
-    uint64_t found;       /* faces that bound K, when its own faces are looked at */
-    tl_mesh_draft *draft; /* its polygons are noted here; NULL: nowhere */
-    tl_apex_faces by[2];  /* what holds the apexes of A and of B */
+    list planes, others; /* planes that bound polygons; faces that are to bound none */
+    double one_plane;    /* offset within which planes are one */
+    bool beyond;         /* some corner lies beyond one of the others */
+    uint64_t found;      /* faces that bound K, when its own faces are looked at */
+    mesh_draft *draft;   /* its polygons are noted here; NULL: nowhere */
+    tl_apex_faces by[2]; /* what holds the apexes of A and of B */
     tl_apex apex[2];
     double by_force, by_swept;        /* of S: int d x . n dS, int x . n dS */
     double by_power[TL_FIELD_POWERS]; /* and int d^2 x . n dS, int d^3 x . n dS */
@@ -128,6 +137,183 @@ static void choose(pair *p, const uint64_t *mask)
     p->others = (list){p->number + left, count - left};
     p->one_plane = TL_FIELD_ONE_PLANE * largest;
     p->beyond = false;
+}
+
+/* ---------------------------------------------------------------- meshes -----------------
+ *
+ * A new mesh of the polygons (field_mesh.c): their corners by the planes that meet there. */
+
+/* Whether the normal of one line comes before that of another, counterclockwise. */
+static bool before(const tl_field_line *line, unsigned lane, size_t i, size_t j)
+{
+    double it = line[i].gt[lane], is = line[i].gs[lane];
+    double jt = line[j].gt[lane], js = line[j].gs[lane];
+    bool low_i = is < 0 || (is == 0 && it < 0), low_j = js < 0 || (js == 0 && jt < 0);
+    return low_i != low_j ? low_j : it * js - is * jt > 0;
+}
+
+/* Adds the polygon of a lane to a draft. `own` are its two planes, `bound` those whose lines come after the first one,
+ * which is that of d = 0. */
+static void draw_polygon(mesh_draft *draft, const uint16_t own[2], const uint16_t *bound,
+                         const tl_field_line *line, size_t lines, unsigned lane)
+{
+    uint8_t side[TL_MESH_SIDES];
+    uint32_t sides = 0;
+    draft->full = draft->full || draft->polygons == TL_MESH_POLYGONS;
+    for (size_t k = 0; k < lines && !draft->full; k++) {
+        if (!(line[k].to[lane] > line[k].from[lane]) || line[k].c[lane] >= TL_FIELD_FAR)
+            continue;
+        draft->full = draft->labels + sides == TL_MESH_SIDES;
+        if (draft->full)
+            break;
+        uint32_t at = sides++;
+        for (; at > 0 && before(line, lane, k, side[at - 1]); at--)
+            side[at] = side[at - 1];
+        side[at] = (uint8_t)k;
+    }
+    if (draft->full)
+        return;
+    uint32_t polygon = draft->polygons++;
+    draft->own[polygon][0] = (uint8_t)own[0];
+    draft->own[polygon][1] = (uint8_t)own[1];
+    draft->sides[polygon] = (uint8_t)sides;
+    for (uint32_t k = 0; k < sides; k++)
+        draft->label[draft->labels++] = side[k] ? (uint8_t)bound[side[k] - 1] : TL_MESH_ZERO;
+}
+
+/* The number of a corner of four planes, which is added when there is none; TL_MESH_CORNERS: there is no room. */
+static uint32_t corner_of(tl_field_mesh *mesh, const uint8_t own[2], uint8_t one, uint8_t other)
+{
+    uint8_t plane[4] = {own[0], own[1], one, other};
+    for (int i = 1; i < 4; i++)
+        for (int k = i; k > 0 && plane[k] < plane[k - 1]; k--) {
+            uint8_t swap = plane[k];
+            plane[k] = plane[k - 1];
+            plane[k - 1] = swap;
+        }
+    for (uint32_t corner = 0; corner < mesh->corners; corner++) {
+        bool same = true;
+        for (int k = 0; k < 4; k++)
+            same = same && mesh->plane[k][corner] == plane[k];
+        if (same)
+            return corner;
+    }
+    if (mesh->corners == TL_MESH_CORNERS)
+        return TL_MESH_CORNERS;
+    for (int k = 0; k < 4; k++)
+        mesh->plane[k][mesh->corners] = plane[k];
+    return mesh->corners++;
+}
+
+/* Whether a polygon is part of S. */
+static bool on_surface(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon)
+{
+    return mesh->own[polygon][0] < f->a && mesh->own[polygon][1] >= f->a &&
+           mesh->own[polygon][1] < f->a + f->b;
+}
+
+/* Whether another polygon of S has a side between two corners, the other way round. */
+static bool has_neighbour(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon,
+                          uint8_t from, uint8_t to)
+{
+    const uint8_t *loop = mesh->loop;
+    for (uint32_t k = 0; k < mesh->polygons; loop += mesh->sides[k++])
+        for (uint32_t i = 0; i < mesh->sides[k] && k != polygon && on_surface(mesh, f, k); i++)
+            if (loop[i] == to && loop[i + 1 < mesh->sides[k] ? i + 1 : 0] == from)
+                return true;
+    return false;
+}
+
+/* Whether the polygon of two planes has a side between two corners. */
+static bool has_side(const tl_field_mesh *mesh, uint8_t one, uint8_t other, uint8_t from,
+                     uint8_t to)
+{
+    const uint8_t *loop = mesh->loop;
+    for (uint32_t k = 0; k < mesh->polygons; loop += mesh->sides[k++]) {
+        if (mesh->own[k][0] != (one < other ? one : other) ||
+            mesh->own[k][1] != (one < other ? other : one))
+            continue;
+        for (uint32_t i = 0; i < mesh->sides[k]; i++) {
+            uint8_t next = loop[i + 1 < mesh->sides[k] ? i + 1 : 0];
+            if ((loop[i] == from && next == to) || (loop[i] == to && next == from))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Whether all polygons are there that meet in a side of a polygon: of its two planes and that of the label two by two,
+ * but for two borders. */
+static bool has_all(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon,
+                    uint8_t label, uint8_t from, uint8_t to)
+{
+    for (int own = 0; own < 2; own++) {
+        uint8_t by = mesh->own[polygon][own];
+        bool borders = by >= f->a + f->b && label >= f->a + f->b;
+        if (!borders && !has_side(mesh, by, label, from, to))
+            return false;
+    }
+    return true;
+}
+
+/* Whether the polygons hang together: with seams all of them, else those of S. A side on the surface of K, with d = 0,
+ * belongs to one only. The label of a side is that between its corner and the one before. */
+static bool hangs_together(const tl_field_mesh *mesh, const mesh_draft *draft,
+                           const tl_field_faces *f)
+{
+    const uint8_t *loop = mesh->loop, *label = draft->label;
+    for (uint32_t k = 0; k < mesh->polygons; k++) {
+        uint32_t sides = mesh->sides[k];
+        for (uint32_t i = 0; i < sides; i++) {
+            uint8_t from = loop[i ? i - 1 : sides - 1], to = loop[i];
+            if (label[i] == TL_MESH_ZERO || !(f->seamed || on_surface(mesh, f, k)))
+                continue;
+            if (!(f->seamed ? has_all(mesh, f, k, label[i], from, to)
+                            : has_neighbour(mesh, f, k, from, to)))
+                return false;
+        }
+        loop += sides;
+        label += sides;
+    }
+    return true;
+}
+
+/* Makes a mesh of all polygons of a field. It has none when they do not fit together, or are too many. */
+static void make_mesh(const mesh_draft *draft, const tl_field_faces *faces, tl_field_mesh *mesh)
+{
+    const uint8_t *label = draft->label;
+    uint8_t *loop = mesh->loop;
+    uint64_t bounding = mesh->bounding;
+    memset(mesh, 0, sizeof *mesh);
+    mesh->bounding = bounding;
+    if (draft->full || draft->polygons == 0 || !faces->inner || faces->inner->count > TL_MESH_INNER)
+        return;
+    bool fits = true;
+    for (uint32_t k = 0; k < draft->polygons && fits; k++) {
+        uint32_t sides = draft->sides[k];
+        memcpy(mesh->own[k], draft->own[k], sizeof mesh->own[k]);
+        mesh->sides[k] = (uint8_t)sides;
+        fits = sides > 2;
+        for (uint32_t i = 0; i < sides && fits; i++) {
+            uint32_t corner =
+                corner_of(mesh, draft->own[k], label[i], label[i + 1 < sides ? i + 1 : 0]);
+            fits = corner < TL_MESH_CORNERS;
+            *loop++ = (uint8_t)corner;
+        }
+        label += sides;
+    }
+    for (uint32_t k = 0; k < faces->inner->count && fits; k++) {
+        const uint8_t *face = faces->inner->face[k];
+        fits = corner_of(mesh, face, face[2], TL_MESH_ZERO) < TL_MESH_CORNERS;
+    }
+    for (uint32_t i = mesh->corners; i % LANES; i++) /* what is left of eight is the first again */
+        for (int k = 0; k < 4; k++)
+            mesh->plane[k][i] = mesh->plane[k][0];
+    mesh->polygons = draft->polygons;
+    if (!fits || !hangs_together(mesh, draft, faces)) {
+        memset(mesh, 0, sizeof *mesh);
+        mesh->bounding = bounding;
+    }
 }
 
 /* ---------------------------------------------------------------- sums ------------------- */
@@ -264,126 +450,6 @@ static void take(work *w, int l)
         add_border(w, l);
 }
 
-/* ---------------------------------------------------------------- apexes ------------------
- *
- * The energy of a block's cells from the surface S alone.
- *
- * Mostly a corner, an edge or a face is pressed in. Then all planes of a block that bound K meet in one point x_0, its
- * apex. There d is homogeneous about x_0 in the cells of this block. (x - x_0) d has the divergence 4 d, x - x_0 has
- * 3, and on the faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the
- * polygons between its cells are not needed. The same holds of d^n, with n + 3 for 4. A face q that passes by x_0 at
- * the depth d_q adds d_q V_q / 4, with the volume V_q of its cell. For that the polygons between this cell and the
- * others are needed. */
-
-/* What of a direction does not leave the planes that hold an apex. */
-static tl_vec3 within(const tl_apex *p, tl_vec3 way)
-{
-    for (int i = 0; i < p->count; i++)
-        way = tl_v3_madd(way, -p->per[i] * tl_v3_dot(p->held[i], way), p->held[i]);
-    return way;
-}
-
-/* Whether an apex lies in a plane, and all points that it may be do. */
-static bool holds(const tl_apex *p, const tl_field_faces *f, uint32_t face, double one_plane)
-{
-    tl_vec3 n = tl_field_normal(f, face);
-    return fabs(f->c[face] - tl_v3_dot(n, p->x)) <= one_plane &&
-           (p->count == 3 || tl_v3_norm2(within(p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
-}
-
-/* From where it is, the point goes on to one plane more, along those before; false: the plane has nearly their
- * directions. */
-static bool hold(tl_apex *p, const tl_field_faces *f, uint32_t face, double least2)
-{
-    tl_vec3 n = tl_field_normal(f, face), way = within(p, n);
-    double sine2 = tl_v3_norm2(way);
-    if (!(sine2 > least2))
-        return false;
-    p->held[p->count] = way;
-    p->per[p->count] = 1 / sine2;
-    p->x = tl_v3_madd(p->x, (f->c[face] - tl_v3_dot(n, p->x)) * p->per[p->count], way);
-    p->count++;
-    return true;
-}
-
-/* Which of some faces of a block, all of which bound K, hold an apex. Planes are one within the offset `one_plane`.
- * Faces that pass by are allowed where the volume is not wanted. */
-static tl_apex_faces apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count,
-                                 double one_plane)
-{
-    tl_apex p = {.count = 0};
-    tl_apex_faces out = {.known = true};
-    uint32_t left[TL_FIELD_KNOWN], more = 0;
-    for (uint32_t k = 0; k < count; k++) {
-        if (p.count < 3 && hold(&p, f, face[k], TL_FIELD_STEEP * TL_FIELD_STEEP))
-            out.held[out.holds++] = (uint8_t)face[k];
-        else
-            left[more++] = face[k];
-    }
-    for (uint32_t k = 0; k < more && out.known; k++)
-        if (!holds(&p, f, left[k], one_plane)) {
-            out.known = f->energy_only && out.strays < TL_APEX_STRAYS;
-            if (out.known)
-                out.stray[out.strays++] = (uint8_t)left[k];
-        }
-    return out;
-}
-
-tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by)
-{
-    tl_apex p = {.known = by->known, .strays = by->strays};
-    for (uint32_t k = 0; k < by->holds && by->known; k++)
-        hold(&p, f, by->held[k], 0);
-    for (uint32_t k = 0; k < by->strays; k++)
-        p.stray[k] = by->stray[k];
-    return p;
-}
-
-/* Whether the polygon between the cells of two faces of the block is needed. */
-static bool apex_needs(const tl_apex *p, uint32_t face, uint32_t other)
-{
-    bool needed = !p->known;
-    for (uint32_t k = 0; k < p->strays; k++)
-        needed = needed || p->stray[k] == face || p->stray[k] == other;
-    return needed;
-}
-
-/* The flux of -n_face d, whose divergence is 1 in the cell, and which vanishes on the face. */
-void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec3 n, double d)
-{
-    for (uint32_t k = 0; k < p->strays; k++)
-        if (p->stray[k] == face)
-            p->volume[k] += tl_v3_dot(n, tl_field_normal(f, face)) * d;
-}
-
-/* Of the points that an apex may be, that nearest the centre of pressure is taken. Roundings of the force count by the
- * way from there. */
-void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
-                        double by_swept, const double by_power[TL_FIELD_POWERS],
-                        tl_field_sums *sums)
-{
-    if (!(sums->pressure > 0))
-        return;
-    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
-    for (int of_b = 0; of_b < 2; of_b++) {
-        const tl_apex *p = &apex[of_b];
-        if (!p->known)
-            continue;
-        double side = of_b ? -1 : 1; /* n points into the cells of A */
-        tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
-        sums->energy += 0.25 * side * (tl_v3_dot(x, sums->force) - by_force);
-        sums->volume += (1.0 / 3) * side * (tl_v3_dot(x, sums->swept) - by_swept);
-        for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++)
-            sums->powers[k].whole +=
-                side * (tl_v3_dot(x, sums->powers[k].force) - by_power[k]) / (5 + k);
-        for (uint32_t k = 0; k < p->strays; k++) {
-            uint32_t face = p->stray[k];
-            sums->energy +=
-                0.25 * (f->c[face] - tl_v3_dot(tl_field_normal(f, face), x)) * p->volume[k];
-        }
-    }
-}
-
 /* ---------------------------------------------------------------- polygons --------------- */
 
 /* Puts a plane into a row, in the lanes from `lane` on. */
@@ -474,7 +540,7 @@ static void draw(work *w, int lane, size_t lines)
         bound[i] = in_place[0];
     if (j < count)
         bound[j] = in_place[1];
-    tl_mesh_draw(of->draft, own, bound, w->line, count + 1 < lines ? count + 1 : lines,
+    draw_polygon(of->draft, own, bound, w->line, count + 1 < lines ? count + 1 : lines,
                  (unsigned)lane);
 }
 
@@ -546,6 +612,15 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, 
         integrate_batch(w);
 }
 
+/* Whether the polygon between the cells of two faces of the block is needed. */
+static bool apex_needs(const tl_apex *p, uint32_t face, uint32_t other)
+{
+    bool needed = !p->known;
+    for (uint32_t k = 0; k < p->strays; k++)
+        needed = needed || p->stray[k] == face || p->stray[k] == other;
+    return needed;
+}
+
 /* The surface between the cells of two faces, where both are the nearest. */
 static void put_between(work *w, pair *of, uint32_t i, uint32_t j)
 {
@@ -568,8 +643,8 @@ static void put_pair(work *w, pair *of, bool only_bounding)
     of->apex[0] = of->apex[1] = (tl_apex){.known = false};
     of->by[0] = of->by[1] = (tl_apex_faces){.known = false};
     if (only_bounding) {
-        of->by[0] = apex_choose(f, number, a, of->one_plane);
-        of->by[1] = apex_choose(f, number + a, real - a, of->one_plane);
+        of->by[0] = tl_apex_choose(f, number, a, of->one_plane);
+        of->by[1] = tl_apex_choose(f, number + a, real - a, of->one_plane);
         of->apex[0] = tl_apex_find(f, &of->by[0]);
         of->apex[1] = tl_apex_find(f, &of->by[1]);
     }
@@ -626,7 +701,7 @@ static bool is_known(const tl_field_faces *f)
 }
 
 /* Begins to note polygons. */
-static void begin_draft(pair *of, tl_mesh_draft *draft)
+static void begin_draft(pair *of, mesh_draft *draft)
 {
     of->draft = of->faces->inner ? draft : NULL;
     draft->full = false;
@@ -634,7 +709,7 @@ static void begin_draft(pair *of, tl_mesh_draft *draft)
 }
 
 /* A pair of which it is not known which faces bound K, or not any more. */
-static void integrate_anew(work *w, pair *of, tl_mesh_draft *draft)
+static void integrate_anew(work *w, pair *of, mesh_draft *draft)
 {
     const tl_field_faces *f = of->faces;
     of->draft = NULL;
@@ -681,7 +756,7 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
                             uint32_t count, tl_field_scratch *scratch)
 {
     pair pairs[TL_FIELD_PAIRS];
-    tl_mesh_draft drafts[TL_FIELD_PAIRS];
+    mesh_draft drafts[TL_FIELD_PAIRS];
     work w; /* the lanes are filled before they are read */
     if (!begin_work(&w, faces, count, scratch))
         return false;
@@ -706,7 +781,7 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
         if (!known || pairs[k].beyond)
             integrate_anew(&w, &pairs[k], &drafts[k]);
         if (pairs[k].draft && !pairs[k].beyond) {
-            tl_mesh_make(pairs[k].draft, faces[k], faces[k]->mesh);
+            make_mesh(pairs[k].draft, faces[k], faces[k]->mesh);
             faces[k]->mesh->apex[0] = pairs[k].by[0];
             faces[k]->mesh->apex[1] = pairs[k].by[1];
         }

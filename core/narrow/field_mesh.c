@@ -16,15 +16,14 @@
  * With borders, or faces of other parts, the nearest face need not bound K. Then the mesh is that of all cells: the
  * polygons between any two of them, and those at borders. They are a subdivision of K, the upper side of the convex
  * body 0 <= d <= c_h - n_h . x, 0 <= c_k - n_k . x in four dimensions. Each polygon beside a side is there
- * (mesh_draft.c). So all sides that a corner has lead to corners that are known: the mesh is closed, and K hangs
+ * (field.c). So all sides that a corner has lead to corners that are known: the mesh is closed, and K hangs
  * together.
  *
  * Polygons are summed by triangles from their first corner. */
 #include "narrow/field_mesh.h"
 
 #include "base/inline.h"
-#include "narrow/field.h"
-#include "narrow/field_lanes.h"
+#include "narrow/apex.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* narrow.c - the memory that the geometry of a pair works in. */
 #include "narrow/narrow.h"
 
-
 #include <stdlib.h>
 
 void tl_narrow_scratch_free(tl_narrow_scratch *n)

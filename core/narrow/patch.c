@@ -97,6 +97,22 @@ static double least_gap(const tl_common_polygon *of)
     return least;
 }
 
+/* The share by which the points go along with B: that of the fan area over edges of B. When B moves by u in the plane,
+ * the centroid moves by this times u, in the mean over the directions of u. */
+static double ride_of(const tl_common_polygon *of)
+{
+    double whole = 0, of_b = 0;
+    for (size_t i = 0; i < of->count; i++) {
+        const tl_corner *here = &of->corner[i],
+                        *after = &of->corner[i + 1 == of->count ? 0 : i + 1];
+        double fan = 0.5 * tl_cross2(of->centroid, here->at, after->at);
+        fan = fan > 0 ? fan : 0;
+        whole += fan;
+        of_b += fan * tl_common_edge_ride(of, here->edge);
+    }
+    return of_b / whole;
+}
+
 /* Adds the points at the corners, with the areas they have there. */
 static void add_corners(const patch *one, tl_outlines *p)
 {
@@ -126,7 +142,7 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
     }
     if (common.count == 0)
         return 0;
-    out->ride = tl_common_polygon_ride(&common);
+    out->ride = ride_of(&common);
     out->gap = least_gap(&common);
     if (out->gap > rule->reach)
         return 0;
