@@ -8,9 +8,9 @@
 #include "base/random.h"
 #include "base/regular.h"
 #include "generate/stage.h"
-#include "generate/stage_bodies.h"
 #include "generate/stage_commit.h"
 #include "generate/staging.h"
+#include "geometry/make.h"
 #include "geometry/measure.h"
 #include "model/joints.h"
 #include "model/model.h"
@@ -307,6 +307,103 @@ static tl_status set_group(const tl_host *host, size_t index, const char *group)
     return TL_OK;
 }
 
+/* Marks the blocks of a body: it is to be found which of them hang together. */
+static void mark_body(tl_stage *stage, uint32_t body)
+{
+    for (size_t i = 0; i < stage->count; i++)
+        if (stage->blocks[i].body == body)
+            stage->blocks[i].needs_reconnect = true;
+    stage->needs_reconnect = stage->regroups = true;
+}
+
+/* Takes blocks out of their bodies: those that hang together over faces without a new joint are one body, and so is
+ * what is left. */
+static void part_bodies(tl_stage *stage, const size_t *indices, size_t count)
+{
+    uint32_t body = stage->next_body++;
+    for (size_t i = 0; i < count; i++) {
+        tl_stage_block *block = &stage->blocks[indices[i]];
+        if (block->body == body)
+            continue;
+        if (block->detached_from != TL_NO_ROW)
+            mark_body(stage, block->detached_from);
+        block->detached_from = block->body;
+        block->body = body;
+        block->multi_block = block->needs_reconnect = true;
+    }
+    stage->needs_reconnect = stage->regroups = true;
+}
+
+/* Gives the blocks of body `from` to body `to`. */
+static void move_members(tl_stage *stage, uint32_t from, uint32_t to)
+{
+    for (size_t i = 0; i < stage->count; i++)
+        if (stage->blocks[i].body == from) {
+            stage->blocks[i].body = to;
+            stage->blocks[i].multi_block = true;
+        }
+}
+
+/* Makes one body of all the bodies the blocks are of. */
+static void join_bodies(tl_stage *stage, const size_t *indices, size_t count)
+{
+    if (count < 2)
+        return;
+    uint32_t body = stage->next_body++;
+    for (size_t i = 0; i < count; i++)
+        if (stage->blocks[indices[i]].body != body)
+            move_members(stage, stage->blocks[indices[i]].body, body);
+    uint64_t least = UINT64_MAX;
+    for (size_t i = 0; i < stage->count; i++)
+        if (stage->blocks[i].body == body && stage->blocks[i].lineage < least)
+            least = stage->blocks[i].lineage;
+    for (size_t i = 0; i < stage->count; i++)
+        if (stage->blocks[i].body == body)
+            stage->blocks[i].draw = least;
+    stage->regroups = true;
+}
+
+/* Refused cuts that were noted name blocks by their index. */
+static void forget_refused(tl_stage *stage, size_t index)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < stage->refused_listed; i++) {
+        tl_refused_cut cut = stage->refused[i];
+        if (cut.block == index)
+            continue;
+        cut.block -= cut.block > index;
+        stage->refused[kept++] = cut;
+    }
+    stage->refused_listed = kept;
+}
+
+/* Lists the visible blocks again from one of all on. */
+static void list_visible(tl_stage *stage, size_t from)
+{
+    while (stage->visible_count > 0 && stage->visible[stage->visible_count - 1] >= from)
+        stage->visible_count--;
+    for (size_t i = from; i < stage->count; i++)
+        if (!stage->blocks[i].hidden && !stage->blocks[i].hidden_by_generator)
+            stage->visible[stage->visible_count++] = i;
+}
+
+static void delete_block(tl_stage *stage, size_t index)
+{
+    tl_stage_block gone = stage->blocks[index];
+    stage->created_volume -= tl_poly_mass(gone.shape).volume;
+    if (gone.owned)
+        tl_poly_free(gone.shape);
+    stage->count--;
+    memmove(&stage->blocks[index], &stage->blocks[index + 1],
+            (stage->count - index) * sizeof *stage->blocks);
+    memmove(&stage->balls[index], &stage->balls[index + 1],
+            (stage->count - index) * sizeof *stage->balls);
+    forget_refused(stage, index);
+    if (gone.multi_block)
+        mark_body(stage, gone.body);
+    list_visible(stage, index);
+}
+
 /* Calls `change` with the places in the stage of visible blocks. */
 static tl_status change_bodies(const tl_host *host, const size_t *indices, size_t count,
                                void (*change)(tl_stage *, const size_t *, size_t))
@@ -329,12 +426,12 @@ static tl_status change_bodies(const tl_host *host, const size_t *indices, size_
 
 static tl_status part(const tl_host *host, const size_t *indices, size_t count)
 {
-    return change_bodies(host, indices, count, tl_stage_part);
+    return change_bodies(host, indices, count, part_bodies);
 }
 
 static tl_status join(const tl_host *host, const size_t *indices, size_t count)
 {
-    return change_bodies(host, indices, count, tl_stage_join);
+    return change_bodies(host, indices, count, join_bodies);
 }
 
 static tl_status remove_block(const tl_host *host, size_t index)
@@ -342,7 +439,7 @@ static tl_status remove_block(const tl_host *host, size_t index)
     tl_stage *stage = &service_of(host)->stage;
     tl_status status = check_index(host, index);
     if (status == TL_OK)
-        tl_stage_delete(stage, stage->visible[index]);
+        delete_block(stage, stage->visible[index]);
     return status;
 }
 
@@ -353,7 +450,7 @@ static tl_status hide(const tl_host *host, size_t index)
     if (status != TL_OK)
         return status;
     stage->blocks[stage->visible[index]].hidden_by_generator = true;
-    tl_stage_list_visible(stage, 0);
+    list_visible(stage, 0);
     return TL_OK;
 }
 
@@ -362,7 +459,7 @@ static tl_status show(const tl_host *host)
     tl_stage *stage = &service_of(host)->stage;
     for (size_t i = 0; i < stage->count; i++)
         stage->blocks[i].hidden_by_generator = false;
-    tl_stage_list_visible(stage, 0);
+    list_visible(stage, 0);
     return TL_OK;
 }
 

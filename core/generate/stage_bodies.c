@@ -8,12 +8,10 @@
 
 #include "generate/staging.h"
 #include "geometry/make.h"
-#include "geometry/measure.h"
 #include "geometry/seam.h"
 #include "model/model.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* A joined block, to be sorted by its body. */
 typedef struct member {
@@ -170,110 +168,4 @@ tl_status tl_stage_settle(tl_stage *stage)
     free(bodies);
     stage->needs_reconnect = status != TL_OK;
     return status;
-}
-
-/* Marks the blocks of a body: it is to be found which of them hang together. */
-static void mark_body(tl_stage *stage, uint32_t body)
-{
-    for (size_t i = 0; i < stage->count; i++)
-        if (stage->blocks[i].body == body)
-            stage->blocks[i].needs_reconnect = true;
-    stage->needs_reconnect = stage->regroups = true;
-}
-
-void tl_stage_part(tl_stage *stage, const size_t *indices, size_t count)
-{
-    uint32_t body = stage->next_body++;
-    for (size_t i = 0; i < count; i++) {
-        tl_stage_block *block = &stage->blocks[indices[i]];
-        if (block->body == body)
-            continue;
-        if (block->detached_from != TL_NO_ROW)
-            mark_body(stage, block->detached_from);
-        block->detached_from = block->body;
-        block->body = body;
-        block->multi_block = block->needs_reconnect = true;
-    }
-    stage->needs_reconnect = stage->regroups = true;
-}
-
-/* Gives the blocks of body `from` to body `to`. */
-static void move_members(tl_stage *stage, uint32_t from, uint32_t to)
-{
-    for (size_t i = 0; i < stage->count; i++)
-        if (stage->blocks[i].body == from) {
-            stage->blocks[i].body = to;
-            stage->blocks[i].multi_block = true;
-        }
-}
-
-void tl_stage_join(tl_stage *stage, const size_t *indices, size_t count)
-{
-    if (count < 2)
-        return;
-    uint32_t body = stage->next_body++;
-    for (size_t i = 0; i < count; i++)
-        if (stage->blocks[indices[i]].body != body)
-            move_members(stage, stage->blocks[indices[i]].body, body);
-    uint64_t least = UINT64_MAX;
-    for (size_t i = 0; i < stage->count; i++)
-        if (stage->blocks[i].body == body && stage->blocks[i].lineage < least)
-            least = stage->blocks[i].lineage;
-    for (size_t i = 0; i < stage->count; i++)
-        if (stage->blocks[i].body == body)
-            stage->blocks[i].draw = least;
-    stage->regroups = true;
-}
-
-/* Refused cuts that were noted name blocks by their index. */
-static void forget_refused(tl_stage *stage, size_t index)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < stage->refused_listed; i++) {
-        tl_refused_cut cut = stage->refused[i];
-        if (cut.block == index)
-            continue;
-        cut.block -= cut.block > index;
-        stage->refused[kept++] = cut;
-    }
-    stage->refused_listed = kept;
-}
-
-void tl_stage_list_visible(tl_stage *stage, size_t from)
-{
-    while (stage->visible_count > 0 && stage->visible[stage->visible_count - 1] >= from)
-        stage->visible_count--;
-    for (size_t i = from; i < stage->count; i++)
-        if (!stage->blocks[i].hidden && !stage->blocks[i].hidden_by_generator)
-            stage->visible[stage->visible_count++] = i;
-}
-
-void tl_stage_delete(tl_stage *stage, size_t index)
-{
-    tl_stage_block gone = stage->blocks[index];
-    stage->created_volume -= tl_poly_mass(gone.shape).volume;
-    if (gone.owned)
-        tl_poly_free(gone.shape);
-    stage->count--;
-    memmove(&stage->blocks[index], &stage->blocks[index + 1],
-            (stage->count - index) * sizeof *stage->blocks);
-    memmove(&stage->balls[index], &stage->balls[index + 1],
-            (stage->count - index) * sizeof *stage->balls);
-    forget_refused(stage, index);
-    if (gone.multi_block)
-        mark_body(stage, gone.body);
-    tl_stage_list_visible(stage, index);
-}
-
-void tl_stage_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first, uint32_t *group)
-{
-    const tl_model *m = stage->model;
-    for (uint32_t body = 0; body < stage->next_body; body++)
-        first[body] = TL_NO_ROW;
-    for (size_t i = 0; i < stage->count; i++) {
-        uint32_t row = tl_block_row_quiet(m, ids[i]), body = stage->blocks[i].body;
-        first[body] = row < first[body] ? row : first[body];
-    }
-    for (size_t i = 0; i < stage->count; i++)
-        group[tl_block_row_quiet(m, ids[i])] = first[stage->blocks[i].body];
 }

@@ -31,6 +31,17 @@ static inline uint32_t tl_stage_frame(const tl_model *m, const tl_stage_block *b
     return block->source == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[block->source];
 }
 
+/* A block that the commit gives a new row, and not one of the model as it was or with other tags. */
+static inline bool tl_stage_made(const tl_stage_block *block)
+{
+    return block->owned && !block->retagged;
+}
+
+static inline bool tl_stage_cut(const tl_stage_block *block)
+{
+    return block->source != TL_NO_ROW && tl_stage_made(block);
+}
+
 /* A ball about a staged block, relative to the model's origin: the coarse test of a cut. Kept apart from
  * the blocks, for a plane is tested against all of them and cuts few. */
 typedef struct tl_stage_ball {

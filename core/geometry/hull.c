@@ -593,6 +593,21 @@ static int by_key(const void *left, const void *right)
     return (a->key > b->key) - (a->key < b->key);
 }
 
+/* The plane of a face from its vertices: Newell's normal, and the offset midway between the extremes of normal . x. So
+ * a face normal to an axis gets exactly that axis and its coordinate. */
+static tl_plane fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count)
+{
+    tl_plane plane = {.normal = tl_poly_normal(tl_poly_fan_area(vertices, loop, count))};
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        double height = tl_v3_dot(plane.normal, vertices[loop[i]]);
+        low = height < low ? height : low;
+        high = height > high ? height : high;
+    }
+    plane.offset = tl_poly_midway(low, high);
+    return plane;
+}
+
 static tl_status assemble(builder *b, tl_poly **poly, tl_error *error)
 {
     uint32_t n = b->face_count, length = b->start[n];
@@ -613,7 +628,7 @@ static tl_status assemble(builder *b, tl_poly **poly, tl_error *error)
         const uint16_t *loop = b->loop + b->start[from];
         memcpy(p->loop + p->start[f], loop, corners * sizeof *loop);
         p->start[f + 1] = (uint16_t)(p->start[f] + corners);
-        p->plane[f] = tl_poly_fit_plane(p->vertex, loop, corners);
+        p->plane[f] = fit_plane(p->vertex, loop, corners);
         p->tag[f] = (tl_tag){0, 0};
     }
     free(rank);

@@ -236,19 +236,6 @@ tl_vec3 tl_poly_fan_area(const tl_vec3 *vertices, const uint16_t *loop, size_t c
     return sum;
 }
 
-tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count)
-{
-    tl_plane plane = {.normal = tl_poly_normal(tl_poly_fan_area(vertices, loop, count))};
-    double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < count; i++) {
-        double height = tl_v3_dot(plane.normal, vertices[loop[i]]);
-        low = height < low ? height : low;
-        high = height > high ? height : high;
-    }
-    plane.offset = tl_poly_midway(low, high);
-    return plane;
-}
-
 /* Everything tl_poly_make asks of its input short of pairing the edges. */
 static tl_status check_input(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes,
                              const uint32_t *start, const uint16_t *loops, size_t face_count,

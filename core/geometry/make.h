@@ -40,11 +40,6 @@ tl_vec3 tl_poly_normal(tl_vec3 area);
 /* The middle of two heights, that height to the bit where they are one. */
 double tl_poly_midway(double low, double high);
 
-/* The plane of a face from its vertices: Newell's normal, and the offset midway between the
- * extremes of normal . x. So a face normal to an axis gets exactly that axis and its
- * coordinate. */
-tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count);
-
 /* A polyhedron from faces: loops[start[f] .. start[f+1]) are indices into `vertices`. Derives edges.
  * Fails (TL_E_GEOMETRY) when some edge does not belong to exactly two faces. */
 tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes,

@@ -8,48 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---------------------------------------------------------------- tractions on faces ------
- *
- * What tractions on faces put on blocks, kept so that their parts get their shares.
- *
- * Of a load that comes of a traction on a face, force F and moment M about the centroid c of the face are noted. Parts
- * of the face get what brings a uniform plate along that F and M act on: with the area A and its second moments I, each
- * part p
- *
- *     F_p = A_p (F/A + w x (c_p - c)),    M_p = I_p w,    I w = M
- *
- * A traction that is uniform, or normal to the face and linear, is the same on each part. Sums are those of the whole
- * for any. */
-
-/* ---------------------------------------------------------------- lumps ------------------ */
-
-void tl_lump_add(tl_lump *sum, const tl_lump *part)
-{
-    sum->mass += part->mass;
-    sum->place = tl_v3_madd(sum->place, part->mass, part->place);
-}
-
-void tl_lump_close(tl_lump *sum)
-{
-    if (sum->mass > 0)
-        sum->place = tl_v3_scale(1 / sum->mass, sum->place);
-}
-
-void tl_lump_add_inertia(tl_lump *sum, const tl_lump *part)
-{
-    tl_vec3 arm = tl_v3_sub(part->place, sum->place);
-    sum->inertia = tl_s3_madd(sum->inertia, 1, tl_inertia_about(part->inertia, part->mass, arm));
-}
-
-tl_wrench tl_lump_share(const tl_lump *part, const tl_lump *all, tl_wrench whole)
-{
-    const tl_sym3 *a = &all->inertia;
-    tl_vec3 turn = tl_solve3(tl_v3(a->xx, a->xy, a->zx), tl_v3(a->xy, a->yy, a->yz),
-                             tl_v3(a->zx, a->yz, a->zz), whole.moment);
-    tl_vec3 goes = tl_v3_scale(1 / all->mass, whole.force);
-    goes = tl_v3_add(goes, tl_v3_cross(turn, tl_v3_sub(part->place, all->place)));
-    return (tl_wrench){tl_v3_scale(part->mass, goes), tl_s3_mul(part->inertia, turn)};
-}
+/* ---------------------------------------------------------------- tractions on faces ----- */
 
 tl_lump tl_face_plate(const tl_model *m, uint32_t row, uint32_t face)
 {
@@ -75,7 +34,8 @@ tl_lump tl_face_plate(const tl_model *m, uint32_t row, uint32_t face)
                 square[j] += third * products[j];
         }
     }
-    tl_lump_close(&out);
+    if (out.mass > 0)
+        out.place = tl_v3_scale(1 / out.mass, out.place);
     tl_vec3 c = out.place;
     const double own[] = {c.x * c.x, c.y * c.y, c.z * c.z, c.x * c.y, c.y * c.z, c.z * c.x};
     for (int j = 0; j < 6; j++)
@@ -207,25 +167,6 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     }
     m->constraints++; /* not as it was in the last step */
     return TL_OK;
-}
-
-void tl_load_add(tl_model *m, uint32_t body, tl_wrench more, tl_vec3 place)
-{
-    tl_body_load *load = &m->bodies.load[body];
-    const tl_mat3 *r = &m->bodies.pose[body].r;
-    tl_vec3 to = tl_v3_sub(place, tl_body_place(&m->bodies, body)), at = tl_m3_mul(r, load->arm);
-    double had = tl_v3_norm(load->force), has = tl_v3_norm(more.force), all = had + has;
-    if (had == 0) { /* without roundings */
-        *load = (tl_body_load){more.force, tl_v3_add(load->moment, more.moment), tl_m3_tmul(r, to)};
-        return;
-    }
-    tl_vec3 arm = tl_v3_add(tl_v3_scale(had, at), tl_v3_scale(has, to));
-    arm = tl_v3_scale(all > 0 ? 1 / all : 0, arm);
-    tl_vec3 moment = tl_v3_add(load->moment, tl_v3_cross(at, load->force));
-    moment = tl_v3_add(moment, tl_v3_add(more.moment, tl_v3_cross(to, more.force)));
-    load->force = tl_v3_add(load->force, more.force);
-    load->moment = tl_v3_sub(moment, tl_v3_cross(arm, load->force));
-    load->arm = tl_m3_tmul(r, arm);
 }
 
 void tl_loads_stepped(tl_model *m)

@@ -53,19 +53,9 @@ typedef struct tl_lump {
     tl_sym3 inertia;
 } tl_lump;
 
-/* Several together, in two passes: the masses and places of all, then `close`, then the inertias of all. */
-void tl_lump_add(tl_lump *sum, const tl_lump *part);
-void tl_lump_close(tl_lump *sum);
-void tl_lump_add_inertia(tl_lump *sum, const tl_lump *part);
-/* What a part gets, about its centroid, of a force and a moment about that of all, to go on with all. Sums are kept. */
-tl_wrench tl_lump_share(const tl_lump *part, const tl_lump *all, tl_wrench whole);
 /* A face of a block as a plate whose mass is its area. */
 tl_lump tl_face_plate(const tl_model *m, uint32_t row, uint32_t face);
 
 /* Replaces the model's list by one that it then owns: sorted by block and face, those of one face added. */
 void tl_face_loads_set(tl_model *m, tl_face_load *list, size_t count, size_t capacity);
-/* Adds a force and a moment about a place, relative to the origin, to the load of a body. The load acts at the mean of
- * the places, weighted by the lengths of their forces. */
-void tl_load_add(tl_model *m, uint32_t body, tl_wrench more, tl_vec3 place);
-
 #endif
