@@ -23,16 +23,16 @@
 #include <talus/elementary.h>
 
 /* Integrals over a plane area in its own coordinates u, v. */
-typedef struct tl_area_sums {
+typedef struct area_sums {
     double a, u, v, uu, uv, vv; /* of 1, u, v, u u, u v, v v */
-} tl_area_sums;
+} area_sums;
 
 /* The outer part of a face. A point of its plane is at o + u t1 + v t2. */
-typedef struct tl_outer_face {
+typedef struct outer_face {
     uint32_t row, face;
     tl_vec3 normal, o, t1, t2; /* axes of the model; o relative to its origin */
-    tl_area_sums sums;
-} tl_outer_face;
+    area_sums sums;
+} outer_face;
 
 /* Tolerance: off the plane, or out of the box, by less than this times the block's size a corner is in it. It is what contacts
  * take for touching (TL_CONTACT_TOLERANCE). */
@@ -80,7 +80,7 @@ typedef struct body_sum {
 /* Tolerance: share of a face that may be left bare for roundings. */
 #define UNCOVERED 1e-5
 
-static tl_point2 flatten(const tl_outer_face *f, tl_vec3 x)
+static tl_point2 flatten(const outer_face *f, tl_vec3 x)
 {
     tl_vec3 d = tl_v3_sub(x, f->o);
     return (tl_point2){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
@@ -99,7 +99,7 @@ static tl_vec3 corner_at(const tl_model *m, uint32_t row, uint32_t face, uint32_
 }
 
 /* Adds `sign` times the integrals over a polygon. */
-static void add_polygon(tl_area_sums *s, const tl_point2 *c, size_t count, double sign)
+static void add_polygon(area_sums *s, const tl_point2 *c, size_t count, double sign)
 {
     for (size_t i = 1; i + 1 < count; i++) {
         double third = sign * tl_cross2(c[0], c[i], c[i + 1]) / 6;
@@ -118,7 +118,7 @@ static void add_polygon(tl_area_sums *s, const tl_point2 *c, size_t count, doubl
 }
 
 /* Takes away what a face has in common with one that looks at it, as seen along its normal. */
-static tl_status take_away(tl_model *m, tl_outer_face *f, uint32_t row, uint32_t face)
+static tl_status take_away(tl_model *m, outer_face *f, uint32_t row, uint32_t face)
 {
     uint32_t mine = tl_poly_face_size(m->blocks.shape[f->row], f->face);
     uint32_t its = tl_poly_face_size(m->blocks.shape[row], face);
@@ -138,7 +138,7 @@ static tl_status take_away(tl_model *m, tl_outer_face *f, uint32_t row, uint32_t
 }
 
 /* Takes away the patches of contacts. */
-static tl_status take_contacts(tl_model *m, tl_outer_face *f)
+static tl_status take_contacts(tl_model *m, outer_face *f)
 {
     const tl_contacts *c = &m->detect->contacts;
     tl_status status = TL_OK;
@@ -155,7 +155,7 @@ static tl_status take_contacts(tl_model *m, tl_outer_face *f)
 }
 
 /* Takes away what lies on other blocks of the body, and raises the share that may be left bare. */
-static tl_status take_members(tl_model *m, tl_outer_face *f, double *bare)
+static tl_status take_members(tl_model *m, outer_face *f, double *bare)
 {
     const tl_poly *shape = m->blocks.shape[f->row];
     uint32_t body = m->blocks.body[f->row];
@@ -175,10 +175,10 @@ static tl_status take_members(tl_model *m, tl_outer_face *f, double *bare)
 
 /* Measures the outer part of a face of the block in a row, after a tl_detect_refresh. Its area is 0 where all of the
  * face but for roundings lies on others. */
-static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, tl_outer_face *out)
+static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, outer_face *out)
 {
     const tl_poly *shape = m->blocks.shape[row];
-    *out = (tl_outer_face){.row = row, .face = face};
+    *out = (outer_face){.row = row, .face = face};
     out->normal = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
     out->t1 = tl_v3_perpendicular(out->normal);
     out->t2 = tl_v3_cross(out->normal, out->t1);
@@ -196,12 +196,12 @@ static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, tl_oute
     if (status == TL_OK)
         status = take_members(m, out, &bare);
     if (out->sums.a <= bare * whole)
-        out->sums = (tl_area_sums){0};
+        out->sums = (area_sums){0};
     return status;
 }
 
 /* Centroid of it, relative to the origin. */
-static tl_vec3 outer_centroid(const tl_outer_face *f)
+static tl_vec3 outer_centroid(const outer_face *f)
 {
     double u = f->sums.u / f->sums.a, v = f->sums.v / f->sums.a;
     return tl_v3_madd(tl_v3_madd(f->o, u, f->t1), v, f->t2);
@@ -296,7 +296,7 @@ static bool is_there(const tl_model *m, const face_filter *s, uint32_t row, uint
 }
 
 typedef struct face_list {
-    tl_outer_face *at;
+    outer_face *at;
     size_t count, capacity;
 } face_list;
 
@@ -325,10 +325,10 @@ static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_li
 /* ---------------------------------------------------------------- what is done ----------- */
 
 /* Force and moment, about the body's centroid, of the traction on a face. */
-static void face_load(const tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+static void face_load(const tl_model *m, const tl_boundary_action *a, const outer_face *f,
                       tl_vec3 *force, tl_vec3 *moment)
 {
-    const tl_area_sums *s = &f->sums;
+    const area_sums *s = &f->sums;
     double height = f->o.z + m->origin.z - a->at.z;
     tl_vec3 b = tl_s3_mul(a->gradient, f->normal);
     tl_vec3 t = tl_v3_madd(tl_v3_add(tl_s3_mul(a->stress, f->normal), a->traction), height, b);
@@ -343,7 +343,7 @@ static void face_load(const tl_model *m, const tl_boundary_action *a, const tl_o
                         tl_v3_add(tl_v3_cross(f->t1, sum_u), tl_v3_cross(f->t2, sum_v)));
 }
 
-static tl_status add_load(tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+static tl_status add_load(tl_model *m, const tl_boundary_action *a, const outer_face *f,
                           body_sum *sums, face_loads *loads, tl_boundary_result *result)
 {
     uint32_t body = m->blocks.body[f->row];
@@ -377,7 +377,7 @@ static unsigned roller_of(tl_vec3 n)
     return fmax(x, y) < ALONG ? TL_FIX_Z : 0;
 }
 
-static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const outer_face *f,
                             uint8_t *fix)
 {
     unsigned what = a->fixed ? TL_FIX_ALL : 0;
@@ -402,7 +402,7 @@ static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_r
     r->faces = malloc((faces->count + 1) * sizeof *r->faces);
     r->blocks = malloc((faces->count + 1) * sizeof *r->blocks);
     for (size_t i = 0; i < faces->count && r->faces && r->blocks; i++) {
-        const tl_outer_face *f = &faces->at[i];
+        const outer_face *f = &faces->at[i];
         tl_id id = m->blocks.id[f->row];
         r->faces[r->face_count++] = (tl_boundary_face){id, f->face, f->sums.a, f->normal,
                                                        tl_v3_add(m->origin, outer_centroid(f))};

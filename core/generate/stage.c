@@ -6,6 +6,7 @@
 #include "generate/stage.h"
 
 #include "base/random.h"
+#include "base/table.h"
 #include "generate/stage_bodies.h"
 #include "generate/staging.h"
 #include "geometry/cut.h"
@@ -48,22 +49,11 @@ static tl_stage_ball ball_of(const tl_model *m, const tl_stage_block *block)
 /* Adds a block, of which it then owns what the block does; false when out of memory. */
 static bool stage_push(tl_stage *stage, const tl_stage_block *block)
 {
-    if (stage->count == stage->capacity) {
-        size_t capacity = stage->capacity ? 2 * stage->capacity : 64;
-        tl_stage_block *blocks = realloc(stage->blocks, capacity * sizeof *blocks);
-        if (!blocks)
-            return false;
-        stage->blocks = blocks;
-        tl_stage_ball *balls = realloc(stage->balls, capacity * sizeof *balls);
-        if (!balls)
-            return false;
-        stage->balls = balls;
-        size_t *visible = realloc(stage->visible, capacity * sizeof *visible);
-        if (!visible)
-            return false;
-        stage->visible = visible;
-        stage->capacity = capacity;
-    }
+    size_t of_balls = stage->capacity, of_visible = stage->capacity, need = stage->count + 1;
+    if (!tl_grow(&stage->balls, &of_balls, need, sizeof *stage->balls) ||
+        !tl_grow(&stage->visible, &of_visible, need, sizeof *stage->visible) ||
+        !tl_grow(&stage->blocks, &stage->capacity, need, sizeof *stage->blocks))
+        return false;
     if (!block->hidden && !block->hidden_by_generator)
         stage->visible[stage->visible_count++] = stage->count;
     stage->balls[stage->count] = ball_of(stage->model, block);

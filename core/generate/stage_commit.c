@@ -201,17 +201,17 @@ static void list_wholes(const tl_stage *stage, commit_scratch *scratch)
     }
 }
 
-static int compare_whole(const void *x, const void *y)
-{
-    const tl_split *p = x, *q = y;
-    return p->whole != q->whole ? (p->whole > q->whole) - (p->whole < q->whole)
-                                : (p->block > q->block) - (p->block < q->block);
-}
-
 static int compare_split(const void *x, const void *y)
 {
     const tl_split *p = x, *q = y;
     return (p->block > q->block) - (p->block < q->block);
+}
+
+static int compare_whole(const void *x, const void *y)
+{
+    const tl_split *p = x, *q = y;
+    return p->whole != q->whole ? (p->whole > q->whole) - (p->whole < q->whole)
+                                : compare_split(x, y);
 }
 
 /* Keeps the blocks of the bodies that are several now. The list takes the place of the model's: it has the blocks of

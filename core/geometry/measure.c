@@ -1,8 +1,10 @@
 /* measure.c - what a polyhedron measures: mass properties, bounds, faces, support, containment.
  *
  * Volume integrals are sums over the tetrahedra from one vertex O to a fan of triangles (a, b, c)
- * of every face. With D = a . (b x c) relative to O and s = a + b + c, a tetrahedron has
+ * of every face. With D = a . (b x c) relative to O and s = a + b + c, a tetrahedron has:
+ *
  *     volume D / 6,   first moment D s / 24,   second moments D (s s' + a a' + b b' + c c') / 120.
+ *
  * They are exact for any position (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron inertia tensor",
  * eqs. 3-10). Second moments are moved to the centroid by the parallel axis theorem. About a vertex of the body that
  * costs a factor of 4 in rounding at most, wherever the body stands. The volume of a block that is flat or long

@@ -10,13 +10,13 @@
 #include <string.h>
 #include <talus/talus.h>
 
-typedef struct tl_profile_args {
+typedef struct profile_args {
     int32_t on;
-} tl_profile_args;
+} profile_args;
 
-typedef struct tl_write_blocks_args {
+typedef struct write_blocks_args {
     const char *path;
-} tl_write_blocks_args;
+} write_blocks_args;
 
 static const char *const filter_actions[] = {
     [TL_FILTER_REPORT] = "report", [TL_FILTER_DELETE] = "delete", [TL_FILTER_JOIN] = "join", NULL};
@@ -104,7 +104,7 @@ static const tl_param mass_scaling_params[] = {
 };
 
 static const tl_param profile_params[] = {
-    TL_PARAM(TL_PARAM_BOOL, tl_profile_args, on, "",
+    TL_PARAM(TL_PARAM_BOOL, profile_args, on, "",
              "begins to time the phases of each step, from zero, or ends it; left out, gives the "
              "result so far",
              .flags = TL_PARAM_OPTIONAL),
@@ -196,7 +196,7 @@ static const tl_param view_params[] = {
 };
 
 static const tl_param write_blocks_params[] = {
-    TL_PARAM(TL_PARAM_STRING, tl_write_blocks_args, path, "", "name of the file",
+    TL_PARAM(TL_PARAM_STRING, write_blocks_args, path, "", "name of the file",
              .flags = TL_PARAM_REQUIRED),
 };
 
@@ -272,15 +272,15 @@ static const tl_param law_leg_params[] = {
              .max = TL_LAW_TEST_STEPS, .flags = TL_PARAM_OPTIONAL),
 };
 
-typedef struct tl_function {
+typedef struct model_function {
     const char *name, *doc;
     const tl_param *params;
     size_t count;
-} tl_function;
+} model_function;
 
 #define PARAMS(table) table, sizeof(table) / sizeof(table)[0]
 
-static const tl_function functions[] = {
+static const model_function functions[] = {
     {"model", "Makes an empty model.", PARAMS(model_params)},
     {"insitu", "Puts an initial stress on the face contacts that exist now, once.",
      PARAMS(insitu_params)},

@@ -105,14 +105,6 @@ static bool face_loads_forget(tl_model *m, const tl_id *ids, size_t count)
 
 /* ---------------------------------------------------------------- loads ------------------- */
 
-static tl_status check_blocks(tl_model *m, const tl_id *ids, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (tl_block_row(m, ids[i]) == TL_NO_ROW)
-            return m->error.status;
-    return TL_OK;
-}
-
 bool tl_bodies_hold_loads(tl_bodies *b)
 {
     return TL_COLUMN_NEED(&b->table, b, load_before, 0) && TL_COLUMN_NEED(&b->table, b, load, 0);
@@ -149,7 +141,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
         (placed && !tl_v3_finite(load.at)))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "load: force, moment and at must be finite numbers");
-    status = check_blocks(m, ids, count);
+    status = tl_blocks_check(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count && (!tl_bodies_hold_loads(&m->bodies) || !face_loads_forget(m, ids, count)))
@@ -256,7 +248,7 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
         return status;
     status = tl_check_motion(&m->error, "drive", drive.velocity, drive.angular_velocity);
     if (status == TL_OK)
-        status = check_blocks(m, ids, count);
+        status = tl_blocks_check(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count == 0) {

@@ -229,6 +229,14 @@ uint32_t tl_block_row(tl_model *m, tl_id id)
     return row;
 }
 
+tl_status tl_blocks_check(tl_model *m, const tl_id *ids, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (tl_block_row(m, ids[i]) == TL_NO_ROW)
+            return m->error.status;
+    return TL_OK;
+}
+
 tl_status tl_block_check(tl_model *m, tl_id block)
 {
     return tl_block_row(m, block) == TL_NO_ROW ? m->error.status : TL_OK;

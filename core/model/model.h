@@ -6,8 +6,8 @@
  *
  *     origin + x_ref + u + R p
  *
- * `origin` is a point of the model rounded to a coarse power of two, so that a model far from the coordinates' zero
- * loses no digits. x_ref is the body's centroid when the body was made and u its displacement since. They are kept
+ * `origin` is a point of the model rounded to a coarse power of two. So a model far from the coordinates' zero loses
+ * no digits. x_ref is the body's centroid when the body was made and u its displacement since. They are kept
  * apart so that a step far below the rounding of x_ref still counts.
  *
  * Rows of blocks and bodies are in ascending order of id. Rows change when blocks are created, cut, joined or deleted;
@@ -371,6 +371,8 @@ tl_id tl_split_of(const tl_model *m, tl_id block);
 
 /* Row of a block id, or TL_NO_ROW with a sentence in the model's error. */
 uint32_t tl_block_row(tl_model *m, tl_id id);
+/* The same of several: the status of the first that is none. */
+tl_status tl_blocks_check(tl_model *m, const tl_id *ids, size_t count);
 /* Row of an id known to live, or TL_NO_ROW. */
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
 

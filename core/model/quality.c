@@ -1,8 +1,8 @@
 /* quality.c - how good the blocks are that cutting made: volume kept, the smallest and the thinnest of
  * them, and the cuts that were refused.
  *
- * Volumes are summed with the rounding carried along (Neumaier), so that what shows as an error of a
- * million blocks is the cuts' and not the sum's. */
+ * Volumes are summed with the rounding carried along (Neumaier). What shows as an error of a million blocks is then
+ * that of the cuts and not of the sum. */
 #include "geometry/measure.h"
 #include "model/model.h"
 #include "model/rows.h"

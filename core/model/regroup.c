@@ -356,9 +356,32 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
     return status;
 }
 
-/* Sets group[row] for the bodies that lose blocks (keep[row] is 0) or have lost some since they were measured. What is
- * left of each falls into the groups that hang together over shared faces. */
-static tl_status find_groups(tl_model *m, const unsigned char *keep, uint32_t *group)
+/* Changes group[row], by which rows of blocks are chosen. */
+typedef tl_status change_fn(tl_model *m, const unsigned char *chosen, uint32_t *group);
+
+/* Makes the bodies anew by their groups as they are, and then changed. */
+static tl_status regroup_by(tl_model *m, const tl_id *ids, size_t count, change_fn *change)
+{
+    size_t blocks = m->blocks.table.rows;
+    uint32_t *group = malloc((blocks + 1) * sizeof *group);
+    unsigned char *chosen = calloc(blocks + 1, 1);
+    tl_status status = group && chosen ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK) {
+        tl_bodies_groups(m, group);
+        for (size_t i = 0; i < count; i++)
+            chosen[tl_block_row_quiet(m, ids[i])] = 1;
+        status = change(m, chosen, group);
+    }
+    if (status == TL_OK)
+        status = tl_bodies_regroup(m, group);
+    free(group);
+    free(chosen);
+    return status;
+}
+
+/* Takes the chosen blocks out of their bodies. What is left of these falls into the groups that hang together over
+ * shared faces. So do bodies that have lost blocks since they were measured. */
+static tl_status split_groups(tl_model *m, const unsigned char *chosen, uint32_t *group)
 {
     const tl_bodies *b = &m->bodies;
     size_t blocks = m->blocks.table.rows;
@@ -370,11 +393,11 @@ static tl_status find_groups(tl_model *m, const unsigned char *keep, uint32_t *g
         uint32_t count = 0;
         for (uint32_t k = 0; k < b->member_count[body]; k++) {
             uint32_t row = m->members[b->member_start[body] + k];
-            if (keep[row]) {
+            if (chosen[row]) {
+                group[row] = row;
+            } else {
                 polys[count] = m->blocks.shape[row];
                 rows[count++] = row;
-            } else {
-                group[row] = row;
             }
         }
         if (count == 0 || (count == b->member_count[body] && is_whole(m, body)))
@@ -391,22 +414,7 @@ static tl_status find_groups(tl_model *m, const unsigned char *keep, uint32_t *g
 
 tl_status tl_bodies_fall_apart(tl_model *m, const tl_id *ids, size_t count)
 {
-    size_t blocks = m->blocks.table.rows;
-    unsigned char *keep = malloc(blocks + 1);
-    uint32_t *group = malloc((blocks + 1) * sizeof *group);
-    tl_status status = keep && group ? TL_OK : tl_fail_memory(&m->error);
-    if (status == TL_OK) {
-        memset(keep, 1, blocks);
-        for (size_t i = 0; i < count; i++)
-            keep[tl_block_row_quiet(m, ids[i])] = 0;
-        tl_bodies_groups(m, group);
-        status = find_groups(m, keep, group);
-    }
-    if (status == TL_OK)
-        status = tl_bodies_regroup(m, group);
-    free(keep);
-    free(group);
-    return status;
+    return regroup_by(m, ids, count, split_groups);
 }
 
 tl_status tl_bodies_mend(tl_model *m)
@@ -440,28 +448,8 @@ static tl_status check_parts(tl_model *m, const tl_id *ids, size_t count, const 
     return status;
 }
 
-/* Regroups with group[] changed by `change`, which is told the rows of the blocks given. */
-static tl_status regroup_by(tl_model *m, const tl_id *ids, size_t count,
-                            void (*change)(const tl_model *, const unsigned char *, uint32_t *))
-{
-    size_t blocks = m->blocks.table.rows;
-    uint32_t *group = malloc((blocks + 1) * sizeof *group);
-    unsigned char *chosen = calloc(blocks + 1, 1);
-    tl_status status = group && chosen ? TL_OK : tl_fail_memory(&m->error);
-    if (status == TL_OK) {
-        tl_bodies_groups(m, group);
-        for (size_t i = 0; i < count; i++)
-            chosen[tl_block_row_quiet(m, ids[i])] = 1;
-        change(m, chosen, group);
-        status = tl_bodies_regroup(m, group);
-    }
-    free(group);
-    free(chosen);
-    return status;
-}
-
 /* Every body with a block chosen comes along whole. */
-static void join_groups(const tl_model *m, const unsigned char *chosen, uint32_t *group)
+static tl_status join_groups(tl_model *m, const unsigned char *chosen, uint32_t *group)
 {
     const tl_bodies *b = &m->bodies;
     uint32_t lowest = TL_NO_ROW;
@@ -475,10 +463,11 @@ static void join_groups(const tl_model *m, const unsigned char *chosen, uint32_t
         for (uint32_t k = 0; joins && k < b->member_count[body]; k++)
             group[rows[k]] = lowest;
     }
+    return TL_OK;
 }
 
 /* Chosen blocks go alone; what is left of a body is named by its lowest remaining block. */
-static void part_groups(const tl_model *m, const unsigned char *chosen, uint32_t *group)
+static tl_status part_groups(tl_model *m, const unsigned char *chosen, uint32_t *group)
 {
     const tl_bodies *b = &m->bodies;
     for (uint32_t body = 0; body < b->table.rows; body++) {
@@ -490,6 +479,7 @@ static void part_groups(const tl_model *m, const unsigned char *chosen, uint32_t
             group[rows[k]] = chosen[rows[k]] ? rows[k] : lowest;
         }
     }
+    return TL_OK;
 }
 
 tl_status tl_blocks_join(tl_model *m, const tl_id *ids, size_t count)

@@ -13,17 +13,9 @@
 #include <talus/number.h>
 #include <talus/text.h>
 
-static tl_status check_ids(tl_model *m, const tl_id *ids, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (tl_block_row(m, ids[i]) == TL_NO_ROW)
-            return m->error.status;
-    return TL_OK;
-}
-
 tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidden)
 {
-    tl_status status = check_ids(m, ids, count);
+    tl_status status = tl_blocks_check(m, ids, count);
     if (status != TL_OK)
         return status;
     for (size_t i = 0; i < count; i++)
@@ -59,7 +51,7 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
 {
     tl_status status = tl_model_may_change(m, "delete blocks");
     if (status == TL_OK)
-        status = check_ids(m, ids, count);
+        status = tl_blocks_check(m, ids, count);
     if (status == TL_OK && some_joined(m, ids, count)) {
         tl_rows_tidy(m);
         status = tl_bodies_fall_apart(m, ids, count);
@@ -114,7 +106,7 @@ static tl_status change_fixing(tl_model *m, const tl_id *ids, size_t count, cons
 {
     tl_status status = tl_model_may_set(m, verb);
     if (status == TL_OK)
-        status = check_ids(m, ids, count);
+        status = tl_blocks_check(m, ids, count);
     bool changed = false;
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
@@ -145,7 +137,7 @@ static void displacement_from_now(tl_model *m, uint32_t row)
 
 tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t count)
 {
-    tl_status status = check_ids(m, ids, count);
+    tl_status status = tl_blocks_check(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count && !tl_blocks_hold_base(m))
@@ -239,7 +231,7 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     if (status == TL_OK)
         status = tl_model_may_set(m, "set properties of blocks");
     if (status == TL_OK)
-        status = check_ids(m, ids, count);
+        status = tl_blocks_check(m, ids, count);
     if (status == TL_OK)
         status = check_set(m, ids, count, set);
     if (status != TL_OK)

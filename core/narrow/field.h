@@ -5,8 +5,8 @@
  *
  *     U = 2 kn G,    G = int over K of min(d_A, d_B) dV
  *
- * (after Elandt, Drumwright, Sherman and Ruina, "A pressure field model for fast, robust approximation of net contact
- * force and moment between nominally rigid objects", IROS 2019). Its gradient is a traction on the surface S inside K
+ * (after Elandt, Drumwright, Sherman and Ruina, IROS 2019: "A pressure field model for fast, robust approximation of
+ * net contact force and moment between nominally rigid objects"). Its gradient is a traction on the surface S inside K
  * where d_A = d_B = d. S is plane where face a of A and face b of B are the nearest:
  *
  *     force on B = 2 kn int over S of d n dS,    n = (n_a - n_b) / |n_a - n_b|

@@ -312,7 +312,7 @@ void tl_field_share(const tl_field_lanes *p, tl_field_parts *out)
 /* ---------------------------------------------------------------- powers ----------------- */
 
 /* Sums of products of n numbers are those of all ways to choose n with repetition, h_n. Over a triangle of area w with
- * the depths a, b, c: int d^n dS = 2 w h_n(a, b, c) / ((n + 1) (n + 2)), and the integral of d^n x is the sum over its
+ * the depths a, b, c: int d^n dS = 2 w h_n(a, b, c) / ((n + 1) (n + 2)). The integral of d^n x is the sum over its
  * corners of 2 w x_a h_n(a, b, c, a) / ((n + 1) (n + 2) (n + 3)). */
 TL_VECTORIZED static void sum_powers(tl_field_lanes *restrict p, const tl_field_line *restrict line,
                                      size_t count)

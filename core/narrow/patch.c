@@ -1,6 +1,6 @@
 /* patch.c - face on face: the contact points of the common polygon (common_polygon.c).
  *
- * Contact points lie at the area centroid, at 5/8 of the way to the corners, and at 5/6 of that to the middles of the
+ * Contact points lie at the centroid, at 5/8 of the way to the corners, and at 5/6 of that to the middles of
  * edges. Let a_i be the area of the fan triangle of edge i about the centroid. A corner's point has the area 16/75
  * (a_{i-1} + a_i), a middle's 12/25 a_i, the centroid 7/75 of all. These points integrate every quadratic polynomial
  * over each fan triangle exactly, so any linear gap and its moments over the polygon. (Corners lie at the share s of

@@ -15,11 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Edges of two faces that lie along each other, a bit each. */
-typedef struct tl_outline_shared {
-    uint32_t a, b;
-} tl_outline_shared;
-
 /* ---------------------------------------------------------------- outlines ----------------
  *
  * The corners of the common polygon of two convex faces, by which corners lie inside which lines.
@@ -193,12 +188,13 @@ static uint32_t bits_of_bytes(uint64_t x)
     return (uint32_t)(x & 0xff);
 }
 
-/* By which corners lie on which lines, as with `inside_a` and `inside_b`. */
-static tl_outline_shared outline_shared_of(uint32_t na, uint32_t nb, uint64_t on_a, uint64_t on_b)
+/* Edges that lie along each other, a bit each: A's, and from bit TL_OUTLINE_CORNERS on B's. By which corners lie on
+ * which lines, as with `inside_a` and `inside_b`. */
+static uint32_t coinciding_edges(uint32_t na, uint32_t nb, uint64_t on_a, uint64_t on_b)
 {
     uint64_t a = along(on_a, na), b = along(on_b, nb);
-    return (tl_outline_shared){.a = bytes_with_bits(a) | bits_of_bytes(b),
-                               .b = bits_of_bytes(a) | bytes_with_bits(b)};
+    return (bytes_with_bits(a) | bits_of_bytes(b)) | (bits_of_bytes(a) | bytes_with_bits(b))
+                                                         << TL_OUTLINE_CORNERS;
 }
 
 const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
@@ -448,8 +444,7 @@ TL_VECTORIZED static void find_inside(tl_patch_batch *b, work *w)
 static void note_edges(const tl_patch_batch *b, work *w, uint32_t l, uint64_t on_a, uint64_t on_b)
 {
     const tl_outline *o = &b->outline[l];
-    tl_outline_shared shared = outline_shared_of(b->na[l], b->nb[l], on_a, on_b);
-    uint32_t coincide = shared.a | shared.b << CORNERS;
+    const uint32_t coincide = coinciding_edges(b->na[l], b->nb[l], on_a, on_b);
     for (uint32_t k = 0; k < o->count; k++)
         w->of_b[k][l] = tl_edge_ride(o->edge[k] >= CORNERS, coincide >> o->edge[k] & 1);
 }

@@ -33,18 +33,18 @@
 #include <talus/vmath.h>
 
 /* Where the planes of a region are put together. */
-typedef struct tl_press_planes {
+typedef struct press_planes {
     tl_field_faces faces;
     tl_vec3 origin;
     uint32_t count;
-} tl_press_planes;
+} press_planes;
 
 /* ---------------------------------------------------------------- faces that press --------
  *
  * The planes of the faces that press, where they are moved out and lean. */
 
 static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query[], uint32_t count,
-                          tl_press_planes p[])
+                          press_planes p[])
 {
     size_t all = 0;
     uint32_t faces[TL_FIELD_PAIRS];
@@ -95,7 +95,7 @@ tl_plane tl_pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
     return is_moved(of, of_b, face) ? moved_plane(of, of_b) : tl_view_plane(of->view, of_b, face);
 }
 
-static uint32_t add_faces(tl_press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
+static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
                           uint32_t count)
 {
     for (uint32_t k = begin; k < begin + count; k++) {
@@ -109,7 +109,7 @@ static uint32_t add_faces(tl_press_planes *p, const tl_press_query *of, bool of_
 }
 
 /* Adds faces on other parts; how many are seams through which something passes, with it. */
-static uint32_t add_covered(tl_press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
+static uint32_t add_covered(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
                             uint32_t count, uint32_t *seams)
 {
     const tl_poly *poly = of_b ? of->view->b : of->view->a;
@@ -120,7 +120,7 @@ static uint32_t add_covered(tl_press_planes *p, const tl_press_query *of, bool o
 }
 
 /* Lists the planes where the first `a` listed faces of A and `b` of B press and the others are borders. */
-static void list_planes(tl_press_planes *p, const tl_press_query *of, uint32_t a, uint32_t b)
+static void list_planes(press_planes *p, const tl_press_query *of, uint32_t a, uint32_t b)
 {
     const tl_region *r = of->region;
     const uint32_t covered_a = r->a + r->b, covered_b = covered_a + r->border_a;
@@ -225,7 +225,7 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
 
 /* Whether the integrals of blocks that hardly overlap are no more than roundings. Otherwise the centre of pressure
  * lies in both blocks, and with a minimum area their mean depth is no larger than the largest. */
-static bool is_noise(const tl_press_query *of, const tl_press_planes *p, const tl_field_sums *sums)
+static bool is_noise(const tl_press_query *of, const press_planes *p, const tl_field_sums *sums)
 {
     double size = of->view->size;
     if (sums->deepest > FAINT * size)
@@ -313,7 +313,7 @@ static void blend_powers(const patches *p, tl_field_power field[TL_PRESS_POWERS]
 }
 
 /* The integrals over the patch of the flush faces. false: out of memory. */
-static bool sum_patch(const tl_press_query *of, tl_press_planes *p, tl_narrow_scratch *scratch,
+static bool sum_patch(const tl_press_query *of, press_planes *p, tl_narrow_scratch *scratch,
                       tl_field_sums *out)
 {
     list_planes(p, of, of->region->blunt_a, of->region->blunt_b);
@@ -384,9 +384,8 @@ static void mix_places(tl_field_sums *field, const patches *p)
 
 /* Adds the patch of two faces, if it has a share. Faces that are not the flush ones may face each other far apart,
  * with all of the blocks between them. false: out of memory. */
-static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair faces,
-                      bool corners, const tl_field_sums *field, tl_narrow_scratch *scratch,
-                      patches *to)
+static bool add_patch(const tl_press_query *of, press_planes *p, tl_face_pair faces, bool corners,
+                      const tl_field_sums *field, tl_narrow_scratch *scratch, patches *to)
 {
     const tl_pair_view *view = of->view;
     const uint32_t fa = faces.a, fb = faces.b;
@@ -439,7 +438,7 @@ static void part(patches *p)
 
 /* The patches that have a share: that of the flush faces, and, at corners, those of others that face each other. For
  * springs there press up to tilts at which an edge may lie in both. false: out of memory. */
-static bool find_patches(const tl_press_query *of, tl_press_planes *p, const tl_field_sums *field,
+static bool find_patches(const tl_press_query *of, press_planes *p, const tl_field_sums *field,
                          tl_narrow_scratch *scratch, patches *out)
 {
     const tl_pair_view *view = of->view;
@@ -497,7 +496,7 @@ static double radius_of(const tl_field_sums *sums, tl_vec3 about)
 
 /* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before.
  * Nothing presses where a part only passes on through its seams what the next parts press with, to the last digit. */
-static bool press_of(const tl_press_query *of, tl_press_planes *p, tl_field_sums *sums, bool same,
+static bool press_of(const tl_press_query *of, press_planes *p, tl_field_sums *sums, bool same,
                      tl_narrow_scratch *scratch, tl_press *press, tl_press_extra *extra)
 {
     const tl_pair_view *view = of->view;
@@ -547,7 +546,7 @@ static bool press_of(const tl_press_query *of, tl_press_planes *p, tl_field_sums
 }
 
 /* The planes of a pair's field about a point. */
-static void begin(const tl_press_query *of, tl_vec3 origin, tl_press_planes *p)
+static void begin(const tl_press_query *of, tl_vec3 origin, press_planes *p)
 {
     p->origin = origin;
     list_planes(p, of, of->region->a, of->region->b);
@@ -559,7 +558,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, tl_press_planes *p)
 }
 
 /* The integrals by the mesh that is known; false: they are to be found. */
-static bool follow(const tl_press_query *of, tl_press_planes *p, tl_field_sums *sums)
+static bool follow(const tl_press_query *of, press_planes *p, tl_field_sums *sums)
 {
     tl_field_mesh *mesh = of->region->mesh;
     if (mesh && !is_of_use(of))
@@ -571,7 +570,7 @@ static bool follow(const tl_press_query *of, tl_press_planes *p, tl_field_sums *
 }
 
 /* Goes by a mesh that has just been made at once: so the same is found when all is done again. */
-static void begin_mesh(const tl_press_query *of, tl_press_planes *p, tl_field_sums *sums)
+static void begin_mesh(const tl_press_query *of, press_planes *p, tl_field_sums *sums)
 {
     tl_field_mesh *mesh = of->region->mesh;
     if (!mesh || mesh->polygons == 0 || !(sums->pressure > 0))
@@ -586,7 +585,7 @@ static void begin_mesh(const tl_press_query *of, tl_press_planes *p, tl_field_su
 }
 
 /* Forgets what is no longer known, and finds what a new mesh needs. */
-static void begin_anew(const tl_press_query *of, tl_press_planes *p, tl_mesh_inner *inner)
+static void begin_anew(const tl_press_query *of, press_planes *p, tl_mesh_inner *inner)
 {
     const tl_pair_view *view = of->view;
     bool b_is_small = view->b->size < view->a->size;
@@ -606,7 +605,7 @@ static void begin_anew(const tl_press_query *of, tl_press_planes *p, tl_mesh_inn
 static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
                      tl_press press[], tl_press_extra extra[])
 {
-    tl_press_planes p[TL_FIELD_PAIRS];
+    press_planes p[TL_FIELD_PAIRS];
     uint64_t known[TL_FIELD_PAIRS];
     tl_mesh_inner inner[TL_FIELD_PAIRS];
     tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS] = {NULL};
