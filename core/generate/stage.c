@@ -434,12 +434,9 @@ static void set_origin(tl_model *m, tl_vec3 min, tl_vec3 max)
 
 static void set_origin_by(tl_model *m, const tl_vec3 *vertices, size_t count)
 {
-    tl_vec3 min = count ? vertices[0] : tl_v3(0, 0, 0), max = min;
-    for (size_t i = 0; i < count; i++) {
-        min = tl_v3_min(min, vertices[i]);
-        max = tl_v3_max(max, vertices[i]);
-    }
-    set_origin(m, min, max);
+    const tl_bounds bounds =
+        count ? tl_points_bounds(vertices, count) : (tl_bounds){tl_v3(0, 0, 0), tl_v3(0, 0, 0)};
+    set_origin(m, bounds.min, bounds.max);
 }
 
 /* The key of a new block: of where its corners are, so that draws do not depend on what was made before. */

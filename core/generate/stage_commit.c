@@ -458,10 +458,7 @@ tl_status tl_stage_commit(tl_stage *stage)
     if (stage->regroups) {
         list_groups(stage, scratch.ids, scratch.first, scratch.group);
         status = tl_bodies_regroup(m, scratch.group);
-        if (status == TL_OK)
-            tl_rows_settle(m, &scratch.aside);
-        else
-            tl_rows_take_back(m, &scratch.aside);
+        tl_rows_settle(m, &scratch.aside, status == TL_OK);
     }
     if (status == TL_OK) {
         tl_cut_loads_give(stage, scratch.ids, &scratch.loads);

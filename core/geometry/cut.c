@@ -398,11 +398,7 @@ static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **re
         which == 0 ? c->plane : (tl_plane){tl_v3_neg(c->plane.normal), -c->plane.offset};
     for (uint32_t i = 0; i < ch->loops; i++)
         p->loop[i] = ch->map[ch->loop[i]];
-    tl_status status = tl_poly_link(p, NULL);
-    if (status)
-        tl_poly_free(p);
-    else
-        *result = p;
+    tl_status status = tl_poly_link(p, result, NULL);
     return status == TL_E_MEMORY ? tl_fail_memory(error) : status;
 }
 

@@ -274,12 +274,8 @@ static tl_status check_points(const tl_vec3 *points, size_t count, tl_error *err
 static tl_status place_on_grid(builder *b, tl_error *error)
 {
     hull *h = &b->hull;
-    tl_vec3 low = b->point[0], high = b->point[0];
-    for (uint32_t i = 1; i < h->count; i++) {
-        low = tl_v3_min(low, b->point[i]);
-        high = tl_v3_max(high, b->point[i]);
-    }
-    tl_vec3 sides = tl_v3_sub(high, low);
+    const tl_bounds bounds = tl_points_bounds(b->point, h->count);
+    const tl_vec3 low = bounds.min, sides = tl_v3_sub(bounds.max, low);
     double longest = fmax(sides.x, fmax(sides.y, sides.z));
     b->extent = tl_v3_norm(sides);
     if (longest == 0)
@@ -291,7 +287,7 @@ static tl_status place_on_grid(builder *b, tl_error *error)
         return tl_fail(error, TL_E_GEOMETRY,
                        "the vertices are %g apart, which cannot be computed with: use other units",
                        longest);
-    double reach = fmax(tl_v3_norm(low), tl_v3_norm(high));
+    double reach = fmax(tl_v3_norm(low), tl_v3_norm(bounds.max));
     b->tolerance = fmax(TL_POLY_ON * b->extent, TL_POLY_ROUNDINGS * reach);
     if (b->tolerance > TL_POLY_THIN * b->extent)
         return tl_fail(error, TL_E_GEOMETRY,
@@ -632,12 +628,7 @@ static tl_status assemble(builder *b, tl_poly **poly, tl_error *error)
         p->tag[f] = (tl_tag){0, 0};
     }
     free(rank);
-    tl_status status = tl_poly_link(p, error);
-    if (status)
-        tl_poly_free(p);
-    else
-        *poly = p;
-    return status;
+    return tl_poly_link(p, poly, error);
 }
 
 /* Refuses a hull that is too thin and a point that is no corner but lies inside. */

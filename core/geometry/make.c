@@ -197,21 +197,28 @@ static tl_status pair_half_edges(tl_poly *p, half_edges half, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_poly_link(tl_poly *p, tl_error *error)
+tl_status tl_poly_link(tl_poly *p, tl_poly **linked, tl_error *error)
 {
     /* there are fewer vertices than half-edges */
     uint32_t half_count = 2 * p->edge_count;
     uint16_t local[4 * LOCAL_HALF_EDGES], *scratch = local;
-    if (half_count > LOCAL_HALF_EDGES && !(scratch = malloc(4 * half_count * sizeof *scratch)))
+    if (half_count > LOCAL_HALF_EDGES && !(scratch = malloc(4 * half_count * sizeof *scratch))) {
+        tl_poly_free(p);
         return tl_fail_memory(error);
+    }
     half_edges half = {scratch, scratch + half_count, scratch + 2 * half_count,
                        scratch + 3 * half_count};
     group_half_edges(p, half);
     tl_status status = pair_half_edges(p, half, error);
     if (scratch != local)
         free(scratch);
+    if (status != TL_OK) {
+        tl_poly_free(p);
+        return status;
+    }
     tl_poly_find_size(p);
-    return status;
+    *linked = p;
+    return TL_OK;
 }
 
 tl_vec3 tl_poly_normal(tl_vec3 area)
@@ -293,12 +300,7 @@ tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_pl
     for (size_t f = 0; f <= face_count; f++)
         p->start[f] = (uint16_t)(start[f] - start[0]);
     memcpy(p->loop, loops + start[0], loop_count * sizeof *loops);
-    status = tl_poly_link(p, error);
-    if (status)
-        tl_poly_free(p);
-    else
-        *poly = p;
-    return status;
+    return tl_poly_link(p, poly, error);
 }
 
 tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error)

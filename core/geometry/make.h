@@ -21,10 +21,10 @@
 /* One allocation with the counts set and its arrays laid out but empty; NULL without memory. */
 tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count);
 
-/* Derives edges and size from vertex, start and loop, which the caller has filled in with
- * valid indices. TL_E_GEOMETRY when some edge does not belong to exactly two faces, one in each
- * direction; the polyhedron then is fit only to be freed. */
-tl_status tl_poly_link(tl_poly *poly, tl_error *error);
+/* Derives edges and size from vertex, start and loop, which the caller has filled in with valid indices, and gives the
+ * polyhedron to *linked. TL_E_GEOMETRY when some edge does not belong to exactly two faces, one in each direction: then
+ * it is freed. */
+tl_status tl_poly_link(tl_poly *poly, tl_poly **linked, tl_error *error);
 
 /* Forgets the seams of a polyhedron; gives it marks of its own, where no face is covered yet; NULL without memory. */
 void tl_poly_clear_seams(tl_poly *poly);

@@ -154,12 +154,12 @@ tl_vec3 tl_points_mean(const tl_vec3 *points, size_t count)
     return tl_v3_scale(1.0 / (double)count, sum);
 }
 
-tl_bounds tl_poly_bounds(const tl_poly *p)
+tl_bounds tl_points_bounds(const tl_vec3 *points, size_t count)
 {
-    tl_bounds bounds = {p->vertex[0], p->vertex[0]};
-    for (uint32_t v = 1; v < p->vertex_count; v++) {
-        bounds.min = tl_v3_min(bounds.min, p->vertex[v]);
-        bounds.max = tl_v3_max(bounds.max, p->vertex[v]);
+    tl_bounds bounds = {points[0], points[0]};
+    for (size_t i = 1; i < count; i++) {
+        bounds.min = tl_v3_min(bounds.min, points[i]);
+        bounds.max = tl_v3_max(bounds.max, points[i]);
     }
     return bounds;
 }

@@ -17,7 +17,11 @@ typedef struct tl_mass {
 tl_mass tl_poly_mass(const tl_poly *poly);
 
 tl_vec3 tl_points_mean(const tl_vec3 *points, size_t count);
-tl_bounds tl_poly_bounds(const tl_poly *poly);
+tl_bounds tl_points_bounds(const tl_vec3 *points, size_t count);
+static inline tl_bounds tl_poly_bounds(const tl_poly *poly)
+{
+    return tl_points_bounds(poly->vertex, poly->vertex_count);
+}
 /* Whether two bounds have a point in common. */
 static inline bool tl_bounds_meet(const tl_bounds *a, const tl_bounds *b)
 {

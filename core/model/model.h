@@ -369,9 +369,8 @@ const tl_cut_part *tl_cut_part_of(const tl_model *m, tl_id id);
 /* The body that a block was in in the last step when cuts have split it since, or TL_NO_ID. */
 tl_id tl_split_of(const tl_model *m, tl_id block);
 
-/* Row of a block id, or TL_NO_ROW with a sentence in the model's error. */
+/* Row of a block id, or TL_NO_ROW with a sentence in the model's error. Whether several have rows. */
 uint32_t tl_block_row(tl_model *m, tl_id id);
-/* The same of several: the status of the first that is none. */
 tl_status tl_blocks_check(tl_model *m, const tl_id *ids, size_t count);
 /* Row of an id known to live, or TL_NO_ROW. */
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);

@@ -536,7 +536,7 @@ bool tl_rows_set_aside(tl_model *m, tl_aside *aside)
     return true;
 }
 
-void tl_rows_take_back(tl_model *m, tl_aside *aside)
+static void take_back(tl_model *m, const tl_aside *aside)
 {
     tl_table_free(&m->blocks.table);
     tl_table_free(&m->bodies.table);
@@ -547,14 +547,17 @@ void tl_rows_take_back(tl_model *m, tl_aside *aside)
     m->next_id = aside->next_id;
     m->extremes.known = false;
     tl_rows_refresh(m);
-    tl_drives_settle(m);
     m->structure = aside->structure;
     m->constraints = aside->constraints;
 }
 
-void tl_rows_settle(tl_model *m, tl_aside *aside)
+void tl_rows_settle(tl_model *m, tl_aside *aside, bool changed)
 {
-    tl_table_free(&aside->blocks.table);
-    tl_table_free(&aside->bodies.table);
+    if (changed) {
+        tl_table_free(&aside->blocks.table);
+        tl_table_free(&aside->bodies.table);
+    } else {
+        take_back(m, aside);
+    }
     tl_drives_settle(m);
 }

@@ -15,10 +15,8 @@ typedef struct tl_aside {
 /* Sets copies aside; false when out of memory. Until the change is settled shapes of the rows must not be freed, and
  * drives are kept though no body follows them. */
 bool tl_rows_set_aside(tl_model *m, tl_aside *aside);
-/* Takes them back: the model is as it was. */
-void tl_rows_take_back(tl_model *m, tl_aside *aside);
-/* Forgets them: the change is made. */
-void tl_rows_settle(tl_model *m, tl_aside *aside);
+/* Forgets them when the change is made, else takes them back: the model is as it was. */
+void tl_rows_settle(tl_model *m, tl_aside *aside, bool changed);
 
 /* Makes the bodies anew: blocks of the same group[row] (the row of the group's lowest block) are one
  * body. Bodies that stay as they are are not touched; others get the mass, momentum and angular

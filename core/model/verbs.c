@@ -262,9 +262,6 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     if (!mends)
         return TL_OK;
     status = tl_bodies_mend(m); /* a body of several blocks has another centroid now */
-    if (status == TL_OK)
-        tl_rows_settle(m, &aside);
-    else
-        tl_rows_take_back(m, &aside);
+    tl_rows_settle(m, &aside, status == TL_OK);
     return status;
 }
