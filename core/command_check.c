@@ -7,10 +7,10 @@
 #include <talus/check.h>
 #include <talus/number.h>
 
-#define USAGE                                                                                      \
-    "talus: usage: talus check FILE.so [NAME=VALUE...]\n"                                          \
-    "Tries each law, damping, generator and screen of the file, with its defaults, the values "    \
-    "given and\n"                                                                                  \
+#define USAGE                                                                                                          \
+    "talus: usage: talus check FILE.so [NAME=VALUE...]\n"                                                              \
+    "Tries each law, damping, generator and screen of the file, with its defaults, the values "                        \
+    "given and\n"                                                                                                      \
     "drawn ones: a number, true, false, a list as 1,2,3, points as 0,0,0;1,0,0 or a text.\n"
 
 /* Numbers of a list. */
@@ -73,8 +73,8 @@ static void tell(void *user, const tl_check_finding *f)
     if (list->kind != f->kind) {
         const char *path;
         const tl_plugin *plugin = tl_plugin_of(f->kind, &path);
-        printf("%s '%s' of plugin '%s' (%s)\n", types[f->kind->type], f->kind->name,
-               plugin ? plugin->id : "", path ? path : "");
+        printf("%s '%s' of plugin '%s' (%s)\n", types[f->kind->type], f->kind->name, plugin ? plugin->id : "",
+               path ? path : "");
         list->kind = f->kind;
     }
     list->checks++;

@@ -15,9 +15,9 @@
 #include <talus/plugins.h>
 #include <unistd.h>
 
-#define USAGE                                                                                      \
-    "talus: usage: talus new law|damping|generator NAME [FOLDER]\n"                                \
-    "Writes a plugin that builds and works into the new folder FOLDER, or NAME: CMakeLists.txt,\n" \
+#define USAGE                                                                                                          \
+    "talus: usage: talus new law|damping|generator NAME [FOLDER]\n"                                                    \
+    "Writes a plugin that builds and works into the new folder FOLDER, or NAME: CMakeLists.txt,\n"                     \
     "NAME.c, test_NAME.lua and README.md.\n"
 
 /* Longest name: it becomes names of files and targets. */
@@ -50,24 +50,20 @@ static bool read_type(const char *word, tl_kind_type *type)
 /* A name of a kind, that no kind has, and that CMake lets a target have. */
 static bool check_name(tl_kind_type type, const char *name)
 {
-    static const char *const taken[] = {"all",           "test",    "help",  "clean",
-                                        "install",       "package", "check", "edit_cache",
-                                        "rebuild_cache", "m"};
+    static const char *const taken[] = {"all",     "test",  "help",       "clean",         "install",
+                                        "package", "check", "edit_cache", "rebuild_cache", "m"};
     size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789_");
     if (!islower((unsigned char)name[0]) || name[length] || length > MOST_NAME)
-        return tl_command_fail(
-            "new: the name '%s' must be small letters, digits and _, up to 60, and begin with a "
-            "letter",
-            name);
+        return tl_command_fail("new: the name '%s' must be small letters, digits and _, up to 60, and begin with a "
+                               "letter",
+                               name);
     for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
         if (strcmp(name, taken[i]) == 0)
-            return tl_command_fail(
-                "new: the name '%s' means something else to CMake or to the plugin", name);
+            return tl_command_fail("new: the name '%s' means something else to CMake or to the plugin", name);
     if (tl_plugins_load_default() != TL_OK)
         return tl_command_fail("new: out of memory while the plugins are loaded");
     if (tl_plugin_find(type, name))
-        return tl_command_fail("new: a %s '%s' is there already; take another name", types[type],
-                               name);
+        return tl_command_fail("new: a %s '%s' is there already; take another name", types[type], name);
     return true;
 }
 
@@ -102,8 +98,7 @@ static bool find_templates(project *p)
         }
         return true;
     }
-    return tl_command_fail("new: the templates are in none of the places known from %s",
-                           slash ? here : "the program");
+    return tl_command_fail("new: the templates are in none of the places known from %s", slash ? here : "the program");
 }
 
 /* ---------------------------------------------------------------- writing ---------------- */
@@ -122,13 +117,11 @@ static void write_filled(const project *p, const char *text, FILE *to)
 }
 
 /* The path of a file in the new folder; `pattern` has a %s where the name comes. */
-static void place_of(const char *folder, const char *pattern, const char *name,
-                     char path[PATH_MAX + 128])
+static void place_of(const char *folder, const char *pattern, const char *name, char path[PATH_MAX + 128])
 {
     const char *at = strstr(pattern, "%s");
     int before = at ? (int)(at - pattern) : (int)strlen(pattern);
-    snprintf(path, PATH_MAX + 128, "%s/%.*s%s%s", folder, before, pattern, at ? name : "",
-             at ? at + 2 : "");
+    snprintf(path, PATH_MAX + 128, "%s/%.*s%s%s", folder, before, pattern, at ? name : "", at ? at + 2 : "");
 }
 
 /* talus.write_file(path, text) */
@@ -220,8 +213,7 @@ static void tell_next(const project *p)
     if (!p->prefix[0])
         printf("To build it, install Talus first: cmake --install BUILD --prefix PREFIX\n");
     puts("Next:");
-    print_command("  cmake -S %s -B %s/build -DCMAKE_PREFIX_PATH=%s\n", p->folder,
-                  p->prefix[0] ? p->prefix : "PREFIX");
+    print_command("  cmake -S %s -B %s/build -DCMAKE_PREFIX_PATH=%s\n", p->folder, p->prefix[0] ? p->prefix : "PREFIX");
     print_command("  cmake --build %s/build\n", p->folder, "");
     print_command("  ctest --test-dir %s/build --output-on-failure\n", p->folder, "");
 }

@@ -49,8 +49,8 @@ static void close_output(void)
     }
     if (!failed)
         return;
-    tl_command_fail("not all that was printed could be written to the standard output%s%s",
-                    code ? ": " : "", code ? strerror(code) : "");
+    tl_command_fail("not all that was printed could be written to the standard output%s%s", code ? ": " : "",
+                    code ? strerror(code) : "");
     _exit(EXIT_FAILURE);
 }
 
@@ -61,8 +61,8 @@ static int exit_of(bool success)
 
 static int print_version(void)
 {
-    printf("Talus %s\nplugin interface %u.%u\n%s\ncompiler: %s\nbuild: %s\n", TALUS_VERSION,
-           TL_ABI_MAJOR, TL_ABI_MINOR, LUA_RELEASE, COMPILER, TALUS_BUILD);
+    printf("Talus %s\nplugin interface %u.%u\n%s\ncompiler: %s\nbuild: %s\n", TALUS_VERSION, TL_ABI_MAJOR, TL_ABI_MINOR,
+           LUA_RELEASE, COMPILER, TALUS_BUILD);
     return EXIT_SUCCESS;
 }
 
@@ -122,8 +122,8 @@ static bool unknown_option(const char *word)
 static bool read_option(int argc, char **argv, options *o)
 {
     const char *word = argv[o->next++];
-    bool takes_value = strcmp(word, "--threads") == 0 || strcmp(word, "--plugin") == 0 ||
-                       strcmp(word, "-e") == 0 || strcmp(word, "--autosave") == 0;
+    bool takes_value = strcmp(word, "--threads") == 0 || strcmp(word, "--plugin") == 0 || strcmp(word, "-e") == 0 ||
+                       strcmp(word, "--autosave") == 0;
     if (strcmp(word, "--quiet") == 0)
         o->lua.quiet = true;
     else if (strcmp(word, "--resume") == 0)
@@ -159,8 +159,7 @@ static void set_arguments(lua_State *L, int argc, char **argv, int script)
 }
 
 /* Calls the chunk on the top of the stack with argv[first ...]; gives the exit status. */
-static int run_chunk(lua_State *L, int load_status, int argc, char **argv, int first,
-                     const options *o)
+static int run_chunk(lua_State *L, int load_status, int argc, char **argv, int first, const options *o)
 {
     if (load_status != LUA_OK) {
         tl_repl_report(L);
@@ -232,8 +231,7 @@ static int run(lua_State *L, int argc, char **argv, options *o)
     exit_status = give_module(L, o);
     if (exit_status != EXIT_SUCCESS)
         return exit_status;
-    printf("Talus %s. `help` tells what there is, Tab completes names, `exit` ends.\n",
-           TALUS_VERSION);
+    printf("Talus %s. `help` tells what there is, Tab completes names, `exit` ends.\n", TALUS_VERSION);
     tl_repl_run(L, o->verbose);
     return EXIT_SUCCESS;
 }
@@ -268,11 +266,9 @@ static bool prepare_saves(int argc, char **argv, options *o, bool runs)
 {
     bool script = o->next < argc && !o->chunk && strcmp(argv[o->next], "-") != 0;
     if (runs && !script)
-        return tl_command_fail(
-            "%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
+        return tl_command_fail("%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
     if (!script && (o->lua.autosave > 0 || o->lua.resume))
-        return tl_command_fail(
-            "%s", "--autosave and --resume are for a script in a file, beside which it saves");
+        return tl_command_fail("%s", "--autosave and --resume are for a script in a file, beside which it saves");
     if (script && !(o->lua.save_path = tl_lua_autosave_path(argv[o->next])))
         return tl_command_fail("%s", "not enough memory");
     return true;

@@ -19,12 +19,12 @@ static const char *check_case = "";
 
 #define TEST(name) static void name(void)
 #define RUN(name) (check_case = #name, name())
-#define TEST_MAIN(...)                                                                             \
-    int main(void)                                                                                 \
-    {                                                                                              \
-        (void)(__VA_ARGS__);                                                                       \
-        printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);                 \
-        return check_failed != 0;                                                                  \
+#define TEST_MAIN(...)                                                                                                 \
+    int main(void)                                                                                                     \
+    {                                                                                                                  \
+        (void)(__VA_ARGS__);                                                                                           \
+        printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);                                     \
+        return check_failed != 0;                                                                                      \
     }
 
 static inline int check_note(int passed, const char *file, int line, const char *what)
@@ -37,22 +37,18 @@ static inline int check_note(int passed, const char *file, int line, const char 
     return passed;
 }
 
-#define CHECK(condition)                                                                           \
-    (check_note((condition) != 0, __FILE__, __LINE__, #condition) ? 1 : (printf(" is false\n"), 0))
+#define CHECK(condition) (check_note((condition) != 0, __FILE__, __LINE__, #condition) ? 1 : (printf(" is false\n"), 0))
 
 /* |a - b| <= tolerance; false for NaN. */
-#define CHECK_NEAR(a, b, tolerance)                                                                \
-    check_near((a), (b), (tolerance), __FILE__, __LINE__, #a " near " #b)
+#define CHECK_NEAR(a, b, tolerance) check_near((a), (b), (tolerance), __FILE__, __LINE__, #a " near " #b)
 /* |a - b| <= tolerance * |b| */
-#define CHECK_REL(a, b, tolerance)                                                                 \
-    check_near((a), (b), fabs(b) * (tolerance), __FILE__, __LINE__, #a " near " #b)
+#define CHECK_REL(a, b, tolerance) check_near((a), (b), fabs(b) * (tolerance), __FILE__, __LINE__, #a " near " #b)
 #define CHECK_INT(a, b) check_int((long long)(a), (long long)(b), __FILE__, __LINE__, #a " == " #b)
 #define CHECK_TEXT(a, b) check_text((a), (b), __FILE__, __LINE__, #a)
 /* `text` contains `part`. */
 #define CHECK_CONTAINS(text, part) check_contains((text), (part), __FILE__, __LINE__, #text)
 
-static inline int check_near(double a, double b, double tolerance, const char *file, int line,
-                             const char *what)
+static inline int check_near(double a, double b, double tolerance, const char *file, int line, const char *what)
 {
     int ok = check_note(fabs(a - b) <= tolerance, file, line, what);
     if (!ok)
@@ -68,8 +64,7 @@ static inline int check_int(long long a, long long b, const char *file, int line
     return ok;
 }
 
-static inline int check_text(const char *a, const char *b, const char *file, int line,
-                             const char *what)
+static inline int check_text(const char *a, const char *b, const char *file, int line, const char *what)
 {
     int ok = check_note(a && b && strcmp(a, b) == 0, file, line, what);
     if (!ok)
@@ -77,8 +72,7 @@ static inline int check_text(const char *a, const char *b, const char *file, int
     return ok;
 }
 
-static inline int check_contains(const char *text, const char *part, const char *file, int line,
-                                 const char *what)
+static inline int check_contains(const char *text, const char *part, const char *file, int line, const char *what)
 {
     int ok = check_note(text && strstr(text, part), file, line, what);
     if (!ok)

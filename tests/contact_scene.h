@@ -148,8 +148,7 @@ SCENE_UNUSED static void scene_pair_free(scene_pair *p)
 
 /* Minus the gradient of an energy of `user` by the moves, or turns, of B along or about the axes, by differences of fourth
  * order over h. */
-SCENE_UNUSED static tl_vec3 scene_minus_gradient(double (*energy)(void *user, int axis, double way,
-                                                                  bool turned),
+SCENE_UNUSED static tl_vec3 scene_minus_gradient(double (*energy)(void *user, int axis, double way, bool turned),
                                                  void *user, double h, bool turned)
 {
     double out[3];
@@ -182,8 +181,7 @@ SCENE_UNUSED static tl_model *scene_model(int64_t threads)
                 printf("%s\n", error.text);
         }
     }
-    tl_model_config config = {
-        .size = sizeof(tl_model_config), .seed = 1, .threads = threads, .reuse_geometry = 1};
+    tl_model_config config = {.size = sizeof(tl_model_config), .seed = 1, .threads = threads, .reuse_geometry = 1};
     tl_model *m;
     if (tl_model_create(&config, &m, &error) != TL_OK)
         exit(1);
@@ -220,8 +218,7 @@ SCENE_UNUSED static void scene_block(tl_model *m, tl_poly *p, tl_quat turn, tl_v
     tl_poly_free(p);
 }
 
-SCENE_UNUSED static void scene_law(tl_model *m, const char *law, double kn, double ks,
-                                   double friction)
+SCENE_UNUSED static void scene_law(tl_model *m, const char *law, double kn, double ks, double friction)
 {
     tl_value values[] = {{.key = "kn", .type = TL_VALUE_NUMBER, .number = kn},
                          {.key = "ks", .type = TL_VALUE_NUMBER, .number = ks},

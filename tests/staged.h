@@ -14,8 +14,7 @@ static inline tl_status stage_begin(tl_model *m, tl_stage *stage)
     return status;
 }
 
-static inline tl_status stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                                  double persistence)
+static inline tl_status stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence)
 {
     size_t met = 0;
     return tl_stage_cut_disc(stage, normal, point, (double)INFINITY, tag, persistence, &met);

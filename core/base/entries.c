@@ -69,8 +69,7 @@ void tl_entry_name(const tl_entry *entry, char name[TL_COLUMN_CHUNK])
     snprintf(name, TL_COLUMN_CHUNK, "%s%s", entry->prefix ? entry->prefix : "", entry->name);
 }
 
-void tl_column_chunk(const char *table_name, const tl_table *table, size_t k,
-                     char name[TL_COLUMN_CHUNK])
+void tl_column_chunk(const char *table_name, const tl_table *table, size_t k, char name[TL_COLUMN_CHUNK])
 {
     const char *own = table->columns[k].name;
     size_t before = 0;

@@ -36,7 +36,6 @@ void tl_entry_put_list(const tl_entry *to, void *list, size_t items);
 void tl_entry_name(const tl_entry *entry, char name[TL_COLUMN_CHUNK]);
 /* The name of column `k` of a table: "bodies.mass"; of several columns of one name each has its number,
  * "detect.points.p[k].2". */
-void tl_column_chunk(const char *table_name, const tl_table *table, size_t k,
-                     char name[TL_COLUMN_CHUNK]);
+void tl_column_chunk(const char *table_name, const tl_table *table, size_t k, char name[TL_COLUMN_CHUNK]);
 
 #endif

@@ -25,8 +25,7 @@ enum {
 
 /* A batch of the columns from `first` on, `stride` numbers apart. `state` gets where the columns of `states` states
  * are. */
-static inline tl_law_batch tl_law_batch_of(double *first, size_t stride, uint32_t *flags,
-                                           double **state, int states)
+static inline tl_law_batch tl_law_batch_of(double *first, size_t stride, uint32_t *flags, double **state, int states)
 {
     tl_law_batch batch = {.size = sizeof batch,
                           .area = first + TL_AT_AREA * stride,

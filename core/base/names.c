@@ -47,8 +47,7 @@ size_t tl_edit_distance(const char *a, const char *b)
         for (size_t j = 1; j <= columns; j++) {
             size_t replace = above[j - 1] + (lower(a[i - 1]) != lower(b[j - 1]));
             row[j] = min3(above[j] + 1, row[j - 1] + 1, replace);
-            bool swapped = i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) &&
-                           lower(a[i - 2]) == lower(b[j - 1]);
+            bool swapped = i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
             if (swapped && second[j - 2] + 1 < row[j])
                 row[j] = second[j - 2] + 1;
         }
@@ -92,8 +91,8 @@ static void list_names(char *text, size_t size, const char *const *names, size_t
     }
 }
 
-tl_status tl_fail_unknown(tl_error *error, tl_status status, const char *context, const char *what,
-                          const char *word, const char *const *names, size_t count)
+tl_status tl_fail_unknown(tl_error *error, tl_status status, const char *context, const char *what, const char *word,
+                          const char *const *names, size_t count)
 {
     char hint[96] = "", known[TL_ERROR_TEXT / 2] = "";
     const char *nearest = tl_nearest_name(word, names, count);
@@ -102,6 +101,5 @@ tl_status tl_fail_unknown(tl_error *error, tl_status status, const char *context
     if (count > 0 && count <= MOST_LISTED)
         list_names(known, sizeof known, names, count);
     const char *open = known[0] ? " (known: " : "", *close = known[0] ? ")" : "";
-    return tl_fail(error, status, "%sunknown %s '%.80s'%s%s%s%s", context, what, word, hint, open,
-                   known, close);
+    return tl_fail(error, status, "%sunknown %s '%.80s'%s%s%s%s", context, what, word, hint, open, known, close);
 }

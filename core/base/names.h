@@ -15,7 +15,7 @@ size_t tl_edit_distance(const char *a, const char *b);
 
 /* Refuses with `status` and "<context>unknown <what> 'word'; did you mean 'near'? (known: a, b)".
  * The known names are listed when they are few; `context` goes in front as it is. */
-tl_status tl_fail_unknown(tl_error *error, tl_status status, const char *context, const char *what,
-                          const char *word, const char *const *names, size_t count);
+tl_status tl_fail_unknown(tl_error *error, tl_status status, const char *context, const char *what, const char *word,
+                          const char *const *names, size_t count);
 
 #endif

@@ -39,8 +39,7 @@ static int make_folders(const char *path)
     if (!folder)
         return ENOMEM;
     int code = 0;
-    for (char *slash = strchr(folder + 1, '/'); slash && code == 0;
-         slash = strchr(slash + 1, '/')) {
+    for (char *slash = strchr(folder + 1, '/'); slash && code == 0; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
         struct stat info;
         /* A folder that exists may lie where nothing can be made: ask before complaining. */
@@ -79,8 +78,7 @@ static tl_status find_place(tl_output *output, tl_error *error)
         return output->place ? TL_OK : tl_fail_memory(error);
     }
     if (S_ISLNK(info.st_mode) && stat(path, &info) != 0)
-        return tl_fail(error, TL_E_IO,
-                       "cannot write '%s': it is a symbolic link that leads to no file (%s)", path,
+        return tl_fail(error, TL_E_IO, "cannot write '%s': it is a symbolic link that leads to no file (%s)", path,
                        strerror(errno));
     if (!S_ISREG(info.st_mode))
         return refuse_special(error, path, info.st_mode);
@@ -107,8 +105,7 @@ static int take_temporary(tl_output *output, int (*make)(tl_output *output))
         return ENOMEM;
     memcpy(output->temporary, output->place, folder);
     for (int k = 0; code == EEXIST && k < TEMPORARY_TRIES; k++) {
-        snprintf(output->temporary + folder, TEMPORARY_TEXT, ".talus.%ld.%d.tmp", (long)getpid(),
-                 k);
+        snprintf(output->temporary + folder, TEMPORARY_TEXT, ".talus.%ld.%d.tmp", (long)getpid(), k);
         code = make(output);
     }
     if (code != 0) {

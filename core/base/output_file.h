@@ -16,8 +16,7 @@ typedef struct tl_output {
     char *place;     /* the same without symbolic links */
     char *temporary; /* its name until it is committed; NULL: it has none */
     int code;        /* errno of the first failure of tl_output_put */
-    bool
-        durable; /* set after the opening: it is to outlive a crash of the machine from the commit on */
+    bool durable;    /* set after the opening: it is to outlive a crash of the machine from the commit on */
 } tl_output;
 
 /* From the opening of a file until it is dropped the caller holds the signals that end a program (base/signals.h). So

@@ -253,8 +253,7 @@ void tl_parallel_for(tl_pool *pool, size_t count, size_t chunk, tl_range_fn fn, 
     pool->loop += LOOP_UNIT;
     atomic_store(&pool->unfinished, pool->chunks);
     for (unsigned i = 0; i < pool->parts; i++)
-        atomic_store(&pool->workers[i].ticket,
-                     pool->loop + part_begin(pool, i + 1) - part_begin(pool, i));
+        atomic_store(&pool->workers[i].ticket, pool->loop + part_begin(pool, i + 1) - part_begin(pool, i));
     wake_sleepers(pool);
     if (!do_chunks(pool, 0))
         await_chunks(pool);

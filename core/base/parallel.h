@@ -34,7 +34,6 @@ typedef struct tl_failure {
 void tl_failure_init(tl_failure *failure);
 void tl_failure_destroy(tl_failure *failure);
 /* Notes a failure, on any thread; that of the lowest chunk counts. */
-void tl_failure_note(tl_failure *failure, size_t chunk, tl_status status, size_t point,
-                     const char *text);
+void tl_failure_note(tl_failure *failure, size_t chunk, tl_status status, size_t point, const char *text);
 
 #endif

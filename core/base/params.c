@@ -83,8 +83,7 @@ bool tl_param_sound(const tl_param *param, const void *member)
     case TL_PARAM_VEC3:
         memcpy(number, member, bytes);
         for (size_t k = 0; k < bytes / sizeof *number; k++)
-            if (!tl_param_in_range(param, number[k]) &&
-                !(param->flags & TL_PARAM_OPTIONAL && isnan(number[k])))
+            if (!tl_param_in_range(param, number[k]) && !(param->flags & TL_PARAM_OPTIONAL && isnan(number[k])))
                 return false;
         return true;
     default: return true;
@@ -126,9 +125,7 @@ static void describe_value(const tl_value *value, char *text, size_t size)
         break;
     case TL_VALUE_FLAT: snprintf(text, size, "a list whose row 1 has 2 numbers, not 3"); break;
     case TL_VALUE_OTHER:
-    default:
-        snprintf(text, size, "a %.100s", value->text ? value->text : "value of another type");
-        break;
+    default: snprintf(text, size, "a %.100s", value->text ? value->text : "value of another type"); break;
     }
 }
 
@@ -136,8 +133,7 @@ static tl_status wrong_type(const reader *r, const char *wanted)
 {
     char given[160];
     describe_value(r->value, given, sizeof given);
-    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s must be %s, not %s", r->prefix, r->param.name,
-                   wanted, given);
+    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s must be %s, not %s", r->prefix, r->param.name, wanted, given);
 }
 
 /* One number of a value: `part` names it ("friction", "origin.y", "vertices, row 4, y"). */
@@ -148,17 +144,14 @@ static tl_status check_number(const reader *r, const char *part, double value)
     char number[TL_NUMBER_TEXT], range[TL_RANGE_TEXT];
     tl_number_text(value, number);
     if (!isfinite(value))
-        return tl_fail(r->error, TL_E_ARGUMENT, "%s%s = %s is not a finite number", r->prefix, part,
-                       number);
+        return tl_fail(r->error, TL_E_ARGUMENT, "%s%s = %s is not a finite number", r->prefix, part, number);
     tl_param_range(&r->param, range, sizeof range);
     const char *unit = r->param.unit ? r->param.unit : "", *space = unit[0] ? " " : "";
     const char *verb = range[0] == '[' || range[0] == '(' ? "is outside" : "must be";
-    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s = %s%s%s %s %s", r->prefix, part, number, space,
-                   unit, verb, range);
+    return tl_fail(r->error, TL_E_ARGUMENT, "%s%s = %s%s%s %s %s", r->prefix, part, number, space, unit, verb, range);
 }
 
-static tl_status check_point(const reader *r, const char *part, const char *joiner,
-                             const double *at)
+static tl_status check_point(const reader *r, const char *part, const char *joiner, const double *at)
 {
     static const char component[3] = {'x', 'y', 'z'};
     for (int i = 0; i < 3; i++) {
@@ -217,8 +210,7 @@ static tl_status read_enum(const reader *r, void *to)
             return TL_OK;
         }
     }
-    return tl_fail_unknown(r->error, TL_E_ARGUMENT, r->prefix, r->param.name, r->value->text,
-                           r->param.choices, count);
+    return tl_fail_unknown(r->error, TL_E_ARGUMENT, r->prefix, r->param.name, r->value->text, r->param.choices, count);
 }
 
 static tl_status read_vec3(const reader *r, void *to)
@@ -271,8 +263,8 @@ static tl_status read_value(const reader *r, void *to)
     case TL_PARAM_STRING: return read_string(r, to);
     case TL_PARAM_POINTS: return read_points(r, to);
     default:
-        return tl_fail(r->error, TL_E_PLUGIN, "%sparameter '%s' has the unknown type %u", r->prefix,
-                       r->param.name, r->param.type);
+        return tl_fail(r->error, TL_E_PLUGIN, "%sparameter '%s' has the unknown type %u", r->prefix, r->param.name,
+                       r->param.type);
     }
 }
 
@@ -282,8 +274,7 @@ static void write_default(const tl_param *param, void *to)
     double real = none ? NAN : param->def[0];
     int64_t whole = (int64_t)param->def[0];
     int32_t small = (int32_t)param->def[0];
-    tl_vec3 v = {none ? NAN : param->def[0], none ? NAN : param->def[1],
-                 none ? NAN : param->def[2]};
+    tl_vec3 v = {none ? NAN : param->def[0], none ? NAN : param->def[1], none ? NAN : param->def[2]};
     const char *text = none ? NULL : param->def_text;
     tl_points points = {NULL, 0};
     switch (param->type) {
@@ -313,8 +304,8 @@ static size_t find_param(const tl_param *params, size_t count, size_t stride, co
     return count;
 }
 
-static tl_status unknown_key(const tl_param *params, size_t count, size_t stride, const char *key,
-                             const char *prefix, tl_error *error)
+static tl_status unknown_key(const tl_param *params, size_t count, size_t stride, const char *key, const char *prefix,
+                             tl_error *error)
 {
     const char *names[MOST_NAMES];
     size_t n = 0;
@@ -325,33 +316,28 @@ static tl_status unknown_key(const tl_param *params, size_t count, size_t stride
             names[n++] = row.alias;
     }
     if (n == 0)
-        return tl_fail(error, TL_E_ARGUMENT, "%sunknown parameter '%.80s' (it takes none)", prefix,
-                       key);
+        return tl_fail(error, TL_E_ARGUMENT, "%sunknown parameter '%.80s' (it takes none)", prefix, key);
     return tl_fail_unknown(error, TL_E_ARGUMENT, prefix, "parameter", key, names, n);
 }
 
 /* Whether two values are the same number. */
 static bool same_number(const tl_value *a, const tl_value *b)
 {
-    return a->type == TL_VALUE_NUMBER && b->type == TL_VALUE_NUMBER && a->number <= b->number &&
-           a->number >= b->number;
+    return a->type == TL_VALUE_NUMBER && b->type == TL_VALUE_NUMBER && a->number <= b->number && a->number >= b->number;
 }
 
 /* The same parameter given twice, by its name and by its alias, and not with the same number. */
-static tl_status check_once(const tl_param *param, const tl_args *args, size_t index,
-                            const char *prefix, tl_error *error)
+static tl_status check_once(const tl_param *param, const tl_args *args, size_t index, const char *prefix,
+                            tl_error *error)
 {
     for (size_t i = 0; i < index; i++)
-        if (answers_to(param, args->values[i].key) &&
-            !same_number(&args->values[i], &args->values[index]))
-            return tl_fail(error, TL_E_ARGUMENT,
-                           "%s%s and %s are the same parameter: give one of them", prefix,
+        if (answers_to(param, args->values[i].key) && !same_number(&args->values[i], &args->values[index]))
+            return tl_fail(error, TL_E_ARGUMENT, "%s%s and %s are the same parameter: give one of them", prefix,
                            args->values[i].key, args->values[index].key);
     return TL_OK;
 }
 
-static tl_status check_required(const tl_param *param, const tl_args *args, const char *prefix,
-                                tl_error *error)
+static tl_status check_required(const tl_param *param, const tl_args *args, const char *prefix, tl_error *error)
 {
     if (!(param->flags & TL_PARAM_REQUIRED))
         return TL_OK;
@@ -359,13 +345,13 @@ static tl_status check_required(const tl_param *param, const tl_args *args, cons
         if (answers_to(param, args->values[i].key))
             return TL_OK;
     const char *unit = param->unit ? param->unit : "";
-    return tl_fail(error, TL_E_ARGUMENT, "%sparameter '%s' is missing%s%s%s%s%.160s", prefix,
-                   param->name, unit[0] ? ", in " : "", unit, param->doc ? " (" : "",
-                   param->doc ? param->doc : "", param->doc ? ")" : "");
+    return tl_fail(error, TL_E_ARGUMENT, "%sparameter '%s' is missing%s%s%s%s%.160s", prefix, param->name,
+                   unit[0] ? ", in " : "", unit, param->doc ? " (" : "", param->doc ? param->doc : "",
+                   param->doc ? ")" : "");
 }
 
-tl_status tl_args_read(const tl_param *params, size_t count, size_t stride, const tl_args *args,
-                       bool keep, void *out, const char *context, tl_error *error)
+tl_status tl_args_read(const tl_param *params, size_t count, size_t stride, const tl_args *args, bool keep, void *out,
+                       const char *context, tl_error *error)
 {
     char prefix[TL_ERROR_TEXT] = "";
     if (context && context[0])

@@ -128,8 +128,7 @@ bool tl_table_resize(tl_table *table, size_t rows)
     size_t end = rows < used ? rows : used;
     for (size_t i = 0; end > table->rows && i < table->column_count; i++) {
         size_t size = table->columns[i].size;
-        memset((char *)get(table, &table->columns[i]) + table->rows * size, 0,
-               (end - table->rows) * size);
+        memset((char *)get(table, &table->columns[i]) + table->rows * size, 0, (end - table->rows) * size);
     }
     table->rows = rows;
     table->used = rows > table->used ? rows : table->used;

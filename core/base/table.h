@@ -18,8 +18,8 @@
 
 enum {
     TL_COLUMN_STATE = 1, /* part of the mechanical state: hashed and saved */
-    TL_COLUMN_STEP = 2, /* overwritten by laws or gather: kept where a step may have to be undone */
-    TL_COLUMN_OWNED = 4 /* pointers to what has an owner of its own: saved otherwise */
+    TL_COLUMN_STEP = 2,  /* overwritten by laws or gather: kept where a step may have to be undone */
+    TL_COLUMN_OWNED = 4  /* pointers to what has an owner of its own: saved otherwise */
 };
 
 typedef struct tl_column {
@@ -38,12 +38,12 @@ typedef struct tl_table {
     tl_column columns[TL_TABLE_COLUMNS];
 } tl_table;
 
-#define TL_COLUMN(table, owner, member, flags)                                                     \
+#define TL_COLUMN(table, owner, member, flags)                                                                         \
     tl_table_column((table), #member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags))
 /* The same, for tl_table_widen. */
-#define TL_COLUMN_NEW(owner, member, flags)                                                        \
-    {                                                                                              \
-#member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags)                     \
+#define TL_COLUMN_NEW(owner, member, flags)                                                                            \
+    {                                                                                                                  \
+#member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags)                                         \
     }
 /* Where the pointer of a column is in its owner. */
 #define TL_COLUMN_AT(owner, member) (size_t)((char *)&(owner)->member - (char *)(owner))
@@ -55,7 +55,7 @@ void tl_table_column(tl_table *table, const char *name, size_t size, size_t offs
 bool tl_table_widen(tl_table *table, const tl_column *columns, size_t count);
 /* Adds one, unless it is there already: for what few models need. The pointer is NULL until then. */
 bool tl_table_need(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
-#define TL_COLUMN_NEED(table, owner, member, flags)                                                \
+#define TL_COLUMN_NEED(table, owner, member, flags)                                                                    \
     tl_table_need((table), #member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags))
 /* Makes room for `rows` rows; what is there stays. false when out of memory (nothing changed). */
 bool tl_table_reserve(tl_table *table, size_t rows);

@@ -12,8 +12,8 @@
 
 /* What becomes of an entry. */
 typedef enum tl_keep {
-    TL_KEEP_STATE, /* what the next steps depend on, and what is told of the model: copied, saved */
-    TL_KEEP_CACHE, /* saves work; without it the next steps would be the same but for rounding: copied, saved */
+    TL_KEEP_STATE,   /* what the next steps depend on, and what is told of the model: copied, saved */
+    TL_KEEP_CACHE,   /* saves work; without it the next steps would be the same but for rounding: copied, saved */
     TL_KEEP_DERIVED, /* follows from the rest to the bit: copied, not saved */
     TL_KEEP_SCRATCH  /* means nothing between two calls: neither */
 } tl_keep;
@@ -26,8 +26,7 @@ typedef enum tl_entry_form {
 } tl_entry_form;
 
 typedef struct tl_entry {
-    const char *prefix,
-        *name; /* "detect.pairs", or in two parts; the prefix of a whole name is NULL */
+    const char *prefix, *name; /* "detect.pairs", or in two parts; the prefix of a whole name is NULL */
     tl_entry_form form;
     tl_keep keep;
     void *at;
@@ -52,8 +51,8 @@ typedef struct tl_walk {
 } tl_walk;
 
 /* A list; one whose capacity is noted nowhere, NULL, has room for its items. */
-static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name, void *slot,
-                                size_t size, size_t *count, size_t *capacity, size_t counts_for)
+static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name, void *slot, size_t size,
+                                size_t *count, size_t *capacity, size_t counts_for)
 {
     const tl_entry e = {.name = name,
                         .form = TL_ENTRY_LIST,
@@ -68,8 +67,7 @@ static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name
     w->visit(w->user, &e);
 }
 
-static inline void tl_walk_table(const tl_walk *w, tl_keep keep, const char *name, tl_table *table,
-                                 size_t counts_for)
+static inline void tl_walk_table(const tl_walk *w, tl_keep keep, const char *name, tl_table *table, size_t counts_for)
 {
     const tl_entry e = {.name = name,
                         .form = TL_ENTRY_TABLE,
@@ -81,20 +79,20 @@ static inline void tl_walk_table(const tl_walk *w, tl_keep keep, const char *nam
 }
 
 /* A member of a struct under its own name after a prefix: TL_WALK_VALUE(walk, TL_KEEP_STATE, "model.", m, time). */
-#define TL_WALK_VALUE(walk, keep_, prefix_, owner, member)                                         \
-    (walk)->visit((walk)->user, &(const tl_entry){.name = prefix_ #member,                         \
-                                                  .form = TL_ENTRY_VALUE,                          \
-                                                  .keep = (keep_),                                 \
-                                                  .at = &(owner)->member,                          \
+#define TL_WALK_VALUE(walk, keep_, prefix_, owner, member)                                                             \
+    (walk)->visit((walk)->user, &(const tl_entry){.name = prefix_ #member,                                             \
+                                                  .form = TL_ENTRY_VALUE,                                              \
+                                                  .keep = (keep_),                                                     \
+                                                  .at = &(owner)->member,                                              \
                                                   .size = sizeof(owner)->member})
-#define TL_WALK_FLAG(walk, keep_, prefix_, owner, member)                                          \
-    (walk)->visit((walk)->user, &(const tl_entry){.name = prefix_ #member,                         \
-                                                  .form = TL_ENTRY_FLAG,                           \
-                                                  .keep = (keep_),                                 \
-                                                  .at = &(owner)->member,                          \
+#define TL_WALK_FLAG(walk, keep_, prefix_, owner, member)                                                              \
+    (walk)->visit((walk)->user, &(const tl_entry){.name = prefix_ #member,                                             \
+                                                  .form = TL_ENTRY_FLAG,                                               \
+                                                  .keep = (keep_),                                                     \
+                                                  .at = &(owner)->member,                                              \
                                                   .size = sizeof(owner)->member})
-#define TL_WALK_LIST(walk, keep, prefix, owner, member, count, capacity, counts_for)               \
-    tl_walk_list((walk), (keep), prefix #member, &(owner)->member, sizeof *(owner)->member,        \
-                 (count), (capacity), (counts_for))
+#define TL_WALK_LIST(walk, keep, prefix, owner, member, count, capacity, counts_for)                                   \
+    tl_walk_list((walk), (keep), prefix #member, &(owner)->member, sizeof *(owner)->member, (count), (capacity),       \
+                 (counts_for))
 
 #endif

@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static tl_status check_kind(tl_checker *c, const tl_check_type *of, tl_check_fn tell, void *user,
-                            size_t *faults)
+static tl_status check_kind(tl_checker *c, const tl_check_type *of, tl_check_fn tell, void *user, size_t *faults)
 {
     tl_status status = of->check(c);
     if (status != TL_OK)
@@ -45,18 +44,16 @@ static tl_status check_given(const tl_plugin *plugin, const tl_args *args, tl_er
         for (uint32_t k = 0; k < plugin->kind_count; k++)
             for (uint32_t p = 0; p < plugin->kinds[k].param_count; p++) {
                 const tl_param *param = &plugin->kinds[k].params[p];
-                known |= strcmp(param->name, key) == 0 ||
-                         (param->alias && strcmp(param->alias, key) == 0);
+                known |= strcmp(param->name, key) == 0 || (param->alias && strcmp(param->alias, key) == 0);
             }
         if (!known)
-            return tl_fail(error, TL_E_ARGUMENT, "no kind of plugin '%s' has a parameter '%s'",
-                           plugin->id, key);
+            return tl_fail(error, TL_E_ARGUMENT, "no kind of plugin '%s' has a parameter '%s'", plugin->id, key);
     }
     return TL_OK;
 }
 
-tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tell, void *user,
-                          size_t *faults, tl_error *error)
+tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tell, void *user, size_t *faults,
+                          tl_error *error)
 {
     static const tl_check_type *const of[] = {[TL_KIND_LAW] = &tl_check_laws,
                                               [TL_KIND_DAMPING] = &tl_check_dampings,

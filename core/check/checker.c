@@ -51,8 +51,7 @@ static double number_of(const tl_param *p, uint64_t key, bool draw)
         return size;
     if (p->min > -OPEN && p->max < OPEN)
         /* not the ends, which may be open; the lower part of a wide range of numbers of things */
-        return p->min +
-               (0.05 + 0.9 * at) * fmin(p->max - p->min, p->type == TL_PARAM_INT ? 20 : OPEN);
+        return p->min + (0.05 + 0.9 * at) * fmin(p->max - p->min, p->type == TL_PARAM_INT ? 20 : OPEN);
     if (p->min > -OPEN)
         return p->min + size;
     return p->max < OPEN ? p->max - size : size;
@@ -93,8 +92,7 @@ static void make(const tl_param *p, uint64_t key, bool draw, int *vectors, param
 static const tl_value *given_value(const tl_args *args, const tl_param *p)
 {
     for (size_t i = 0; args && i < args->count; i++)
-        if (strcmp(args->values[i].key, p->name) == 0 ||
-            (p->alias && strcmp(args->values[i].key, p->alias) == 0))
+        if (strcmp(args->values[i].key, p->name) == 0 || (p->alias && strcmp(args->values[i].key, p->alias) == 0))
             return &args->values[i];
     return NULL;
 }
@@ -118,8 +116,7 @@ static void add_text(tl_checker *c, const tl_value *v)
 }
 
 /* The other choice of one that has a few, or another value of the range. */
-static void make_other(const tl_param *p, uint64_t key, int *vectors, const tl_value *was,
-                       param_storage *d)
+static void make_other(const tl_param *p, uint64_t key, int *vectors, const tl_value *was, param_storage *d)
 {
     make(p, tl_key(key, 3), true, vectors, d);
     if (p->type == TL_PARAM_BOOL)
@@ -132,8 +129,7 @@ static void make_other(const tl_param *p, uint64_t key, int *vectors, const tl_v
     }
 }
 
-tl_status tl_check_values(tl_checker *c, int set, int varied, tl_value **values, size_t *count,
-                          void **held)
+tl_status tl_check_values(tl_checker *c, int set, int varied, tl_value **values, size_t *count, void **held)
 {
     const tl_kind *kind = c->kind;
     param_storage *all = calloc(kind->param_count + 1, sizeof *all);
@@ -178,26 +174,24 @@ tl_status tl_check_params(tl_checker *c, int set, int varied, void *params, void
     memset(params, 0, kind->params_size);
     const tl_args args = {values, count};
     if (status == TL_OK)
-        status = tl_args_read(kind->params, kind->param_count, kind->param_stride, &args, false,
-                              params, context, c->error);
+        status =
+            tl_args_read(kind->params, kind->param_count, kind->param_stride, &args, false, params, context, c->error);
     free(values);
     return status;
 }
 
-tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void **, tl_report *),
-                          void *params, void **self)
+tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void **, tl_report *), void *params,
+                          void **self)
 {
     tl_report report = {.size = sizeof report};
     *self = create ? NULL : params;
     tl_status status = create ? create(params, self, &report) : TL_OK;
     if (status != TL_OK)
-        tl_fail(c->error, status, "'%s' cannot be tried: %s", c->kind->name,
-                tl_report_text(&report, status));
+        tl_fail(c->error, status, "'%s' cannot be tried: %s", c->kind->name, tl_report_text(&report, status));
     return status;
 }
 
-tl_status tl_check_sets(tl_checker *c,
-                        tl_status (*try_set)(tl_checker *c, void *params, void *user), void *user)
+tl_status tl_check_sets(tl_checker *c, tl_status (*try_set)(tl_checker *c, void *params, void *user), void *user)
 {
     void *params = malloc(c->kind->params_size + 1), *held;
     int tried = 0, most = 20 * TL_CHECK_SETS; /* kinds refuse some drawn sets */

@@ -45,19 +45,17 @@ typedef struct tl_check_type {
 /* A set of parameters as values. Set 0 has the given ones, and a plausible one of each that is required; later sets
  * draw what is not given. The parameter `varied`, unless TL_CHECK_NONE, has another value than it would. `*values`, and
  * `*held`, in which vectors are, are to be freed after the last use, on failure too. */
-tl_status tl_check_values(tl_checker *c, int set, int varied, tl_value **values, size_t *count,
-                          void **held);
+tl_status tl_check_values(tl_checker *c, int set, int varied, tl_value **values, size_t *count, void **held);
 /* The same, read into `params`, of the kind's params_size bytes; `*held` likewise. */
 tl_status tl_check_params(tl_checker *c, int set, int varied, void *params, void **held);
 /* Whether an effect of that parameter is asked for: of those that are given, or of all when none is. */
 bool tl_check_asked(const tl_checker *c, uint32_t param);
 /* What a kind's `create` makes of parameters; the parameters themselves where it is NULL. */
-tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void **, tl_report *),
-                          void *params, void **self);
+tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void **, tl_report *), void *params,
+                          void **self);
 /* Calls `try_set` with one set of parameters after another, until TL_CHECK_SETS have been tried. It gives TL_E_MEMORY,
  * or another failure where the kind refuses the set. Fails where the given ones are refused, or all. */
-tl_status tl_check_sets(tl_checker *c,
-                        tl_status (*try_set)(tl_checker *c, void *params, void *user), void *user);
+tl_status tl_check_sets(tl_checker *c, tl_status (*try_set)(tl_checker *c, void *params, void *user), void *user);
 
 /* Keeps the first fault that a check finds, with the parameters it was found with. */
 void tl_check_note(tl_checker *c, int check, const char *format, ...) TL_PRINTF(3, 4);

@@ -24,41 +24,23 @@
 /* Tolerance: relative error of forces that turn with the bodies or grow with the masses. Test: unit/test_check. */
 #define SAME 1e-9
 
-enum {
-    RUNS,
-    REPEATS,
-    ALONE,
-    SPLIT,
-    WRITES,
-    READS,
-    FINITE,
-    BRAKES,
-    RESTS,
-    TURNED,
-    MASSES,
-    FACTOR,
-    STATES,
-    PARAMETERS
-};
+enum { RUNS, REPEATS, ALONE, SPLIT, WRITES, READS, FINITE, BRAKES, RESTS, TURNED, MASSES, FACTOR, STATES, PARAMETERS };
 
 static const tl_check_rule rules[] = {
     [RUNS] = {"runs", "begin() and update() return TL_OK, always when never_fails is set"},
     [REPEATS] = {"repeats", "the same call gives the same bits"},
     [ALONE] = {"one by one", "a body alone gets the bits that it gets in a batch"},
     [SPLIT] = {"split", "batches of other sizes and orders give the same bits"},
-    [WRITES] = {"writes",
-                "nothing is written but damping forces, moments and alpha; states in begin()"},
-    [READS] = {"reads",
-               "nothing depends on states that are not declared or on what lies behind the "
-               "batch"},
+    [WRITES] = {"writes", "nothing is written but damping forces, moments and alpha; states in begin()"},
+    [READS] = {"reads", "nothing depends on states that are not declared or on what lies behind the "
+                        "batch"},
     [FINITE] = {"finite", "forces, moments, alpha and states are finite numbers"},
     [BRAKES] = {"brakes", "alpha is not negative, and no body is given power"},
     [RESTS] = {"rests", "a body without velocity is given no force"},
     [TURNED] = {"turned", "bodies turned to other axes get the turned forces"},
     [MASSES] = {"masses", "twice the masses and forces get twice the damping force"},
-    [FACTOR] = {"step factor",
-                "step_factor() is in (0, 1], and allows for damping forces that grow "
-                "with the unbalanced ones"},
+    [FACTOR] = {"step factor", "step_factor() is in (0, 1], and allows for damping forces that grow "
+                               "with the unbalanced ones"},
     [STATES] = {"states", "each declared state is written and read"},
     [PARAMETERS] = {"parameters", "each parameter has an effect"},
     {NULL, NULL},
@@ -99,10 +81,10 @@ typedef struct trial {
     bodies in, out;
     double began[STATES_MOST]; /* states before begin() */
     tl_damping_totals totals;  /* of the step */
-    double amplified; /* by how much the unbalanced forces grow by those of damping, at the most */
-    bool other;       /* what is nobody's holds other numbers than usually */
-    bool looks_back;  /* at the forces of the step before */
-    uint32_t written, read; /* bit k: state k has been */
+    double amplified;          /* by how much the unbalanced forces grow by those of damping, at the most */
+    bool other;                /* what is nobody's holds other numbers than usually */
+    bool looks_back;           /* at the forces of the step before */
+    uint32_t written, read;    /* bit k: state k has been */
     bool matters[TL_CHECK_PARAMS];
 } trial;
 
@@ -118,8 +100,7 @@ static void next_motion(trial *t, int step)
             uint64_t own = tl_key(key, (uint64_t)k);
             double size = tl_check_scale(tl_key(own, 9), low[k], high[k]);
             bool rests = k < 2 && i % 8 == 7;
-            tl_check_put(t->in.c[VELOCITY + 3 * k], i,
-                         tl_v3_scale(rests ? 0 : size, tl_check_direction(own)));
+            tl_check_put(t->in.c[VELOCITY + 3 * k], i, tl_v3_scale(rests ? 0 : size, tl_check_direction(own)));
         }
         for (int k = 0; k < 6; k++)
             t->in.c[FORCE_BEFORE + k][i] = step ? before.c[FORCE + k][i] : 0;
@@ -136,8 +117,7 @@ static void note_failure(trial *t, const char *function, tl_report *report, tl_s
 {
     if (status != TL_OK)
         tl_check_note(t->c, RUNS, "%s() fails%s: %s", function,
-                      t->ops->never_fails ? ", though never_fails is set" : "",
-                      tl_report_text(report, status));
+                      t->ops->never_fails ? ", though never_fails is set" : "", tl_report_text(report, status));
 }
 
 static tl_status call(trial *t, buffer *b, size_t count)
@@ -168,8 +148,7 @@ static tl_status call(trial *t, buffer *b, size_t count)
 }
 
 /* Calls the damping on some bodies, as the host would: the batch is padded, with bodies that rest. */
-static bool run(trial *t, const bodies *in, bodies *out, const size_t *order, size_t begin,
-                size_t count)
+static bool run(trial *t, const bodies *in, bodies *out, const size_t *order, size_t begin, size_t count)
 {
     buffer now, before;
     double state[STATES_MOST];
@@ -178,9 +157,7 @@ static bool run(trial *t, const bodies *in, bodies *out, const size_t *order, si
         for (int k = 0; k < COLUMNS; k++) {
             size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
             double rest = k == MASS || k == INERTIA ? 1 : 0;
-            now.c[k][l] = l < count    ? in->c[k][i]
-                          : l < padded ? rest
-                                       : tl_check_nobodys(k, t->other);
+            now.c[k][l] = l < count ? in->c[k][i] : l < padded ? rest : tl_check_nobodys(k, t->other);
         }
     before = now;
     memcpy(state, t->state, sizeof state);
@@ -215,8 +192,7 @@ static void compare(trial *t, int check, const bodies *other, const char *how)
         for (size_t i = 0; i < BODIES; i++)
             if (memcmp(&t->out.c[k][i], &other->c[k][i], sizeof(double)) != 0)
                 tl_check_note(t->c, check, "%s %.17g in a batch of 64 bodies, %.17g %s",
-                              k == OUT_ALPHA ? "alpha is" : "a damping force is", t->out.c[k][i],
-                              other->c[k][i], how);
+                              k == OUT_ALPHA ? "alpha is" : "a damping force is", t->out.c[k][i], other->c[k][i], how);
 }
 
 /* ---------------------------------------------------------------- one step --------------- */
@@ -239,24 +215,19 @@ static void begin_step(trial *t, int step)
     memcpy(t->began, t->state, sizeof t->began);
     for (size_t i = 0; i < BODIES; i++) {
         tl_vec3 v = tl_check_vec(t->in.c[VELOCITY], i), w = tl_check_vec(t->in.c[SPIN], i);
-        totals.power_unit +=
-            t->in.c[MASS][i] * tl_v3_dot(v, v) + t->in.c[INERTIA][i] * tl_v3_dot(w, w);
-        totals.power += tl_v3_dot(v, tl_check_vec(t->in.c[FORCE], i)) +
-                        tl_v3_dot(w, tl_check_vec(t->in.c[MOMENT], i));
+        totals.power_unit += t->in.c[MASS][i] * tl_v3_dot(v, v) + t->in.c[INERTIA][i] * tl_v3_dot(w, w);
+        totals.power += tl_v3_dot(v, tl_check_vec(t->in.c[FORCE], i)) + tl_v3_dot(w, tl_check_vec(t->in.c[MOMENT], i));
     }
     totals.kinetic = 0.5 * totals.power_unit;
-    totals.kinetic_rate =
-        totals.kinetic / DT * tl_check_between(tl_key(7, (uint64_t)step), -0.01, 0.01);
+    totals.kinetic_rate = totals.kinetic / DT * tl_check_between(tl_key(7, (uint64_t)step), -0.01, 0.01);
     t->totals = totals;
     call_begin(t);
     for (uint32_t k = 0; k < t->columns; k++) {
         t->written |= t->state[k] != before[k] ? 1u << k : 0u;
         if (!isfinite(t->state[k]))
-            tl_check_note(t->c, FINITE, "state '%s' is %g", t->c->kind->states[k].name,
-                          t->state[k]);
+            tl_check_note(t->c, FINITE, "state '%s' is %g", t->c->kind->states[k].name, t->state[k]);
     }
-    if (memcmp(t->state + t->columns, before + t->columns,
-               (STATES_MOST - t->columns) * sizeof before[0]) != 0)
+    if (memcmp(t->state + t->columns, before + t->columns, (STATES_MOST - t->columns) * sizeof before[0]) != 0)
         tl_check_note(t->c, WRITES, "begin() writes to a state that the damping does not declare");
 }
 
@@ -269,17 +240,13 @@ static void check_numbers(trial *t)
         bool rests = tl_v3_norm(v) == 0 && tl_v3_norm(w) == 0;
         for (int k = OUT; k < COLUMNS; k++)
             if (!isfinite(t->out.c[k][i]))
-                tl_check_note(t->c, FINITE, "%s is %g",
-                              k == OUT_ALPHA ? "alpha" : "a damping force", t->out.c[k][i]);
+                tl_check_note(t->c, FINITE, "%s is %g", k == OUT_ALPHA ? "alpha" : "a damping force", t->out.c[k][i]);
         if (alpha < 0)
             tl_check_note(t->c, BRAKES, "alpha = %g 1/s gives energy", alpha);
-        if (power > ROUNDING * tl_v3_norm(v) * tl_v3_norm(f) ||
-            turning > ROUNDING * tl_v3_norm(w) * tl_v3_norm(m))
-            tl_check_note(t->c, BRAKES, "a body gets %g W of its damping force, %g W of the moment",
-                          power, turning);
+        if (power > ROUNDING * tl_v3_norm(v) * tl_v3_norm(f) || turning > ROUNDING * tl_v3_norm(w) * tl_v3_norm(m))
+            tl_check_note(t->c, BRAKES, "a body gets %g W of its damping force, %g W of the moment", power, turning);
         if (rests && (tl_v3_norm(f) != 0 || tl_v3_norm(m) != 0))
-            tl_check_note(t->c, RESTS, "a body at rest gets %g N and %g N m", tl_v3_norm(f),
-                          tl_v3_norm(m));
+            tl_check_note(t->c, RESTS, "a body at rest gets %g N and %g N m", tl_v3_norm(f), tl_v3_norm(m));
     }
 }
 
@@ -288,8 +255,7 @@ static void check_numbers(trial *t)
 /* Another order of the axes for each body, two of them the other way round. */
 static void turn(bodies *b)
 {
-    static const int vectors[] = {VELOCITY,     SPIN,          FORCE,     MOMENT,
-                                  FORCE_BEFORE, MOMENT_BEFORE, OUT_FORCE, OUT_MOMENT};
+    static const int vectors[] = {VELOCITY, SPIN, FORCE, MOMENT, FORCE_BEFORE, MOMENT_BEFORE, OUT_FORCE, OUT_MOMENT};
     static const double signs[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     for (size_t v = 0; v < sizeof vectors / sizeof *vectors; v++)
         for (size_t i = 0; i < BODIES; i++) {
@@ -307,12 +273,10 @@ static void expect(trial *t, int check, const bodies *expected, const bodies *is
     for (size_t i = 0; i < BODIES; i++)
         for (int k = OUT; k < COLUMNS; k++) {
             int first = k < OUT_ALPHA ? k - (k - OUT) % 3 : k;
-            double size =
-                k < OUT_ALPHA ? tl_v3_norm(tl_check_vec(expected->c[first], i)) : expected->c[k][i];
+            double size = k < OUT_ALPHA ? tl_v3_norm(tl_check_vec(expected->c[first], i)) : expected->c[k][i];
             if (fabs(expected->c[k][i] - is->c[k][i]) > SAME * (fabs(size) + fabs(is->c[k][i])))
-                tl_check_note(t->c, check, "%s is %g, not %g, %s",
-                              k == OUT_ALPHA ? "alpha" : "a damping force", is->c[k][i],
-                              expected->c[k][i], how);
+                tl_check_note(t->c, check, "%s is %g, not %g, %s", k == OUT_ALPHA ? "alpha" : "a damping force",
+                              is->c[k][i], expected->c[k][i], how);
         }
 }
 
@@ -337,8 +301,7 @@ static void check_masses(trial *t)
         expect(t, MASSES, &expected, &out, "with twice the mass, inertia, force and moment");
 }
 
-static double share_of(const trial *t, const bodies *in, const bodies *out, int given, int made,
-                       size_t i)
+static double share_of(const trial *t, const bodies *in, const bodies *out, int given, int made, size_t i)
 {
     tl_vec3 more = tl_v3_sub(tl_check_vec(in->c[given], i), tl_check_vec(t->in.c[given], i));
     tl_vec3 adds = tl_v3_sub(tl_check_vec(out->c[made], i), tl_check_vec(t->out.c[made], i));
@@ -361,11 +324,10 @@ static void check_factor(trial *t, double factor)
     }
     double most = 1 / sqrt(1 + t->amplified);
     if (factor > most * (1 + SAME))
-        tl_check_note(
-            t->c, FACTOR,
-            "step_factor() = %g, but damping forces grow by %g of the unbalanced ones, which "
-            "allows for 1 / sqrt(1 + %g) = %g",
-            factor, t->amplified, t->amplified, most);
+        tl_check_note(t->c, FACTOR,
+                      "step_factor() = %g, but damping forces grow by %g of the unbalanced ones, which "
+                      "allows for 1 / sqrt(1 + %g) = %g",
+                      factor, t->amplified, t->amplified, most);
 }
 
 /* Whether the step gives other forces than it did, from such bodies and the present states. */
@@ -399,10 +361,9 @@ static void check_reads(trial *t)
         began[k] = tl_check_nobodys((int)k, true);
     t->other = true;
     if (gives_other(t, began))
-        tl_check_note(
-            t->c, READS,
-            "what the damping gives depends on a state that it does not declare, or on what "
-            "lies behind the batch");
+        tl_check_note(t->c, READS,
+                      "what the damping gives depends on a state that it does not declare, or on what "
+                      "lies behind the batch");
     t->other = false;
 }
 
@@ -499,14 +460,12 @@ static void tell_unseen(const trial *t)
     c->params_text[0] = '\0';
     for (uint32_t k = 0; k < t->columns; k++)
         if (!(t->written >> k & 1))
-            tl_check_note(c, STATES, "state '%s' is declared and was never written",
-                          c->kind->states[k].name);
+            tl_check_note(c, STATES, "state '%s' is declared and was never written", c->kind->states[k].name);
         else if (!(t->read >> k & 1))
             tl_check_note(c, STATES, "state '%s' is written and never read: nothing depends on it",
                           c->kind->states[k].name);
     if (t->ops->before && !t->looks_back)
-        tl_check_note(c, READS,
-                      "before is set, but nothing depends on the forces of the step before");
+        tl_check_note(c, READS, "before is set, but nothing depends on the forces of the step before");
     for (uint32_t k = 0; k < c->kind->param_count && k < TL_CHECK_PARAMS; k++)
         if (!t->matters[k] && tl_check_asked(c, k))
             tl_check_note(c, PARAMETERS,

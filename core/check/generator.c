@@ -48,33 +48,30 @@ static tl_status count(void)
 
 /* Defines watched_SERVICE with these parameters, in brackets: it counts the call and hands the arguments on to the
  * host. */
-#define WATCHED(service, parameters, ...)                                                          \
-    static tl_status watched_##service parameters                                                  \
-    {                                                                                              \
-        tl_status status = count();                                                                \
-        return status != TL_OK ? status : current->host->service(__VA_ARGS__);                     \
-    }                                                                                              \
+#define WATCHED(service, parameters, ...)                                                                              \
+    static tl_status watched_##service parameters                                                                      \
+    {                                                                                                                  \
+        tl_status status = count();                                                                                    \
+        return status != TL_OK ? status : current->host->service(__VA_ARGS__);                                         \
+    }                                                                                                                  \
     _Static_assert(sizeof(watch) > 0, "a struct")
 
-WATCHED(create_hull,
-        (const tl_host *h, const tl_vec3 *vertices, size_t n, double density, const char *group), h,
+WATCHED(create_hull, (const tl_host *h, const tl_vec3 *vertices, size_t n, double density, const char *group), h,
         vertices, n, density, group);
-WATCHED(create_box, (const tl_host *h, tl_vec3 min, tl_vec3 max, double density, const char *group),
-        h, min, max, density, group);
+WATCHED(create_box, (const tl_host *h, tl_vec3 min, tl_vec3 max, double density, const char *group), h, min, max,
+        density, group);
 WATCHED(create_block, (const tl_host *h, const tl_block_shape *shape), h, shape);
 WATCHED(joint, (const tl_host *h, const char *name, uint32_t *number), h, name, number);
-WATCHED(cut, (const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence), h,
-        normal, point, tag, persistence);
+WATCHED(cut, (const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence), h, normal, point, tag,
+        persistence);
 WATCHED(cut_disc,
-        (const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
-         double persistence, size_t *met),
+        (const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag, double persistence, size_t *met),
         h, normal, point, radius, tag, persistence, met);
 WATCHED(progress, (const tl_host *h, double fraction), h, fraction);
-WATCHED(meets,
-        (const tl_host *h, size_t index, const tl_half_space *spaces, size_t n, bool *answer), h,
-        index, spaces, n, answer);
-WATCHED(cut_block, (const tl_host *h, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above),
-        h, index, normal, point, above);
+WATCHED(meets, (const tl_host *h, size_t index, const tl_half_space *spaces, size_t n, bool *answer), h, index, spaces,
+        n, answer);
+WATCHED(cut_block, (const tl_host *h, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above), h, index, normal,
+        point, above);
 WATCHED(set_group, (const tl_host *h, size_t index, const char *group), h, index, group);
 WATCHED(part, (const tl_host *h, const size_t *indices, size_t n), h, indices, n);
 WATCHED(join, (const tl_host *h, const size_t *indices, size_t n), h, indices, n);
@@ -168,11 +165,9 @@ static void check_failures(trial *t, size_t calls)
     for (size_t at = 1; at <= calls; at += at < FIRST_CALLS ? 1 : at / 4) {
         tl_status status = run(t, at, hash);
         if (status == TL_OK)
-            tl_check_note(t->c, PASSES_ON,
-                          "call %zu of a service fails, and generate() gives TL_OK", at);
+            tl_check_note(t->c, PASSES_ON, "call %zu of a service fails, and generate() gives TL_OK", at);
         else if (t->w.after > 0)
-            tl_check_note(t->c, PASSES_ON, "call %zu of a service fails, and %zu more follow", at,
-                          t->w.after);
+            tl_check_note(t->c, PASSES_ON, "call %zu of a service fails, and %zu more follow", at, t->w.after);
     }
 }
 
@@ -202,8 +197,7 @@ static tl_status run_trial(trial *t)
 static tl_status check_kind(tl_checker *c)
 {
     trial t = {.c = c};
-    tl_kind *kind =
-        (tl_kind *)(uintptr_t)c->kind; /* the host's copy, which no other thread uses here */
+    tl_kind *kind = (tl_kind *)(uintptr_t)c->kind; /* the host's copy, which no other thread uses here */
     tl_generator_ops own = {.size = sizeof own, .generate = generate_watched};
     const void *ops = kind->ops;
     void *held;

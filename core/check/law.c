@@ -36,33 +36,25 @@ static const tl_check_rule rules[] = {
     [TL_LAW_ALONE] = {"one by one", "a point alone gets the bits that it gets in a batch"},
     [TL_LAW_SPLIT] = {"split", "batches of other sizes and orders give the same bits"},
     [TL_LAW_ENERGIES] = {"energies", "forces do not depend on whether energies are asked for"},
-    [TL_LAW_WRITES] = {"writes",
-                       "nothing is written but forces, flags, energies and declared states"},
-    [TL_LAW_READS] =
-        {"reads", "nothing depends on states that are not declared, nor on what is to be written"},
+    [TL_LAW_WRITES] = {"writes", "nothing is written but forces, flags, energies and declared states"},
+    [TL_LAW_READS] = {"reads", "nothing depends on states that are not declared, nor on what is to be written"},
     [TL_LAW_PADDING] = {"padding", "lanes of no area carry nothing"},
     [TL_LAW_FINITE] = {"finite", "forces, states and energies are finite numbers"},
     [TL_LAW_PLANE] = {"plane", "the shear force lies in the common plane"},
     [TL_LAW_STILL] = {"no motion", "without motion and time the forces stay as they are"},
-    [TL_LAW_TURNED] = {"turned",
-                       "a turned point gets the turned forces, the same energies and states"},
+    [TL_LAW_TURNED] = {"turned", "a turned point gets the turned forces, the same energies and states"},
     [TL_LAW_AREA] = {"area", "twice the area carries twice the force and the energy"},
     [TL_LAW_STIFFNESS] = {"stiffness", "no point is stiffer than stiffness() says"},
     [TL_LAW_CYCLE] = {"closed cycle", "a closed path of motion gives no energy"},
     [TL_LAW_BALANCE] = {"balance", "the work on a path is stored or turned to heat"},
     [TL_LAW_HEAT] = {"heat", "dissipated is not negative, and 0 without motion"},
     [TL_LAW_STEPS] = {"steps", "shear in a few steps leads to the forces that it does in many"},
-    [TL_LAW_STATES] =
-        {"states",
-         "each declared state is written and read, and none written while stateless() says "
-         "so"},
+    [TL_LAW_STATES] = {"states", "each declared state is written and read, and none written while stateless() says "
+                                 "so"},
     [TL_LAW_PARAMETERS] = {"parameters", "each parameter has an effect"},
-    [TL_LAW_FLAGS] = {"flags",
-                      "points that are open carry nothing, those that have failed stay so"},
-    [TL_LAW_PULLS] = {"pulls",
-                      "no normal force across a gap where pulls() and across_gap() say so"},
-    [TL_LAW_PRESSES] =
-        {"presses", "the normal force and what it stores are those that linear or pressed() tells"},
+    [TL_LAW_FLAGS] = {"flags", "points that are open carry nothing, those that have failed stay so"},
+    [TL_LAW_PULLS] = {"pulls", "no normal force across a gap where pulls() and across_gap() say so"},
+    [TL_LAW_PRESSES] = {"presses", "the normal force and what it stores are those that linear or pressed() tells"},
     {NULL, NULL},
 };
 
@@ -101,10 +93,8 @@ static void begin_points(trial *t)
         uint64_t key = key_of(t, 0, i);
         double area = tl_check_scale(tl_key(key, 1), -2, 1);
         int axis = axis_of(i);
-        tl_law_begin(&t->law, p, i, area,
-                     axis < 0 ? tl_check_direction(tl_key(key, 3)) : unit(axis));
-        p->c[TL_AT_F_N0][i] =
-            i % 8 % 7 % 2 ? 0 : area * t->law.stress * tl_check_between(tl_key(key, 2), 0, 1);
+        tl_law_begin(&t->law, p, i, area, axis < 0 ? tl_check_direction(tl_key(key, 3)) : unit(axis));
+        p->c[TL_AT_F_N0][i] = i % 8 % 7 % 2 ? 0 : area * t->law.stress * tl_check_between(tl_key(key, 2), 0, 1);
         if (i % 4 == 3) { /* made while the walls were apart */
             p->flags[i] = TL_POINT_APART;
             p->c[TL_AT_CLOSURE][i] = -t->law.closure;
@@ -128,8 +118,7 @@ static void next_motion(trial *t, int step)
         bool rests = step == 0 || tl_uniform(tl_key(key, 1)) < 0.2;
         double soft = step < GENTLE ? 0.02 : 1;
         double size = soft * tl_check_scale(tl_key(key, 2), -1, 1.5);
-        double to =
-            t->law.closure * soft * tl_check_between(tl_key(key, 3), step < GENTLE ? 0.1 : -0.4, 1);
+        double to = t->law.closure * soft * tl_check_between(tl_key(key, 3), step < GENTLE ? 0.1 : -0.4, 1);
         double closure = rests ? in->c[TL_AT_CLOSURE][i] : to;
         double before = in->c[TL_AT_CLOSURE][i] - in->c[TL_AT_APART][i];
         bool partly = i % 5 == 2 && closure + gaps.lift[i] > 0.1 * t->law.closure;
@@ -138,13 +127,11 @@ static void next_motion(trial *t, int step)
         in->c[TL_AT_CLOSURE][i] = closure;
         in->c[TL_AT_APART][i] = apart;
         in->c[TL_AT_EDGE][i] =
-            tl_law_edge(closure, apart, gaps.lift[i],
-                        i % 3 ? 0.05 * t->law.closure * tl_uniform(tl_key(key, 5)) : 0);
+            tl_law_edge(closure, apart, gaps.lift[i], i % 3 ? 0.05 * t->law.closure * tl_uniform(tl_key(key, 5)) : 0);
         in->c[TL_AT_DU_N][i] = before - (closure - apart);
         double way = rests ? 0 : size * t->law.slide;
-        tl_vec3 slide = axis_of(i) < 0
-                            ? tl_law_tangent(tl_key(key, 4), normal, way)
-                            : tl_v3_scale(tl_uniform(key) < 0.5 ? way : -way, unit(axis_of(i) + 1));
+        tl_vec3 slide = axis_of(i) < 0 ? tl_law_tangent(tl_key(key, 4), normal, way)
+                                       : tl_v3_scale(tl_uniform(key) < 0.5 ? way : -way, unit(axis_of(i) + 1));
         tl_check_put(in->c[TL_AT_DU_S], i, slide);
     }
 }
@@ -161,26 +148,23 @@ static bool same(const tl_check_points *a, const tl_check_points *b, size_t i, b
     return a->flags[i] == b->flags[i];
 }
 
-static void compare_bits(trial *t, int check, const tl_check_points *other, bool energies,
-                         const char *how)
+static void compare_bits(trial *t, int check, const tl_check_points *other, bool energies, const char *how)
 {
     for (size_t i = 0; i < TL_CHECK_POINTS; i++)
         if (!same(&t->out, other, i, energies)) {
-            tl_vec3 a = tl_check_vec(t->out.c[TL_AT_F_S], i),
-                    b = tl_check_vec(other->c[TL_AT_F_S], i);
-            tl_check_note(
-                t->c, check,
-                "f_n = %.17g N, |f_s| = %.17g N, flags %u in a batch of 64 points; %.17g, "
-                "%.17g, %u %s",
-                t->out.c[TL_AT_F_N][i], tl_v3_norm(a), t->out.flags[i], other->c[TL_AT_F_N][i],
-                tl_v3_norm(b), other->flags[i], how);
+            tl_vec3 a = tl_check_vec(t->out.c[TL_AT_F_S], i), b = tl_check_vec(other->c[TL_AT_F_S], i);
+            tl_check_note(t->c, check,
+                          "f_n = %.17g N, |f_s| = %.17g N, flags %u in a batch of 64 points; %.17g, "
+                          "%.17g, %u %s",
+                          t->out.c[TL_AT_F_N][i], tl_v3_norm(a), t->out.flags[i], other->c[TL_AT_F_N][i], tl_v3_norm(b),
+                          other->flags[i], how);
             return;
         }
 }
 
 /* Calls the law on some points and notes what every call must keep to; false when it failed. `call`: what is asked. */
-static bool call_some(trial *t, const tl_check_points *in, tl_check_points *out,
-                      const size_t *order, size_t begin, size_t count, tl_check_call call)
+static bool call_some(trial *t, const tl_check_points *in, tl_check_points *out, const size_t *order, size_t begin,
+                      size_t count, tl_check_call call)
 {
     tl_law_call(&t->law, in, out, order, begin, count, &call);
     if (call.overwrote)
@@ -207,8 +191,7 @@ static bool call_law(trial *t, const tl_check_points *in, tl_check_points *out)
 }
 
 /* The step in batches of so many points, in turn. */
-static bool call_in_parts(trial *t, tl_check_points *out, const size_t *order, const size_t *parts,
-                          size_t most)
+static bool call_in_parts(trial *t, tl_check_points *out, const size_t *order, const size_t *parts, size_t most)
 {
     size_t begin = 0;
     for (size_t k = 0; begin < TL_CHECK_POINTS; begin += parts[k++ % most])
@@ -232,8 +215,7 @@ static bool compare_batches(trial *t, int step)
     if (call_in_parts(t, &other, NULL, one, 1))
         compare_bits(t, TL_LAW_ALONE, &other, true, "alone");
     if (call_in_parts(t, &other, order, parts, sizeof parts / sizeof *parts))
-        compare_bits(t, TL_LAW_SPLIT, &other, true,
-                     "in batches of 8, 3, 40 and 13 in another order");
+        compare_bits(t, TL_LAW_SPLIT, &other, true, "in batches of 8, 3, 40 and 13 in another order");
     if (call_some(t, &t->in, &other, twice, 0, TL_CHECK_LANES, (tl_check_call){0}))
         compare_bits(t, TL_LAW_SPLIT, &other, true, "in the second half of a batch of 136");
     if (call_all(t, &t->in, &other, (tl_check_call){.no_energies = true}))
@@ -246,8 +228,7 @@ static bool compare_batches(trial *t, int step)
 static void check_numbers(trial *t)
 {
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
-        tl_vec3 n = tl_check_vec(t->out.c[TL_AT_NORMAL], i),
-                f = tl_check_vec(t->out.c[TL_AT_F_S], i);
+        tl_vec3 n = tl_check_vec(t->out.c[TL_AT_NORMAL], i), f = tl_check_vec(t->out.c[TL_AT_F_S], i);
         for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
             if (!isfinite(t->out.c[k][i]))
                 tl_check_note(t->c, TL_LAW_FINITE, "%s is %g at a closure of %g m, dt = %g s",
@@ -257,8 +238,7 @@ static void check_numbers(trial *t)
                               t->out.c[k][i], t->in.c[TL_AT_CLOSURE][i], t->in.dt);
         double along = fabs(tl_v3_dot(n, f));
         if (along > ROUNDING * (t->scale[i] + tl_v3_norm(f)))
-            tl_check_note(t->c, TL_LAW_PLANE, "|f_s| = %g N has %g N along the normal",
-                          tl_v3_norm(f), along);
+            tl_check_note(t->c, TL_LAW_PLANE, "|f_s| = %g N has %g N along the normal", tl_v3_norm(f), along);
     }
 }
 
@@ -276,8 +256,7 @@ static void check_states(trial *t)
                 continue;
             t->seen.written |= 1u << k;
             if (stateless)
-                tl_check_note(t->c, TL_LAW_STATES,
-                              "state column %u is written, though stateless() is 1", k + 1);
+                tl_check_note(t->c, TL_LAW_STATES, "state column %u is written, though stateless() is 1", k + 1);
         }
 }
 
@@ -292,8 +271,7 @@ static void turn_points(const trial *t, tl_mat3 r, tl_check_points *p)
             tl_check_put(p->c[vectors[k]], i, tl_m3_mul(&r, tl_check_vec(p->c[vectors[k]], i)));
         for (uint32_t k = 0; k < t->law.columns; k++)
             if (t->law.tangent[k])
-                tl_check_put(p->c[TL_AT_STATE + (int)k], i,
-                             tl_m3_mul(&r, tl_check_vec(p->c[TL_AT_STATE + (int)k], i)));
+                tl_check_put(p->c[TL_AT_STATE + (int)k], i, tl_m3_mul(&r, tl_check_vec(p->c[TL_AT_STATE + (int)k], i)));
     }
 }
 
@@ -309,8 +287,7 @@ static const char *column_name(const tl_kind *kind, uint32_t column)
 }
 
 /* Energies and states of turned points: those of tangents are turned as well. */
-static void check_turned_columns(trial *t, const tl_check_points *out,
-                                 const tl_check_points *expected)
+static void check_turned_columns(trial *t, const tl_check_points *out, const tl_check_points *expected)
 {
     for (uint32_t k = TL_AT_STORED; k < TL_AT_STATE + t->law.columns; k++) {
         const bool vector = k >= TL_AT_STATE && t->law.tangent[k - TL_AT_STATE];
@@ -324,8 +301,7 @@ static void check_turned_columns(trial *t, const tl_check_points *out,
         /* an opening may be what rounding of the slide leaves */
         if (error > 1e3 * ROUNDING * most && error > ROUNDING * t->law.slide)
             tl_check_note(t->c, TL_LAW_TURNED, "%s '%s' of a turned point differs by %g of %g",
-                          k < TL_AT_STATE ? "the energy" : "the state", column_name(t->law.kind, k),
-                          error, most);
+                          k < TL_AT_STATE ? "the energy" : "the state", column_name(t->law.kind, k), error, most);
         k = last;
     }
 }
@@ -341,11 +317,9 @@ static void check_turned(trial *t, int step)
     turn_points(t, r, &expected);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         tl_vec3 a = tl_check_vec(out.c[TL_AT_F_S], i), b = tl_check_vec(expected.c[TL_AT_F_S], i);
-        double error =
-            fmax(tl_v3_norm(tl_v3_sub(a, b)), fabs(out.c[TL_AT_F_N][i] - expected.c[TL_AT_F_N][i]));
+        double error = fmax(tl_v3_norm(tl_v3_sub(a, b)), fabs(out.c[TL_AT_F_N][i] - expected.c[TL_AT_F_N][i]));
         if (error > 1e3 * ROUNDING * (t->scale[i] + tl_v3_norm(b)))
-            tl_check_note(t->c, TL_LAW_TURNED,
-                          "the forces of a turned point differ by %g N of %g N", error,
+            tl_check_note(t->c, TL_LAW_TURNED, "the forces of a turned point differ by %g N of %g N", error,
                           t->scale[i] + tl_v3_norm(b));
     }
     check_turned_columns(t, &out, &expected);
@@ -381,14 +355,12 @@ static void check_settled(trial *t, const tl_check_points *rested)
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         double heat = out.c[TL_AT_DISSIPATED][i];
         if (!settled[i])
-            tl_check_note(
-                t->c, TL_LAW_STILL,
-                "a point never comes to rest: its forces, states or flags change in each step "
-                "without motion and time, f_n from %.17g to %.17g N",
-                rest.c[TL_AT_F_N][i], out.c[TL_AT_F_N][i]);
+            tl_check_note(t->c, TL_LAW_STILL,
+                          "a point never comes to rest: its forces, states or flags change in each step "
+                          "without motion and time, f_n from %.17g to %.17g N",
+                          rest.c[TL_AT_F_N][i], out.c[TL_AT_F_N][i]);
         if (heat != 0)
-            tl_check_note(t->c, TL_LAW_HEAT, "dissipated = %g J in a step without motion and time",
-                          heat);
+            tl_check_note(t->c, TL_LAW_HEAT, "dissipated = %g J in a step without motion and time", heat);
         if (out.flags[i] & TL_POINT_SLIPPING)
             tl_check_note(t->c, TL_LAW_FLAGS,
                           "a point is flagged as slipping in a step without motion "
@@ -407,8 +379,7 @@ static void check_still(trial *t)
         double before = rest.c[TL_AT_F_N][i], after = out.c[TL_AT_F_N][i];
         double error = fmax(fabs(before - after), tl_v3_norm(tl_v3_sub(a, b)));
         if (error > ROUNDING * (t->scale[i] + tl_v3_norm(a)))
-            tl_check_note(t->c, TL_LAW_STILL,
-                          "f_n goes from %g to %g N and f_s by %g N, without any motion", before,
+            tl_check_note(t->c, TL_LAW_STILL, "f_n goes from %g to %g N and f_s by %g N, without any motion", before,
                           after, tl_v3_norm(tl_v3_sub(a, b)));
     }
     check_settled(t, &out);
@@ -435,8 +406,7 @@ static void check_stiffness(trial *t, int step, bool along)
         return;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         tl_vec3 slide = tl_check_vec(rest.c[TL_AT_DU_S], i);
-        tl_vec3 change =
-            tl_v3_sub(tl_check_vec(out.c[TL_AT_F_S], i), tl_check_vec(rest.c[TL_AT_F_S], i));
+        tl_vec3 change = tl_v3_sub(tl_check_vec(out.c[TL_AT_F_S], i), tl_check_vec(rest.c[TL_AT_F_S], i));
         double area = rest.c[TL_AT_AREA][i], closing = -rest.c[TL_AT_DU_N][i];
         double moved = along ? tl_v3_norm(slide) : fabs(closing);
         double rise = along ? -tl_v3_dot(change, slide) / (moved > 0 ? moved : 1)
@@ -444,15 +414,15 @@ static void check_stiffness(trial *t, int step, bool along)
         double bound = along ? t->law.ks : t->law.kn;
         /* what falls: friction does at any rate, and a bond, which breaks or softens in the part that is apart; walls
          * that meet are where the closure says */
-        bool falls = along ? tl_v3_norm(tl_check_vec(out.c[TL_AT_F_S], i)) <
-                                 tl_v3_norm(tl_check_vec(rest.c[TL_AT_F_S], i))
-                           : rest.c[TL_AT_APART][i] > 0;
+        bool falls =
+            along ? tl_v3_norm(tl_check_vec(out.c[TL_AT_F_S], i)) < tl_v3_norm(tl_check_vec(rest.c[TL_AT_F_S], i))
+                  : rest.c[TL_AT_APART][i] > 0;
         uint32_t changed = out.flags[i] ^ rest.flags[i];
         if (falls || changed & (TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART))
             continue;
         if (rise > bound * area * moved * (1 + SLACK) + ROUNDING * t->scale[i])
-            tl_check_note(t->c, TL_LAW_STIFFNESS, "%s = %g Pa/m, but stiffness() says %g Pa/m",
-                          along ? "ks" : "kn", rise / (area * moved), bound);
+            tl_check_note(t->c, TL_LAW_STIFFNESS, "%s = %g Pa/m, but stiffness() says %g Pa/m", along ? "ks" : "kn",
+                          rise / (area * moved), bound);
     }
 }
 
@@ -492,8 +462,7 @@ static void compare(trial *t, int column, size_t i, double one, double is)
     double expected = power_of(t, column) * one;
     double scale = force ? t->scale[i] : energy ? t->scale[i] * t->law.closure : fabs(one);
     if (fabs(is - expected) > ERROR * (scale + fabs(expected)))
-        tl_check_note(t->c, TL_LAW_AREA,
-                      "with twice the area and the same stresses %s is %g, not %g",
+        tl_check_note(t->c, TL_LAW_AREA, "with twice the area and the same stresses %s is %g, not %g",
                       force    ? "a force"
                       : energy ? "an energy"
                                : "a state",
@@ -534,8 +503,7 @@ static void check_reads(trial *t)
             return;
         for (size_t i = 0; i < TL_CHECK_POINTS; i++)
             if (!same(&t->out, &out, i, true))
-                tl_check_note(t->c, TL_LAW_READS, "what update() gives depends on %s",
-                              places[k].text);
+                tl_check_note(t->c, TL_LAW_READS, "what update() gives depends on %s", places[k].text);
     }
 }
 
@@ -550,8 +518,7 @@ static void see_state(trial *t, uint32_t first, uint32_t width)
         moved[i] = false;
         for (uint32_t k = first; k < first + width; k++) {
             const double *state = t->in.c[TL_AT_STATE + k];
-            in.c[TL_AT_STATE + k][i] =
-                width > 1 ? -0.5 * state[i] : state[(i + 1) % TL_CHECK_POINTS];
+            in.c[TL_AT_STATE + k][i] = width > 1 ? -0.5 * state[i] : state[(i + 1) % TL_CHECK_POINTS];
             moved[i] |= in.c[TL_AT_STATE + k][i] != state[i];
         }
     }
@@ -624,11 +591,10 @@ static void tell_unseen(tl_checker *c, const tl_check_seen *seen)
                           "declare it as TL_TRANSFER_RESET",
                           state->name);
         else if (!(seen->read >> column & bits) && state->transfer != TL_TRANSFER_RESET)
-            tl_check_note(
-                c, TL_LAW_STATES,
-                "state '%s' is written, but no force, energy, flag or other state depends on "
-                "it. Where that is meant, declare it as TL_TRANSFER_RESET",
-                state->name);
+            tl_check_note(c, TL_LAW_STATES,
+                          "state '%s' is written, but no force, energy, flag or other state depends on "
+                          "it. Where that is meant, declare it as TL_TRANSFER_RESET",
+                          state->name);
         column += width;
     }
     for (uint32_t k = 0; k < kind->param_count && k < TL_CHECK_PARAMS; k++)
@@ -639,8 +605,7 @@ static void tell_unseen(tl_checker *c, const tl_check_seen *seen)
                           "stiffness with all of %d sets of parameters",
                           kind->params[k].name, TL_CHECK_SETS);
     if (seen->heats && !seen->slips)
-        tl_check_note(c, TL_LAW_FLAGS,
-                      "shear is turned to heat, but no point is ever flagged as slipping");
+        tl_check_note(c, TL_LAW_FLAGS, "shear is turned to heat, but no point is ever flagged as slipping");
 }
 /* ---------------------------------------------------------------- all of it -------------- */
 
@@ -696,8 +661,7 @@ static tl_status open_law(tl_checker *c, void *params, tl_check_law *law)
     law->kn = law->ks = NAN;
     ops->stiffness(law->self, &law->kn, &law->ks);
     if (!(law->kn >= 0 && law->ks >= 0 && isfinite(law->kn) && isfinite(law->ks)))
-        tl_check_note(c, TL_LAW_STIFFNESS,
-                      "stiffness() says kn = %g, ks = %g Pa/m: both must be finite and >= 0",
+        tl_check_note(c, TL_LAW_STIFFNESS, "stiffness() says kn = %g, ks = %g Pa/m: both must be finite and >= 0",
                       law->kn, law->ks);
     law->stress = tl_check_scale(tl_key(88, (uint64_t)c->set), 4, 6.5);
     double soft = law->kn > 0 && isfinite(law->kn) ? law->kn : 1e9;

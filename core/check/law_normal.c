@@ -21,9 +21,8 @@
 
 /* A point and what is known of it. */
 typedef struct point {
-    double lift, u, apart, hold, spring, f_n,
-        kept;               /* m, m, m, share, N/m, N; kept: what is stored, J */
-    double error, rounding; /* N, m */
+    double lift, u, apart, hold, spring, f_n, kept; /* m, m, m, share, N/m, N; kept: what is stored, J */
+    double error, rounding;                         /* N, m */
     bool fresh, no_shear;
 } point;
 
@@ -53,11 +52,10 @@ static void check_linear(tl_law_trial *t, const point *p)
     bool told = t->law.ops->across_gap != NULL;
     bool none = p->f_n == 0 && p->u <= 0 && !told; /* those that may pull need not */
     if (!none && fabs(p->f_n - expected) > p->error)
-        tl_check_note(
-            t->c, TL_LAW_PRESSES,
-            "f_n = %g N at a closure with lift of %g m, a part apart by %g m, hold = %g: by "
-            "kn of stiffness()%s the normal force is %g N",
-            p->f_n, p->u, p->apart, p->hold, told ? " and across_gap()" : "", expected);
+        tl_check_note(t->c, TL_LAW_PRESSES,
+                      "f_n = %g N at a closure with lift of %g m, a part apart by %g m, hold = %g: by "
+                      "kn of stiffness()%s the normal force is %g N",
+                      p->f_n, p->u, p->apart, p->hold, told ? " and across_gap()" : "", expected);
     double presses = p->spring * (p->u > 0 ? p->u : 0);
     double pulls = none ? 0 : p->spring * p->hold * (p->u > 0 ? p->apart : -p->u);
     /* a share of the springs holds that share of their energy, or all at a share of the stretch */
@@ -66,12 +64,10 @@ static void check_linear(tl_law_trial *t, const point *p)
     double most = per * (presses * presses + (p->hold > 0 ? pulls * pulls / p->hold : 0));
     double error = p->error * (t->law.closure + fabs(p->u) + p->apart);
     if (p->kept < holds - error)
-        tl_check_note(t->c, TL_LAW_PRESSES,
-                      "stored = %g J is less than the normal springs hold, %g J", p->kept, holds);
+        tl_check_note(t->c, TL_LAW_PRESSES, "stored = %g J is less than the normal springs hold, %g J", p->kept, holds);
     if (p->fresh && p->no_shear && p->kept > most + error)
         tl_check_note(t->c, TL_LAW_PRESSES,
-                      "stored = %g J of a new point without shear, whose normal springs hold %g J",
-                      p->kept, most);
+                      "stored = %g J of a new point without shear, whose normal springs hold %g J", p->kept, most);
 }
 
 /* What presses by its energy; `energy` at the closure, and a little less and more. */
@@ -82,22 +78,18 @@ static void check_pressed(tl_law_trial *t, const point *p, const double energy[3
     double expected = p->f_n < 0 ? 0 : p->f_n + p->spring * p->hold * p->apart;
     double error = SLOPE_ERROR * (p->error / ERROR), holds = error * t->law.closure;
     if (!(fabs(slope - expected) <= error))
-        tl_check_note(t->c, TL_LAW_PRESSES,
-                      "f_n = %g N at a closure with lift of %g m, where pressed() rises by %g N",
+        tl_check_note(t->c, TL_LAW_PRESSES, "f_n = %g N at a closure with lift of %g m, where pressed() rises by %g N",
                       p->f_n, p->u, slope);
     if (!(isnan(told) || fabs(slope - told) <= error))
-        tl_check_note(
-            t->c, TL_LAW_PRESSES,
-            "pressed() tells the force %g N at a closure with lift of %g m, where its energy "
-            "rises by %g N",
-            told, p->u, slope);
-    if (p->kept < energy[1] - holds)
         tl_check_note(t->c, TL_LAW_PRESSES,
-                      "stored = %g J is less than what presses holds by pressed(), %g J", p->kept,
+                      "pressed() tells the force %g N at a closure with lift of %g m, where its energy "
+                      "rises by %g N",
+                      told, p->u, slope);
+    if (p->kept < energy[1] - holds)
+        tl_check_note(t->c, TL_LAW_PRESSES, "stored = %g J is less than what presses holds by pressed(), %g J", p->kept,
                       energy[1]);
     if (p->fresh && p->no_shear && p->u > 0 && p->kept > energy[1] + holds)
-        tl_check_note(t->c, TL_LAW_PRESSES,
-                      "stored = %g J of a new point without shear, and pressed() says %g J",
+        tl_check_note(t->c, TL_LAW_PRESSES, "stored = %g J of a new point without shear, and pressed() says %g J",
                       p->kept, energy[1]);
 }
 
@@ -107,15 +99,12 @@ static void check_initial(tl_law_trial *t, const point *p, size_t i)
     bool made_apart = (t->in.flags[i] & TL_POINT_APART) != 0;
     double fibre = p->u - (t->in.c[TL_AT_CLOSURE][i] - t->in.c[TL_AT_EDGE][i]);
     if (p->fresh && !made_apart && fibre >= 0 && t->out.flags[i] & TL_POINT_FAILED)
-        tl_check_note(t->c, TL_LAW_FLAGS,
-                      "a new point that is neither pulled nor sheared is flagged as failed");
+        tl_check_note(t->c, TL_LAW_FLAGS, "a new point that is neither pulled nor sheared is flagged as failed");
     double f_n0 = t->in.c[TL_AT_F_N0][i];
     bool there = p->fresh && t->in.c[TL_AT_CLOSURE][i] == 0 && p->apart == 0 && f_n0 > 0;
     if (there && fabs(p->f_n - f_n0) > SLOPE_ERROR * f_n0)
-        tl_check_note(
-            t->c, TL_LAW_PRESSES,
-            "f_n = %g N of a new point at closure 0, where the initial force is f_n0 = %g N",
-            p->f_n, f_n0);
+        tl_check_note(t->c, TL_LAW_PRESSES,
+                      "f_n = %g N of a new point at closure 0, where the initial force is f_n0 = %g N", p->f_n, f_n0);
 }
 
 static void check_gap(tl_law_trial *t, const point *p, size_t i)
@@ -130,23 +119,17 @@ static void check_gap(tl_law_trial *t, const point *p, size_t i)
         tl_check_note(t->c, TL_LAW_PULLS, "f_n = %g N pulls, and pulls() says that %s", p->f_n,
                       failed ? "a point that has failed does not" : "no point does");
     if (t->unmet[i] && p->u < -p->rounding && p->f_n != 0)
-        tl_check_note(
-            t->c, TL_LAW_PULLS,
-            "f_n = %g N across a gap of %g m between walls that were apart and have not met",
-            p->f_n, -p->u);
+        tl_check_note(t->c, TL_LAW_PULLS,
+                      "f_n = %g N across a gap of %g m between walls that were apart and have not met", p->f_n, -p->u);
     if (!isfinite(p->lift))
-        tl_check_note(t->c, TL_LAW_PULLS,
-                      "across_gap() leaves lift unwritten, or gives one that is not finite");
+        tl_check_note(t->c, TL_LAW_PULLS, "across_gap() leaves lift unwritten, or gives one that is not finite");
     if (!(p->hold >= 0 && p->hold <= 1))
-        tl_check_note(t->c, TL_LAW_PULLS, "across_gap() gives hold = %g, which must be in [0, 1]",
-                      p->hold);
+        tl_check_note(t->c, TL_LAW_PULLS, "across_gap() gives hold = %g, which must be in [0, 1]", p->hold);
     if (p->u > 10 * p->rounding && p->apart == 0 && !(p->f_n > 0) && t->law.kn > 0)
-        tl_check_note(t->c, TL_LAW_PULLS,
-                      "f_n = %g N of walls that press each other by %g m, closure and lift", p->f_n,
+        tl_check_note(t->c, TL_LAW_PULLS, "f_n = %g N of walls that press each other by %g m, closure and lift", p->f_n,
                       p->u);
     if (p->u < -p->rounding && p->f_n == 0 && p->no_shear && !(t->out.flags[i] & TL_POINT_OPEN))
-        tl_check_note(t->c, TL_LAW_FLAGS,
-                      "a point that carries nothing across a gap of %g m is not flagged as open",
+        tl_check_note(t->c, TL_LAW_FLAGS, "a point that carries nothing across a gap of %g m is not flagged as open",
                       -p->u);
     if (p->u >= 0)
         t->unmet[i] = false;
@@ -157,18 +140,14 @@ static void check_flags(tl_law_trial *t)
     const uint32_t known = TL_POINT_SLIPPING | TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         uint32_t was = t->in.flags[i], is = t->out.flags[i];
-        double shear = tl_v3_norm(tl_check_vec(t->out.c[TL_AT_F_S], i)),
-               f_n = t->out.c[TL_AT_F_N][i];
+        double shear = tl_v3_norm(tl_check_vec(t->out.c[TL_AT_F_S], i)), f_n = t->out.c[TL_AT_F_N][i];
         if (is & ~known)
-            tl_check_note(t->c, TL_LAW_FLAGS, "flags are %u, of which only %u have a meaning", is,
-                          known);
+            tl_check_note(t->c, TL_LAW_FLAGS, "flags are %u, of which only %u have a meaning", is, known);
         if (is & TL_POINT_OPEN && (f_n != 0 || shear != 0))
-            tl_check_note(t->c, TL_LAW_FLAGS,
-                          "a point that is flagged as open carries f_n = %g N, |f_s| = %g N", f_n,
+            tl_check_note(t->c, TL_LAW_FLAGS, "a point that is flagged as open carries f_n = %g N, |f_s| = %g N", f_n,
                           shear);
         if (was & ~is & TL_POINT_FAILED)
-            tl_check_note(t->c, TL_LAW_FLAGS,
-                          "a point that had failed is whole again: the flag is to stay");
+            tl_check_note(t->c, TL_LAW_FLAGS, "a point that had failed is whole again: the flag is to stay");
         t->seen.slips |= (is & TL_POINT_SLIPPING) != 0;
     }
 }
@@ -190,11 +169,9 @@ void tl_law_check_normal(tl_law_trial *t, int step)
         if (ops->linear)
             check_linear(t, &p);
         else if (ops->pressed)
-            check_pressed(t, &p, (double[3]){energy[0][i], energy[1][i], energy[2][i]},
-                          force[1][i]);
+            check_pressed(t, &p, (double[3]){energy[0][i], energy[1][i], energy[2][i]}, force[1][i]);
         if (!ops->linear && ops->pressed && isnan(force[1][i]) != isnan(force[1][0]))
-            tl_check_note(t->c, TL_LAW_PRESSES,
-                          "pressed() tells the forces of some points and not of others");
+            tl_check_note(t->c, TL_LAW_PRESSES, "pressed() tells the forces of some points and not of others");
     }
     check_flags(t);
 }

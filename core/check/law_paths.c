@@ -42,7 +42,7 @@ typedef struct sums {
     double stored, heat; /* stored: at the end of the last step; heat: so far */
     double without_heat,
         with_heat; /* work that was neither stored nor turned to heat, or too much of it, in steps of either sort */
-    double least; /* of the heat of a step */
+    double least;  /* of the heat of a step */
 } sums;
 
 typedef struct walk {
@@ -54,8 +54,7 @@ typedef struct walk {
     tl_check_seen *seen;
 } walk;
 
-static place corner_of(const tl_checker *c, const tl_check_law *law, size_t point, int corner,
-                       tl_vec3 normal)
+static place corner_of(const tl_checker *c, const tl_check_law *law, size_t point, int corner, tl_vec3 normal)
 {
     bool partly = point % SORTS == PARTLY;
     place at = {.closure = partly && corner > 0 && corner < CORNERS ? 0.5 * law->closure : 0};
@@ -103,8 +102,7 @@ static void move(const walk *w, double share, double before, tl_check_points *in
         double closure = w->begins[i] + from->closure + (to->closure - from->closure) * share;
         double apart = from->apart + (to->apart - from->apart) * share;
         tl_vec3 du = tl_v3_scale(share - before, tl_v3_sub(to->slide, from->slide));
-        in->c[TL_AT_DU_N][i] =
-            (in->c[TL_AT_CLOSURE][i] - in->c[TL_AT_APART][i]) - (closure - apart);
+        in->c[TL_AT_DU_N][i] = (in->c[TL_AT_CLOSURE][i] - in->c[TL_AT_APART][i]) - (closure - apart);
         in->c[TL_AT_CLOSURE][i] = closure;
         in->c[TL_AT_APART][i] = apart;
         in->c[TL_AT_EDGE][i] = tl_law_edge(closure, apart, gaps.lift[i], w->fibre[i]);
@@ -113,8 +111,7 @@ static void move(const walk *w, double share, double before, tl_check_points *in
 }
 
 /* Adds what a step from `was` to `in`, which gave `out`, comes to. */
-static void add_up(walk *w, const tl_check_points *was, const tl_check_points *in,
-                   const tl_check_points *out)
+static void add_up(walk *w, const tl_check_points *was, const tl_check_points *in, const tl_check_points *out)
 {
     tl_check_gaps before, after;
     tl_law_gaps(w->law, was, &before);
@@ -128,12 +125,10 @@ static void add_up(walk *w, const tl_check_points *was, const tl_check_points *i
         double closing = in->c[TL_AT_CLOSURE][i] - was->c[TL_AT_CLOSURE][i];
         double presses = in->c[TL_AT_F_N][i] + pull0 + out->c[TL_AT_F_N][i] + pull1;
         double across = 0.5 * (presses * closing + (pull0 + pull1) * (apart1 - apart0));
-        tl_vec3 shear =
-            tl_v3_add(tl_check_vec(in->c[TL_AT_F_S], i), tl_check_vec(out->c[TL_AT_F_S], i));
+        tl_vec3 shear = tl_v3_add(tl_check_vec(in->c[TL_AT_F_S], i), tl_check_vec(out->c[TL_AT_F_S], i));
         double along = -0.5 * tl_v3_dot(shear, tl_check_vec(in->c[TL_AT_DU_S], i));
         double stored = out->c[TL_AT_STORED][i], heat = out->c[TL_AT_DISSIPATED][i];
-        double left = across + along - heat - (stored - s->stored),
-               size = fabs(across) + fabs(along);
+        double left = across + along - heat - (stored - s->stored), size = fabs(across) + fabs(along);
         if ((apart0 > 0 || apart1 > 0) && before.lift[i] != after.lift[i])
             left = 0; /* how much of the area slip closes the law cannot know */
         *(heat > NO_HEAT * size ? &s->with_heat : &s->without_heat) += fabs(left);
@@ -176,16 +171,13 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         const sums *s = &w->of[i];
         bool closed = i % SORTS < PRESSED || i % SORTS == PARTLY;
-        double all = s->size + stored[i], most = ERROR * all,
-               left = s->work - s->heat - (s->stored - stored[i]);
+        double all = s->size + stored[i], most = ERROR * all, left = s->work - s->heat - (s->stored - stored[i]);
         if (closed && s->work < -most)
-            tl_check_note(
-                t->c, TL_LAW_CYCLE,
-                "%.3g J come out of a closed path of motion on which %.3g J went in and out",
-                -s->work, s->size);
+            tl_check_note(t->c, TL_LAW_CYCLE,
+                          "%.3g J come out of a closed path of motion on which %.3g J went in and out", -s->work,
+                          s->size);
         if (s->least < -NO_HEAT * s->size)
-            tl_check_note(t->c, TL_LAW_HEAT,
-                          "dissipated = %.3g J in a step, which must not be negative", s->least);
+            tl_check_note(t->c, TL_LAW_HEAT, "dissipated = %.3g J in a step, which must not be negative", s->least);
         if (s->without_heat > most)
             tl_check_note(t->c, TL_LAW_BALANCE,
                           "%.3g J of the work are %s in steps without heat: stored does not change "
@@ -246,15 +238,13 @@ static void begin_shear(const tl_law_trial *t, tl_check_points *p, tl_vec3 slide
         double size = t->law.slide * tl_check_scale(tl_key(key, 4), -1, 2.5);
         slide[i] = tl_law_tangent(tl_key(key, 3), normal, size);
         tl_law_begin(&t->law, p, i, area, normal);
-        p->c[TL_AT_CLOSURE][i] = p->c[TL_AT_EDGE][i] =
-            t->law.closure * tl_check_between(tl_key(key, 5), 0.2, 1);
+        p->c[TL_AT_CLOSURE][i] = p->c[TL_AT_EDGE][i] = t->law.closure * tl_check_between(tl_key(key, 5), 0.2, 1);
         p->c[TL_AT_DU_N][i] = -p->c[TL_AT_CLOSURE][i];
     }
 }
 
 /* `pressed`: normal forces before the shear. */
-static bool shear_in(tl_law_trial *t, int steps, tl_check_points *p,
-                     double pressed[TL_CHECK_POINTS])
+static bool shear_in(tl_law_trial *t, int steps, tl_check_points *p, double pressed[TL_CHECK_POINTS])
 {
     tl_vec3 slide[TL_CHECK_POINTS];
     begin_shear(t, p, slide);
@@ -303,8 +293,7 @@ static void check_steps(tl_law_trial *t)
                       "the same shear, made in %d steps, leads to |f_s| = %.5g N, f_n = %.5g N, "
                       "and in %d steps "
                       "to %.5g N, %.5g N",
-                      COARSE, tl_v3_norm(tl_check_vec(coarse.c[TL_AT_F_S], worst)),
-                      coarse.c[TL_AT_F_N][worst], FINE,
+                      COARSE, tl_v3_norm(tl_check_vec(coarse.c[TL_AT_F_S], worst)), coarse.c[TL_AT_F_N][worst], FINE,
                       tl_v3_norm(tl_check_vec(fine.c[TL_AT_F_S], worst)), fine.c[TL_AT_F_N][worst]);
 }
 

@@ -23,31 +23,23 @@ typedef struct buffer {
     _Alignas(TL_ALIGN) uint32_t flags[MOST];
 } buffer;
 
-static void fill(const tl_check_law *law, const tl_check_points *in, const size_t *order,
-                 size_t begin, size_t count, size_t padded, uint32_t other, buffer *b)
+static void fill(const tl_check_law *law, const tl_check_points *in, const size_t *order, size_t begin, size_t count,
+                 size_t padded, uint32_t other, buffer *b)
 {
     for (size_t l = 0; l < padded + GUARD; l++) {
         size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
         for (int k = 0; k < COLUMNS; k++) {
             int state = k - TL_AT_STATE;
             bool beyond = state >= (int)law->columns, energy = k >= TL_AT_STORED && state < 0;
-            uint32_t what = l >= padded ? TL_OTHER_BEHIND
-                            : beyond    ? TL_OTHER_STATES
-                            : energy    ? TL_OTHER_ENERGIES
-                                        : 0;
-            double padding = state >= 0              ? law->initial[state % TL_STATE_COLUMNS]
-                             : k == TL_AT_NORMAL + 2 ? 1.0
-                                                     : 0;
-            b->c[k][l] = what        ? tl_check_nobodys(k, (other & what) != 0)
-                         : l < count ? in->c[k][i]
-                                     : padding;
+            uint32_t what = l >= padded ? TL_OTHER_BEHIND : beyond ? TL_OTHER_STATES : energy ? TL_OTHER_ENERGIES : 0;
+            double padding = state >= 0 ? law->initial[state % TL_STATE_COLUMNS] : k == TL_AT_NORMAL + 2 ? 1.0 : 0;
+            b->c[k][l] = what ? tl_check_nobodys(k, (other & what) != 0) : l < count ? in->c[k][i] : padding;
         }
         b->flags[l] = l >= padded ? UNTOUCHED_FLAGS : l < count ? in->flags[i] : 0;
     }
 }
 
-static const char *find_overwritten(const tl_check_law *law, const buffer *now,
-                                    const buffer *before, size_t padded)
+static const char *find_overwritten(const tl_check_law *law, const buffer *now, const buffer *before, size_t padded)
 {
     for (int k = 0; k < COLUMNS; k++) {
         const size_t inside = padded * sizeof now->c[k][0];
@@ -56,8 +48,7 @@ static const char *find_overwritten(const tl_check_law *law, const buffer *now,
             return "a column of what it is given";
         if (k >= TL_AT_STATE + (int)law->columns && memcmp(now->c[k], before->c[k], whole) != 0)
             return "a state that it does not declare";
-        if (memcmp((const char *)now->c[k] + inside, (const char *)before->c[k] + inside,
-                   whole - inside) != 0)
+        if (memcmp((const char *)now->c[k] + inside, (const char *)before->c[k] + inside, whole - inside) != 0)
             return "what lies behind the batch";
     }
     if (memcmp(now->flags + padded, before->flags + padded, GUARD * sizeof now->flags[0]) != 0)
@@ -74,8 +65,8 @@ static bool padding_carries(const buffer *b, size_t count, size_t padded, bool e
     return false;
 }
 
-void tl_law_call(const tl_check_law *law, const tl_check_points *in, tl_check_points *out,
-                 const size_t *order, size_t begin, size_t count, tl_check_call *call)
+void tl_law_call(const tl_check_law *law, const tl_check_points *in, tl_check_points *out, const size_t *order,
+                 size_t begin, size_t count, tl_check_call *call)
 {
     size_t padded = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
     buffer now, before;
@@ -111,8 +102,7 @@ tl_status tl_law_call_all(const tl_check_law *law, const tl_check_points *in, tl
     return call.status;
 }
 
-void tl_law_begin(const tl_check_law *law, tl_check_points *p, size_t i, double area,
-                  tl_vec3 normal)
+void tl_law_begin(const tl_check_law *law, tl_check_points *p, size_t i, double area, tl_vec3 normal)
 {
     p->c[TL_AT_AREA][i] = area;
     tl_check_put(p->c[TL_AT_NORMAL], i, normal);
@@ -180,8 +170,8 @@ double tl_law_edge(double closure, double apart, double lift, double below)
     return apart > 0 ? -lift - 2 * (apart + sqrt(u * apart)) : closure - below;
 }
 
-void tl_law_pressed(const tl_check_law *law, const tl_check_points *given, double move,
-                    double energy[TL_CHECK_POINTS], double force[TL_CHECK_POINTS])
+void tl_law_pressed(const tl_check_law *law, const tl_check_points *given, double move, double energy[TL_CHECK_POINTS],
+                    double force[TL_CHECK_POINTS])
 {
     beyond other;
     tl_check_points p = *given;

@@ -77,14 +77,13 @@ typedef struct tl_check_call {
 /* Calls the law on the points order[begin] .. order[begin + count - 1], or in turn when `order` is NULL; at most
  * TL_CHECK_LANES. They are a batch of their own that is padded, between guards. What the law gives goes to `out`; of a
  * point that is there twice what the last gives. */
-void tl_law_call(const tl_check_law *law, const tl_check_points *in, tl_check_points *out,
-                 const size_t *order, size_t begin, size_t count, tl_check_call *call);
+void tl_law_call(const tl_check_law *law, const tl_check_points *in, tl_check_points *out, const size_t *order,
+                 size_t begin, size_t count, tl_check_call *call);
 /* The same on all points, in one batch with energies. */
 tl_status tl_law_call_all(const tl_check_law *law, const tl_check_points *in, tl_check_points *out);
 
 /* A point with the states of a new one. */
-void tl_law_begin(const tl_check_law *law, tl_check_points *p, size_t i, double area,
-                  tl_vec3 normal);
+void tl_law_begin(const tl_check_law *law, tl_check_points *p, size_t i, double area, tl_vec3 normal);
 /* A vector in the common plane. */
 tl_vec3 tl_law_tangent(uint64_t key, tl_vec3 normal, double size);
 
@@ -116,8 +115,8 @@ typedef struct tl_check_gaps {
 /* What the law tells of the points at their closures. */
 void tl_law_gaps(const tl_check_law *law, const tl_check_points *p, tl_check_gaps *gaps);
 /* What `pressed` tells at the points' closures moved by `move`: energies, and forces or not-a-number. */
-void tl_law_pressed(const tl_check_law *law, const tl_check_points *given, double move,
-                    double energy[TL_CHECK_POINTS], double force[TL_CHECK_POINTS]);
+void tl_law_pressed(const tl_check_law *law, const tl_check_points *given, double move, double energy[TL_CHECK_POINTS],
+                    double force[TL_CHECK_POINTS]);
 /* Closure at the outermost fibre, `below` that in the middle; where a part is apart, that of a joint that opens in a
  * line. */
 double tl_law_edge(double closure, double apart, double lift, double below);

@@ -48,19 +48,15 @@ static tl_status open_screen(tl_checker *c, const void *params, void **self)
     if (!copy)
         return tl_fail_memory(c->error);
     memcpy(copy, text, sizeof text);
-    const tl_screen_page page = {.size = sizeof page,
-                                 .text = copy,
-                                 .length = sizeof text - 1,
-                                 .commands = 1,
-                                 .check = check_command};
+    const tl_screen_page page = {
+        .size = sizeof page, .text = copy, .length = sizeof text - 1, .commands = 1, .check = check_command};
     tl_enter(c->kind, "open");
     tl_status status = ops->open(&page, params, self, &report);
     tl_leave();
     memset(copy, UNTOUCHED, sizeof text);
     free(copy);
     if (status != TL_OK)
-        return tl_fail(c->error, status, "'%s' cannot be tried: %s", c->kind->name,
-                       tl_report_text(&report, status));
+        return tl_fail(c->error, status, "'%s' cannot be tried: %s", c->kind->name, tl_report_text(&report, status));
     return TL_OK;
 }
 
@@ -81,8 +77,7 @@ static void try_frames(tl_checker *c, void *self)
         tl_status status = ops->put(self, &frame, &report);
         tl_leave();
         if (status != TL_OK)
-            tl_check_note(c, SHOWS, "put() fails at frame %u: %s", i,
-                          tl_report_text(&report, status));
+            tl_check_note(c, SHOWS, "put() fails at frame %u: %s", i, tl_report_text(&report, status));
     }
 }
 
@@ -128,8 +123,7 @@ static tl_status check_kind(tl_checker *c)
     size_t size = c->kind->params_size;
     char *params = malloc(2 * size + 1);
     void *held = NULL, *self = NULL;
-    tl_status status =
-        params ? tl_check_params(c, 0, TL_CHECK_NONE, params, &held) : tl_fail_memory(c->error);
+    tl_status status = params ? tl_check_params(c, 0, TL_CHECK_NONE, params, &held) : tl_fail_memory(c->error);
     if (status == TL_OK)
         memcpy(params + size, params, size);
     for (int i = 0; status == TL_OK && i < 2; i++) {

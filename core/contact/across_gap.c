@@ -18,8 +18,7 @@
 static _Alignas(TL_ALIGN) const double zeros[SOME];
 
 /* Of a batch whose columns area, f_n0, state and flags are there. */
-static void across_gap(const tl_law *law, const tl_law_batch *batch, double *restrict lift,
-                       double *restrict hold)
+static void across_gap(const tl_law *law, const tl_law_batch *batch, double *restrict lift, double *restrict hold)
 {
     const tl_law_ops *ops = law->kind->ops;
     if (ops->across_gap) {
@@ -31,8 +30,7 @@ static void across_gap(const tl_law *law, const tl_law_batch *batch, double *res
     const double *restrict area = batch->area, *restrict f_n0 = batch->f_n0;
     const uint32_t *restrict flags = batch->flags;
     const double kn = law->kn;
-    const uint32_t lost =
-        law->pulls == TL_PULL_ANY ? TL_POINT_APART : TL_POINT_APART | TL_POINT_FAILED;
+    const uint32_t lost = law->pulls == TL_PULL_ANY ? TL_POINT_APART : TL_POINT_APART | TL_POINT_FAILED;
     for (uint32_t i = 0; i < batch->count; i++) {
         double spring = kn * area[i];
         lift[i] = f_n0[i] / (spring > 0 ? spring : 1);
@@ -40,8 +38,8 @@ static void across_gap(const tl_law *law, const tl_law_batch *batch, double *res
     }
 }
 
-void tl_points_across_gap(const tl_law *law, const tl_points_table *p, size_t first, size_t count,
-                          double *lift, double *hold)
+void tl_points_across_gap(const tl_law *law, const tl_points_table *p, size_t first, size_t count, double *lift,
+                          double *hold)
 {
     const tl_law_ops *ops = law->kind->ops;
     double *state[TL_STATE_COLUMNS];
@@ -71,8 +69,7 @@ typedef struct sample {
 
 /* Asks a law for TL_LANES points from `first`, with the initial forces there are, or without. Points beyond the
  * last have no area. States are there that the law keeps. */
-static void ask_points(const tl_model *m, const tl_law *law, uint32_t c, size_t first, bool initial,
-                       sample *s)
+static void ask_points(const tl_model *m, const tl_law *law, uint32_t c, size_t first, bool initial, sample *s)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
@@ -89,12 +86,8 @@ static void ask_points(const tl_model *m, const tl_law *law, uint32_t c, size_t 
     }
     for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
         state[k] = k < law->columns ? s->state[k] : (double *)(uintptr_t)zeros;
-    const tl_law_batch batch = {.size = sizeof batch,
-                                .count = TL_LANES,
-                                .area = s->area,
-                                .f_n0 = s->f_n0,
-                                .state = state,
-                                .flags = s->flags};
+    const tl_law_batch batch = {
+        .size = sizeof batch, .count = TL_LANES, .area = s->area, .f_n0 = s->f_n0, .state = state, .flags = s->flags};
     across_gap(law, &batch, s->lift, s->hold);
 }
 
@@ -151,14 +144,12 @@ static void find_lifts(const tl_model *m, const tl_law *law, uint32_t c, size_t 
         lift[l] = s.lift[l];
 }
 
-void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t c, size_t first,
-                           double opening[TL_LANES])
+void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t c, size_t first, double opening[TL_LANES])
 {
     find_lifts(m, law, c, first, false, opening);
 }
 
-void tl_contact_point_openings(const tl_model *m, uint32_t c, size_t first,
-                               double opening[TL_LANES])
+void tl_contact_point_openings(const tl_model *m, uint32_t c, size_t first, double opening[TL_LANES])
 {
     find_lifts(m, tl_contact_opens(m, c) ? law_of(m, c) : NULL, c, first, false, opening);
 }

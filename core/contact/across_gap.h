@@ -8,8 +8,8 @@
 
 /* The lift, m, and the share of tension that is held, 0 to 1, of `count` points from row `first`, a multiple of
  * TL_LANES: see tl_law_ops. */
-void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size_t first,
-                          size_t count, double *lift, double *hold);
+void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size_t first, size_t count, double *lift,
+                          double *hold);
 
 /* The same of a contact. */
 typedef struct tl_contact_across {
@@ -35,10 +35,8 @@ static inline bool tl_contact_opens(const tl_model *m, uint32_t contact)
 void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t contact, size_t first,
                            double opening[TL_LANES]);
 /* The same as its own law has them; 0 where nothing ever opens them. */
-void tl_contact_point_openings(const tl_model *m, uint32_t contact, size_t first,
-                               double opening[TL_LANES]);
+void tl_contact_point_openings(const tl_model *m, uint32_t contact, size_t first, double opening[TL_LANES]);
 /* The same of all that lifts them. */
-void tl_contact_point_lifts(const tl_model *m, uint32_t contact, size_t first,
-                            double lift[TL_LANES]);
+void tl_contact_point_lifts(const tl_model *m, uint32_t contact, size_t first, double lift[TL_LANES]);
 
 #endif

@@ -10,8 +10,8 @@
 #include "contact/detection.h"
 
 typedef struct tl_body_contacts {
-    uint32_t contact, block;    /* rows: of a contact, and of the block of the body that has it */
-    const uint32_t *next, *end; /* contacts of this block that are left */
+    uint32_t contact, block;                 /* rows: of a contact, and of the block of the body that has it */
+    const uint32_t *next, *end;              /* contacts of this block that are left */
     const uint32_t *next_block, *blocks_end; /* blocks that are left */
     const tl_detect *d;
 } tl_body_contacts;

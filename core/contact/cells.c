@@ -31,8 +31,8 @@
 static const double cell_share[3] = {16. / 75, 36. / 75, 7. / 75};
 static const double outer_side[4] = {0, TL_CELL_SIDE, 1 - TL_CELL_SIDE, 1};
 
-bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes, size_t lane,
-                      size_t stride, tl_cell_patch *out)
+bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes, size_t lane, size_t stride,
+                      tl_cell_patch *out)
 {
     if (contact == TL_NO_ROW)
         return false;
@@ -121,8 +121,8 @@ tl_vec3 tl_cell_slope(const tl_cell_inertia *by, tl_vec3 moment)
     double det = by->xx * by->yy - by->xy * by->xy, sum = by->xx + by->yy;
     if (!(det > ON_A_LINE * sum * sum))
         return tl_v3(0, 0, 0);
-    return tl_v3_madd(tl_v3_scale((x * by->yy - y * by->xy) / det, by->axis[0]),
-                      (y * by->xx - x * by->xy) / det, by->axis[1]);
+    return tl_v3_madd(tl_v3_scale((x * by->yy - y * by->xy) / det, by->axis[0]), (y * by->xx - x * by->xy) / det,
+                      by->axis[1]);
 }
 
 static bool lifts_differ(const tl_cell_patch *of)
@@ -140,8 +140,7 @@ static double fit_plane(const tl_cell_patch *of, const tl_cell_inertia *by, tl_v
     double sum = 0, area = 0;
     tl_vec3 moment = {0, 0, 0};
     for (size_t k = 0; k <= 2 * of->corners; k++) {
-        double part = tl_cell_area(of, k),
-               weight = part * of->lanes->cell[tl_cell_lane(of, k)].lift;
+        double part = tl_cell_area(of, k), weight = part * of->lanes->cell[tl_cell_lane(of, k)].lift;
         moment = tl_v3_madd(moment, weight, place_of(of, k));
         sum += weight;
         area += part;
@@ -181,8 +180,7 @@ static tl_vec3 lay_lifts(const tl_cell_patch *of)
 /* ---------------------------------------------------------------- cells ------------------ */
 
 /* Adds a cell's part, whose volumes are those of a triangle of the fan of area `fan` with the sides e and f. */
-static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e, tl_vec3 f,
-                     bool curved)
+static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e, tl_vec3 f, bool curved)
 {
     const integrals *p = &part->pressed, *a = &part->apart;
     if (a->uu > 0) {
@@ -199,8 +197,7 @@ static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e,
         return;
     to->pressed_area += fan * p->one;
     to->pressed_centre = tl_v3_madd(tl_v3_madd(to->pressed_centre, fan * p->a, e), fan * p->b, f);
-    to->pressed_square =
-        tl_v3_madd(tl_v3_madd(to->pressed_square, fan * p->uua, e), fan * p->uub, f);
+    to->pressed_square = tl_v3_madd(tl_v3_madd(to->pressed_square, fan * p->uua, e), fan * p->uub, f);
     to->pressed_cube = tl_v3_madd(tl_v3_madd(to->pressed_cube, fan * p->uuua, e), fan * p->uuub, f);
     to->pressed_third += fan * p->uuu;
     to->pressed_fourth += fan * p->uuuu;
@@ -208,8 +205,8 @@ static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e,
 
 /* The four cells of a triangle of the fan, of which `to` are the points: corner, edge, next corner, centroid. `o`:
  * closures of the centroid, of the corner and of the next. */
-TL_INLINE void add_triangle_cells(const tl_cell_patch *of, const size_t to[4], const double o[3],
-                                  tl_vec3 e, tl_vec3 f, const bool curved)
+TL_INLINE void add_triangle_cells(const tl_cell_patch *of, const size_t to[4], const double o[3], tl_vec3 e, tl_vec3 f,
+                                  const bool curved)
 {
     tl_cell *cell = of->lanes->cell + of->lane;
     const double fan = tl_cell_area(of, to[1]) / cell_share[1];
@@ -257,10 +254,8 @@ void tl_cells_find(const tl_cell_patch *of, bool curved)
     const double centre = cell[tl_cell_lane(of, 2 * n)].closure;
     for (size_t k = 0; k <= 2 * n; k++) {
         const size_t i = tl_cell_lane(of, k);
-        cell[i] = (tl_cell){.closure = cell[i].closure,
-                            .level = cell[i].level,
-                            .lift = cell[i].lift,
-                            .hold = cell[i].hold};
+        cell[i] =
+            (tl_cell){.closure = cell[i].closure, .level = cell[i].level, .lift = cell[i].lift, .hold = cell[i].hold};
     }
     tl_vec3 e = tl_cell_corner(of, 0);
     double here = corner_closure(of, 0) + tl_v3_dot(slope, e);

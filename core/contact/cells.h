@@ -37,8 +37,8 @@ static inline double tl_cell_area(const tl_cell_patch *of, size_t k)
 }
 
 /* The patch of a contact whose points are in the lanes given. false: it is none. */
-bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes, size_t lane,
-                      size_t stride, tl_cell_patch *out);
+bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes, size_t lane, size_t stride,
+                      tl_cell_patch *out);
 /* Whether its points are those of all corners and of every two neighbours: where faces hardly overlap some may have had
  * no area. */
 bool tl_cell_patch_is_whole(const tl_cell_patch *of);

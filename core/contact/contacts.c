@@ -72,8 +72,7 @@ static tl_simd_group *begin_group(tl_layout *layout, tl_span *span, uint32_t slo
 }
 
 /* Gives a window of contacts their lanes. */
-static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_request *requests,
-                         size_t count)
+static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_request *requests, size_t count)
 {
     if (count > 1)
         qsort(requests, count, sizeof *requests, compare_requests);
@@ -119,15 +118,11 @@ static bool make_layout(tl_layout *layout, tl_contacts *c, size_t share, size_t 
     *points = 0;
     size_t groups = 0;
     for (uint32_t row = 0; row < rows;) {
-        if (!tl_grow(&layout->spans, &layout->span_capacity, layout->span_count + 1,
-                     sizeof *layout->spans))
+        if (!tl_grow(&layout->spans, &layout->span_capacity, layout->span_count + 1, sizeof *layout->spans))
             return false;
         tl_span *span = &layout->spans[layout->span_count++];
-        *span = (tl_span){.law = c->law[row],
-                          .held = c->held[row],
-                          .kind = c->kind[row],
-                          .begin = *points,
-                          .group_begin = groups};
+        *span = (tl_span){
+            .law = c->law[row], .held = c->held[row], .kind = c->kind[row], .begin = *points, .group_begin = groups};
         size_t count = 0;
         for (uint32_t i = row; i < rows && is_of_span(c, i, span); i++)
             count += c->point_capacity[i] > 0;
@@ -172,16 +167,13 @@ static tl_simd_group *take_group(tl_detect *d, uint32_t points, uint32_t contact
     if (!span)
         return NULL;
     span->rest = TL_SPAN_WOKEN;
-    for (size_t r = span->group_end, back = 0; r-- > span->group_begin && back < LOOK_BACK;
-         back++) {
+    for (size_t r = span->group_end, back = 0; r-- > span->group_begin && back < LOOK_BACK; back++) {
         tl_simd_group *group = &d->layout.groups[r];
-        if (group->slots >= points && group->slots <= points + MOST_SPARE &&
-            take_lane(group, contact, lane))
+        if (group->slots >= points && group->slots <= points + MOST_SPARE && take_lane(group, contact, lane))
             return group;
     }
     size_t rows = (size_t)(points + GROWTH) * TL_LANES;
-    if (span->group_end == span->group_limit || span->end + rows > span->limit ||
-        rows > d->lane_capacity)
+    if (span->group_end == span->group_limit || span->end + rows > span->limit || rows > d->lane_capacity)
         return NULL;
     tl_simd_group *group = begin_group(&d->layout, span, points + GROWTH);
     take_lane(group, contact, lane);
@@ -194,8 +186,7 @@ static tl_simd_group *group_at(tl_detect *d, uint32_t start)
     const tl_span *span = d->layout.spans;
     while (start >= span->end)
         span++;
-    size_t low = span->group_begin,
-           high = span->group_end - 1; /* the last that begins there or before */
+    size_t low = span->group_begin, high = span->group_end - 1; /* the last that begins there or before */
     while (low < high) {
         size_t middle = (low + high + 1) / 2;
         if (d->layout.groups[middle].start <= start)
@@ -245,8 +236,7 @@ void tl_point_resize(tl_points_table *p, size_t i, double area)
         p->f_s[s][i] *= by;
 }
 
-tl_old_point tl_point_as_old(const tl_points_table *p, const tl_contacts *c, uint32_t contact,
-                             size_t k, tl_vec3 arm)
+tl_old_point tl_point_as_old(const tl_points_table *p, const tl_contacts *c, uint32_t contact, size_t k, tl_vec3 arm)
 {
     size_t i = tl_point_row(c, contact, k);
     double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
@@ -273,8 +263,8 @@ void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
             p->state[at.begin][i] = at.state->initial;
 }
 
-void tl_point_take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                         double old_area, bool stays)
+void tl_point_take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old, double old_area,
+                         bool stays)
 {
     for (tl_state_columns at = {0}; tl_state_next(kind, p->state_columns, &at);) {
         uint32_t rule = at.state->transfer;
@@ -298,8 +288,7 @@ void tl_states_turn(const tl_kind *kind, uint32_t columns, double *state, tl_vec
     }
 }
 
-void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
-                          const tl_point_lanes *lanes)
+void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind, const tl_point_lanes *lanes)
 {
     tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
@@ -307,9 +296,8 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
     tl_contact_places(m, contact, lanes);
     for (size_t k = 0; k < c->point_count[contact]; k++) {
         size_t i = tl_point_row(c, contact, k);
-        bool apart =
-            c->facet[contact].kind == TL_FACET_FIELD || /* edges and corners have no bonds */
-            (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
+        bool apart = c->facet[contact].kind == TL_FACET_FIELD || /* edges and corners have no bonds */
+                     (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
         tl_point_initial_state(&d->points, i, kind);
         d->points.flags[i] = apart ? TL_POINT_APART : 0;
     }
@@ -383,8 +371,7 @@ void tl_held_followed(tl_model *m)
         if (!span->held || span->rest == TL_SPAN_RESTS)
             continue;
         /* the first step may still have met motion from before the bodies were held */
-        span->rest =
-            span->rest == TL_SPAN_WOKEN || span->changed ? TL_SPAN_FOLLOWED : TL_SPAN_RESTS;
+        span->rest = span->rest == TL_SPAN_WOKEN || span->changed ? TL_SPAN_FOLLOWED : TL_SPAN_RESTS;
         rests = rests || span->rest == TL_SPAN_RESTS;
         all = all && span->rest == TL_SPAN_RESTS;
     }
@@ -440,8 +427,7 @@ uint32_t tl_law_row(const tl_model *m, tl_tag tag)
     return law ? (uint32_t)(law - m->joint_laws) : TL_NO_ROW;
 }
 
-bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag,
-                       size_t want_points)
+bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag, size_t want_points)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
@@ -494,8 +480,7 @@ static place *sorted(const tl_contacts *c, size_t *count)
     *count = 0;
     for (uint32_t row = 0; list && row < c->table.rows; row++)
         if (c->pending[row] != TL_PENDING_DIE)
-            list[(*count)++] =
-                (place){c->law[row], c->held[row], c->kind[row], c->a[row], c->b[row], row};
+            list[(*count)++] = (place){c->law[row], c->held[row], c->kind[row], c->a[row], c->b[row], row};
     if (list && *count > 1)
         qsort(list, *count, sizeof *list, compare_place);
     return list;
@@ -510,8 +495,7 @@ static uint32_t wanted_points(const tl_detect *d, uint32_t row)
 }
 
 /* Copies a contact's points from one table to other rows of another, or of the same. */
-static void copy_points(const tl_points_table *from, size_t row, tl_points_table *to, size_t start,
-                        uint32_t count)
+static void copy_points(const tl_points_table *from, size_t row, tl_points_table *to, size_t start, uint32_t count)
 {
     for (size_t k = 0; k < from->table.column_count && count; k++) {
         size_t size = from->table.columns[k].size;
@@ -543,8 +527,7 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to)
         memcpy((char *)tl_table_data(&fresh->table, k) + to * size,
                (const char *)tl_table_data(&c->table, k) + from * size, size);
     }
-    uint32_t want =
-        tl_pending_waits(c->pending[from]) ? wanted_points(d, from) : c->point_count[from];
+    uint32_t want = tl_pending_waits(c->pending[from]) ? wanted_points(d, from) : c->point_count[from];
     bool busy = d->spare_share < SPARE_CALM; /* what has grown may grow again */
     bool keeps = busy && c->point_count[from] > 0 && c->pending[from] != TL_PENDING_MOVE;
     uint32_t capacity = keeps && c->point_capacity[from] > want ? c->point_capacity[from] : want;
@@ -595,8 +578,8 @@ static void move_points(tl_detect *d, const place *list)
 {
     for (uint32_t i = 0; i < d->spare.table.rows; i++) {
         uint32_t row = list[i].row;
-        copy_points(&d->points, d->contacts.point_start[row], &d->spare_points,
-                    d->spare.point_start[i], d->contacts.point_count[row]);
+        copy_points(&d->points, d->contacts.point_start[row], &d->spare_points, d->spare.point_start[i],
+                    d->contacts.point_count[row]);
         d->pairs[d->spare.pair[i]].contact = i;
         if (d->spare.point_capacity[i] == 0)
             leave_lane(d, &d->spare, i);
@@ -619,8 +602,8 @@ tl_status tl_contacts_repack(tl_model *m)
     for (uint32_t i = 0; i < count && there; i++)
         copy_contact(d, list[i].row, i);
     tl_layout layout = {0};
-    there = there && make_layout(&layout, fresh, d->spare_share, &points) &&
-            tl_detect_make_lanes(d, &layout) && tl_table_resize(&d->spare_points.table, points);
+    there = there && make_layout(&layout, fresh, d->spare_share, &points) && tl_detect_make_lanes(d, &layout) &&
+            tl_table_resize(&d->spare_points.table, points);
     if (there)
         move_points(d, list);
     free(list);
@@ -657,8 +640,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
     const tl_simd_group *group = take_group(d, points, row, &lane);
     if (!group)
         return false;
-    copy_points(&d->points, c->point_start[row], &d->points, group->start + lane,
-                c->point_count[row]);
+    copy_points(&d->points, c->point_start[row], &d->points, group->start + lane, c->point_count[row]);
     clear_points(d, row);
     c->point_start[row] = group->start + lane;
     c->point_capacity[row] = (uint16_t)group->slots;

@@ -11,8 +11,7 @@
 
 /* Adds a contact of a kind to a pair, without points, wanting room for some, whose faces hold for a path length of
  * `valid`; false when out of memory. */
-bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag,
-                       size_t want_points);
+bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, tl_tag tag, size_t want_points);
 /* Lays contacts and points out anew: without those with TL_PENDING_DIE, sorted by joint law and blocks,
  * each with the room it wants at least. */
 tl_status tl_contacts_repack(tl_model *m);
@@ -20,8 +19,7 @@ tl_status tl_contacts_repack(tl_model *m);
 void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
 /* The points of a contact begin under a law. Walls that are apart and do not pull on each other are not bonded by
  * it. */
-void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind,
-                          const tl_point_lanes *lanes);
+void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind, const tl_point_lanes *lanes);
 /* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its span;
  * false when there is none: lay all out anew. */
 bool tl_contact_place(tl_detect *d, uint32_t contact);
@@ -42,8 +40,7 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
     const tl_contacts *c = &m->detect->contacts;
     if (!on_b)
         return tl_v3_neg(c->moment[contact]);
-    tl_vec3 apart =
-        tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
+    tl_vec3 apart = tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
     return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
 }
 
@@ -52,14 +49,14 @@ void tl_point_clear(tl_points_table *p, size_t point);
 /* Gives a point another area: its stresses stay. */
 void tl_point_resize(tl_points_table *points, size_t point, double area);
 /* Point k of a contact, at an arm, as one that new points take over from. */
-tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *contacts,
-                             uint32_t contact, size_t k, tl_vec3 arm);
+tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *contacts, uint32_t contact, size_t k,
+                             tl_vec3 arm);
 /* The law's states of a point, at their initial values. */
 void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
 /* The same taken from an old point of some area. With `stays` the point keeps its place: what a change of polygon
  * resets goes on. Energies go by their sum: tl_shear_keep. */
-void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
-                         double old_area, bool stays);
+void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old, double old_area,
+                         bool stays);
 /* Turns a vector in the plane of a normal into that of another. */
 static inline tl_vec3 tl_into_plane(tl_vec3 v, tl_vec3 from, tl_vec3 to)
 {

@@ -55,8 +55,8 @@ double tl_cut_contact_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b
     tl_face_pair faces;
     if (!cut || !cut->pressed)
         return 0;
-    bool corners = tl_cut_contact_faces(m, block_a, block_b, &faces) &&
-                   tl_pair_at_corners(m, block_a, faces.a, block_b, faces.b);
+    bool corners =
+        tl_cut_contact_faces(m, block_a, block_b, &faces) && tl_pair_at_corners(m, block_a, faces.a, block_b, faces.b);
     return tl_flush_limits_of(corners).field_tilt;
 }
 
@@ -82,8 +82,7 @@ static double beyond(const tl_model *m, uint32_t block, uint32_t face, tl_vec3 p
 
 /* Faces parallel to those of the whole are parts of them, but for one that a cut has made inside the whole.
  * That one lies behind the whole's face, so it overlaps the other block's by less. */
-bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b,
-                          tl_face_pair *faces)
+bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, tl_face_pair *faces)
 {
     const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
     if (!cut)
@@ -100,8 +99,7 @@ bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b,
     return fabs(overlap - cut->overlap) < TL_STILL * size;
 }
 
-double tl_cut_contact_shift(const tl_model *m, uint32_t block_a, uint32_t block_b,
-                            tl_face_pair *faces)
+double tl_cut_contact_shift(const tl_model *m, uint32_t block_a, uint32_t block_b, tl_face_pair *faces)
 {
     const tl_cut_contact *cut = tl_cut_contact_of(m, block_a, block_b);
     if (cut && cut->shift != 0 && tl_cut_contact_faces(m, block_a, block_b, faces))
@@ -115,8 +113,8 @@ static bool is_on(const tl_model *m, uint32_t c, const tl_facet *facet)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_face_pair faces;
-    return tl_cut_contact_faces(m, contacts->a[c], contacts->b[c], &faces) &&
-           faces.a == facet->ia && faces.b == facet->ib;
+    return tl_cut_contact_faces(m, contacts->a[c], contacts->b[c], &faces) && faces.a == facet->ia &&
+           faces.b == facet->ib;
 }
 
 tl_cut_contact *tl_cut_contact_on(const tl_model *m, uint32_t c, const tl_facet *facet)
@@ -153,8 +151,7 @@ static void turn_round(const tl_kind *kind, tl_old_point *point)
             point->state[w] = -point->state[w];
 }
 
-tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, uint32_t c,
-                                  size_t k)
+tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, uint32_t c, size_t k)
 {
     const tl_detect *d = m->detect;
     tl_old_point out = d->cut_points[cut->first + k];
@@ -232,8 +229,7 @@ static void add_traction(const tl_detect *d, uint32_t c, double keep, tl_vec3 fo
 static void add_lacking(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
 {
     const tl_shear *whole = &cut->whole, *taken = &cut->taken;
-    tl_vec3 lacks =
-        tl_v3_sub(tl_v3_scale(tl_cut_contact_share(cut, taken->area), whole->force), taken->force);
+    tl_vec3 lacks = tl_v3_sub(tl_v3_scale(tl_cut_contact_share(cut, taken->area), whole->force), taken->force);
     tl_vec3 n = m->detect->contacts.facet[c].last;
     lacks = tl_v3_scale(tl_cut_contact_sign(m, cut, c), lacks);
     lacks = tl_v3_madd(lacks, -tl_v3_dot(lacks, n), n);

@@ -22,16 +22,13 @@ tl_cut_contact *tl_cut_contact_of(const tl_model *m, uint32_t block_a, uint32_t 
 double tl_cut_contact_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b);
 /* The faces of two blocks that are parts of the faces of the whole, as a field contact had moved them out.
  * false: they have none. */
-bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b,
-                          tl_face_pair *faces);
+bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, tl_face_pair *faces);
 /* How far these are moved out, m; 0: there are none. */
-double tl_cut_contact_shift(const tl_model *m, uint32_t block_a, uint32_t block_b,
-                            tl_face_pair *faces);
+double tl_cut_contact_shift(const tl_model *m, uint32_t block_a, uint32_t block_b, tl_face_pair *faces);
 /* What a contact takes over from that is on these faces: not from a patch, if they are no parts of its faces. */
 tl_cut_contact *tl_cut_contact_on(const tl_model *m, uint32_t contact, const tl_facet *facet);
 /* Point k of it as an old point of a contact. */
-tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, uint32_t contact,
-                                  size_t k);
+tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, uint32_t contact, size_t k);
 /* Whether the contact's law is of the kind that has kept the states of the points. */
 bool tl_cut_contact_is_of_law(const tl_model *m, const tl_cut_contact *cut, uint32_t contact);
 /* 1 when the contact's first block is a part of `a`; else -1, and its shear is the other way round. */

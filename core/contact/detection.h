@@ -27,14 +27,14 @@ typedef struct tl_detect {
     double reach;          /* half the skin of the broad phase */
     double *odometer_0;    /* of each body, when the broad phase was made */
     size_t odometer_capacity;
-    tl_known_block *
-        known_blocks; /* of each row of blocks, at the last update: finds the block again after rows have changed */
+    tl_known_block
+        *known_blocks; /* of each row of blocks, at the last update: finds the block again after rows have changed */
     size_t known_block_count, known_block_capacity;
-    float *
-        path; /* of each block: path length since the broad phase was made, rounded up: no vertex has moved farther */
+    float
+        *path; /* of each block: path length since the broad phase was made, rounded up: no vertex has moved farther */
     size_t path_capacity;
     float longest_path; /* of all blocks */
-    uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
+    uint8_t *touched;   /* bodies whose contacts came, went or grew since the time step was chosen */
     size_t touched_capacity;
     bool any_touched;
     uint64_t structure, laws, rules, constraints; /* of the model, when last seen */
@@ -48,8 +48,8 @@ typedef struct tl_detect {
     size_t press_count, press_capacity;
     uint32_t press_free; /* the first free row; valid when there are rows */
     tl_points_table points, spare_points;
-    double parted;   /* shear energy of contacts that ended since the ledger was closed, J: heat */
-    int64_t laid_at; /* steps made when contacts were laid out */
+    double parted;      /* shear energy of contacts that ended since the ledger was closed, J: heat */
+    int64_t laid_at;    /* steps made when contacts were laid out */
     size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
     tl_layout layout;
     uint32_t *by_block, *by_block_start; /* contacts of each block: index.c */

@@ -42,20 +42,17 @@ typedef struct tl_facing_place {
 
 /* Of the points of a patch: between where A and where B have carried them, nearer to B by the share `ride`. They were
  * laid when B was at `turn` and `shift` in A's frame. `d` is the way from A's centroid to B's. */
-TL_INLINE tl_facing_place tl_facing_ride(const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d,
-                                         const tl_mat3 *turn, tl_vec3 shift, double ride)
+TL_INLINE tl_facing_place tl_facing_ride(const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d, const tl_mat3 *turn,
+                                         tl_vec3 shift, double ride)
 {
     tl_mat3 g = tl_m3_product_t(rb, turn);
     tl_vec3 carried = tl_m3_mul(&g, shift);
     tl_facing_place out;
-    out.to = (tl_mat3){{{ra->m[0][0] + ride * (g.m[0][0] - ra->m[0][0]),
-                         ra->m[0][1] + ride * (g.m[0][1] - ra->m[0][1]),
+    out.to = (tl_mat3){{{ra->m[0][0] + ride * (g.m[0][0] - ra->m[0][0]), ra->m[0][1] + ride * (g.m[0][1] - ra->m[0][1]),
                          ra->m[0][2] + ride * (g.m[0][2] - ra->m[0][2])},
-                        {ra->m[1][0] + ride * (g.m[1][0] - ra->m[1][0]),
-                         ra->m[1][1] + ride * (g.m[1][1] - ra->m[1][1]),
+                        {ra->m[1][0] + ride * (g.m[1][0] - ra->m[1][0]), ra->m[1][1] + ride * (g.m[1][1] - ra->m[1][1]),
                          ra->m[1][2] + ride * (g.m[1][2] - ra->m[1][2])},
-                        {ra->m[2][0] + ride * (g.m[2][0] - ra->m[2][0]),
-                         ra->m[2][1] + ride * (g.m[2][1] - ra->m[2][1]),
+                        {ra->m[2][0] + ride * (g.m[2][0] - ra->m[2][0]), ra->m[2][1] + ride * (g.m[2][1] - ra->m[2][1]),
                          ra->m[2][2] + ride * (g.m[2][2] - ra->m[2][2])}}};
     out.at = tl_v3_scale(ride, tl_v3_sub(d, carried));
     return out;

@@ -53,8 +53,7 @@ static tl_vec3 centre_of(const tl_model *m, uint32_t c, const tl_point_lanes *la
     tl_vec3 sum = {0, 0, 0};
     double area = tl_contact_area_of_points(d, c);
     for (size_t k = 0; k < d->contacts.point_count[c]; k++)
-        sum = tl_v3_madd(sum, d->points.area[tl_point_row(&d->contacts, c, k)],
-                         tl_columns_get(lanes->arm, k));
+        sum = tl_v3_madd(sum, d->points.area[tl_point_row(&d->contacts, c, k)], tl_columns_get(lanes->arm, k));
     return tl_v3_scale(area > 0 ? 1 / area : 0, sum);
 }
 
@@ -108,9 +107,9 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
         double by = opening[k] - row->opening[k], closure = row->press.overlap + by;
         row->opening[k] = opening[k];
         row->opened += by;
-        row->paid += by != 0 && closure > 0 ? m->detect->points.f_n[tl_point_row(contacts, c, k)] *
-                                                  by * (1 - 0.5 * by / closure)
-                                            : 0;
+        row->paid += by != 0 && closure > 0
+                         ? m->detect->points.f_n[tl_point_row(contacts, c, k)] * by * (1 - 0.5 * by / closure)
+                         : 0;
         row->shift += by;
     }
     return row->opened;
@@ -189,15 +188,13 @@ static void give_states(tl_model *m, uint32_t c, tl_old_point old, bool known)
 }
 
 /* By how much leaning faces are farther out at a point of A's frame than those of the blocks, together, m. */
-static double lean_at(const tl_model *m, uint32_t c, const tl_plane lean[2],
-                      const tl_plane faces[2], tl_vec3 p)
+static double lean_at(const tl_model *m, uint32_t c, const tl_plane lean[2], const tl_plane faces[2], tl_vec3 p)
 {
     tl_pair_view b = tl_contact_view(m, c);
     const tl_vec3 at[] = {p, tl_m3_tmul(&b.turn, tl_v3_sub(p, b.shift))};
     double out = 0;
     for (int k = 0; k < 2; k++)
-        out += lean[k].offset - faces[k].offset -
-               tl_v3_dot(tl_v3_sub(lean[k].normal, faces[k].normal), at[k]);
+        out += lean[k].offset - faces[k].offset - tl_v3_dot(tl_v3_sub(lean[k].normal, faces[k].normal), at[k]);
     return out;
 }
 
@@ -255,8 +252,7 @@ static void spread_over_patch(tl_model *m, uint32_t c, tl_shear *s, const tl_poi
         size_t i = tl_point_row(contacts, c, k);
         tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), s->centre);
         tl_vec3 f = tl_v3_scale(p->area[i] / s->area, s->force);
-        f = tl_v3_madd(f, s->polar > 0 ? p->area[i] * torsion / s->polar : 0,
-                       tl_v3_cross(s->normal, arm));
+        f = tl_v3_madd(f, s->polar > 0 ? p->area[i] * torsion / s->polar : 0, tl_v3_cross(s->normal, arm));
         tl_columns_put(p->f_s, i, f);
     }
 }
@@ -301,8 +297,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_c
     tl_old_point nearest = {.area = 0};
     for (size_t k = 0; k < cut->count; k++) {
         tl_old_point point = tl_cut_contact_point(m, cut, c, k);
-        if (k == 0 ||
-            tl_v3_norm2(tl_v3_sub(point.arm, at)) < tl_v3_norm2(tl_v3_sub(nearest.arm, at)))
+        if (k == 0 || tl_v3_norm2(tl_v3_sub(point.arm, at)) < tl_v3_norm2(tl_v3_sub(nearest.arm, at)))
             nearest = point;
     }
     tl_shear whole = cut->whole;
@@ -346,8 +341,7 @@ static void lift_faces(tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 /* Puts the manifold's points in the place of the contact's, for which there is room, and notes the press of a field.
  * Force and moment of the shear are kept as far as the energy of its springs goes. The moment is lost where the old
  * points are `reframed`, in frames that are no more. */
-static void hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
-                      const tl_point_lanes *lanes)
+static void hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
@@ -439,8 +433,7 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_vec3 force = tl_columns_get(p->f_s, first);
     tl_vec3 twist = tl_v3_scale(r0, tl_columns_get(p->f_s, torsion));
     double f2 = tl_v3_norm2(force), t2 = tl_v3_norm2(twist);
-    double lost =
-        tl_shear_energy(f2, old) + tl_shear_energy(t2, polar) + row->spare[0] + row->spare[1];
+    double lost = tl_shear_energy(f2, old) + tl_shear_energy(t2, polar) + row->spare[0] + row->spare[1];
     /* what slips is at its limit everywhere, under a pressure that is not uniform */
     if (p->flags[first] & TL_POINT_SLIPPING)
         row->spare[0] = fmin(row->spare[0], tl_shear_energy(f2, old));
@@ -448,11 +441,11 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
         row->spare[1] = fmin(row->spare[1], tl_shear_energy(t2, polar));
     double stays = resized(f2, old, area, &row->spare[0]);
     double stays_turned = resized(t2, polar, now, &row->spare[1]);
-    lost -= tl_shear_energy(stays * stays * f2, area) +
-            tl_shear_energy(stays_turned * stays_turned * t2, now) + row->spare[0] + row->spare[1];
-    double work = stays < 1 || stays_turned < 1 ? work_on(m, c, g, tl_v3_scale(1 - stays, force),
-                                                          tl_v3_scale(1 - stays_turned, twist))
-                                                : 0;
+    lost -= tl_shear_energy(stays * stays * f2, area) + tl_shear_energy(stays_turned * stays_turned * t2, now) +
+            row->spare[0] + row->spare[1];
+    double work = stays < 1 || stays_turned < 1
+                      ? work_on(m, c, g, tl_v3_scale(1 - stays, force), tl_v3_scale(1 - stays_turned, twist))
+                      : 0;
     double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
     contacts->released[c] += ks > 0 ? 0.5 * (lost / ks - work) : 0;
     tl_columns_put(p->f_s, first, tl_v3_scale(stays, force));
@@ -505,8 +498,7 @@ double tl_contact_sheared(const tl_model *m, uint32_t c)
     if (!tl_facet_is_field(&contacts->facet[c]) || contacts->law[c] == TL_NO_ROW)
         return 0;
     double ks = m->joint_laws[contacts->law[c]].ks;
-    return tl_shear_kept(m, c) +
-           (ks > 0 && contacts->point_count[c] ? 0.5 * field_springs(m, c).energy / ks : 0);
+    return tl_shear_kept(m, c) + (ks > 0 && contacts->point_count[c] ? 0.5 * field_springs(m, c).energy / ks : 0);
 }
 
 /* ---------------------------------------------------------------- taking ----------------- */
@@ -539,8 +531,7 @@ static void refit_patch(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_shear_resized(m, c, &before, &now);
 }
 
-static bool take_patch(tl_model *m, uint32_t c, bool stays, tl_narrow_scratch *scratch,
-                       const tl_point_lanes *lanes)
+static bool take_patch(tl_model *m, uint32_t c, bool stays, tl_narrow_scratch *scratch, const tl_point_lanes *lanes)
 {
     const tl_manifold *g = &scratch->manifold;
     bool done = true;
@@ -556,8 +547,7 @@ static bool take_patch(tl_model *m, uint32_t c, bool stays, tl_narrow_scratch *s
     return done;
 }
 
-static bool take_field(tl_model *m, uint32_t c, bool stays, tl_narrow_scratch *scratch,
-                       const tl_point_lanes *lanes)
+static bool take_field(tl_model *m, uint32_t c, bool stays, tl_narrow_scratch *scratch, const tl_point_lanes *lanes)
 {
     const tl_manifold *g = &scratch->manifold;
     if (!stays)

@@ -49,8 +49,7 @@ static void put_entries(tl_detect *d, size_t blocks, const entry *list, size_t c
     for (size_t k = count; k-- > 0;) {
         const entry *e = &list[k];
         size_t at = start[e->block + 1] < end ? start[e->block + 1] : end;
-        while (at > start[e->block] &&
-               tl_contact_partner(&d->contacts, by_block[at - 1], e->block) > e->partner)
+        while (at > start[e->block] && tl_contact_partner(&d->contacts, by_block[at - 1], e->block) > e->partner)
             at--;
         memmove(&by_block[at + k + 1], &by_block[at], (end - at) * sizeof *by_block);
         by_block[at + k] = e->contact;
@@ -96,8 +95,7 @@ bool tl_contacts_index(tl_model *m)
     const tl_contacts *c = &d->contacts;
     size_t blocks = m->blocks.table.rows;
     if (!tl_fit(&d->by_block_start, &d->by_start_capacity, blocks + 2, sizeof *d->by_block_start) ||
-        !tl_fit(&d->by_block, &d->by_block_capacity, 2 * c->table.capacity + 1,
-                sizeof *d->by_block))
+        !tl_fit(&d->by_block, &d->by_block_capacity, 2 * c->table.capacity + 1, sizeof *d->by_block))
         return false;
     if (d->indexed == TL_NO_ROW)
         list_all(d, blocks);
@@ -149,6 +147,5 @@ uint32_t tl_contact_row(tl_detect *d, tl_id id)
         else
             high = middle;
     }
-    return low < d->contacts.table.rows && d->by_id[2 * low] == id ? d->by_id[2 * low + 1]
-                                                                   : TL_NO_ROW;
+    return low < d->contacts.table.rows && d->by_id[2 * low] == id ? d->by_id[2 * low + 1] : TL_NO_ROW;
 }

@@ -34,8 +34,8 @@ typedef struct tl_kind_place {
     /* Where it presses in A's frame, and how far it is pressed in under a law of that stiffness. */
     double (*pressed)(const tl_model *m, uint32_t contact, double law, tl_vec3 *at);
     /* Adds the polygons on which it acts, in A's frame. false: out of memory. */
-    bool (*show)(tl_model *m, uint32_t contact, const tl_pair_view *view,
-                 tl_narrow_scratch *scratch, tl_surface *surface);
+    bool (*show)(tl_model *m, uint32_t contact, const tl_pair_view *view, tl_narrow_scratch *scratch,
+                 tl_surface *surface);
     /* Whether points and faces that were read from a file are such a kind's; faces of its blocks. */
     bool (*sound)(const tl_detect *d, uint32_t contact, uint32_t faces_a, uint32_t faces_b);
     /* What it keeps beside its rows in the tables, if it has points or not. */
@@ -52,12 +52,11 @@ typedef struct tl_kind_force {
     bool cells;
     /* Places, overlaps and motions of points, the first point's into lane `lane`. Turns shear forces, and the states of
      * which `tangents` has a bit, with the normals. */
-    void (*follow)(tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes,
-                   size_t lane, uint32_t tangents, struct tl_arms *arms);
+    void (*follow)(tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane, uint32_t tangents,
+                   struct tl_arms *arms);
     /* Force, moment and energies of each contact, of what the law has made of its points. */
-    void (*sum)(const tl_model *m, const struct tl_law *law, const tl_simd_group *group,
-                const tl_point_lanes *lanes, size_t lane, const struct tl_arms *arms,
-                struct tl_group_sums *out);
+    void (*sum)(const tl_model *m, const struct tl_law *law, const tl_simd_group *group, const tl_point_lanes *lanes,
+                size_t lane, const struct tl_arms *arms, struct tl_group_sums *out);
 } tl_kind_force;
 
 /* A contact that is found, and one whose points are to be others. */
@@ -68,8 +67,7 @@ typedef struct tl_kind_make {
     bool (*find)(const tl_model *m, const tl_pair_view *view, tl_narrow_scratch *scratch);
     /* Puts the manifold in the place of a contact, which has the room for it. `stays`: its points are the same, and
      * have not run along the faces. false: out of memory. */
-    bool (*take)(tl_model *m, uint32_t contact, bool stays, tl_narrow_scratch *scratch,
-                 const tl_point_lanes *lanes);
+    bool (*take)(tl_model *m, uint32_t contact, bool stays, tl_narrow_scratch *scratch, const tl_point_lanes *lanes);
 } tl_kind_make;
 
 typedef struct tl_contact_kind {
@@ -86,9 +84,8 @@ static inline const tl_contact_kind *tl_contact_kind_of(const tl_detect *d, uint
 
 /* Facet and points of the contact of two blocks that have been placed, into the thread's manifold: tl_manifold_find,
  * unless a kind of contact claims them. false: out of memory. */
-static inline bool tl_kind_find(const tl_model *m, uint32_t block_a, uint32_t block_b,
-                                const tl_pair_view *view, const tl_region *region,
-                                const tl_touch_rule *rule, const tl_manifold_before *before,
+static inline bool tl_kind_find(const tl_model *m, uint32_t block_a, uint32_t block_b, const tl_pair_view *view,
+                                const tl_region *region, const tl_touch_rule *rule, const tl_manifold_before *before,
                                 tl_narrow_scratch *scratch)
 {
     for (uint32_t k = 0; k < m->detect->kind_count; k++) {

@@ -13,8 +13,7 @@
 
 static tl_facing patch_facing(const tl_facet *f, const tl_body_frames *at)
 {
-    return tl_facing_patch(tl_m3_mul(at->ra, f->na), tl_m3_mul(at->rb, f->nb), at->d, f->offset,
-                           f->ride);
+    return tl_facing_patch(tl_m3_mul(at->ra, f->na), tl_m3_mul(at->rb, f->nb), at->d, f->offset, f->ride);
 }
 
 static tl_facing_place patch_place(const tl_facet *f, const tl_body_frames *at)
@@ -53,8 +52,8 @@ static double patch_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *
     return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
 }
 
-static bool patch_show(tl_model *m, uint32_t c, const tl_pair_view *view,
-                       tl_narrow_scratch *scratch, tl_surface *surface)
+static bool patch_show(tl_model *m, uint32_t c, const tl_pair_view *view, tl_narrow_scratch *scratch,
+                       tl_surface *surface)
 {
     (void)scratch;
     const tl_facet *f = &m->detect->contacts.facet[c];
@@ -122,8 +121,8 @@ static double field_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *
     return press->overlap;
 }
 
-static bool field_show(tl_model *m, uint32_t c, const tl_pair_view *view,
-                       tl_narrow_scratch *scratch, tl_surface *surface)
+static bool field_show(tl_model *m, uint32_t c, const tl_pair_view *view, tl_narrow_scratch *scratch,
+                       tl_surface *surface)
 {
     tl_region region;
     tl_press_query query = {.view = view, .region = &region};
@@ -133,8 +132,7 @@ static bool field_show(tl_model *m, uint32_t c, const tl_pair_view *view,
         query.shift = row->shift;
         query.shifted = row->shifted;
         query.lean = row->leans ? row->lean : NULL;
-        reach = tl_lean_reach(row->shift, query.lean, view->a->plane[row->shifted.a].normal,
-                              view->size);
+        reach = tl_lean_reach(row->shift, query.lean, view->a->plane[row->shifted.a].normal, view->size);
     }
     return tl_region_find(view, reach, scratch, &region) && tl_surface_add_field(&query, surface);
 }

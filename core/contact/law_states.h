@@ -9,8 +9,7 @@
 /* State descriptor k of a kind. */
 static inline const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
 {
-    return (const tl_state *)(const void *)((const char *)kind->states +
-                                            (size_t)k * kind->state_stride);
+    return (const tl_state *)(const void *)((const char *)kind->states + (size_t)k * kind->state_stride);
 }
 
 /* A state of a kind: its descriptor, and its columns, three of a vector and one of a scalar. */

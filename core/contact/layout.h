@@ -21,13 +21,12 @@ typedef struct tl_cell {
     tl_vec3 pressed, apart;              /* m^4 */
     double pressed_volume, apart_volume; /* area times the means, m^3 */
     double pressed_second, apart_second; /* m^4 */
-    double pressed_more, apart_more; /* what the volumes are beyond those that the law got, m^3 */
+    double pressed_more, apart_more;     /* what the volumes are beyond those that the law got, m^3 */
     /* of the point as the law found it: overlap of the faces, m, its lift from there, less its reference, m, and the
      * share of tension that was held */
     double closure, lift, hold;
-    double level; /* at which its lift lies over the cell, beside the slope of the patch, m */
-    tl_vec3
-        centre; /* area times its centroid from that of the patch, m^3; found where lifts differ */
+    double level;        /* at which its lift lies over the cell, beside the slope of the patch, m */
+    tl_vec3 centre;      /* area times its centroid from that of the patch, m^3; found where lifts differ */
     double pressed_area; /* m^2, and the same of it */
     tl_vec3 pressed_centre;
     /* of a law that is not linear, of what is closed: int u^3 dA, m^5; int u^4 dA, m^6; int u^2 x dA, m^5; int u^3 x
@@ -79,8 +78,7 @@ typedef struct tl_span {
     bool held;    /* between bodies that are held still */
     uint8_t kind; /* of contact: detection.h */
     uint8_t rest; /* of one that is held: TL_SPAN_* */
-    bool
-        changed; /* of one that is held: some point or sum was not what it had been, in the last step */
+    bool changed; /* of one that is held: some point or sum was not what it had been, in the last step */
     size_t begin, end, limit;
     size_t group_begin, group_end, group_limit;
 } tl_span;

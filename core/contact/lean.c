@@ -218,8 +218,8 @@ static bool find_bearing(const tl_cell_patch *of, const axes *plane, const linea
         const moments part = pressed_moments(of, plane, u);
         if (!solve(&part, sum, u))
             return false;
-        double size = sqrt(part.one), change = fabs(u->one - last.one) +
-                                               size * (fabs(u->x - last.x) + fabs(u->y - last.y));
+        double size = sqrt(part.one),
+               change = fabs(u->one - last.one) + size * (fabs(u->x - last.x) + fabs(u->y - last.y));
         if (change <= FOUND * (fabs(u->one) + size * (fabs(u->x) + fabs(u->y))))
             return true;
     }
@@ -227,8 +227,7 @@ static bool find_bearing(const tl_cell_patch *of, const axes *plane, const linea
 }
 
 /* Puts the cells of a patch into the lanes, with overlaps of its faces and lifts from these. false: it has none. */
-static bool find_cells(const tl_model *m, uint32_t c, const tl_point_lanes *lanes,
-                       tl_cell_patch *of)
+static bool find_cells(const tl_model *m, uint32_t c, const tl_point_lanes *lanes, tl_cell_patch *of)
 {
     const tl_detect *d = m->detect;
     const double *reference = d->points.reference;
@@ -270,8 +269,7 @@ static linear sum_pressed(const tl_cell_patch *of, const axes *plane, linear *ov
 
 /* The plane of lifts with which a wall bears what the patch does: the same force, at the same place. false:
  * nothing presses, or the patch has no cells. */
-static bool fit_bearing(const tl_model *m, uint32_t c, const tl_point_lanes *lanes,
-                        const axes *plane, fit *out)
+static bool fit_bearing(const tl_model *m, uint32_t c, const tl_point_lanes *lanes, const axes *plane, fit *out)
 {
     tl_cell_patch of;
     linear overlap, u;
@@ -299,8 +297,7 @@ tl_lean tl_contact_lean(const tl_model *m, uint32_t c, const tl_point_lanes *lan
     plane.t2 = tl_v3_cross(f->last, plane.t1);
     sums s = sums_of(m, c, false, &plane);
     fit by = {.mean = 0};
-    out.leans =
-        differ(&s) && (fit_bearing(m, c, lanes, &plane, &by) || fit_points(m, c, &plane, &by));
+    out.leans = differ(&s) && (fit_bearing(m, c, lanes, &plane, &by) || fit_points(m, c, &plane, &by));
     out.mean = out.leans ? by.mean : tl_contact_mean_lift(m, c);
     if (!out.leans)
         return out;

@@ -36,8 +36,7 @@ typedef struct tl_shear {
     double area, energy;    /* of the springs, times 2 ks */
     tl_vec3 force, moment;  /* about where the arms begin */
     tl_vec3 centre, normal; /* of the area */
-    double torsion,
-        polar; /* about the normal through the centre: moment of the force, second moment of the area */
+    double torsion, polar;  /* about the normal through the centre: moment of the force, second moment of the area */
 } tl_shear;
 
 /* What a patch would have carried in the next step, in six numbers, N. Three tell what it would have pressed

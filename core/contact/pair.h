@@ -17,8 +17,7 @@ typedef struct tl_pair {
     /* row of the contact; or, without one, TL_PAIR_APART and the faces */
     uint32_t contact;
     union {
-        float
-            wake; /* without a contact: sum of the blocks' path lengths at which to test again, or TL_PAIR_FOUND */
+        float wake; /* without a contact: sum of the blocks' path lengths at which to test again, or TL_PAIR_FOUND */
         uint16_t want_points; /* of a contact that must grow: room */
         uint32_t faces;       /* of one that has no points */
     };

@@ -28,10 +28,8 @@ static inline double tl_contact_size(const tl_model *m, uint32_t contact)
     return fmin(m->blocks.size[contacts->a[contact]], m->blocks.size[contacts->b[contact]]);
 }
 /* Whether a patch of two faces, of blocks a and b, has its points at its corners. */
-bool tl_pair_at_corners(const tl_model *m, uint32_t a, uint32_t face_a, uint32_t b,
-                        uint32_t face_b);
+bool tl_pair_at_corners(const tl_model *m, uint32_t a, uint32_t face_a, uint32_t b, uint32_t face_b);
 /* How a pair of a joint is to touch, whose faces may carry a force across a gap of `over`, m. */
-tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
-                               double over);
+tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, double over);
 
 #endif

@@ -13,9 +13,8 @@ static tl_body_frames body_frames_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    return (tl_body_frames){.ra = &m->bodies.pose[a].r,
-                            .rb = &m->bodies.pose[b].r,
-                            .d = tl_body_apart(&m->bodies, a, b)};
+    return (tl_body_frames){
+        .ra = &m->bodies.pose[a].r, .rb = &m->bodies.pose[b].r, .d = tl_body_apart(&m->bodies, a, b)};
 }
 
 static tl_facing_place place_of(const tl_model *m, uint32_t c, const tl_body_frames *frames)
@@ -57,8 +56,7 @@ tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t c)
     const tl_pose *a = &m->bodies.pose[body_a], *b = &m->bodies.pose[body_b];
     tl_vec3 apart = tl_body_apart(&m->bodies, body_a, body_b);
     tl_vec3 way = tl_v3_sub(tl_v3_sub(b->v_moved, tl_v3_cross(b->w_moved, apart)), a->v_moved);
-    return (tl_contact_motion){tl_v3_scale(m->dt, way),
-                               tl_v3_scale(m->dt, tl_v3_sub(b->w_moved, a->w_moved))};
+    return (tl_contact_motion){tl_v3_scale(m->dt, way), tl_v3_scale(m->dt, tl_v3_sub(b->w_moved, a->w_moved))};
 }
 
 tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k)
@@ -86,14 +84,13 @@ void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place
 
 /* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that
  * of its points. */
-static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *to,
-                         const tl_facing_place *place, double gap)
+static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *to, const tl_facing_place *place,
+                         double gap)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     const tl_facet *f = &contacts->facet[contact];
-    size_t count = contacts->point_count[contact],
-           last = tl_point_row(contacts, contact, count - 1);
+    size_t count = contacts->point_count[contact], last = tl_point_row(contacts, contact, count - 1);
     if (!tl_facet_is_patch(f) || count < 2 || p->key[last] != tl_centroid_key(f->ia, f->ib))
         return gap;
     double centre = tl_v3_dot(to->plane, placed(place, tl_columns_get(p->p, last)));
@@ -105,8 +102,7 @@ static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *t
     return gap;
 }
 
-void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,
-                        double *gap)
+void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point, double *gap)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;

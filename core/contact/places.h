@@ -19,7 +19,6 @@ typedef struct tl_contact_motion {
 
 tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t contact);
 /* Area-weighted normal and point (coordinates relative to the origin), and the smallest gap. */
-void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,
-                        double *gap);
+void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point, double *gap);
 
 #endif

@@ -22,8 +22,7 @@ tl_shear tl_shear_of(const tl_model *m, uint32_t c)
     tl_shear sum = {0};
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        tl_shear_add(&sum, p->area[i], tl_m3_mul(turn, tl_columns_get(p->p, i)),
-                     tl_columns_get(p->f_s, i));
+        tl_shear_add(&sum, p->area[i], tl_m3_mul(turn, tl_columns_get(p->p, i)), tl_columns_get(p->f_s, i));
     }
     return sum;
 }
@@ -37,8 +36,7 @@ void tl_shear_add_field(const tl_model *m, uint32_t c, tl_shear *sum)
         sum->energy += tl_shear_energy(tl_v3_norm2(tl_columns_get(p->f_s, i)), p->area[i]);
     }
     tl_vec3 turning = tl_columns_get(p->f_s, tl_point_row(contacts, c, TL_FIELD_TORSION));
-    sum->torsion =
-        tl_press_row_of(m, c)->press.radius * tl_v3_dot(contacts->facet[c].last, turning);
+    sum->torsion = tl_press_row_of(m, c)->press.radius * tl_v3_dot(contacts->facet[c].last, turning);
 }
 
 void tl_shear_release(tl_model *m, uint32_t c, const tl_shear *before, const tl_shear *now)

@@ -51,9 +51,8 @@ static bool pair_is_sound(const tl_model *m, const tl_detect *d, uint32_t index)
     const tl_pair *p = &d->pairs[index];
     if (p->a >= p->b || p->b >= d->known_block_count)
         return false;
-    if (!tl_pair_is_apart(p) &&
-        (p->contact >= d->contacts.table.rows || d->contacts.pair[p->contact] != index ||
-         d->contacts.a[p->contact] != p->a || d->contacts.b[p->contact] != p->b))
+    if (!tl_pair_is_apart(p) && (p->contact >= d->contacts.table.rows || d->contacts.pair[p->contact] != index ||
+                                 d->contacts.a[p->contact] != p->a || d->contacts.b[p->contact] != p->b))
         return false;
     return pair_faces_are_sound(m, d, p);
 }
@@ -69,11 +68,10 @@ static bool seen_are_sound(const tl_model *m, const tl_detect *d)
         return false;
     for (size_t row = 0; row < d->known_block_count; row++) {
         const tl_known_block *s = &d->known_blocks[row];
-        if (s->body >= d->odometer_capacity || s->body >= d->touched_capacity ||
-            s->body >= d->idle_capacity || s->id <= (row ? d->known_blocks[row - 1].id : 0))
+        if (s->body >= d->odometer_capacity || s->body >= d->touched_capacity || s->body >= d->idle_capacity ||
+            s->id <= (row ? d->known_blocks[row - 1].id : 0))
             return false;
-        if (d->structure == m->structure &&
-            (s->id != m->blocks.id[row] || s->body != m->blocks.body[row]))
+        if (d->structure == m->structure && (s->id != m->blocks.id[row] || s->body != m->blocks.body[row]))
             return false;
     }
     return true;
@@ -118,9 +116,8 @@ static bool planes_are_sound(const uint8_t *plane, uint32_t count, uint32_t face
 
 static bool mesh_is_sound(const tl_field_mesh *mesh, uint32_t faces)
 {
-    if (mesh->corners > TL_MESH_CORNERS || mesh->polygons > TL_MESH_POLYGONS ||
-        !apex_is_sound(&mesh->apex[0], faces) || !apex_is_sound(&mesh->apex[1], faces) ||
-        (faces < TL_FIELD_KNOWN && mesh->bounding >> faces != 0) ||
+    if (mesh->corners > TL_MESH_CORNERS || mesh->polygons > TL_MESH_POLYGONS || !apex_is_sound(&mesh->apex[0], faces) ||
+        !apex_is_sound(&mesh->apex[1], faces) || (faces < TL_FIELD_KNOWN && mesh->bounding >> faces != 0) ||
         !planes_are_sound(mesh->own[0], 2u * mesh->polygons, faces))
         return false;
     for (int k = 0; k < 4; k++)
@@ -140,8 +137,7 @@ static bool mesh_is_sound(const tl_field_mesh *mesh, uint32_t faces)
     return true;
 }
 
-static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press_row *row,
-                           uint32_t a, uint32_t b)
+static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press_row *row, uint32_t a, uint32_t b)
 {
     if (!tl_is_flag(&row->press.powers) || !tl_is_flag(&row->flush) || !tl_is_flag(&row->listed) ||
         !tl_is_flag(&row->by_slope) || !tl_is_flag(&row->leans) ||
@@ -170,14 +166,12 @@ static bool presses_are_sound(const tl_model *m, const tl_detect *d, unsigned ch
         uint32_t row = d->contacts.press[c];
         if (row == TL_NO_ROW)
             continue;
-        sound = row < count && !used[row] &&
-                press_is_sound(m, d, &d->press[row], d->contacts.a[c], d->contacts.b[c]);
+        sound = row < count && !used[row] && press_is_sound(m, d, &d->press[row], d->contacts.a[c], d->contacts.b[c]);
         if (sound)
             used[row] = 1;
         rows++;
     }
-    for (uint32_t row = count ? d->press_free : TL_NO_ROW; sound && row != TL_NO_ROW;
-         row = d->press[row].next_free) {
+    for (uint32_t row = count ? d->press_free : TL_NO_ROW; sound && row != TL_NO_ROW; row = d->press[row].next_free) {
         sound = row < count && !used[row];
         if (!sound)
             break;
@@ -197,22 +191,19 @@ static bool facet_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
         return false;
     if (c->point_count[row] == 0)
         return f->ia < TL_POLY_MAX_FACES && f->ib < TL_POLY_MAX_FACES;
-    return tl_contact_kind_of(d, row)->place->sound(d, row, faces_of(m, d, c->a[row]),
-                                                    faces_of(m, d, c->b[row]));
+    return tl_contact_kind_of(d, row)->place->sound(d, row, faces_of(m, d, c->a[row]), faces_of(m, d, c->b[row]));
 }
 
 static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
 {
     const tl_contacts *c = &d->contacts;
     return c->id[row] != 0 && c->id[row] <= d->next_contact && c->a[row] < c->b[row] &&
-           c->b[row] < d->known_block_count && c->pair[row] < d->pair_count &&
-           d->pairs[c->pair[row]].contact == row &&
-           (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) &&
-           c->tag[row].joint <= m->joint_count && c->kind[row] < d->kind_count &&
-           c->held[row] <= 1 && c->holds_over_gap[row] <= 1 && c->handed_over[row] <= 1 &&
-           c->new_points[row] <= TL_POINTS_OTHERS && c->pending[row] <= TL_PENDING_GROW_PATCH &&
-           c->deep[row] <= TL_DEEP_SUNK && c->point_count[row] <= c->point_capacity[row] &&
-           facet_is_sound(m, d, row);
+           c->b[row] < d->known_block_count && c->pair[row] < d->pair_count && d->pairs[c->pair[row]].contact == row &&
+           (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) && c->tag[row].joint <= m->joint_count &&
+           c->kind[row] < d->kind_count && c->held[row] <= 1 && c->holds_over_gap[row] <= 1 &&
+           c->handed_over[row] <= 1 && c->new_points[row] <= TL_POINTS_OTHERS &&
+           c->pending[row] <= TL_PENDING_GROW_PATCH && c->deep[row] <= TL_DEEP_SUNK &&
+           c->point_count[row] <= c->point_capacity[row] && facet_is_sound(m, d, row);
 }
 
 /* What contacts of blocks that were cut have left. */
@@ -220,10 +211,9 @@ static bool cut_contacts_are_sound(const tl_model *m, const tl_detect *d)
 {
     for (size_t i = 0; i < d->cut_count; i++) {
         const tl_cut_contact *e = &d->cut_contacts[i];
-        if (e->first > d->cut_point_count || e->count > d->cut_point_count - e->first ||
-            e->field > 1 || e->holds_over_gap > 1 || e->pressed > 1 || e->reframed > 1 ||
-            (e->field && e->count != 1) || e->count > UINT16_MAX ||
-            (e->law != TL_NO_ROW && e->law >= m->joint_law_count))
+        if (e->first > d->cut_point_count || e->count > d->cut_point_count - e->first || e->field > 1 ||
+            e->holds_over_gap > 1 || e->pressed > 1 || e->reframed > 1 || (e->field && e->count != 1) ||
+            e->count > UINT16_MAX || (e->law != TL_NO_ROW && e->law >= m->joint_law_count))
             return false;
     }
     return true;
@@ -232,17 +222,15 @@ static bool cut_contacts_are_sound(const tl_model *m, const tl_detect *d)
 /* ---------------------------------------------------------------- layout ----------------- */
 
 /* The lanes of a SIMD group: those that are taken belong to contacts of its span that know so. */
-static bool group_is_sound(const tl_detect *d, const tl_span *span, const tl_simd_group *group,
-                           size_t *taken)
+static bool group_is_sound(const tl_detect *d, const tl_span *span, const tl_simd_group *group, size_t *taken)
 {
     const tl_contacts *c = &d->contacts;
     for (uint32_t l = 0; l < TL_LANES; l++) {
         uint32_t row = group->contact[l];
         if (row == TL_NO_ROW)
             continue;
-        if (row >= c->table.rows || c->point_start[row] != group->start + l ||
-            c->point_capacity[row] != group->slots || c->law[row] != span->law ||
-            c->held[row] != span->held || c->kind[row] != span->kind)
+        if (row >= c->table.rows || c->point_start[row] != group->start + l || c->point_capacity[row] != group->slots ||
+            c->law[row] != span->law || c->held[row] != span->held || c->kind[row] != span->kind)
             return false;
         ++*taken;
     }
@@ -250,24 +238,22 @@ static bool group_is_sound(const tl_detect *d, const tl_span *span, const tl_sim
 }
 
 /* A span's SIMD groups lie one after the other in its rows, which begin behind those of the span before. */
-static bool span_is_sound(const tl_model *m, const tl_detect *d, const tl_span *span,
-                          const tl_span *before, size_t *taken)
+static bool span_is_sound(const tl_model *m, const tl_detect *d, const tl_span *span, const tl_span *before,
+                          size_t *taken)
 {
     if (!tl_is_flag(&span->held) || span->kind >= d->kind_count || !tl_is_flag(&span->changed) ||
         span->rest > TL_SPAN_RESTS || (span->law != TL_NO_ROW && span->law >= m->joint_law_count))
         return false;
-    if (span->begin < (before ? before->limit : 0) || span->begin % TL_LANES ||
-        span->end < span->begin || span->limit < span->end || span->limit > d->points.table.rows ||
-        span->limit % TL_LANES || span->group_begin < (before ? before->group_limit : 0) ||
-        span->group_end < span->group_begin || span->group_limit < span->group_end ||
-        span->group_limit > d->layout.group_capacity)
+    if (span->begin < (before ? before->limit : 0) || span->begin % TL_LANES || span->end < span->begin ||
+        span->limit < span->end || span->limit > d->points.table.rows || span->limit % TL_LANES ||
+        span->group_begin < (before ? before->group_limit : 0) || span->group_end < span->group_begin ||
+        span->group_limit < span->group_end || span->group_limit > d->layout.group_capacity)
         return false;
     size_t at = span->begin;
     for (size_t r = span->group_begin; r < span->group_end; r++) {
         const tl_simd_group *group = &d->layout.groups[r];
         size_t rows = (size_t)group->slots * TL_LANES;
-        if (group->start != at || group->slots == 0 || rows > span->end - at ||
-            !group_is_sound(d, span, group, taken))
+        if (group->start != at || group->slots == 0 || rows > span->end - at || !group_is_sound(d, span, group, taken))
             return false;
         at += rows;
     }

@@ -33,8 +33,7 @@ tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b, double
 
 /* The difference of two unit quaternions is 2 sin of a quarter of the angle between them. A quaternion and its negative
  * are the same rotation. */
-double tl_spot_moved(const tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b,
-                     double radius)
+double tl_spot_moved(const tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b, double radius)
 {
     tl_relative now = relative(m, block_a, block_b);
     tl_vec3 centroid = {then->centroid[0], then->centroid[1], then->centroid[2]};
@@ -42,6 +41,5 @@ double tl_spot_moved(const tl_model *m, const tl_spot *then, uint32_t block_a, u
     double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
     double w = q.w - sign * p.w, x = q.x - sign * p.x, y = q.y - sign * p.y, z = q.z - sign * p.z;
     double angle = 2 * (sqrt(w * w + x * x + y * y + z * z) + ROUNDED);
-    return tl_v3_norm(tl_v3_sub(now.centroid, centroid)) + ROUNDED * tl_v3_norm(centroid) +
-           angle * radius;
+    return tl_v3_norm(tl_v3_sub(now.centroid, centroid)) + ROUNDED * tl_v3_norm(centroid) + angle * radius;
 }

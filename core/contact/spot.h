@@ -17,7 +17,6 @@ struct tl_model;
 tl_spot tl_spot_of(const struct tl_model *m, uint32_t block_a, uint32_t block_b, double remaining);
 /* How far points have moved since then that lie within `radius` of the centroid of B's body, at the most: what the
  * rounding of the spot may hide is counted. */
-double tl_spot_moved(const struct tl_model *m, const tl_spot *then, uint32_t block_a,
-                     uint32_t block_b, double radius);
+double tl_spot_moved(const struct tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b, double radius);
 
 #endif

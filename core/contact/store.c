@@ -97,8 +97,7 @@ tl_detect *tl_detect_make(unsigned threads, const tl_contact_kind *const *kinds,
     }
     for (unsigned i = 0; i < threads; i++)
         init_lanes(&d->lanes[i]);
-    d->narrow[0].deep =
-        true; /* contacts that are copied or read into it may be marked: overlap.c */
+    d->narrow[0].deep = true; /* contacts that are copied or read into it may be marked: overlap.c */
     tl_contacts_unlist(d);
     return d;
 }
@@ -144,8 +143,7 @@ static bool hold_initial(tl_points_table *p)
 {
     if (p->initial)
         return true;
-    const tl_column columns[] = {TL_COLUMN_NEW(p, reference, TL_COLUMN_STEP),
-                                 TL_COLUMN_NEW(p, f_n0, TL_COLUMN_STEP)};
+    const tl_column columns[] = {TL_COLUMN_NEW(p, reference, TL_COLUMN_STEP), TL_COLUMN_NEW(p, f_n0, TL_COLUMN_STEP)};
     p->initial = tl_table_widen(&p->table, columns, 2);
     return p->initial;
 }

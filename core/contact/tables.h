@@ -77,14 +77,7 @@ typedef struct tl_press_row {
 /* GROW: it waits for room for its points; GROW_PATCH: for those of the same two faces, so that it then comes out as it
  * would have with room; REFRAME: besides, its old points are in frames that are no more. MOVE: its points belong in
  * another span. */
-enum {
-    TL_PENDING_NONE,
-    TL_PENDING_GROW,
-    TL_PENDING_REFRAME,
-    TL_PENDING_DIE,
-    TL_PENDING_MOVE,
-    TL_PENDING_GROW_PATCH
-};
+enum { TL_PENDING_NONE, TL_PENDING_GROW, TL_PENDING_REFRAME, TL_PENDING_DIE, TL_PENDING_MOVE, TL_PENDING_GROW_PATCH };
 
 /* What happened to the points of a contact in this step: nothing; placed anew; others are there than before. */
 enum { TL_POINTS_STAY, TL_POINTS_PLACED, TL_POINTS_OTHERS };
@@ -92,8 +85,7 @@ enum { TL_POINTS_STAY, TL_POINTS_PLACED, TL_POINTS_OTHERS };
 /* Whether a contact waits for room for its points. */
 static inline bool tl_pending_waits(uint8_t pending)
 {
-    return pending == TL_PENDING_GROW || pending == TL_PENDING_GROW_PATCH ||
-           pending == TL_PENDING_REFRAME;
+    return pending == TL_PENDING_GROW || pending == TL_PENDING_GROW_PATCH || pending == TL_PENDING_REFRAME;
 }
 
 /* Which of the two limits an overlap is beyond: that of a contact that is born so, or that of one that has sunk in. */

@@ -83,8 +83,7 @@ static void read_points(const tl_model *m, uint32_t c, const tl_point_lanes *lan
         out[k] = tl_point_as_old(&m->detect->points, contacts, c, k, tl_columns_get(lanes->arm, k));
 }
 
-void tl_contact_place_points(tl_model *m, uint32_t c, const tl_manifold *g,
-                             const tl_point_lanes *lanes)
+void tl_contact_place_points(tl_model *m, uint32_t c, const tl_manifold *g, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -304,8 +303,8 @@ typedef struct relay {
 } relay;
 
 /* The cells of points about their centre, and the spread of their areas. */
-static ring ring_of(const old_point *point, size_t count, tl_vec3 centre, const tl_vec3 axis[2],
-                    double place, ring_cell *cell, spread *out)
+static ring ring_of(const old_point *point, size_t count, tl_vec3 centre, const tl_vec3 axis[2], double place,
+                    ring_cell *cell, spread *out)
 {
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(point[k].arm, centre);
@@ -339,8 +338,7 @@ static void take_means(const relay *r, ring_cell *cell)
         double by = from->weight / sum;
         for (int column = 0; column < TL_OLD_COLUMNS && by > 0; column++)
             if (r->rule[column] != LEFT)
-                now->column[column] +=
-                    by * (r->old[from->point].column[column] - heaviest->column[column]);
+                now->column[column] += by * (r->old[from->point].column[column] - heaviest->column[column]);
         cell->mean.x += by * from->x;
         cell->mean.y += by * from->y;
         apart += r->old[from->point].flags & TL_POINT_APART ? by : 0;
@@ -376,8 +374,7 @@ static tl_point2 slopes_of(const relay *r, int side, double x, double y)
 {
     const spread *i = &r->spread[side];
     double det = i->xx * i->yy - i->xy * i->xy;
-    return r->planes ? (tl_point2){(x * i->yy - y * i->xy) / det, (y * i->xx - x * i->xy) / det}
-                     : (tl_point2){0, 0};
+    return r->planes ? (tl_point2){(x * i->yy - y * i->xy) / det, (y * i->xx - x * i->xy) / det} : (tl_point2){0, 0};
 }
 
 /* What is added to the means of a column: the plane of the old points less its means, and what restores sum and
@@ -406,8 +403,7 @@ static addition addition_of(const relay *r, int column)
     y *= follow;
     for (size_t k = 0; k < r->count; k++) {
         const ring_cell *cell = &r->after.cell[k];
-        double rest = r->now[cell->point].column[column] - mean - out.old.x * cell->mean.x -
-                      out.old.y * cell->mean.y;
+        double rest = r->now[cell->point].column[column] - mean - out.old.x * cell->mean.x - out.old.y * cell->mean.y;
         off += cell->area * rest;
         x -= cell->area * rest * cell->x;
         y -= cell->area * rest * cell->y;
@@ -419,8 +415,8 @@ static addition addition_of(const relay *r, int column)
 
 static double added(const addition *more, const ring_cell *cell)
 {
-    return more->level + more->now.x * cell->x + more->now.y * cell->y -
-           more->old.x * cell->mean.x - more->old.y * cell->mean.y;
+    return more->level + more->now.x * cell->x + more->now.y * cell->y - more->old.x * cell->mean.x -
+           more->old.y * cell->mean.y;
 }
 
 /* Adds to the means of `width` columns, those of a vector or one, a part of their additions. It is the same at
@@ -451,8 +447,7 @@ static void restore_planes(const relay *r, int column, int width)
     }
     for (size_t k = 0; k < r->count; k++)
         for (int w = 0; w < width; w++)
-            r->now[r->after.cell[k].point].column[column + w] +=
-                part * added(&more[w], &r->after.cell[k]);
+            r->now[r->after.cell[k].point].column[column + w] += part * added(&more[w], &r->after.cell[k]);
 }
 
 /* Sets the rules of the states of a law. Makes those that go with the area stresses, or with `back` what they
@@ -497,10 +492,8 @@ static void relay_fields(tl_model *m, uint32_t c, relay *r, const tl_narrow_scra
     double place = place_of(m, c);
     tl_vec3 axis[2], centre = r->match == NEAREST ? t[0].centre : t[1].centre;
     find_axes(r, place, axis);
-    r->before =
-        ring_of(r->old, r->old_count, t[0].centre, axis, place, scratch->cell, &r->spread[0]);
-    r->after =
-        ring_of(r->now, r->count, centre, axis, place, scratch->cell + r->old_count, &r->spread[1]);
+    r->before = ring_of(r->old, r->old_count, t[0].centre, axis, place, scratch->cell, &r->spread[0]);
+    r->after = ring_of(r->now, r->count, centre, axis, place, scratch->cell + r->old_count, &r->spread[1]);
     ring_align(&r->before, &r->after);
     r->planes = r->planes && spans(&r->spread[0], t[0].area, place) &&
                 (r->match == NEAREST || spans(&r->spread[1], t[1].area, place));
@@ -522,8 +515,8 @@ static void relay_fields(tl_model *m, uint32_t c, relay *r, const tl_narrow_scra
 /* ---------------------------------------------------------------- shear ------------------- */
 
 /* Points' shear stresses become `keep` times what they are and a uniform traction and a twist. */
-static void add_traction(old_point *point, size_t count, const tl_shear *now, double keep,
-                         tl_vec3 traction, double twist)
+static void add_traction(old_point *point, size_t count, const tl_shear *now, double keep, tl_vec3 traction,
+                         double twist)
 {
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(point[k].arm, now->centre);
@@ -545,8 +538,7 @@ static void limit_energy(old_point *point, size_t count, tl_shear *now, double m
     double least = tl_v3_norm2(now->force) / now->area + twist * twist * now->polar;
     double rest = now->energy - least, keep = sqrt(fmax(0, most - least) / fmax(rest, DBL_MIN));
     keep = fmin(keep, 1);
-    add_traction(point, count, now, keep, tl_v3_scale((1 - keep) / now->area, now->force),
-                 (1 - keep) * twist);
+    add_traction(point, count, now, keep, tl_v3_scale((1 - keep) / now->area, now->force), (1 - keep) * twist);
     sum_shear(point, count, now);
     if (now->energy > most) { /* a torsion too large for it */
         add_traction(point, count, now, sqrt(most / now->energy), tl_v3(0, 0, 0), 0);
@@ -557,8 +549,7 @@ static void limit_energy(old_point *point, size_t count, tl_shear *now, double m
 /* Brings shear force and torsion to what they are to be. Area that comes brings none, area that goes takes its
  * own. A twist goes with the second moment of area as traction does with the area. The springs get no more
  * energy than there was. */
-static void correct_shear(old_point *point, size_t count, tl_shear *now, const tl_shear *before,
-                          bool turns)
+static void correct_shear(old_point *point, size_t count, tl_shear *now, const tl_shear *before, bool turns)
 {
     sum_shear(point, count, now);
     double area = fmin(1, now->area / before->area);
@@ -588,8 +579,8 @@ static void refer_to_openings(tl_model *m, uint32_t c)
 }
 
 /* Finds the old points, of the contact or of the whole that it is a part of, and behind them the new ones. */
-static void gather(tl_model *m, uint32_t c, const tl_cut_contact *cut,
-                   const tl_narrow_scratch *scratch, const tl_point_lanes *lanes, relay *r)
+static void gather(tl_model *m, uint32_t c, const tl_cut_contact *cut, const tl_narrow_scratch *scratch,
+                   const tl_point_lanes *lanes, relay *r)
 {
     r->old = scratch->old;
     r->now = scratch->old + r->old_count;
@@ -603,8 +594,7 @@ static void gather(tl_model *m, uint32_t c, const tl_cut_contact *cut,
 
 /* A new contact of parts of a block takes its share of what the whole carried: the stresses at its own points.
  * Where its area is more than that of the whole, it carries no more than there was. */
-static void take_share(tl_model *m, uint32_t c, const tl_cut_contact *cut,
-                       const tl_narrow_scratch *scratch, relay *r)
+static void take_share(tl_model *m, uint32_t c, const tl_cut_contact *cut, const tl_narrow_scratch *scratch, relay *r)
 {
     const tl_shear *t = r->total;
     r->planes = !cut->reframed;
@@ -624,8 +614,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_cut_contact *cut,
 }
 
 /* The points take over from those that the contact had. `kept`: the energy that shear held beyond its springs. */
-static void take_over(tl_model *m, uint32_t c, const tl_narrow_scratch *scratch, relay *r,
-                      tl_shear t[2], double kept)
+static void take_over(tl_model *m, uint32_t c, const tl_narrow_scratch *scratch, relay *r, tl_shear t[2], double kept)
 {
     sum_shear(r->old, r->old_count, &t[0]);
     if (r->count > 0 && t[0].area > 0) {
@@ -644,8 +633,7 @@ static void take_over(tl_model *m, uint32_t c, const tl_narrow_scratch *scratch,
     tl_shear_release(m, c, &t[0], &t[1]);
 }
 
-bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
-                         const tl_point_lanes *lanes)
+bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_point_lanes *lanes)
 {
     const tl_manifold *g = &scratch->manifold;
     size_t old_count = m->detect->contacts.point_count[c];

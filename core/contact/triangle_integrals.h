@@ -68,8 +68,7 @@ TL_INLINE integrals whole_of(const node n[3], const double u[3], double f, bool 
 }
 
 /* Of the part of it at corner k where `sign` u > 0, when that is so at no other corner; u taken times the sign. */
-TL_INLINE integrals corner_of(const node n[3], const double u[3], double f, size_t k, double sign,
-                              bool curved)
+TL_INLINE integrals corner_of(const node n[3], const double u[3], double f, size_t k, double sign, bool curved)
 {
     size_t i = (k + 1) % 3, j = (k + 2) % 3;
     double top = sign * u[k], s = u[k] / (u[k] - u[i]), t = u[k] / (u[k] - u[j]);
@@ -95,8 +94,7 @@ TL_INLINE integrals corner_of(const node n[3], const double u[3], double f, size
 }
 
 /* Adds x with a sign for the odd powers of u and one for the even ones. */
-TL_INLINE void add_integrals(integrals *to, const integrals *x, double odd, double even,
-                             bool curved)
+TL_INLINE void add_integrals(integrals *to, const integrals *x, double odd, double even, bool curved)
 {
     to->one += even * x->one;
     to->a += even * x->a;

@@ -11,8 +11,7 @@ typedef struct cell_parts {
     integrals pressed, apart;
 } cell_parts;
 
-TL_INLINE void add_triangle(const node n[3], const double u[3], double f, bool curved,
-                            cell_parts *to)
+TL_INLINE void add_triangle(const node n[3], const double u[3], double f, bool curved, cell_parts *to)
 {
     const integrals all = whole_of(n, u, f, curved);
     const size_t above = (size_t)((u[0] > 0) + (u[1] > 0) + (u[2] > 0));

@@ -5,12 +5,10 @@
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "detect.", d, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "detect.", d, member)
-#define LIST(keep, member, count, capacity, bytes)                                                 \
-    TL_WALK_LIST(walk, TL_KEEP_##keep, "detect.", d, member, &d->count, &d->capacity,              \
-                 offsetof(tl_memory, bytes))
-#define TABLE(keep, member, bytes)                                                                 \
-    tl_walk_table(walk, TL_KEEP_##keep, "detect." #member, &d->member.table,                       \
-                  offsetof(tl_memory, bytes))
+#define LIST(keep, member, count, capacity, bytes)                                                                     \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "detect.", d, member, &d->count, &d->capacity, offsetof(tl_memory, bytes))
+#define TABLE(keep, member, bytes)                                                                                     \
+    tl_walk_table(walk, TL_KEEP_##keep, "detect." #member, &d->member.table, offsetof(tl_memory, bytes))
 
 /* Pairs, and how far blocks have moved since they were listed. */
 static void walk_pairs(tl_detect *d, const tl_walk *walk)

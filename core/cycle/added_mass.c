@@ -29,8 +29,7 @@ static double factor_of(const tl_model *m, uint32_t body, double limit)
 {
     double rate = m->cycle->rate[body];
     /* something must hold it that a longer step would make unstable */
-    bool more =
-        rate > limit && m->bodies.fixed[body] != TL_FIX_ALL && tl_body_stiffness(m, body) > 0;
+    bool more = rate > limit && m->bodies.fixed[body] != TL_FIX_ALL && tl_body_stiffness(m, body) > 0;
     return more ? rate / limit : 1;
 }
 
@@ -75,14 +74,12 @@ static double longest(const tl_model *m, double limit, double dt)
 
 static tl_status refuse(tl_model *m, const struct tl_added *need, double limit)
 {
-    return tl_fail(
-        &m->error, TL_E_STATE,
-        "mass_scaling: dt = %g s would add %.3g of the mass of the bodies that can move, "
-        "more than most = %g; block %u would get %.3g times its inertia; give dt = %.3g "
-        "or less, a larger most, or join slivers with %s",
-        m->added_dt, need->share, m->added_most, m->bodies.id[need->worst], need->factor,
-        ROUNDED_DOWN * longest(m, limit, m->added_dt),
-        tl_words(m, "model:filter", "tl_model_filter()"));
+    return tl_fail(&m->error, TL_E_STATE,
+                   "mass_scaling: dt = %g s would add %.3g of the mass of the bodies that can move, "
+                   "more than most = %g; block %u would get %.3g times its inertia; give dt = %.3g "
+                   "or less, a larger most, or join slivers with %s",
+                   m->added_dt, need->share, m->added_most, m->bodies.id[need->worst], need->factor,
+                   ROUNDED_DOWN * longest(m, limit, m->added_dt), tl_words(m, "model:filter", "tl_model_filter()"));
 }
 
 static void tell(tl_model *m, const struct tl_added *need)
@@ -91,11 +88,10 @@ static void tell(tl_model *m, const struct tl_added *need)
     if (need->bodies == 0 || !(need->share > TELL_AGAIN * c->told_share))
         return;
     c->told_share = need->share;
-    tl_model_say(
-        m,
-        "mass_scaling: dt = %g s adds %.3g of the mass of the bodies that can move, to %zu "
-        "of them; block %u has %.3g times its inertia",
-        m->added_dt, need->share, need->bodies, m->bodies.id[need->worst], need->factor);
+    tl_model_say(m,
+                 "mass_scaling: dt = %g s adds %.3g of the mass of the bodies that can move, to %zu "
+                 "of them; block %u has %.3g times its inertia",
+                 m->added_dt, need->share, need->bodies, m->bodies.id[need->worst], need->factor);
 }
 
 tl_status tl_added_find(tl_model *m, double limit)
@@ -124,23 +120,20 @@ tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *given)
     bool adds = !isnan(scaling.dt);
     double most = isnan(scaling.most) ? TL_MOST_ADDED : scaling.most;
     if (!adds && !isnan(scaling.most))
-        return tl_fail(
-            &m->error, TL_E_ARGUMENT,
-            "mass_scaling: most = %g is the most that a given step may add: give dt, the "
-            "step, s, with it",
-            scaling.most);
-    if (adds && !scaling.on)
-        return tl_fail(
-            &m->error, TL_E_ARGUMENT,
-            "mass_scaling: dt = %g s asks for scaling and on = false for none: leave one "
-            "of them out",
-            scaling.dt);
-    if (adds && !(scaling.dt >= TL_STEP_LEAST && scaling.dt <= 1 / TL_STEP_LEAST))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "mass_scaling: dt = %g s is outside [%g, %g]",
-                       scaling.dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
-    if (adds && !(most >= 0 && isfinite(most)))
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "mass_scaling: most = %g must be a finite number that is not negative",
+                       "mass_scaling: most = %g is the most that a given step may add: give dt, the "
+                       "step, s, with it",
+                       scaling.most);
+    if (adds && !scaling.on)
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "mass_scaling: dt = %g s asks for scaling and on = false for none: leave one "
+                       "of them out",
+                       scaling.dt);
+    if (adds && !(scaling.dt >= TL_STEP_LEAST && scaling.dt <= 1 / TL_STEP_LEAST))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "mass_scaling: dt = %g s is outside [%g, %g]", scaling.dt,
+                       TL_STEP_LEAST, 1 / TL_STEP_LEAST);
+    if (adds && !(most >= 0 && isfinite(most)))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "mass_scaling: most = %g must be a finite number that is not negative",
                        most);
     m->mass_scaling = scaling.on && !adds;
     m->added_dt = adds ? scaling.dt : NAN;
@@ -157,11 +150,8 @@ tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *given)
 
 tl_mass_added tl_model_mass_added(const tl_model *m)
 {
-    tl_mass_added out = {.on = tl_mass_scaled(m),
-                         .dt = m->added_dt,
-                         .most = m->added_most,
-                         .worst = TL_NO_ID,
-                         .factor = 1};
+    tl_mass_added out = {
+        .on = tl_mass_scaled(m), .dt = m->added_dt, .most = m->added_most, .worst = TL_NO_ID, .factor = 1};
     if (m->cycle && tl_adds_mass(m)) {
         out.share = m->cycle->added.share;
         out.bodies = m->cycle->added.bodies;

@@ -15,8 +15,8 @@
 static tl_status prepare(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    bool enough = tl_grow(&c->group_energy, &c->group_capacity, m->detect->layout.group_capacity,
-                          sizeof *c->group_energy);
+    bool enough =
+        tl_grow(&c->group_energy, &c->group_capacity, m->detect->layout.group_capacity, sizeof *c->group_energy);
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
@@ -72,8 +72,8 @@ static bool may_fail(const tl_model *m)
     bool sure = true;
     for (size_t i = 0; i < m->joint_law_count; i++) {
         const tl_law *law = &m->joint_laws[i];
-        sure = sure && ((const tl_law_ops *)law->kind->ops)->never_fails &&
-               law->kn < TL_UNDO_TAME && law->ks < TL_UNDO_TAME;
+        sure = sure && ((const tl_law_ops *)law->kind->ops)->never_fails && law->kn < TL_UNDO_TAME &&
+               law->ks < TL_UNDO_TAME;
     }
     return !sure;
 }

@@ -130,7 +130,6 @@ tl_status tl_step(tl_model *m)
     m->cycles++;
     tl_remark_closure(m);
     if (!driven) /* the step is whole: bodies went on as they were driven before */
-        return tl_fail(&m->error, TL_E_CANCELLED, "cycle %lld: a drive's function failed",
-                       (long long)m->cycles);
+        return tl_fail(&m->error, TL_E_CANCELLED, "cycle %lld: a drive's function failed", (long long)m->cycles);
     return TL_OK;
 }

@@ -27,9 +27,9 @@ typedef struct tl_sums {
     double contact_force; /* sum over bodies of the sum of |contact forces| */
     double largest;       /* largest |unbalanced force| */
     double local;         /* largest |unbalanced force| over what the body bears: rest.c */
-    double worst_ratio; /* the same of |unbalanced force| and |unbalanced moment| over its radius */
-    uint32_t worst;     /* the body that has it; TL_NO_ROW: none */
-    size_t bodies;      /* that are free */
+    double worst_ratio;   /* the same of |unbalanced force| and |unbalanced moment| over its radius */
+    uint32_t worst;       /* the body that has it; TL_NO_ROW: none */
+    size_t bodies;        /* that are free */
     double weight;
     double kinetic;    /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
     double power;      /* sum of F.v + M.w, F and M unbalanced; made for the same */
@@ -92,15 +92,10 @@ typedef struct tl_body_group {
 } tl_body_group;
 
 /* Energies of a chunk of bodies, summed lane by lane, lanes last. */
-typedef enum tl_work_kind {
-    TL_WORK_GRAVITY,
-    TL_WORK_DAMPING,
-    TL_WORK_EXTERNAL,
-    TL_WORK_COUNT
-} tl_work_kind;
+typedef enum tl_work_kind { TL_WORK_GRAVITY, TL_WORK_DAMPING, TL_WORK_EXTERNAL, TL_WORK_COUNT } tl_work_kind;
 typedef struct tl_work {
     _Alignas(TL_ALIGN) double kinetic[TL_LANES];
-    double first[TL_LANES]; /* by which the scheme's sum is less in the first step */
+    double first[TL_LANES];                      /* by which the scheme's sum is less in the first step */
     double motion0[TL_LANES], motion2[TL_LANES]; /* kinetic before the kick and after it */
     double work_until[TL_WORK_COUNT][TL_LANES];  /* work of this step's forces until now */
     double work_after[TL_WORK_COUNT][TL_LANES];  /* and in the half step that follows */
@@ -164,30 +159,30 @@ struct tl_cycle {
     tl_work_sums *chunk_work;
     size_t chunk_work_capacity;
     tl_ledger ledger;
-    double kinetic_before; /* of the last step, for its rate */
-    double dt;             /* the step in use */
-    double share_before;   /* of the kick's span, in which gravity and loads of the last step act */
-    tl_vec3 gravity;       /* that acts in this step */
+    double kinetic_before;                     /* of the last step, for its rate */
+    double dt;                                 /* the step in use */
+    double share_before;                       /* of the kick's span, in which gravity and loads of the last step act */
+    tl_vec3 gravity;                           /* that acts in this step */
     struct tl_step_bounds step_bounds;         /* timestep.c */
     bool all_held;                             /* no body can move */
     struct tl_stiffness_rates stiffness_rates; /* timestep.c */
-    uint64_t sliver_structure; /* 1 + that of the model when slivers were looked for: sliver.c */
-    tl_id sliver;              /* the one that was told of last */
-    size_t contacts;           /* the most there have been, for the remark on the step */
-    double mass_scale;         /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
-    struct tl_added added;     /* in the last step: added_mass.c */
-    tl_id added_block;         /* that of added.worst then, or TL_NO_ID */
-    double told_share;         /* of mass added, for the remark on it */
-    bool adds;                 /* some body has been given inertia */
-    struct tl_undo *undo;      /* undo.c */
-    struct tl_split_work *split; /* of this step: split.c */
-    double split_stored;         /* energy that new faces have been given in this step, J */
-    bool long_step;              /* the given one is far above what is stable */
-    tl_speed_bounds speeds;      /* of all bodies in the last step: limits.c */
-    tl_speed_bounds given;       /* of those whose motion is given, in this one */
-    double thinnest;             /* least thickness that a block can have, m: limits.c */
-    uint64_t thinnest_version;   /* 1 + structure of the model then; 0: not known */
-    tl_step_motion *motion;      /* of each body in a step of fast blocks: limits.c */
+    uint64_t sliver_structure;                 /* 1 + that of the model when slivers were looked for: sliver.c */
+    tl_id sliver;                              /* the one that was told of last */
+    size_t contacts;                           /* the most there have been, for the remark on the step */
+    double mass_scale;                         /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
+    struct tl_added added;                     /* in the last step: added_mass.c */
+    tl_id added_block;                         /* that of added.worst then, or TL_NO_ID */
+    double told_share;                         /* of mass added, for the remark on it */
+    bool adds;                                 /* some body has been given inertia */
+    struct tl_undo *undo;                      /* undo.c */
+    struct tl_split_work *split;               /* of this step: split.c */
+    double split_stored;                       /* energy that new faces have been given in this step, J */
+    bool long_step;                            /* the given one is far above what is stable */
+    tl_speed_bounds speeds;                    /* of all bodies in the last step: limits.c */
+    tl_speed_bounds given;                     /* of those whose motion is given, in this one */
+    double thinnest;                           /* least thickness that a block can have, m: limits.c */
+    uint64_t thinnest_version;                 /* 1 + structure of the model then; 0: not known */
+    tl_step_motion *motion;                    /* of each body in a step of fast blocks: limits.c */
     size_t motion_capacity;
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
@@ -242,15 +237,13 @@ static inline double tl_turn_scale(const struct tl_cycle *c, uint32_t body)
 static inline tl_vec3 tl_moments_of(const tl_model *m, uint32_t body)
 {
     const double round = m->bodies.round[body];
-    return m->config.rotation == TL_ROTATION_PAPER ? tl_v3(round, round, round)
-                                                   : m->bodies.moments[body];
+    return m->config.rotation == TL_ROTATION_PAPER ? tl_v3(round, round, round) : m->bodies.moments[body];
 }
 
 /* The components of a vector in which a body is not held. */
 static inline tl_vec3 tl_free_part(tl_vec3 v, unsigned fixed)
 {
-    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y,
-                 fixed & TL_FIX_Z ? 0 : v.z);
+    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y, fixed & TL_FIX_Z ? 0 : v.z);
 }
 
 /* Whether rates count contact points, or only faces. */

@@ -43,8 +43,8 @@ tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args,
     char context[64];
     snprintf(context, sizeof context, "damping '%.40s'", kind->name);
     tl_report report = {.size = sizeof report};
-    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
-                                    from != NULL, params, context, &m->error);
+    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, from != NULL, params,
+                                    context, &m->error);
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");
         status = ops->create(params, &self, &report);
@@ -104,8 +104,7 @@ typedef struct body_columns {
 } body_columns;
 
 /* The vectors of `count` bodies from `first` on as columns; 0 beyond them, up to `lanes`. */
-TL_INLINE void put(double (*restrict columns)[TL_BODY_CHUNK], const tl_vec3 *restrict first,
-                   size_t count, size_t lanes)
+TL_INLINE void put(double (*restrict columns)[TL_BODY_CHUNK], const tl_vec3 *restrict first, size_t count, size_t lanes)
 {
     for (size_t i = 0; i < count; i++) {
         columns[0][i] = first[i].x;
@@ -116,8 +115,7 @@ TL_INLINE void put(double (*restrict columns)[TL_BODY_CHUNK], const tl_vec3 *res
         columns[0][i] = columns[1][i] = columns[2][i] = 0;
 }
 
-TL_VECTORIZED static void fill_columns(body_columns *s, const tl_bodies *b, size_t begin,
-                                       size_t count, size_t lanes)
+TL_VECTORIZED static void fill_columns(body_columns *s, const tl_bodies *b, size_t begin, size_t count, size_t lanes)
 {
     put(s->velocity, b->v + begin, count, lanes);
     put(s->angular_velocity, b->w + begin, count, lanes);
@@ -143,8 +141,7 @@ static void check_numbers(tl_model *m, size_t begin, size_t end, size_t chunk)
         if (isfinite(sum))
             continue;
         char text[120];
-        snprintf(text, sizeof text,
-                 "what it gives block %u is no finite number (a force, a moment or alpha)",
+        snprintf(text, sizeof text, "what it gives block %u is no finite number (a force, a moment or alpha)",
                  m->bodies.id[body]);
         tl_failure_note(&c->failure, chunk, TL_E_NUMERIC, body, text);
         return;
@@ -239,7 +236,6 @@ tl_status tl_damping_apply(tl_model *m, double dt)
     if (status == TL_OK)
         return TL_OK;
     c->failure.error.status = TL_OK;
-    return tl_fail(&m->error, status, "cycle %lld, damping '%s' of plugin '%s': %s",
-                   (long long)m->cycles + 1, m->damping->name, tl_plugin_id(m->damping),
-                   c->failure.error.text);
+    return tl_fail(&m->error, status, "cycle %lld, damping '%s' of plugin '%s': %s", (long long)m->cycles + 1,
+                   m->damping->name, tl_plugin_id(m->damping), c->failure.error.text);
 }

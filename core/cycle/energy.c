@@ -23,13 +23,12 @@
 #include <string.h>
 
 /* What a force and a moment on a body do, each in the half step before and the one after. */
-TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_body_group *g, tl_vec3 force,
-                    tl_vec3 moment)
+TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_body_group *g, tl_vec3 force, tl_vec3 moment)
 {
-    work->work_until[kind][i] += work->until * (tl_v3_dot(force, tl_lanes3_get(&g->moved, i)) +
-                                                tl_v3_dot(moment, tl_lanes3_get(&g->w0, i)));
-    work->work_after[kind][i] += work->after * (tl_v3_dot(force, tl_lanes3_get(&g->v1, i)) +
-                                                tl_v3_dot(moment, tl_lanes3_get(&g->w1, i)));
+    work->work_until[kind][i] +=
+        work->until * (tl_v3_dot(force, tl_lanes3_get(&g->moved, i)) + tl_v3_dot(moment, tl_lanes3_get(&g->w0, i)));
+    work->work_after[kind][i] +=
+        work->after * (tl_v3_dot(force, tl_lanes3_get(&g->v1, i)) + tl_v3_dot(moment, tl_lanes3_get(&g->w1, i)));
 }
 
 /* Kinetic energies. With v- and v+ the mean at the forces' time is v- + s (v+ - v-). s is the share of the step before
@@ -44,8 +43,7 @@ TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_body_group *g, dou
     tl_vec3 v = tl_v3_madd(v0, share, dv), w = tl_v3_madd(w0, share, dw);
     tl_vec3 l = tl_v3_madd(l0, share, dl);
     double dv2 = mass * tl_v3_norm2(dv), dw2 = scale * tl_v3_dot(dw, dl);
-    work->kinetic[i] +=
-        0.5 * (mass * tl_v3_norm2(v) + scale * tl_v3_dot(w, l) - spread * (dv2 + dw2));
+    work->kinetic[i] += 0.5 * (mass * tl_v3_norm2(v) + scale * tl_v3_dot(w, l) - spread * (dv2 + dw2));
     /* The first kick from rest is half of one: what the whole one would have spread is missing from
      * the sum ever after. */
     work->first[i] += 0.5 * (dv2 + dw2);
@@ -83,13 +81,10 @@ TL_INLINE void book_damping(tl_work *work, size_t i, const tl_body_group *g)
     double alpha = 0.5 * g->alpha[i] * g->scale[i], turning = 0.5 * g->alpha[i] * g->turn_scale[i];
     tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
     tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
-    book(work, i, TL_WORK_DAMPING, g,
-         tl_v3_madd(tl_lanes3_get(&g->damping_force, i), -alpha * g->mass[i], slowed),
+    book(work, i, TL_WORK_DAMPING, g, tl_v3_madd(tl_lanes3_get(&g->damping_force, i), -alpha * g->mass[i], slowed),
          tl_lanes3_get(&g->damping_moment, i));
-    work->work_until[TL_WORK_DAMPING][i] -=
-        work->until * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin0, i));
-    work->work_after[TL_WORK_DAMPING][i] -=
-        work->after * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
+    work->work_until[TL_WORK_DAMPING][i] -= work->until * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin0, i));
+    work->work_after[TL_WORK_DAMPING][i] -= work->after * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
 }
 
 /* The work of loads, and of what holds some components of a body's motion at a velocity. */
@@ -108,14 +103,12 @@ static void book_load(tl_work *work, size_t i, const tl_body_group *g, const tl_
     tl_reaction by = tl_reaction_on(m->cycle, body);
     force = tl_v3_add(tl_v3_madd(by.force, b->mass[body], m->cycle->gravity), force);
     moment = tl_v3_add(by.moment, moment);
-    force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0,
-                  fixed & TL_FIX_Z ? -force.z : 0);
-    book(work, i, TL_WORK_EXTERNAL, g, force,
-         fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0));
+    force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0, fixed & TL_FIX_Z ? -force.z : 0);
+    book(work, i, TL_WORK_EXTERNAL, g, force, fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0));
 }
 
-TL_VECTORIZED static void book_lanes(tl_work *restrict work, const tl_body_group *restrict g,
-                                     tl_vec3 gravity, bool damped)
+TL_VECTORIZED static void book_lanes(tl_work *restrict work, const tl_body_group *restrict g, tl_vec3 gravity,
+                                     bool damped)
 {
     double share = work->until / (work->until + work->after);
     for (size_t i = 0; i < TL_LANES; i++) {
@@ -135,14 +128,12 @@ void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work)
         book_load(work, i, g, m);
 }
 
-void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned,
-                         tl_work *work)
+void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned, tl_work *work)
 {
     const tl_bodies *b = &m->bodies;
     /* what moves the body works against the contacts' reaction */
     tl_reaction by = tl_reaction_on(m->cycle, body);
-    work->work_until[TL_WORK_EXTERNAL][0] -=
-        work->until * (tl_v3_dot(by.force, moved) + tl_v3_dot(by.moment, turned));
+    work->work_until[TL_WORK_EXTERNAL][0] -= work->until * (tl_v3_dot(by.force, moved) + tl_v3_dot(by.moment, turned));
     work->work_after[TL_WORK_EXTERNAL][0] -=
         work->after * (tl_v3_dot(by.force, b->v[body]) + tl_v3_dot(by.moment, b->w[body]));
 }
@@ -221,16 +212,15 @@ static void note_terms(tl_ledger *l, const tl_work_sums *now, double stored)
 static void balance(tl_ledger *l, bool first, bool changed)
 {
     tl_energy *e = &l->energy;
-    const double gains[] = {e->kinetic - l->start_kinetic, e->potential,
-                            e->stored - l->start_stored, e->friction, e->damping};
+    const double gains[] = {e->kinetic - l->start_kinetic, e->potential, e->stored - l->start_stored, e->friction,
+                            e->damping};
     double sum = 0, largest = fmax(e->kinetic, l->start_kinetic);
     for (size_t k = 0; k < sizeof gains / sizeof *gains; k++) {
         sum += gains[k];
         largest = fmax(largest, fabs(gains[k]));
     }
     sum -= e->external;
-    if (changed &&
-        !first) { /* what a deleted block's contacts held, or another law of them holds */
+    if (changed && !first) { /* what a deleted block's contacts held, or another law of them holds */
         e->external += sum - l->error;
         l->by_hand += sum - l->error;
         sum = l->error;
@@ -262,8 +252,7 @@ bool tl_energy_pushed(const tl_model *m, tl_overlap_push *by)
 {
     const tl_ledger *l = &m->cycle->ledger;
     const tl_energy *e = &l->energy;
-    *by = (tl_overlap_push){l->overlap_a, l->overlap_b, l->overlaps - e->stored,
-                            fmax(0, e->external - e->potential)};
+    *by = (tl_overlap_push){l->overlap_a, l->overlap_b, l->overlaps - e->stored, fmax(0, e->external - e->potential)};
     return by->gave > by->others;
 }
 
@@ -298,8 +287,7 @@ void tl_energy_close(tl_model *m)
         l->start_stored = own.stored + own.heat;
         l->started = true;
     } else {
-        l->by_hand +=
-            now.motion0 - l->motion; /* the same sum as then, so 0 when nobody touched it */
+        l->by_hand += now.motion0 - l->motion; /* the same sum as then, so 0 when nobody touched it */
     }
     l->motion = now.motion2;
     l->structure = m->structure;

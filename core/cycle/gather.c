@@ -86,10 +86,8 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sum_ratios(m, body, weight, &sums);
         sums.bodies++;
         if (totals) {
-            sums.kinetic += 0.5 * tl_energy_scale(m->cycle, body) *
-                            (b->mass[body] * v2 + tl_spin_energy2(m, body));
-            sums.power +=
-                tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
+            sums.kinetic += 0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * v2 + tl_spin_energy2(m, body));
+            sums.power += tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
         }
         sums.max_speed2 = tl_larger(sums.max_speed2, v2);
     }

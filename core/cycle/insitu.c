@@ -55,8 +55,7 @@ static bool faces_meet(const tl_model *m, uint32_t c)
 
 /* Gives a point the traction of a stress, tension positive, as its initial force. Its closure, and what slip has opened,
  * count from now. n from A to B. */
-static void load_point(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n,
-                       double closure, double opening)
+static void load_point(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n, double closure, double opening)
 {
     tl_vec3 traction = tl_s3_mul(*stress, n);
     double normal = tl_v3_dot(n, traction);
@@ -83,8 +82,8 @@ static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
         if (i % TL_LANES == 0)
             tl_contact_point_openings(m, c, i, opening);
         tl_sym3 stress = stress_at(s, centroid_z + lanes->arm[2][i]);
-        load_point(&m->detect->points, tl_point_row(contacts, c, i), &stress,
-                   tl_columns_get(lanes->normal, i), lanes->closure[i], opening[i % TL_LANES]);
+        load_point(&m->detect->points, tl_point_row(contacts, c, i), &stress, tl_columns_get(lanes->normal, i),
+                   lanes->closure[i], opening[i % TL_LANES]);
     }
 }
 
@@ -113,11 +112,10 @@ static void say_tension(tl_model *m, const tl_insitu *s)
             }
         }
     if (pulled && tl_model_says(m, TL_REMARK_TENSION))
-        tl_model_say(
-            m,
-            "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is "
-            "positive in tension; give compression as negative numbers, as in zz = %g",
-            pulled, pulled == 1 ? "" : "s", a, b, s->stress.zz != 0 ? -fabs(s->stress.zz) : -1e6);
+        tl_model_say(m,
+                     "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is "
+                     "positive in tension; give compression as negative numbers, as in zz = %g",
+                     pulled, pulled == 1 ? "" : "s", a, b, s->stress.zz != 0 ? -fabs(s->stress.zz) : -1e6);
 }
 
 /* Area of a block's face that is covered by contact patches. */
@@ -164,8 +162,7 @@ static double face_traction(const tl_model *m, const tl_insitu *s, uint32_t row,
 }
 
 /* Sets *outer when the stress would act on a bare part of the block's surface. Tractions below `least` are none. */
-static tl_status has_outer_face(tl_model *m, const tl_insitu *s, uint32_t row, double least,
-                                bool *outer)
+static tl_status has_outer_face(tl_model *m, const tl_insitu *s, uint32_t row, double least, bool *outer)
 {
     const tl_poly *shape = m->blocks.shape[row];
     tl_status status = TL_OK;
@@ -213,8 +210,7 @@ static void say_outer(tl_model *m, const outer_blocks *found)
         tl_model_say(m,
                      "insitu: %zu block%s that can move (first: block %u) %s an outer face on "
                      "which the stress does not act; fix the blocks around the region of interest",
-                     found->count, found->count == 1 ? "" : "s", found->first,
-                     found->count == 1 ? "has" : "have");
+                     found->count, found->count == 1 ? "" : "s", found->first, found->count == 1 ? "has" : "have");
 }
 
 static bool is_bearable(tl_sym3 t)

@@ -130,8 +130,7 @@ static void keep_shear(trial *t, double radius)
     if (!(press->area > 0 && press->radius > 0))
         return;
     p->area[tl_point_row(contacts, t->contact, TL_FIELD_SHEAR)] = p->area[torsion] = press->area;
-    tl_columns_put(p->f_s, torsion,
-                   tl_v3_scale(radius / press->radius, tl_columns_get(p->f_s, torsion)));
+    tl_columns_put(p->f_s, torsion, tl_v3_scale(radius / press->radius, tl_columns_get(p->f_s, torsion)));
 }
 
 /* Moves the faces of a field contact so that the law of its joint gives the force of the last step. */
@@ -170,8 +169,7 @@ static void rebase_point(tl_points_table *p, size_t i, double closure, double li
 
 /* From springs to springs: closure and lift, pressed or apart, take `ratio` of what they were. So they are 0 along the
  * same line of a patch that is open in part, and pressures are the same everywhere. */
-static void rebase_spring(tl_points_table *p, size_t i, double closure, double lift, double opening,
-                          double ratio)
+static void rebase_spring(tl_points_table *p, size_t i, double closure, double lift, double opening, double ratio)
 {
     p->reference[i] += closure + opening - ratio * (closure + lift);
     p->f_n0[i] = 0;
@@ -259,8 +257,7 @@ static bool reserve(tl_model *m, const tl_law *law)
     bool rebased = false;
     for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
         rebased = is_patch(m, c) && rebases(m, law, c);
-    return tl_detect_hold_states(m->detect, law->columns) &&
-           (!rebased || tl_detect_hold_initial(m->detect));
+    return tl_detect_hold_states(m->detect, law->columns) && (!rebased || tl_detect_hold_initial(m->detect));
 }
 
 /* Keeps the forces of patches. What their contacts, and those of fields, have stored is not known any more. */
@@ -296,8 +293,7 @@ static void reset(tl_model *m, uint32_t law, const tl_kind *kind)
 static bool is_field(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    return tl_facet_is_field(&contacts->facet[c]) && contacts->point_count[c] > 0 &&
-           contacts->law[c] != TL_NO_ROW;
+    return tl_facet_is_field(&contacts->facet[c]) && contacts->point_count[c] > 0 && contacts->law[c] != TL_NO_ROW;
 }
 
 /* Field contacts that get a law that presses otherwise. */
@@ -352,8 +348,7 @@ static void remark_friction(tl_model *m, const char *joint, const tl_law *law)
 {
     for (uint32_t i = 0; i < law->kind->param_count; i++) {
         tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
-        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 ||
-            strcmp(p.unit, "deg") != 0)
+        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 || strcmp(p.unit, "deg") != 0)
             continue;
         double value;
         memcpy(&value, (const char *)law->params + p.offset, sizeof value);
@@ -361,8 +356,8 @@ static void remark_friction(tl_model *m, const char *joint, const tl_law *law)
             tl_model_say(m,
                          "joint '%s', law '%s': friction = %g deg is nearly none: it is an angle "
                          "in degrees; a coefficient of %g is %.3g deg, and %g rad are %.3g deg",
-                         joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI,
-                         value, value * 180 / TL_PI);
+                         joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI, value,
+                         value * 180 / TL_PI);
     }
 }
 
@@ -403,12 +398,10 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     if (law && !kind)
         return tl_kind_unknown(&m->error, TL_KIND_LAW, law);
     if (!kind)
-        return tl_fail(
-            &m->error, TL_E_STATE,
-            m->speaks_lua
-                ? "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})"
-                : "joint '%s' has no law yet: give tl_joint_law() one for \"%s\"",
-            joint, joint);
+        return tl_fail(&m->error, TL_E_STATE,
+                       m->speaks_lua ? "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})"
+                                     : "joint '%s' has no law yet: give tl_joint_law() one for \"%s\"",
+                       joint, joint);
     tl_law fresh;
     status = tl_law_make_for(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
     if (status != TL_OK)

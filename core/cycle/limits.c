@@ -146,8 +146,7 @@ static tl_step_motion *motions_of(tl_model *m, const step_span *span)
         return NULL;
     for (uint32_t body = 0; body < bodies; body++) {
         velocities at = kicked(m, body, span);
-        c->motion[body] =
-            (tl_step_motion){tl_v3_scale(span->dt, at.v), tl_v3_scale(span->dt, at.w)};
+        c->motion[body] = (tl_step_motion){tl_v3_scale(span->dt, at.v), tl_v3_scale(span->dt, at.w)};
     }
     return c->motion;
 }
@@ -188,13 +187,11 @@ tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
     if (turn > TURN_AIM) {
         const double part = TURN_AIM / turn;
         for (uint32_t i = 0; i < m->bodies.table.rows; i++)
-            motion[i] = (tl_step_motion){tl_v3_scale(part, motion[i].shift),
-                                         tl_v3_scale(part, motion[i].turn)};
+            motion[i] = (tl_step_motion){tl_v3_scale(part, motion[i].shift), tl_v3_scale(part, motion[i].turn)};
         *dt *= part;
         *body = turns;
     }
-    const tl_passing passing =
-        tl_passing_find(m, motion, CLOSING_AIM, thinnest_of(m), m->cycle->swept);
+    const tl_passing passing = tl_passing_find(m, motion, CLOSING_AIM, thinnest_of(m), m->cycle->swept);
     if (passing.part < 1) {
         *dt *= passing.part;
         *body = faster_of(m, motion, passing.a, passing.b);
@@ -209,8 +206,7 @@ static const char *way_out(const tl_model *m, double longest, char *text, size_t
     if (!isnan(m->timestep.dt) || tl_adds_mass(m))
         tl_text_print(text, size, "give a dt of %.2g s or less, or leave dt out", longest);
     else if (m->timestep.fraction > 1)
-        tl_text_print(text, size, "fraction = %g of timestep is not stable; give 1 or less",
-                      m->timestep.fraction);
+        tl_text_print(text, size, "fraction = %g of timestep is not stable; give 1 or less", m->timestep.fraction);
     else
         snprintf(text, size, "is a velocity, a load or gravity out of proportion?");
     return text;
@@ -226,8 +222,7 @@ static tl_status report_turn(tl_model *m, uint32_t body, double turn, double dt)
                    way_out(m, dt * TURN_AIM / turn, text, sizeof text));
 }
 
-static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const tl_passing *p,
-                                double dt)
+static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const tl_passing *p, double dt)
 {
     uint32_t fast = faster_of(m, motion, p->a, p->b);
     uint32_t mover = m->blocks.body[p->a] == fast ? p->a : p->b;
@@ -237,9 +232,8 @@ static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const
                    "cycle %lld: block %u, at %.3g m/s, would be carried %.3g m into or past block "
                    "%u in this step of dt = %.3g s, more than the %.3g m, half of the thinner "
                    "one's thickness, up to which their contact can tell which way they came: %s",
-                   (long long)m->cycles + 1, m->blocks.id[mover],
-                   tl_v3_norm(motion[fast].shift) / dt, p->deeper, m->blocks.id[other], dt,
-                   p->allowed,
+                   (long long)m->cycles + 1, m->blocks.id[mover], tl_v3_norm(motion[fast].shift) / dt, p->deeper,
+                   m->blocks.id[other], dt, p->allowed,
                    way_out(m, dt * p->part * CLOSING_AIM / CLOSING_MOST, text, sizeof text));
 }
 
@@ -253,8 +247,7 @@ static tl_status travel_check(tl_model *m, const step_span *span)
     uint32_t turns = widest_turn(m, motion, &turn);
     if (turn > TURN_MOST)
         return report_turn(m, turns, turn, span->dt);
-    const tl_passing passing =
-        tl_passing_find(m, motion, CLOSING_MOST, thinnest_of(m), m->cycle->swept);
+    const tl_passing passing = tl_passing_find(m, motion, CLOSING_MOST, thinnest_of(m), m->cycle->swept);
     return passing.part < 1 ? report_passing(m, motion, &passing, span->dt) : TL_OK;
 }
 
@@ -271,8 +264,8 @@ static tl_status travel_check(tl_model *m, const step_span *span)
 typedef struct limit_job {
     tl_model *m;
     step_span span;
-    bool held;        /* bodies whose motion is given, or those that forces move */
-    atomic_bool fast; /* some body is */
+    bool held;                              /* bodies whose motion is given, or those that forces move */
+    atomic_bool fast;                       /* some body is */
     tl_speed_bounds bounds[TL_MAX_THREADS]; /* of the bodies that a thread has looked at */
 } limit_job;
 
@@ -284,8 +277,7 @@ static void widen(tl_speed_bounds *bounds, tl_speed_bounds by)
 
 /* Whether a body that can move is so far from the limit that a bound without roots tells: squares of sums are at most
  * twice the sums of squares. Where numbers leave their range it tells nothing. The bounds take these squares. */
-static bool surely_slow(const tl_model *m, uint32_t body, const step_span *k,
-                        tl_speed_bounds *bounds)
+static bool surely_slow(const tl_model *m, uint32_t body, const step_span *k, tl_speed_bounds *bounds)
 {
     const tl_bodies *b = &m->bodies;
     push p = push_of(m, body);
@@ -335,11 +327,9 @@ static void check_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     tl_speed_bounds bounds = job->bounds[thread];
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         bool held = m->bodies.fixed[body] == TL_FIX_ALL;
-        if (!held && !job->held && m->bodies.load &&
-            too_far(m, body, load_travel(m, body, &job->span) / TL_FAST))
+        if (!held && !job->held && m->bodies.load && too_far(m, body, load_travel(m, body, &job->span) / TL_FAST))
             atomic_store(&job->fast, true);
-        if (held != job->held ||
-            (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->span, &bounds)))
+        if (held != job->held || (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->span, &bounds)))
             continue;
         const velocities at = kicked(m, body, &job->span);
         const double r = m->bodies.radius[body], w2 = tl_v3_norm2(at.w);
@@ -410,9 +400,8 @@ static cause find_cause(const tl_model *m, uint32_t body, const step_span *k, do
         const tl_wrench load = tl_load_wrench(b, body);
         double force = length(load.force), moment = length(load.moment);
         bool turns = moment > force * r;
-        note_cause(&most, load_travel(m, body, k),
-                   turns ? "the moment of its load is" : "its load is", turns ? moment : force,
-                   turns ? "N m" : "N");
+        note_cause(&most, load_travel(m, body, k), turns ? "the moment of its load is" : "its load is",
+                   turns ? moment : force, turns ? "N m" : "N");
     }
     note_cause(&most, contact * per_mass, "a contact presses with", contact, "N");
     if (m->damping) {
@@ -438,8 +427,7 @@ static tl_status report(tl_model *m, uint32_t body, const step_span *k)
         tl_text_print(by, sizeof by, "most of all presses the %s, with %.3g N", name, force);
     }
     if (isfinite(travel))
-        tl_text_print(far, sizeof far,
-                      "%.3g m in this step, more than %d times its diameter of %.3g m", travel,
+        tl_text_print(far, sizeof far, "%.3g m in this step, more than %d times its diameter of %.3g m", travel,
                       TL_TRAVEL, diameter);
     else
         snprintf(far, sizeof far, "in this step by what is no finite number");
@@ -448,8 +436,8 @@ static tl_status report(tl_model *m, uint32_t body, const step_span *k)
     return tl_fail(&m->error, TL_E_NUMERIC,
                    "cycle %lld: block %u would move %s, for %s (dt = %.3g s%s); %s: is that out of "
                    "proportion%s?",
-                   (long long)m->cycles + 1, b->id[body], far, most.text, k->dt,
-                   given ? ", as given" : "", by, given ? ", or the time step too large" : "");
+                   (long long)m->cycles + 1, b->id[body], far, most.text, k->dt, given ? ", as given" : "", by,
+                   given ? ", or the time step too large" : "");
 }
 
 /* Bounds of the bodies whose motion is given count besides those of the last step, until all are known. */
@@ -483,6 +471,5 @@ tl_status tl_motion_check(tl_model *m, double dt, bool held)
         return report(m, (uint32_t)c->failure.point, &job.span);
     }
     /* a step that is not kept is one in which nothing can have become fast at once */
-    return !held && tl_undo_keeps(m) && tl_travel_may_matter(m, dt) ? travel_check(m, &job.span)
-                                                                    : TL_OK;
+    return !held && tl_undo_keeps(m) && tl_travel_may_matter(m, dt) ? travel_check(m, &job.span) : TL_OK;
 }

@@ -52,8 +52,7 @@ TL_INLINE void kick_lane(tl_body_group *g, size_t i, double kick)
 
 TL_INLINE double speed_of(const tl_body_group *g, size_t i)
 {
-    return tl_v3_norm(tl_lanes3_get(&g->v1, i)) +
-           tl_v3_norm(tl_lanes3_get(&g->w2, i)) * g->radius[i];
+    return tl_v3_norm(tl_lanes3_get(&g->v1, i)) + tl_v3_norm(tl_lanes3_get(&g->w2, i)) * g->radius[i];
 }
 
 /* Exact rotation: the kick of the angular momentum, in principal axes. */
@@ -79,8 +78,7 @@ TL_INLINE void kick_spin(tl_body_group *g, size_t i, double kick)
 /* The drift. */
 TL_INLINE void turn_freely(tl_body_group *g, size_t i, double drift, bool series)
 {
-    tl_free_turn free =
-        tl_turn_freely(tl_lanes3_get(&g->momentum1, i), tl_lanes3_get(&g->per, i), drift, series);
+    tl_free_turn free = tl_turn_freely(tl_lanes3_get(&g->momentum1, i), tl_lanes3_get(&g->per, i), drift, series);
     tl_lanes4_put(&g->made, i, free.made);
     tl_lanes3_put(&g->momentum2, i, free.momentum);
     g->reach[i] = free.reach;
@@ -92,15 +90,13 @@ TL_INLINE void put_attitude(tl_body_group *g, size_t i, double drift, bool serie
     tl_quat axes = tl_lanes4_get(&g->axes, i), made = tl_lanes4_get(&g->made, i);
     tl_vec3 moments = tl_lanes3_get(&g->moments, i), l2 = tl_lanes3_get(&g->momentum2, i);
     tl_vec3 axis = tl_q_rotate(axes, tl_v3(made.x, made.y, made.z));
-    tl_quat q =
-        tl_q_trim(tl_q_mul(tl_lanes4_get(&g->q, i), (tl_quat){made.w, axis.x, axis.y, axis.z}));
+    tl_quat q = tl_q_trim(tl_q_mul(tl_lanes4_get(&g->q, i), (tl_quat){made.w, axis.x, axis.y, axis.z}));
     tl_lanes4_put(&g->q2, i, q);
     tl_mat3 attitude = attitude_of(q, axes);
     /* a division here, not `per`: its error would be the same in every step and add up */
     tl_vec3 w2 = tl_m3_mul(&attitude, tl_v3(l2.x / moments.x, l2.y / moments.y, l2.z / moments.z));
     tl_lanes3_put(&g->w2, i, w2);
-    tl_lanes3_put(&g->turned, i,
-                  tl_m3_mul(&attitude, tl_v3_scale(1 / drift, tl_turn_of(made, series))));
+    tl_lanes3_put(&g->turned, i, tl_m3_mul(&attitude, tl_v3_scale(1 / drift, tl_turn_of(made, series))));
     /* as the next step will find it, to the last bit */
     tl_vec3 w = tl_m3_tmul(&attitude, w2);
     g->turning2[i] = tl_v3_dot(w, times(moments, w));
@@ -108,8 +104,7 @@ TL_INLINE void put_attitude(tl_body_group *g, size_t i, double drift, bool serie
 }
 
 /* Kicks and turns groups of bodies by the exact rule. Stage by stage, so that groups overlap in the processor. */
-TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, double kick,
-                                        double drift)
+TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, double kick, double drift)
 {
     for (size_t k = 0; k < count; k++)
         for (size_t i = 0; i < TL_LANES; i++) {
@@ -129,8 +124,7 @@ TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, dou
 static void put_spins(tl_body_group *g, size_t i, bool paper)
 {
     tl_vec3 moments = tl_lanes3_get(&g->moments, i),
-            spin[3] = {tl_lanes3_get(&g->w0, i), tl_lanes3_get(&g->w1, i),
-                       tl_lanes3_get(&g->w2, i)};
+            spin[3] = {tl_lanes3_get(&g->w0, i), tl_lanes3_get(&g->w1, i), tl_lanes3_get(&g->w2, i)};
     if (!paper) {
         tl_quat axes = tl_lanes4_get(&g->axes, i);
         tl_mat3 before = attitude_of(tl_lanes4_get(&g->q, i), axes);
@@ -153,8 +147,7 @@ static void turn_about(tl_body_group *g, size_t i, const move_job *job, bool pap
     tl_vec3 w = tl_lanes3_get(&g->w0, i);
     if (!held) {
         double per_moment = job->kick / (g->moments.x[i] * g->turn_scale[i]);
-        tl_vec3 moment =
-            tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
+        tl_vec3 moment = tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
         w = tl_kick(w, moment, per_moment, g->alpha[i], job->kick);
     }
     tl_quat turn = tl_turn_by(tl_v3_scale(job->drift, w));
@@ -188,8 +181,8 @@ static void mend_lanes(tl_body_group *g, const move_job *job)
     }
 }
 
-TL_INLINE void put_damping(tl_body_group *restrict g, size_t i, const struct tl_cycle *restrict c,
-                           bool damped, size_t body)
+TL_INLINE void put_damping(tl_body_group *restrict g, size_t i, const struct tl_cycle *restrict c, bool damped,
+                           size_t body)
 {
     const tl_vec3 none = {0, 0, 0};
     tl_lanes3_put(&g->damping_force, i, damped ? tl_columns_get(c->damping_force, body) : none);
@@ -251,8 +244,8 @@ static void rest_lane(tl_body_group *g, size_t i)
     tl_lanes4_put(&g->q, i, tl_q_identity());
     tl_lanes4_put(&g->axes, i, tl_q_identity());
     tl_lanes3_put(&g->moments, i, tl_v3(1, 1, 1));
-    tl_lanes3 *const still[] = {
-        &g->force, &g->moment, &g->damping_force, &g->damping_moment, &g->moved, &g->v0, &g->w0};
+    tl_lanes3 *const still[] = {&g->force, &g->moment, &g->damping_force, &g->damping_moment, &g->moved,
+                                &g->v0,    &g->w0};
     for (size_t k = 0; k < sizeof still / sizeof *still; k++)
         tl_lanes3_put(still[k], i, none);
     g->mass[i] = g->scale[i] = g->turn_scale[i] = g->energy_scale[i] = g->radius[i] = 1;
@@ -280,8 +273,7 @@ static void store_lane(const tl_body_group *g, size_t i, tl_bodies *b, double dt
 }
 
 /* The same of bodies that are side by side. */
-TL_VECTORIZED static void store_row(const tl_body_group *restrict g, const tl_bodies *b,
-                                    size_t first, double dt)
+TL_VECTORIZED static void store_row(const tl_body_group *restrict g, const tl_bodies *b, size_t first, double dt)
 {
     double *restrict odometer = b->odometer + first;
     tl_lanes9 r;
@@ -348,8 +340,7 @@ static void carry_body(const move_job *job, uint32_t body, tl_work *work)
     }
     tl_pose *pose = &b->pose[body];
     tl_vec3 moved = pose->v_moved, turned = pose->w_moved;
-    if (tl_v3_is_zero(b->v[body]) && tl_v3_is_zero(b->w[body]) && tl_v3_is_zero(moved) &&
-        tl_v3_is_zero(turned))
+    if (tl_v3_is_zero(b->v[body]) && tl_v3_is_zero(b->w[body]) && tl_v3_is_zero(moved) && tl_v3_is_zero(turned))
         return;
     tl_energy_book_held(job->m, body, moved, turned, work);
     pose->u = tl_v3_madd(pose->u, dt, b->v[body]);

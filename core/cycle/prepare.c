@@ -67,8 +67,7 @@ bool tl_model_moves(const tl_model *m)
     if (!m->cycle->all_held)
         return true;
     for (size_t i = 0; i < m->bodies.table.rows; i++)
-        if (m->bodies.drive[i] || tl_v3_norm2(m->bodies.v[i]) > 0 ||
-            tl_v3_norm2(m->bodies.w[i]) > 0)
+        if (m->bodies.drive[i] || tl_v3_norm2(m->bodies.v[i]) > 0 || tl_v3_norm2(m->bodies.w[i]) > 0)
             return true;
     return false;
 }

@@ -72,8 +72,7 @@ static bool is_density(double density)
 static void remark_density(tl_model *m, const densities *d, double g)
 {
     uint32_t row = is_density(d->most) ? d->lightest : d->densest;
-    if (g < EARTH_LEAST || g > EARTH_MOST || is_density(m->blocks.density[row]) ||
-        !tl_model_says(m, TL_REMARK_DENSITY))
+    if (g < EARTH_LEAST || g > EARTH_MOST || is_density(m->blocks.density[row]) || !tl_model_says(m, TL_REMARK_DENSITY))
         return;
     tl_model_say(m,
                  "density = %g of block %u is not that of a solid, with gravity = %g m/s2: rock "
@@ -85,14 +84,12 @@ static void remark_density(tl_model *m, const densities *d, double g)
 static void remark_stiffness(tl_model *m, const densities *d, double g, const tl_law *law)
 {
     double sunk = d->most * g / law->kn, least = d->least * g / law->kn;
-    bool tonnes =
-        g >= EARTH_LEAST && g <= EARTH_MOST && d->least >= TONNES_LEAST && d->most <= TONNES_MOST;
+    bool tonnes = g >= EARTH_LEAST && g <= EARTH_MOST && d->least >= TONNES_LEAST && d->most <= TONNES_MOST;
     if (sunk > SOFT && tl_model_says(m, TL_REMARK_SOFT))
-        tl_model_say(
-            m,
-            "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under its own "
-            "weight; give a larger kn, or look at the units of kn (Pa/m), density and gravity",
-            tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->densest], 100 * sunk);
+        tl_model_say(m,
+                     "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under its own "
+                     "weight; give a larger kn, or look at the units of kn (Pa/m), density and gravity",
+                     tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->densest], 100 * sunk);
     else if (tonnes && sunk * RIGID < 1 && tl_model_says(m, TL_REMARK_DENSITY))
         tl_model_say(m,
                      "joint '%s': kn = %g goes with density = %g of block %u only if kn is in "
@@ -131,8 +128,7 @@ static bool may_have_closed(const tl_model *m, uint32_t contact)
     uint32_t a = c->a[contact], b = c->b[contact];
     double thickness = fmin(tl_least_thickness(m, a), tl_least_thickness(m, b));
     double stiffness = m->joint_laws[c->law[contact]].kn * c->area[contact];
-    return tl_v3_norm(c->force[contact]) > CLOSED * thickness * stiffness &&
-           !tl_blocks_fixed(m, a, b);
+    return tl_v3_norm(c->force[contact]) > CLOSED * thickness * stiffness && !tl_blocks_fixed(m, a, b);
 }
 
 void tl_remark_closure(tl_model *m)
@@ -153,8 +149,7 @@ void tl_remark_closure(tl_model *m)
                      "%.0f %% of the thickness of block %u, %.3g m; give a larger kn, or look at "
                      "the units of kn (Pa/m), densities and loads",
                      tl_pattern_name(m, law->tag), law->kn, name, closed.overlap,
-                     100 * closed.overlap / closed.thickness, m->blocks.id[closed.thinner],
-                     closed.thickness);
+                     100 * closed.overlap / closed.thickness, m->blocks.id[closed.thinner], closed.thickness);
         return;
     }
 }

@@ -45,8 +45,7 @@ double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
     const tl_sums *s = &m->cycle->sums;
     if (measure == TL_RATIO_LOCAL)
         return s->local;
-    return ratio_of(s,
-                    measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced);
+    return ratio_of(s, measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced);
 }
 
 static double kinetic_energy(const tl_model *m, uint32_t body)
@@ -87,8 +86,7 @@ static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     uint32_t body = (uint32_t)begin, first = atomic_load(&job->moving);
     while (body < end && (job->m->bodies.fixed[body] == TL_FIX_ALL || !moves(job, body)))
         body++;
-    while (body < end && body < first &&
-           !atomic_compare_exchange_weak(&job->moving, &first, body)) {
+    while (body < end && body < first && !atomic_compare_exchange_weak(&job->moving, &first, body)) {
     }
 }
 

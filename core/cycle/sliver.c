@@ -85,8 +85,7 @@ static void find_largest(const tl_model *m, const double *volume, uint32_t *of, 
         of[body] = largest[body] = body;
     for (uint32_t i = 0; i < c->table.rows; i++) {
         const uint32_t a = m->blocks.body[c->a[i]], b = m->blocks.body[c->b[i]];
-        if (c->point_count[i] && c->kind[i] == TL_FACET_PATCH &&
-            tl_bodies_may_join(&m->bodies, a, b))
+        if (c->point_count[i] && c->kind[i] == TL_FACET_PATCH && tl_bodies_may_join(&m->bodies, a, b))
             tl_put_together(of, a, b);
     }
     for (uint32_t body = 0; body < bodies; body++) {
@@ -171,8 +170,7 @@ static choice choose(const sorting *s)
                 if (pass == 0)
                     least = fmin(least, left.rate);
                 else if (left.rate * (ENOUGH * ENOUGH) <= least &&
-                         (best.left.rate * (ENOUGH * ENOUGH) > least ||
-                          left.volume > best.left.volume))
+                         (best.left.rate * (ENOUGH * ENOUGH) > least || left.volume > best.left.volume))
                     best = (choice){small, thin, left};
             }
     return best;
@@ -195,10 +193,9 @@ static void say(tl_model *m, uint32_t body, const sorting *s, const choice *by)
                  "time step: block %u%s (volume %.3g m3, aspect %.3g) make%s it %.3g times smaller "
                  "than the rest of the blocks allow; %s%s%s%s joins such slivers, %.2g %% of the "
                  "rock, to their neighbours",
-                 m->bodies.id[body], others, tl_body_volume(m, body), shape.aspect,
-                 taken > 1 ? "" : "s", sqrt(s->all.rate / by->left.rate),
-                 tl_words(m, "model:filter{ ", "tl_model_filter() with "), volume, aspect,
-                 tl_words(m, "action = \"join\" }", "action = TL_FILTER_JOIN"),
+                 m->bodies.id[body], others, tl_body_volume(m, body), shape.aspect, taken > 1 ? "" : "s",
+                 sqrt(s->all.rate / by->left.rate), tl_words(m, "model:filter{ ", "tl_model_filter() with "), volume,
+                 aspect, tl_words(m, "action = \"join\" }", "action = TL_FILTER_JOIN"),
                  100 * (1 - by->left.volume / s->all.volume));
 }
 

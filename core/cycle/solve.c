@@ -153,8 +153,7 @@ static void add_sample(leg *l, double least, const tl_model *m, uint32_t body)
     double weight = tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity));
     double unbalanced = tl_v3_norm(m->bodies.force[body]);
     double borne = tl_borne(m, body, weight); /* without what rounding carries (rest.c) */
-    bool judged =
-        l->touched || (m->cycle->contact_force[body] > 0 && unbalanced < SUPPORTED * borne);
+    bool judged = l->touched || (m->cycle->contact_force[body] > 0 && unbalanced < SUPPORTED * borne);
     tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from);
     double share = l->touched ? FAILED_SHARE : LANDED_SHARE;
     double length = share / LEGS * l->size, time = m->time - l->began;
@@ -260,10 +259,9 @@ static tl_id watch_step(tl_watch *w, const tl_model *m)
 /* ---------------------------------------------------------------- runs -------------------- */
 
 static const char *const reason_names[] = {
-    [TL_SOLVE_RATIO] = "ratio",         [TL_SOLVE_CYCLES] = "cycles",
-    [TL_SOLVE_TIME] = "time",           [TL_SOLVE_STOP] = "stop",
-    [TL_SOLVE_INTERRUPT] = "interrupt", [TL_SOLVE_VELOCITY] = "velocity",
-    [TL_SOLVE_FAILURE] = "failure",     [TL_SOLVE_OVERLAP] = "overlap"};
+    [TL_SOLVE_RATIO] = "ratio",     [TL_SOLVE_CYCLES] = "cycles",       [TL_SOLVE_TIME] = "time",
+    [TL_SOLVE_STOP] = "stop",       [TL_SOLVE_INTERRUPT] = "interrupt", [TL_SOLVE_VELOCITY] = "velocity",
+    [TL_SOLVE_FAILURE] = "failure", [TL_SOLVE_OVERLAP] = "overlap"};
 
 const char *tl_solve_reason_name(tl_solve_reason reason)
 {
@@ -391,8 +389,7 @@ static void say_gone(tl_model *m, const tl_watch *w)
     for (uint32_t body = 0; body < w->bodies && w->structure == m->structure; body++) {
         const leg *l = &w->leg[body];
         double far = tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, l->start));
-        if (!l->touched || m->bodies.fixed[body] == TL_FIX_ALL || far < least ||
-            !(far > most * l->size))
+        if (!l->touched || m->bodies.fixed[body] == TL_FIX_ALL || far < least || !(far > most * l->size))
             continue;
         most = far / l->size;
         way = far;
@@ -414,13 +411,12 @@ static void say_undecided(tl_model *m, const tl_solve *solve, const tl_solve_res
         tl_model_say(m,
                      "solve: ended by %s = %.9g, neither at rest (ratio %.3g, asked for %.3g) nor "
                      "failing: that is no word on whether it stands",
-                     cycles ? "max_cycles" : "max_time",
-                     cycles ? (double)solve->max_cycles : solve->max_time, ratio, solve->ratio);
+                     cycles ? "max_cycles" : "max_time", cycles ? (double)solve->max_cycles : solve->max_time, ratio,
+                     solve->ratio);
 }
 
 /* What the end of a run means for whether the model stands. A stop function has its own reason. */
-static void say_end(tl_model *m, const tl_solve *solve, const tl_watch *watch,
-                    const tl_solve_result *r)
+static void say_end(tl_model *m, const tl_solve *solve, const tl_watch *watch, const tl_solve_result *r)
 {
     bool rests = r->reason == TL_SOLVE_RATIO || r->reason == TL_SOLVE_VELOCITY;
     bool limit = r->reason == TL_SOLVE_CYCLES || r->reason == TL_SOLVE_TIME;
@@ -436,11 +432,9 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted
 {
     tl_solve_result unread, *const result = wanted ? wanted : &unread;
     tl_rows_tidy(m);
-    *result =
-        (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time, .measure = solve->measure};
+    *result = (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time, .measure = solve->measure};
     if (m->running || m->reading)
-        return tl_fail(&m->error, TL_E_STATE,
-                       "cycle and solve cannot be called from a function that a run has called");
+        return tl_fail(&m->error, TL_E_STATE, "cycle and solve cannot be called from a function that a run has called");
     progress p = {solve, result, m->cycles, m->time, tl_clock()};
     tl_watch *watch = NULL;
     if ((solve->ratio > 0 || solve->stop_at_failure) && !(watch = watch_begin(m)))
@@ -475,15 +469,12 @@ tl_status tl_model_solve(tl_model *m, const tl_solve *given, tl_solve_result *re
     if (status != TL_OK)
         return status;
     if (!m->damping && tl_model_says(m, TL_REMARK_UNDAMPED))
-        tl_model_say(
-            m,
-            "solve: the model has no damping and may never come to rest; %s or another one helps",
-            tl_words(m, "model:damping(\"local\")", "tl_model_damping() with \"local\""));
+        tl_model_say(m, "solve: the model has no damping and may never come to rest; %s or another one helps",
+                     tl_words(m, "model:damping(\"local\")", "tl_model_damping() with \"local\""));
     return run(m, &solve, result);
 }
 
-tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *calls,
-                                 tl_solve_result *result)
+tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *calls, tl_solve_result *result)
 {
     if (cycles < 0)
         return tl_fail(&m->error, TL_E_ARGUMENT, "cycle: %lld must be >= 0", (long long)cycles);

@@ -223,8 +223,7 @@ static double find_lacking(tl_split_system *s)
         add(&s->parts[p->b].lacks, -p->area, t, p->arm_b);
     }
     for (const tl_split_part *p = s->parts; p < s->parts + s->part_count; p++)
-        sum += (tl_v3_norm2(p->lacks.force) + tl_v3_norm2(p->lacks.moment) / (p->size * p->size)) /
-               p->mass;
+        sum += (tl_v3_norm2(p->lacks.force) + tl_v3_norm2(p->lacks.moment) / (p->size * p->size)) / p->mass;
     return sum;
 }
 
@@ -369,8 +368,7 @@ static tl_mat3 inertia_of(const tl_model *m, uint32_t body)
     const double i[3] = {own.x, own.y, own.z};
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
-            out.m[j][k] = r.m[j][0] * i[0] * r.m[k][0] + r.m[j][1] * i[1] * r.m[k][1] +
-                          r.m[j][2] * i[2] * r.m[k][2];
+            out.m[j][k] = r.m[j][0] * i[0] * r.m[k][0] + r.m[j][1] * i[1] * r.m[k][1] + r.m[j][2] * i[2] * r.m[k][2];
     return out;
 }
 
@@ -384,14 +382,13 @@ static bool list_parts(const tl_model *m, struct tl_split_work *w)
         uint32_t body = row == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[row];
         if (row == TL_NO_ROW || *tl_body_blocks(m, body) != row || whole_of(m, body) == TL_NO_ID)
             continue;
-        w->parts[w->part_count] =
-            (tl_split_part){.body = body,
-                            .whole = (uint32_t)w->part_count,
-                            .listed = (uint32_t)w->part_count,
-                            .mass = b->mass[body] * tl_inertia_scale(m->cycle, body),
-                            .size = b->radius[body],
-                            .inertia = inertia_of(m, body),
-                            .place = tl_body_place(b, body)};
+        w->parts[w->part_count] = (tl_split_part){.body = body,
+                                                  .whole = (uint32_t)w->part_count,
+                                                  .listed = (uint32_t)w->part_count,
+                                                  .mass = b->mass[body] * tl_inertia_scale(m->cycle, body),
+                                                  .size = b->radius[body],
+                                                  .inertia = inertia_of(m, body),
+                                                  .place = tl_body_place(b, body)};
         w->part_count++;
     }
     return w->parts;
@@ -410,8 +407,7 @@ static bool is_inner(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    if (tl_facet_is_field(&contacts->facet[c]) || contacts->point_count[c] == 0 ||
-        contacts->law[c] == TL_NO_ROW)
+    if (tl_facet_is_field(&contacts->facet[c]) || contacts->point_count[c] == 0 || contacts->law[c] == TL_NO_ROW)
         return false;
     tl_id whole = whole_of(m, a);
     return whole != TL_NO_ID && whole == whole_of(m, b);
@@ -423,15 +419,12 @@ static bool list_contacts(const tl_model *m, struct tl_split_work *w)
     const tl_contacts *contacts = &m->detect->contacts;
     size_t capacity = 0;
     for (size_t i = 0; i < w->part_count; i++)
-        for (tl_body_contacts at = tl_contacts_of_body(m, w->parts[i].body);
-             tl_next_contact(&at);) {
+        for (tl_body_contacts at = tl_contacts_of_body(m, w->parts[i].body); tl_next_contact(&at);) {
             uint32_t c = at.contact;
             if (contacts->a[c] != at.block || !is_inner(m, c))
                 continue;
-            tl_split_contact found = {.row = c,
-                                      .a = (uint32_t)i,
-                                      .b = part_of(w, m->blocks.body[contacts->b[c]]),
-                                      .first = w->contact_count};
+            tl_split_contact found = {
+                .row = c, .a = (uint32_t)i, .b = part_of(w, m->blocks.body[contacts->b[c]]), .first = w->contact_count};
             if (!tl_grow(&w->contacts, &capacity, w->contact_count + 1, sizeof *w->contacts))
                 return false;
             w->contacts[w->contact_count++] = found;
@@ -506,8 +499,7 @@ static void add_inertia(tl_mat3 *to, const tl_split_part *p, tl_vec3 r)
 }
 
 /* The kick spans h, of which `until` lies before the present places. */
-static whole whole_of_parts(const tl_model *m, const tl_split_part *parts, size_t count, double h,
-                            double until)
+static whole whole_of_parts(const tl_model *m, const tl_split_part *parts, size_t count, double h, double until)
 {
     const tl_bodies *b = &m->bodies;
     whole all = {.mass = 0};
@@ -569,8 +561,7 @@ static void find_wanted(const tl_model *m, tl_split_part *parts, size_t count, d
         tl_vec3 r = tl_v3_sub(p->place, all.centre);
         tl_vec3 goes = tl_v3_add(all.acceleration, turn_of(all.angular, all.spin, r));
         p->wanted.force = tl_v3_scale(p->mass, goes);
-        p->wanted.moment =
-            tl_v3_add(tl_m3_mul(&p->inertia, all.angular), gyration(&p->inertia, all.spin));
+        p->wanted.moment = tl_v3_add(tl_m3_mul(&p->inertia, all.angular), gyration(&p->inertia, all.spin));
         if (m->config.rotation == TL_ROTATION_EXACT)
             find_turn(&all, p, before.spin, h, dt);
     }
@@ -593,8 +584,8 @@ static void add_stress(const tl_model *m, uint32_t body, tl_vec3 centre, tl_sym3
         double sign = d->contacts.b[c] == at.block ? 1 : -1;
         for (size_t k = 0; k < count; k++) {
             size_t i = tl_point_row(&d->contacts, c, k);
-            tl_vec3 f = tl_v3_madd(tl_columns_get(d->points.f_s, i), d->points.f_n[i],
-                                   tl_columns_get(lanes->normal, k));
+            tl_vec3 f =
+                tl_v3_madd(tl_columns_get(d->points.f_s, i), d->points.f_n[i], tl_columns_get(lanes->normal, k));
             f = tl_v3_scale(sign, f);
             tl_vec3 x = tl_v3_sub(tl_v3_add(from, tl_columns_get(lanes->arm, k)), centre);
             sum->xx += x.x * f.x;
@@ -690,17 +681,14 @@ static bool some_held(const tl_model *m, const tl_split_part *parts, size_t coun
 }
 
 /* A whole whose parts, contacts and points are those from the first given on. */
-static tl_split_system system_of(const tl_model *m, const struct tl_split_work *w, size_t part,
-                                 size_t contact, size_t point)
+static tl_split_system system_of(const tl_model *m, const struct tl_split_work *w, size_t part, size_t contact,
+                                 size_t point)
 {
-    tl_split_system s = {.m = m,
-                         .parts = w->parts + part,
-                         .contacts = w->contacts + contact,
-                         .points = w->points + point};
+    tl_split_system s = {
+        .m = m, .parts = w->parts + part, .contacts = w->contacts + contact, .points = w->points + point};
     while (part + s.part_count < w->part_count && s.parts[s.part_count].whole == s.parts[0].whole)
         s.part_count++;
-    while (contact + s.contact_count < w->contact_count &&
-           s.contacts[s.contact_count].a < part + s.part_count) {
+    while (contact + s.contact_count < w->contact_count && s.contacts[s.contact_count].a < part + s.part_count) {
         tl_split_contact *c = &s.contacts[s.contact_count++];
         c->a -= (uint32_t)part;
         c->b -= (uint32_t)part;

@@ -36,8 +36,7 @@ tl_standing tl_model_stands(tl_model *m)
     if (!c || m->cycles == 0)
         return TL_STANDING_UNKNOWN;
     const uint32_t worst = c->sums.worst; /* to ask changes nothing */
-    const bool rests =
-        tl_at_rest(m, TL_RATIO_LOCAL, c->rest_ratio > 0 ? c->rest_ratio : REST_RATIO);
+    const bool rests = tl_at_rest(m, TL_RATIO_LOCAL, c->rest_ratio > 0 ? c->rest_ratio : REST_RATIO);
     c->sums.worst = worst;
     if (rests)
         return TL_STANDING_AT_REST;

@@ -113,8 +113,7 @@ static double rate_of(tl_spread on, inverse_inertia per)
 static tl_spread triangle(tl_vec3 a, tl_vec3 b, tl_vec3 c)
 {
     double area = 0.5 * tl_v3_norm(tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a)));
-    double squares = tl_v3_norm2(a) + tl_v3_norm2(b) + tl_v3_norm2(c) +
-                     tl_v3_norm2(tl_v3_add(a, tl_v3_add(b, c)));
+    double squares = tl_v3_norm2(a) + tl_v3_norm2(b) + tl_v3_norm2(c) + tl_v3_norm2(tl_v3_add(a, tl_v3_add(b, c)));
     return (tl_spread){area, area * squares / 12};
 }
 
@@ -123,8 +122,7 @@ static tl_spread face_of(const tl_poly *shape, uint32_t face)
     const uint16_t *loop = shape->loop + shape->start[face];
     tl_spread out = {0, 0};
     for (uint32_t i = 2; i < tl_poly_face_size(shape, face); i++) {
-        tl_spread next =
-            triangle(shape->vertex[loop[0]], shape->vertex[loop[i - 1]], shape->vertex[loop[i]]);
+        tl_spread next = triangle(shape->vertex[loop[0]], shape->vertex[loop[i - 1]], shape->vertex[loop[i]]);
         out.sum += next.sum;
         out.r2 += next.r2;
     }
@@ -272,8 +270,8 @@ static void rates_count(tl_model *m)
             now.least_mass = b->mass[body];
             now.lightest = body;
         }
-    bool anew = to->version == 0 || to->constraints != now.constraints ||
-                to->rotation != now.rotation || to->points != now.points;
+    bool anew = to->version == 0 || to->constraints != now.constraints || to->rotation != now.rotation ||
+                to->points != now.points;
     if (anew && b->table.rows > 0)
         memset(b->face_rate, 0, b->table.rows * sizeof *b->face_rate);
     tl_parallel_for(m->pool, b->table.rows, TL_BODY_CHUNK, face_range, m);
@@ -284,8 +282,8 @@ static void rates_count(tl_model *m)
 typedef struct rate_search {
     row_search search;
     double stiffest; /* of the model's laws */
-    bool kept; /* rates are kept in their column, and made anew only where contacts have changed */
-    bool all;  /* all rates are made anew */
+    bool kept;       /* rates are kept in their column, and made anew only where contacts have changed */
+    bool all;        /* all rates are made anew */
     /* of a body that asks for no more than this, what it asks for at the most will do; 0: of none */
     double known;
 } rate_search;
@@ -349,17 +347,13 @@ static tl_row_value rates_keep(tl_model *m, double known)
     struct tl_stiffness_rates now = {.version = 1 + m->structure + m->constraints + m->laws,
                                      .recheck = m->mass_scaling ? m->cycles / RECHECK_STEPS : 0,
                                      .rotation = m->config.rotation};
-    bool all = now.version != c->stiffness_rates.version ||
-               now.recheck != c->stiffness_rates.recheck ||
-               now.rotation != c->stiffness_rates.rotation ||
-               (known > 0 && !(c->dt > 0)); /* it may be another one */
+    bool all = now.version != c->stiffness_rates.version || now.recheck != c->stiffness_rates.recheck ||
+               now.rotation != c->stiffness_rates.rotation || (known > 0 && !(c->dt > 0)); /* it may be another one */
     bool placed = tl_rates_points(m) && !m->mass_scaling;
     bool some = touch_new_points(m, placed ? TL_POINTS_PLACED : TL_POINTS_OTHERS);
     if (all || some || d->any_touched) {
-        rate_search s = {
-            .search.m = m, .stiffest = stiffest_law(m), .kept = true, .all = all, .known = known};
-        tl_row_value found =
-            row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
+        rate_search s = {.search.m = m, .stiffest = stiffest_law(m), .kept = true, .all = all, .known = known};
+        tl_row_value found = row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
         memset(d->touched, 0, m->bodies.table.rows);
         d->any_touched = false;
         now.extreme = fabs(found.value);
@@ -433,8 +427,8 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
             continue;
         double k = tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
         /* most are not stiffer: what is dearer to know is asked last */
-        if (k > found.value && (tl_body_counts(m, m->blocks.body[c->a[i]]) ||
-                                tl_body_counts(m, m->blocks.body[c->b[i]])))
+        if (k > found.value &&
+            (tl_body_counts(m, m->blocks.body[c->a[i]]) || tl_body_counts(m, m->blocks.body[c->b[i]])))
             found = (tl_row_value){k, i};
     }
     keep_extreme(&s->found[thread], found);
@@ -445,12 +439,10 @@ static bound paper_rule(tl_model *m)
 {
     const struct tl_step_bounds *bounds = &m->cycle->step_bounds;
     row_search s = {.m = m};
-    tl_row_value stiffest =
-        row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
+    tl_row_value stiffest = row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
     if (stiffest.row == TL_NO_ROW)
         return no_bound;
-    return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row,
-                   stiffest.value};
+    return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row, stiffest.value};
 }
 
 /* What controls the step. `report`: looked at anew, and the stiffness as well; nothing is kept then. */
@@ -506,8 +498,7 @@ static tl_status check_factor(tl_model *m)
 {
     double factor = damping_factor(m);
     if (!(factor > 0 && factor <= 1))
-        return tl_fail(&m->error, TL_E_PLUGIN,
-                       "damping '%s' gives the step factor %g, which is outside (0, 1]",
+        return tl_fail(&m->error, TL_E_PLUGIN, "damping '%s' gives the step factor %g, which is outside (0, 1]",
                        m->damping->name, factor);
     return TL_OK;
 }
@@ -515,25 +506,23 @@ static tl_status check_factor(tl_model *m)
 /* Why no step follows from the model. */
 static tl_status no_step(tl_model *m, double dt)
 {
-    const char *way_out = tl_words(m, "a step with model:timestep{ dt = ... }",
-                                   "a step with dt of tl_model_timestep()");
+    const char *way_out =
+        tl_words(m, "a step with model:timestep{ dt = ... }", "a step with dt of tl_model_timestep()");
     const char *joint = tl_words(m, "model:joint(\"*\", ...)", "tl_joint_law()");
     if (m->joint_law_count == 0)
-        return tl_fail(
-            &m->error, TL_E_STATE,
-            "no time step follows from the model: no law says how stiff a contact is; set "
-            "a law with %s or %s",
-            joint, way_out);
+        return tl_fail(&m->error, TL_E_STATE,
+                       "no time step follows from the model: no law says how stiff a contact is; set "
+                       "a law with %s or %s",
+                       joint, way_out);
     if (!(stiffest_law(m) > 0))
         return tl_fail(&m->error, TL_E_STATE,
                        "no time step follows from the model: kn and ks of all laws are 0; set a "
                        "stiffness with %s or %s",
                        joint, way_out);
-    return tl_fail(
-        &m->error, TL_E_STATE,
-        "no time step follows from the model: by its masses and stiffnesses it would be %g "
-        "s; check the units of density, sizes and kn, or set %s",
-        dt, way_out);
+    return tl_fail(&m->error, TL_E_STATE,
+                   "no time step follows from the model: by its masses and stiffnesses it would be %g "
+                   "s; check the units of density, sizes and kn, or set %s",
+                   dt, way_out);
 }
 
 /* Notes whether the given step is far above the longest that is stable whatever the rule, that of the body with the
@@ -551,11 +540,10 @@ static void judge_step(tl_model *m)
     double stable = 2 * sqrt(0.5 / fastest.value);
     c->long_step = fastest.row != TL_NO_ROW && fastest.value > bearable;
     if (c->long_step && tl_model_says(m, TL_REMARK_STEP))
-        tl_model_say(
-            m,
-            "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block %u "
-            "sets: contact forces will grow without bound; give a shorter one, or leave dt out",
-            m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
+        tl_model_say(m,
+                     "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block %u "
+                     "sets: contact forces will grow without bound; give a shorter one, or leave dt out",
+                     m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
 }
 
 /* The step that inertia is added for, or a shorter one that is given as well. */
@@ -564,11 +552,10 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     struct tl_cycle *c = m->cycle;
     double wanted = m->added_dt, given = m->timestep.dt;
     if (given > wanted)
-        return tl_fail(
-            &m->error, TL_E_STATE,
-            "timestep: dt = %g s is longer than %g s, the dt of mass_scaling; give one of "
-            "them only, or the longer one to mass_scaling",
-            given, wanted);
+        return tl_fail(&m->error, TL_E_STATE,
+                       "timestep: dt = %g s is longer than %g s, the dt of mass_scaling; give one of "
+                       "them only, or the longer one to mass_scaling",
+                       given, wanted);
     if (!report) {
         double limit = rate_limit(m);
         rates_keep(m, limit);
@@ -644,13 +631,12 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
         status = tl_model_may_set(m, "set timestep");
     if (status != TL_OK)
         return status;
-    if (!isnan(timestep.fraction) &&
-        !(timestep.fraction >= TL_FRACTION_LEAST && timestep.fraction <= TL_FRACTION_MOST))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside [%g, %g]",
-                       timestep.fraction, TL_FRACTION_LEAST, TL_FRACTION_MOST);
+    if (!isnan(timestep.fraction) && !(timestep.fraction >= TL_FRACTION_LEAST && timestep.fraction <= TL_FRACTION_MOST))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside [%g, %g]", timestep.fraction,
+                       TL_FRACTION_LEAST, TL_FRACTION_MOST);
     if (!isnan(timestep.dt) && !(timestep.dt >= TL_STEP_LEAST && timestep.dt <= 1 / TL_STEP_LEAST))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s is outside [%g, %g]",
-                       timestep.dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s is outside [%g, %g]", timestep.dt, TL_STEP_LEAST,
+                       1 / TL_STEP_LEAST);
     m->timestep = timestep;
     if (m->cycle) {
         m->cycle->dt = 0;
@@ -677,10 +663,9 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
     report->block = m->bodies.id[by.body];
     report->mass = m->bodies.mass[by.body];
     report->stiffness = by.stiffness;
-    report->by = !(by.stiffness > 0) ? TL_STEP_BY_SPEED
-                 : by.contact == TL_NO_ROW && 0.5 / by.least > MOSTLY * by.stiffness / report->mass
-                     ? TL_STEP_BY_TURN
-                     : TL_STEP_BY_PUSH;
+    report->by = !(by.stiffness > 0)                                                                ? TL_STEP_BY_SPEED
+                 : by.contact == TL_NO_ROW && 0.5 / by.least > MOSTLY * by.stiffness / report->mass ? TL_STEP_BY_TURN
+                                                                                                    : TL_STEP_BY_PUSH;
     if (by.contact != TL_NO_ROW) {
         /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
         const tl_contacts *contacts = &m->detect->contacts;

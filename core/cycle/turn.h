@@ -58,8 +58,7 @@ TL_INLINE tl_vec3 tl_turn_of(tl_quat q, bool series)
 {
     double s2 = q.x * q.x + q.y * q.y + q.z * q.z, k; /* k: angle / sine of its half */
     if (series) {
-        k = 2 * (1 + s2 * (1. / 6 + s2 * (3. / 40 + s2 * (5. / 112 +
-                                                          s2 * (35. / 1152 + s2 * (63. / 2816))))));
+        k = 2 * (1 + s2 * (1. / 6 + s2 * (3. / 40 + s2 * (5. / 112 + s2 * (35. / 1152 + s2 * (63. / 2816))))));
     } else {
         double s = sqrt(s2);
         k = s > 0 ? 2 * tl_atan2(s, q.w) / s : 2;
@@ -112,12 +111,9 @@ TL_INLINE tl_free_turn tl_turn_freely(tl_vec3 l, tl_vec3 per, double dt, bool se
     tl_turn_back(e, &l.y, &l.z);
     /* the product of the five, each with one component besides w */
     tl_quat q = {a.c * b.c, a.s * b.c, a.c * b.s, a.s * b.s};
-    q = (tl_quat){q.w * c.c - q.z * c.s, q.x * c.c + q.y * c.s, q.y * c.c - q.x * c.s,
-                  q.z * c.c + q.w * c.s};
-    q = (tl_quat){q.w * d.c - q.y * d.s, q.x * d.c - q.z * d.s, q.y * d.c + q.w * d.s,
-                  q.z * d.c + q.x * d.s};
-    q = (tl_quat){q.w * e.c - q.x * e.s, q.x * e.c + q.w * e.s, q.y * e.c + q.z * e.s,
-                  q.z * e.c - q.y * e.s};
+    q = (tl_quat){q.w * c.c - q.z * c.s, q.x * c.c + q.y * c.s, q.y * c.c - q.x * c.s, q.z * c.c + q.w * c.s};
+    q = (tl_quat){q.w * d.c - q.y * d.s, q.x * d.c - q.z * d.s, q.y * d.c + q.w * d.s, q.z * d.c + q.x * d.s};
+    q = (tl_quat){q.w * e.c - q.x * e.s, q.x * e.c + q.w * e.s, q.y * e.c + q.z * e.s, q.z * e.c - q.y * e.s};
     return (tl_free_turn){q, l, 2 * (h1 * h1 + h2 * h2 + h3 * h3 + h4 * h4 + h5 * h5)};
 }
 

@@ -36,10 +36,10 @@ _Static_assert(TL_TABLE_COLUMNS <= 64, "each column has a bit");
 #define TABLES (TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES)
 
 struct tl_undo {
-    bool keeps;    /* in this step */
-    bool gathered; /* bodies have been kept, too */
-    bool lost;     /* a step failed and was not kept */
-    bool once;     /* only because something was set by hand, a body is fast or the step is long */
+    bool keeps;       /* in this step */
+    bool gathered;    /* bodies have been kept, too */
+    bool lost;        /* a step failed and was not kept */
+    bool once;        /* only because something was set by hand, a body is fast or the step is long */
     uint64_t version; /* of bodies and laws, in the last step that was made */
     int64_t kept_at;  /* steps made when a step was kept last */
     double dt;        /* that the user had fixed then; NAN: none */
@@ -81,8 +81,7 @@ static void copy(void *here, void *kept, size_t bytes, bool back)
 }
 
 /* Copies rows of the table to its shadow, or back. */
-static void shadow_copy(const shadow *s, const tl_table *table, size_t first, size_t count,
-                        bool back)
+static void shadow_copy(const shadow *s, const tl_table *table, size_t first, size_t count, bool back)
 {
     char *kept = s->memory;
     for (uint64_t left = count ? s->columns : 0; left; left &= left - 1) {
@@ -175,8 +174,7 @@ bool tl_set_by_hand(const tl_model *m)
 {
     const struct tl_undo *u = m->cycle->undo;
     const tl_vec3 g = m->config.gravity;
-    return !u || u->version != version_of(m) ||
-           !(u->dt == m->timestep.dt || (isnan(u->dt) && isnan(m->timestep.dt))) ||
+    return !u || u->version != version_of(m) || !(u->dt == m->timestep.dt || (isnan(u->dt) && isnan(m->timestep.dt))) ||
            tl_v3_norm2(tl_v3_sub(u->gravity, g)) > 0;
 }
 
@@ -238,8 +236,7 @@ tl_status tl_undo_reserve(tl_model *m, bool may_pass)
         return TL_OK;
     u->keeps = reserve_contributors(m) && shadow_reserve(&u->bodies, &m->bodies.table) &&
                shadow_reserve(&u->loads, &m->cycle->table) &&
-               tl_fit(&u->reaction, &u->reaction_capacity, m->cycle->reaction_capacity,
-                      sizeof *u->reaction);
+               tl_fit(&u->reaction, &u->reaction_capacity, m->cycle->reaction_capacity, sizeof *u->reaction);
     if (!u->keeps)
         return tl_fail_memory(&m->error);
     copy_contributors(m, false);
@@ -286,8 +283,7 @@ size_t tl_undo_bytes(const struct tl_cycle *c)
     const struct tl_undo *u = c->undo;
     if (!u)
         return 0;
-    size_t bytes = sizeof *u + u->bodies.capacity + u->loads.capacity +
-                   u->reaction_capacity * sizeof *u->reaction;
+    size_t bytes = sizeof *u + u->bodies.capacity + u->loads.capacity + u->reaction_capacity * sizeof *u->reaction;
     for (size_t i = 0; i < TABLES; i++)
         bytes += u->contributor[i].capacity;
     return bytes;

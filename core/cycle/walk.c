@@ -5,9 +5,8 @@
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "cycle.", c, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "cycle.", c, member)
-#define LIST(keep, member, count, capacity, bytes)                                                 \
-    TL_WALK_LIST(walk, TL_KEEP_##keep, "cycle.", c, member, (count), (capacity),                   \
-                 offsetof(tl_memory, bytes))
+#define LIST(keep, member, count, capacity, bytes)                                                                     \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "cycle.", c, member, (count), (capacity), offsetof(tl_memory, bytes))
 
 void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
 {

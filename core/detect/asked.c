@@ -47,8 +47,7 @@ bool tl_asked_note(tl_model *m)
     size_t count = 0;
     for (size_t i = 0; i < c->table.rows; i++)
         if (c->id[i] > last)
-            list[count++] =
-                (tl_asked_id){d->known_blocks[c->a[i]].id, d->known_blocks[c->b[i]].id, c->id[i]};
+            list[count++] = (tl_asked_id){d->known_blocks[c->a[i]].id, d->known_blocks[c->b[i]].id, c->id[i]};
     if (count > 1)
         qsort(list, count, sizeof *list, compare);
     free(m->asked_ids);

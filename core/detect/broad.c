@@ -150,8 +150,8 @@ static tl_status measure(tl_model *m, struct tl_broad *g, bool whole)
     /* no place is infinite, as limits.c sees to; what follows becomes whole numbers, so it is made sure of here */
     if (!isfinite(span.x) || !isfinite(span.y) || !isfinite(span.z) || !(median > 0))
         return tl_fail(&m->error, TL_E_NUMERIC,
-                       "the blocks reach over %g, %g, %g m, which is more than numbers can tell",
-                       span.x, span.y, span.z);
+                       "the blocks reach over %g, %g, %g m, which is more than numbers can tell", span.x, span.y,
+                       span.z);
     for (g->cell = median;; g->cell *= 1.25) {
         double nx = floor(span.x / g->cell) + 1, ny = floor(span.y / g->cell) + 1;
         double nz = floor(span.z / g->cell) + 1;
@@ -207,8 +207,8 @@ static bool push(struct tl_broad *g, size_t *count, tl_pair pair)
 }
 
 /* Pairs of a block with those entered in the cells of its bounds; if it is one of them, with rows above its own. */
-static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const tl_bounds *mine,
-                     bool entered, size_t *count)
+static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const tl_bounds *mine, bool entered,
+                     size_t *count)
 {
     cell_range r = range_of(g, mine);
     for (uint32_t z = r.lo[2]; z <= r.hi[2]; z++)
@@ -222,8 +222,7 @@ static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const 
                         m->blocks.body[row] == m->blocks.body[other])
                         continue;
                     cell_range q = range_of(g, its);
-                    if (x != (q.lo[0] > r.lo[0] ? q.lo[0] : r.lo[0]) ||
-                        y != (q.lo[1] > r.lo[1] ? q.lo[1] : r.lo[1]) ||
+                    if (x != (q.lo[0] > r.lo[0] ? q.lo[0] : r.lo[0]) || y != (q.lo[1] > r.lo[1] ? q.lo[1] : r.lo[1]) ||
                         z != (q.lo[2] > r.lo[2] ? q.lo[2] : r.lo[2]))
                         continue;
                     const tl_pair pair = {.a = row < other ? row : other,
@@ -275,8 +274,7 @@ static int compare_pair(const void *a, const void *b)
 static tl_status list_pairs(tl_model *m, struct tl_broad *g, bool whole, size_t *count)
 {
     *count = 0;
-    bool enough =
-        tl_grow(&g->next, &g->next_capacity, whole ? m->detect->pair_count : 1, sizeof *g->next);
+    bool enough = tl_grow(&g->next, &g->next_capacity, whole ? m->detect->pair_count : 1, sizeof *g->next);
     for (uint32_t i = 0; i < g->count && enough; i++)
         enough = pairs_of(m, g, g->row[i], &g->bounds[i], true, count);
     if (enough && !whole)
@@ -338,8 +336,7 @@ static size_t unknown_pairs(const tl_detect *d, tl_pair *list, size_t count)
 {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
-        if (d->pair_count == 0 ||
-            !bsearch(&list[i], d->pairs, d->pair_count, sizeof *list, compare_pair))
+        if (d->pair_count == 0 || !bsearch(&list[i], d->pairs, d->pair_count, sizeof *list, compare_pair))
             list[kept++] = list[i];
     return kept;
 }

@@ -93,8 +93,8 @@ typedef struct path_job {
 
 /* Path lengths of blocks; the longest of them. Floats that are not negative are in the order of their bits. */
 TL_VECTORIZED static float measure_paths(float *restrict path, const uint32_t *restrict body,
-                                         const double *restrict odometer,
-                                         const double *restrict odometer_0, size_t count)
+                                         const double *restrict odometer, const double *restrict odometer_0,
+                                         size_t count)
 {
     uint32_t most = 0;
     float farthest;
@@ -113,8 +113,8 @@ static void path_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     path_job *job = user;
     const tl_model *m = job->m;
     tl_detect *d = m->detect;
-    float farthest = measure_paths(d->path + begin, m->blocks.body + begin, m->bodies.odometer,
-                                   d->odometer_0, end - begin);
+    float farthest =
+        measure_paths(d->path + begin, m->blocks.body + begin, m->bodies.odometer, d->odometer_0, end - begin);
     job->longest[thread] = farthest > job->longest[thread] ? farthest : job->longest[thread];
 }
 
@@ -128,8 +128,7 @@ static void measure_all_paths(tl_model *m)
     tl_parallel_for(m->pool, m->blocks.table.rows, BLOCK_CHUNK, path_range, &job);
     m->detect->longest_path = 0;
     for (unsigned i = 0; i < threads; i++)
-        m->detect->longest_path =
-            job.longest[i] > m->detect->longest_path ? job.longest[i] : m->detect->longest_path;
+        m->detect->longest_path = job.longest[i] > m->detect->longest_path ? job.longest[i] : m->detect->longest_path;
 }
 
 /* Notes that a pair has lost its contact. */
@@ -166,8 +165,8 @@ static double way_to_edges(const tl_pair_view *view, double longest)
 }
 
 /* What is known of a placed pair before its contact is made: that it holds across a gap, if it takes over from one. */
-static tl_manifold_before before_contact(const tl_model *m, const tl_pair *p,
-                                         const tl_pair_view *view, tl_narrow_scratch *scratch)
+static tl_manifold_before before_contact(const tl_model *m, const tl_pair *p, const tl_pair_view *view,
+                                         tl_narrow_scratch *scratch)
 {
     tl_manifold_before out = {.kind = TL_FACET_PATCH, .most_tilt = INFINITY};
     const tl_cut_contact *cut = tl_cut_contact_of(m, p->a, p->b);
@@ -320,10 +319,8 @@ static void update_contacts(tl_model *m)
         const tl_span *span = &layout->spans[k];
         if (tl_span_rests(m, span))
             continue;
-        update_job job = {m, layout->groups + span->group_begin,
-                          span->group_end - span->group_begin};
-        tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, update_groups,
-                        &job);
+        update_job job = {m, layout->groups + span->group_begin, span->group_end - span->group_begin};
+        tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, update_groups, &job);
     }
     if (m->detect->any_without_rows)
         tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_others, m);
@@ -356,8 +353,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
-    if (!tl_kind_find(m, d->pairs[pair].a, d->pairs[pair].b, &view, &region, &rule, &before,
-                      scratch) ||
+    if (!tl_kind_find(m, d->pairs[pair].a, d->pairs[pair].b, &view, &region, &rule, &before, scratch) ||
         !tl_contact_append(m, pair, g->facet.kind, g->valid, tag, g->point_count))
         return tl_fail_memory(&m->error);
     uint32_t row = (uint32_t)d->contacts.table.rows - 1;
@@ -368,8 +364,8 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     double overlap = tl_facet_is_field(&g->facet) ? g->press->deepest : -region.gap;
     /* parts of blocks go on in the overlap of these */
     bool meet = !tl_cut_contact_of(m, d->pairs[pair].a, d->pairs[pair].b);
-    if (meet && overlap > TL_SHALLOW * view.size &&
-        overlap > TL_SHALLOW * size_of_bodies(m, &d->pairs[pair]) && deep->count++ == 0)
+    if (meet && overlap > TL_SHALLOW * view.size && overlap > TL_SHALLOW * size_of_bodies(m, &d->pairs[pair]) &&
+        deep->count++ == 0)
         deep->pair = pair;
     if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, meet)) {
         tl_overlap_mark(&d->contacts, row, meet);
@@ -386,8 +382,7 @@ static tl_status give_births(tl_model *m, size_t *born)
     *born = 0;
     for (uint32_t chunk = 0; (size_t)chunk * TL_PAIR_CHUNK < d->pair_count; chunk++) {
         uint32_t begin = chunk * TL_PAIR_CHUNK;
-        for (uint32_t i = begin;
-             d->chunks[chunk].found && i < begin + TL_PAIR_CHUNK && i < d->pair_count; i++) {
+        for (uint32_t i = begin; d->chunks[chunk].found && i < begin + TL_PAIR_CHUNK && i < d->pair_count; i++) {
             if (!tl_pair_is_apart(&d->pairs[i]) || d->pairs[i].wake != TL_PAIR_FOUND)
                 continue;
             tl_status status = give_birth(m, i, &deep);
@@ -398,12 +393,11 @@ static tl_status give_births(tl_model *m, size_t *born)
         d->chunks[chunk].found = false;
     }
     if (deep.count && tl_model_says(m, TL_REMARK_OVERLAP))
-        tl_model_say(
-            m,
-            "%zu pair%s of blocks (first: blocks %u and %u) overlap%s by more than %g of their "
-            "size when they come into contact: they will be pushed apart by that much",
-            deep.count, deep.count == 1 ? "" : "s", m->blocks.id[d->pairs[deep.pair].a],
-            m->blocks.id[d->pairs[deep.pair].b], deep.count == 1 ? "s" : "", TL_SHALLOW);
+        tl_model_say(m,
+                     "%zu pair%s of blocks (first: blocks %u and %u) overlap%s by more than %g of their "
+                     "size when they come into contact: they will be pushed apart by that much",
+                     deep.count, deep.count == 1 ? "" : "s", m->blocks.id[d->pairs[deep.pair].a],
+                     m->blocks.id[d->pairs[deep.pair].b], deep.count == 1 ? "s" : "", TL_SHALLOW);
     return TL_OK;
 }
 
@@ -443,8 +437,7 @@ static bool settle_rows(tl_model *m)
         if (c->pending[row] == TL_PENDING_NONE)
             continue;
         uint32_t pair = c->pair[row];
-        if (!tl_pending_waits(
-                c->pending[row])) /* others are noted when they have got their points */
+        if (!tl_pending_waits(c->pending[row])) /* others are noted when they have got their points */
             touch(m, row);
         if (c->pending[row] == TL_PENDING_DIE) {
             d->parted += tl_contact_sheared(m, row) + c->released[row];
@@ -525,8 +518,7 @@ static tl_status settle(tl_model *m)
             status = tl_fail_memory(&m->error);
         if (status == TL_OK)
             status = fill_contacts(m, &more);
-        d->rows_changed =
-            status != TL_OK; /* contacts are not what they seem until all is settled */
+        d->rows_changed = status != TL_OK; /* contacts are not what they seem until all is settled */
     }
     if (status == TL_OK) {
         tl_cut_contacts_balance(m);
@@ -587,10 +579,9 @@ tl_status tl_detect_refresh(tl_model *m)
 {
     tl_rows_tidy(m);
     const tl_detect *d = m->detect;
-    bool listed =
-        d && !d->rows_changed && d->indexed == d->contacts.table.rows; /* no step failed */
-    bool ruled = m->found_for != TL_FOR_QUERIES || !d ||
-                 (d->rules == m->rules && d->contact_points == m->config.contact_points);
+    bool listed = d && !d->rows_changed && d->indexed == d->contacts.table.rows; /* no step failed */
+    bool ruled =
+        m->found_for != TL_FOR_QUERIES || !d || (d->rules == m->rules && d->contact_points == m->config.contact_points);
     if (listed && ruled && d->structure == m->structure && d->laws == m->laws)
         return TL_OK;
     tl_status status = tl_asked_begin(m);

@@ -40,10 +40,10 @@
 
 /* What is made before anything is changed. */
 typedef struct rows_scratch {
-    uint32_t *row;      /* [blocks seen] the present row, or TL_NO_ROW */
-    uint32_t *part;     /* [blocks seen] of one that was cut: one of its parts, or TL_NO_ROW */
-    double *odometer_0; /* [bodies] */
-    uint8_t *touched;   /* [bodies] */
+    uint32_t *row;                /* [blocks seen] the present row, or TL_NO_ROW */
+    uint32_t *part;               /* [blocks seen] of one that was cut: one of its parts, or TL_NO_ROW */
+    double *odometer_0;           /* [bodies] */
+    uint8_t *touched;             /* [bodies] */
     tl_known_block *known_blocks; /* [blocks] */
 } rows_scratch;
 
@@ -56,8 +56,8 @@ static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
                               .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
                               .touched = malloc(bodies + 1),
                               .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
-    if (scratch->row && scratch->part && scratch->odometer_0 && scratch->touched &&
-        scratch->known_blocks && tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
+    if (scratch->row && scratch->part && scratch->odometer_0 && scratch->touched && scratch->known_blocks &&
+        tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
         tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
         return true;
     return false;
@@ -105,8 +105,7 @@ static void find_parts(const tl_model *m, const rows_scratch *scratch)
         tl_known_block root = {.id = m->cut_parts[i].root};
         if (tl_block_row_quiet(m, m->cut_parts[i].id) == TL_NO_ROW)
             continue;
-        const tl_known_block *known =
-            bsearch(&root, d->known_blocks, d->known_block_count, sizeof root, compare_known);
+        const tl_known_block *known = bsearch(&root, d->known_blocks, d->known_block_count, sizeof root, compare_known);
         if (known)
             scratch->part[known - d->known_blocks] = (uint32_t)i;
     }
@@ -115,8 +114,7 @@ static void find_parts(const tl_model *m, const rows_scratch *scratch)
 /* ---------------------------------------------------------------- contacts that end ------ */
 
 /* The points in the places where their blocks have carried them, and their sums. */
-static void keep_points(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
-                        tl_cut_contact *cut)
+static void keep_points(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b, tl_cut_contact *cut)
 {
     tl_detect *d = m->detect;
     const tl_facet *facet = &d->contacts.facet[c];
@@ -124,8 +122,8 @@ static void keep_points(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_
     tl_shear *whole = &cut->whole;
     tl_facing_place to = {*a->r, {0, 0, 0}};
     if (!cut->field)
-        to = tl_facing_ride(a->r, b->r, tl_v3_sub(b->place, a->place), &facet->laid.turn,
-                            facet->laid.shift, facet->ride);
+        to = tl_facing_ride(a->r, b->r, tl_v3_sub(b->place, a->place), &facet->laid.turn, facet->laid.shift,
+                            facet->ride);
     for (size_t k = 0; k < cut->count; k++) {
         tl_vec3 p = tl_columns_get(d->points.p, tl_point_row(&d->contacts, c, k));
         tl_vec3 place = tl_v3_add(tl_v3_add(a->place, to.at), tl_m3_mul(&to.to, p));
@@ -151,16 +149,15 @@ static void keep_field(tl_model *m, uint32_t c, tl_cut_contact *cut)
 }
 
 /* The overlap of the walls at a place: of faces with the sum `offset` of their offsets. */
-static double overlap_at(const tl_cut_contact *cut, double offset, const tl_cut_side *a,
-                         const tl_cut_side *b, tl_vec3 place)
+static double overlap_at(const tl_cut_contact *cut, double offset, const tl_cut_side *a, const tl_cut_side *b,
+                         tl_vec3 place)
 {
     return offset - tl_v3_dot(cut->face[0], tl_v3_sub(place, a->place)) -
            tl_v3_dot(cut->face[1], tl_v3_sub(place, b->place));
 }
 
 /* Takes what slip has opened out of the references of a patch's points, and notes their closures. */
-static void keep_closures(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
-                          tl_cut_contact *cut)
+static void keep_closures(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b, tl_cut_contact *cut)
 {
     double offset = m->detect->contacts.facet[c].offset, opening[TL_LANES];
     for (size_t k = 0; k < cut->count; k++) {
@@ -173,8 +170,7 @@ static void keep_closures(tl_model *m, uint32_t c, const tl_cut_side *a, const t
 }
 
 /* The faces of a patch, or those of a field contact that are moved out, where they lie, and how far they are moved. */
-static void keep_faces(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b,
-                       tl_cut_contact *cut)
+static void keep_faces(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b, tl_cut_contact *cut)
 {
     const tl_facet *facet = &m->detect->contacts.facet[c];
     const tl_press_row *row = tl_press_row_of(m, c);
@@ -192,15 +188,13 @@ static void keep_faces(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_c
 }
 
 /* Keeps what a contact leaves, whose first block is `a`; NULL when out of memory. */
-static tl_cut_contact *keep_contact(tl_model *m, uint32_t c, const tl_cut_side *a,
-                                    const tl_cut_side *b)
+static tl_cut_contact *keep_contact(tl_model *m, uint32_t c, const tl_cut_side *a, const tl_cut_side *b)
 {
     tl_detect *d = m->detect;
     bool field = tl_facet_is_field(&d->contacts.facet[c]);
     size_t count = tl_contact_areas(d, c);
     if (!tl_grow(&d->cut_contacts, &d->cut_capacity, d->cut_count + 1, sizeof *d->cut_contacts) ||
-        !tl_grow(&d->cut_points, &d->cut_point_capacity, d->cut_point_count + count,
-                 sizeof *d->cut_points))
+        !tl_grow(&d->cut_points, &d->cut_point_capacity, d->cut_point_count + count, sizeof *d->cut_points))
         return NULL;
     tl_cut_contact *cut = &d->cut_contacts[d->cut_count++];
     *cut = (tl_cut_contact){.a = a->id,
@@ -237,10 +231,8 @@ static void empty_contact(tl_model *m, uint32_t c)
 static bool leaves(const tl_detect *d, const rows_scratch *scratch, const tl_pair *p)
 {
     bool a_ends = scratch->row[p->a] == TL_NO_ROW, b_ends = scratch->row[p->b] == TL_NO_ROW;
-    return (a_ends || b_ends) && !tl_pair_is_apart(p) &&
-           (!a_ends || scratch->part[p->a] != TL_NO_ROW) &&
-           (!b_ends || scratch->part[p->b] != TL_NO_ROW) &&
-           d->contacts.pending[p->contact] != TL_PENDING_DIE &&
+    return (a_ends || b_ends) && !tl_pair_is_apart(p) && (!a_ends || scratch->part[p->a] != TL_NO_ROW) &&
+           (!b_ends || scratch->part[p->b] != TL_NO_ROW) && d->contacts.pending[p->contact] != TL_PENDING_DIE &&
            d->contacts.point_count[p->contact] > 0;
 }
 
@@ -293,8 +285,7 @@ static bool keep_cut_contacts(tl_model *m, const rows_scratch *scratch)
 }
 
 /* Ends a contact: a block of it has gone, or both have become one body. */
-static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t contact, uint32_t a,
-                        uint32_t b)
+static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t contact, uint32_t a, uint32_t b)
 {
     m->detect->contacts.pending[contact] = TL_PENDING_DIE;
     if (a != TL_NO_ROW)
@@ -489,8 +480,7 @@ static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, un
     tl_model *m = user;
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = (uint32_t)begin; row < end; row++)
-        if (c->pending[row] != TL_PENDING_DIE &&
-            (tl_block_is_new(m, c->a[row]) || tl_block_is_new(m, c->b[row])))
+        if (c->pending[row] != TL_PENDING_DIE && (tl_block_is_new(m, c->a[row]) || tl_block_is_new(m, c->b[row])))
             tl_contact_reframe(m, row, thread);
 }
 

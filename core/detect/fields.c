@@ -60,8 +60,7 @@ static double reach_of(const tl_model *m, uint32_t c, const tl_manifold_before *
 }
 
 /* Notes how far the faces of a field contact are moved out. */
-static void note_moved_faces(const tl_model *m, uint32_t c, const tl_press_row *row,
-                             tl_manifold_before *to)
+static void note_moved_faces(const tl_model *m, uint32_t c, const tl_press_row *row, tl_manifold_before *to)
 {
     to->shift = row->shift;
     to->shifted = row->shifted;
@@ -71,8 +70,7 @@ static void note_moved_faces(const tl_model *m, uint32_t c, const tl_press_row *
     to->opened = row->lifted_at == m->cycles ? row->opened : 0;
 }
 
-tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed,
-                                     const tl_point_lanes *lanes)
+tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed, const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *facet = &contacts->facet[c];
@@ -80,12 +78,10 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
     tl_manifold_before out = {.kind = (tl_facet_kind)facet->kind,
                               .faces = {facet->ia, facet->ib},
                               .born_tilt = tl_cut_contact_tilt(m, contacts->a[c], contacts->b[c])};
-    bool patch =
-        out.kind == TL_FACET_PATCH && (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
+    bool patch = out.kind == TL_FACET_PATCH && (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
     if (patch) {
         tl_contact_across across = tl_contact_across_gap(m, c);
-        bool unseen =
-            contacts->point_count[c] == 0; /* of a cut contact, until it has got its room */
+        bool unseen = contacts->point_count[c] == 0; /* of a cut contact, until it has got its room */
         out.holds = reframed || unseen || across.bonded;
         out.most_tilt = across.bonded && !reframed ? bonded_tilt(m, c) : INFINITY;
         out.over = out.holds ? INFINITY : TL_PARTED * across.most;
@@ -238,24 +234,22 @@ bool tl_field_goes_on(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_press_row *row = tl_press_row_of(m, c);
-    return row && row->listed && tl_facet_is_field(&contacts->facet[c]) &&
-           contacts->point_count[c] > 0 && contacts->deep[c] == TL_DEEP_NOT && is_listed(m, c, row);
+    return row && row->listed && tl_facet_is_field(&contacts->facet[c]) && contacts->point_count[c] > 0 &&
+           contacts->deep[c] == TL_DEEP_NOT && is_listed(m, c, row);
 }
 
 /* Whether a contact may go by the slopes of its press, if it is near. */
 static bool has_slopes(const tl_model *m, uint32_t c, const tl_press_row *row)
 {
     uint32_t law = m->detect->contacts.law[c];
-    bool tells =
-        law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]); /* slopes are of the energy only */
-    return row->by_slope && !tells && m->config.reuse_geometry &&
-           m->detect->contacts.points_valid_to[c] != TL_OUTDATED;
+    bool tells = law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]); /* slopes are of the energy only */
+    return row->by_slope && !tells && m->config.reuse_geometry && m->detect->contacts.points_valid_to[c] != TL_OUTDATED;
 }
 
 /* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs.
  * They go by the count of steps, not of looks: a step made again finds the same. false: out of memory. */
-static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press,
-                  tl_press_row *row, tl_narrow_scratch *scratch)
+static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press, tl_press_row *row,
+                  tl_narrow_scratch *scratch)
 {
     const tl_pair_pose place = {query->view->turn, query->view->shift};
     bool stays = tl_press_moved(press, &row->place, &place) <= 0.5 * TL_PRESS_NEAR;
@@ -349,8 +343,7 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
     b->asked = 0;
 }
 
-tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k,
-                              tl_narrow_scratch *scratch)
+tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k, tl_narrow_scratch *scratch)
 {
     uint32_t c = b->contact[k];
     tl_press_row *row = tl_press_row_of(m, c);

@@ -10,8 +10,7 @@
 
 /* What is known of a contact before it is looked at. One whose bodies have got other frames stays what it is until its
  * points are in these. */
-tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed,
-                                     const tl_point_lanes *lanes);
+tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed, const tl_point_lanes *lanes);
 /* Tolerance: how far walls may part, over how far they are lifted, before the lift is forgotten. As far again they
  * ride on what has opened them. Test: lua/test_insitu. */
 #define TL_PARTED 2
@@ -55,7 +54,6 @@ typedef struct tl_field_batch {
 /* Finds the presses of the contacts of a batch, which go on. */
 void tl_fields_follow(tl_model *m, tl_field_batch *batch, tl_narrow_scratch *scratch);
 /* What its k-th contact is now, into the thread's manifold; in ascending order. */
-tl_field_result tl_field_take(tl_model *m, tl_field_batch *batch, uint32_t k,
-                              tl_narrow_scratch *scratch);
+tl_field_result tl_field_take(tl_model *m, tl_field_batch *batch, uint32_t k, tl_narrow_scratch *scratch);
 
 #endif

@@ -89,8 +89,7 @@ bool tl_grazing_only_touches(const tl_pair_view *view, const tl_pair *p)
 {
     tl_pair_faces faces = tl_pair_faces_of(p);
     double least = -TL_TOUCHING * view->size;
-    return faces.one != faces.other && gap_from(view, faces.one) >= least &&
-           gap_from(view, faces.other) >= least;
+    return faces.one != faces.other && gap_from(view, faces.one) >= least && gap_from(view, faces.other) >= least;
 }
 
 void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p)
@@ -114,8 +113,7 @@ double tl_grazing_margin(const tl_pair_view *view, const tl_pair *p, double *gap
     *gap = fmax(first, second);
     if (*gap > tolerance)
         return *gap - tolerance;
-    if (fmin(first, second) < -tolerance || !is_flush(view, faces.one) ||
-        !is_flush(view, faces.other))
+    if (fmin(first, second) < -tolerance || !is_flush(view, faces.one) || !is_flush(view, faces.other))
         return -INFINITY;
     double apart = first - second;
     return 0.5 * (first + second + sqrt(apart * apart + 4 * unseen * unseen));

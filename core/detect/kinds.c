@@ -11,5 +11,4 @@ static const tl_contact_kind patch = {
 static const tl_contact_kind field = {
     .name = "field", .place = &tl_field_place, .force = &tl_field_force, .make = &tl_field_make};
 
-const tl_contact_kind *const tl_contact_kinds[TL_FACET_KINDS] = {
-    [TL_FACET_PATCH] = &patch, [TL_FACET_FIELD] = &field};
+const tl_contact_kind *const tl_contact_kinds[TL_FACET_KINDS] = {[TL_FACET_PATCH] = &patch, [TL_FACET_FIELD] = &field};

@@ -47,21 +47,19 @@ static double width_along(const tl_model *m, uint32_t body, tl_vec3 n)
 }
 
 /* How deep a pair may overlap. `n` is in the frame of A's body. */
-static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, uint32_t a,
-                      uint32_t b, bool born)
+static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, uint32_t a, uint32_t b, bool born)
 {
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
     double diameter = 2 * fmin(m->bodies.radius[body_a], m->bodies.radius[body_b]);
     if (!born)
         return TL_DEEPEST * diameter;
-    double middles =
-        0.5 * (width_along(m, body_a, n) + width_along(m, body_b, tl_m3_tmul(&view->turn, n)));
+    double middles = 0.5 * (width_along(m, body_a, n) + width_along(m, body_b, tl_m3_tmul(&view->turn, n)));
     return TL_DEEPEST_BORN * fmin(middles, diameter);
 }
 
 /* Whether all corners of a block lie behind all faces of another with these normals and origin in the same frame. */
-static bool lies_behind(const tl_vec3 *corner, uint32_t corners, const tl_poly *other,
-                        const tl_vec3 *normal, size_t stride, tl_vec3 origin)
+static bool lies_behind(const tl_vec3 *corner, uint32_t corners, const tl_poly *other, const tl_vec3 *normal,
+                        size_t stride, tl_vec3 origin)
 {
     for (uint32_t f = 0; f < other->face_count; f++) {
         tl_vec3 n = *(const tl_vec3 *)(const void *)((const char *)normal + f * stride);
@@ -78,19 +76,16 @@ bool tl_overlap_is_whole(const tl_pair_view *view, const tl_region *region)
     const tl_poly *a = view->a, *b = view->b;
     if (!(region->gap_with_borders < 0))
         return false;
-    return lies_behind(a->vertex, a->vertex_count, b, view->normal_b, sizeof(tl_vec3),
-                       view->shift) ||
-           lies_behind(view->vertex_b, b->vertex_count, a, &a->plane[0].normal, sizeof(tl_plane),
-                       tl_v3(0, 0, 0));
+    return lies_behind(a->vertex, a->vertex_count, b, view->normal_b, sizeof(tl_vec3), view->shift) ||
+           lies_behind(view->vertex_b, b->vertex_count, a, &a->plane[0].normal, sizeof(tl_plane), tl_v3(0, 0, 0));
 }
 
-bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
-                        uint32_t a, uint32_t b, bool born)
+bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region, uint32_t a, uint32_t b,
+                        bool born)
 {
     if (!(region->gap_with_borders < -TL_SHALLOW * view->size))
         return false;
-    return -region->gap > deepest(m, view, region->n, a, b, born) ||
-           (born && tl_overlap_is_whole(view, region));
+    return -region->gap > deepest(m, view, region->n, a, b, born) || (born && tl_overlap_is_whole(view, region));
 }
 
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
@@ -142,8 +137,7 @@ static tl_status report(tl_model *m, uint32_t contact)
                    "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a "
                    "contact can tell how to part them: were they placed into each other, is a "
                    "stiffness too low for what presses, or the time step too large?",
-                   (long long)m->cycles + 1, name, -region.gap,
-                   deepest(m, &view, region.n, a, b, born));
+                   (long long)m->cycles + 1, name, -region.gap, deepest(m, &view, region.n, a, b, born));
 }
 
 tl_status tl_overlaps_check(tl_model *m)

@@ -12,8 +12,8 @@
 #define TL_SHALLOW 0.01
 
 /* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less if it is just born. */
-bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
-                        uint32_t a, uint32_t b, bool born);
+bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region, uint32_t a, uint32_t b,
+                        bool born);
 /* Whether one block lies wholly inside the other: no face of it is crossed, so nothing presses. */
 bool tl_overlap_is_whole(const tl_pair_view *view, const tl_region *region);
 /* Marks a contact whose blocks do, so that its faces are listed whenever it is looked at. */

@@ -189,8 +189,8 @@ static void look_at(const sweep *s, uint32_t a, uint32_t b, tl_passing *out)
         *out = (tl_passing){part, a, b, deeper, s->share * thickness};
 }
 
-tl_passing tl_passing_find(const tl_model *m, const tl_step_motion *motion, double share,
-                           double thinnest, tl_swept *list)
+tl_passing tl_passing_find(const tl_model *m, const tl_step_motion *motion, double share, double thinnest,
+                           tl_swept *list)
 {
     sweep s = {.m = m, .motion = motion, .share = share, .list = list};
     tl_passing out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0, 0};

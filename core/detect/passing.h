@@ -34,7 +34,7 @@ typedef struct tl_swept {
 double tl_least_thickness(const tl_model *m, uint32_t row);
 /* Finds the pair whose overlap would first grow by more than `share` of the thinner block's thickness. `motion`: of
  * each body; `thinnest`: the least thickness of all blocks, m; `list`: a place for each block, overwritten. */
-tl_passing tl_passing_find(const tl_model *m, const tl_step_motion *motion, double share,
-                           double thinnest, tl_swept *list);
+tl_passing tl_passing_find(const tl_model *m, const tl_step_motion *motion, double share, double thinnest,
+                           tl_swept *list);
 
 #endif

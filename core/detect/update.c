@@ -118,8 +118,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     tl_field_mesh mesh;
     if (row)
         mesh = (tl_field_mesh){0};
-    if (row && contacts->point_count[c] &&
-        !scratch->reframed) /* else faces may have other numbers */
+    if (row && contacts->point_count[c] && !scratch->reframed) /* else faces may have other numbers */
         mesh = tl_field_listed_anew(row, &region);
     region.mesh = row ? &mesh : NULL;
     tl_tag tag = tl_touching_tag(&view, region.n);
@@ -139,8 +138,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     if (tl_press_row_of(m, c))
         tl_field_keep(tl_press_row_of(m, c), &view, &region);
     if (row && g->point_count > 0 && tl_facet_is_field(&g->facet))
-        tl_press_shift_faces(m, c,
-                             row->shift == 0 ? tl_touching_faces(&view, region.n) : row->shifted);
+        tl_press_shift_faces(m, c, row->shift == 0 ? tl_touching_faces(&view, region.n) : row->shifted);
     return true;
 }
 
@@ -156,8 +154,7 @@ static contact_run run_to(const tl_facet *laid, const tl_pair_pose *now)
 {
     tl_mat3 own = tl_m3_identity();
     return (contact_run){.laid = laid,
-                         .by_b = tl_facing_ride(&own, &now->turn, now->shift, &laid->laid.turn,
-                                                laid->laid.shift, 1)};
+                         .by_b = tl_facing_ride(&own, &now->turn, now->shift, &laid->laid.turn, laid->laid.shift, 1)};
 }
 
 static void run_add(contact_run *run, tl_vec3 old, tl_vec3 now)
@@ -193,10 +190,8 @@ static bool wants_place(tl_detect *d, uint32_t c, const tl_manifold *g, bool ref
 {
     tl_contacts *contacts = &d->contacts;
     bool field = tl_facet_is_field(&g->facet);
-    bool lacks_press =
-        field && contacts->press[c] == TL_NO_ROW; /* it has not got the room for its press yet */
-    bool moves =
-        (g->point_count > 0 || field) && (contacts->kind[c] != g->facet.kind || lacks_press);
+    bool lacks_press = field && contacts->press[c] == TL_NO_ROW; /* it has not got the room for its press yet */
+    bool moves = (g->point_count > 0 || field) && (contacts->kind[c] != g->facet.kind || lacks_press);
     if (!moves && g->point_count <= contacts->point_capacity[c])
         return false;
     contacts->kind[c] = (uint8_t)g->facet.kind;
@@ -210,8 +205,7 @@ static bool have_run(const tl_model *m, uint32_t c, const tl_manifold *g)
     const tl_contacts *contacts = &m->detect->contacts;
     contact_run run = run_to(&contacts->facet[c], &g->facet.laid);
     for (size_t k = 0; k < g->point_count; k++)
-        run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
-                g->points[k].p);
+        run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)), g->points[k].p);
     return has_run(&run, TL_MERGE * tl_contact_size(m, c));
 }
 
@@ -231,8 +225,7 @@ static tl_facet parted_facet(const tl_model *m, uint32_t c)
 }
 
 /* Puts the built manifold in the place of the contact's points, or asks for room. */
-static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
-                          const tl_point_lanes *lanes)
+static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_point_lanes *lanes)
 {
     tl_detect *d = m->detect;
     tl_manifold *g = &scratch->manifold;
@@ -255,8 +248,7 @@ static double points_moved(const tl_model *m, uint32_t c)
     const tl_facet *f = &contacts->facet[c];
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
     const tl_mat3 *ra = &m->bodies.pose[a].r, *rb = &m->bodies.pose[b].r;
-    tl_facing_place by_b =
-        tl_facing_ride(ra, rb, tl_body_apart(&m->bodies, a, b), &f->laid.turn, f->laid.shift, 1);
+    tl_facing_place by_b = tl_facing_ride(ra, rb, tl_body_apart(&m->bodies, a, b), &f->laid.turn, f->laid.shift, 1);
     double most = 0;
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         tl_vec3 p = tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k));
@@ -327,15 +319,13 @@ static double way_of_points(const tl_model *m, uint32_t c)
 {
     uint32_t law = m->detect->contacts.law[c];
     bool pulls = law != TL_NO_ROW && m->joint_laws[law].pulls != TL_PULL_NONE;
-    double stands = pulls && tl_contact_across_gap(m, c).whole
-                        ? BOND_STANDS * tl_contact_size(m, c)
-                        : fmax(still_way(m, c), STANDS * least_closure(m, c));
+    double stands = pulls && tl_contact_across_gap(m, c).whole ? BOND_STANDS * tl_contact_size(m, c)
+                                                               : fmax(still_way(m, c), STANDS * least_closure(m, c));
     return stands - points_moved(m, c);
 }
 
 /* Whether the odometers have not run out, or the blocks of a patch have some way left to go against each other. */
-static bool is_valid(const tl_model *m, uint32_t c, double *valid_to,
-                     double way_left(const tl_model *m, uint32_t c))
+static bool is_valid(const tl_model *m, uint32_t c, double *valid_to, double way_left(const tl_model *m, uint32_t c))
 {
     const tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_contact_odometer(m, c);
@@ -400,8 +390,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     if (!contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_contact_view(m, c);
-    tl_touch_rule rule =
-        tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c] ? INFINITY : 0);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c] ? INFINITY : 0);
     scratch->manifold.failed = !tl_pair_place_face(&view, f->ib, scratch);
     if (scratch->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, scratch) > 0))
         return false;
@@ -446,8 +435,7 @@ static bool touches_still(tl_model *m, uint32_t c)
 static bool faces_hold(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    return is_valid(m, c, &contacts->faces_valid_to[c], way_of_faces) ||
-           way_of_faces(m, c) > -still_way(m, c);
+    return is_valid(m, c, &contacts->faces_valid_to[c], way_of_faces) || way_of_faces(m, c) > -still_way(m, c);
 }
 
 /* Whether a contact's points are still good although its odometers have run out. */
@@ -455,8 +443,7 @@ bool tl_contact_points_hold_yet(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     if (!is_patch(contacts, c))
-        return m->config.reuse_geometry &&
-               tl_contact_odometer(m, c) <= contacts->points_valid_to[c];
+        return m->config.reuse_geometry && tl_contact_odometer(m, c) <= contacts->points_valid_to[c];
     return is_valid(m, c, &contacts->points_valid_to[c], way_of_points) && faces_hold(m, c);
 }
 
@@ -466,9 +453,8 @@ static bool still_stands(const tl_model *m, uint32_t c, const tl_narrow_scratch 
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_manifold *g = &scratch->manifold;
     const tl_facet *f = &contacts->facet[c], *now = &g->facet;
-    return !scratch->reframed && is_patch(contacts, c) && g->point_count > 0 &&
-           tl_facet_is_patch(now) && f->ia == now->ia && f->ib == now->ib &&
-           tl_contact_odometer(m, c) <= contacts->points_valid_to[c];
+    return !scratch->reframed && is_patch(contacts, c) && g->point_count > 0 && tl_facet_is_patch(now) &&
+           f->ia == now->ia && f->ib == now->ib && tl_contact_odometer(m, c) <= contacts->points_valid_to[c];
 }
 
 /* Makes all that a contact is anew. Without the memory for it the contact is as it was, so that it can be tried again
@@ -513,8 +499,7 @@ static void contacts_follow(tl_model *m, const uint32_t contact[], uint32_t coun
     tl_fields_follow(m, &batch, scratch);
     for (uint32_t k = 0; k < count; k++) {
         tl_field_result result = tl_field_take(m, &batch, k, scratch);
-        bool done = result == TL_FIELD_FOUND &&
-                    take_manifold(m, contact[k], scratch, &m->detect->lanes[thread]);
+        bool done = result == TL_FIELD_FOUND && take_manifold(m, contact[k], scratch, &m->detect->lanes[thread]);
         done = done || (result == TL_FIELD_LOST && make_anew(m, contact[k], thread));
         if (done)
             note_made(m, contact[k]);
@@ -581,20 +566,17 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
 
 /* Adds a contact's pair of faces to a batch; false when they are none for it. `corners`: the batch has points at
  * corners only. */
-static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, bool corners,
-                         tl_patch_batch *batch)
+static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, bool corners, tl_patch_batch *batch)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[c];
     uint32_t a = contacts->a[c], b = contacts->b[c];
-    if (!contact_is_patch(m, c) ||
-        (corners && !tl_at_corners(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib)) ||
+    if (!contact_is_patch(m, c) || (corners && !tl_at_corners(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib)) ||
         !tl_batch_takes(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib))
         return false;
     double size = m->blocks.size[a] < m->blocks.size[b] ? m->blocks.size[a] : m->blocks.size[b];
     tl_batch_add(batch, lane, m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib, size,
-                 contacts->holds_over_gap[c] ? INFINITY
-                                             : TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
+                 contacts->holds_over_gap[c] ? INFINITY : TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
     tl_batch_between(batch, lane, &m->bodies.pose[body_a].r, &m->bodies.pose[body_b].r,
                      tl_body_apart(&m->bodies, body_a, body_b));
@@ -639,8 +621,7 @@ TL_VECTORIZED static void refit_slot(tl_points_table *p, size_t row, const tl_ba
 }
 
 /* Puts the patches of the lanes that are taken, which all have so many points, in the place of the contacts'. */
-static void refit_group(tl_points_table *p, size_t row, const tl_patch_batch *batch,
-                        tl_batch_counts n, patch_choice *t)
+static void refit_group(tl_points_table *p, size_t row, const tl_patch_batch *batch, tl_batch_counts n, patch_choice *t)
 {
     for (uint32_t l = 0; l < TL_LANES; l++)
         t->area[l] = 0;
@@ -658,8 +639,7 @@ typedef struct shear_lanes {
     tl_lanes3 force;
 } shear_lanes;
 
-TL_VECTORIZED static void sum_shear(const tl_points_table *p, size_t row, uint32_t slots,
-                                    shear_lanes *restrict out)
+TL_VECTORIZED static void sum_shear(const tl_points_table *p, size_t row, uint32_t slots, shear_lanes *restrict out)
 {
     const double *restrict f_x = p->f_s[0] + row, *restrict f_y = p->f_s[1] + row;
     const double *restrict f_z = p->f_s[2] + row, *restrict area = p->area + row;
@@ -677,8 +657,8 @@ TL_VECTORIZED static void sum_shear(const tl_points_table *p, size_t row, uint32
 }
 
 /* Lanes whose area is to change, a bit each. */
-static uint32_t changing(const tl_contacts *contacts, const tl_simd_group *group,
-                         const tl_patch_batch *batch, uint32_t now)
+static uint32_t changing(const tl_contacts *contacts, const tl_simd_group *group, const tl_patch_batch *batch,
+                         uint32_t now)
 {
     uint32_t changed = 0;
     for (uint32_t l = 0; l < TL_LANES; l++)
@@ -696,13 +676,11 @@ static tl_shear shear_in(const shear_lanes *s, const tl_patch_batch *batch, uint
     tl_mat3 turn = tl_lanes9_get(&batch->r_a, l);
     tl_vec3 arm = tl_m3_mul(&turn, tl_lanes3_get(&batch->centroid.p, l));
     tl_vec3 force = tl_lanes3_get(&s->force, l);
-    return (tl_shear){
-        .area = area, .energy = s->energy[l], .force = force, .moment = tl_v3_cross(arm, force)};
+    return (tl_shear){.area = area, .energy = s->energy[l], .force = force, .moment = tl_v3_cross(arm, force)};
 }
 
 /* What else a contact keeps of its patch. */
-static void note_patch(tl_model *m, uint32_t c, const tl_patch_batch *batch, uint32_t l,
-                       double area)
+static void note_patch(tl_model *m, uint32_t c, const tl_patch_batch *batch, uint32_t l, double area)
 {
     tl_contacts *contacts = &m->detect->contacts;
     contacts->area[c] = area;
@@ -714,8 +692,8 @@ static void note_patch(tl_model *m, uint32_t c, const tl_patch_batch *batch, uin
 }
 
 /* Puts the patches of some lanes, a bit each, into the place of their contacts'. */
-static void take_lanes(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch,
-                       tl_batch_counts n, uint32_t now, patch_choice *t)
+static void take_lanes(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch, tl_batch_counts n,
+                       uint32_t now, patch_choice *t)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -738,8 +716,7 @@ static void take_lanes(tl_model *m, const tl_simd_group *group, const tl_patch_b
     }
 }
 
-static bool group_has_run(const tl_model *m, uint32_t c, const tl_patch_batch *batch, uint32_t l,
-                          tl_batch_counts n)
+static bool group_has_run(const tl_model *m, uint32_t c, const tl_patch_batch *batch, uint32_t l, tl_batch_counts n)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_pair_pose now = {tl_lanes9_get(&batch->turn, l), tl_lanes3_get(&batch->shift, l)};
@@ -748,16 +725,14 @@ static bool group_has_run(const tl_model *m, uint32_t c, const tl_patch_batch *b
         const tl_batch_point *point = k < n.middles               ? &batch->middles[k]
                                       : k < n.middles + n.corners ? &batch->corners[k - n.middles]
                                                                   : &batch->centroid;
-        run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
-                tl_lanes3_get(&point->p, l));
+        run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)), tl_lanes3_get(&point->p, l));
     }
     return has_run(&run, batch->near[l]);
 }
 
 /* Puts patches into the place of those of the SIMD group that have the same points, and takes their lanes out of `in`:
  * lanes of as many points together. */
-static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch,
-                         uint32_t *in)
+static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch, uint32_t *in)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -777,8 +752,7 @@ static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch
         patch_choice t;
         uint32_t now = 0;
         for (uint32_t k = 0; k < TL_LANES; k++) {
-            bool like = same >> k & 1 && same >> l & 1 && n[k].all == n[l].all &&
-                        n[k].corners == n[l].corners;
+            bool like = same >> k & 1 && same >> l & 1 && n[k].all == n[l].all && n[k].corners == n[l].corners;
             t.mine[k] = like;
             now |= (uint32_t)like << k;
         }

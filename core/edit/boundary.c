@@ -148,8 +148,7 @@ static tl_status take_contacts(tl_model *m, outer_face *f)
         bool first = c->a[i] == f->row;
         if (status == TL_OK && tl_facet_is_patch(facet) && c->point_count[i] &&
             (first ? facet->ia : facet->ib) == f->face)
-            status =
-                take_away(m, f, tl_contact_partner(c, i, f->row), first ? facet->ib : facet->ia);
+            status = take_away(m, f, tl_contact_partner(c, i, f->row), first ? facet->ib : facet->ia);
     }
     return status;
 }
@@ -253,8 +252,7 @@ static tl_status begin_filter(tl_model *m, const tl_boundary_where *where, face_
         s->at = tl_v3_scale(farthest(m, s->normal), s->normal);
     } else if (s->plane) {
         if (!(tl_v3_norm(where->normal) > 0))
-            return tl_fail(&m->error, TL_E_ARGUMENT,
-                           "boundary: the normal of the plane must not be zero");
+            return tl_fail(&m->error, TL_E_ARGUMENT, "boundary: the normal of the plane must not be zero");
         s->normal = tl_v3_unit(where->normal);
         s->at = tl_v3_sub(where->at, m->origin);
     }
@@ -265,8 +263,7 @@ static tl_status begin_filter(tl_model *m, const tl_boundary_where *where, face_
         s->least_cosine = tl_cos(where->within * DEGREE) - ROUNDED;
     }
     if (s->box)
-        s->bounds =
-            (tl_bounds){tl_v3_sub(where->box.min, m->origin), tl_v3_sub(where->box.max, m->origin)};
+        s->bounds = (tl_bounds){tl_v3_sub(where->box.min, m->origin), tl_v3_sub(where->box.max, m->origin)};
     return TL_OK;
 }
 
@@ -281,10 +278,8 @@ static bool is_there(const tl_model *m, const face_filter *s, uint32_t row, uint
 {
     const tl_poly *shape = m->blocks.shape[row];
     tl_vec3 n = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
-    double slack =
-        isnan(s->where->tolerance) ? TOLERANCE * m->blocks.size[row] : s->where->tolerance;
-    if ((s->plane && tl_v3_dot(n, s->normal) <= 0) ||
-        (s->facing && tl_v3_dot(n, s->direction) < s->least_cosine))
+    double slack = isnan(s->where->tolerance) ? TOLERANCE * m->blocks.size[row] : s->where->tolerance;
+    if ((s->plane && tl_v3_dot(n, s->normal) <= 0) || (s->facing && tl_v3_dot(n, s->direction) < s->least_cosine))
         return false;
     for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++) {
         tl_vec3 p = vertex_at(m, row, shape->loop[i]);
@@ -325,8 +320,8 @@ static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_li
 /* ---------------------------------------------------------------- what is done ----------- */
 
 /* Force and moment, about the body's centroid, of the traction on a face. */
-static void face_load(const tl_model *m, const tl_boundary_action *a, const outer_face *f,
-                      tl_vec3 *force, tl_vec3 *moment)
+static void face_load(const tl_model *m, const tl_boundary_action *a, const outer_face *f, tl_vec3 *force,
+                      tl_vec3 *moment)
 {
     const area_sums *s = &f->sums;
     double height = f->o.z + m->origin.z - a->at.z;
@@ -339,12 +334,11 @@ static void face_load(const tl_model *m, const tl_boundary_action *a, const oute
     tl_vec3 sum_v = tl_v3_madd(tl_v3_madd(tl_v3_scale(s->v, t), s->uv, tu), s->vv, tv);
     tl_vec3 arm = tl_v3_sub(f->o, tl_body_place(&m->bodies, m->blocks.body[f->row]));
     *force = sum;
-    *moment = tl_v3_add(tl_v3_cross(arm, sum),
-                        tl_v3_add(tl_v3_cross(f->t1, sum_u), tl_v3_cross(f->t2, sum_v)));
+    *moment = tl_v3_add(tl_v3_cross(arm, sum), tl_v3_add(tl_v3_cross(f->t1, sum_u), tl_v3_cross(f->t2, sum_v)));
 }
 
-static tl_status add_load(tl_model *m, const tl_boundary_action *a, const outer_face *f,
-                          body_sum *sums, face_loads *loads, tl_boundary_result *result)
+static tl_status add_load(tl_model *m, const tl_boundary_action *a, const outer_face *f, body_sum *sums,
+                          face_loads *loads, tl_boundary_result *result)
 {
     uint32_t body = m->blocks.body[f->row];
     tl_vec3 force, moment, place = tl_body_place(&m->bodies, body);
@@ -377,19 +371,17 @@ static unsigned roller_of(tl_vec3 n)
     return fmax(x, y) < ALONG ? TL_FIX_Z : 0;
 }
 
-static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const outer_face *f,
-                            uint8_t *fix)
+static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const outer_face *f, uint8_t *fix)
 {
     unsigned what = a->fixed ? TL_FIX_ALL : 0;
     if (a->roller && !a->fixed) {
         what = roller_of(f->normal);
         if (!what)
-            return tl_fail(
-                &m->error, TL_E_ARGUMENT,
-                "boundary: a roller is held along x, y or z, but face %u of block %u "
-                "looks along {%.3g, %.3g, %.3g}; use fixed, or a box or side whose faces "
-                "look along an axis",
-                f->face + 1, m->blocks.id[f->row], f->normal.x, f->normal.y, f->normal.z);
+            return tl_fail(&m->error, TL_E_ARGUMENT,
+                           "boundary: a roller is held along x, y or z, but face %u of block %u "
+                           "looks along {%.3g, %.3g, %.3g}; use fixed, or a box or side whose faces "
+                           "look along an axis",
+                           f->face + 1, m->blocks.id[f->row], f->normal.x, f->normal.y, f->normal.z);
         what |= a->rotation ? TL_FIX_ROTATION : 0;
     }
     fix[f->row] |= (uint8_t)what;
@@ -404,8 +396,8 @@ static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_r
     for (size_t i = 0; i < faces->count && r->faces && r->blocks; i++) {
         const outer_face *f = &faces->at[i];
         tl_id id = m->blocks.id[f->row];
-        r->faces[r->face_count++] = (tl_boundary_face){id, f->face, f->sums.a, f->normal,
-                                                       tl_v3_add(m->origin, outer_centroid(f))};
+        r->faces[r->face_count++] =
+            (tl_boundary_face){id, f->face, f->sums.a, f->normal, tl_v3_add(m->origin, outer_centroid(f))};
         if (r->block_count == 0 || r->blocks[r->block_count - 1] != id)
             r->blocks[r->block_count++] = id;
         r->area += f->sums.a;
@@ -414,8 +406,8 @@ static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_r
 }
 
 /* Finds the faces of one action and notes what is to be done. */
-static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, body_sum *sums,
-                      face_loads *loads, tl_boundary_result *result)
+static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, body_sum *sums, face_loads *loads,
+                      tl_boundary_result *result)
 {
     face_list faces = {0};
     tl_status status = find_faces(m, &a->where, &faces);
@@ -462,8 +454,7 @@ static tl_status check_loads(tl_model *m, const body_sum *sums, bool add)
         tl_load load = load_of(m, body, &sums[body], add);
         if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) || !tl_v3_finite(load.at))
             return tl_fail(&m->error, TL_E_NUMERIC,
-                           "boundary: the load on block %u is not finite: give smaller numbers",
-                           m->bodies.id[body]);
+                           "boundary: the load on block %u is not finite: give smaller numbers", m->bodies.id[body]);
     }
     return TL_OK;
 }
@@ -482,8 +473,7 @@ static bool keep_others(const tl_model *m, const body_sum *sums, bool add, face_
     return true;
 }
 
-static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add,
-                           face_loads *loads)
+static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add, face_loads *loads)
 {
     tl_status status = check_loads(m, sums, add);
     size_t replaced = 0;

@@ -112,9 +112,8 @@ static uint32_t find_partner(filter *f, uint32_t body, bool any)
     uint32_t partner = TL_NO_ROW;
     const size_t count = list_near(f, body);
     for (size_t i = 0; i < count; i++)
-        if (tl_bodies_may_join(&f->model->bodies, body, f->near[i]) &&
-            is_visible(f->model, f->near[i]) && (any || !f->bad[f->near[i]]) &&
-            is_better(f, f->near[i], partner))
+        if (tl_bodies_may_join(&f->model->bodies, body, f->near[i]) && is_visible(f->model, f->near[i]) &&
+            (any || !f->bad[f->near[i]]) && is_better(f, f->near[i], partner))
             partner = f->near[i];
     for (size_t i = 0; i < count; i++)
         f->shared[f->near[i]] = 0;
@@ -170,8 +169,7 @@ static tl_status join(filter *f, tl_filter_result *result)
     tl_status status = join_round(f, result);
     for (size_t joined = result->joined; joined && status == TL_OK;) {
         tl_filter_result more = {0};
-        joined =
-            find_bad(f, &more) && more.count && join_round(f, &more) == TL_OK ? more.joined : 0;
+        joined = find_bad(f, &more) && more.count && join_round(f, &more) == TL_OK ? more.joined : 0;
         free(more.slivers);
     }
     return status;

@@ -32,8 +32,7 @@ static shares shares_of(const tl_point_lanes *l)
 }
 
 /* The columns of lanes in which the copies are: those in which a law's forces are noted elsewhere, and the arms. */
-static void copy_points(const tl_model *m, uint32_t c, const tl_traction *given,
-                        const tl_point_lanes *l, size_t lanes)
+static void copy_points(const tl_model *m, uint32_t c, const tl_traction *given, const tl_point_lanes *l, size_t lanes)
 {
     const tl_detect *d = m->detect;
     const tl_points_table *p = &d->points;
@@ -58,8 +57,7 @@ static void copy_points(const tl_model *m, uint32_t c, const tl_traction *given,
 }
 
 /* Asks the law for the shares of the shear. */
-static bool ask(const tl_model *m, uint32_t c, const tl_traction *given, tl_traction *borne,
-                double *stored)
+static bool ask(const tl_model *m, uint32_t c, const tl_traction *given, tl_traction *borne, double *stored)
 {
     const tl_detect *d = m->detect;
     const tl_point_lanes *l = &d->lanes[0];
@@ -93,8 +91,7 @@ static double surplus_of(const tl_traction *given, const tl_traction *borne)
 
 /* The first shares to ask for again, from what the whole has come to; how many points press more than is given. A
  * strength that goes with the pressure falls to that of the given one; any more that it has is found. */
-static size_t begin_shares(const tl_traction *given, const tl_traction *borne, size_t count,
-                           const shares *s)
+static size_t begin_shares(const tl_traction *given, const tl_traction *borne, size_t count, const shares *s)
 {
     size_t left = 0;
     for (size_t k = 0; k < count; k++) {
@@ -112,8 +109,7 @@ static size_t begin_shares(const tl_traction *given, const tl_traction *borne, s
 }
 
 /* The next shares, from what the last have come to; how many are not found. */
-static size_t next_shares(const tl_traction *given, const tl_traction *borne, size_t count,
-                          const shares *s)
+static size_t next_shares(const tl_traction *given, const tl_traction *borne, size_t count, const shares *s)
 {
     size_t left = 0;
     for (size_t k = 0; k < count; k++) {
@@ -134,8 +130,7 @@ static size_t next_shares(const tl_traction *given, const tl_traction *borne, si
     return left;
 }
 
-bool tl_contact_bear(const tl_model *m, uint32_t c, const tl_traction *given, tl_traction *borne,
-                     double *stored)
+bool tl_contact_bear(const tl_model *m, uint32_t c, const tl_traction *given, tl_traction *borne, double *stored)
 {
     const tl_point_lanes *l = &m->detect->lanes[0];
     size_t count = m->detect->contacts.point_count[c];
@@ -175,10 +170,8 @@ double tl_contact_shear_used(const tl_model *m, uint32_t c)
     for (size_t k = 0; k < all; k++) {
         const size_t i = tl_point_row(&d->contacts, c, k);
         const double per = d->points.area[i] > 0 ? 1 / d->points.area[i] : 0;
-        const double times =
-            field && k != TL_FIELD_SHEAR ? 0 : BEYOND * per; /* torsion is no shear */
-        given[k] = (tl_traction){d->points.f_n[i] * per,
-                                 tl_v3_scale(times, tl_columns_get(d->points.f_s, i))};
+        const double times = field && k != TL_FIELD_SHEAR ? 0 : BEYOND * per; /* torsion is no shear */
+        given[k] = (tl_traction){d->points.f_n[i] * per, tl_v3_scale(times, tl_columns_get(d->points.f_s, i))};
     }
     if (!tl_contact_bear(m, c, given, borne, &stored))
         return NAN;

@@ -24,8 +24,7 @@ void tl_two_closures(const double moment[4], double closure[2])
     closure[1] = mean + 0.5 * d * (g + side);
 }
 
-void tl_energy_cubic(const double at[2], const double energy[2], const double stress[2],
-                     double p[4])
+void tl_energy_cubic(const double at[2], const double energy[2], const double stress[2], double p[4])
 {
     double a = at[0], b = at[1], per = 1 / (b - a);
     double f = energy[0] / a, g = energy[1] / b, mean = (g - f) * per;

@@ -46,8 +46,7 @@ typedef struct pressing {
 /* The contact alone in its place of its SIMD group. */
 static tl_simd_group alone(const tl_contacts *contacts, uint32_t c, size_t l)
 {
-    tl_simd_group group = {.start = contacts->point_start[c] - (uint32_t)l,
-                           .slots = contacts->point_count[c]};
+    tl_simd_group group = {.start = contacts->point_start[c] - (uint32_t)l, .slots = contacts->point_count[c]};
     for (size_t k = 0; k < TL_LANES; k++)
         group.contact[k] = k == l ? c : TL_NO_ROW;
     return group;
@@ -68,8 +67,7 @@ static void spread(const tl_point_lanes *t, size_t count, size_t l)
 }
 
 /* Copies of what the law would change. */
-static void copy_points(const tl_points_table *p, size_t first, size_t rows,
-                        const tl_point_lanes *t)
+static void copy_points(const tl_points_table *p, size_t first, size_t rows, const tl_point_lanes *t)
 {
     memset(t->stored, 0, rows * sizeof *t->stored);
     memset(t->dissipated, 0, rows * sizeof *t->dissipated);
@@ -93,8 +91,7 @@ static void exchange(tl_detect *d, uint32_t c, size_t l, const tl_point_lanes *t
 }
 
 /* Adds what cells have beside their points, by whose forces they go. */
-static void add_cells(tl_model *m, const tl_simd_group *group, size_t l, const tl_point_lanes *t,
-                      pressing *to)
+static void add_cells(tl_model *m, const tl_simd_group *group, size_t l, const tl_point_lanes *t, pressing *to)
 {
     const tl_vec3 turn[TL_LANES] = {{0, 0, 0}}; /* that is for heat alone */
     const tl_law *law = &m->joint_laws[m->detect->contacts.law[group->contact[l]]];
@@ -166,8 +163,8 @@ static tl_vec3 basis(const tl_cut_contact *cut, tl_vec3 place)
 }
 
 /* Adds `sign` times a force with its moment about a place. */
-static void add_force(const tl_cut_contact *cut, tl_vec3 force, tl_vec3 moment, tl_vec3 place,
-                      double sign, double sum[])
+static void add_force(const tl_cut_contact *cut, tl_vec3 force, tl_vec3 moment, tl_vec3 place, double sign,
+                      double sum[])
 {
     double over = sign * per_length(cut);
     moment = tl_v3_add(moment, tl_v3_cross(tl_v3_sub(place, cut->whole.centre), force));
@@ -195,14 +192,12 @@ static tl_vec3 carried_by(const tl_model *m, uint32_t body, tl_vec3 place)
     return tl_v3_scale(m->dt, tl_v3_add(pose->v_moved, tl_v3_cross(pose->w_moved, arm)));
 }
 
-void tl_cut_contact_foresee(tl_model *m, uint32_t c, tl_cut_contact *cut, const tl_cut_side *a,
-                            const tl_cut_side *b)
+void tl_cut_contact_foresee(tl_model *m, uint32_t c, tl_cut_contact *cut, const tl_cut_side *a, const tl_cut_side *b)
 {
     const tl_old_point *points = &m->detect->cut_points[cut->first];
     const tl_point_lanes *lanes = &m->detect->lanes[0];
     double ride = m->detect->contacts.facet[c].ride, most = 0;
-    tl_vec3 n =
-        tl_v3_unit(tl_v3_sub(tl_v3_scale(ride, cut->face[0]), tl_v3_scale(1 - ride, cut->face[1])));
+    tl_vec3 n = tl_v3_unit(tl_v3_sub(tl_v3_scale(ride, cut->face[0]), tl_v3_scale(1 - ride, cut->face[1])));
     cut->next.along[0] = tl_v3_perpendicular(cut->face[0]);
     cut->next.along[1] = tl_v3_cross(cut->face[0], cut->next.along[0]);
     for (size_t k = 0; k < cut->count; k++)
@@ -215,8 +210,7 @@ void tl_cut_contact_foresee(tl_model *m, uint32_t c, tl_cut_contact *cut, const 
         tl_columns_put(lanes->normal, k, n);
         tl_columns_put(&lanes->before[1], k, tl_v3_scale(points[k].area, points[k].shear));
         lanes->closure[k] = points[k].closure;
-        put_motion(lanes, k,
-                   tl_v3_sub(carried_by(m, b->body, place), carried_by(m, a->body, place)));
+        put_motion(lanes, k, tl_v3_sub(carried_by(m, b->body, place), carried_by(m, a->body, place)));
     }
     pressing press;
     if (!ask_patch(m, c, lanes, &press))
@@ -295,8 +289,7 @@ static void begin_points(const parts *of, const six *more, uint32_t c, given *po
         t = tl_v3_madd(t, -tl_v3_dot(t, n), n);
         double share = tl_cut_contact_sign(of->m, of->cut, c) * d->points.area[row] / area;
         points[k] = (given){
-            .shear =
-                tl_v3_madd(tl_v3_scale(of->keep, tl_columns_get(d->points.f_s, row)), share, t),
+            .shear = tl_v3_madd(tl_v3_scale(of->keep, tl_columns_get(d->points.f_s, row)), share, t),
             .closure = kn > 0 ? (q[0] + q[1] * at.y + q[2] * at.z) / (kn * area) : 0,
         };
     }
@@ -347,8 +340,7 @@ static bool give_borne(const parts *of, uint32_t c, given *points)
             return false;
         again = false;
         for (size_t k = 0; k < of->m->detect->contacts.point_count[c]; k++)
-            again =
-                give_less(&points[k], tl_v3_norm(tl_columns_get(&lanes->before[1], k))) || again;
+            again = give_less(&points[k], tl_v3_norm(tl_columns_get(&lanes->before[1], k))) || again;
     }
     return true;
 }
@@ -360,8 +352,7 @@ static bool add_part(const parts *of, const six *more, uint32_t c, given *points
     double sign = tl_cut_contact_sign(of->m, of->cut, c);
     pressing press;
     begin_points(of, more, c, points);
-    if ((of->sought == TL_NEXT_SUMS && !give_borne(of, c, points)) ||
-        !ask(of, c, true, points, &press))
+    if ((of->sought == TL_NEXT_SUMS && !give_borne(of, c, points)) || !ask(of, c, true, points, &press))
         return false;
     tl_vec3 from = find_places(of->m, c, lanes);
     add_force(of->cut, press.force, press.moment, from, sign, sum);
@@ -486,8 +477,7 @@ static double go(parts *of, const six *step, int halvings, six *lacks)
 }
 
 /* Broyden's rule: brings slopes in line with what a share of their step has brought. */
-static void mend_slopes(slopes *by, int count, const six *step, double share, const six *before,
-                        const six *after)
+static void mend_slopes(slopes *by, int count, const six *step, double share, const six *before, const six *after)
 {
     double square = 0;
     for (int k = 0; k < count; k++)
@@ -561,8 +551,8 @@ static tl_shear sum_given(const parts *of)
     tl_shear sum = {.area = 0};
     for (size_t i = 0; i < of->count; i++)
         for (size_t k = 0; k < point_count(of, i); k++, point++)
-            tl_shear_add(&sum, d->points.area[tl_point_row(&d->contacts, of->part[i].contact, k)],
-                         tl_v3(0, 0, 0), point->shear);
+            tl_shear_add(&sum, d->points.area[tl_point_row(&d->contacts, of->part[i].contact, k)], tl_v3(0, 0, 0),
+                         point->shear);
     return sum;
 }
 

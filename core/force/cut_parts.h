@@ -8,8 +8,8 @@
 #include <stdbool.h>
 
 /* Notes what a patch would carry in the next step that ends because a block of it was cut. */
-void tl_cut_contact_foresee(tl_model *m, uint32_t contact, tl_cut_contact *cut,
-                            const tl_cut_side *a, const tl_cut_side *b);
+void tl_cut_contact_foresee(tl_model *m, uint32_t contact, tl_cut_contact *cut, const tl_cut_side *a,
+                            const tl_cut_side *b);
 /* After all parts have taken over their shares: brings them to where they carry the same. false: out of memory. */
 bool tl_cut_parts_correct(tl_model *m);
 

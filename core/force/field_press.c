@@ -61,9 +61,8 @@ static void ask(const tl_law *law, const tl_law_batch *batch, double *energy)
 }
 
 /* Points from a row on, with rows of `state` and forces to be filled. */
-static tl_law_batch batch_of(const tl_model *m, size_t first, size_t count,
-                             const tl_point_lanes *lanes, double *state[TL_STATE_COLUMNS],
-                             double *force)
+static tl_law_batch batch_of(const tl_model *m, size_t first, size_t count, const tl_point_lanes *lanes,
+                             double *state[TL_STATE_COLUMNS], double *force)
 {
     const tl_points_table *p = &m->detect->points;
     for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
@@ -78,8 +77,8 @@ static tl_law_batch batch_of(const tl_model *m, size_t first, size_t count,
 }
 
 /* Energies, J, of `count` points from row `first` at the closures given, by a law that tells them: tl_law_presses. */
-static void law_energies(const tl_model *m, const tl_law *law, size_t first, size_t count,
-                         const tl_point_lanes *lanes, const double *closure, double *energy)
+static void law_energies(const tl_model *m, const tl_law *law, size_t first, size_t count, const tl_point_lanes *lanes,
+                         const double *closure, double *energy)
 {
     double *state[TL_STATE_COLUMNS], force[TL_PRESSED_ROWS];
     tl_law_batch batch = batch_of(m, first, count, lanes, state, force);
@@ -88,8 +87,8 @@ static void law_energies(const tl_model *m, const tl_law *law, size_t first, siz
 }
 
 /* Asks at the closures u - lift, and for forces that the law does not give at those of a little less and more. */
-static void press(const tl_law *law, tl_law_batch *batch, const double *u, const double *lift,
-                  double *energy, double *force)
+static void press(const tl_law *law, tl_law_batch *batch, const double *u, const double *lift, double *energy,
+                  double *force)
 {
     double closure[TL_PRESSED_ROWS], other[2][TL_PRESSED_ROWS];
     const size_t count = batch->count;
@@ -110,17 +109,16 @@ static void press(const tl_law *law, tl_law_batch *batch, const double *u, const
         force[i] = u[i] > 0 ? (other[1][i] - other[0][i]) / (2 * NEAR * u[i]) : 0;
 }
 
-void tl_law_press(const tl_model *m, const tl_law *law, size_t first, size_t count,
-                  const tl_point_lanes *lanes, const double *u, const double *lift, double *energy,
-                  double *force)
+void tl_law_press(const tl_model *m, const tl_law *law, size_t first, size_t count, const tl_point_lanes *lanes,
+                  const double *u, const double *lift, double *energy, double *force)
 {
     double *state[TL_STATE_COLUMNS];
     tl_law_batch batch = batch_of(m, first, count, lanes, state, force);
     press(law, &batch, u, lift, energy, force);
 }
 
-void tl_law_press_alone(const tl_law *law, double area, const double state[TL_STATE_COLUMNS],
-                        const double u[], size_t count, double energy[], double stress[])
+void tl_law_press_alone(const tl_law *law, double area, const double state[TL_STATE_COLUMNS], const double u[],
+                        size_t count, double energy[], double stress[])
 {
     const tl_law_ops *ops = law->kind->ops;
     _Alignas(TL_ALIGN) double areas[TL_LANES], zero[TL_LANES] = {0}, at[TL_LANES] = {0};
@@ -138,12 +136,8 @@ void tl_law_press_alone(const tl_law *law, double area, const double state[TL_ST
         for (uint32_t l = 0; l < TL_LANES; l++)
             states[k][l] = state[k];
     }
-    tl_law_batch batch = {.size = sizeof batch,
-                          .count = TL_LANES,
-                          .area = areas,
-                          .f_n0 = zero,
-                          .state = state_at,
-                          .flags = flags};
+    tl_law_batch batch = {
+        .size = sizeof batch, .count = TL_LANES, .area = areas, .f_n0 = zero, .state = state_at, .flags = flags};
     if (ops->across_gap) {
         tl_enter(law->kind, "across_gap");
         ops->across_gap(law->self, &batch, lift, hold);
@@ -201,8 +195,7 @@ static double pays_for_lift(const tl_press_row *row, double whole)
 #define LIFT_KNOWN 1e-8
 
 /* With an energy 2 kn G. What slip opens in this step presses as what it opened in the last, or as at the centre. */
-static field_press press_linearly(const tl_press_row *row, double kn, double area, double f_n,
-                                  double same)
+static field_press press_linearly(const tl_press_row *row, double kn, double area, double f_n, double same)
 {
     const tl_press *press = &row->press;
     double by = 2 * kn, size = tl_v3_norm(press->force), whole = by * size, spring = kn * area;
@@ -230,8 +223,8 @@ static field_press press_linearly(const tl_press_row *row, double kn, double are
 static void find_closures(const tl_press_row *row, double closure[2])
 {
     const tl_field_power *powers = row->extra.powers;
-    const double moment[] = {powers[TL_PRESS_VOLUME].whole, 4 * row->press.energy,
-                             12 * powers[TL_PRESS_SQUARE].whole, 32 * powers[TL_PRESS_CUBE].whole};
+    const double moment[] = {powers[TL_PRESS_VOLUME].whole, 4 * row->press.energy, 12 * powers[TL_PRESS_SQUARE].whole,
+                             32 * powers[TL_PRESS_CUBE].whole};
     tl_two_closures(moment, closure);
     closure[0] = fmax(closure[0], LEAST_CLOSURE * closure[1]);
 }
@@ -240,9 +233,8 @@ static void find_closures(const tl_press_row *row, double closure[2])
 enum { FIELD_ROWS = TL_FIELD_POINTS * TL_LANES };
 
 /* Energies and stresses per area at the two closures of each press, one for each point, before slip opens more. */
-static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                        const tl_point_lanes *t, const double lift[FIELD_ROWS],
-                        told_press by[TL_LANES])
+static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_group *group, const tl_point_lanes *t,
+                        const double lift[FIELD_ROWS], told_press by[TL_LANES])
 {
     const double *area = m->detect->points.area + group->start;
     double u[FIELD_ROWS] = {0}, energy[FIELD_ROWS], force[FIELD_ROWS];
@@ -262,8 +254,8 @@ static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_grou
 }
 
 /* Asks a law of the field contacts of a SIMD group, whose first point is in lane `lane`. */
-static void press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                      const tl_point_lanes *t, size_t lane, told_press by[TL_LANES])
+static void press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *group, const tl_point_lanes *t,
+                      size_t lane, told_press by[TL_LANES])
 {
     double closure[FIELD_ROWS], lift[FIELD_ROWS], hold[FIELD_ROWS];
     double energy[FIELD_ROWS], before[FIELD_ROWS];
@@ -291,15 +283,14 @@ static void press_ask(const tl_model *m, const tl_law *law, const tl_simd_group 
 }
 
 /* The energy of the field, and its slopes by G and the powers. */
-static double find_slopes(const tl_press_row *row, double area, const told_press *by,
-                          field_press *out)
+static double find_slopes(const tl_press_row *row, double area, const told_press *by, field_press *out)
 {
     const tl_field_power *powers = row->extra.powers;
     double g = row->press.energy, v = powers[TL_PRESS_VOLUME].whole, p[4];
     tl_energy_cubic(by->at, by->energy, by->stress, p);
     double own = 0.25 * v * v / g, more = area / own;
-    double all = p[0] * v + 4 * p[1] * g + 12 * p[2] * powers[TL_PRESS_SQUARE].whole +
-                 32 * p[3] * powers[TL_PRESS_CUBE].whole;
+    double all =
+        p[0] * v + 4 * p[1] * g + 12 * p[2] * powers[TL_PRESS_SQUARE].whole + 32 * p[3] * powers[TL_PRESS_CUBE].whole;
     double stretch = all * (more - 1 / more);
     out->by_energy = more * 4 * p[1] + stretch / g;
     out->by_powers[TL_PRESS_VOLUME] = more * p[0] - 2 * stretch / v;
@@ -310,8 +301,8 @@ static double find_slopes(const tl_press_row *row, double area, const told_press
 
 /* Adds what slip opens in this step at the overlap 4 G / V of the area: it adds to the force by m = F o / U of an
  * energy U ~ o^m of the closure o, dF = (F - U / o) dU / U. Gives that. */
-static double add_rise(const tl_press_row *row, double area, const double f_n[TL_FIELD_POINTS],
-                       const told_press *by, field_press *out)
+static double add_rise(const tl_press_row *row, double area, const double f_n[TL_FIELD_POINTS], const told_press *by,
+                       field_press *out)
 {
     double g = row->press.energy, v = row->extra.powers[TL_PRESS_VOLUME].whole;
     double own = 0.25 * v * v / g, more[TL_FIELD_POINTS] = {0}, rise = 0;
@@ -328,8 +319,7 @@ static double add_rise(const tl_press_row *row, double area, const double f_n[TL
 }
 
 /* By the energy that a law tells; f_n and `same` are its forces on the two points. */
-static field_press press_by_law(const tl_press_row *row, double area, double f_n, double same,
-                                const told_press *by)
+static field_press press_by_law(const tl_press_row *row, double area, double f_n, double same, const told_press *by)
 {
     const double forces[TL_FIELD_POINTS] = {f_n, same};
     field_press out = {.springs = by->springs[0] + by->springs[1]};
@@ -347,8 +337,7 @@ static field_press press_by_law(const tl_press_row *row, double area, double f_n
 }
 
 /* By the force that a law gives which does not tell of its energy. */
-static field_press press_by_force(const tl_press *press, double kn, double area, double f_n,
-                                  double same)
+static field_press press_by_force(const tl_press *press, double kn, double area, double f_n, double same)
 {
     double by = f_n / tl_v3_norm(press->force);
     return (field_press){.force = tl_v3_scale(by, press->force),
@@ -359,8 +348,7 @@ static field_press press_by_force(const tl_press *press, double kn, double area,
                          .springs = (f_n * f_n + same * same) / (2 * kn * area)};
 }
 
-double tl_press_force(const tl_law *law, const tl_press_row *row,
-                      const double state[TL_STATE_COLUMNS])
+double tl_press_force(const tl_law *law, const tl_press_row *row, const double state[TL_STATE_COLUMNS])
 {
     told_press by = {.at = {0}};
     if (!(row->press.area > 0))
@@ -387,9 +375,8 @@ static double lost_lift(const tl_press_row *row, const field_press *by)
 
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again.
  * What the springs of the law hold pressed is not what the field holds: see tl_press. */
-static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                       const tl_point_lanes *t, size_t lane, const tl_arms *arms,
-                       tl_group_sums *out)
+static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group *group, const tl_point_lanes *t,
+                       size_t lane, const tl_arms *arms, tl_group_sums *out)
 {
     (void)arms;
     const tl_detect *d = m->detect;
@@ -435,8 +422,8 @@ static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group
     }
 }
 
-static void follow_fields(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
-                          size_t lane, uint32_t tangents, tl_arms *arms)
+static void follow_fields(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                          uint32_t tangents, tl_arms *arms)
 {
     tl_simd_group_follow(m, group, true, t, lane, tangents, arms);
 }

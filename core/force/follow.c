@@ -187,18 +187,16 @@ TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
 
 TL_INLINE tl_mat3 row_mat3(double (*row)[TL_LANES], size_t l)
 {
-    return (tl_mat3){{{row[0][l], row[1][l], row[2][l]},
-                      {row[3][l], row[4][l], row[5][l]},
-                      {row[6][l], row[7][l], row[8][l]}}};
+    return (tl_mat3){
+        {{row[0][l], row[1][l], row[2][l]}, {row[3][l], row[4][l], row[5][l]}, {row[6][l], row[7][l], row[8][l]}}};
 }
 
 /* Places of the points of the patch in lane l. Arms are then taken from `at`, which costs nothing at each point. */
-TL_INLINE void put_places(tl_frames *f, tl_arms *arms, size_t l, double (*facet)[TL_LANES],
-                          const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d)
+TL_INLINE void put_places(tl_frames *f, tl_arms *arms, size_t l, double (*facet)[TL_LANES], const tl_mat3 *ra,
+                          const tl_mat3 *rb, tl_vec3 d)
 {
     tl_mat3 turn = row_mat3(&facet[LAID_TURN], l), moved = tl_lanes9_get(&f->m, l);
-    tl_facing_place place =
-        tl_facing_ride(ra, rb, d, &turn, row_vec3(facet, LAID_SHIFT, l), facet[RIDE][l]);
+    tl_facing_place place = tl_facing_ride(ra, rb, d, &turn, row_vec3(facet, LAID_SHIFT, l), facet[RIDE][l]);
     tl_lanes9_put(&f->to, l, &place.to);
     tl_lanes3_put(&arms->at, l, place.at);
     tl_lanes3_put(&f->way, l, tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&moved, place.at)));
@@ -226,8 +224,7 @@ TL_INLINE void put_tangents(double *restrict tangent, double (*row)[TL_LANES], d
 }
 
 /* Motion of B against A in the last step, by half their turns; `d` is the way from A's centroid to B's. */
-TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, tl_vec3 half_b, tl_vec3 way,
-                          tl_vec3 d, double ride)
+TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, tl_vec3 half_b, tl_vec3 way, tl_vec3 d, double ride)
 {
     tl_mat3 ma = turn_back(half_a), mb = turn_back(half_b);
     tl_lanes3_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(&mb, d)));
@@ -237,8 +234,7 @@ TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, tl_vec3 half_b
 }
 
 /* `field` is a constant at each call. */
-TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows, bool field,
-                       tl_arms *restrict arms)
+TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows, bool field, tl_arms *restrict arms)
 {
     double tangent_a[TL_LANES], tangent_b[TL_LANES];
     known_lanes p;
@@ -249,18 +245,17 @@ TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows
     put_tangents(tangent_b, p.b, rows->dt);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = tl_apart(row_vec3(p.a, X_REF, l), row_vec3(p.a, U, l), row_vec3(p.b, X_REF, l),
-                             row_vec3(p.b, U, l));
+        tl_vec3 d =
+            tl_apart(row_vec3(p.a, X_REF, l), row_vec3(p.a, U, l), row_vec3(p.b, X_REF, l), row_vec3(p.b, U, l));
         tl_vec3 v = tl_v3_sub(row_vec3(p.b, V_MOVED, l), row_vec3(p.a, V_MOVED, l));
         double ride = field ? 0.5 : p.facet[RIDE][l];
         put_motion(f, l, tl_v3_scale(tangent_a[l], turn_of(p.a, l, rows->dt)),
-                   tl_v3_scale(tangent_b[l], turn_of(p.b, l, rows->dt)), tl_v3_scale(rows->dt, v),
-                   d, ride);
+                   tl_v3_scale(tangent_b[l], turn_of(p.b, l, rows->dt)), tl_v3_scale(rows->dt, v), d, ride);
         tl_mat3 ra = row_mat3(p.a, l), rb = row_mat3(p.b, l);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
-        tl_facing to = field ? tl_facing_field(na, p.facet[OFFSET][l])
-                             : tl_facing_patch(na, nb, d, p.facet[OFFSET][l], ride);
+        tl_facing to =
+            field ? tl_facing_field(na, p.facet[OFFSET][l]) : tl_facing_patch(na, nb, d, p.facet[OFFSET][l], ride);
         tl_lanes3_put(&f->n, l, to.n);
         tl_lanes3_put(&arms->push, l, to.push);
         tl_lanes3_put(&f->plane, l, to.plane);
@@ -274,14 +269,12 @@ TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows
     }
 }
 
-TL_VECTORIZED static void put_patches(tl_frames *restrict f, const tl_frame_rows *restrict rows,
-                                      tl_arms *restrict arms)
+TL_VECTORIZED static void put_patches(tl_frames *restrict f, const tl_frame_rows *restrict rows, tl_arms *restrict arms)
 {
     put_all(f, rows, false, arms);
 }
 
-TL_VECTORIZED static void put_fields(tl_frames *restrict f, const tl_frame_rows *restrict rows,
-                                     tl_arms *restrict arms)
+TL_VECTORIZED static void put_fields(tl_frames *restrict f, const tl_frame_rows *restrict rows, tl_arms *restrict arms)
 {
     put_all(f, rows, true, arms);
 }
@@ -300,8 +293,7 @@ typedef struct columns {
     double *arm[3], *normal[3], *closure, *du_n, *du_s[3];
 } columns;
 
-static columns columns_at(const tl_points_table *p, size_t row, const tl_point_lanes *t,
-                          size_t lane)
+static columns columns_at(const tl_points_table *p, size_t row, const tl_point_lanes *t, size_t lane)
 {
     return (columns){
         .p = {p->p[0] + row, p->p[1] + row, p->p[2] + row},
@@ -331,10 +323,7 @@ TL_VECTORIZED static void follow_points(const columns *c, size_t slots, const tl
             tl_columns_put(c->normal, i, n);
             double offset = f->offset[l];
             double closure = offset - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
-            c->closure[i] =
-                fabs(closure) > TOUCHING * (fabs(offset) + fabs(x.x) + fabs(x.y) + fabs(x.z))
-                    ? closure
-                    : 0;
+            c->closure[i] = fabs(closure) > TOUCHING * (fabs(offset) + fabs(x.x) + fabs(x.y) + fabs(x.z)) ? closure : 0;
             c->du_n[i] = du_n;
             tl_columns_put(c->du_s, i, tl_v3_madd(du, -du_n, n));
             tl_columns_put(c->f_s, i, tl_m3_mul(&turn, tl_columns_get(c->f_s, i)));
@@ -347,8 +336,7 @@ typedef struct torsions {
     double size[TL_LANES];
 } torsions;
 
-TL_VECTORIZED static void read_torsion(const columns *c, const tl_frames *restrict f,
-                                       torsions *restrict torsion)
+TL_VECTORIZED static void read_torsion(const columns *c, const tl_frames *restrict f, torsions *restrict torsion)
 {
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -368,8 +356,7 @@ typedef struct field_rows {
 /* The points of torsion of field contacts: what is a shear to the law is the turn about the normal, times the radius.
  * The law is given a normal that is perpendicular to it. While the contact's own does not turn, the force is not made
  * anew: it would be off by a rounding, and never rest. */
-TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *restrict f,
-                                         const field_rows *restrict rows,
+TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *restrict f, const field_rows *restrict rows,
                                          const torsions *restrict torsion)
 {
 #pragma omp simd
@@ -380,33 +367,27 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
         tl_vec3 less = tl_m3_mul(&motion, tl_lanes3_get(&rows->half, l));
         double less_n = tl_v3_dot(less, n);
         c->du_n[shear] -= less_n;
-        tl_columns_put(c->du_s, shear,
-                       tl_v3_sub(tl_columns_get(c->du_s, shear), tl_v3_madd(less, -less_n, n)));
-        tl_vec3 turn =
-            tl_v3(0.5 * (motion.m[2][1] - motion.m[1][2]), 0.5 * (motion.m[0][2] - motion.m[2][0]),
-                  0.5 * (motion.m[1][0] - motion.m[0][1]));
+        tl_columns_put(c->du_s, shear, tl_v3_sub(tl_columns_get(c->du_s, shear), tl_v3_madd(less, -less_n, n)));
+        tl_vec3 turn = tl_v3(0.5 * (motion.m[2][1] - motion.m[1][2]), 0.5 * (motion.m[0][2] - motion.m[2][0]),
+                             0.5 * (motion.m[1][0] - motion.m[0][1]));
         tl_columns_put(c->normal, i, tl_facing_aside(n));
         c->closure[i] -= rows->opened[l];
         tl_columns_put(c->du_s, i, tl_v3_scale(rows->radius[l] * tl_v3_dot(turn, n), n));
         tl_vec3 last = tl_lanes3_get(&f->last, l);
         bool still = (last.x == n.x) & (last.y == n.y) & (last.z == n.z);
-        tl_columns_put(c->f_s, i,
-                       still ? tl_lanes3_get(&torsion->force, l)
-                             : tl_v3_scale(torsion->size[l], n));
+        tl_columns_put(c->f_s, i, still ? tl_lanes3_get(&torsion->force, l) : tl_v3_scale(torsion->size[l], n));
     }
 }
 
 /* ---------------------------------------------------------------- SIMD groups ------------ */
 
 /* Turns the tangent states of a contact's points. */
-static void turn_states(tl_model *m, uint32_t contact, tl_vec3 before, tl_vec3 now, tl_vec3 half,
-                        uint32_t tangents)
+static void turn_states(tl_model *m, uint32_t contact, tl_vec3 before, tl_vec3 now, tl_vec3 half, uint32_t tangents)
 {
     tl_points_table *p = &m->detect->points;
     for (uint32_t k = 0; k + 2 < p->state_columns; k++) {
         double *v[3] = {p->state[k], p->state[k + 1], p->state[k + 2]};
-        for (uint32_t j = 0; j < m->detect->contacts.point_count[contact] && tangents >> k & 1;
-             j++) {
+        for (uint32_t j = 0; j < m->detect->contacts.point_count[contact] && tangents >> k & 1; j++) {
             size_t row = tl_point_row(&m->detect->contacts, contact, j);
             tl_columns_put(v, row, tl_turn_one(tl_columns_get(v, row), before, now, half));
         }
@@ -451,8 +432,8 @@ static void look_up_fields(const tl_model *m, const tl_simd_group *group, field_
     }
 }
 
-void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
-                          const tl_point_lanes *t, size_t lane, uint32_t tangents, tl_arms *arms)
+void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field, const tl_point_lanes *t, size_t lane,
+                          uint32_t tangents, tl_arms *arms)
 {
     tl_contacts *contacts = &m->detect->contacts;
     columns c = columns_at(&m->detect->points, group->start, t, lane);
@@ -479,8 +460,7 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
             continue;
         tl_vec3 n = tl_lanes3_get(&f.n, l);
         if (tangents)
-            turn_states(m, contact, contacts->facet[contact].last, n, tl_lanes3_get(&f.half, l),
-                        tangents);
+            turn_states(m, contact, contacts->facet[contact].last, n, tl_lanes3_get(&f.half, l), tangents);
         contacts->facet[contact].last = n;
         contacts->new_points[contact] = TL_POINTS_STAY;
     }

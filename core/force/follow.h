@@ -18,8 +18,8 @@ typedef struct tl_arms {
 typedef struct tl_group_sums {
     double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
     double holds_over_gap[TL_LANES]; /* above 0 when a force acts across a gap */
-    double odd
-        [TL_LANES]; /* 0, NaN when the force or moment is not finite, 1 when shear forces may leave their planes */
+    double
+        odd[TL_LANES]; /* 0, NaN when the force or moment is not finite, 1 when shear forces may leave their planes */
 } tl_group_sums;
 
 /* Limit: component of a shear force along the normal, relative to the whole force of the point. It holds for all
@@ -29,8 +29,7 @@ typedef struct tl_group_sums {
 
 /* Finds gaps, normals and relative motion of the contacts of a SIMD group of patches, or of field contacts, from lane
  * `lane` on. Turns shear forces with the common plane, and the states of which `tangents` has a bit. */
-void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
-                          const tl_point_lanes *lanes, size_t lane, uint32_t tangents,
-                          tl_arms *arms);
+void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field, const tl_point_lanes *lanes, size_t lane,
+                          uint32_t tangents, tl_arms *arms);
 
 #endif

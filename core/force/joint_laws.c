@@ -17,14 +17,13 @@ static bool is_stiffness(double k)
 }
 
 /* A law and its properties from what `out` has: those not given stay, with `keep`. */
-static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *context,
-                      tl_error *error)
+static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *context, tl_error *error)
 {
     const tl_kind *kind = out->kind;
     const tl_law_ops *ops = kind->ops;
     tl_report report = {.size = sizeof report};
-    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, keep,
-                                    out->params, context, error);
+    tl_status status =
+        tl_args_read(kind->params, kind->param_count, kind->param_stride, args, keep, out->params, context, error);
     out->self = out->params;
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");
@@ -67,15 +66,14 @@ static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *c
     return TL_OK;
 }
 
-tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *context,
-                      tl_error *error, tl_law *out)
+tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *context, tl_error *error, tl_law *out)
 {
     *out = (tl_law){.kind = kind, .params = calloc(1, kind->params_size + 1)};
     return out->params ? make(out, args, false, context, error) : tl_fail_memory(error);
 }
 
-tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
-                          const tl_args *args, const tl_law *from, tl_law *out)
+tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind, const tl_args *args,
+                          const tl_law *from, tl_law *out)
 {
     char context[TL_ERROR_TEXT / 2];
     *out = (tl_law){.tag = tag, .kind = kind, .params = calloc(1, kind->params_size + 1)};

@@ -73,8 +73,8 @@ static tl_status try_closure(const bench *b, const motion *by, double closure, s
     tl_status status = ops->update(b->law.self, &batch, &report);
     tl_leave();
     if (status != TL_OK)
-        return tl_fail(b->error, status, "law_test, %s: law '%s': %s", place(b, where),
-                       b->law.kind->name, tl_report_text(&report, status));
+        return tl_fail(b->error, status, "law_test, %s: law '%s': %s", place(b, where), b->law.kind->name,
+                       tl_report_text(&report, status));
     double sum = 0;
     for (uint32_t k = TL_AT_F_N; k < TL_AT_STATE + b->law.columns; k++)
         sum += 0 * out->c[k][0];
@@ -113,8 +113,7 @@ static tl_status evaluate(const closure_search *s, double closure, side *at)
 {
     const bench *b = s->b;
     tl_status status = try_closure(b, s->by, closure, s->out);
-    *at =
-        (side){closure, s->out->c[TL_AT_F_N][0] - b->stress + b->stiffness * (closure - b->start)};
+    *at = (side){closure, s->out->c[TL_AT_F_N][0] - b->stress + b->stiffness * (closure - b->start)};
     return status;
 }
 
@@ -133,8 +132,7 @@ static tl_status close_in(const closure_search *s, side low, side high)
     double last = 0;
     for (int pass = 0; pass < MOST_PASSES; pass++) {
         double middle = 0.5 * (low.closure + high.closure);
-        double secant =
-            low.closure - low.excess * (high.closure - low.closure) / (high.excess - low.excess);
+        double secant = low.closure - low.excess * (high.closure - low.closure) / (high.excess - low.excess);
         bool inside = secant > low.closure && secant < high.closure;
         /* every third pass halves, so that a kink does not hold one side for ever */
         double closure = inside && pass % 3 != 2 ? secant : middle;
@@ -199,8 +197,7 @@ tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_error *
     double steps = 0;
     *points = 1;
     if (!by_stress(test) && test->stiffness > 0)
-        return tl_fail(error, TL_E_ARGUMENT,
-                       "law_test: stiffness needs normal_stress, the stress at the start");
+        return tl_fail(error, TL_E_ARGUMENT, "law_test: stiffness needs normal_stress, the stress at the start");
     if (test->count == 0)
         return tl_fail(error, TL_E_ARGUMENT,
                        "law_test: path has no legs: give shear displacements, "
@@ -213,8 +210,7 @@ tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_error *
         if (!isnan(leg->closure) && by_stress(test))
             why = "closure is given in a test by normal_stress; leave one of them out";
         else if (ramp && (!by_stress(test) || test->stiffness > 0))
-            why =
-                "normal_stress can change only in a test with normal_stress and without stiffness";
+            why = "normal_stress can change only in a test with normal_stress and without stiffness";
         else if (still && !timed)
             why = "nothing is to happen: give shear, closure, normal_stress or a time";
         else if (timed && !isnan(leg->speed))
@@ -223,8 +219,7 @@ tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_error *
             return tl_fail(error, TL_E_ARGUMENT, "law_test, path[%zu]: %s", k + 1, why);
         steps += (double)steps_of(test, leg);
         if (steps > TL_LAW_TEST_STEPS)
-            return tl_fail(error, TL_E_ARGUMENT,
-                           "law_test, path[%zu]: the test has more than %d steps: give fewer",
+            return tl_fail(error, TL_E_ARGUMENT, "law_test, path[%zu]: the test has more than %d steps: give fewer",
                            k + 1, TL_LAW_TEST_STEPS);
         *points += (size_t)((steps_of(test, leg) + test->every - 1) / test->every);
     }
@@ -252,12 +247,11 @@ static tl_status make_step(bench *b, const motion *by, double closure)
 {
     sample next;
     const sample *now = &b->now;
-    tl_status status =
-        by_stress(b->test) ? balance(b, by, &next) : try_closure(b, by, closure, &next);
+    tl_status status = by_stress(b->test) ? balance(b, by, &next) : try_closure(b, by, closure, &next);
     if (status != TL_OK)
         return status;
-    b->work += 0.5 * (now->c[TL_AT_F_N][0] + next.c[TL_AT_F_N][0]) *
-               (next.c[TL_AT_CLOSURE][0] - now->c[TL_AT_CLOSURE][0]);
+    b->work +=
+        0.5 * (now->c[TL_AT_F_N][0] + next.c[TL_AT_F_N][0]) * (next.c[TL_AT_CLOSURE][0] - now->c[TL_AT_CLOSURE][0]);
     b->work -= 0.5 * (now->c[TL_AT_F_S][0] + next.c[TL_AT_F_S][0]) * by->du;
     b->heat += next.c[TL_AT_DISSIPATED][0];
     b->time += by->dt;
@@ -332,8 +326,8 @@ static tl_status begin(bench *b)
     return status;
 }
 
-tl_status tl_law_test_run(const tl_law_test *test, tl_law_point *points, size_t *ends,
-                          const tl_kind **law, tl_error *error)
+tl_status tl_law_test_run(const tl_law_test *test, tl_law_point *points, size_t *ends, const tl_kind **law,
+                          tl_error *error)
 {
     size_t count;
     char context[TL_ERROR_TEXT / 2];

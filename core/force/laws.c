@@ -34,8 +34,7 @@ static double *carried(const tl_points_table *p, size_t k)
 }
 
 /* Notes what the points of a tile carry before they are followed. */
-static void note_points(const tl_points_table *p, size_t first, size_t count,
-                        const tl_point_lanes *t)
+static void note_points(const tl_points_table *p, size_t first, size_t count, const tl_point_lanes *t)
 {
     for (size_t k = 0; k < 4 + TL_STATE_COLUMNS && carried(p, k); k++)
         memcpy(t->before[k], carried(p, k) + first, count * sizeof *t->before[k]);
@@ -162,8 +161,7 @@ static bool measure(const place *at, const double *move, const tl_vec3 *slide, s
 {
     trial rest, pressed, slid;
     double none[TL_LANES] = {0};
-    if (!try_law(at, none, NULL, &rest) || !try_law(at, move, NULL, &pressed) ||
-        !try_law(at, move, slide, &slid))
+    if (!try_law(at, none, NULL, &rest) || !try_law(at, move, NULL, &pressed) || !try_law(at, move, slide, &slid))
         return false;
     for (size_t l = 0; l < TL_LANES; l++) {
         double area = rest.area[l];
@@ -178,8 +176,7 @@ static bool measure(const place *at, const double *move, const tl_vec3 *slide, s
 }
 
 /* Names the first point that is far stiffer than its law says. */
-static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group *group, size_t row,
-                    const slopes *found)
+static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group *group, size_t row, const slopes *found)
 {
     for (size_t l = 0; l < TL_LANES; l++) {
         bool shear = found->shear[l] > found->normal[l];
@@ -187,21 +184,19 @@ static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group 
         char text[240];
         if (!(stiffness > FAR_STIFFER * tl_law_stiffness(law)) || isinf(stiffness))
             continue; /* where a trial leaves the range of numbers it tells nothing */
-        tl_text_print(
-            text, sizeof text,
-            "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks "
-            "= %.3g Pa/m, from "
-            "which the time step follows: they must be upper bounds, or the step is unstable",
-            shear ? "shear" : "normal", stiffness, law->kn, law->ks);
+        tl_text_print(text, sizeof text,
+                      "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks "
+                      "= %.3g Pa/m, from "
+                      "which the time step follows: they must be upper bounds, or the step is unstable",
+                      shear ? "shear" : "normal", stiffness, law->kn, law->ks);
         tl_failure_note(failure, group->start, TL_E_PLUGIN, row + l, text);
     }
 }
 
 /* Of the points of a SIMD group, whose first is in lane `lane`: whether they are stiffer than the law says, those in
  * the lanes of the mask `begins`, and whether shear forces leave the common plane. */
-static void law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_law *law,
-                                const tl_simd_group *group, const tl_point_lanes *lanes,
-                                size_t lane, unsigned begins)
+static void law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_law *law, const tl_simd_group *group,
+                                const tl_point_lanes *lanes, size_t lane, unsigned begins)
 {
     for (size_t k = 0; k < group->slots; k++) {
         place at = {m, law, lanes, group->start + k * TL_LANES, lane + k * TL_LANES};
@@ -212,11 +207,8 @@ static void law_check_stiffness(const tl_model *m, tl_failure *failure, const tl
             size_t i = at.lane + l;
             tl_vec3 du_s = tl_columns_get(lanes->du_s, i);
             double length = tl_v3_norm(du_s);
-            slide[l] = length > 0 ? tl_v3_unit(du_s)
-                                  : tl_v3_perpendicular(tl_columns_get(lanes->normal, i));
-            move[l] = begins >> l & 1
-                          ? TRIAL * (fabs(lanes->closure[i]) + fabs(lanes->du_n[i]) + length)
-                          : 0;
+            slide[l] = length > 0 ? tl_v3_unit(du_s) : tl_v3_perpendicular(tl_columns_get(lanes->normal, i));
+            move[l] = begins >> l & 1 ? TRIAL * (fabs(lanes->closure[i]) + fabs(lanes->du_n[i]) + length) : 0;
         }
         if (measure(&at, move, slide, &found))
             compare(failure, law, group, at.row, &found);
@@ -246,8 +238,7 @@ static bool try_in_plane(const place *at, double along[TL_LANES])
 }
 
 /* Whether `along` N is a component along the normal that a shear force in point `row` of contact c must not have. */
-static bool is_out_of_plane(const tl_model *m, const tl_law *law, uint32_t c, size_t row,
-                            double along)
+static bool is_out_of_plane(const tl_model *m, const tl_law *law, uint32_t c, size_t row, double along)
 {
     const tl_points_table *p = &m->detect->points;
     double size = tl_contact_size(m, c);
@@ -256,8 +247,8 @@ static bool is_out_of_plane(const tl_model *m, const tl_law *law, uint32_t c, si
     return along > TL_OUT_OF_PLANE * force && along > ROUNDING_FORCE * spring;
 }
 
-static void law_check_shear(const tl_model *m, tl_failure *failure, const tl_law *law,
-                            const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane)
+static void law_check_shear(const tl_model *m, tl_failure *failure, const tl_law *law, const tl_simd_group *group,
+                            const tl_point_lanes *lanes, size_t lane)
 {
     const tl_points_table *p = &m->detect->points;
     for (size_t i = 0; i < group->slots * TL_LANES; i++) {
@@ -273,11 +264,10 @@ static void law_check_shear(const tl_model *m, tl_failure *failure, const tl_law
             !is_out_of_plane(m, law, c, row, own[l]))
             continue;
         char text[240];
-        tl_text_print(
-            text, sizeof text,
-            "its shear force of %.3g N has a component of %.3g N along the normal: it must "
-            "lie in the common plane, to %g of the force",
-            tl_v3_norm(f), along, TL_OUT_OF_PLANE);
+        tl_text_print(text, sizeof text,
+                      "its shear force of %.3g N has a component of %.3g N along the normal: it must "
+                      "lie in the common plane, to %g of the force",
+                      tl_v3_norm(f), along, TL_OUT_OF_PLANE);
         tl_failure_note(failure, group->start, TL_E_PLUGIN, row, text);
     }
 }
@@ -287,8 +277,7 @@ typedef struct point_told {
     double closure, motion, normal, shear;
 } point_told;
 
-static point_told told_of(const tl_points_table *p, const tl_point_lanes *lanes, size_t row,
-                          size_t lane)
+static point_told told_of(const tl_points_table *p, const tl_point_lanes *lanes, size_t row, size_t lane)
 {
     double slip = tl_v3_norm(tl_columns_get(lanes->du_s, lane));
     return (point_told){lanes->closure[lane], fabs(lanes->du_n[lane]) + slip, p->f_n[row],
@@ -297,9 +286,8 @@ static point_told told_of(const tl_points_table *p, const tl_point_lanes *lanes,
 
 /* Names what is no finite number in the force of the contact in a lane of the SIMD group: what the law was given, what
  * it gave, or the sum. */
-static void law_check_forces(const tl_model *m, tl_failure *failure, const tl_law *law,
-                             const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
-                             size_t contact)
+static void law_check_forces(const tl_model *m, tl_failure *failure, const tl_law *law, const tl_simd_group *group,
+                             const tl_point_lanes *lanes, size_t lane, size_t contact)
 {
     const tl_points_table *p = &m->detect->points;
     char text[300];
@@ -313,21 +301,19 @@ static void law_check_forces(const tl_model *m, tl_failure *failure, const tl_la
         largest = fmax(largest, fmax(fabs(at.normal), at.shear));
         bool sound = isfinite(at.closure) && isfinite(at.motion);
         if (sound && isfinite(at.normal) && isfinite(at.shear)) {
-            tl_text_print(
-                text, sizeof text,
-                "the force is not a finite number: those of its points are, up to %.3g N, but "
-                "not their sum or moment; with kn = %.3g and ks = %.3g Pa/m, is a property "
-                "out of proportion?",
-                largest, law->kn, law->ks);
+            tl_text_print(text, sizeof text,
+                          "the force is not a finite number: those of its points are, up to %.3g N, but "
+                          "not their sum or moment; with kn = %.3g and ks = %.3g Pa/m, is a property "
+                          "out of proportion?",
+                          largest, law->kn, law->ks);
             continue;
         }
-        tl_text_print(
-            text, sizeof text,
-            "the force is not a finite number: %s a normal force of %.3g N and a shear force "
-            "of %.3g N for a closure of %.3g m, a motion of %.3g m in the last step and an "
-            "area of %.3g m2: look at %s",
-            sound ? "the law gives" : "it is", at.normal, at.shear, at.closure, at.motion,
-            p->area[row], sound ? "its properties" : "places and velocities of the blocks");
+        tl_text_print(text, sizeof text,
+                      "the force is not a finite number: %s a normal force of %.3g N and a shear force "
+                      "of %.3g N for a closure of %.3g m, a motion of %.3g m in the last step and an "
+                      "area of %.3g m2: look at %s",
+                      sound ? "the law gives" : "it is", at.normal, at.shear, at.closure, at.motion, p->area[row],
+                      sound ? "its properties" : "places and velocities of the blocks");
         break;
     }
     row = row < group->start + group->slots * TL_LANES ? row : group->start + contact;
@@ -345,8 +331,7 @@ static const char *state_name(const tl_kind *kind, uint32_t column)
 }
 
 /* Of `count` points from row `first`: whether their states are numbers. */
-static void law_check_states(const tl_model *m, tl_failure *failure, const tl_law *law,
-                             size_t first, size_t count)
+static void law_check_states(const tl_model *m, tl_failure *failure, const tl_law *law, size_t first, size_t count)
 {
     const tl_points_table *p = &m->detect->points;
     for (uint32_t c = 0; c < law->columns; c++)
@@ -354,8 +339,7 @@ static void law_check_states(const tl_model *m, tl_failure *failure, const tl_la
             char text[200];
             if (isfinite(p->state[c][i]) || !(p->area[i] > 0))
                 continue;
-            tl_text_print(text, sizeof text,
-                          "it leaves %g in its state '%.40s', which must be a finite number",
+            tl_text_print(text, sizeof text, "it leaves %g in its state '%.40s', which must be a finite number",
                           p->state[c][i], state_name(law->kind, c));
             tl_failure_note(failure, first, TL_E_PLUGIN, i, text);
             return;
@@ -388,8 +372,7 @@ static bool has_edges(const span_job *job)
 }
 
 /* Calls the law on `count` points from `first`, some of which are `partly` open; false when it failed. */
-static bool call_law(const span_job *job, size_t first, size_t count, bool partly,
-                     const tl_point_lanes *l)
+static bool call_law(const span_job *job, size_t first, size_t count, bool partly, const tl_point_lanes *l)
 {
     tl_points_table *p = &job->m->detect->points;
     double *state[TL_STATE_COLUMNS];
@@ -422,15 +405,13 @@ static bool call_law(const span_job *job, size_t first, size_t count, bool partl
     /* the plugin's word: there need not be such a point */
     size_t bad = report.first_bad < count ? report.first_bad : 0;
     if (status != TL_OK)
-        tl_failure_note(job->phase->failure, first, status, first + bad,
-                        tl_report_text(&report, status));
+        tl_failure_note(job->phase->failure, first, status, first + bad, tl_report_text(&report, status));
     return status == TL_OK;
 }
 
 /* Point after point: the same order for every width of the processor's vectors. */
-TL_VECTORIZED static void add_points(const tl_points_table *p, const tl_point_lanes *t, size_t row,
-                                     size_t lane, size_t slots, const tl_arms *restrict arms,
-                                     tl_group_sums *restrict out)
+TL_VECTORIZED static void add_points(const tl_points_table *p, const tl_point_lanes *t, size_t row, size_t lane,
+                                     size_t slots, const tl_arms *restrict arms, tl_group_sums *restrict out)
 {
     const double *f_n = p->f_n + row, *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row;
     const double *f_z = p->f_s[2] + row, *x = t->arm[0] + lane, *y = t->arm[1] + lane;
@@ -471,8 +452,8 @@ TL_VECTORIZED static void add_points(const tl_points_table *p, const tl_point_la
 
 /* Adds 1 to what is odd of a contact whose shear forces may leave their planes. A loop of its own: add_points has no
  * register left. */
-TL_VECTORIZED static void sum_tilts(const tl_points_table *p, const tl_point_lanes *t, size_t row,
-                                    size_t lane, size_t slots, tl_group_sums *restrict out)
+TL_VECTORIZED static void sum_tilts(const tl_points_table *p, const tl_point_lanes *t, size_t row, size_t lane,
+                                    size_t slots, tl_group_sums *restrict out)
 {
     const double *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row, *f_z = p->f_s[2] + row;
     const double *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane, *n_z = t->normal[2] + lane;
@@ -491,8 +472,7 @@ TL_VECTORIZED static void sum_tilts(const tl_points_table *p, const tl_point_lan
 }
 
 /* 0, or NaN when a state of the points is not finite. */
-TL_VECTORIZED static double odd_states(const tl_points_table *p, uint32_t columns, size_t first,
-                                       size_t count)
+TL_VECTORIZED static double odd_states(const tl_points_table *p, uint32_t columns, size_t first, size_t count)
 {
     double odd[TL_LANES] = {0}, sum = 0;
     for (uint32_t c = 0; c < columns; c++) {
@@ -509,8 +489,7 @@ TL_VECTORIZED static double odd_states(const tl_points_table *p, uint32_t column
 
 static double sum_over_lanes(const double *lane)
 {
-    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
-           ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
 /* Names what is wrong in a SIMD group of which a sum is odd. */
@@ -523,16 +502,15 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const tl
     law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
-static void sum_patches(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                        const tl_point_lanes *t, size_t lane, const tl_arms *arms,
-                        tl_group_sums *out)
+static void sum_patches(const tl_model *m, const tl_law *law, const tl_simd_group *group, const tl_point_lanes *t,
+                        size_t lane, const tl_arms *arms, tl_group_sums *out)
 {
     (void)law;
     add_points(&m->detect->points, t, group->start, lane, group->slots, arms, out);
 }
 
-static void follow_patches(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
-                           size_t lane, uint32_t tangents, tl_arms *arms)
+static void follow_patches(tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                           uint32_t tangents, tl_arms *arms)
 {
     tl_simd_group_follow(m, group, false, t, lane, tangents, arms);
 }
@@ -540,8 +518,8 @@ static void follow_patches(tl_model *m, const tl_simd_group *group, const tl_poi
 const tl_kind_force tl_patch_force = {.cells = true, .follow = follow_patches, .sum = sum_patches};
 
 /* Adds what partly open patches have beside their points. Gives the lanes that slip has opened. */
-static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                          size_t lane, tl_part_lanes parts, const tl_arms *arms, tl_group_sums *sum)
+static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                          tl_part_lanes parts, const tl_arms *arms, tl_group_sums *sum)
 {
     tl_part_sums more[TL_LANES];
     tl_vec3 turn[TL_LANES];
@@ -549,8 +527,7 @@ static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const
         size_t l = (size_t)__builtin_ctz(left);
         turn[l] = tl_contact_moved(job->m, group->contact[l]).turn;
     }
-    const tl_found_lanes found =
-        tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, turn, more);
+    const tl_found_lanes found = tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, turn, more);
     for (uint32_t left = found.parts; left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         tl_vec3 force = tl_v3_scale(more[l].force, tl_lanes3_get(&arms->push, l));
@@ -567,8 +544,8 @@ static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const
 }
 
 /* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
-static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane, tl_part_lanes parts, const tl_arms *arms)
+static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                      tl_part_lanes parts, const tl_arms *arms)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
@@ -637,15 +614,14 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
         job->kind->follow(job->m, &groups[r], t, points, job->law->tangents, &arms[r]);
         if (has_edges(job))
             tl_simd_group_edges(job->m, &groups[r], t, points);
-        part[r] = job->kind->cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points)
-                                   : (tl_part_lanes){0, 0};
+        part[r] =
+            job->kind->cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points) : (tl_part_lanes){0, 0};
         any |= part[r].parts;
         points += (size_t)groups[r].slots * TL_LANES;
     }
     for (size_t r = 0; any && r < count; r++)
         if (!part[r].parts)
-            memset(t->apart + (groups[r].start - first), 0,
-                   (size_t)groups[r].slots * TL_LANES * sizeof *t->apart);
+            memset(t->apart + (groups[r].start - first), 0, (size_t)groups[r].slots * TL_LANES * sizeof *t->apart);
     if (!call_law(job, first, points, any != 0, t))
         return;
     if (odd_states(&job->m->detect->points, job->law->columns, first, points) != 0)
@@ -665,15 +641,12 @@ static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     const span_job *job = user;
     const tl_simd_group *groups = job->m->detect->layout.groups + job->span->group_begin;
     const tl_point_lanes *t = &job->m->detect->lanes[thread];
-    size_t asked =
-        tl_points_are_far(job->m->detect) ? job->span->group_end - job->span->group_begin : 0;
+    size_t asked = tl_points_are_far(job->m->detect) ? job->span->group_end - job->span->group_begin : 0;
     while (begin < end) {
         size_t count = 1, points = (size_t)groups[begin].slots * TL_LANES;
-        while (begin + count < end &&
-               (points += (size_t)groups[begin + count].slots * TL_LANES) <= TL_TILE)
+        while (begin + count < end && (points += (size_t)groups[begin + count].slots * TL_LANES) <= TL_TILE)
             count++;
-        force_tile(job, &groups[begin], count, asked > begin + count ? asked - begin - count : 0,
-                   t);
+        force_tile(job, &groups[begin], count, asked > begin + count ? asked - begin - count : 0, t);
         begin += count;
     }
 }
@@ -719,9 +692,8 @@ static tl_status report_failure(tl_model *m, tl_failure *failure)
     const tl_plugin *plugin = tl_plugin_of(kind, NULL);
     if (at.contact != TL_NO_ROW)
         tl_contact_name(m, at.contact, name, sizeof name);
-    tl_fail(&m->error, failure->error.status, "cycle %lld, law '%s' of plugin '%s', %s: %s",
-            (long long)m->cycles + 1, kind->name, plugin ? plugin->id : "?", name,
-            failure->error.text);
+    tl_fail(&m->error, failure->error.status, "cycle %lld, law '%s' of plugin '%s', %s: %s", (long long)m->cycles + 1,
+            kind->name, plugin ? plugin->id : "?", name, failure->error.text);
     failure->error.status = TL_OK;
     return m->error.status;
 }
@@ -740,8 +712,7 @@ tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase)
                         .span = span,
                         .kind = d->kinds[span->kind]->force,
                         .changed = span->held ? &changed : NULL};
-        tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, force_range,
-                        &job);
+        tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, force_range, &job);
         span->changed = changed;
     }
     return report_failure(m, phase->failure);
@@ -759,8 +730,8 @@ tl_status tl_laws_check(tl_model *m)
             continue;
         char name[320];
         tl_contact_name(m, i, name, sizeof name);
-        return tl_fail(&m->error, TL_E_STATE, "%s has no law: set one with %s or for that joint",
-                       name, tl_words(m, "model:joint(\"*\", ...)", "tl_joint_law() for \"*\""));
+        return tl_fail(&m->error, TL_E_STATE, "%s has no law: set one with %s or for that joint", name,
+                       tl_words(m, "model:joint(\"*\", ...)", "tl_joint_law() for \"*\""));
     }
     return TL_OK;
 }

@@ -111,8 +111,7 @@ static void choose_all(const cells *of, answer *one, answer *two)
 {
     for (size_t i = 0; i < of->count; i++) {
         const tl_cell *cell = &of->t->cell[of->lane + i];
-        const double moment[] = {cell->pressed_volume, cell->pressed_second, cell->pressed_third,
-                                 cell->pressed_fourth};
+        const double moment[] = {cell->pressed_volume, cell->pressed_second, cell->pressed_third, cell->pressed_fourth};
         double closure[2] = {0, 0};
         if ((of->parts >> i % TL_LANES & 1) && cell->pressed_volume > 0)
             tl_two_closures(moment, closure);
@@ -121,16 +120,15 @@ static void choose_all(const cells *of, answer *one, answer *two)
     }
 }
 
-static bent_whole whole_of(const tl_cell *cell, const double at[2], const double energy[2],
-                           const double stress[2])
+static bent_whole whole_of(const tl_cell *cell, const double at[2], const double energy[2], const double stress[2])
 {
     double p[4];
     bent_whole out;
     tl_energy_cubic(at, energy, stress, p);
-    out.energy = p[0] * cell->pressed_volume + p[1] * cell->pressed_second +
-                 p[2] * cell->pressed_third + p[3] * cell->pressed_fourth;
-    out.force = p[0] * cell->pressed_area + 2 * p[1] * cell->pressed_volume +
-                3 * p[2] * cell->pressed_second + 4 * p[3] * cell->pressed_third;
+    out.energy = p[0] * cell->pressed_volume + p[1] * cell->pressed_second + p[2] * cell->pressed_third +
+                 p[3] * cell->pressed_fourth;
+    out.force = p[0] * cell->pressed_area + 2 * p[1] * cell->pressed_volume + 3 * p[2] * cell->pressed_second +
+                4 * p[3] * cell->pressed_third;
     out.moment = tl_v3_madd(tl_v3_scale(p[0], cell->pressed_centre), 2 * p[1], cell->pressed);
     out.moment = tl_v3_madd(out.moment, 3 * p[2], cell->pressed_square);
     out.moment = tl_v3_madd(out.moment, 4 * p[3], cell->pressed_cube);
@@ -169,8 +167,7 @@ static void find_wholes(const cells *of, const answer *one, const answer *two, b
 }
 
 /* What a cell has where its point presses at the closure u with the stress and energy per area given. */
-static tl_bent bent_of(const tl_cell *cell, const bent_whole *by, double area, double u,
-                       double stress, double energy)
+static tl_bent bent_of(const tl_cell *cell, const bent_whole *by, double area, double u, double stress, double energy)
 {
     double scale = u / stress;
     double second = cell->pressed_second - area * u * u;
@@ -197,8 +194,7 @@ static double next(double mean, answer *one, answer *two, const answer *even, si
 }
 
 /* Finds closures of the means, by those at which the curve is known. */
-static void find_even(const cells *of, const bent_whole by[ROWS], answer *one, answer *two,
-                      answer *even)
+static void find_even(const cells *of, const bent_whole by[ROWS], answer *one, answer *two, answer *even)
 {
     int side[ROWS] = {0};
     bool found = false;
@@ -243,16 +239,16 @@ static void bend(const cells *of)
         find_even(of, by, &one, &two, &even);
     for (size_t i = 0; i < of->count; i++) {
         tl_cell *cell = &of->t->cell[of->lane + i];
-        cell->bent = even.stress[i] > 0 ? bent_of(cell, &by[i], area_of(of, i), even.u[i],
-                                                  even.stress[i], even.energy[i])
-                                        : (tl_bent){0};
+        cell->bent = even.stress[i] > 0
+                         ? bent_of(cell, &by[i], area_of(of, i), even.u[i], even.stress[i], even.energy[i])
+                         : (tl_bent){0};
     }
 }
 
 /* What the stress of a law that tells its energy (tl_law_presses) changes in cells of the lanes `parts`, whose
  * integrals are known. `found`: of points at their closures, else of closures that suit the cells. */
-static void cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                       const tl_point_lanes *lanes, size_t lane, uint32_t parts, bool found)
+static void cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group *group, const tl_point_lanes *lanes,
+                       size_t lane, uint32_t parts, bool found)
 {
     size_t rows = (size_t)group->slots * TL_LANES;
     for (size_t at = 0; at < rows; at += ROWS) {
@@ -300,8 +296,7 @@ static void put_edges(const tl_cell_patch *of)
     edge[2 * n * TL_LANES] = least;
 }
 
-void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
-                         size_t lane)
+void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane)
 {
     memcpy(t->edge + lane, t->closure + lane, (size_t)group->slots * TL_LANES * sizeof *t->edge);
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -319,8 +314,8 @@ typedef struct range {
 } range;
 
 /* Of a + sign b. */
-TL_INLINE range range_of(const double *restrict area, const double *restrict a,
-                         const double *restrict b, const double sign, size_t slots)
+TL_INLINE range range_of(const double *restrict area, const double *restrict a, const double *restrict b,
+                         const double sign, size_t slots)
 {
     range r;
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -351,8 +346,8 @@ typedef struct spread {
     double beyond[TL_LANES];
 } spread;
 
-TL_VECTORIZED static spread find_spread(const tl_points_table *p, const tl_simd_group *group,
-                                        const tl_point_lanes *t, size_t lane)
+TL_VECTORIZED static spread find_spread(const tl_points_table *p, const tl_simd_group *group, const tl_point_lanes *t,
+                                        size_t lane)
 {
     const double *area = p->area + group->start, *closure = t->closure + lane;
     const double *lift = t->lift + lane;
@@ -375,12 +370,11 @@ static uint32_t opening_lanes(const spread *of)
 }
 
 /* Whether the faces lie on each other throughout: slip only lifts them. */
-TL_VECTORIZED static bool is_closed(const tl_points_table *p, const tl_simd_group *group,
-                                    const tl_point_lanes *t, size_t lane)
+TL_VECTORIZED static bool is_closed(const tl_points_table *p, const tl_simd_group *group, const tl_point_lanes *t,
+                                    size_t lane)
 {
     uint32_t open = 0;
-    const range o =
-        range_of(p->area + group->start, t->closure + lane, t->zero + lane, 1, group->slots);
+    const range o = range_of(p->area + group->start, t->closure + lane, t->zero + lane, 1, group->slots);
     for (size_t l = 0; l < TL_LANES; l++)
         open |= (uint32_t)(o.low[l] - corners_beyond(&o, l) < 0);
     return open == 0;
@@ -503,9 +497,8 @@ static void leave_found(const tl_cell_patch *of, size_t k, double apart, bool cu
 
 /* The patches of a SIMD group whose points get means: those of which a part may be apart, and under a curved law all.
  * Gives how many, and the lanes of these and of those that hold throughout. */
-static size_t find_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                         const tl_point_lanes *t, size_t lane, const spread *by,
-                         tl_cell_patch out[TL_LANES], tl_part_lanes *lanes)
+static size_t find_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group, const tl_point_lanes *t,
+                         size_t lane, const spread *by, tl_cell_patch out[TL_LANES], tl_part_lanes *lanes)
 {
     const uint32_t all = (1u << TL_LANES) - 1;
     size_t count = 0;
@@ -559,8 +552,8 @@ tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_
 
 /* ---------------------------------------------------------------- after the law ---------- */
 
-static tl_cell_patch patch_at(const tl_model *m, const tl_simd_group *group,
-                              const tl_point_lanes *t, size_t lane, size_t l)
+static tl_cell_patch patch_at(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                              size_t l)
 {
     return (tl_cell_patch){.p = &m->detect->points,
                            .lanes = t,
@@ -582,8 +575,8 @@ static bool has_opened(const tl_cell_patch *of)
 }
 
 /* Finds the cells anew of those of the lanes `parts` that slip has opened in this step, and gives these lanes. */
-static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                           const tl_point_lanes *t, size_t lane, uint32_t parts)
+static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group, const tl_point_lanes *t,
+                           size_t lane, uint32_t parts)
 {
     const bool curved = tl_law_presses(law);
     uint32_t opened = 0;
@@ -608,8 +601,8 @@ static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_g
 }
 
 /* Finds the cells of those of the lanes `held` in which a bond may have broken in this step. Gives these lanes. */
-static uint32_t break_held(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
-                           size_t lane, uint32_t held)
+static uint32_t break_held(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                           uint32_t held)
 {
     uint32_t out = 0;
     for (uint32_t left = held; left; left &= left - 1) {
@@ -658,16 +651,15 @@ static tl_part_sums sum_cells(const tl_cell_patch *of, const tl_law *law, tl_vec
     return out;
 }
 
-tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law,
-                                      const tl_simd_group *group, const tl_point_lanes *t,
-                                      size_t lane, tl_part_lanes lanes, const tl_vec3 *turn,
+tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                                      const tl_point_lanes *t, size_t lane, tl_part_lanes lanes, const tl_vec3 *turn,
                                       tl_part_sums *out)
 {
     tl_found_lanes found = {break_held(m, group, t, lane, lanes.held), 0};
     const bool opens = tl_law_opens(law);
     if (law->pulls != TL_PULL_NONE || (opens && lanes.parts))
-        tl_points_across_gap(law, &m->detect->points, group->start, (size_t)group->slots * TL_LANES,
-                             t->lift + lane, t->hold + lane);
+        tl_points_across_gap(law, &m->detect->points, group->start, (size_t)group->slots * TL_LANES, t->lift + lane,
+                             t->hold + lane);
     if (opens)
         found.opened = open_parts(m, law, group, t, lane, lanes.parts);
     found.parts |= lanes.parts;

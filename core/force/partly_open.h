@@ -6,8 +6,7 @@
 #include "model/model.h"
 
 /* The closures at the outermost fibres of the points of a SIMD group. */
-void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes,
-                         size_t lane);
+void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane);
 
 /* Lanes of a SIMD group, a bit each, in which something is apart: of patches whose points stand for cells, and of those
  * that hold all of it, whose points go by their own closures. */
@@ -34,9 +33,8 @@ typedef struct tl_found_lanes {
 } tl_found_lanes;
 
 /* After the law: what patches have beside their points, in the lanes given. turn, rad: of B against A in the step. */
-tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law,
-                                      const tl_simd_group *group, const tl_point_lanes *lanes,
-                                      size_t lane, tl_part_lanes given, const tl_vec3 *turn,
-                                      tl_part_sums *out);
+tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                                      const tl_point_lanes *lanes, size_t lane, tl_part_lanes given,
+                                      const tl_vec3 *turn, tl_part_sums *out);
 
 #endif

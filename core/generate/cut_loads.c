@@ -37,9 +37,8 @@ typedef struct cut_load {
     bool changed;     /* that was another */
     tl_vec3 point;    /* where the load acts, relative to the origin */
     bool placed;      /* it has been given a point */
-    tl_wrench
-        rest; /* of the load beside what is on faces, about that point; its force and moment otherwise */
-    double on_faces; /* sum of the lengths of the forces there */
+    tl_wrench rest;   /* of the load beside what is on faces, about that point; its force and moment otherwise */
+    double on_faces;  /* sum of the lengths of the forces there */
     tl_lump sum;
     uint32_t nearest; /* row of the block that has the point, or is nearest to it */
     double distance;
@@ -80,8 +79,8 @@ static void lump_add_inertia(tl_lump *sum, const tl_lump *part)
 static tl_wrench lump_share(const tl_lump *part, const tl_lump *all, tl_wrench whole)
 {
     const tl_sym3 *a = &all->inertia;
-    tl_vec3 turn = tl_solve3(tl_v3(a->xx, a->xy, a->zx), tl_v3(a->xy, a->yy, a->yz),
-                             tl_v3(a->zx, a->yz, a->zz), whole.moment);
+    tl_vec3 turn =
+        tl_solve3(tl_v3(a->xx, a->xy, a->zx), tl_v3(a->xy, a->yy, a->yz), tl_v3(a->zx, a->yz, a->zz), whole.moment);
     tl_vec3 goes = tl_v3_scale(1 / all->mass, whole.force);
     goes = tl_v3_add(goes, tl_v3_cross(turn, tl_v3_sub(part->place, all->place)));
     return (tl_wrench){tl_v3_scale(part->mass, goes), tl_s3_mul(part->inertia, turn)};
@@ -163,14 +162,12 @@ static bool take_faces(const tl_stage *stage, const uint32_t *slot, tl_cut_loads
     for (size_t i = 0; loads->faces && i < m->face_load_count; i++) {
         const tl_face_load *f = &m->face_loads[i];
         uint32_t row = tl_block_row_quiet(m, f->block);
-        if (row == TL_NO_ROW || slot[m->blocks.body[row]] == TL_NO_ROW ||
-            f->face >= m->blocks.shape[row]->face_count)
+        if (row == TL_NO_ROW || slot[m->blocks.body[row]] == TL_NO_ROW || f->face >= m->blocks.shape[row]->face_count)
             continue;
         cut_load *of = &loads->list[slot[m->blocks.body[row]]];
         cut_face *face = &loads->faces[loads->face_count++];
         const tl_mat3 *r = &m->bodies.pose[m->blocks.body[row]].r;
-        *face =
-            (cut_face){.load = *f, .row = row, .of = of, .plate = tl_face_plate(m, row, f->face)};
+        *face = (cut_face){.load = *f, .row = row, .of = of, .plate = tl_face_plate(m, row, f->face)};
         face->normal = tl_m3_mul(r, m->blocks.shape[row]->plane[f->face].normal);
         add_to_rest(face, -1);
         of->on_faces += tl_v3_norm(f->force);
@@ -178,8 +175,8 @@ static bool take_faces(const tl_stage *stage, const uint32_t *slot, tl_cut_loads
     for (size_t i = 0; loads->faces && i < stage->count; i++)
         for (cut_face *f = faces_of(loads, stage->blocks[i].source); f; f = next_of(loads, f))
             most++;
-    return loads->faces && tl_grow(&m->face_loads, &m->face_load_capacity,
-                                   m->face_load_count + most, sizeof *m->face_loads);
+    return loads->faces &&
+           tl_grow(&m->face_loads, &m->face_load_capacity, m->face_load_count + most, sizeof *m->face_loads);
 }
 
 bool tl_cut_loads_take(const tl_stage *stage, tl_cut_loads *loads)
@@ -226,8 +223,7 @@ static void visit(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads, 
 
 static tl_lump lump_of(const tl_model *m, uint32_t row)
 {
-    return (tl_lump){m->blocks.density[row] * m->blocks.volume[row], tl_block_place(m, row),
-                     tl_block_inertia(m, row)};
+    return (tl_lump){m->blocks.density[row] * m->blocks.volume[row], tl_block_place(m, row), tl_block_inertia(m, row)};
 }
 
 /* How far a place lies before the faces of a block; negative inside. */
@@ -332,8 +328,7 @@ static uint32_t part_of(const tl_model *m, uint32_t row, const cut_face *face)
 typedef void visit_part_fn(tl_model *m, uint32_t row, uint32_t part, cut_face *face);
 
 /* Visits the parts of faces, in the order of their blocks. */
-static void visit_parts(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads,
-                        visit_part_fn *each)
+static void visit_parts(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads, visit_part_fn *each)
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++) {
@@ -367,8 +362,7 @@ static void give_face(tl_model *m, uint32_t row, uint32_t part, cut_face *face)
     whole.moment = tl_v3_add(whole.moment, tl_v3_cross(arm, whole.force));
     tl_wrench share = lump_share(&plate, &face->sum, whole);
     add_load(m, m->blocks.body[row], share, plate.place);
-    m->face_loads[m->face_load_count++] =
-        (tl_face_load){m->blocks.id[row], part, share.force, share.moment};
+    m->face_loads[m->face_load_count++] = (tl_face_load){m->blocks.id[row], part, share.force, share.moment};
 }
 
 /* Forgets what was on the faces of the bodies before: it has come off them. */
@@ -377,8 +371,8 @@ static void drop_faces(tl_model *m, const tl_cut_loads *loads)
     size_t kept = 0, k = 0;
     for (size_t i = 0; i < m->face_load_count; i++) {
         const tl_face_load *f = &m->face_loads[i];
-        bool taken = k < loads->face_count && f->block == loads->faces[k].load.block &&
-                     f->face == loads->faces[k].load.face;
+        bool taken =
+            k < loads->face_count && f->block == loads->faces[k].load.block && f->face == loads->faces[k].load.face;
         if (taken)
             k++;
         else

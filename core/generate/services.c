@@ -76,8 +76,7 @@ static void tell_progress(const service *s)
     m->show_generate(m->show_generate_user, &done);
 }
 
-void tl_model_watch_generate(tl_model *m, void (*fn)(void *user, const tl_generate_progress *done),
-                             void *user)
+void tl_model_watch_generate(tl_model *m, void (*fn)(void *user, const tl_generate_progress *done), void *user)
 {
     m->show_generate = fn;
     m->show_generate_user = user;
@@ -98,8 +97,7 @@ static tl_status go_on(const tl_host *host)
 static tl_status check_group(const tl_host *host, const char *group)
 {
     if (group && strlen(group) > LONGEST_NAME)
-        return fail(host, TL_E_ARGUMENT, "group '%.20s...' is longer than %d letters", group,
-                    LONGEST_NAME);
+        return fail(host, TL_E_ARGUMENT, "group '%.20s...' is longer than %d letters", group, LONGEST_NAME);
     if (group && !tl_text_is_utf8(group))
         return fail(host, TL_E_ARGUMENT, "group '%s' is not a text in UTF-8", group);
     return TL_OK;
@@ -120,13 +118,12 @@ static tl_status check_point(const tl_host *host, const char *what, size_t numbe
         return TL_OK;
     if (!tl_v3_finite(at))
         return fail(host, TL_E_NUMERIC, "%s %zu is not finite", what, number);
-    return fail(host, TL_E_NUMERIC,
-                "%s %zu at {%g, %g, %g} m is farther from zero than %g m: is it in the wrong unit?",
+    return fail(host, TL_E_NUMERIC, "%s %zu at {%g, %g, %g} m is farther from zero than %g m: is it in the wrong unit?",
                 what, number, at.x, at.y, at.z, TL_FARTHEST);
 }
 
-static tl_status create_hull(const tl_host *host, const tl_vec3 *vertices, size_t count,
-                             double density, const char *group)
+static tl_status create_hull(const tl_host *host, const tl_vec3 *vertices, size_t count, double density,
+                             const char *group)
 {
     tl_status status = check_block(host, density, group);
     for (size_t i = 0; i < count && status == TL_OK; i++)
@@ -146,27 +143,23 @@ static tl_status check_faces(const tl_host *host, const tl_block_shape *s)
 {
     if (s->vertex_count < 4 || s->vertex_count > TL_POLY_MAX_VERTICES || s->face_count < 4 ||
         s->face_count > TL_POLY_MAX_FACES)
-        return fail(host, TL_E_GEOMETRY,
-                    "a block of %zu vertices and %zu faces: it needs 4 to %d of each",
+        return fail(host, TL_E_GEOMETRY, "a block of %zu vertices and %zu faces: it needs 4 to %d of each",
                     s->vertex_count, s->face_count, TL_POLY_MAX_VERTICES);
     for (size_t f = 0; f < s->face_count; f++) {
         if (s->start[f + 1] < s->start[f] + 3 || s->start[f + 1] - s->start[f] > s->vertex_count)
-            return fail(host, TL_E_GEOMETRY, "face %zu does not have 3 to %zu corners", f + 1,
-                        s->vertex_count);
+            return fail(host, TL_E_GEOMETRY, "face %zu does not have 3 to %zu corners", f + 1, s->vertex_count);
         for (uint32_t i = s->start[f]; i < s->start[f + 1]; i++)
             if (s->loops[i] >= s->vertex_count)
-                return fail(host, TL_E_GEOMETRY, "face %zu names vertex %u of %zu", f + 1,
-                            s->loops[i] + 1, s->vertex_count);
+                return fail(host, TL_E_GEOMETRY, "face %zu names vertex %u of %zu", f + 1, s->loops[i] + 1,
+                            s->vertex_count);
         if (s->tags && s->tags[f].joint &&
             (!joint_exists(host, s->tags[f].joint) || s->tags[f].plane < 1 ||
              s->tags[f].plane > service_of(host)->model->joints[s->tags[f].joint - 1].planes))
-            return fail(host, TL_E_PLUGIN,
-                        "face %zu has plane %u of joint %u, which was not asked for", f + 1,
+            return fail(host, TL_E_PLUGIN, "face %zu has plane %u of joint %u, which was not asked for", f + 1,
                         s->tags[f].plane, s->tags[f].joint);
     }
     if (s->fixed > TL_FIX_ALL || s->start[0] != 0)
-        return fail(host, TL_E_PLUGIN, "a block's faces do not start at 0, or fixed = %u",
-                    s->fixed);
+        return fail(host, TL_E_PLUGIN, "a block's faces do not start at 0, or fixed = %u", s->fixed);
     return TL_OK;
 }
 
@@ -182,8 +175,7 @@ static tl_status create_block(const tl_host *host, const tl_block_shape *given)
     return status == TL_OK ? tl_stage_add_faces(&service_of(host)->stage, &shape) : status;
 }
 
-static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, double density,
-                            const char *group)
+static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, double density, const char *group)
 {
     tl_status status = check_block(host, density, group);
     if (status != TL_OK)
@@ -194,8 +186,7 @@ static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, doubl
     if (status != TL_OK)
         return status;
     if (!(min.x < max.x && min.y < max.y && min.z < max.z))
-        return fail(host, TL_E_ARGUMENT,
-                    "the box from {%g, %g, %g} to {%g, %g, %g} has no volume: min must be < max",
+        return fail(host, TL_E_ARGUMENT, "the box from {%g, %g, %g} to {%g, %g, %g} has no volume: min must be < max",
                     min.x, min.y, min.z, max.x, max.y, max.z);
     return tl_stage_add_box(&service_of(host)->stage, min, max, density, group);
 }
@@ -265,8 +256,7 @@ static tl_status check_plane(const tl_host *host, tl_vec3 normal, tl_vec3 point)
                 normal.x, normal.y, normal.z, point.x, point.y, point.z, TL_FARTHEST);
 }
 
-static tl_status meets(const tl_host *host, size_t index, const tl_half_space *spaces, size_t count,
-                       bool *does)
+static tl_status meets(const tl_host *host, size_t index, const tl_half_space *spaces, size_t count, bool *does)
 {
     tl_stage *stage = &service_of(host)->stage;
     tl_status status = check_index(host, index);
@@ -277,8 +267,7 @@ static tl_status meets(const tl_host *host, size_t index, const tl_half_space *s
     return tl_stage_meets(stage, stage->visible[index], spaces, count, does);
 }
 
-static tl_status cut_block(const tl_host *host, size_t index, tl_vec3 normal, tl_vec3 point,
-                           size_t *above)
+static tl_status cut_block(const tl_host *host, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above)
 {
     tl_stage *stage = &service_of(host)->stage;
     tl_status status = check_index(host, index);
@@ -394,10 +383,8 @@ static void delete_block(tl_stage *stage, size_t index)
     if (gone.owned)
         tl_poly_free(gone.shape);
     stage->count--;
-    memmove(&stage->blocks[index], &stage->blocks[index + 1],
-            (stage->count - index) * sizeof *stage->blocks);
-    memmove(&stage->balls[index], &stage->balls[index + 1],
-            (stage->count - index) * sizeof *stage->balls);
+    memmove(&stage->blocks[index], &stage->blocks[index + 1], (stage->count - index) * sizeof *stage->blocks);
+    memmove(&stage->balls[index], &stage->balls[index + 1], (stage->count - index) * sizeof *stage->balls);
     forget_refused(stage, index);
     if (gone.multi_block)
         mark_body(stage, gone.body);
@@ -480,8 +467,7 @@ static bool is_joint_name(const char *name)
 static tl_status joint(const tl_host *host, const char *name, uint32_t *number)
 {
     if (!is_joint_name(name))
-        return fail(host, TL_E_ARGUMENT,
-                    "joint = '%.80s' is not a name: 1 to %d letters in UTF-8 without ':' and '*'",
+        return fail(host, TL_E_ARGUMENT, "joint = '%.80s' is not a name: 1 to %d letters in UTF-8 without ':' and '*'",
                     name ? name : "", LONGEST_NAME);
     *number = tl_joint_intern(service_of(host)->model, name);
     return *number ? TL_OK : tl_fail_memory(&service_of(host)->model->error);
@@ -493,14 +479,13 @@ static uint32_t next_plane(const tl_host *host, uint32_t number)
     return joint_exists(host, number) ? ++service_of(host)->model->joints[number - 1].planes : 0;
 }
 
-static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, double radius,
-                          tl_tag tag, double persistence, size_t *met)
+static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
+                          double persistence, size_t *met)
 {
     service *s = service_of(host);
-    if (!joint_exists(host, tag.joint) || tag.plane < 1 ||
-        tag.plane > s->model->joints[tag.joint - 1].planes)
-        return fail(host, TL_E_PLUGIN, "it cuts by plane %u of joint %u, which it did not ask for",
-                    tag.plane, tag.joint);
+    if (!joint_exists(host, tag.joint) || tag.plane < 1 || tag.plane > s->model->joints[tag.joint - 1].planes)
+        return fail(host, TL_E_PLUGIN, "it cuts by plane %u of joint %u, which it did not ask for", tag.plane,
+                    tag.joint);
     tl_status status = check_plane(host, normal, point);
     if (status == TL_OK)
         status = go_on(host);
@@ -517,8 +502,7 @@ static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, do
     return status;
 }
 
-static tl_status cut(const tl_host *host, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                     double persistence)
+static tl_status cut(const tl_host *host, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence)
 {
     return cut_disc(host, normal, point, (double)INFINITY, tag, persistence, NULL);
 }
@@ -571,8 +555,7 @@ static tl_host host_of(service *s)
 }
 
 /* The files that are to be read must be such as end; those that are not there are left to the plugin. */
-static tl_status check_files(tl_model *m, const tl_kind *kind, const void *params,
-                             const char *context)
+static tl_status check_files(tl_model *m, const tl_kind *kind, const void *params, const char *context)
 {
     for (uint32_t i = 0; i < kind->param_count; i++) {
         const tl_param *p = &kind->params[i];
@@ -582,15 +565,14 @@ static tl_status check_files(tl_model *m, const tl_kind *kind, const void *param
         memcpy(&file, (const char *)params + p->offset, sizeof file);
         const char *other = file ? tl_not_regular(file) : NULL;
         if (other)
-            return tl_fail(&m->error, TL_E_IO, "%s: %s '%.200s' is %s: only regular files are read",
-                           context, p->name, file, other);
+            return tl_fail(&m->error, TL_E_IO, "%s: %s '%.200s' is %s: only regular files are read", context, p->name,
+                           file, other);
     }
     return TL_OK;
 }
 
 /* Calls the plugin with parameters on the staging set. `entry`: ", entry 3" of a list, or nothing. */
-static tl_status call(service *s, const tl_kind *kind, const tl_args *args, void *params,
-                      const char *entry)
+static tl_status call(service *s, const tl_kind *kind, const tl_args *args, void *params, const char *entry)
 {
     tl_model *m = s->model;
     const tl_generator_ops *ops = kind->ops;
@@ -598,8 +580,8 @@ static tl_status call(service *s, const tl_kind *kind, const tl_args *args, void
     char context[TL_ERROR_TEXT / 4];
     snprintf(context, sizeof context, "generator '%s'%s", kind->name, entry);
     memset(params, 0, kind->params_size);
-    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
-                                    false, params, context, &m->error);
+    tl_status status =
+        tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false, params, context, &m->error);
     if (status == TL_OK)
         status = check_files(m, kind, params, context);
     if (status != TL_OK)
@@ -615,11 +597,9 @@ static tl_status call(service *s, const tl_kind *kind, const tl_args *args, void
     if (status == TL_OK)
         return TL_OK;
     if (m->error.text[0] == '\0')
-        tl_fail(&m->error, status, "no reason given (status %d: %s)", (int)status,
-                tl_status_text(status));
+        tl_fail(&m->error, status, "no reason given (status %d: %s)", (int)status, tl_status_text(status));
     m->error.status = status;
-    tl_error_prefix(&m->error, "generator '%s' of plugin '%s'%s: ", kind->name, tl_plugin_id(kind),
-                    entry);
+    tl_error_prefix(&m->error, "generator '%s' of plugin '%s'%s: ", kind->name, tl_plugin_id(kind), entry);
     return status;
 }
 
@@ -648,13 +628,12 @@ static tl_status run(service *s, const tl_kind *kind, const tl_args *args, size_
     }
     status = tl_stage_commit(&s->stage);
     if (status != TL_OK)
-        tl_error_prefix(&m->error, "generator '%s' of plugin '%s': ", kind->name,
-                        tl_plugin_id(kind));
+        tl_error_prefix(&m->error, "generator '%s' of plugin '%s': ", kind->name, tl_plugin_id(kind));
     return status;
 }
 
-static tl_status generate(tl_model *m, const char *generator, const tl_args *args, size_t count,
-                          bool list, tl_generate_summary *summary)
+static tl_status generate(tl_model *m, const char *generator, const tl_args *args, size_t count, bool list,
+                          tl_generate_summary *summary)
 {
     tl_status status = tl_model_may_change(m, "create blocks");
     if (status != TL_OK)
@@ -670,8 +649,7 @@ static tl_status generate(tl_model *m, const char *generator, const tl_args *arg
     return status;
 }
 
-tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
-                      tl_generate_summary *summary)
+tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args, tl_generate_summary *summary)
 {
     return generate(m, generator, args, 1, false, summary);
 }

@@ -183,8 +183,8 @@ typedef struct plane_in_block {
 } plane_in_block;
 
 /* `point` is relative to the model's origin. */
-static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block,
-                                        tl_vec3 normal, tl_vec3 point, double radius)
+static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point,
+                                        double radius)
 {
     plane_in_block x = {{normal, tl_v3_dot(normal, point)}, point, radius, tl_v3_norm(point)};
     uint32_t body = tl_stage_frame(m, block);
@@ -199,8 +199,7 @@ static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block 
 }
 
 /* Cuts a staged block by a plane through `point`, relative to the origin. */
-static tl_status cut_by(tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point,
-                        tl_cut *cut)
+static tl_status cut_by(tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point, tl_cut *cut)
 {
     plane_in_block x = plane_in_block_of(m, block, normal, point, (double)INFINITY);
     return tl_poly_cut(block->shape, x.plane, x.reach, (tl_tag){0, 0}, cut, &m->error);
@@ -211,8 +210,7 @@ static tl_status retag(tl_stage *stage, tl_stage_block *block, uint32_t face, tl
 {
     if (!block->owned) {
         tl_poly *copy;
-        tl_status status =
-            tl_poly_transformed(block->shape, NULL, tl_v3(0, 0, 0), &copy, &stage->model->error);
+        tl_status status = tl_poly_transformed(block->shape, NULL, tl_v3(0, 0, 0), &copy, &stage->model->error);
         if (status != TL_OK)
             return status;
         block->shape = copy;
@@ -244,8 +242,7 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
         below.draw = below.lineage;
         above.draw = above.lineage;
     } else {
-        below.multi_block = above.multi_block = below.needs_reconnect = above.needs_reconnect =
-            true;
+        below.multi_block = above.multi_block = below.needs_reconnect = above.needs_reconnect = true;
         stage->needs_reconnect = stage->regroups = true;
     }
     stage->blocks[index] = below;
@@ -265,8 +262,7 @@ static bool may_meet(const plane_in_block *x, tl_stage_ball ball)
     double rounding = BALL_ROUNDINGS * fabs(x->plane.offset);
     if (fabs(tl_v3_dot(x->plane.normal, ball.center) - x->plane.offset) > ball.radius + rounding)
         return false;
-    return isinf(x->radius) ||
-           tl_v3_norm(tl_v3_sub(ball.center, x->center)) <= x->radius + ball.radius + rounding;
+    return isinf(x->radius) || tl_v3_norm(tl_v3_sub(ball.center, x->center)) <= x->radius + ball.radius + rounding;
 }
 
 /* Whether a block that the plane crosses is in the path of the disc. The disc reaches the section of the
@@ -280,13 +276,11 @@ static bool in_path(const plane_in_block *x, const tl_stage_block *block, const 
     if (cut->result == TL_CUT_MADE) /* the cap is the last face */
         return tl_poly_face_distance(cut->below, cut->below->face_count - 1, x->center) < x->radius;
     /* a sliver without a face along the plane has no section to speak of: its ball decided */
-    return cut->face == UINT32_MAX ||
-           tl_poly_face_distance(block->shape, cut->face, x->center) < x->radius;
+    return cut->face == UINT32_MAX || tl_poly_face_distance(block->shape, cut->face, x->center) < x->radius;
 }
 
 /* Notes a cut that was refused, for the model's report; only so many are listed. */
-static void note_refused(tl_stage *stage, size_t index, const tl_cut *cut, tl_tag joint,
-                         tl_vec3 normal, tl_vec3 point)
+static void note_refused(tl_stage *stage, size_t index, const tl_cut *cut, tl_tag joint, tl_vec3 normal, tl_vec3 point)
 {
     stage->summary.refused++;
     size_t n = stage->refused_listed;
@@ -305,8 +299,8 @@ static void note_refused(tl_stage *stage, size_t index, const tl_cut *cut, tl_ta
     stage->refused_listed++;
 }
 
-tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius,
-                            tl_tag tag, double persistence, size_t *met)
+tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
+                            double persistence, size_t *met)
 {
     tl_model *m = stage->model;
     tl_status settled = tl_stage_open(stage);
@@ -315,8 +309,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
     if (settled != TL_OK)
         return settled;
     tl_vec3 local = tl_v3_sub(point, m->origin);
-    uint64_t key = tl_key(
-        tl_key_text(tl_key(0, (uint64_t)m->config.seed), m->joints[tag.joint - 1].name), tag.plane);
+    uint64_t key = tl_key(tl_key_text(tl_key(0, (uint64_t)m->config.seed), m->joints[tag.joint - 1].name), tag.plane);
     bool coincident = false;
     size_t count = stage->count; /* children of this cut are not cut by it again */
     const plane_in_block global = {{normal, tl_v3_dot(normal, local)}, local, radius, 0};
@@ -353,8 +346,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
     return TL_OK;
 }
 
-tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_vec3 point,
-                             size_t *above)
+tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above)
 {
     tl_model *m = stage->model;
     const tl_stage_block *block = &stage->blocks[index];
@@ -373,8 +365,7 @@ tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_v
     return status;
 }
 
-tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spaces, size_t count,
-                         bool *meets)
+tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spaces, size_t count, bool *meets)
 {
     tl_model *m = stage->model;
     tl_stage_block rest = stage->blocks[index];
@@ -428,14 +419,12 @@ static void set_origin(tl_model *m, tl_vec3 min, tl_vec3 max)
     double share = frexp(ORIGIN_SIZES * size, &exponent);
     double unit = ldexp(1, share > 0.5 ? exponent : exponent - 1);
     tl_vec3 center = tl_v3_scale(0.5, tl_v3_add(min, max));
-    m->origin = tl_v3(unit * round(center.x / unit), unit * round(center.y / unit),
-                      unit * round(center.z / unit));
+    m->origin = tl_v3(unit * round(center.x / unit), unit * round(center.y / unit), unit * round(center.z / unit));
 }
 
 static void set_origin_by(tl_model *m, const tl_vec3 *vertices, size_t count)
 {
-    const tl_bounds bounds =
-        count ? tl_points_bounds(vertices, count) : (tl_bounds){tl_v3(0, 0, 0), tl_v3(0, 0, 0)};
+    const tl_bounds bounds = count ? tl_points_bounds(vertices, count) : (tl_bounds){tl_v3(0, 0, 0), tl_v3(0, 0, 0)};
     set_origin(m, bounds.min, bounds.max);
 }
 
@@ -477,8 +466,7 @@ static tl_status add_shape(tl_stage *stage, tl_poly *shape, double density, cons
     return TL_OK;
 }
 
-tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t count, double density,
-                            const char *group)
+tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t count, double density, const char *group)
 {
     tl_model *m = stage->model;
     tl_vec3 *local = malloc((count + 1) * sizeof *local);
@@ -493,14 +481,12 @@ tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t cou
     return status == TL_OK ? add_shape(stage, shape, density, group) : status;
 }
 
-tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double density,
-                           const char *group)
+tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double density, const char *group)
 {
     tl_model *m = stage->model;
     set_origin(m, min, max);
     tl_poly *shape;
-    tl_status status =
-        tl_poly_box(tl_v3_sub(min, m->origin), tl_v3_sub(max, m->origin), &shape, &m->error);
+    tl_status status = tl_poly_box(tl_v3_sub(min, m->origin), tl_v3_sub(max, m->origin), &shape, &m->error);
     return status == TL_OK ? add_shape(stage, shape, density, group) : status;
 }
 
@@ -518,18 +504,16 @@ typedef struct face_list {
     tl_plane *plane;
 } face_list;
 
-static tl_status make_faces(tl_model *m, const tl_block_shape *given, const face_list *l,
-                            tl_poly **shape)
+static tl_status make_faces(tl_model *m, const tl_block_shape *given, const face_list *l, tl_poly **shape)
 {
     for (size_t i = 0; i < given->vertex_count; i++)
         l->vertex[i] = tl_v3_sub(given->vertices[i], m->origin);
     for (size_t i = 0; i < given->start[given->face_count]; i++)
         l->loop[i] = (uint16_t)given->loops[i];
     for (size_t f = 0; f < given->face_count; f++)
-        l->plane[f] =
-            face_plane(l->vertex, l->loop + given->start[f], given->start[f + 1] - given->start[f]);
-    tl_status status = tl_poly_make(l->vertex, given->vertex_count, l->plane, given->tags,
-                                    given->start, l->loop, given->face_count, shape, &m->error);
+        l->plane[f] = face_plane(l->vertex, l->loop + given->start[f], given->start[f + 1] - given->start[f]);
+    tl_status status = tl_poly_make(l->vertex, given->vertex_count, l->plane, given->tags, given->start, l->loop,
+                                    given->face_count, shape, &m->error);
     if (status != TL_OK)
         return status;
     status = tl_poly_flatten(shape, &m->error);
@@ -548,8 +532,7 @@ tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given)
                    malloc(given->start[given->face_count] * sizeof *l.loop),
                    malloc(given->face_count * sizeof *l.plane)};
     tl_poly *shape = NULL;
-    tl_status status = l.vertex && l.loop && l.plane ? make_faces(m, given, &l, &shape)
-                                                     : tl_fail_memory(&m->error);
+    tl_status status = l.vertex && l.loop && l.plane ? make_faces(m, given, &l, &shape) : tl_fail_memory(&m->error);
     free(l.vertex);
     free(l.loop);
     free(l.plane);

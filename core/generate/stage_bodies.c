@@ -31,8 +31,7 @@ static int compare_member(const void *x, const void *y)
 static bool is_new_joint(const void *user, tl_tag tag)
 {
     const tl_stage *stage = user;
-    return tag.joint > stage->joint_count ||
-           (tag.joint > 0 && tag.plane > stage->plane_count[tag.joint - 1]);
+    return tag.joint > stage->joint_count || (tag.joint > 0 && tag.plane > stage->plane_count[tag.joint - 1]);
 }
 
 /* Replaces shapes by copies in the model's frame. */
@@ -55,8 +54,7 @@ static tl_status copy_shapes(tl_stage *stage, const member *members, size_t coun
 
 /* Labels the parts of a body that hang together. Its blocks have one frame unless they were joined in
  * this staging set. */
-static tl_status label_parts(tl_stage *stage, const member *members, size_t count, tl_poly **shapes,
-                             uint32_t *label)
+static tl_status label_parts(tl_stage *stage, const member *members, size_t count, tl_poly **shapes, uint32_t *label)
 {
     const uint32_t frame = tl_stage_frame(stage->model, &stage->blocks[members[0].index]);
     bool one_frame = true;
@@ -75,8 +73,7 @@ static tl_status label_parts(tl_stage *stage, const member *members, size_t coun
 }
 
 /* Numbers the parts of one body by `label`; the first keeps the body's number. */
-static void number_parts(tl_stage *stage, const member *members, size_t count,
-                         const uint32_t *label)
+static void number_parts(tl_stage *stage, const member *members, size_t count, const uint32_t *label)
 {
     for (size_t i = 0; i < count; i++) {
         tl_stage_block *block = &stage->blocks[members[i].index];
@@ -100,8 +97,8 @@ static tl_status settle_body(tl_stage *stage, const member *members, size_t coun
 {
     tl_poly **shapes = malloc(count * sizeof *shapes);
     uint32_t *label = malloc(count * sizeof *label);
-    tl_status status = shapes && label ? label_parts(stage, members, count, shapes, label)
-                                       : tl_fail_memory(&stage->model->error);
+    tl_status status =
+        shapes && label ? label_parts(stage, members, count, shapes, label) : tl_fail_memory(&stage->model->error);
     if (status == TL_OK)
         number_parts(stage, members, count, label);
     free(shapes);
@@ -135,14 +132,12 @@ static size_t list_marked(const tl_stage *stage, uint32_t *bodies)
 }
 
 /* The blocks of listed bodies, body by body; returns how many. */
-static size_t list_members(const tl_stage *stage, const uint32_t *bodies, size_t body_count,
-                           member *members)
+static size_t list_members(const tl_stage *stage, const uint32_t *bodies, size_t body_count, member *members)
 {
     size_t count = 0;
     for (size_t i = 0; i < stage->count; i++) {
         const tl_stage_block *block = &stage->blocks[i];
-        if (block->multi_block &&
-            bsearch(&block->body, bodies, body_count, sizeof *bodies, compare_body))
+        if (block->multi_block && bsearch(&block->body, bodies, body_count, sizeof *bodies, compare_body))
             members[count++] = (member){block->body, i};
     }
     qsort(members, count, sizeof *members, compare_member);

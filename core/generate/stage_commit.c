@@ -25,8 +25,7 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
     for (uint32_t i = 0; i < shape->vertex_count; i++)
         shape->vertex[i] = tl_v3_sub(shape->vertex[i], centroid);
     for (uint32_t f = 0; f < shape->face_count; f++)
-        shape->plane[f].offset =
-            tl_v3_dot(shape->plane[f].normal, shape->vertex[shape->loop[shape->start[f]]]);
+        shape->plane[f].offset = tl_v3_dot(shape->plane[f].normal, shape->vertex[shape->loop[shape->start[f]]]);
     tl_poly_find_size(shape);
 }
 
@@ -68,8 +67,7 @@ static void put_base(tl_base *column, uint32_t row, const tl_base *from, tl_vec3
 }
 
 /* Fills the rows of a new block and of its body. A child moves on as its part of the source did. */
-static void put(tl_model *m, const tl_stage_block *block, const source *from, uint32_t row,
-                uint32_t body)
+static void put(tl_model *m, const tl_stage_block *block, const source *from, uint32_t row, uint32_t body)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
@@ -172,9 +170,7 @@ static void keep_cut_parts(const tl_stage *stage, const commit_scratch *scratch)
             continue;
         const source *from = &scratch->sources[scratch->slot[block->source]];
         const tl_cut_part *known = tl_cut_part_of(m, from->id);
-        tl_cut_part part = {.root = from->id,
-                            .r = from->pose.r,
-                            .place = tl_v3_add(from->pose.x_ref, from->pose.u)};
+        tl_cut_part part = {.root = from->id, .r = from->pose.r, .place = tl_v3_add(from->pose.x_ref, from->pose.u)};
         part = known ? *known : part;
         part.id = scratch->ids[i];
         m->cut_parts[m->cut_part_count++] = part;
@@ -210,8 +206,7 @@ static int compare_split(const void *x, const void *y)
 static int compare_whole(const void *x, const void *y)
 {
     const tl_split *p = x, *q = y;
-    return p->whole != q->whole ? (p->whole > q->whole) - (p->whole < q->whole)
-                                : compare_split(x, y);
+    return p->whole != q->whole ? (p->whole > q->whole) - (p->whole < q->whole) : compare_split(x, y);
 }
 
 /* Keeps the blocks of the bodies that are several now. The list takes the place of the model's: it has the blocks of
@@ -317,11 +312,11 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
         scratch->group = malloc((old + made + 1) * sizeof *scratch->group);
     }
     return sort_rows(stage, old, scratch) && scratch->ids && scratch->splits && scratch->gone &&
-           (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW &&
-           reserve_record(stage) && tl_cut_loads_take(stage, &scratch->loads) &&
+           (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW && reserve_record(stage) &&
+           tl_cut_loads_take(stage, &scratch->loads) &&
            (!has_contacts(stage->model) ||
-            tl_grow(&stage->model->cut_parts, &stage->model->cut_part_capacity,
-                    stage->model->cut_part_count + made, sizeof *stage->model->cut_parts)) &&
+            tl_grow(&stage->model->cut_parts, &stage->model->cut_part_capacity, stage->model->cut_part_count + made,
+                    sizeof *stage->model->cut_parts)) &&
            tl_rows_reserve(stage->model, rows) &&
            (!stage->regroups || tl_rows_set_aside(stage->model, &scratch->aside));
 }
@@ -374,8 +369,7 @@ static void add_made(tl_stage *stage, size_t made, commit_scratch *scratch)
         if (!tl_stage_made(block))
             continue;
         scratch->ids[i] = m->next_id;
-        const source *from =
-            block->source == TL_NO_ROW ? NULL : &scratch->sources[scratch->slot[block->source]];
+        const source *from = block->source == TL_NO_ROW ? NULL : &scratch->sources[scratch->slot[block->source]];
         put(m, block, from, row, body++);
         stage->changed_volume += m->blocks.volume[row];
         tl_extremes_add(m, row++);
@@ -422,12 +416,11 @@ static tl_status check_turned(const tl_stage *stage)
         if (becomes[body] == TL_NO_ROW)
             becomes[body] = block->body;
         else if (becomes[body] != block->body)
-            status =
-                tl_fail(&m->error, TL_E_STATE,
-                        "block %u is driven with an angular velocity and cannot be cut in two: "
-                        "the parts would turn about centroids of their own; cut it before it is "
-                        "driven, or free it, cut it and drive the parts",
-                        m->blocks.id[block->source]);
+            status = tl_fail(&m->error, TL_E_STATE,
+                             "block %u is driven with an angular velocity and cannot be cut in two: "
+                             "the parts would turn about centroids of their own; cut it before it is "
+                             "driven, or free it, cut it and drive the parts",
+                             m->blocks.id[block->source]);
     }
     free(becomes);
     return status;

@@ -13,10 +13,9 @@ typedef struct tl_stage_block {
     uint32_t group;
     double density;
     uint64_t lineage;
-    uint32_t body; /* blocks of one number are one body */
-    uint32_t
-        detached_from; /* a body it was taken out of and that has not been settled since, or TL_NO_ROW */
-    uint64_t draw; /* key of the body's draws: the least of its blocks' lineages */
+    uint32_t body;          /* blocks of one number are one body */
+    uint32_t detached_from; /* a body it was taken out of and that has not been settled since, or TL_NO_ROW */
+    uint64_t draw;          /* key of the body's draws: the least of its blocks' lineages */
     bool owned, retagged, hidden;
     bool hide_on_commit;
     uint8_t fixed;            /* of a new block: what of its motion is held */

@@ -38,12 +38,11 @@ typedef struct child {
 typedef struct cutter {
     const tl_poly *poly;
     tl_plane plane;
-    double reach;      /* the farthest coordinate that distances were computed from */
-    tl_vec3 *point;    /* [cut edges] where the plane cuts each */
-    double *distance;  /* [vertices] */
-    signed char *side; /* [vertices] */
-    uint16_t
-        *cap_next; /* [vertices + cut edges] the cap's half-edges as seen from the lower child */
+    double reach;       /* the farthest coordinate that distances were computed from */
+    tl_vec3 *point;     /* [cut edges] where the plane cuts each */
+    double *distance;   /* [vertices] */
+    signed char *side;  /* [vertices] */
+    uint16_t *cap_next; /* [vertices + cut edges] the cap's half-edges as seen from the lower child */
     uint16_t *cut_edge; /* edges with vertices on both sides of the plane */
     uint32_t cut_edge_count;
     uint32_t cap_edges;
@@ -54,8 +53,7 @@ static size_t scratch_bytes(const tl_poly *p)
 {
     size_t v = p->vertex_count, e = p->edge_count, f = p->face_count;
     size_t per_child = (v + e) + (f + 1) + f + (2 * e + 2 * f + v + e);
-    return e * sizeof(tl_vec3) + v * sizeof(double) +
-           (v + e + e + 2 * per_child) * sizeof(uint16_t) + v;
+    return e * sizeof(tl_vec3) + v * sizeof(double) + (v + e + e + 2 * per_child) * sizeof(uint16_t) + v;
 }
 
 static void lay_out(cutter *c, void *scratch)
@@ -247,8 +245,7 @@ static bool find_run_below(const cutter *c, const uint16_t *loop, uint32_t n, ru
 }
 
 /* Gives a child a part of a face: a run of its loop between the cut's vertices `first` and `last`. */
-static void put_part(child *ch, const tl_poly *p, uint32_t face, run part, uint16_t first,
-                     uint16_t last)
+static void put_part(child *ch, const tl_poly *p, uint32_t face, run part, uint16_t first, uint16_t last)
 {
     ch->from[ch->faces] = (uint16_t)face;
     put(ch, first);
@@ -369,8 +366,7 @@ static void number_vertices(cutter *c)
 }
 
 /* TL_E_GEOMETRY when the loops do not make a closed surface. */
-static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **result,
-                            tl_error *error)
+static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **result, tl_error *error)
 {
     const child *ch = &c->child[which];
     const tl_poly *parent = c->poly;
@@ -383,8 +379,7 @@ static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **re
     for (uint32_t v = 0; v < parent->vertex_count; v++)
         if (ch->map[v] != NONE)
             p->vertex[ch->map[v]] = parent->vertex[v];
-    memcpy(p->vertex + ch->vertices - c->cut_edge_count, c->point,
-           c->cut_edge_count * sizeof *c->point);
+    memcpy(p->vertex + ch->vertices - c->cut_edge_count, c->point, c->cut_edge_count * sizeof *c->point);
     uint32_t cap = ch->faces - 1;
     p->start[0] = 0;
     for (uint32_t f = 0; f < cap; f++) {
@@ -394,8 +389,7 @@ static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **re
     }
     p->start[cap + 1] = ch->face[cap];
     p->tag[cap] = tag;
-    p->plane[cap] =
-        which == 0 ? c->plane : (tl_plane){tl_v3_neg(c->plane.normal), -c->plane.offset};
+    p->plane[cap] = which == 0 ? c->plane : (tl_plane){tl_v3_neg(c->plane.normal), -c->plane.offset};
     for (uint32_t i = 0; i < ch->loops; i++)
         p->loop[i] = ch->map[ch->loop[i]];
     tl_status status = tl_poly_link(p, result, NULL);
@@ -448,8 +442,7 @@ static tl_status cut_with(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
     return status == TL_E_MEMORY ? status : TL_OK;
 }
 
-tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, double reach, tl_tag tag, tl_cut *cut,
-                      tl_error *error)
+tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, double reach, tl_tag tag, tl_cut *cut, tl_error *error)
 {
     *cut = (tl_cut){.result = TL_CUT_MISS, .face = UINT32_MAX};
     _Alignas(double) unsigned char local[LOCAL_SCRATCH];

@@ -50,10 +50,9 @@ static bool allocate(flattener *w, const tl_poly *p)
 {
     /* Arrays by falling alignment out of one block. */
     size_t f = p->face_count, e = p->edge_count, v = p->vertex_count;
-    w->memory =
-        malloc(f * (2 * sizeof *w->area + sizeof *w->plane + sizeof *w->tag + 2 * sizeof *w->face) +
-               v * (sizeof *w->vertex + 3 * sizeof *w->after) + (f + 1) * sizeof *w->start +
-               e * (sizeof *w->order + 2 * sizeof *w->mate + 2 * sizeof *w->loop));
+    w->memory = malloc(f * (2 * sizeof *w->area + sizeof *w->plane + sizeof *w->tag + 2 * sizeof *w->face) +
+                       v * (sizeof *w->vertex + 3 * sizeof *w->after) + (f + 1) * sizeof *w->start +
+                       e * (sizeof *w->order + 2 * sizeof *w->mate + 2 * sizeof *w->loop));
     if (!w->memory)
         return false;
     w->area = w->memory;
@@ -77,8 +76,7 @@ static bool allocate(flattener *w, const tl_poly *p)
 
 static tl_vec3 vector_area(const tl_poly *p, uint32_t face)
 {
-    return tl_v3_scale(
-        0.5, tl_poly_fan_area(p->vertex, p->loop + p->start[face], tl_poly_face_size(p, face)));
+    return tl_v3_scale(0.5, tl_poly_fan_area(p->vertex, p->loop + p->start[face], tl_poly_face_size(p, face)));
 }
 
 typedef struct turned {
@@ -107,8 +105,7 @@ static bool order_edges(flattener *w, uint32_t *count)
         tl_edge edge = p->edge[e];
         tl_tag a = p->tag[edge.left], b = p->tag[edge.right];
         if (a.joint == b.joint && a.plane == b.plane)
-            list[(*count)++] =
-                (turned){tl_v3_norm2(tl_v3_cross(w->normal[edge.left], w->normal[edge.right])), e};
+            list[(*count)++] = (turned){tl_v3_norm2(tl_v3_cross(w->normal[edge.left], w->normal[edge.right])), e};
     }
     qsort(list, *count, sizeof *list, by_turn);
     for (uint32_t i = 0; i < *count; i++)
@@ -331,8 +328,7 @@ static double missed_by(const tl_poly *p, uint32_t face)
 {
     double most = 0;
     for (uint32_t i = p->start[face]; i < p->start[face + 1]; i++)
-        most = fmax(most, fabs(tl_v3_dot(p->plane[face].normal, p->vertex[p->loop[i]]) -
-                               p->plane[face].offset));
+        most = fmax(most, fabs(tl_v3_dot(p->plane[face].normal, p->vertex[p->loop[i]]) - p->plane[face].offset));
     return most;
 }
 
@@ -386,8 +382,7 @@ static bool faces_are_convex(const tl_poly *p)
         for (uint32_t i = p->start[f]; i < p->start[f + 1]; i++) {
             uint32_t j = tl_poly_after(p, f, i), k = tl_poly_after(p, f, j);
             tl_vec3 b = p->vertex[p->loop[j]];
-            tl_vec3 turn = tl_v3_cross(tl_v3_sub(b, p->vertex[p->loop[i]]),
-                                       tl_v3_sub(p->vertex[p->loop[k]], b));
+            tl_vec3 turn = tl_v3_cross(tl_v3_sub(b, p->vertex[p->loop[i]]), tl_v3_sub(p->vertex[p->loop[k]], b));
             if (tl_v3_dot(p->plane[f].normal, turn) < -CLOCKWISE * p->size * p->size)
                 return false;
         }
@@ -403,8 +398,7 @@ static bool is_sound(const tl_poly *from, const tl_poly *to)
     double surface = 0;
     for (uint32_t f = 0; f < to->face_count; f++)
         surface += tl_poly_face_area(to, f);
-    return fabs(tl_poly_mass(to).volume - tl_poly_mass(from).volume) <=
-           surface * TL_POLY_BENT * from->size;
+    return fabs(tl_poly_mass(to).volume - tl_poly_mass(from).volume) <= surface * TL_POLY_BENT * from->size;
 }
 
 /* The faces as a block in *to; NULL where they make none. */
@@ -413,8 +407,7 @@ static tl_status make_block(flattener *w, tl_poly **to, tl_error *error)
     size_t faces = w->from->face_count - w->joined;
     if (!trace_faces(w))
         return TL_OK;
-    tl_status status =
-        tl_poly_make(w->vertex, w->vertices, w->plane, w->tag, w->start, w->loop, faces, to, NULL);
+    tl_status status = tl_poly_make(w->vertex, w->vertices, w->plane, w->tag, w->start, w->loop, faces, to, NULL);
     if (status != TL_OK)
         return status == TL_E_MEMORY ? tl_fail_memory(error) : TL_OK;
     fit_planes(w, *to);
@@ -439,8 +432,7 @@ tl_status tl_poly_flatten(tl_poly **poly, tl_error *error)
     double reach = fmax(tl_v3_norm(bounds.min), tl_v3_norm(bounds.max));
     double shallow = TL_POLY_SHALLOW * tl_poly_thickness(*poly);
     flattener w = {.from = *poly,
-                   .near =
-                       fmax(fmin(TL_POLY_FLAT * (*poly)->size, shallow), TL_POLY_ROUNDINGS * reach),
+                   .near = fmax(fmin(TL_POLY_FLAT * (*poly)->size, shallow), TL_POLY_ROUNDINGS * reach),
                    .shallow = shallow};
     if (!allocate(&w, *poly) || !find_faces(&w)) {
         free(w.memory);

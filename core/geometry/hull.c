@@ -80,9 +80,8 @@ typedef struct builder {
 static bool allocate(builder *b, const tl_vec3 *points, size_t count)
 {
     /* Arrays by falling alignment out of one block of zeros. */
-    size_t per_point = sizeof(int64_t[3]) + sizeof(tl_vec3) + 2 * sizeof(hull_triangle) +
-                       sizeof(hull_edge) + 10 * sizeof(uint32_t) + 7 * sizeof(uint16_t) +
-                       sizeof(bool);
+    size_t per_point = sizeof(int64_t[3]) + sizeof(tl_vec3) + 2 * sizeof(hull_triangle) + sizeof(hull_edge) +
+                       10 * sizeof(uint32_t) + 7 * sizeof(uint16_t) + sizeof(bool);
     b->memory = calloc(count + 1, per_point);
     if (!b->memory)
         return false;
@@ -264,8 +263,8 @@ static tl_status check_points(const tl_vec3 *points, size_t count, tl_error *err
         for (int k = 0; k < 3; k++)
             if (!isfinite(x[k]))
                 return tl_fail(error, TL_E_GEOMETRY,
-                               "the %c coordinate of vertex %zu is %g: it must be a finite number",
-                               "xyz"[k], i + 1, x[k]);
+                               "the %c coordinate of vertex %zu is %g: it must be a finite number", "xyz"[k], i + 1,
+                               x[k]);
     }
     return TL_OK;
 }
@@ -279,14 +278,12 @@ static tl_status place_on_grid(builder *b, tl_error *error)
     double longest = fmax(sides.x, fmax(sides.y, sides.z));
     b->extent = tl_v3_norm(sides);
     if (longest == 0)
-        return tl_fail(error, TL_E_GEOMETRY, "the %u vertices are one and the same point",
-                       h->count);
+        return tl_fail(error, TL_E_GEOMETRY, "the %u vertices are one and the same point", h->count);
     /* Fifth powers of lengths occur in moments of inertia. */
     double fifth = b->extent * b->extent * b->extent * b->extent * b->extent;
     if (!isnormal(fifth))
         return tl_fail(error, TL_E_GEOMETRY,
-                       "the vertices are %g apart, which cannot be computed with: use other units",
-                       longest);
+                       "the vertices are %g apart, which cannot be computed with: use other units", longest);
     double reach = fmax(tl_v3_norm(low), tl_v3_norm(bounds.max));
     b->tolerance = fmax(TL_POLY_ON * b->extent, TL_POLY_ROUNDINGS * reach);
     if (b->tolerance > TL_POLY_THIN * b->extent)
@@ -306,8 +303,7 @@ static tl_status place_on_grid(builder *b, tl_error *error)
     double same = b->tolerance;
     for (uint32_t i = 0; i < h->count; i++)
         for (uint32_t j = 0; j < i && !h->duplicate[i]; j++)
-            h->duplicate[i] =
-                !h->duplicate[j] && tl_v3_norm2(tl_v3_sub(b->point[i], b->point[j])) <= same * same;
+            h->duplicate[i] = !h->duplicate[j] && tl_v3_norm2(tl_v3_sub(b->point[i], b->point[j])) <= same * same;
     return TL_OK;
 }
 
@@ -316,11 +312,10 @@ static tl_status flat(const builder *b, double thickness, tl_error *error)
     /* A plane through three points leaves a height of rounding over it: that is none. */
     if (thickness < b->tolerance)
         thickness = 0;
-    return tl_fail(
-        error, TL_E_GEOMETRY,
-        "the %u vertices lie in one plane (thickness %.3g): a block needs a volume, at least "
-        "%.3g thick for a size of %.3g",
-        b->hull.count, thickness, TL_POLY_THIN * b->extent, b->extent);
+    return tl_fail(error, TL_E_GEOMETRY,
+                   "the %u vertices lie in one plane (thickness %.3g): a block needs a volume, at least "
+                   "%.3g thick for a size of %.3g",
+                   b->hull.count, thickness, TL_POLY_THIN * b->extent, b->extent);
 }
 
 /* Four points far apart: the first, the farthest from it, from their line, from their plane. */
@@ -403,8 +398,7 @@ static bool joins(const builder *b, const hull_triangle *seed, const hull_triang
     const int64_t *a = h->grid[seed->vertex[0]];
     for (int i = 0; i < 3; i++) {
         const int64_t *x = h->grid[t->vertex[i]];
-        double height = n[0] * (double)(x[0] - a[0]) + n[1] * (double)(x[1] - a[1]) +
-                        n[2] * (double)(x[2] - a[2]);
+        double height = n[0] * (double)(x[0] - a[0]) + n[1] * (double)(x[1] - a[1]) + n[2] * (double)(x[2] - a[2]);
         if (fabs(height) > b->tolerance * b->unit * length)
             return false;
     }
@@ -470,8 +464,7 @@ static void next_border(const hull *h, uint32_t *t, int *side)
 
 /* Writes the corners of the face with border side (t, side); returns their number. `borders` counts
  * the sides passed. */
-static uint32_t trace_face(const builder *b, uint32_t t, int side, uint16_t *loop,
-                           uint32_t *borders)
+static uint32_t trace_face(const builder *b, uint32_t t, int side, uint16_t *loop, uint32_t *borders)
 {
     uint32_t first = t, corners = 0;
     int first_side = side;
@@ -525,8 +518,7 @@ static bool trace_faces(builder *b)
     for (uint32_t f = 0; f < b->face_count; f++) {
         if (b->order[f] == NO_FACE)
             continue;
-        uint32_t borders, corners = trace_face(b, b->order[f] / 3, (int)(b->order[f] % 3),
-                                               b->loop + length, &borders);
+        uint32_t borders, corners = trace_face(b, b->order[f] / 3, (int)(b->order[f] % 3), b->loop + length, &borders);
         if (borders != b->pending[f])
             return false;
         if (corners < 3) {
@@ -634,8 +626,7 @@ static tl_status assemble(builder *b, tl_poly **poly, tl_error *error)
 /* Refuses a hull that is too thin and a point that is no corner but lies inside. */
 static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
 {
-    double shallow =
-        fmax(b->tolerance, fmin(TL_POLY_BENT * b->extent, TL_POLY_SHALLOW * tl_poly_thickness(p)));
+    double shallow = fmax(b->tolerance, fmin(TL_POLY_BENT * b->extent, TL_POLY_SHALLOW * tl_poly_thickness(p)));
     for (uint32_t f = 0; f < p->face_count; f++) {
         double depth = 0;
         for (uint32_t v = 0; v < p->vertex_count; v++)
@@ -650,11 +641,10 @@ static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
         for (uint32_t f = 0; f < p->face_count; f++)
             depth = fmin(depth, p->plane[f].offset - tl_v3_dot(p->plane[f].normal, b->point[i]));
         if (depth > shallow)
-            return tl_fail(
-                error, TL_E_GEOMETRY,
-                "vertex %u lies %.3g inside the hull of the others; a block must be convex: "
-                "leave it out or make two blocks of it",
-                i + 1, depth);
+            return tl_fail(error, TL_E_GEOMETRY,
+                           "vertex %u lies %.3g inside the hull of the others; a block must be convex: "
+                           "leave it out or make two blocks of it",
+                           i + 1, depth);
     }
     return TL_OK;
 }
@@ -669,8 +659,8 @@ static tl_status merge(builder *b, tl_poly **poly, tl_error *error)
     if (!trace_faces(b))
         return TL_OK;
     if (b->face_count > TL_POLY_MAX_FACES)
-        return tl_fail(error, TL_E_GEOMETRY, "the %u vertices make %u faces: one block can have %d",
-                       b->hull.count, b->face_count, TL_POLY_MAX_FACES);
+        return tl_fail(error, TL_E_GEOMETRY, "the %u vertices make %u faces: one block can have %d", b->hull.count,
+                       b->face_count, TL_POLY_MAX_FACES);
     number_corners(b);
     tl_poly *p = NULL;
     tl_status status = assemble(b, &p, error);
@@ -703,11 +693,10 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
     if (status)
         return status;
     if (!p)
-        return tl_fail(
-            error, TL_E_GEOMETRY,
-            "the %u vertices do not make a block with flat faces: leave out vertices "
-            "closer together than %.3g, or nearer than that to a face they do not belong to",
-            b->hull.count, TL_POLY_THIN * b->extent);
+        return tl_fail(error, TL_E_GEOMETRY,
+                       "the %u vertices do not make a block with flat faces: leave out vertices "
+                       "closer together than %.3g, or nearer than that to a face they do not belong to",
+                       b->hull.count, TL_POLY_THIN * b->extent);
     status = check_hull(b, p, error);
     if (!status)
         status = tl_poly_flatten(&p, error);
@@ -718,8 +707,7 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
     return status;
 }
 
-static tl_status hull_of(const tl_vec3 *points, size_t count, bool any, tl_poly **poly,
-                         tl_error *error)
+static tl_status hull_of(const tl_vec3 *points, size_t count, bool any, tl_poly **poly, tl_error *error)
 {
     *poly = NULL;
     tl_status status = check_points(points, count, error);

@@ -22,14 +22,13 @@
 static size_t allocation(size_t v, size_t f, size_t e)
 {
     const tl_poly *p = NULL;
-    return sizeof *p + v * sizeof *p->vertex + f * (sizeof *p->plane + sizeof *p->tag) +
-           (f + 1) * sizeof *p->start + e * sizeof *p->edge + 2 * e * sizeof *p->loop;
+    return sizeof *p + v * sizeof *p->vertex + f * (sizeof *p->plane + sizeof *p->tag) + (f + 1) * sizeof *p->start +
+           e * sizeof *p->edge + 2 * e * sizeof *p->loop;
 }
 
 size_t tl_poly_bytes(const tl_poly *p)
 {
-    return allocation(p->vertex_count, p->face_count, p->edge_count) +
-           (p->seams ? p->face_count : 0) +
+    return allocation(p->vertex_count, p->face_count, p->edge_count) + (p->seams ? p->face_count : 0) +
            (p->plane_count > p->face_count ? p->plane_count * sizeof *p->plane : 0);
 }
 
@@ -167,12 +166,11 @@ static tl_status report_unpaired(const tl_poly *p, half_edges half, tl_error *er
         int forth = find_half_edge(half, a, b, &found), back = find_half_edge(half, b, a, &found);
         if (a != b && forth == 1 && back == 1)
             continue;
-        return tl_fail(
-            error, TL_E_GEOMETRY,
-            "the edge from vertex %d to vertex %d belongs to %d face%s, not to two that "
-            "run along it in opposite directions: give every face counter-clockwise from "
-            "outside and leave no hole",
-            a + 1, b + 1, forth + back, forth + back == 1 ? "" : "s");
+        return tl_fail(error, TL_E_GEOMETRY,
+                       "the edge from vertex %d to vertex %d belongs to %d face%s, not to two that "
+                       "run along it in opposite directions: give every face counter-clockwise from "
+                       "outside and leave no hole",
+                       a + 1, b + 1, forth + back, forth + back == 1 ? "" : "s");
     }
     return TL_E_GEOMETRY;
 }
@@ -186,8 +184,7 @@ static tl_status pair_half_edges(tl_poly *p, half_edges half, tl_error *error)
         uint16_t a = p->loop[h], b = after(p, half.face[h], h), forth, back;
         if (a >= b)
             continue;
-        if (edges == p->edge_count || find_half_edge(half, a, b, &forth) != 1 ||
-            find_half_edge(half, b, a, &back) != 1)
+        if (edges == p->edge_count || find_half_edge(half, a, b, &forth) != 1 || find_half_edge(half, b, a, &back) != 1)
             return report_unpaired(p, half, error);
         p->edge[edges] = (tl_edge){a, b, half.face[h], half.face[back]};
         edges++;
@@ -206,8 +203,7 @@ tl_status tl_poly_link(tl_poly *p, tl_poly **linked, tl_error *error)
         tl_poly_free(p);
         return tl_fail_memory(error);
     }
-    half_edges half = {scratch, scratch + half_count, scratch + 2 * half_count,
-                       scratch + 3 * half_count};
+    half_edges half = {scratch, scratch + half_count, scratch + 2 * half_count, scratch + 3 * half_count};
     group_half_edges(p, half);
     tl_status status = pair_half_edges(p, half, error);
     if (scratch != local)
@@ -225,8 +221,7 @@ tl_vec3 tl_poly_normal(tl_vec3 area)
 {
     double length = tl_v3_norm(area);
     /* Division keeps an axis an axis; adding zero turns -0 into 0. */
-    return length > 0 ? tl_v3(area.x / length + 0.0, area.y / length + 0.0, area.z / length + 0.0)
-                      : tl_v3(0, 0, 0);
+    return length > 0 ? tl_v3(area.x / length + 0.0, area.y / length + 0.0, area.z / length + 0.0) : tl_v3(0, 0, 0);
 }
 
 double tl_poly_midway(double low, double high)
@@ -238,26 +233,23 @@ tl_vec3 tl_poly_fan_area(const tl_vec3 *vertices, const uint16_t *loop, size_t c
 {
     tl_vec3 base = vertices[loop[0]], sum = {0, 0, 0};
     for (size_t i = 1; i + 1 < count; i++)
-        sum = tl_v3_add(sum, tl_v3_cross(tl_v3_sub(vertices[loop[i]], base),
-                                         tl_v3_sub(vertices[loop[i + 1]], base)));
+        sum = tl_v3_add(sum, tl_v3_cross(tl_v3_sub(vertices[loop[i]], base), tl_v3_sub(vertices[loop[i + 1]], base)));
     return sum;
 }
 
 /* Everything tl_poly_make asks of its input short of pairing the edges. */
 static tl_status check_input(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes,
-                             const uint32_t *start, const uint16_t *loops, size_t face_count,
-                             tl_error *error)
+                             const uint32_t *start, const uint16_t *loops, size_t face_count, tl_error *error)
 {
     if (vertex_count < 4 || vertex_count > TL_POLY_MAX_VERTICES)
-        return tl_fail(error, TL_E_GEOMETRY, "a polyhedron of %zu vertices: it needs 4 to %d",
-                       vertex_count, TL_POLY_MAX_VERTICES);
+        return tl_fail(error, TL_E_GEOMETRY, "a polyhedron of %zu vertices: it needs 4 to %d", vertex_count,
+                       TL_POLY_MAX_VERTICES);
     if (face_count < 4 || face_count > TL_POLY_MAX_FACES)
-        return tl_fail(error, TL_E_GEOMETRY, "a polyhedron of %zu faces: it needs 4 to %d",
-                       face_count, TL_POLY_MAX_FACES);
+        return tl_fail(error, TL_E_GEOMETRY, "a polyhedron of %zu faces: it needs 4 to %d", face_count,
+                       TL_POLY_MAX_FACES);
     for (size_t v = 0; v < vertex_count; v++)
         if (!tl_v3_finite(vertices[v]))
-            return tl_fail(error, TL_E_GEOMETRY, "vertex %zu has a coordinate that is not finite",
-                           v + 1);
+            return tl_fail(error, TL_E_GEOMETRY, "vertex %zu has a coordinate that is not finite", v + 1);
     for (size_t f = 0; f < face_count; f++) {
         if (start[f + 1] < start[f] + 3 || start[f + 1] > 2 * TL_POLY_MAX_EDGES)
             return tl_fail(error, TL_E_GEOMETRY,
@@ -268,8 +260,8 @@ static tl_status check_input(const tl_vec3 *vertices, size_t vertex_count, const
             return tl_fail(error, TL_E_GEOMETRY, "the plane of face %zu is not finite", f + 1);
         for (uint32_t i = start[f]; i < start[f + 1]; i++)
             if (loops[i] >= vertex_count)
-                return tl_fail(error, TL_E_GEOMETRY, "face %zu names vertex %d of %zu", f + 1,
-                               loops[i] + 1, vertex_count);
+                return tl_fail(error, TL_E_GEOMETRY, "face %zu names vertex %d of %zu", f + 1, loops[i] + 1,
+                               vertex_count);
     }
     if (start[face_count] - start[0] != 2 * (vertex_count + face_count - 2))
         return tl_fail(error, TL_E_GEOMETRY,
@@ -279,9 +271,8 @@ static tl_status check_input(const tl_vec3 *vertices, size_t vertex_count, const
     return TL_OK;
 }
 
-tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes,
-                       const tl_tag *tags, const uint32_t *start, const uint16_t *loops,
-                       size_t face_count, tl_poly **poly, tl_error *error)
+tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes, const tl_tag *tags,
+                       const uint32_t *start, const uint16_t *loops, size_t face_count, tl_poly **poly, tl_error *error)
 {
     *poly = NULL;
     tl_status status = check_input(vertices, vertex_count, planes, start, loops, face_count, error);
@@ -312,19 +303,17 @@ tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error)
     double diagonal = tl_v3_norm(edge), thinnest = fmin(edge.x, fmin(edge.y, edge.z));
     if (!isfinite(diagonal * diagonal * diagonal) || !(thinnest >= TL_POLY_THIN * diagonal) ||
         !(thinnest * thinnest * thinnest > 0))
-        return tl_fail(
-            error, TL_E_GEOMETRY,
-            "a box with edges %g, %g, %g: every edge must be positive and at least %g of "
-            "the diagonal",
-            edge.x, edge.y, edge.z, TL_POLY_THIN);
+        return tl_fail(error, TL_E_GEOMETRY,
+                       "a box with edges %g, %g, %g: every edge must be positive and at least %g of "
+                       "the diagonal",
+                       edge.x, edge.y, edge.z, TL_POLY_THIN);
     tl_vec3 vertices[8];
     for (int i = 0; i < 8; i++)
         vertices[i] = tl_v3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
     const tl_plane planes[6] = {{{-1, 0, 0}, -min.x}, {{1, 0, 0}, max.x},   {{0, -1, 0}, -min.y},
                                 {{0, 1, 0}, max.y},   {{0, 0, -1}, -min.z}, {{0, 0, 1}, max.z}};
     static const uint32_t start[7] = {0, 4, 8, 12, 16, 20, 24};
-    static const uint16_t loops[24] = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4,
-                                       2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
+    static const uint16_t loops[24] = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
     return tl_poly_make(vertices, 8, planes, NULL, start, loops, 6, poly, error);
 }
 
@@ -357,8 +346,8 @@ tl_poly *tl_poly_copy(const tl_poly *poly)
     return NULL;
 }
 
-tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation,
-                              tl_poly **copy, tl_error *error)
+tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation, tl_poly **copy,
+                              tl_error *error)
 {
     *copy = NULL;
     tl_poly *p = tl_poly_copy(poly);
@@ -391,8 +380,8 @@ static bool runs_along(const tl_poly *p, uint32_t face, uint16_t a, uint16_t b)
 static tl_status check_topology(const tl_poly *p, tl_error *error)
 {
     if (p->vertex_count + p->face_count != p->edge_count + 2)
-        return tl_fail(error, TL_E_GEOMETRY, "%u vertices - %u edges + %u faces is not 2",
-                       p->vertex_count, p->edge_count, p->face_count);
+        return tl_fail(error, TL_E_GEOMETRY, "%u vertices - %u edges + %u faces is not 2", p->vertex_count,
+                       p->edge_count, p->face_count);
     if (p->start[0] != 0 || p->start[p->face_count] != 2 * p->edge_count)
         return tl_fail(error, TL_E_GEOMETRY, "the face loops do not hold every edge twice");
     uint16_t edges[TL_POLY_MAX_VERTICES] = {0};
@@ -415,21 +404,18 @@ static tl_status check_face(const tl_poly *p, uint32_t face, double tolerance, t
     const uint16_t *loop = p->loop + p->start[face];
     tl_plane plane = p->plane[face];
     if (!(fabs(tl_v3_norm(plane.normal) - 1) <= UNIT_TOLERANCE))
-        return tl_fail(error, TL_E_GEOMETRY, "the normal of face %u has length %g", face + 1,
-                       tl_v3_norm(plane.normal));
+        return tl_fail(error, TL_E_GEOMETRY, "the normal of face %u has length %g", face + 1, tl_v3_norm(plane.normal));
     for (uint32_t v = 0; v < p->vertex_count; v++) {
         double d = tl_v3_dot(plane.normal, p->vertex[v]) - plane.offset;
         if (!(d <= tolerance * p->size))
-            return tl_fail(error, TL_E_GEOMETRY, "vertex %u lies %.3g outside face %u", v + 1, d,
-                           face + 1);
+            return tl_fail(error, TL_E_GEOMETRY, "vertex %u lies %.3g outside face %u", v + 1, d, face + 1);
     }
     for (uint32_t i = 0; i < n; i++) {
         tl_vec3 a = p->vertex[loop[i]], b = p->vertex[loop[(i + 1) % n]];
         tl_vec3 c = p->vertex[loop[(i + 2) % n]];
         double d = tl_v3_dot(plane.normal, a) - plane.offset;
         if (!(fabs(d) <= tolerance * p->size))
-            return tl_fail(error, TL_E_GEOMETRY, "vertex %d lies %.3g off its face %u", loop[i] + 1,
-                           d, face + 1);
+            return tl_fail(error, TL_E_GEOMETRY, "vertex %d lies %.3g off its face %u", loop[i] + 1, d, face + 1);
         double turn = tl_v3_dot(plane.normal, tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, b)));
         if (!(turn >= -tolerance * p->size * p->size))
             return tl_fail(error, TL_E_GEOMETRY, "face %u turns clockwise at vertex %d", face + 1,

@@ -42,9 +42,9 @@ double tl_poly_midway(double low, double high);
 
 /* A polyhedron from faces: loops[start[f] .. start[f+1]) are indices into `vertices`. Derives edges.
  * Fails (TL_E_GEOMETRY) when some edge does not belong to exactly two faces. */
-tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes,
-                       const tl_tag *tags, const uint32_t *start, const uint16_t *loops,
-                       size_t face_count, tl_poly **poly, tl_error *error);
+tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes, const tl_tag *tags,
+                       const uint32_t *start, const uint16_t *loops, size_t face_count, tl_poly **poly,
+                       tl_error *error);
 
 tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error);
 
@@ -56,8 +56,8 @@ size_t tl_poly_bytes(const tl_poly *poly);
 tl_poly *tl_poly_copy(const tl_poly *poly);
 
 /* A copy with every vertex x replaced by R x + t (R a rotation; NULL is the identity). */
-tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation,
-                              tl_poly **copy, tl_error *error);
+tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation, tl_poly **copy,
+                              tl_error *error);
 
 /* Euler's formula, closed, convex and every vertex on its faces' planes within `tolerance` times the
  * size, positive volume. */

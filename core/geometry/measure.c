@@ -118,8 +118,7 @@ tl_mass tl_poly_mass(const tl_poly *p)
         uint32_t n = tl_poly_face_size(p, f);
         if (has_first_vertex(loop, n))
             continue;
-        tl_vec3 a = tl_v3_sub(p->vertex[loop[0]], origin),
-                b = tl_v3_sub(p->vertex[loop[1]], origin);
+        tl_vec3 a = tl_v3_sub(p->vertex[loop[0]], origin), b = tl_v3_sub(p->vertex[loop[1]], origin);
         for (uint32_t i = 2; i < n; i++) {
             tl_vec3 c = tl_v3_sub(p->vertex[loop[i]], origin);
             add_tetrahedron(&m, a, b, c);
@@ -129,8 +128,7 @@ tl_mass tl_poly_mass(const tl_poly *p)
     tl_mass mass = {.volume = m.volume / 6};
     if (mass.volume < SLENDER * p->size * p->size * p->size)
         mass.volume = long_volume(p);
-    tl_vec3 arm =
-        tl_v3(m.first.x / (4 * m.volume), m.first.y / (4 * m.volume), m.first.z / (4 * m.volume));
+    tl_vec3 arm = tl_v3(m.first.x / (4 * m.volume), m.first.y / (4 * m.volume), m.first.z / (4 * m.volume));
     mass.centroid = tl_v3_add(origin, arm);
     /* Second moments about the centroid, then the inertia tensor from them. */
     tl_sym3 s = m.second;
@@ -175,8 +173,8 @@ static double fan_area2(const tl_poly *p, uint32_t face, uint32_t i)
 {
     const uint16_t *loop = p->loop + p->start[face];
     tl_vec3 base = p->vertex[loop[0]];
-    return tl_v3_dot(p->plane[face].normal, tl_v3_cross(tl_v3_sub(p->vertex[loop[i]], base),
-                                                        tl_v3_sub(p->vertex[loop[i + 1]], base)));
+    return tl_v3_dot(p->plane[face].normal,
+                     tl_v3_cross(tl_v3_sub(p->vertex[loop[i]], base), tl_v3_sub(p->vertex[loop[i + 1]], base)));
 }
 
 double tl_poly_face_area(const tl_poly *p, uint32_t face)
@@ -195,15 +193,12 @@ tl_vec3 tl_poly_face_centroid(const tl_poly *p, uint32_t face)
     double area2 = 0;
     for (uint32_t i = 1; i + 1 < n; i++) {
         double w = fan_area2(p, face, i);
-        tl_vec3 arm =
-            tl_v3_add(tl_v3_sub(p->vertex[loop[i]], base), tl_v3_sub(p->vertex[loop[i + 1]], base));
+        tl_vec3 arm = tl_v3_add(tl_v3_sub(p->vertex[loop[i]], base), tl_v3_sub(p->vertex[loop[i + 1]], base));
         area2 += w;
         sum = tl_v3_madd(sum, w, arm);
     }
     /* A face without area, such as a sliver may have, has its first vertex for a centroid. */
-    return area2 > 0 ? tl_v3_add(base, tl_v3(sum.x / (3 * area2), sum.y / (3 * area2),
-                                             sum.z / (3 * area2)))
-                     : base;
+    return area2 > 0 ? tl_v3_add(base, tl_v3(sum.x / (3 * area2), sum.y / (3 * area2), sum.z / (3 * area2))) : base;
 }
 
 double tl_poly_shortest_edge(const tl_poly *p)

@@ -25,8 +25,8 @@ static inline tl_bounds tl_poly_bounds(const tl_poly *poly)
 /* Whether two bounds have a point in common. */
 static inline bool tl_bounds_meet(const tl_bounds *a, const tl_bounds *b)
 {
-    return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y &&
-           b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
+    return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y && b->min.y <= a->max.y &&
+           a->min.z <= b->max.z && b->min.z <= a->max.z;
 }
 /* Sets `size` by the vertices as they are. */
 void tl_poly_find_size(tl_poly *poly);

@@ -16,8 +16,7 @@ static size_t keep_left(const tl_point2 *in, size_t count, tl_point2 o, tl_point
     return kept;
 }
 
-size_t tl_polygon_common(tl_point2 **now, tl_point2 **next, size_t count, const tl_point2 *by,
-                         size_t sides)
+size_t tl_polygon_common(tl_point2 **now, tl_point2 **next, size_t count, const tl_point2 *by, size_t sides)
 {
     for (size_t i = 0; i < sides && count; i++) {
         count = keep_left(*now, count, by[(i + 1) % sides], by[i], *next);

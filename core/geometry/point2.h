@@ -37,7 +37,6 @@ TL_INLINE tl_point2 tl_part_way(tl_point2 p, tl_point2 q, double h, double g)
 /* Keeps of a convex polygon, counter-clockwise, what lies left of each side of another. That is given clockwise, as a
  * face is seen that looks at it. Returns the number of corners. `now` and `next` have room for as many as both have;
  * what is kept is in *now. */
-size_t tl_polygon_common(tl_point2 **now, tl_point2 **next, size_t count, const tl_point2 *by,
-                         size_t sides);
+size_t tl_polygon_common(tl_point2 **now, tl_point2 **next, size_t count, const tl_point2 *by, size_t sides);
 
 #endif

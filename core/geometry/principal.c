@@ -78,9 +78,8 @@ static tl_vec3 axis(const tl_mat3 *r, int from)
 
 void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes)
 {
-    tl_mat3 a = {{{tensor.xx, tensor.xy, tensor.zx},
-                  {tensor.xy, tensor.yy, tensor.yz},
-                  {tensor.zx, tensor.yz, tensor.zz}}};
+    tl_mat3 a = {
+        {{tensor.xx, tensor.xy, tensor.zx}, {tensor.xy, tensor.yy, tensor.yz}, {tensor.zx, tensor.yz, tensor.zz}}};
     tl_mat3 r = tl_m3_identity();
     bool turned = true;
     for (int sweep = 0; sweep < MAX_SWEEPS && turned; sweep++) {
@@ -102,7 +101,6 @@ void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes)
     tl_vec3 first = axis(&r, order[0]), second = axis(&r, order[1]), third = axis(&r, order[2]);
     if (tl_v3_dot(tl_v3_cross(first, second), third) < 0)
         third = tl_v3_neg(third);
-    tl_mat3 rotation = {
-        {{first.x, second.x, third.x}, {first.y, second.y, third.y}, {first.z, second.z, third.z}}};
+    tl_mat3 rotation = {{{first.x, second.x, third.x}, {first.y, second.y, third.y}, {first.z, second.z, third.z}}};
     *axes = quaternion(&rotation);
 }

@@ -51,8 +51,7 @@ static double flat_area(const tl_point2 *c, size_t count)
 
 /* Area common to face fa of a and face fb of b, which face each other in one plane. `scratch` holds three times
  * as many corners as both faces have. */
-static double common_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
-                          tl_point2 *scratch)
+static double common_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, tl_point2 *scratch)
 {
     uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
     tl_vec3 n = a->plane[fa].normal;
@@ -76,8 +75,7 @@ static double reach_behind(const tl_poly *p, uint32_t face)
     return most;
 }
 
-bool tl_poly_faces_meet(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
-                        double *uncovered)
+bool tl_poly_faces_meet(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, double *uncovered)
 {
     tl_plane p = a->plane[fa], q = b->plane[fb];
     double size = fmin(a->size, b->size), tilt = tl_v3_norm(tl_v3_add(p.normal, q.normal));
@@ -203,8 +201,7 @@ static void cover(const contact *c)
 /* Groups the parts unless the faces are severed, or meet in next to nothing. */
 static void hold(const contact *c)
 {
-    double smaller =
-        fmin(tl_poly_face_area(c->a->poly, c->fa), tl_poly_face_area(c->b->poly, c->fb));
+    double smaller = fmin(tl_poly_face_area(c->a->poly, c->fa), tl_poly_face_area(c->b->poly, c->fb));
     if (!is_severed(c->a, c->fa) && !is_severed(c->b, c->fb) && c->area > UNCOVERED * smaller)
         unite(c->a, c->b);
 }
@@ -275,10 +272,7 @@ static part *list_parts(tl_poly *const *parts, size_t count)
         return NULL;
     double *open = (double *)(void *)(list + count);
     for (size_t i = 0; i < count; at += parts[i]->face_count, i++) {
-        list[i] = (part){.poly = parts[i],
-                         .bounds = tl_poly_bounds(parts[i]),
-                         .open = open + at,
-                         .index = (uint32_t)i};
+        list[i] = (part){.poly = parts[i], .bounds = tl_poly_bounds(parts[i]), .open = open + at, .index = (uint32_t)i};
         for (uint32_t f = 0; f < parts[i]->face_count; f++)
             open[at + f] = tl_poly_face_area(parts[i], f);
     }
@@ -303,8 +297,8 @@ tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *erro
     return done ? TL_OK : tl_fail_memory(error);
 }
 
-tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn severs,
-                            const void *user, uint32_t *label, tl_error *error)
+tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn severs, const void *user, uint32_t *label,
+                            tl_error *error)
 {
     part *list = count ? list_parts(parts, count) : NULL;
     for (size_t i = 0; list && i < count; i++) {
@@ -434,8 +428,8 @@ tl_status tl_poly_share_planes(tl_poly *const *parts, size_t count, tl_error *er
         done = choose_for(parts[i], &outer, &chosen);
         tidy(parts[i], &chosen);
         size_t most = TL_POLY_MAX_FACES - parts[i]->face_count; /* numbers of planes have 16 bits */
-        done = done && tl_poly_add_planes(parts[i], chosen.plane,
-                                          (uint32_t)(chosen.count < most ? chosen.count : most));
+        done =
+            done && tl_poly_add_planes(parts[i], chosen.plane, (uint32_t)(chosen.count < most ? chosen.count : most));
     }
     free(outer.plane);
     free(chosen.plane);

@@ -20,8 +20,8 @@ static void put_faces(tl_piece *to, const tl_model *m, const tl_poly *shape)
             tl_json_print(to, i > shape->start[f] ? ", %u" : "%u", (uint32_t)shape->loop[i]);
         tl_json_put(to, "]");
         if (shape->tag[f].joint)
-            tl_json_print(to, ", \"joint\": %s, \"plane\": %u",
-                          m->joints[shape->tag[f].joint - 1].name, shape->tag[f].plane);
+            tl_json_print(to, ", \"joint\": %s, \"plane\": %u", m->joints[shape->tag[f].joint - 1].name,
+                          shape->tag[f].plane);
         tl_json_put(to, "}");
     }
 }
@@ -42,13 +42,10 @@ static void put_block(tl_piece *to, const tl_model *m, uint32_t row)
 {
     const uint32_t body = m->blocks.body[row];
     const tl_poly *shape = m->blocks.shape[row];
-    tl_json_print(to,
-                  "%r\n    {\"id\": %u, \"group\": %s, \"density\": %g, \"body\": %u, \"fixed\": [",
-                  row ? "," : "", m->blocks.id[row], m->groups[m->blocks.group[row]],
-                  m->blocks.density[row], m->bodies.id[body]);
+    tl_json_print(to, "%r\n    {\"id\": %u, \"group\": %s, \"density\": %g, \"body\": %u, \"fixed\": [", row ? "," : "",
+                  m->blocks.id[row], m->groups[m->blocks.group[row]], m->blocks.density[row], m->bodies.id[body]);
     put_fixed(to, m->bodies.fixed[body]);
-    tl_json_print(to, "], \"hidden\": %r,\n     \"vertices\": [",
-                  m->blocks.hidden[row] ? "true" : "false");
+    tl_json_print(to, "], \"hidden\": %r,\n     \"vertices\": [", m->blocks.hidden[row] ? "true" : "false");
     for (uint32_t i = 0; i < shape->vertex_count; i++)
         tl_json_print(to, i ? ", %v" : "%v", tl_model_point(m, body, shape->vertex[i]));
     tl_json_put(to, "],\n     \"faces\": [");
@@ -68,8 +65,8 @@ static void fill_joints(const void *user, size_t begin, size_t end, tl_piece *pi
 {
     const tl_model *m = user;
     for (size_t i = begin; i < end; i++)
-        tl_json_print(piece, "%r\n    {\"name\": %s, \"planes\": %u}", i ? "," : "",
-                      m->joints[i].name, m->joints[i].planes);
+        tl_json_print(piece, "%r\n    {\"name\": %s, \"planes\": %u}", i ? "," : "", m->joints[i].name,
+                      m->joints[i].planes);
 }
 
 static tl_status write_model(tl_output *output, void *user)

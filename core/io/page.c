@@ -128,10 +128,8 @@ static tl_page_stand page_look(const char *path, const tl_page_end *end)
     tl_hash digest;
     char tail[2 * HALF];
     if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && (uint64_t)info.st_size >= end->at &&
-        digest_of(file, end->at, end->checked, &digest) && digest.a == end->digest.a &&
-        digest.b == end->digest.b)
-        stand = (uint64_t)info.st_size == end->at + sizeof tail &&
-                        read_at(file, tail, sizeof tail, end->at) &&
+        digest_of(file, end->at, end->checked, &digest) && digest.a == end->digest.a && digest.b == end->digest.b)
+        stand = (uint64_t)info.st_size == end->at + sizeof tail && read_at(file, tail, sizeof tail, end->at) &&
                         memcmp(tail, "<!---->\n", sizeof tail) == 0
                     ? TL_PAGE_WHOLE
                     : TL_PAGE_LONGER;
@@ -160,8 +158,7 @@ static void page_pad(tl_piece *element)
 void tl_page_beginning(tl_piece *to, const char *title, bool live)
 {
     for (size_t i = 0; tl_page_before[i]; i++)
-        tl_json_put(to,
-                    live && strcmp(tl_page_before[i], nowhere) == 0 ? at_home : tl_page_before[i]);
+        tl_json_put(to, live && strcmp(tl_page_before[i], nowhere) == 0 ? at_home : tl_page_before[i]);
     for (size_t bytes; *title; title += bytes ? bytes : 1) {
         bytes = tl_utf8_next(title);
         if (*title == '&' || *title == '<' || *title == '>')
@@ -200,14 +197,12 @@ static tl_status finish(tl_model *m, tl_output *output, const tl_piece *element)
 }
 
 /* Writes the page with its first frame under a new name and renames it. */
-static tl_status page_begin(tl_model *m, const char *path, const char *title,
-                            const tl_piece *element, tl_page_end *end)
+static tl_status page_begin(tl_model *m, const char *path, const char *title, const tl_piece *element, tl_page_end *end)
 {
     tl_piece beginning = {0};
     tl_page_beginning(&beginning, title, false);
     tl_output output = {.path = NULL};
-    tl_status status =
-        beginning.failed ? tl_fail_memory(&m->error) : tl_output_open(&output, path, &m->error);
+    tl_status status = beginning.failed ? tl_fail_memory(&m->error) : tl_output_open(&output, path, &m->error);
     if (status == TL_OK) {
         tl_output_put(&output, beginning.data, beginning.length);
         status = finish(m, &output, element);
@@ -222,8 +217,7 @@ static tl_status page_begin(tl_model *m, const char *path, const char *title,
 /* ---------------------------------------------------------------- an element ------------- */
 
 /* The element of the next frame. */
-static tl_status make_element(tl_model *m, tl_scene *scene, const tl_html *options,
-                              tl_piece *element)
+static tl_status make_element(tl_model *m, tl_scene *scene, const tl_html *options, tl_piece *element)
 {
     tl_piece chunks = {0};
     tl_scene_facts facts;
@@ -231,12 +225,11 @@ static tl_status make_element(tl_model *m, tl_scene *scene, const tl_html *optio
     if (status == TL_OK)
         status = tl_model_go_on(m);
     if (status == TL_OK) {
-        tl_json_print(
-            element,
-            "<script type=\"text/talus\" data-frame=\"%u\" data-bytes=\"%g\" data-time=\"%g\" "
-            "data-cycle=\"%g\" data-largest=\"%g\" data-model=\"%u\">",
-            scene->sent.frames, (double)chunks.length, facts.time, (double)facts.cycle,
-            facts.largest, (uint32_t)(facts.news > 0));
+        tl_json_print(element,
+                      "<script type=\"text/talus\" data-frame=\"%u\" data-bytes=\"%g\" data-time=\"%g\" "
+                      "data-cycle=\"%g\" data-largest=\"%g\" data-model=\"%u\">",
+                      scene->sent.frames, (double)chunks.length, facts.time, (double)facts.cycle, facts.largest,
+                      (uint32_t)(facts.news > 0));
         status = tl_pack(m, chunks.data, chunks.length, element);
     }
     free(chunks.data);
@@ -272,8 +265,7 @@ static tl_status copy_before(tl_model *m, const char *path, uint64_t bytes, tl_o
 }
 
 /* Adds a frame to a copy of what was left of a page that is longer. */
-static tl_status add_to_copy(tl_model *m, const char *path, const tl_piece *element,
-                             tl_page_end *end)
+static tl_status add_to_copy(tl_model *m, const char *path, const tl_piece *element, tl_page_end *end)
 {
     tl_output output;
     tl_status status = tl_output_open(&output, path, &m->error);
@@ -305,8 +297,7 @@ static int write_at(int file, const void *from, size_t bytes, uint64_t at)
 }
 
 /* Adds a frame to a page that stands whole. */
-static tl_status add_in_place(tl_model *m, const char *path, const tl_piece *element,
-                              tl_page_end *end)
+static tl_status add_in_place(tl_model *m, const char *path, const tl_piece *element, tl_page_end *end)
 {
     int file = open(path, O_WRONLY | O_CLOEXEC);
     if (file < 0)
@@ -334,8 +325,8 @@ static tl_status add_in_place(tl_model *m, const char *path, const tl_piece *ele
 
 /* ---------------------------------------------------------------- a frame ---------------- */
 
-static tl_status check_length(tl_model *m, const tl_page *page, const char *path,
-                              const tl_html *options, const tl_piece *element, uint64_t most)
+static tl_status check_length(tl_model *m, const tl_page *page, const char *path, const tl_html *options,
+                              const tl_piece *element, uint64_t most)
 {
     uint64_t at = page->end.frames ? page->end.at : 0;
     uint64_t length = page_length(options->title, at, element);
@@ -345,19 +336,16 @@ static tl_status check_length(tl_model *m, const tl_page *page, const char *path
                    "write_html: with frame %llu '%s' would have %.1f MB, and a page has %.0f MB at "
                    "the most; write frames less often, leave out contacts, or go on under another "
                    "name",
-                   (unsigned long long)page->end.frames, path, (double)length / 1e6,
-                   (double)most / 1e6);
+                   (unsigned long long)page->end.frames, path, (double)length / 1e6, (double)most / 1e6);
 }
 
 /* Whether the page goes on; else it begins anew. */
 static bool goes_on(const tl_page *page, tl_page_stand stand)
 {
-    return page->end.frames &&
-           (stand == TL_PAGE_WHOLE || (stand == TL_PAGE_LONGER && page->restored));
+    return page->end.frames && (stand == TL_PAGE_WHOLE || (stand == TL_PAGE_LONGER && page->restored));
 }
 
-static tl_status add_frame(tl_model *m, tl_page *page, const char *path, const tl_html *options,
-                           uint64_t most)
+static tl_status add_frame(tl_model *m, tl_page *page, const char *path, const tl_html *options, uint64_t most)
 {
     tl_page_stand stand = page->end.frames ? page_look(path, &page->end) : TL_PAGE_GONE;
     if (!goes_on(page, stand)) {
@@ -371,7 +359,7 @@ static tl_status add_frame(tl_model *m, tl_page *page, const char *path, const t
     if (status == TL_OK)
         status = tl_model_go_on(m);
     if (status == TL_OK)
-        status = page->end.frames == 0 ? page_begin(m, path, options->title, &element, &page->end)
+        status = page->end.frames == 0    ? page_begin(m, path, options->title, &element, &page->end)
                  : stand == TL_PAGE_WHOLE ? add_in_place(m, path, &element, &page->end)
                                           : add_to_copy(m, path, &element, &page->end);
     free(element.data);
@@ -390,11 +378,9 @@ static tl_status check(const char *prefix, const tl_html *options, tl_error *err
     size_t length = strlen(prefix);
     if (length == 0 || prefix[length - 1] == '/')
         return tl_fail(error, TL_E_ARGUMENT,
-                       "write_html: prefix = '%s' must end in a name for the page, as in 'out/run'",
-                       prefix);
+                       "write_html: prefix = '%s' must end in a name for the page, as in 'out/run'", prefix);
     if (options->contacts < TL_HTML_CONTACTS_FEW || options->contacts > TL_HTML_CONTACTS_NONE)
-        return tl_fail(error, TL_E_ARGUMENT,
-                       "write_html: contacts = %d must be one of tl_html_contacts, 0 to %d",
+        return tl_fail(error, TL_E_ARGUMENT, "write_html: contacts = %d must be one of tl_html_contacts, 0 to %d",
                        options->contacts, TL_HTML_CONTACTS_NONE);
     tl_status status = tl_extra_fields_check("write_html: block_fields", options->block_fields,
                                              options->block_field_count, TL_ANY_ITEMS, "", error);
@@ -477,8 +463,7 @@ static size_t piece_bytes(const packer *p, size_t i)
 
 /* Compresses bytes into the place of piece i and ends at a whole byte, or ends the stream. Gives how many bytes come
  * of it, or 0 when out of memory. */
-static size_t compress_bytes(const packer *p, size_t i, const unsigned char *from, size_t bytes,
-                             int strategy, int end)
+static size_t compress_bytes(const packer *p, size_t i, const unsigned char *from, size_t bytes, int strategy, int end)
 {
     z_stream z = {.next_in = NULL};
     /* Level 1 with a window of 2^15 bytes; the minus leaves out head and checksum. */
@@ -489,8 +474,7 @@ static size_t compress_bytes(const packer *p, size_t i, const unsigned char *fro
     z.next_out = p->packed + i * PACKED;
     z.avail_out = (uInt)PACKED;
     int code = deflate(&z, end);
-    bool good =
-        z.avail_in == 0 && z.avail_out > 0 && code == (end == Z_FINISH ? Z_STREAM_END : Z_OK);
+    bool good = z.avail_in == 0 && z.avail_out > 0 && code == (end == Z_FINISH ? Z_STREAM_END : Z_OK);
     size_t length = good ? PACKED - z.avail_out : 0;
     deflateEnd(&z);
     return length;
@@ -518,8 +502,7 @@ static size_t pack_piece(const packer *p, size_t i)
     int strategy = strategy_of(p, i, from, bytes);
     if (strategy == NO_MEMORY)
         return 0;
-    return compress_bytes(p, i, from, bytes, strategy,
-                          i + 1 == p->pieces ? Z_FINISH : Z_FULL_FLUSH);
+    return compress_bytes(p, i, from, bytes, strategy, i + 1 == p->pieces ? Z_FINISH : Z_FULL_FLUSH);
 }
 
 static void pack_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)

@@ -67,8 +67,7 @@ static void work(void *user, size_t begin, size_t end, size_t chunk, unsigned th
     b->fn(b->user, first, last < b->rows ? last : b->rows, &b->empty[begin - 1]);
 }
 
-tl_status tl_pieces_write(tl_pieces *pieces, size_t rows, size_t bytes, tl_piece_fn fn,
-                          const void *user)
+tl_status tl_pieces_write(tl_pieces *pieces, size_t rows, size_t bytes, tl_piece_fn fn, const void *user)
 {
     batch b = {.output = pieces->output, .rows = rows, .fn = fn, .user = user};
     b.each = bytes < PIECE_BYTES ? PIECE_BYTES / bytes : 1;

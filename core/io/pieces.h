@@ -34,8 +34,7 @@ unsigned char *tl_piece_add(tl_piece *piece, size_t bytes);
 typedef void (*tl_piece_fn)(const void *user, size_t begin, size_t end, tl_piece *piece);
 
 /* Writes `rows` rows of about `bytes` each to the output. The disk's errors stay in the output: output_file.h. */
-tl_status tl_pieces_write(tl_pieces *pieces, size_t rows, size_t bytes, tl_piece_fn fn,
-                          const void *user);
+tl_status tl_pieces_write(tl_pieces *pieces, size_t rows, size_t bytes, tl_piece_fn fn, const void *user);
 void tl_pieces_free(tl_pieces *pieces);
 
 #endif

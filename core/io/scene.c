@@ -49,8 +49,8 @@ static tl_scene_block block_of(const tl_model *m, uint32_t row)
 
 static bool same(const tl_scene_block *a, const tl_scene_block *b)
 {
-    return a->id == b->id && a->body == b->body && a->group == b->group &&
-           a->changed == b->changed && a->density == b->density;
+    return a->id == b->id && a->body == b->body && a->group == b->group && a->changed == b->changed &&
+           a->density == b->density;
 }
 
 /* Lists the blocks as they are in `next`, and what differs from those that were sent. */
@@ -104,8 +104,7 @@ static const char *unit_of(const tl_history *h)
     for (size_t i = 0; i < count; i++)
         if (strcmp(fields[i].name, h->asked) == 0)
             return fields[i].unit;
-    for (size_t i = 0; h->source == TL_FROM_MODEL && i < sizeof quantities / sizeof *quantities;
-         i++)
+    for (size_t i = 0; h->source == TL_FROM_MODEL && i < sizeof quantities / sizeof *quantities; i++)
         if (strcmp(quantities[i].name, h->asked) == 0)
             return quantities[i].unit;
     return "";
@@ -128,12 +127,11 @@ static void put_histories(tl_piece *to, const tl_model *m)
  *
  * HEAD: what does not change with the blocks, as JSON. */
 
-static void put_fields(tl_piece *to, const tl_extra_field *fields, size_t count, bool more,
-                       const char *of)
+static void put_fields(tl_piece *to, const tl_extra_field *fields, size_t count, bool more, const char *of)
 {
     for (size_t i = 0; i < count; i++)
-        tl_json_print(to, "%r{\"name\": %s, \"unit\": %s, \"of\": %s}", more || i ? ", " : "",
-                      fields[i].name, fields[i].unit ? fields[i].unit : "", of);
+        tl_json_print(to, "%r{\"name\": %s, \"unit\": %s, \"of\": %s}", more || i ? ", " : "", fields[i].name,
+                      fields[i].unit ? fields[i].unit : "", of);
 }
 
 /* The friction angle of a law, degrees; NaN where it has none. */
@@ -142,8 +140,7 @@ static double friction_of(const tl_law *law)
     for (uint32_t i = 0; law && i < law->kind->param_count; i++) {
         tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
         double value;
-        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 ||
-            strcmp(p.unit, "deg") != 0)
+        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 || strcmp(p.unit, "deg") != 0)
             continue;
         memcpy(&value, (const char *)law->params + p.offset, sizeof value);
         return value;
@@ -164,16 +161,14 @@ static double friction_of_joint(const tl_model *m, uint32_t joint)
 }
 
 /* The JSON of the head of the scene's next frame, into `text`. */
-static void scene_head(const tl_model *m, const tl_html *options, const tl_scene *scene,
-                       tl_piece *text)
+static void scene_head(const tl_model *m, const tl_html *options, const tl_scene *scene, tl_piece *text)
 {
     const size_t block_fields = options->block_field_count;
     text->length = 0;
     tl_json_print(text,
                   "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION
                   "\", \"title\": %s, \"origin\": %v, \"gravity\": %v, \"size\": %g",
-                  options->title ? options->title : "", m->origin, m->config.gravity,
-                  scene->next.median);
+                  options->title ? options->title : "", m->origin, m->config.gravity, scene->next.median);
     if (options->safety_limit > 0)
         tl_json_print(text, ", \"safety_limit\": %g", options->safety_limit);
     tl_json_put(text, ", \"groups\": [");
@@ -189,8 +184,7 @@ static void scene_head(const tl_model *m, const tl_html *options, const tl_scene
     }
     tl_json_put(text, "], \"fields\": [");
     put_fields(text, options->block_fields, block_fields, false, "blocks");
-    put_fields(text, options->contact_fields, options->contact_field_count, block_fields > 0,
-               "contacts");
+    put_fields(text, options->contact_fields, options->contact_field_count, block_fields > 0, "contacts");
     tl_json_put(text, "], \"histories\": [");
     put_histories(text, m);
     tl_json_print(text, "]%r%r}", scene->live ? ", \"live\": true" : "",
@@ -209,8 +203,8 @@ static void scene_finding(const tl_verdict *v, const char *hash, tl_piece *text)
     tl_json_print(text,
                   "{\"standing\": %s, \"text\": %s, \"stage\": %s, \"closed\": %g, \"moved\": %g, "
                   "\"contacts\": %g, \"slipping\": %g",
-                  tl_standing_name(v->standing), sentence, v->stage, v->closed, (double)v->moved,
-                  (double)v->contacts, (double)v->slipping);
+                  tl_standing_name(v->standing), sentence, v->stage, v->closed, (double)v->moved, (double)v->contacts,
+                  (double)v->slipping);
     if (hash)
         tl_json_print(text, ", \"hash\": %s", hash);
     tl_json_put(text, "}");
@@ -284,8 +278,7 @@ static bool add_rollers(const tl_model *m, uint32_t body, bounds *list, size_t f
     const tl_id id = m->bodies.id[body];
     bool enough = true;
     for (size_t k = 0; k < count && count < 3; k++)
-        enough =
-            enough && add(list, first, id, held[k]) && add(list, first, id, tl_v3_neg(held[k]));
+        enough = enough && add(list, first, id, held[k]) && add(list, first, id, tl_v3_neg(held[k]));
     return enough;
 }
 
@@ -340,8 +333,8 @@ typedef struct shape_counts {
 } shape_counts;
 
 typedef struct shape_columns {
-    unsigned char *id, *body, *group, *vertices, *faces, *volume, *density, *centroid, *vertex,
-        *joint, *plane, *corners, *loop;
+    unsigned char *id, *body, *group, *vertices, *faces, *volume, *density, *centroid, *vertex, *joint, *plane,
+        *corners, *loop;
 } shape_columns;
 
 static void put_shape(shape_columns *to, const tl_model *m, uint32_t row)
@@ -377,8 +370,8 @@ static tl_status put_shapes(tl_model *m, const uint32_t *rows, size_t count, tl_
         n.faces += shape->face_count;
         n.corners += shape->start[shape->face_count];
     }
-    size_t bytes = 16 + count * 40 + n.vertices * 12 + n.faces * 8 +
-                   tl_scene_column_bytes(n.faces, 2) + tl_scene_column_bytes(n.corners, 2);
+    size_t bytes = 16 + count * 40 + n.vertices * 12 + n.faces * 8 + tl_scene_column_bytes(n.faces, 2) +
+                   tl_scene_column_bytes(n.corners, 2);
     unsigned char *to = tl_scene_chunk(out, "SHAP", bytes, &m->error);
     if (!to)
         return m->error.status;
@@ -408,8 +401,7 @@ static tl_status put_shapes(tl_model *m, const uint32_t *rows, size_t count, tl_
 
 typedef struct frame {
     const tl_model *model;
-    unsigned char *id, *place, *turn, *velocity, *displacement, *rotation, *spin, *unbalanced,
-        *flags;
+    unsigned char *id, *place, *turn, *velocity, *displacement, *rotation, *spin, *unbalanced, *flags;
     double *largest; /* square of the largest displacement, by chunk */
 } frame;
 
@@ -434,8 +426,7 @@ static void put_block(const frame *f, size_t i)
     tl_put_vec3(f->rotation + 12 * i, tl_q_vector(q));
     tl_put_vec3(f->spin + 12 * i, bodies->w[body]);
     tl_put_f32(f->unbalanced + 4 * i, tl_v3_norm(bodies->force[body]));
-    tl_put_u8(f->flags + i, (bodies->fixed[body] == TL_FIX_ALL ? HELD : 0u) |
-                                (m->blocks.hidden[row] ? HIDDEN : 0u));
+    tl_put_u8(f->flags + i, (bodies->fixed[body] == TL_FIX_ALL ? HELD : 0u) | (m->blocks.hidden[row] ? HIDDEN : 0u));
 }
 
 static void put_blocks_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -456,8 +447,7 @@ static tl_status put_frame(tl_model *m, tl_piece *out, double *largest)
     frame f = {.model = m, .largest = malloc((chunks + 1) * sizeof *f.largest)};
     if (!f.largest)
         return tl_fail_memory(&m->error);
-    unsigned char *to =
-        tl_scene_chunk(out, "FRAM", 20 + 84 * n + tl_scene_column_bytes(n, 1), &m->error);
+    unsigned char *to = tl_scene_chunk(out, "FRAM", 20 + 84 * n + tl_scene_column_bytes(n, 1), &m->error);
     if (!to) {
         free(f.largest);
         return m->error.status;
@@ -483,8 +473,8 @@ static tl_status put_frame(tl_model *m, tl_piece *out, double *largest)
     return TL_OK;
 }
 
-static tl_status put_field(tl_error *error, uint32_t of, size_t number, const double *values,
-                           const uint32_t *picked, size_t count, tl_piece *out)
+static tl_status put_field(tl_error *error, uint32_t of, size_t number, const double *values, const uint32_t *picked,
+                           size_t count, tl_piece *out)
 {
     unsigned char *to = tl_scene_chunk(out, "FIEL", 12 + 4 * count, error);
     if (!to)
@@ -508,9 +498,7 @@ static tl_status put_keyblocks(tl_model *m, const tl_keyblocks *keys, tl_piece *
         to = tl_put_u32(to, keys->blocks[i].block);
     /* in the stream 0 is stable, then the order of tl_keyblock_mode */
     for (size_t i = 0; i < n; i++)
-        to = tl_put_u32(to, keys->blocks[i].mode == TL_KEYBLOCK_STABLE
-                                ? 0u
-                                : (uint32_t)keys->blocks[i].mode + 1u);
+        to = tl_put_u32(to, keys->blocks[i].mode == TL_KEYBLOCK_STABLE ? 0u : (uint32_t)keys->blocks[i].mode + 1u);
     for (size_t i = 0; i < n; i++) /* a stable one has none */
         to = tl_put_f32(to, isfinite(keys->blocks[i].safety) ? keys->blocks[i].safety : NAN);
     for (size_t i = 0; i < n; i++)
@@ -525,9 +513,8 @@ static tl_status put_run(tl_model *m, const tl_html *options, tl_piece *out)
     if (status != TL_OK)
         return status;
     tl_balance balance = tl_model_balance(m);
-    const double numbers[] = {m->time,        (double)m->cycles,    m->dt,
-                              balance.ratio,  balance.max_velocity, energy.kinetic,
-                              energy.damping, energy.friction};
+    const double numbers[] = {m->time,        (double)m->cycles, m->dt,          balance.ratio, balance.max_velocity,
+                              energy.kinetic, energy.damping,    energy.friction};
     size_t count = sizeof numbers / sizeof numbers[0], values = 0;
     const tl_history *h;
     for (size_t i = 0; (h = tl_history_at(m, i)) != NULL; i++)
@@ -555,10 +542,9 @@ enum { FORCE = 7, USED = 11, COLUMNS = 13 };
 static const struct {
     const char *quantity;
     size_t bytes;
-} columns[COLUMNS] = {{"id", 4},    {"block_a", 4}, {"block_b", 4}, {"joint", 4},
-                      {"plane", 4}, {"point", 12},  {"normal", 12}, [FORCE] = {NULL, 12},
-                      {"area", 4},  {"gap", 4},     {"slip", 4},    [USED] = {NULL, 4},
-                      {"state", 1}};
+} columns[COLUMNS] = {{"id", 4},     {"block_a", 4},     {"block_b", 4},       {"joint", 4}, {"plane", 4},
+                      {"point", 12}, {"normal", 12},     [FORCE] = {NULL, 12}, {"area", 4},  {"gap", 4},
+                      {"slip", 4},   [USED] = {NULL, 4}, {"state", 1}};
 
 typedef struct contacts {
     tl_model *model;
@@ -584,15 +570,13 @@ static void find_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 
 static void pick(contacts *c, int32_t choice)
 {
-    bool all =
-        choice == TL_HTML_CONTACTS_ALL || (choice == TL_HTML_CONTACTS_FEW && c->listed <= FEW);
+    bool all = choice == TL_HTML_CONTACTS_ALL || (choice == TL_HTML_CONTACTS_FEW && c->listed <= FEW);
     for (size_t i = 0; i < c->listed; i++)
         if (all || c->facts[i].state == TL_CONTACT_SLIPPING)
             c->picked[c->count++] = (uint32_t)i;
 }
 
-static void put_quantity(const tl_contact_facts *facts, const tl_field *of, size_t bytes,
-                         unsigned char *to)
+static void put_quantity(const tl_contact_facts *facts, const tl_field *of, size_t bytes, unsigned char *to)
 {
     double value[3];
     tl_contact_numbers(facts, of, value);
@@ -612,14 +596,12 @@ static void put_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     const contacts *c = user;
     for (size_t i = begin; i < end; i++) {
         tl_contact_facts facts = c->facts[c->picked[i]];
-        facts.slip = tl_law_states_slip(c->model, &c->states, c->rows[c->picked[i]],
-                                        facts.shear_displacement);
+        facts.slip = tl_law_states_slip(c->model, &c->states, c->rows[c->picked[i]], facts.shear_displacement);
         facts.point = tl_v3_sub(facts.point, c->model->origin);
         for (size_t k = 0; k < COLUMNS; k++)
             if (c->of[k])
                 put_quantity(&facts, c->of[k], columns[k].bytes, c->at[k] + columns[k].bytes * i);
-        tl_put_vec3(c->at[FORCE] + 12 * i,
-                    tl_v3_madd(facts.shear_force, facts.normal_force, facts.normal));
+        tl_put_vec3(c->at[FORCE] + 12 * i, tl_v3_madd(facts.shear_force, facts.normal_force, facts.normal));
     }
 }
 
@@ -662,8 +644,8 @@ static tl_status put_contacts(contacts *c, tl_piece *out)
     uint32_t *rows = malloc((c->count + 1) * sizeof *rows);
     for (size_t i = 0; rows && i < c->count; i++)
         rows[i] = c->rows[c->picked[i]];
-    tl_status status = rows ? tl_contact_polygons_find(c->model, rows, c->count, &polygons)
-                            : tl_fail_memory(&c->model->error);
+    tl_status status =
+        rows ? tl_contact_polygons_find(c->model, rows, c->count, &polygons) : tl_fail_memory(&c->model->error);
     if (status == TL_OK)
         status = put_columns(c, &polygons, out);
     tl_contact_polygons_free(&polygons);
@@ -675,16 +657,15 @@ static tl_status put_contact_fields(const contacts *c, const tl_html *options, t
 {
     tl_error *error = &c->model->error;
     size_t first = options->block_field_count, count = options->contact_field_count;
-    tl_status status = tl_extra_fields_check("contact_fields", options->contact_fields, count,
-                                             c->listed, "contacts", error);
+    tl_status status =
+        tl_extra_fields_check("contact_fields", options->contact_fields, count, c->listed, "contacts", error);
     for (size_t i = 0; status == TL_OK && i < count; i++)
-        status = put_field(error, 1, first + i, options->contact_fields[i].values, c->picked,
-                           c->count, out);
+        status = put_field(error, 1, first + i, options->contact_fields[i].values, c->picked, c->count, out);
     return status;
 }
 
-static tl_status put_contact_chunks(tl_model *m, const tl_html *options, double median,
-                                    tl_piece *out, tl_verdict *verdict)
+static tl_status put_contact_chunks(tl_model *m, const tl_html *options, double median, tl_piece *out,
+                                    tl_verdict *verdict)
 {
     const bool wanted = options->contacts != TL_HTML_CONTACTS_NONE;
     contacts c = {.model = m};
@@ -716,8 +697,7 @@ static tl_status put_contact_chunks(tl_model *m, const tl_html *options, double 
 
 /* ---------------------------------------------------------------- chunks ----------------- */
 
-tl_status tl_scene_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes,
-                         tl_piece *out)
+tl_status tl_scene_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes, tl_piece *out)
 {
     size_t before = out->length;
     unsigned char *to = tl_scene_chunk(out, letters, tl_scene_column_bytes(bytes, 1), &m->error);
@@ -799,16 +779,15 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
 static tl_status put_block_fields(tl_model *m, const tl_html *options, tl_piece *out)
 {
     size_t rows = m->blocks.table.rows;
-    tl_status status = tl_extra_fields_check("block_fields", options->block_fields,
-                                             options->block_field_count, rows, "blocks", &m->error);
+    tl_status status = tl_extra_fields_check("block_fields", options->block_fields, options->block_field_count, rows,
+                                             "blocks", &m->error);
     for (size_t i = 0; status == TL_OK && i < options->block_field_count; i++)
         status = put_field(&m->error, 0, i, options->block_fields[i].values, NULL, rows, out);
     return status;
 }
 
 /* A page is kept: it tells which model it is of. */
-static tl_status put_finding(const tl_scene *scene, tl_model *m, const tl_verdict *verdict,
-                             tl_piece *out)
+static tl_status put_finding(const tl_scene *scene, tl_model *m, const tl_verdict *verdict, tl_piece *out)
 {
     char hash[33];
     tl_piece text = {0};
@@ -816,24 +795,21 @@ static tl_status put_finding(const tl_scene *scene, tl_model *m, const tl_verdic
     if (status != TL_OK)
         return status;
     scene_finding(verdict, scene->live ? NULL : hash, &text);
-    status = text.failed ? tl_fail_memory(&m->error)
-                         : tl_scene_bytes(m, "FIND", text.data, text.length, out);
+    status = text.failed ? tl_fail_memory(&m->error) : tl_scene_bytes(m, "FIND", text.data, text.length, out);
     free(text.data);
     return status;
 }
 
 /* ---------------------------------------------------------------- the frame -------------- */
 
-tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out,
-                         tl_scene_facts *facts)
+tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out, tl_scene_facts *facts)
 {
     tl_rows_tidy(m);
     tl_scene_known *next = &scene->next;
     size_t begin = out->length;
     next->frames = scene->sent.frames + 1;
     next->median = scene->sent.median;
-    if ((scene->sent.frames == 0 || scene->sent.structure != m->structure) &&
-        !tl_median_size(m, &next->median))
+    if ((scene->sent.frames == 0 || scene->sent.structure != m->structure) && !tl_median_size(m, &next->median))
         return tl_fail_memory(&m->error);
     next->structure = m->structure;
     *facts = (tl_scene_facts){.time = m->time, .cycle = m->cycles};

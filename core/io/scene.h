@@ -29,8 +29,7 @@ typedef enum tl_scene_live { TL_SCENE_PAGE, TL_SCENE_LIVE, TL_SCENE_COMMANDS } t
 
 /* A stream that begins with all of the model and goes on with what has changed. All zeros: nothing has been sent. */
 typedef struct tl_scene {
-    tl_scene_known sent,
-        next; /* after the frames that were sent; with the one that was written last */
+    tl_scene_known sent, next; /* after the frames that were sent; with the one that was written last */
     tl_scene_live live;
 } tl_scene;
 
@@ -42,15 +41,13 @@ typedef struct tl_scene_facts {
 } tl_scene_facts;
 
 /* Adds the next frame to `out`. The scene goes on with it only after tl_scene_accept. */
-tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out,
-                         tl_scene_facts *facts);
+tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out, tl_scene_facts *facts);
 /* The frame that was written last has been sent. */
 void tl_scene_accept(tl_scene *scene);
 /* The next frame is the first again, with all of the model. */
 void tl_scene_forget(tl_scene *scene);
 /* Adds a chunk of so many bytes, padded. */
-tl_status tl_scene_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes,
-                         tl_piece *out);
+tl_status tl_scene_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes, tl_piece *out);
 void tl_scene_free(tl_scene *scene);
 
 #endif

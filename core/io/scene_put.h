@@ -72,12 +72,10 @@ static inline unsigned char *tl_scene_column(unsigned char **next, size_t count,
 
 /* Adds a chunk of `bytes` zeros, a multiple of four, and gives the place of its payload, which is good until more is
  * added; NULL with an error when there is no memory, or more than a chunk can count. */
-static inline unsigned char *tl_scene_chunk(tl_piece *out, const char letters[5], size_t bytes,
-                                            tl_error *error)
+static inline unsigned char *tl_scene_chunk(tl_piece *out, const char letters[5], size_t bytes, tl_error *error)
 {
     if (bytes > UINT32_MAX) {
-        tl_fail(error, TL_E_ARGUMENT,
-                "cannot show the model: its %s chunk would have %zu bytes, and may have %u",
+        tl_fail(error, TL_E_ARGUMENT, "cannot show the model: its %s chunk would have %zu bytes, and may have %u",
                 letters, bytes, UINT32_MAX);
         return NULL;
     }

@@ -107,8 +107,7 @@ static void find_bodies(const tl_model *m, const motion_list *list, tl_verdict *
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         const double volume = tl_body_volume(m, body);
         const tl_vec3 way = way_of(m, body, volume);
-        const bool failed =
-            out->standing == TL_STANDING_FAILED && m->bodies.id[body] == tl_model_failing(m);
+        const bool failed = out->standing == TL_STANDING_FAILED && m->bodies.id[body] == tl_model_failing(m);
         list->body[body] = (body_facts){volume, tl_cbrt(volume), way, failed, false};
         list->of[body] = body;
         if (tl_v3_norm(way) > out->displacement) {
@@ -158,11 +157,10 @@ static bool has_but_closed(const tl_model *m, const motion_list *list, const mee
     const double size = fmin(of_a->size, of_b->size);
     /* the contacts may be younger than the stage, and their blocks may have gone to and fro */
     const tl_vec3 point = tl_v3_add(m->origin, of->mean.point);
-    const double parted = tl_v3_norm(
-        tl_v3_sub(came_from(m, of->b, of_b->way, point), came_from(m, of->a, of_a->way, point)));
+    const double parted =
+        tl_v3_norm(tl_v3_sub(came_from(m, of->b, of_b->way, point), came_from(m, of->a, of_a->way, point)));
     const double slid = sqrt(tl_v3_norm2(of->slip) + of->opening * of->opening);
-    const double turned =
-        tl_v3_norm(tl_v3_sub(tl_q_vector(turn_of(m, of->b)), tl_q_vector(turn_of(m, of->a))));
+    const double turned = tl_v3_norm(tl_v3_sub(tl_q_vector(turn_of(m, of->b)), tl_q_vector(turn_of(m, of->a))));
     const double most = fmin(SPRINGS * of->sprung, MOST_SPRUNG * size) + list->seen;
     return fmax(parted, slid) <= most && turned * size <= most;
 }
@@ -174,8 +172,7 @@ static void find_still(const tl_model *m, const motion_list *list, const tl_verd
     for (size_t i = 0; i < list->count; i++) {
         const meeting *of = &list->meetings[i];
         if (!list->body[of->a].failed && !list->body[of->b].failed &&
-            tl_first_of(list->of, of->a) != tl_first_of(list->of, of->b) &&
-            has_but_closed(m, list, of))
+            tl_first_of(list->of, of->a) != tl_first_of(list->of, of->b) && has_but_closed(m, list, of))
             tl_put_together(list->of, of->a, of->b);
     }
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
@@ -267,15 +264,14 @@ static void add_forces(const tl_model *m, uint32_t contact, double sign, means *
 }
 
 /* Adds a contact to what two bodies have met by so far, from `first` on; sums, which are divided at the end. */
-static void add_contact(const tl_model *m, motion_list *list, size_t first, const between *by,
-                        uint32_t row, const tl_contact_facts *facts)
+static void add_contact(const tl_model *m, motion_list *list, size_t first, const between *by, uint32_t row,
+                        const tl_contact_facts *facts)
 {
     const double sign = by->turned ? -1 : 1;
     const tl_vec3 normal = tl_v3_scale(sign, facts->normal);
     size_t i = first;
-    while (i < list->count &&
-           !(tl_v3_dot(normal, list->meetings[i].normal) > 0 &&
-             tl_v3_norm(tl_v3_cross(normal, list->meetings[i].normal)) < SAME_WAY))
+    while (i < list->count && !(tl_v3_dot(normal, list->meetings[i].normal) > 0 &&
+                                tl_v3_norm(tl_v3_cross(normal, list->meetings[i].normal)) < SAME_WAY))
         i++;
     meeting *to = &list->meetings[i];
     if (i == list->count) {
@@ -284,9 +280,8 @@ static void add_contact(const tl_model *m, motion_list *list, size_t first, cons
     }
     to->area += facts->area;
     to->sprung += sprung(m, row, facts);
-    add_point(
-        &to->mean, facts->area, tl_v3_sub(facts->point, m->origin),
-        tl_v3_scale(sign, tl_v3_madd(facts->shear_displacement, facts->opening, facts->normal)));
+    add_point(&to->mean, facts->area, tl_v3_sub(facts->point, m->origin),
+              tl_v3_scale(sign, tl_v3_madd(facts->shear_displacement, facts->opening, facts->normal)));
     add_forces(m, row, sign, &to->by_force);
 }
 
@@ -303,8 +298,8 @@ static void end_meeting(meeting *of)
 }
 
 /* Finds the meetings; edges that only touch are none. false: out of memory. */
-static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_contact_facts *facts,
-                          size_t count, motion_list *list)
+static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_contact_facts *facts, size_t count,
+                          motion_list *list)
 {
     size_t many = 0, first = 0;
     between *list_of = malloc((count + 1) * sizeof *list_of);
@@ -348,8 +343,8 @@ static void find_slip(const motion_list *list, tl_verdict *out)
     }
 }
 
-tl_status tl_verdict_of(tl_model *m, double median, const uint32_t *rows,
-                        const tl_contact_facts *facts, size_t count, tl_verdict *out)
+tl_status tl_verdict_of(tl_model *m, double median, const uint32_t *rows, const tl_contact_facts *facts, size_t count,
+                        tl_verdict *out)
 {
     motion_list list = {.seen = LEAST_SEEN * median};
     *out = (tl_verdict){.farthest = TL_NO_ID, .slipped = TL_NO_ID, .opened = TL_NO_ID};
@@ -413,11 +408,10 @@ static void put_still(const tl_verdict *v, const char *since, char *text, size_t
     if (v->displacement == 0)
         tl_text_print(text, size, "no block has moved%s", since);
     else if (ABOVE * v->displacement < v->closed)
-        tl_text_print(text, size, "no block has moved%s by more than %.2g m", since,
-                      v->displacement);
+        tl_text_print(text, size, "no block has moved%s by more than %.2g m", since, v->displacement);
     else
-        tl_text_print(text, size, "no block has moved%s by more than its joints close (%.2g m)",
-                      since, v->displacement);
+        tl_text_print(text, size, "no block has moved%s by more than its joints close (%.2g m)", since,
+                      v->displacement);
 }
 
 /* What has moved, and where to. */
@@ -432,10 +426,8 @@ static void put_moved(const tl_verdict *v, char *text, size_t size)
     }
     const bool one = v->moved == 1;
     put_direction(v->direction, way, sizeof way);
-    tl_text_print(text, size,
-                  "%zu %s (%.3g m3) %s moved%s, towards %s, block %u the farthest, by %.3g m",
-                  v->moved, one ? "block" : "blocks", v->volume, one ? "has" : "have", since, way,
-                  v->farthest, v->displacement);
+    tl_text_print(text, size, "%zu %s (%.3g m3) %s moved%s, towards %s, block %u the farthest, by %.3g m", v->moved,
+                  one ? "block" : "blocks", v->volume, one ? "has" : "have", since, way, v->farthest, v->displacement);
 }
 
 void tl_verdict_text(const tl_verdict *v, char *text, size_t size)
@@ -452,9 +444,8 @@ void tl_verdict_text(const tl_verdict *v, char *text, size_t size)
         tl_text_print(joints, sizeof joints, "; largest slip %.3g m", v->slip);
     const size_t length = strlen(joints);
     if (opened)
-        tl_text_print(joints + length, sizeof joints - length, "%s opening %.3g m",
-                      slipped ? "," : "; largest", v->opening);
-    tl_text_print(text, size, "The model %s %s: %s%s.",
-                  v->standing == TL_STANDING_FAILED ? "has" : "is", tl_standing_name(v->standing),
-                  moved, joints);
+        tl_text_print(joints + length, sizeof joints - length, "%s opening %.3g m", slipped ? "," : "; largest",
+                      v->opening);
+    tl_text_print(text, size, "The model %s %s: %s%s.", v->standing == TL_STANDING_FAILED ? "has" : "is",
+                  tl_standing_name(v->standing), moved, joints);
 }

@@ -57,8 +57,7 @@ static int check_command(const char *text, size_t length, char *why, size_t size
 /* Puts what the screen has reported into the model's error. */
 static tl_status refused(const tl_view *v, tl_report *report, tl_status status)
 {
-    return tl_fail(&v->model->error, status, "view, screen '%s': %s", v->kind->name,
-                   tl_report_text(report, status));
+    return tl_fail(&v->model->error, status, "view, screen '%s': %s", v->kind->name, tl_report_text(report, status));
 }
 
 /* Reads the screen's parameters into memory that it may keep during `open`. */
@@ -70,8 +69,8 @@ static tl_status read_params(tl_view *v, const tl_args *given, void **params)
     *params = calloc(1, v->kind->params_size + 1);
     if (!*params)
         return tl_fail_memory(&v->model->error);
-    return tl_args_read(v->kind->params, v->kind->param_count, v->kind->param_stride,
-                        given ? given : &none, false, *params, context, &v->model->error);
+    return tl_args_read(v->kind->params, v->kind->param_count, v->kind->param_stride, given ? given : &none, false,
+                        *params, context, &v->model->error);
 }
 
 static tl_status begin(tl_view *v, const tl_args *given, bool commands)
@@ -101,8 +100,8 @@ static tl_status begin(tl_view *v, const tl_args *given, bool commands)
     return status;
 }
 
-tl_status tl_view_open(tl_model *m, const tl_kind *screen, const tl_args *params,
-                       const tl_view_options *given, tl_view **view)
+tl_status tl_view_open(tl_model *m, const tl_kind *screen, const tl_args *params, const tl_view_options *given,
+                       tl_view **view)
 {
     tl_view_options options;
     *view = NULL;
@@ -110,8 +109,7 @@ tl_status tl_view_open(tl_model *m, const tl_kind *screen, const tl_args *params
     if (status != TL_OK)
         return status;
     if (!(options.share > 0 && options.share <= 1))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "view: share = %g must be in (0, 1]",
-                       options.share);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "view: share = %g must be in (0, 1]", options.share);
     screen = screen ? screen : tl_plugin_kind(TL_KIND_SCREEN, 0);
     if (!screen)
         return tl_fail(&m->error, TL_E_NOT_FOUND,
@@ -161,8 +159,8 @@ static uint32_t count_watchers(const tl_view *v)
 static bool is_behind(const tl_view *v, uint32_t watchers)
 {
     const tl_model *m = v->model;
-    return v->cycle != m->cycles || v->structure != m->structure ||
-           v->told_before < v->told.length || watchers > v->watchers;
+    return v->cycle != m->cycles || v->structure != m->structure || v->told_before < v->told.length ||
+           watchers > v->watchers;
 }
 
 bool tl_view_due(tl_view *v, double worth)
@@ -173,8 +171,7 @@ bool tl_view_due(tl_view *v, double worth)
         return false;
     }
     v->begun = tl_clock();
-    return v->cost < v->share * worth ||
-           v->begun - v->shown >= fmax(1 / RATE, v->cost * (1 / v->share - 1));
+    return v->cost < v->share * worth || v->begun - v->shown >= fmax(1 / RATE, v->cost * (1 / v->share - 1));
 }
 
 /* Whether all news should be told anew, in the place of what has piled up. */
@@ -262,8 +259,7 @@ bool tl_view_take(tl_view *v, double seconds, tl_view_command *command)
     text[sizeof text - 1] = '\0';
     if (tl_view_command_read(text, strlen(text), command, why, sizeof why))
         return true;
-    tl_model_say(v->model, "view: a command is left out: %s",
-                 why); /* a screen that did not check it */
+    tl_model_say(v->model, "view: a command is left out: %s", why); /* a screen that did not check it */
     return false;
 }
 
@@ -278,8 +274,8 @@ tl_status tl_view_tell(tl_view *v, tl_view_state state, const char *line, const 
     if (refused)
         tl_json_print(&text, ", \"refused\": %s", refused);
     tl_json_put(&text, "}");
-    tl_status status = text.failed ? tl_fail_memory(&m->error)
-                                   : tl_scene_bytes(m, "LIVE", text.data, text.length, &v->told);
+    tl_status status =
+        text.failed ? tl_fail_memory(&m->error) : tl_scene_bytes(m, "LIVE", text.data, text.length, &v->told);
     v->told.failed = false; /* another time there may be memory */
     free(text.data);
     return status;

@@ -203,8 +203,7 @@ static bool read_number(reader *r, const char *what, double *out)
     const char *end;
     size_t length = 0;
     skip_spaces(r);
-    while (r->at + length < r->end && length < NUMBER - 1 && r->at[length] &&
-           strchr("+-.eE0123456789", r->at[length]))
+    while (r->at + length < r->end && length < NUMBER - 1 && r->at[length] && strchr("+-.eE0123456789", r->at[length]))
         length++;
     memcpy(text, r->at, length);
     text[length] = '\0';
@@ -260,8 +259,7 @@ static bool read_degrees(reader *r, const char *what, double most, double *out)
 {
     if (!read_number(r, what, out))
         return false;
-    return (*out >= 0 && *out <= most) ||
-           refuse(r, "%s = %g must be in [0, %g] degrees", what, *out, most);
+    return (*out >= 0 && *out <= most) || refuse(r, "%s = %g must be in [0, %g] degrees", what, *out, most);
 }
 
 static bool read_op(reader *r, tl_view_command *command)
@@ -332,8 +330,7 @@ static bool check_members(reader *r, tl_view_op op, unsigned given)
     return true;
 }
 
-int tl_view_command_read(const char *text, size_t length, tl_view_command *command, char *why,
-                         size_t size)
+int tl_view_command_read(const char *text, size_t length, tl_view_command *command, char *why, size_t size)
 {
     reader r = {text, text + length, why, size};
     unsigned given = 0;

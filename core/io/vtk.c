@@ -96,8 +96,7 @@ static double vtk_series_time(const tl_vtk_series *series, double time)
 }
 
 /* Adds one frame of the list, its time with all digits; false when out of memory. */
-static bool put_entry(const tl_vtk_series *series, const char *content, size_t frame, double time,
-                      tl_piece *to)
+static bool put_entry(const tl_vtk_series *series, const char *content, size_t frame, double time, tl_piece *to)
 {
     char *name = vtk_frame_name(series, content, frame), number[TL_NUMBER_TEXT];
     if (!name)
@@ -110,8 +109,7 @@ static bool put_entry(const tl_vtk_series *series, const char *content, size_t f
 }
 
 /* Adds all frames so far that have the file and one more at `time`. */
-static bool put_list(const tl_vtk_series *series, size_t part, const char *content, double time,
-                     tl_piece *to)
+static bool put_list(const tl_vtk_series *series, size_t part, const char *content, double time, tl_piece *to)
 {
     tl_json_put(to, "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n");
     for (size_t frame = 0; frame < series->count; frame++) {
@@ -125,8 +123,8 @@ static bool put_list(const tl_vtk_series *series, size_t part, const char *conte
 }
 
 /* Writes the list and notes where the next frame goes. */
-static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *series, size_t part,
-                             const char *content, double time, tl_error *error)
+static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *series, size_t part, const char *content,
+                             double time, tl_error *error)
 {
     tl_piece list = {0};
     tl_status status = put_list(series, part, content, time, &list)
@@ -175,8 +173,8 @@ static bool open_reserved(tl_vtk_index_change *change, size_t written)
 }
 
 /* Makes ready what adds the next frame, at `time`, to the index of `content`, number `part` of the series. */
-static tl_status vtk_index_open(tl_vtk_index_change *change, tl_vtk_series *series, size_t part,
-                                const char *content, double time, tl_error *error)
+static tl_status vtk_index_open(tl_vtk_index_change *change, tl_vtk_series *series, size_t part, const char *content,
+                                double time, tl_error *error)
 {
     *change = (tl_vtk_index_change){.index = &series->index[part]};
     change->path = index_name(series, content);
@@ -263,8 +261,8 @@ static bool wants(const frame *f, size_t i)
     return f->wanted >> i & 1;
 }
 
-static tl_status write_part(tl_model *m, const tl_vtk_series *series, const frame *f, size_t i,
-                            tl_pieces *pieces, tl_output *output)
+static tl_status write_part(tl_model *m, const tl_vtk_series *series, const frame *f, size_t i, tl_pieces *pieces,
+                            tl_output *output)
 {
     const part *p = &f->parts[i];
     char *name = vtk_frame_name(series, p->content, series->count);
@@ -274,8 +272,7 @@ static tl_status write_part(tl_model *m, const tl_vtk_series *series, const fram
         status = tl_model_go_on(m);
     pieces->output = output;
     if (status == TL_OK)
-        status =
-            f->section ? tl_vtk_section(m, *f->section, pieces) : p->write(m, f->fields, pieces);
+        status = f->section ? tl_vtk_section(m, *f->section, pieces) : p->write(m, f->fields, pieces);
     return status == TL_OK ? tl_output_finish(output, &m->error) : status;
 }
 
@@ -283,8 +280,7 @@ static tl_status check_prefix(const char *function, const char *prefix, tl_error
 {
     size_t length = strlen(prefix);
     if (length == 0 || prefix[length - 1] == '/')
-        return tl_fail(error, TL_E_ARGUMENT,
-                       "%s: prefix = '%s' must end in a name for the files, as in 'out/run'",
+        return tl_fail(error, TL_E_ARGUMENT, "%s: prefix = '%s' must end in a name for the files, as in 'out/run'",
                        function, prefix);
     const char *slash = strrchr(prefix, '/');
     if (!tl_text_is_utf8(slash ? slash + 1 : prefix))
@@ -370,12 +366,9 @@ tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *part
 tl_status tl_write_section(tl_model *m, const char *prefix, const tl_halfspace *plane)
 {
     tl_rows_tidy(m);
-    if (!(plane->dip >= 0 && plane->dip <= 90) || !isfinite(plane->dip_direction) ||
-        !tl_v3_finite(plane->origin))
-        return tl_fail(
-            &m->error, TL_E_ARGUMENT,
-            "write_section: dip = %g must be in [0, 90], dip_direction and origin finite",
-            plane->dip);
+    if (!(plane->dip >= 0 && plane->dip <= 90) || !isfinite(plane->dip_direction) || !tl_v3_finite(plane->origin))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "write_section: dip = %g must be in [0, 90], dip_direction and origin finite", plane->dip);
     tl_vec3 normal = tl_plane_normal(plane->dip, plane->dip_direction);
     tl_plane section = {normal, tl_v3_dot(normal, tl_v3_sub(plane->origin, m->origin))};
     const frame f = {"write_section", &section_part, 1, 1, &section, NULL};

@@ -61,8 +61,7 @@ static size_t stream_of(const tl_poly *shape)
 typedef unsigned char *(*point_fn)(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to);
 
 /* A vector of each vertex of rows. */
-static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece,
-                                 point_fn of, size_t each)
+static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece, point_fn of, size_t each)
 {
     unsigned char *to = tl_piece_add(piece, (g->first[end] - g->first[begin]) * each);
     for (uint32_t row = (uint32_t)begin; to && row < end; row++) {
@@ -77,8 +76,7 @@ static unsigned char *put_place(const grid *g, uint32_t row, tl_vec3 local, unsi
     return tl_vtk_put_vec3(to, tl_model_point(g->model, g->blocks->body[row], local));
 }
 
-static unsigned char *put_displacement(const grid *g, uint32_t row, tl_vec3 local,
-                                       unsigned char *to)
+static unsigned char *put_displacement(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
 {
     return tl_vtk_put_float3(to, tl_block_point_displacement(g->model, row, local));
 }
@@ -176,8 +174,7 @@ static void fill_array(const void *user, size_t begin, size_t end, tl_piece *pie
         double value[6];
         tl_block_numbers(job->model, row, job->of, value);
         for (size_t w = 0; w < width; w++)
-            to = real ? tl_vtk_put_double(to, value[w])
-                      : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
+            to = real ? tl_vtk_put_double(to, value[w]) : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
     }
 }
 
@@ -216,8 +213,7 @@ static tl_status put_cell_data(tl_model *m, const tl_vtk_parts *parts, tl_pieces
 {
     FILE *file = out->output->file;
     size_t rows = m->blocks.table.rows;
-    fprintf(file, "CELL_DATA %zu\nSCALARS displacement_size double 1\nLOOKUP_TABLE default\n",
-            rows);
+    fprintf(file, "CELL_DATA %zu\nSCALARS displacement_size double 1\nLOOKUP_TABLE default\n", rows);
     tl_status status = put_array(m, out, tl_block_quantity("displacement_size"));
     fprintf(file, "VECTORS velocity double\n");
     if (status == TL_OK)
@@ -225,8 +221,7 @@ static tl_status put_cell_data(tl_model *m, const tl_vtk_parts *parts, tl_pieces
     tl_vtk_field(file, "FieldData", ARRAYS + parts->block_field_count);
     for (size_t i = 0; i < ARRAYS && status == TL_OK; i++) {
         const tl_field *of = tl_block_quantity(arrays[i].quantity);
-        tl_vtk_array(file, arrays[i].name, width_of(of), rows,
-                     is_real(of) ? TL_VTK_DOUBLE : TL_VTK_INT);
+        tl_vtk_array(file, arrays[i].name, width_of(of), rows, is_real(of) ? TL_VTK_DOUBLE : TL_VTK_INT);
         status = put_array(m, out, of);
     }
     for (size_t i = 0; i < parts->block_field_count && status == TL_OK; i++)
@@ -250,8 +245,7 @@ static tl_vec3 model_centre(const tl_model *m)
     return volume > 0 ? tl_v3_madd(m->origin, 1 / volume, sum) : m->origin;
 }
 
-static tl_status put_grid(tl_model *m, const grid *g, size_t stream, const tl_vtk_parts *parts,
-                          tl_pieces *out)
+static tl_status put_grid(tl_model *m, const grid *g, size_t stream, const tl_vtk_parts *parts, tl_pieces *out)
 {
     FILE *file = out->output->file;
     size_t rows = m->blocks.table.rows, points = g->first[rows];
@@ -271,8 +265,7 @@ static tl_status put_grid(tl_model *m, const grid *g, size_t stream, const tl_vt
         status = tl_vtk_list(out, rows, points * TL_VTK_FLOAT3_BYTES, fill_displacements, g);
     tl_vtk_field(file, "FieldData", 1);
     tl_vtk_array(file, "explode", 3, points, TL_VTK_FLOAT);
-    return status == TL_OK ? tl_vtk_list(out, rows, points * TL_VTK_FLOAT3_BYTES, fill_explode, g)
-                           : status;
+    return status == TL_OK ? tl_vtk_list(out, rows, points * TL_VTK_FLOAT3_BYTES, fill_explode, g) : status;
 }
 
 static tl_status check_fields(tl_model *m, const tl_vtk_parts *parts)
@@ -281,8 +274,8 @@ static tl_status check_fields(tl_model *m, const tl_vtk_parts *parts)
     tl_status status = tl_extra_fields_check(context, parts->block_fields, parts->block_field_count,
                                              m->blocks.table.rows, "blocks", &m->error);
     for (size_t i = 0; status == TL_OK && i < ARRAYS; i++)
-        status = tl_extra_fields_differ(context, parts->block_fields, parts->block_field_count,
-                                        arrays[i].name, &m->error);
+        status =
+            tl_extra_fields_differ(context, parts->block_fields, parts->block_field_count, arrays[i].name, &m->error);
     return status;
 }
 
@@ -389,8 +382,7 @@ static bool cut_blocks(const tl_model *m, tl_plane plane, section *s)
             return false;
         corner *list = s->corners + s->points;
         size_t count = find_corners(shape, local, list);
-        if (count < 3 ||
-            (count = order_corners(local.normal, TL_POLY_ON * shape->size, list, count)) < 3)
+        if (count < 3 || (count = order_corners(local.normal, TL_POLY_ON * shape->size, list, count)) < 3)
             continue;
         s->points += count;
         s->row[s->polygons] = row;

@@ -67,13 +67,13 @@ typedef struct array_list {
     const char *real_type;
 } array_list;
 
-static const char *const contact_arrays[] = {
-    "point", "normal_force", "shear_force", "normal_stress", "shear_stress", "area",    "normal",
-    "gap",   "state",        "joint",       "plane",         "contact_id",   "block_a", "block_b"};
-static const char *const joint_arrays[] = {
-    "joint",         "plane",        "block_id",     "block_b",     "contact_id",         "state",
-    "normal_stress", "shear_stress", "normal_force", "shear_force", "shear_displacement", "slip",
-    "area"};
+static const char *const contact_arrays[] = {"point", "normal_force", "shear_force", "normal_stress", "shear_stress",
+                                             "area",  "normal",       "gap",         "state",         "joint",
+                                             "plane", "contact_id",   "block_a",     "block_b"};
+static const char *const joint_arrays[] = {"joint",        "plane",       "block_id",           "block_b",
+                                           "contact_id",   "state",       "normal_stress",      "shear_stress",
+                                           "normal_force", "shear_force", "shear_displacement", "slip",
+                                           "area"};
 
 enum { POINTS, NORMAL_FORCE, SHEAR_FORCE, CONTACT_HEADED };
 enum { JOINT, JOINT_HEADED };
@@ -137,8 +137,7 @@ static bool list_columns(columns *c, const array_list *list)
         *next++ = column_of(tl_contact_quantity(list->names[k]), list->real_type);
     rename_states(c);
     for (size_t s = 0; s < c->states.count; s++)
-        *next++ = (column){
-            .name = c->states.at[s].name, .type = list->real_type, .width = c->states.at[s].width};
+        *next++ = (column){.name = c->states.at[s].name, .type = list->real_type, .width = c->states.at[s].width};
     for (size_t f = 0; f < c->field_count; f++)
         *next++ = (column){.name = c->fields[f].name, .type = TL_VTK_DOUBLE, .width = 1};
     return true;
@@ -160,18 +159,13 @@ static bool make_memory(columns *c)
     return true;
 }
 
-static tl_status make_columns(columns *c, tl_model *m, const array_list *list, size_t rows,
-                              const tl_vtk_parts *parts, size_t contacts)
+static tl_status make_columns(columns *c, tl_model *m, const array_list *list, size_t rows, const tl_vtk_parts *parts,
+                              size_t contacts)
 {
     const tl_extra_field *fields = parts->contact_fields;
     const size_t count = parts->contact_field_count;
-    *c = (columns){.given = list->count,
-                   .headed = list->headed,
-                   .rows = rows,
-                   .fields = fields,
-                   .field_count = count};
-    tl_status status =
-        tl_extra_fields_check(CONTEXT, fields, count, contacts, "contacts", &m->error);
+    *c = (columns){.given = list->count, .headed = list->headed, .rows = rows, .fields = fields, .field_count = count};
+    tl_status status = tl_extra_fields_check(CONTEXT, fields, count, contacts, "contacts", &m->error);
     if (status == TL_OK)
         status = tl_law_states_list(m, &c->states);
     if (status == TL_OK && !list_columns(c, list))
@@ -201,8 +195,8 @@ static void set_numbers(const column *of, size_t row, const double *value)
                            : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
 }
 
-static void set_row(const columns *c, const tl_model *m, size_t row, const tl_contact_facts *facts,
-                    uint32_t contact, size_t number)
+static void set_row(const columns *c, const tl_model *m, size_t row, const tl_contact_facts *facts, uint32_t contact,
+                    size_t number)
 {
     const column *of = c->list;
     for (size_t k = 0; k < c->given; k++, of++) {
@@ -273,10 +267,8 @@ static tl_status put_contacts(const contacts *c, tl_pieces *out)
     fprintf(file, "POINTS %zu double\n", c->count);
     put_column(&c->columns, POINTS, out->output);
     fprintf(file, "VERTICES %zu %zu\n", c->count, 2 * c->count);
-    tl_status status =
-        tl_vtk_list(out, c->count, 2 * c->count * TL_VTK_INT_BYTES, fill_vertices, c);
-    fprintf(file, "POINT_DATA %zu\nSCALARS normal_force double 1\nLOOKUP_TABLE default\n",
-            c->count);
+    tl_status status = tl_vtk_list(out, c->count, 2 * c->count * TL_VTK_INT_BYTES, fill_vertices, c);
+    fprintf(file, "POINT_DATA %zu\nSCALARS normal_force double 1\nLOOKUP_TABLE default\n", c->count);
     put_column(&c->columns, NORMAL_FORCE, out->output);
     fprintf(file, "VECTORS shear_force double\n");
     put_column(&c->columns, SHEAR_FORCE, out->output);
@@ -317,8 +309,7 @@ typedef struct joints {
     uint32_t *contact; /* [of.polygons] number of its contact in rows */
     face *faces;
     size_t face_count;
-    uint32_t
-        *corner; /* [face_count + 1] number of a face's first corner, after those of the contacts */
+    uint32_t *corner; /* [face_count + 1] number of a face's first corner, after those of the contacts */
     columns columns;
 } joints;
 
@@ -427,16 +418,14 @@ static void fill_polygon_rows(void *user, size_t begin, size_t end, size_t chunk
 }
 
 /* Puts where a corner of a polygon is, or how far it has moved with the first block. */
-typedef unsigned char *(*corner_fn)(const tl_model *m, uint32_t block, tl_vec3 local,
-                                    unsigned char *to);
+typedef unsigned char *(*corner_fn)(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to);
 
 static unsigned char *put_place(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to)
 {
     return tl_vtk_put_vec3(to, tl_model_point(m, m->blocks.body[block], local));
 }
 
-static unsigned char *put_displacement(const tl_model *m, uint32_t block, tl_vec3 local,
-                                       unsigned char *to)
+static unsigned char *put_displacement(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to)
 {
     return tl_vtk_put_float3(to, tl_block_point_displacement(m, block, local));
 }
@@ -468,8 +457,7 @@ static size_t first_corner(const joints *j, size_t i)
 }
 
 /* A vector of each corner of polygons. */
-static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_piece *piece,
-                                corner_fn of, size_t each)
+static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_piece *piece, corner_fn of, size_t each)
 {
     unsigned char *to = tl_piece_add(piece, (first_corner(j, end) - first_corner(j, begin)) * each);
     for (size_t i = begin; to && i < end; i++)
@@ -508,15 +496,12 @@ static tl_status put_joints(const joints *j, tl_pieces *out)
     tl_status status = tl_vtk_list(out, polygons, points * TL_VTK_VEC3_BYTES, fill_places, j);
     fprintf(file, "POLYGONS %zu %zu\n", polygons, polygons + points);
     if (status == TL_OK)
-        status =
-            tl_vtk_list(out, polygons, (polygons + points) * TL_VTK_INT_BYTES, fill_polygons, j);
+        status = tl_vtk_list(out, polygons, (polygons + points) * TL_VTK_INT_BYTES, fill_polygons, j);
     fprintf(file, "CELL_DATA %zu\nSCALARS joint int 1\nLOOKUP_TABLE default\n", polygons);
     put_column(&j->columns, JOINT, out->output);
     put_columns(&j->columns, out->output);
     fprintf(file, "POINT_DATA %zu\nVECTORS displacement float\n", points);
-    return status == TL_OK
-               ? tl_vtk_list(out, polygons, points * TL_VTK_FLOAT3_BYTES, fill_displacements, j)
-               : status;
+    return status == TL_OK ? tl_vtk_list(out, polygons, points * TL_VTK_FLOAT3_BYTES, fill_displacements, j) : status;
 }
 
 static tl_status find_polygons(tl_model *m, joints *j)

@@ -48,8 +48,8 @@ tl_status tl_vtk_list(tl_pieces *out, size_t rows, size_t bytes, tl_piece_fn fn,
 
 void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset)
 {
-    fprintf(file, "# vtk DataFile Version 3.0\nTalus %s: %s, cycle %lld\nBINARY\nDATASET %s\n",
-            TALUS_VERSION, content, (long long)m->cycles, dataset);
+    fprintf(file, "# vtk DataFile Version 3.0\nTalus %s: %s, cycle %lld\nBINARY\nDATASET %s\n", TALUS_VERSION, content,
+            (long long)m->cycles, dataset);
 
     tl_vtk_field(file, "FieldData", m->group_count > 0 ? 4 : 3);
     tl_vtk_array(file, "TIME", 1, 1, TL_VTK_DOUBLE);
@@ -75,10 +75,9 @@ void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const cha
 tl_status tl_vtk_countable(size_t count, const char *content, tl_error *error)
 {
     if (count > INT32_MAX)
-        return tl_fail(
-            error, TL_E_IO,
-            "cannot write the %s: %zu numbers are more than the %d a legacy VTK file can "
-            "count",
-            content, count, INT32_MAX);
+        return tl_fail(error, TL_E_IO,
+                       "cannot write the %s: %zu numbers are more than the %d a legacy VTK file can "
+                       "count",
+                       content, count, INT32_MAX);
     return TL_OK;
 }

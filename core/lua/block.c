@@ -97,41 +97,34 @@ typedef struct block_args {
 } block_args;
 
 static const tl_param block_params[] = {
-    TL_PARAM(TL_PARAM_STRING, block_args, group, "", "blocks of this group",
-             .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "blocks that contain this point",
-             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, block_args, group, "", "blocks of this group", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "blocks that contain this point", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_STRING, block_args, joint, "", "blocks with a face on this joint or plane",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_STRING, block_args, boundary, "",
              "blocks with an outer face on this side of the model: \"xmin\", \"xmax\" ... \"zmax\"",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "", "fixed blocks, or free ones",
-             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "", "fixed blocks, or free ones", .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_key block_keys[] = {
     {"id", "whole number or list of whole numbers", "the blocks of these ids"},
     {"inside", "{min = {x, y, z}, max = {x, y, z}}", "blocks whose centroid is in this box"},
-    {"above", "{dip =, dip_direction =, origin = {x, y, z}}",
-     "blocks whose centroid is above this plane"},
-    {"below", "{dip =, dip_direction =, origin = {x, y, z}}",
-     "blocks whose centroid is below this plane"},
+    {"above", "{dip =, dip_direction =, origin = {x, y, z}}", "blocks whose centroid is above this plane"},
+    {"below", "{dip =, dip_direction =, origin = {x, y, z}}", "blocks whose centroid is below this plane"},
     {"hidden", "true, false or \"any\"", "hidden blocks, visible ones (the default), or both"},
     {"where", "function(block)", "blocks for which the function answers true"},
     {NULL, NULL, NULL},
 };
 
-static const tl_lua_spec blocks_spec = {"blocks", block_params, TL_LUA_COUNT(block_params),
-                                        block_keys};
+static const tl_lua_spec blocks_spec = {"blocks", block_params, TL_LUA_COUNT(block_params), block_keys};
 
 static const tl_param halfspace_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "angle below the horizontal",
-             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 90.0),
-    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg", "clockwise from north (+y)",
-             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 360.0),
-    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "a point of the plane",
-             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "angle below the horizontal", .flags = TL_PARAM_REQUIRED,
+             .min = 0.0, .max = 90.0),
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg", "clockwise from north (+y)", .flags = TL_PARAM_REQUIRED,
+             .min = 0.0, .max = 360.0),
+    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "a point of the plane", .flags = TL_PARAM_REQUIRED),
 };
 
 /* Nested tables of the filter at index 2, read into storage that outlives the call of the kernel. */
@@ -144,8 +137,7 @@ static const tl_halfspace *read_halfspace(lua_State *L, const char *key, tl_half
 {
     if (tl_lua_option(L, 2, key) == LUA_TNIL)
         return NULL;
-    tl_lua_spec spec = {lua_pushfstring(L, "blocks, %s", key), halfspace_params,
-                        TL_LUA_COUNT(halfspace_params), NULL};
+    tl_lua_spec spec = {lua_pushfstring(L, "blocks, %s", key), halfspace_params, TL_LUA_COUNT(halfspace_params), NULL};
     tl_lua_read(L, -2, &spec, false, out);
     return out;
 }
@@ -165,12 +157,8 @@ static int compare_ids(const void *a, const void *b)
 /* The id at `index`. */
 static tl_id read_id(lua_State *L, int index)
 {
-    static const tl_param id = {.size = sizeof id,
-                                .type = TL_PARAM_INT,
-                                .name = "id",
-                                .unit = "",
-                                .min = 1.0,
-                                .max = 4294967295.0};
+    static const tl_param id = {
+        .size = sizeof id, .type = TL_PARAM_INT, .name = "id", .unit = "", .min = 1.0, .max = 4294967295.0};
     static const tl_lua_spec spec = {"blocks", &id, 1, NULL};
     int top = lua_gettop(L);
     int64_t number;
@@ -221,14 +209,12 @@ static int read_hidden(lua_State *L)
     if (type == LUA_TBOOLEAN)
         return lua_toboolean(L, -1);
     if (type != LUA_TSTRING || strcmp(lua_tostring(L, -1), "any") != 0)
-        tl_lua_fail(L, "blocks: hidden must be true, false or \"any\", not %s",
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L, "blocks: hidden must be true, false or \"any\", not %s", tl_lua_describe(L, -1));
     return -1;
 }
 
 /* Reads the table at index 2; all it points to is in `args`, `nested` or on the stack. */
-static void read_filter(lua_State *L, block_args *args, block_nested *nested,
-                        tl_block_filter *filter)
+static void read_filter(lua_State *L, block_args *args, block_nested *nested, tl_block_filter *filter)
 {
     tl_lua_read(L, 2, &blocks_spec, true, args);
     *filter = tl_block_filter_default();
@@ -326,13 +312,11 @@ static tl_status fix(lua_State *L, const tl_lua_selection *b)
 static const tl_param set_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_block_set, density, "kg/m3", "density", .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_STRING, tl_block_set, group, "", "name of the group",
-             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, tl_block_set, group, "", "name of the group", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, tl_block_set, velocity, "m/s",
              "velocity of the centroid; of several blocks of a body, that of their common one",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_VEC3, tl_block_set, angular_velocity, "rad/s", "angular velocity",
-             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, tl_block_set, angular_velocity, "rad/s", "angular velocity", .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_spec set_spec = {"set", set_params, TL_LUA_COUNT(set_params), NULL};
@@ -341,8 +325,7 @@ static tl_status set(lua_State *L, const tl_lua_selection *b)
 {
     tl_block_set wanted = tl_block_set_default();
     tl_lua_read(L, 2, &set_spec, false, &wanted);
-    if (isnan(wanted.density) && !wanted.group && isnan(wanted.velocity.x) &&
-        isnan(wanted.angular_velocity.x))
+    if (isnan(wanted.density) && !wanted.group && isnan(wanted.velocity.x) && isnan(wanted.angular_velocity.x))
         tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
     return tl_blocks_set(b->owner->model, b->ids, b->count, &wanted);
 }
@@ -424,8 +407,8 @@ static int bad_velocity(lua_State *L, const call *c, const char *what)
 {
     lua_pushnumber(L, c->t);
     tl_lua_push_number_text(L, -1);
-    return tl_lua_fail_in(L, 2, "drive: %s(%s) must give three finite numbers: it gave %s",
-                          key_names[c->key], lua_tostring(L, -1), what);
+    return tl_lua_fail_in(L, 2, "drive: %s(%s) must give three finite numbers: it gave %s", key_names[c->key],
+                          lua_tostring(L, -1), what);
 }
 
 /* Three numbers from index `first` on. */
@@ -460,8 +443,7 @@ static int call_function(lua_State *L)
     } else if (given == 3) {
         c->velocity = read_velocity(L, c, 3);
     } else {
-        bad_velocity(L, c,
-                     given == 1 ? tl_lua_describe(L, 3) : lua_pushfstring(L, "%d values", given));
+        bad_velocity(L, c, given == 1 ? tl_lua_describe(L, 3) : lua_pushfstring(L, "%d values", given));
     }
     return 0;
 }
@@ -520,13 +502,11 @@ static tl_status load(lua_State *L, const tl_lua_selection *b)
 
 /* Reads one of the two velocities of the table at index 2; true when it is given. A function goes to
  * the anchor at the top of the stack. */
-static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *function,
-                        tl_drive_fn ours)
+static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *function, tl_drive_fn ours)
 {
     static const tl_param vectors[] = {
         [TL_LUA_VELOCITY] = TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0}),
-        [TL_LUA_ANGULAR_VELOCITY] =
-            TL_PARAM(TL_PARAM_VEC3, tl_drive, angular_velocity, "rad/s", "", .def = {0.0}),
+        [TL_LUA_ANGULAR_VELOCITY] = TL_PARAM(TL_PARAM_VEC3, tl_drive, angular_velocity, "rad/s", "", .def = {0.0}),
     };
     int type = lua_getfield(L, 2, key_names[key]);
     if (type == LUA_TFUNCTION) {
@@ -539,8 +519,8 @@ static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *f
         tl_drive read;
         tl_lua_spec spec = {"drive", &vectors[key], 1, NULL};
         if (type != LUA_TTABLE)
-            tl_lua_fail(L, "drive: %s must be a list of 3 numbers or a function(t), not %s",
-                        key_names[key], tl_lua_describe(L, -1));
+            tl_lua_fail(L, "drive: %s must be a list of 3 numbers or a function(t), not %s", key_names[key],
+                        tl_lua_describe(L, -1));
         tl_lua_read_one(L, top, &spec, key_names[key], &read);
         *constant = key == TL_LUA_VELOCITY ? read.velocity : read.angular_velocity;
         lua_settop(L, top);
@@ -562,8 +542,8 @@ static tl_status drive(lua_State *L, const tl_lua_selection *b)
     bool moves = false;
     if (lua_istable(L, 2)) {
         moves = read_motion(L, TL_LUA_VELOCITY, &given.velocity, &given.velocity_at, velocity_at);
-        moves |= read_motion(L, TL_LUA_ANGULAR_VELOCITY, &given.angular_velocity,
-                             &given.angular_velocity_at, angular_velocity_at);
+        moves |= read_motion(L, TL_LUA_ANGULAR_VELOCITY, &given.angular_velocity, &given.angular_velocity_at,
+                             angular_velocity_at);
     }
     if (!moves)
         tl_lua_fail(L, "drive: give velocity, angular_velocity or both; to hold blocks use "
@@ -640,11 +620,9 @@ static const tl_lua_key block_methods[] = {
     {"sel:fix{x =, y =, z =, rotation =}", "",
      "holds components of the motion; all of it when nothing is named: talus help fix"},
     {"sel:free()", "", "lets fixed and driven blocks go"},
-    {"sel:reaction()", "",
-     "sum of the forces that hold their bodies, N: {x, y, z}, of held components only"},
+    {"sel:reaction()", "", "sum of the forces that hold their bodies, N: {x, y, z}, of held components only"},
     {"sel:reset_displacement()", "", "displacements count from now"},
-    {"sel:set{density =, group =, velocity =, angular_velocity =}", "",
-     "changes properties: talus help set"},
+    {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "changes properties: talus help set"},
     {NULL, NULL, NULL},
 };
 
@@ -667,9 +645,7 @@ const tl_lua_topic tl_lua_block_topics[] = {
      .usage = "selection:set{group = \"wedge\", velocity = {0, 0, -1}}",
      .doc = "Changes properties of blocks; what is not named stays.",
      .spec = &set_spec},
-    {.name = "load",
-     .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}",
-     .function = "load"},
+    {.name = "load", .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}", .function = "load"},
     {.name = "drive",
      .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
      .doc = "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "

@@ -30,41 +30,31 @@ static const tl_param boundary_params[] = {
              "\"ymax\", \"zmin\" or \"zmax\"",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, facing, "",
-             "faces that look so: their normal is within an angle of this vector",
-             .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_REAL, boundary_args, within, "deg", "this angle", .def = {45.0}, .min = 0.0,
-             .max = 180.0),
+             "faces that look so: their normal is within an angle of this vector", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, within, "deg", "this angle", .def = {45.0}, .min = 0.0, .max = 180.0),
     TL_PARAM(TL_PARAM_REAL, boundary_args, tolerance, "m",
              "how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size "
              "when left out",
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_BOOL, boundary_args, fixed, "", "holds the bodies in all components",
-             .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, fixed, "", "holds the bodies in all components", .def = {0.0}),
     TL_PARAM(TL_PARAM_BOOL, boundary_args, roller, "",
              "holds the bodies across their faces, which must look along x, y or z", .def = {0.0}),
-    TL_PARAM(TL_PARAM_BOOL, boundary_args, rotation, "", "with roller: holds their rotation, too",
-             .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, boundary_args, pressure, "Pa", "pressure on the faces, inward",
-             .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_VEC3, boundary_args, traction, "Pa", "force per area on the faces",
-             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, rotation, "", "with roller: holds their rotation, too", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, pressure, "Pa", "pressure on the faces, inward", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, boundary_args, traction, "Pa", "force per area on the faces", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, at, "m",
-             "point at whose height stress holds; the gradient counts from there",
-             .def = {0.0, 0.0, 0.0}),
-    TL_PARAM(TL_PARAM_BOOL, boundary_args, add, "",
-             "adds to the loads that the bodies have, in the place of taking it", .def = {0.0}),
+             "point at whose height stress holds; the gradient counts from there", .def = {0.0, 0.0, 0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, add, "", "adds to the loads that the bodies have, in the place of taking it",
+             .def = {0.0}),
 };
 
 static const tl_lua_key boundary_keys[] = {
-    {"plane", "{normal = {x, y, z}, at = {x, y, z}}",
-     "faces in this plane that look along its normal"},
+    {"plane", "{normal = {x, y, z}, at = {x, y, z}}", "faces in this plane that look along its normal"},
     {"box", "{min = {x, y, z}, max = {x, y, z}}", "faces with all corners in this box"},
     {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "stress, Pa, tension positive: the traction on a face is stress times its outward normal"},
-    {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
-     "change of the stress with height z, Pa/m"},
-    {"xmin, xmax", "\"roller\", \"fixed\" or a table of what is to be done",
-     "several sides in one call"},
+    {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}", "change of the stress with height z, Pa/m"},
+    {"xmin, xmax", "\"roller\", \"fixed\" or a table of what is to be done", "several sides in one call"},
     {"ymin, ymax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {"zmin, zmax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {NULL, NULL, NULL},
@@ -72,19 +62,16 @@ static const tl_lua_key boundary_keys[] = {
 
 /* The keys as they stand in a table. */
 static const tl_lua_key table_keys[] = {
-    {"plane", "", ""}, {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""},
-    {"xmin", "", ""},  {"xmax", "", ""}, {"ymin", "", ""},   {"ymax", "", ""},
-    {"zmin", "", ""},  {"zmax", "", ""}, {NULL, NULL, NULL},
+    {"plane", "", ""}, {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""}, {"xmin", "", ""},   {"xmax", "", ""},
+    {"ymin", "", ""},  {"ymax", "", ""}, {"zmin", "", ""},   {"zmax", "", ""},     {NULL, NULL, NULL},
 };
 
-static const tl_lua_spec boundary_spec = {"boundary", boundary_params,
-                                          TL_LUA_COUNT(boundary_params), boundary_keys};
+static const tl_lua_spec boundary_spec = {"boundary", boundary_params, TL_LUA_COUNT(boundary_params), boundary_keys};
 
 static const tl_lua_key boundary_results[] = {
     {"area", "", "of the outer faces, or their outer parts, m2; without any the call is refused"},
     {"blocks", "", "a selection of their blocks, hidden ones, too"},
-    {"faces", "",
-     "each a table {block =, face =, area =, normal =, centroid =}; block.faces[face] is the face"},
+    {"faces", "", "each a table {block =, face =, area =, normal =, centroid =}; block.faces[face] is the face"},
     {"force, moment", "", "of the load in all, N, and N m about {0, 0, 0}"},
     {"reaction", "", "now: the force that holds the bodies in their held components, N"},
     {"xmin, xmax", "", "where sides are given: these fields of each, in the place of those above"},
@@ -116,8 +103,7 @@ static holder *push_holder(lua_State *L)
 /* result.reaction, and names that a result does not have. */
 static int result_index(lua_State *L)
 {
-    static const char *const names[] = {"area",   "blocks",   "faces", "force",
-                                        "moment", "reaction", NULL};
+    static const char *const names[] = {"area", "blocks", "faces", "force", "moment", "reaction", NULL};
     if (lua_type(L, 2) != LUA_TSTRING)
         return tl_lua_fail(L, "the result of boundary has no field %s", tl_lua_describe(L, 2));
     if (strcmp(lua_tostring(L, 2), "reaction") != 0) {
@@ -179,10 +165,8 @@ typedef struct plane_args {
 static void read_plane(lua_State *L, int index, tl_boundary_where *where)
 {
     static const tl_param params[] = {
-        TL_PARAM(TL_PARAM_VEC3, plane_args, normal, "", "outward normal, of any length",
-                 .flags = TL_PARAM_REQUIRED),
-        TL_PARAM(TL_PARAM_VEC3, plane_args, at, "m", "a point of the plane",
-                 .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, plane_args, normal, "", "outward normal, of any length", .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, plane_args, at, "m", "a point of the plane", .flags = TL_PARAM_REQUIRED),
     };
     if (lua_getfield(L, index, "plane") == LUA_TNIL)
         return;
@@ -235,8 +219,7 @@ static void read_action(lua_State *L, int index, boundary_args *args, tl_boundar
 
 static bool is_anywhere(const tl_boundary_where *w)
 {
-    return w->side == TL_SIDE_ANY && isnan(w->normal.x) && isnan(w->box.min.x) &&
-           isnan(w->facing.x);
+    return w->side == TL_SIDE_ANY && isnan(w->normal.x) && isnan(w->box.min.x) && isnan(w->facing.x);
 }
 
 /* Reads what the value at the top of the stack says of a side: "roller", "fixed" or a table. */
@@ -249,8 +232,7 @@ static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_bou
     if (lua_istable(L, -1)) {
         read_action(L, lua_gettop(L), &args, a);
         if (!is_anywhere(&a->where))
-            tl_lua_fail(L, "boundary: %s says where; side, plane, box and facing do not go with it",
-                        name);
+            tl_lua_fail(L, "boundary: %s says where; side, plane, box and facing do not go with it", name);
         if (args.add)
             tl_lua_fail(L, "boundary: add stands beside %s, for all sides", name);
     } else if (strcmp(word, "roller") == 0)
@@ -258,10 +240,8 @@ static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_bou
     else if (strcmp(word, "fixed") == 0)
         a->fixed = true;
     else
-        tl_lua_fail(
-            L,
-            "boundary: %s must be \"roller\", \"fixed\" or a table of what is to be done, not %s",
-            name, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "boundary: %s must be \"roller\", \"fixed\" or a table of what is to be done, not %s", name,
+                    tl_lua_describe(L, -1));
     a->where.side = side;
     if (isnan(a->where.tolerance))
         a->where.tolerance = tolerance;
@@ -297,8 +277,7 @@ static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
         return 0;
     }
     if (!lua_istable(L, 2))
-        tl_lua_fail(L, "boundary: a side (\"xmin\") or a table is expected, not %s",
-                    tl_lua_describe(L, 2));
+        tl_lua_fail(L, "boundary: a side (\"xmin\") or a table is expected, not %s", tl_lua_describe(L, 2));
     boundary_args args;
     tl_boundary_action one;
     read_action(L, 2, &args, &one);
@@ -308,9 +287,7 @@ static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
         tl_lua_fail(L, "boundary: with xmin and the like only tolerance and add are given beside; "
                        "what is to be done goes into their tables");
     if (!count && is_anywhere(&one.where))
-        tl_lua_fail(
-            L,
-            "boundary: say where: side, plane, box or facing, or sides as in {xmin = \"roller\"}");
+        tl_lua_fail(L, "boundary: say where: side, plane, box or facing, or sides as in {xmin = \"roller\"}");
     if (!count)
         actions[0] = one;
     return count;
@@ -330,8 +307,7 @@ static void rewrite(lua_State *L, const char *name, tl_vec3 v)
 
 /* Does what is to be done, after the tables of the results are made: a call that fails changes nothing. At the top of
  * the stack is one table or, of sides, a table of them. */
-static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions, size_t sides,
-                bool add, holder *done)
+static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions, size_t sides, bool add, holder *done)
 {
     tl_lua_ok(L, model, tl_model_boundary(model, actions, sides ? sides : 1, add, done->result));
     for (size_t i = 0; i < (sides ? sides : 1); i++) {

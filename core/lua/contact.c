@@ -48,8 +48,7 @@ static int record_assign(lua_State *L)
 static void set_record(lua_State *L, const char *type, const char *what)
 {
     if (luaL_newmetatable(L, type)) {
-        const luaL_Reg meta[] = {
-            {"__index", record_index}, {"__newindex", record_assign}, {NULL, NULL}};
+        const luaL_Reg meta[] = {{"__index", record_index}, {"__newindex", record_assign}, {NULL, NULL}};
         lua_pushstring(L, what);
         luaL_setfuncs(L, meta, 1);
     }
@@ -94,8 +93,7 @@ static void push_contact_states(lua_State *L, tl_model *model, tl_id contact)
     for (size_t i = 0; i < states->count; i++) {
         double value[3];
         size_t width;
-        tl_lua_ok(L, model,
-                  tl_contacts_values(model, &contact, 1, states->list[i].name, value, &width));
+        tl_lua_ok(L, model, tl_contacts_values(model, &contact, 1, states->list[i].name, value, &width));
         push_value(L, value, width);
         lua_setfield(L, -2, states->list[i].name);
     }
@@ -105,8 +103,7 @@ static void push_contact_states(lua_State *L, tl_model *model, tl_id contact)
 /* ---------------------------------------------------------------- points ----------------- */
 
 /* Sets one value in each of the `count` tables of the list at the top of the stack. */
-static void set_value(lua_State *L, tl_model *model, tl_id contact, size_t count, const char *name,
-                      double *values)
+static void set_value(lua_State *L, tl_model *model, tl_id contact, size_t count, const char *name, double *values)
 {
     size_t width;
     tl_lua_ok(L, model, tl_points_values(model, &contact, 1, name, values, &width));
@@ -149,8 +146,7 @@ typedef struct contact_args {
 } contact_args;
 
 static const tl_param contact_params[] = {
-    TL_PARAM(TL_PARAM_STRING, contact_args, joint, "", "contacts on this joint or plane",
-             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, contact_args, joint, "", "contacts on this joint or plane", .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_key contact_keys[] = {
@@ -160,8 +156,7 @@ static const tl_lua_key contact_keys[] = {
     {NULL, NULL, NULL},
 };
 
-static const tl_lua_spec contacts_spec = {"contacts", contact_params, TL_LUA_COUNT(contact_params),
-                                          contact_keys};
+static const tl_lua_spec contacts_spec = {"contacts", contact_params, TL_LUA_COUNT(contact_params), contact_keys};
 
 /* The ids meant by the selection of blocks or the block at the top of the stack. */
 static const tl_id *read_side(lua_State *L, const tl_lua_model *owner, int side, size_t *count)
@@ -169,9 +164,8 @@ static const tl_id *read_side(lua_State *L, const tl_lua_model *owner, int side,
     const tl_lua_selection *blocks = luaL_testudata(L, -1, TL_LUA_BLOCKS);
     const tl_lua_item *block = luaL_testudata(L, -1, TL_LUA_BLOCK);
     if (!blocks && !block)
-        tl_lua_fail(L,
-                    "contacts, between: item %d must be a selection of blocks or a block, not %s",
-                    side, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "contacts, between: item %d must be a selection of blocks or a block, not %s", side,
+                    tl_lua_describe(L, -1));
     if ((blocks ? blocks->owner : block->owner) != owner)
         tl_lua_fail(L, "contacts, between: item %d belongs to another model", side);
     /* An empty selection has no list, but NULL would mean "any block". */
@@ -188,9 +182,8 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
         return;
     if (!lua_istable(L, -1) || lua_rawlen(L, -1) != 2)
         tl_lua_fail(L, "contacts: between must be a list of two selections of blocks, not %s",
-                    lua_istable(L, -1)
-                        ? lua_pushfstring(L, "a list of %I", (lua_Integer)lua_rawlen(L, -1))
-                        : tl_lua_describe(L, -1));
+                    lua_istable(L, -1) ? lua_pushfstring(L, "a list of %I", (lua_Integer)lua_rawlen(L, -1))
+                                       : tl_lua_describe(L, -1));
     const tl_lua_model *owner = lua_touserdata(L, 1);
     int pair = lua_gettop(L);
     lua_rawgeti(L, pair, 1);
@@ -266,8 +259,7 @@ const tl_lua_kind tl_lua_contact_kind = {
 
 static const tl_lua_key contact_methods[] = {
     {"#sel, sel[i], ipairs(sel)", "", "number of contacts, the i-th one, all in order of id"},
-    {"sel:sum(field)", "",
-     "sum of a field of numbers, or of a state of a law by its name; of a vector a vector"},
+    {"sel:sum(field)", "", "sum of a field of numbers, or of a state of a law by its name; of a vector a vector"},
     {"sel:max(field), sel:min(field)", "",
      "largest and smallest value of a field of numbers, or of a state, where the law has it"},
     {"sel:values(field)", "",

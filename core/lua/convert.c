@@ -39,20 +39,18 @@ static double number_at(lua_State *L, int index)
 }
 
 /* Reads row `row` of the list at `index`: so many numbers. false, with what it is instead in `value`. */
-static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, int width,
-                        double *out, tl_value *value)
+static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, int width, double *out, tl_value *value)
 {
     lua_rawgeti(L, index, row);
     const char *fault = NULL;
     if (lua_type(L, -1) != LUA_TTABLE)
         fault = lua_pushfstring(L, "list whose row %I is %s", row, tl_lua_describe(L, -1));
     else if (lua_rawlen(L, -1) != (size_t)width)
-        fault = lua_pushfstring(L, "list whose row %I has %I numbers, not %d", row,
-                                (lua_Integer)lua_rawlen(L, -1), width);
+        fault =
+            lua_pushfstring(L, "list whose row %I has %I numbers, not %d", row, (lua_Integer)lua_rawlen(L, -1), width);
     for (int i = 0; i < width && !fault; i++) {
         if (lua_rawgeti(L, -1, i + 1) != LUA_TNUMBER)
-            fault = lua_pushfstring(L, "list whose row %I has %s in place %d", row,
-                                    tl_lua_describe(L, -1), i + 1);
+            fault = lua_pushfstring(L, "list whose row %I has %s in place %d", row, tl_lua_describe(L, -1), i + 1);
         else {
             out[i] = number_at(L, -1);
             lua_pop(L, 1);
@@ -64,8 +62,7 @@ static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, in
 }
 
 /* Numbers in a list of them; false, with what it is instead in `value`. */
-static bool convert_number(lua_State *L, int index, int anchor, lua_Integer i, double *out,
-                           tl_value *value)
+static bool convert_number(lua_State *L, int index, int anchor, lua_Integer i, double *out, tl_value *value)
 {
     if (lua_rawgeti(L, index, i) == LUA_TNUMBER) {
         *out = number_at(L, -1);
@@ -158,8 +155,7 @@ static bool is_listed(const tl_lua_key *keys, const char *name)
     return false;
 }
 
-void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key *skip,
-                 tl_args *args)
+void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key *skip, tl_args *args)
 {
     index = lua_absindex(L, index);
     luaL_checkstack(L, 16, "too many values");
@@ -169,8 +165,7 @@ void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key 
     if (lua_isnoneornil(L, index))
         return;
     if (!lua_istable(L, index))
-        tl_lua_fail(L, "%s: the parameters must be a table, not %s", context,
-                    tl_lua_describe(L, index));
+        tl_lua_fail(L, "%s: the parameters must be a table, not %s", context, tl_lua_describe(L, index));
     size_t pairs = 0;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING)
@@ -231,8 +226,7 @@ static void check_keys(lua_State *L, const tl_lua_spec *spec, const tl_args *arg
         for (size_t k = 0; k < own && !known; k++)
             known = strcmp(names.at[k], args->values[i].key) == 0;
         if (!known)
-            tl_lua_unknown(L, lua_pushfstring(L, "%s: unknown parameter", spec->context),
-                           args->values[i].key, &names);
+            tl_lua_unknown(L, lua_pushfstring(L, "%s: unknown parameter", spec->context), args->values[i].key, &names);
     }
 }
 
@@ -242,20 +236,17 @@ void tl_lua_read(lua_State *L, int index, const tl_lua_spec *spec, bool keep, vo
     tl_lua_args(L, index, spec->context, spec->keys, &args);
     check_keys(L, spec, &args);
     tl_error error;
-    if (tl_args_read(spec->params, spec->count, sizeof(tl_param), &args, keep, out, spec->context,
-                     &error) != TL_OK)
+    if (tl_args_read(spec->params, spec->count, sizeof(tl_param), &args, keep, out, spec->context, &error) != TL_OK)
         tl_lua_raise(L, &error);
 }
 
-void tl_lua_read_function(lua_State *L, int index, const char *function, const tl_lua_key *keys,
-                          void *out)
+void tl_lua_read_function(lua_State *L, int index, const char *function, const tl_lua_key *keys, void *out)
 {
     tl_lua_spec spec = tl_lua_spec_of(function, keys);
     tl_lua_read(L, index, &spec, false, out);
 }
 
-bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const char *key,
-                        tl_sym3 *out)
+bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const char *key, tl_sym3 *out)
 {
     if (tl_lua_option(L, table, key) == LUA_TNIL)
         return false;
@@ -298,8 +289,7 @@ const char *tl_lua_text(lua_State *L, int index, const char *function, const cha
     const char *text = lua_type(L, index) == LUA_TSTRING ? lua_tolstring(L, index, &length) : NULL;
     if (!text || strlen(text) != length)
         tl_lua_fail(L, "%s: %s must be a string, not %s", function, what,
-                    text ? lua_pushfstring(L, "one with a zero byte after '%s'", text)
-                         : tl_lua_describe(L, index));
+                    text ? lua_pushfstring(L, "one with a zero byte after '%s'", text) : tl_lua_describe(L, index));
     return text;
 }
 
@@ -307,8 +297,8 @@ void tl_lua_arity(lua_State *L, int most, const char *function)
 {
     int extra = lua_gettop(L) - most;
     if (extra > 0)
-        tl_lua_fail(L, "%s: %d argument%s too many; the first is %s", function, extra,
-                    extra == 1 ? "" : "s", tl_lua_describe(L, most + 1));
+        tl_lua_fail(L, "%s: %d argument%s too many; the first is %s", function, extra, extra == 1 ? "" : "s",
+                    tl_lua_describe(L, most + 1));
 }
 
 void tl_lua_push_number_text(lua_State *L, int index)
@@ -339,8 +329,7 @@ const char *tl_lua_describe(lua_State *L, int index)
     case LUA_TSTRING:
         text = lua_tolstring(L, index, &length);
         lua_pushlstring(L, text, length < LONGEST_SHOWN ? length : LONGEST_SHOWN);
-        return lua_pushfstring(L, "the string '%s%s'", lua_tostring(L, -1),
-                               length > LONGEST_SHOWN ? "..." : "");
+        return lua_pushfstring(L, "the string '%s%s'", lua_tostring(L, -1), length > LONGEST_SHOWN ? "..." : "");
     default: return lua_pushfstring(L, "a %s", type_name(L, lua_absindex(L, index)));
     }
 }
@@ -388,8 +377,7 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
     case TL_FIELD_QUAT: tl_lua_push_numbers(L, value->number, 4); break;
     case TL_FIELD_SYM3:
         lua_createtable(L, 0, 6);
-        TL_LUA_SET_NUMBERS(L, {"xx", n[0]}, {"yy", n[1]}, {"zz", n[2]}, {"xy", n[3]}, {"yz", n[4]},
-                           {"zx", n[5]});
+        TL_LUA_SET_NUMBERS(L, {"xx", n[0]}, {"yy", n[1]}, {"zz", n[2]}, {"xy", n[3]}, {"yz", n[4]}, {"zx", n[5]});
         break;
     case TL_FIELD_TEXT: lua_pushstring(L, value->text); break;
     case TL_FIELD_IDS:
@@ -483,8 +471,7 @@ bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *
     };
     if (tl_lua_option(L, table, key) == LUA_TNIL)
         return false;
-    tl_lua_spec spec = {lua_pushfstring(L, "%s, %s", function, key), params, TL_LUA_COUNT(params),
-                        NULL};
+    tl_lua_spec spec = {lua_pushfstring(L, "%s, %s", function, key), params, TL_LUA_COUNT(params), NULL};
     tl_lua_read(L, -2, &spec, false, box);
     if (box->min.x > box->max.x || box->min.y > box->max.y || box->min.z > box->max.z)
         tl_lua_fail(L, "%s: every component of min must be at most that of max", spec.context);

@@ -21,17 +21,14 @@ const tl_param *tl_lua_param_named(const char *function, const char *name);
 tl_lua_spec tl_lua_spec_of(const char *function, const tl_lua_key *keys);
 /* Converts the table at `index` (nil or none: empty) for the kernel. Pushes one value, which must
  * stay on the stack as long as `args` is used. Keys listed in `skip` are left out. */
-void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key *skip,
-                 tl_args *args);
+void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key *skip, tl_args *args);
 /* Checks the table at `index` against `spec` and fills `out`; see tl_args_read. Pushes one value
  * that must stay on the stack as long as strings in `out` are used. */
 void tl_lua_read(lua_State *L, int index, const tl_lua_spec *spec, bool keep, void *out);
 /* The same with the parameters of a kernel function. */
-void tl_lua_read_function(lua_State *L, int index, const char *function, const tl_lua_key *keys,
-                          void *out);
+void tl_lua_read_function(lua_State *L, int index, const char *function, const tl_lua_key *keys, void *out);
 /* Reads the tensor `key` of the table at `table`; true when it is given. */
-bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const char *key,
-                        tl_sym3 *out);
+bool tl_lua_read_tensor(lua_State *L, int table, const char *function, const char *key, tl_sym3 *out);
 /* tl_lua_read for one value at `index`, given the name `key`. */
 void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const char *key, void *out);
 /* Pushes what the table at `table` has under a key, nil when there is no table; gives its type. */
@@ -54,10 +51,8 @@ void tl_lua_set_number(lua_State *L, const char *name, double number);
 void tl_lua_set_count(lua_State *L, const char *name, size_t count);
 void tl_lua_set_text(lua_State *L, const char *name, const char *text);
 /* The same of several, {"volume", volume}, ...; a list ends with name = NULL. */
-#define TL_LUA_SET_NUMBERS(L, ...)                                                                 \
-    tl_lua_set_numbers(L, (const tl_lua_number[]){__VA_ARGS__, {NULL, 0}})
-#define TL_LUA_SET_COUNTS(L, ...)                                                                  \
-    tl_lua_set_counts(L, (const tl_lua_count[]){__VA_ARGS__, {NULL, 0}})
+#define TL_LUA_SET_NUMBERS(L, ...) tl_lua_set_numbers(L, (const tl_lua_number[]){__VA_ARGS__, {NULL, 0}})
+#define TL_LUA_SET_COUNTS(L, ...) tl_lua_set_counts(L, (const tl_lua_count[]){__VA_ARGS__, {NULL, 0}})
 void tl_lua_set_numbers(lua_State *L, const tl_lua_number *numbers);
 void tl_lua_set_counts(lua_State *L, const tl_lua_count *counts);
 void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);
@@ -72,7 +67,6 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
 /* The tl_side of a name; raises, beginning with `context`, when there is none. */
 int32_t tl_lua_side(lua_State *L, const char *context, const char *name);
 /* Reads the box `key` of the table at `table`; true when it is given. */
-bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *key,
-                     tl_bounds *box);
+bool tl_lua_read_box(lua_State *L, int table, const char *function, const char *key, tl_bounds *box);
 
 #endif

@@ -104,8 +104,7 @@ typedef struct tl_lua_kind {
     const tl_field *(*fields)(size_t *count);
     tl_status (*field)(tl_model *model, tl_id id, size_t index, tl_field_value *value);
     /* Fields of many by name: tl_blocks_values, tl_contacts_values. */
-    tl_status (*values)(tl_model *model, const tl_id *ids, size_t count, const char *name,
-                        double *out, size_t *width);
+    tl_status (*values)(tl_model *model, const tl_id *ids, size_t count, const char *name, double *out, size_t *width);
     /* Pushes a field that `fields` cannot express; false when it has none of that name. The item is
      * at index 1 and its model's userdata at index 3. */
     bool (*extra)(lua_State *L, tl_model *model, tl_id id, const char *name);
@@ -141,26 +140,26 @@ typedef struct tl_lua_anchor {
 enum { TL_LUA_VELOCITY = 1, TL_LUA_ANGULAR_VELOCITY, TL_LUA_MOTIONS = 2 };
 
 /* Keys of a table with fields that a script adds. */
-#define TL_LUA_FIELD_KEYS                                                                          \
-    {"block_fields", "{\"FIELD\", NAME = \"FIELD\" or function(block)}",                           \
-     "numbers of each block to colour by: fields of blocks, and functions that give a number, or " \
-     "nil for none"},                                                                              \
-    {                                                                                              \
-        "contact_fields", "{\"FIELD\", NAME = \"FIELD\" or function(contact)}",                    \
-            "numbers of each contact, likewise: fields of contacts, states of their laws, "        \
-            "functions"                                                                            \
+#define TL_LUA_FIELD_KEYS                                                                                              \
+    {"block_fields", "{\"FIELD\", NAME = \"FIELD\" or function(block)}",                                               \
+     "numbers of each block to colour by: fields of blocks, and functions that give a number, or "                     \
+     "nil for none"},                                                                                                  \
+    {                                                                                                                  \
+        "contact_fields", "{\"FIELD\", NAME = \"FIELD\" or function(contact)}",                                        \
+            "numbers of each contact, likewise: fields of contacts, states of their laws, "                            \
+            "functions"                                                                                                \
     }
 
 /* Keys of a table that says what a page shows. */
-#define TL_LUA_PAGE_KEYS                                                                           \
-    {"contacts", "true, false or \"slipping\"",                                                    \
-     "which contacts the frame has; when left out all, where there are 20000 at the most, and "    \
-     "else those that slip"},                                                                      \
-        TL_LUA_FIELD_KEYS,                                                                         \
-        {"keyblocks", "{friction =, cohesion =, gravity =}",                                       \
-         "parameters of model:keyblocks, whose modes and factors of safety are shown as well"},    \
-    {                                                                                              \
-        "safety_limit", "number", "factor of safety that is asked for: the legend marks it"        \
+#define TL_LUA_PAGE_KEYS                                                                                               \
+    {"contacts", "true, false or \"slipping\"",                                                                        \
+     "which contacts the frame has; when left out all, where there are 20000 at the most, and "                        \
+     "else those that slip"},                                                                                          \
+        TL_LUA_FIELD_KEYS,                                                                                             \
+        {"keyblocks", "{friction =, cohesion =, gravity =}",                                                           \
+         "parameters of model:keyblocks, whose modes and factors of safety are shown as well"},                        \
+    {                                                                                                                  \
+        "safety_limit", "number", "factor of safety that is asked for: the legend marks it"                            \
     }
 
 /* A function: how it is called, and what the help tells of it. Its parameters are of the table that checks them. */

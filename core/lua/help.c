@@ -84,8 +84,7 @@ static void type_text(const tl_param *param, char *text, size_t size)
                                         "vector", "text in quotes", "list of vectors"};
     char range[80] = "", given[120];
     bool flat = param->type == TL_PARAM_POINTS && param->flags & TL_PARAM_FLAT;
-    size_t n =
-        (size_t)snprintf(text, size, "%s", flat ? "list of {number, number}" : types[param->type]);
+    size_t n = (size_t)snprintf(text, size, "%s", flat ? "list of {number, number}" : types[param->type]);
     for (size_t i = 0; param->type == TL_PARAM_ENUM && param->choices[i] && n < size; i++)
         n += (size_t)snprintf(text + n, size - n, "%s \"%s\"", i ? "," : "", param->choices[i]);
     tl_param_range(param, range, sizeof range);
@@ -93,8 +92,7 @@ static void type_text(const tl_param *param, char *text, size_t size)
     bool interval = range[0] == '[' || range[0] == '(';
     if (n < size)
         snprintf(text + n, size - n, "%s%s%s%s%s, %s", param->unit && param->unit[0] ? ", " : "",
-                 param->unit ? param->unit : "", range[0] ? ", " : "", interval ? "in " : "", range,
-                 given);
+                 param->unit ? param->unit : "", range[0] ? ", " : "", interval ? "in " : "", range, given);
 }
 
 static void walk_params(const tl_param *params, size_t count, row_call call, void *user)
@@ -132,8 +130,7 @@ static const char *const field_types[] = {[TL_FIELD_SCALAR] = "number",
                                           [TL_FIELD_TEXT] = "text",
                                           [TL_FIELD_IDS] = "list of 2 blocks"};
 
-static void walk_fields(const char *item, const tl_field *(*list)(size_t *count), row_call call,
-                        void *user)
+static void walk_fields(const char *item, const tl_field *(*list)(size_t *count), row_call call, void *user)
 {
     size_t count;
     const tl_field *fields = list(&count);
@@ -183,9 +180,7 @@ static void walk_kind(const tl_kind *kind, row_call call, void *user)
         call(&(row){.heading = "Parameters:"}, user);
     walk_params(kind->params, kind->param_count, call, user);
     if (kind->state_count)
-        call(
-            &(row){.heading = kind->type == TL_KIND_LAW ? "States of a contact point:" : "States:"},
-            user);
+        call(&(row){.heading = kind->type == TL_KIND_LAW ? "States of a contact point:" : "States:"}, user);
     for (uint32_t i = 0; i < kind->state_count; i++)
         call(&(row){NULL, kind->states[i].name, NULL, "", kind->states[i].doc}, user);
 }
@@ -220,8 +215,7 @@ static void print_topic(const tl_lua_topic *topic)
     print_wrapped(topic_doc(topic), 2, 0);
     walk_topic(topic, print_called, NULL);
     if (topic->has_type) {
-        printf("\nThe %ss loaded (talus help NAME tells their parameters):\n",
-               plugin_word(topic->type));
+        printf("\nThe %ss loaded (talus help NAME tells their parameters):\n", plugin_word(topic->type));
         print_kinds(topic->type);
     }
 }
@@ -308,8 +302,7 @@ static bool names_verb(const tl_lua_topic *topic, const char *word)
     const size_t length = strlen(word);
     for (const tl_lua_key *key = topic->verbs; key && key->name; key++)
         for (const char *at = strchr(key->name, ':'); at; at = strchr(at + 1, ':'))
-            if (strncmp(at + 1, word, length) == 0 &&
-                (at[1 + length] == '(' || at[1 + length] == '{'))
+            if (strncmp(at + 1, word, length) == 0 && (at[1 + length] == '(' || at[1 + length] == '{'))
                 return true;
     return false;
 }
@@ -358,20 +351,16 @@ static bool unknown_topic(const char *word, tl_error *error)
         pages = verbs;
     const char *nearest = tl_nearest_name(word, names.at, names.count);
     size_t length = strlen(word), other = nearest ? strlen(nearest) : 0;
-    bool misspelt =
-        nearest && !verbs.count && strncmp(word, nearest, length < other ? length : other) == 0;
+    bool misspelt = nearest && !verbs.count && strncmp(word, nearest, length < other ? length : other) == 0;
     error->status = TL_E_NOT_FOUND;
     if (misspelt || (nearest && pages.count == 0 && (length > SHORT || word[0] == nearest[0])))
-        snprintf(error->text, sizeof error->text, "there is no help on '%s'; did you mean '%s'?",
-                 word, nearest);
+        snprintf(error->text, sizeof error->text, "there is no help on '%s'; did you mean '%s'?", word, nearest);
     else if (pages.count > 0)
-        snprintf(error->text, sizeof error->text,
-                 "there is no page '%s'; these speak of it (talus help NAME): %s", word,
-                 pages.text);
+        snprintf(error->text, sizeof error->text, "there is no page '%s'; these speak of it (talus help NAME): %s",
+                 word, pages.text);
     else
         snprintf(error->text, sizeof error->text,
-                 "there is no help on '%s', and no page speaks of it; `talus help` lists all",
-                 word);
+                 "there is no help on '%s', and no page speaks of it; `talus help` lists all", word);
     return false;
 }
 

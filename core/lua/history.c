@@ -24,26 +24,20 @@ typedef struct history_args {
     int32_t take, remove;
 } history_args;
 
-static const char *const take_names[] = {[TL_TAKE_MEAN] = "mean",
-                                         [TL_TAKE_SUM] = "sum",
-                                         [TL_TAKE_MIN] = "min",
-                                         [TL_TAKE_MAX] = "max",
-                                         NULL};
+static const char *const take_names[] = {
+    [TL_TAKE_MEAN] = "mean", [TL_TAKE_SUM] = "sum", [TL_TAKE_MIN] = "min", [TL_TAKE_MAX] = "max", NULL};
 
 static const tl_param history_params[] = {
-    TL_PARAM(TL_PARAM_STRING, history_args, name, "", "what it is called, one of its own",
-             .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_INT, history_args, every, "",
-             "steps between two samples; the first is taken at once", .def = {10.0}, .min = 1.0,
-             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_STRING, history_args, name, "", "what it is called, one of its own", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_INT, history_args, every, "", "steps between two samples; the first is taken at once",
+             .def = {10.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_STRING, history_args, field, "",
-             "field of numbers of what `of` gives (\"displacement\", \"normal_force\")",
-             .flags = TL_PARAM_OPTIONAL),
+             "field of numbers of what `of` gives (\"displacement\", \"normal_force\")", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_ENUM, history_args, take, "",
-             "of a selection: what is made of the values of its blocks or contacts",
-             .def = {TL_TAKE_MEAN}, .choices = take_names),
-    TL_PARAM(TL_PARAM_BOOL, history_args, remove, "",
-             "ends the history of that name, with all its samples", .def = {0.0}),
+             "of a selection: what is made of the values of its blocks or contacts", .def = {TL_TAKE_MEAN},
+             .choices = take_names),
+    TL_PARAM(TL_PARAM_BOOL, history_args, remove, "", "ends the history of that name, with all its samples",
+             .def = {0.0}),
 };
 
 static const tl_lua_key history_keys[] = {
@@ -59,8 +53,8 @@ static const tl_lua_key history_keys[] = {
     {NULL, NULL, NULL},
 };
 
-static const tl_lua_spec history_spec = {
-    "history", history_params, sizeof history_params / sizeof *history_params, history_keys};
+static const tl_lua_spec history_spec = {"history", history_params, sizeof history_params / sizeof *history_params,
+                                         history_keys};
 
 /* ---------------------------------------------------------------- the list --------------- */
 
@@ -141,8 +135,7 @@ typedef struct latest {
 static double read_number(lua_State *L, const tl_history *h, int index)
 {
     if (lua_type(L, index) != LUA_TNUMBER)
-        tl_lua_fail_in(L, AT_FUNCTION,
-                       "history '%s': the function must give a number or a list of numbers, not %s",
+        tl_lua_fail_in(L, AT_FUNCTION, "history '%s': the function must give a number or a list of numbers, not %s",
                        h->name, tl_lua_describe(L, index));
     return lua_tonumber(L, index);
 }
@@ -162,13 +155,12 @@ static void ask_function(lua_State *L, const tl_history *h, latest *now)
     bool list = given == 1 && lua_istable(L, AT_VALUES);
     size_t count = list ? (size_t)lua_rawlen(L, AT_VALUES) : (size_t)given;
     if (count == 0 || count > TL_HISTORY_WIDEST)
-        tl_lua_fail_in(
-            L, AT_FUNCTION,
-            "history '%s': the function must give a number or a list of 1 to %d numbers, not %s",
-            h->name, TL_HISTORY_WIDEST,
-            count  ? lua_pushfstring(L, "%d of them", (int)count)
-            : list ? "an empty list"
-                   : "nothing");
+        tl_lua_fail_in(L, AT_FUNCTION,
+                       "history '%s': the function must give a number or a list of 1 to %d numbers, not %s", h->name,
+                       TL_HISTORY_WIDEST,
+                       count  ? lua_pushfstring(L, "%d of them", (int)count)
+                       : list ? "an empty list"
+                              : "nothing");
     for (size_t i = 0; i < count; i++) {
         if (list)
             lua_rawgeti(L, AT_VALUES, (lua_Integer)i + 1);
@@ -216,8 +208,7 @@ static void tell_lost(lua_State *L, tl_model *model, tl_history *h, tl_id id, si
     char text[300], left[60] = "nan";
     if (gone < h->id_count)
         snprintf(left, sizeof left, "of the %s that are left", kind->items);
-    snprintf(text, sizeof text,
-             "history '%s': %s %u no longer exists; from cycle %lld on its values are %s", h->name,
+    snprintf(text, sizeof text, "history '%s': %s %u no longer exists; from cycle %lld on its values are %s", h->name,
              kind->item, id, (long long)tl_model_cycles(model), left);
     tl_lua_log(tl_lua_options_of(L), text);
 }
@@ -226,8 +217,7 @@ static void take_in(tl_history_take take, latest *now, const double *number, boo
 {
     for (size_t k = 0; k < now->width; k++) {
         double *to = &now->number[k];
-        if (begins || (take == TL_TAKE_MIN && number[k] < *to) ||
-            (take == TL_TAKE_MAX && number[k] > *to))
+        if (begins || (take == TL_TAKE_MIN && number[k] < *to) || (take == TL_TAKE_MAX && number[k] > *to))
             *to = number[k];
         else if (take == TL_TAKE_MEAN || take == TL_TAKE_SUM)
             *to += number[k];
@@ -298,8 +288,7 @@ static void check_name(lua_State *L, const char *name)
 {
     size_t length = strlen(name);
     if (length == 0 || length > TL_HISTORY_NAME)
-        tl_lua_fail(L, "history: name must have 1 to %d letters, not %d", TL_HISTORY_NAME,
-                    (int)length);
+        tl_lua_fail(L, "history: name must have 1 to %d letters, not %d", TL_HISTORY_NAME, (int)length);
     if (strcmp(name, "cycle") == 0 || strcmp(name, "time") == 0)
         tl_lua_fail(L, "history: the name '%s' is that of a column which all files have", name);
     for (const char *c = name; *c; c++)
@@ -316,8 +305,7 @@ static int remove_history(lua_State *L, tl_model *model, const char *name)
         for (size_t i = 0; (h = tl_history_at(model, i)) != NULL; i++)
             tl_lua_names_add(&names, h->name);
         if (at == 0)
-            return tl_lua_fail(
-                L, "history: there is none of the name '%s': the model has no history", name);
+            return tl_lua_fail(L, "history: there is none of the name '%s': the model has no history", name);
         return tl_lua_unknown(L, "history: there is none of the name", name, &names);
     }
     lua_pushnil(L);
@@ -335,9 +323,8 @@ static void read_value(lua_State *L, tl_history *h)
         return;
     }
     if (lua_type(L, -1) != LUA_TSTRING)
-        tl_lua_fail(
-            L, "history '%s': value must be a function(model) or the name of a quantity, not %s",
-            h->name, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "history '%s': value must be a function(model) or the name of a quantity, not %s", h->name,
+                    tl_lua_describe(L, -1));
     h->source = TL_FROM_MODEL;
     const char *name = tl_lua_text(L, -1, "history", "value");
     if (quantity_named(name) < QUANTITIES) {
@@ -361,13 +348,10 @@ static void check_field(lua_State *L, const tl_history *h, const char *name)
         if (fields[i].kind <= TL_FIELD_VEC3)
             tl_lua_names_add(&names, fields[i].name);
     if (!field)
-        tl_lua_unknown(
-            L,
-            lua_pushfstring(L, "history '%s': a %s has no field of numbers", h->name, kind->item),
-            name, &names);
+        tl_lua_unknown(L, lua_pushfstring(L, "history '%s': a %s has no field of numbers", h->name, kind->item), name,
+                       &names);
     else if (field->kind == TL_FIELD_VEC3 && h->take >= TL_TAKE_MIN)
-        tl_lua_fail(L, "history '%s': the field '%s' is a vector; only single numbers are compared",
-                    h->name, name);
+        tl_lua_fail(L, "history '%s': the field '%s' is a vector; only single numbers are compared", h->name, name);
 }
 
 /* Reads `of`, at the top of the stack, and which field of it is wanted. The ids stay those of the object. */
@@ -390,8 +374,8 @@ static void read_items(lua_State *L, tl_history *h, const history_args *args)
         h->id_count = item ? 1 : selection->count;
     }
     if (!owner)
-        tl_lua_fail(L, "history '%s': of must be a block, a contact or a selection of them, not %s",
-                    h->name, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "history '%s': of must be a block, a contact or a selection of them, not %s", h->name,
+                    tl_lua_describe(L, -1));
     if (owner != lua_touserdata(L, 1))
         tl_lua_fail(L, "history '%s': of is a part of another model", h->name);
     if (h->id_count == 0)
@@ -408,8 +392,7 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
 {
     bool of = lua_getfield(L, 2, "of") != LUA_TNIL;
     if (!of && lua_getfield(L, 2, "take") != LUA_TNIL)
-        tl_lua_fail(L, "history '%s': take is for a history of blocks or contacts, with of",
-                    h->name);
+        tl_lua_fail(L, "history '%s': take is for a history of blocks or contacts, with of", h->name);
     bool value = lua_getfield(L, 2, "value") != LUA_TNIL;
     if (value == of)
         tl_lua_fail(L,
@@ -417,9 +400,8 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
                     "with field",
                     h->name);
     if (value && args->field)
-        tl_lua_fail(
-            L, "history '%s': field = '%s' is the field of what `of` gives, and there is no of",
-            h->name, args->field);
+        tl_lua_fail(L, "history '%s': field = '%s' is the field of what `of` gives, and there is no of", h->name,
+                    args->field);
     if (value) {
         read_value(L, h);
     } else {
@@ -435,8 +417,7 @@ static int model_history(lua_State *L, tl_model *model)
     tl_lua_read(L, 2, &history_spec, false, &args);
     check_name(L, args.name);
     if (owner->sampling)
-        return tl_lua_fail(L, "history '%s': a history's function may only read the model",
-                           args.name);
+        return tl_lua_fail(L, "history '%s': a history's function may only read the model", args.name);
     if (args.remove)
         return remove_history(L, model, args.name);
     size_t at = history_find(model, args.name);
@@ -491,8 +472,7 @@ bool tl_lua_histories_sample(lua_State *L, int model_index)
     int64_t cycle = tl_model_cycles(owner->model);
     tl_history *h;
     for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++)
-        if (cycle >= h->first && (cycle - h->first) % h->every == 0 &&
-            history_take(L, model_index, h) != LUA_OK)
+        if (cycle >= h->first && (cycle - h->first) % h->every == 0 && history_take(L, model_index, h) != LUA_OK)
             return false;
     tl_lua_histories_due(L, model_index);
     return true;
@@ -523,16 +503,14 @@ void tl_lua_histories_given(lua_State *L)
         return;
     }
     if (!lua_istable(L, -1))
-        tl_lua_fail(L, "talus.restore: histories must be a table of functions by name, not %s",
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L, "talus.restore: histories must be a table of functions by name, not %s", tl_lua_describe(L, -1));
     for (lua_pushnil(L); lua_next(L, top + 1); lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING)
-            tl_lua_fail(L,
-                        "talus.restore: histories has the key %s, which is the name of no history",
+            tl_lua_fail(L, "talus.restore: histories has the key %s, which is the name of no history",
                         tl_lua_describe(L, -2));
         if (!lua_isfunction(L, -1) && !(lua_isboolean(L, -1) && !lua_toboolean(L, -1)))
-            tl_lua_fail(L, "talus.restore: history '%s' needs a function(model), or false, not %s",
-                        lua_tostring(L, -2), tl_lua_describe(L, -1));
+            tl_lua_fail(L, "talus.restore: history '%s' needs a function(model), or false, not %s", lua_tostring(L, -2),
+                        tl_lua_describe(L, -1));
     }
     lua_settop(L, top);
 }
@@ -561,8 +539,7 @@ static bool take_up(lua_State *L, const char *path, int model_index, int given, 
         return false;
     }
     if (found && h->source != TL_FROM_FUNCTION)
-        tl_lua_fail(L, "talus.restore: history '%s' sampled no function when the model was saved",
-                    h->name);
+        tl_lua_fail(L, "talus.restore: history '%s' sampled no function when the model was saved", h->name);
     if (!found && h->source == TL_FROM_FUNCTION)
         tl_lua_fail(L,
                     "cannot restore '%s': history '%s' samples a function, which has to be given "
@@ -571,8 +548,8 @@ static bool take_up(lua_State *L, const char *path, int model_index, int given, 
     if (h->source == TL_FROM_FUNCTION)
         history_set_function(L, model_index, h->name);
     else if (!is_there(h))
-        tl_lua_fail(L, "cannot restore '%s': history '%s' asks for '%s', which cannot be sampled",
-                    path, h->name, h->asked);
+        tl_lua_fail(L, "cannot restore '%s': history '%s' asks for '%s', which cannot be sampled", path, h->name,
+                    h->asked);
     else
         lua_pop(L, 1);
     return true;
@@ -707,8 +684,7 @@ static int model_write_histories(lua_State *L, tl_model *model)
     while (tl_history_at(model, count))
         count++;
     if (count == 0)
-        return tl_lua_fail(
-            L, "write_histories: the model has no history; make one with model:history{...}");
+        return tl_lua_fail(L, "write_histories: the model has no history; make one with model:history{...}");
     const tl_history **all = lua_newuserdatauv(L, count * sizeof *all, 0);
     size_t *at = lua_newuserdatauv(L, count * sizeof *at, 0);
     luaL_Buffer b;
@@ -736,8 +712,7 @@ const tl_lua_topic tl_lua_history_topics[] = {
      .usage = "model:history{name = \"gap\", every = 10, value = function(m) return "
               "m:contacts():max(\"gap\") end}  or  model:history{name = \"wedge\", of = selection, "
               "field = \"displacement\"}",
-     .doc =
-         "Samples a value at once and then every so many steps of all runs, until it is removed.",
+     .doc = "Samples a value at once and then every so many steps of all runs, until it is removed.",
      .spec = &history_spec,
      .arguments = 1,
      .method = model_history},

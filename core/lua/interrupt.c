@@ -47,8 +47,7 @@ static int raise_interrupt(lua_State *L, const char *what, const char *outcome)
     unhook();
     atomic_store(&asked, false);
     raised = true;
-    return tl_lua_fail(L, "%s%s" SENTENCE "%s%s", what, what[0] ? ": " : "", outcome[0] ? "; " : "",
-                       outcome);
+    return tl_lua_fail(L, "%s%s" SENTENCE "%s%s", what, what[0] ? ": " : "", outcome[0] ? "; " : "", outcome);
 }
 
 static void on_hook(lua_State *L, lua_Debug *record)
@@ -113,8 +112,8 @@ static void watch_end(const tl_lua_watch *watch)
     atomic_store(&listener, watch->outer);
 }
 
-tl_status tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, tl_status status,
-                           const char *what, const char *outcome)
+tl_status tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, tl_status status, const char *what,
+                           const char *outcome)
 {
     bool cancelled = status == TL_E_CANCELLED;
     watch_end(watch);

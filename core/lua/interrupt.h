@@ -7,8 +7,8 @@
 tl_lua_watch tl_lua_watch_begin(lua_State *L);
 /* Ends a watch of a call of the kernel, whose status it returns. After a Ctrl-C raises "stopped by Ctrl-C", of a call
  * that was cancelled "WHAT: stopped by Ctrl-C; OUTCOME". OUTCOME may be "". */
-tl_status tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, tl_status status,
-                           const char *what, const char *outcome);
+tl_status tl_lua_watch_end(lua_State *L, const tl_lua_watch *watch, tl_status status, const char *what,
+                           const char *outcome);
 /* The same of a run. But at the prompt what comes next on the line raises, so that the run's result is not lost. */
 void tl_lua_watch_end_run(lua_State *L, const tl_lua_watch *watch, const char *what);
 /* True from a Ctrl-C until its error is raised; for tl_model_interrupt_if. */

@@ -156,8 +156,8 @@ static tl_lua_selection *self(lua_State *L, const char *method)
     const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
     tl_lua_selection *selection = luaL_testudata(L, 1, kind->selection_type);
     if (!selection)
-        tl_lua_fail(L, "%s: called on %s, not on a selection of %s; write selection:%s(...)",
-                    method, tl_lua_describe(L, 1), kind->items, method);
+        tl_lua_fail(L, "%s: called on %s, not on a selection of %s; write selection:%s(...)", method,
+                    tl_lua_describe(L, 1), kind->items, method);
     return selection;
 }
 
@@ -197,14 +197,12 @@ static bool wants_flat(lua_State *L)
         return lua_toboolean(L, 3);
     const char *how = lua_type(L, 3) == LUA_TSTRING ? lua_tostring(L, 3) : "";
     if (strcmp(how, "flat") != 0 && strcmp(how, "nested") != 0)
-        tl_lua_fail(L, "values: how to list must be \"flat\" or \"nested\", not %s",
-                    tl_lua_describe(L, 3));
+        tl_lua_fail(L, "values: how to list must be \"flat\" or \"nested\", not %s", tl_lua_describe(L, 3));
     return strcmp(how, "flat") == 0;
 }
 
 /* Texts, truths, tensors and ids: as single items give them. */
-static void push_items(lua_State *L, const tl_lua_selection *selection, const tl_field *field,
-                       size_t index)
+static void push_items(lua_State *L, const tl_lua_selection *selection, const tl_field *field, size_t index)
 {
     lua_createtable(L, (int)selection->count, 0);
     for (size_t i = 0; i < selection->count; i++) {
@@ -246,8 +244,7 @@ static int selection_values(lua_State *L)
     size_t width, count = selection->count;
     tl_lua_ok(L, model, selection->kind->values(model, NULL, 0, name, NULL, &width));
     double *values = lua_newuserdatauv(L, (count * width + 1) * sizeof *values, 0);
-    tl_lua_ok(L, model,
-              selection->kind->values(model, selection->ids, count, name, values, &width));
+    tl_lua_ok(L, model, selection->kind->values(model, selection->ids, count, name, values, &width));
     if (flat || width == 1)
         push_flat(L, values, count * width, kind == TL_FIELD_COUNT || kind == TL_FIELD_IDS);
     else if (kind == TL_FIELD_IDS)
@@ -286,8 +283,7 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
         tl_lua_unknown(L, lua_tostring(L, -1), name, &names);
     }
     double *values = lua_newuserdatauv(L, (selection->count * width + 1) * sizeof *values, 0);
-    tl_lua_ok(L, model,
-              kind->values(model, selection->ids, selection->count, name, values, &width));
+    tl_lua_ok(L, model, kind->values(model, selection->ids, selection->count, name, values, &width));
     return (column){field, values, width};
 }
 
@@ -319,8 +315,8 @@ static int extreme(lua_State *L, const char *method, double sign)
     const char *name = lua_tostring(L, 2);
     bool truth = c.field && c.field->kind == TL_FIELD_BOOL;
     if (c.width > 1 || truth)
-        tl_lua_fail(L, "%s: the %s '%s' is %s; only single numbers are compared", method,
-                    c.field ? "field" : "state", name, truth ? "true or false" : "a vector");
+        tl_lua_fail(L, "%s: the %s '%s' is %s; only single numbers are compared", method, c.field ? "field" : "state",
+                    name, truth ? "true or false" : "a vector");
     if (c.field && selection->count == 0)
         tl_lua_fail(L, "%s: the selection is empty, so '%s' has no value", method, name);
     double best = c.field ? c.values[0] : NAN;
@@ -328,8 +324,7 @@ static int extreme(lua_State *L, const char *method, double sign)
         if (sign * c.values[i] > sign * best || (!c.field && isnan(best)))
             best = c.values[i];
     if (!c.field && isnan(best))
-        tl_lua_fail(L, "%s: no contact of the selection has a law with the state '%s'", method,
-                    name);
+        tl_lua_fail(L, "%s: no contact of the selection has a law with the state '%s'", method, name);
     return push_of_column(L, &c, &(tl_field_value){{best}, NULL});
 }
 
@@ -367,9 +362,7 @@ static void remark_empty(lua_State *L, const char *verb, const char *done)
 {
     luaL_getsubtable(L, LUA_REGISTRYINDEX, "talus.remarks");
     tl_lua_push_where(L);
-    lua_pushfstring(L,
-                    "%s: the selection is empty: no block was %s; see what model:blocks{...} finds",
-                    verb, done);
+    lua_pushfstring(L, "%s: the selection is empty: no block was %s; see what model:blocks{...} finds", verb, done);
     lua_concat(L, 2);
     lua_pushvalue(L, -1);
     if (lua_rawget(L, -3) == LUA_TNIL) {
@@ -391,8 +384,7 @@ static int call_verb(lua_State *L)
     lua_settop(L, verb->arguments + 1);
     if (verb->ask)
         return verb->ask(L, blocks);
-    tl_status status =
-        verb->plain ? verb->plain(model, blocks->ids, blocks->count) : verb->act(L, blocks);
+    tl_status status = verb->plain ? verb->plain(model, blocks->ids, blocks->count) : verb->act(L, blocks);
     if (verb->done && blocks->count == 0 && status == TL_OK)
         remark_empty(L, verb->name, verb->done);
     tl_lua_ok(L, model, status);
@@ -428,8 +420,7 @@ int tl_lua_read_where(lua_State *L, const tl_lua_kind *kind)
     if (tl_lua_option(L, 2, "where") == LUA_TNIL)
         return 0;
     if (lua_type(L, -1) != LUA_TFUNCTION)
-        tl_lua_fail(L, "%s: where must be a function(%s), not %s", kind->items, kind->item,
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L, "%s: where must be a function(%s), not %s", kind->items, kind->item, tl_lua_describe(L, -1));
     return lua_gettop(L);
 }
 
@@ -438,8 +429,7 @@ static int selection_where(lua_State *L)
     tl_lua_selection *selection = self(L, "where");
     tl_lua_arity(L, 2, "where");
     if (lua_type(L, 2) != LUA_TFUNCTION)
-        tl_lua_fail(L, "where: a function(%s) is expected, not %s", selection->kind->item,
-                    tl_lua_describe(L, 2));
+        tl_lua_fail(L, "where: a function(%s) is expected, not %s", selection->kind->item, tl_lua_describe(L, 2));
     lua_getiuservalue(L, 1, 1);
     tl_lua_selection *copy = tl_lua_selection_push(L, selection->kind, 3);
     copy->ids = malloc((selection->count + 1) * sizeof *copy->ids);
@@ -465,8 +455,7 @@ static int unknown_method(lua_State *L, const tl_lua_kind *kind, const char *nam
         tl_lua_names_add(&names, method->name);
     for (const tl_lua_verb *verb = kind->verbs; verb->name; verb++)
         tl_lua_names_add(&names, verb->name);
-    return tl_lua_unknown(L, lua_pushfstring(L, "a selection of %s has no method", kind->items),
-                          name, &names);
+    return tl_lua_unknown(L, lua_pushfstring(L, "a selection of %s has no method", kind->items), name, &names);
 }
 
 /* selection[i] and selection:method(). Upvalue 1 is the kind, upvalue 2 the table of methods. */
@@ -485,15 +474,13 @@ static int selection_index(lua_State *L)
     if (lua_rawget(L, lua_upvalueindex(2)) != LUA_TNIL)
         return 1;
     if (lua_type(L, 2) != LUA_TSTRING)
-        return tl_lua_fail(L, "a selection is indexed by whole numbers from 1, not by %s",
-                           tl_lua_describe(L, 2));
+        return tl_lua_fail(L, "a selection is indexed by whole numbers from 1, not by %s", tl_lua_describe(L, 2));
     return unknown_method(L, selection->kind, lua_tostring(L, 2));
 }
 
 static int selection_assign(lua_State *L)
 {
-    return tl_lua_fail(L, "a selection of %s cannot be assigned to",
-                       self(L, "assign")->kind->items);
+    return tl_lua_fail(L, "a selection of %s cannot be assigned to", self(L, "assign")->kind->items);
 }
 
 static void open_selection(lua_State *L, const tl_lua_kind *kind)

@@ -42,8 +42,8 @@ static tl_law_leg read_leg(lua_State *L, size_t k)
     tl_law_leg leg = {NAN, NAN, NAN, NAN, NAN, 0};
     const char *context = lua_pushfstring(L, "law_test, path[%I]", (lua_Integer)k);
     if (lua_type(L, -2) != LUA_TNUMBER && lua_type(L, -2) != LUA_TTABLE)
-        tl_lua_fail(L, "%s must be a shear displacement in m or a table {shear = ...}, not %s",
-                    context, tl_lua_describe(L, -2));
+        tl_lua_fail(L, "%s must be a shear displacement in m or a table {shear = ...}, not %s", context,
+                    tl_lua_describe(L, -2));
     tl_lua_spec spec = tl_lua_spec_of("law_leg", NULL);
     spec.context = context;
     if (lua_type(L, -2) == LUA_TNUMBER)
@@ -57,13 +57,11 @@ static tl_law_leg read_leg(lua_State *L, size_t k)
 static void read_path(lua_State *L, tl_law_test *test)
 {
     if (lua_getfield(L, AT_TABLE, "path") != LUA_TTABLE)
-        tl_lua_fail(L, "law_test: path must be a list of legs, as in {0.005, -0.005}, not %s",
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L, "law_test: path must be a list of legs, as in {0.005, -0.005}, not %s", tl_lua_describe(L, -1));
     int path = lua_gettop(L);
     test->count = (size_t)lua_rawlen(L, path);
     for (lua_pushnil(L); lua_next(L, path); lua_pop(L, 1))
-        if (!lua_isinteger(L, -2) || lua_tointeger(L, -2) < 1 ||
-            lua_tointeger(L, -2) > (lua_Integer)test->count)
+        if (!lua_isinteger(L, -2) || lua_tointeger(L, -2) < 1 || lua_tointeger(L, -2) > (lua_Integer)test->count)
             tl_lua_fail(L, "law_test: path must be a list of legs, without names and gaps: a "
                            "single leg is {{shear = ...}}");
     tl_law_leg *legs = lua_newuserdatauv(L, test->count * sizeof *legs, 0);
@@ -127,8 +125,7 @@ static void set_states(lua_State *L, const tl_kind *law, const curve *c)
     lua_setfield(L, -2, "states");
 }
 
-static void push_curve(lua_State *L, const tl_kind *law, const curve *c, const size_t *ends,
-                       size_t legs)
+static void push_curve(lua_State *L, const tl_kind *law, const curve *c, const size_t *ends, size_t legs)
 {
     lua_createtable(L, 0, 16);
     set_list(L, "time", c, &c->points->time);

@@ -18,8 +18,7 @@ static int push_loader(lua_State *L, const char *name)
 {
     char file[128], path[PATH_MAX];
     size_t length = strlen(name);
-    if (length + sizeof ".lua" > sizeof file ||
-        strspn(name, "abcdefghijklmnopqrstuvwxyz_.") != length)
+    if (length + sizeof ".lua" > sizeof file || strspn(name, "abcdefghijklmnopqrstuvwxyz_.") != length)
         return 0;
     strcpy(file, name);
     for (char *c = file; *c; c++)
@@ -95,8 +94,7 @@ static int module_write_file(lua_State *L)
     tl_lua_arity(L, 2, "talus.write_file");
     const char *path = tl_lua_text(L, 1, "talus.write_file", "the file's name");
     if (lua_type(L, 2) != LUA_TSTRING)
-        return tl_lua_fail(L, "talus.write_file: the text must be a string, not %s",
-                           tl_lua_describe(L, 2));
+        return tl_lua_fail(L, "talus.write_file: the text must be a string, not %s", tl_lua_describe(L, 2));
     size_t length;
     const char *text = lua_tolstring(L, 2, &length);
     tl_error error;
@@ -129,21 +127,16 @@ static const tl_lua_key plot_keys[] = {
 
 static const tl_lua_key stereonet_keys[] = {
     {"file", "text in quotes, required", "name of the SVG file; folders are made"},
-    {"model", "model",
-     "draws the joint sets of this model, from the faces of its blocks as they lie now"},
-    {"joints", "list of names",
-     "which of its joint sets (\"J1\"), in this order; all when left out"},
+    {"model", "model", "draws the joint sets of this model, from the faces of its blocks as they lie now"},
+    {"joints", "list of names", "which of its joint sets (\"J1\"), in this order; all when left out"},
     {"sets", "list of {name =, dip =, dip_direction =}",
      "further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes"},
-    {"keyblocks", "list of keyblocks",
-     "what model:keyblocks{...} gave: a cross for the direction of each movement"},
-    {"projection", "\"equal_area\" or \"equal_angle\"",
-     "of Schmidt and Lambert, the default, or of Wulff"},
+    {"keyblocks", "list of keyblocks", "what model:keyblocks{...} gave: a cross for the direction of each movement"},
+    {"projection", "\"equal_area\" or \"equal_angle\"", "of Schmidt and Lambert, the default, or of Wulff"},
     {"great_circles", "\"mean\", \"all\" or \"none\"",
      "of the mean plane of each set, the default, of every plane, or of none"},
     {"title", "text in quotes, may be left out", "stands above the picture"},
-    {"legend", "true or false, default true",
-     "whether a list of the sets stands beside, with mean dip/dip direction"},
+    {"legend", "true or false, default true", "whether a list of the sets stands beside, with mean dip/dip direction"},
     {"grid", "true or false, default true",
      "whether plunges of 30 and 60 degrees and every 30 degrees of trend are drawn"},
     {"size", "number, default 480", "of the square picture without the legend, pixels"},
@@ -188,8 +181,7 @@ static int global_read(lua_State *L)
     known_names(L, &names);
     const char *nearest = tl_nearest_name(word, names.at, names.count);
     if (nearest)
-        return tl_lua_fail(L, "the variable '%s' is not declared; did you mean '%s'?", word,
-                           nearest);
+        return tl_lua_fail(L, "the variable '%s' is not declared; did you mean '%s'?", word, nearest);
     return tl_lua_fail(L, "the variable '%s' is not declared", word);
 }
 
@@ -223,8 +215,7 @@ const tl_lua_topic tl_lua_library_topics[] = {
     {.name = "stereonet",
      .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = "
               "model:keyblocks{friction = 30}}",
-     .doc =
-         "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",
+     .doc = "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",
      .keys = stereonet_keys},
     {.name = "write_file",
      .usage = "talus.write_file(\"out/table.csv\", text)",

@@ -199,14 +199,13 @@ static void value_text(const tl_param *param, const void *params, char text[VALU
     if (isnan(number[0]))
         snprintf(value, sizeof value, "not given");
     else if (count == 3)
-        snprintf(value, sizeof value, "{%s, %s, %s}", number_text(number[0], x),
-                 number_text(number[1], y), number_text(number[2], z));
+        snprintf(value, sizeof value, "{%s, %s, %s}", number_text(number[0], x), number_text(number[1], y),
+                 number_text(number[2], z));
     else if (param->type == TL_PARAM_BOOL)
         snprintf(value, sizeof value, "%s", number[0] != 0 ? "true" : "false");
     else
         snprintf(value, sizeof value, "%s",
-                 param->type == TL_PARAM_ENUM ? param->choices[(int)number[0]]
-                                              : number_text(number[0], x));
+                 param->type == TL_PARAM_ENUM ? param->choices[(int)number[0]] : number_text(number[0], x));
     bool unit = param->unit && param->unit[0] && !isnan(number[0]);
     snprintf(text, VALUE_TEXT, "%s%s%s%s", value, unit ? " " : "", unit ? param->unit : "",
              standard ? " (default)" : "");
@@ -266,8 +265,7 @@ static void add_timestep(lua_State *L, tl_model *model, FILE *page)
     lua_setfield(L, -2, "timestep");
     char text[VALUE_TEXT];
     if (isnan(now.dt))
-        tl_text_print(text, sizeof text, "rule %s, fraction %.10g of the critical step", rule,
-                      now.fraction);
+        tl_text_print(text, sizeof text, "rule %s, fraction %.10g of the critical step", rule, now.fraction);
     else
         tl_text_print(text, sizeof text, "given, %.10g s", now.dt);
     print_row(page, "timestep", text);
@@ -291,8 +289,8 @@ static void add_mass_scaling(lua_State *L, const tl_model *model, FILE *page)
     if (scaling.on && partial) {
         tl_lua_set_number(L, "dt", scaling.dt);
         tl_lua_set_number(L, "most", scaling.most);
-        tl_text_print(text, sizeof text, "for dt = %.10g s, adding at most %.10g of the mass",
-                      scaling.dt, scaling.most);
+        tl_text_print(text, sizeof text, "for dt = %.10g s, adding at most %.10g of the mass", scaling.dt,
+                      scaling.most);
     }
     lua_setfield(L, -2, "mass_scaling");
     print_row(page, "mass_scaling", text);
@@ -360,14 +358,12 @@ static void add_areas(lua_State *L, tl_model *model, FILE *page)
         bool absolute = !isnan(rule.absolute);
         char name[100], text[VALUE_TEXT];
         lua_createtable(L, 0, 2);
-        tl_lua_set_number(L, absolute ? "absolute" : "fraction",
-                          absolute ? rule.absolute : rule.fraction);
+        tl_lua_set_number(L, absolute ? "absolute" : "fraction", absolute ? rule.absolute : rule.fraction);
         lua_setfield(L, -2, rule.joint ? rule.joint : "*");
         if (absolute)
             tl_text_print(text, sizeof text, "%.10g m2", rule.absolute);
         else if (rule.fraction > 0)
-            tl_text_print(text, sizeof text, "%.10g of the smaller block's mean face area",
-                          rule.fraction);
+            tl_text_print(text, sizeof text, "%.10g of the smaller block's mean face area", rule.fraction);
         else
             snprintf(text, sizeof text, "none%s", rule.joint ? "" : " (default)");
         snprintf(name, sizeof name, "  joint %s", rule.joint ? rule.joint : "");
@@ -398,8 +394,7 @@ static const tl_lua_key parameters_fields[] = {
      "will use, s, or message: why it is not known"},
     {"mass_scaling", "", "on; dt and most, where they were given"},
     {"damping", "", "name, nil where none was chosen; parameters: a table of them by name"},
-    {"laws", "",
-     "by joint (\"*\", \"J1\", \"J1:3\"): law, its name; parameters: a table of them by name"},
+    {"laws", "", "by joint (\"*\", \"J1\", \"J1:3\"): law, its name; parameters: a table of them by name"},
     {"joints", "", "by joint set: the joint whose law it has, \"\" for none"},
     {"contact_area", "", "by joint, \"*\" for all others: fraction, or absolute, m2"},
     {NULL, NULL, NULL},

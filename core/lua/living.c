@@ -43,9 +43,7 @@ void tl_lua_default_threads(lua_State *L, int64_t *threads)
         char *end;
         long number = strtol(text, &end, 10);
         if (*end || number < 1 || number > 256)
-            tl_lua_fail(L,
-                        "the environment's TALUS_THREADS = '%s' is not a whole number in [1, 256]",
-                        text);
+            tl_lua_fail(L, "the environment's TALUS_THREADS = '%s' is not a whole number in [1, 256]", text);
         *threads = number;
     }
 }
@@ -84,8 +82,7 @@ tl_model *tl_lua_model_of(lua_State *L, const char *method)
 {
     tl_lua_model *object = luaL_testudata(L, 1, TL_LUA_MODEL_TYPE);
     if (!object)
-        tl_lua_fail(L, "%s: called on %s; write model:%s(...)", method, tl_lua_describe(L, 1),
-                    method);
+        tl_lua_fail(L, "%s: called on %s; write model:%s(...)", method, tl_lua_describe(L, 1), method);
     return tl_lua_living(L, object);
 }
 

@@ -284,9 +284,8 @@ void tl_lua_model_open(lua_State *L)
 {
     if (luaL_newmetatable(L, TL_LUA_MODEL_TYPE)) {
         lua_pushvalue(L, -2); /* the methods */
-        const luaL_Reg meta[] = {{"__index", model_index},   {"__newindex", model_assign},
-                                 {"__gc", model_collect},    {"__close", model_collect},
-                                 {"__tostring", model_text}, {NULL, NULL}};
+        const luaL_Reg meta[] = {{"__index", model_index},   {"__newindex", model_assign}, {"__gc", model_collect},
+                                 {"__close", model_collect}, {"__tostring", model_text},   {NULL, NULL}};
         luaL_setfuncs(L, meta, 1);
         lua_pushliteral(L, "a model");
         lua_setfield(L, -2, "__metatable");
@@ -330,11 +329,9 @@ static const tl_lua_key timestep_results[] = {
 };
 
 static const tl_lua_key mass_scaling_results[] = {
-    {"on", "",
-     "whether inertia is scaled; the other fields are there after mass_scaling{dt =} only"},
+    {"on", "", "whether inertia is scaled; the other fields are there after mass_scaling{dt =} only"},
     {"dt, most", "", "the step, s, and the largest share, as given"},
-    {"added", "",
-     "mass that the last step has added, as a share of that of the bodies that can move"},
+    {"added", "", "mass that the last step has added, as a share of that of the bodies that can move"},
     {"bodies", "", "how many have got some"},
     {"worst", "",
      "{block =, factor =}: the number of the block with the highest factor, and its inertia over "

@@ -50,8 +50,7 @@ typedef struct request {
 static bool is_name(const char *name)
 {
     size_t length = strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_");
-    return length > 0 && length <= LONGEST && name[length] == '\0' &&
-           !strchr("0123456789_", name[0]);
+    return length > 0 && length <= LONGEST && name[length] == '\0' && !strchr("0123456789_", name[0]);
 }
 
 static int compare(const void *a, const void *b)
@@ -81,16 +80,15 @@ static void take_names(lua_State *L, request *r)
     lua_Integer listed = (lua_Integer)lua_rawlen(L, r->given);
     for (lua_Integer i = 1; i <= listed; i++) {
         if (lua_rawgeti(L, r->given, i) != LUA_TSTRING)
-            tl_lua_fail(L, "%s: %s: item %d must be the name of a field, not %s", r->context,
-                        r->key, (int)i, tl_lua_describe(L, -1));
+            tl_lua_fail(L, "%s: %s: item %d must be the name of a field, not %s", r->context, r->key, (int)i,
+                        tl_lua_describe(L, -1));
         take_name(L, r);
     }
     for (lua_pushnil(L); lua_next(L, r->given); lua_pop(L, 1)) {
         if (lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= listed)
             continue;
         if (lua_type(L, -2) != LUA_TSTRING)
-            tl_lua_fail(L, "%s: %s: a field is named by a text, not by %s", r->context, r->key,
-                        tl_lua_describe(L, -2));
+            tl_lua_fail(L, "%s: %s: a field is named by a text, not by %s", r->context, r->key, tl_lua_describe(L, -2));
         lua_pushvalue(L, -2);
         take_name(L, r);
     }
@@ -100,19 +98,15 @@ static void take_names(lua_State *L, request *r)
 /* ---------------------------------------------------------------- values ----------------- */
 
 /* The values of the field of the model that has the name `source`. */
-static void ask_field(lua_State *L, const request *r, tl_extra_field *field, const char *source,
-                      double *values)
+static void ask_field(lua_State *L, const request *r, tl_extra_field *field, const char *source, double *values)
 {
     tl_model *model = tl_lua_living(L, r->items->owner);
     size_t width;
     tl_lua_ok(L, model, r->kind->values(model, NULL, 0, source, NULL, &width));
     if (width != 1)
-        tl_lua_fail(
-            L,
-            "%s: %s: the field '%s' of a %s has %d numbers; give a function(%s) that returns one",
-            r->context, r->key, source, r->kind->item, (int)width, r->kind->item);
-    tl_lua_ok(L, model,
-              r->kind->values(model, r->items->ids, r->items->count, source, values, &width));
+        tl_lua_fail(L, "%s: %s: the field '%s' of a %s has %d numbers; give a function(%s) that returns one",
+                    r->context, r->key, source, r->kind->item, (int)width, r->kind->item);
+    tl_lua_ok(L, model, r->kind->values(model, r->items->ids, r->items->count, source, values, &width));
     size_t index;
     const tl_field *known = tl_lua_field_named(r->kind, source, &index);
     field->unit = known ? known->unit : "";
@@ -133,8 +127,8 @@ static int ask(lua_State *L)
         lua_pushvalue(L, AT_ITEM);
         lua_call(L, 1, 1);
         if (lua_type(L, -1) != LUA_TNUMBER && !lua_isnil(L, -1))
-            return luaL_error(L, "it must give a number or nil, not %s for %s %d",
-                              tl_lua_describe(L, -1), r->kind->item, (int)r->items->ids[i]);
+            return luaL_error(L, "it must give a number or nil, not %s for %s %d", tl_lua_describe(L, -1),
+                              r->kind->item, (int)r->items->ids[i]);
         values[i] = lua_isnil(L, -1) ? NAN : lua_tonumber(L, -1);
         lua_settop(L, AT_OWNER);
     }
@@ -150,8 +144,7 @@ static void ask_function(lua_State *L, request *r, tl_extra_field *field)
     lua_pushlightuserdata(L, field);
     lua_pushvalue(L, 1);
     if (tl_lua_call_reading(L, r->items->owner, 4) != LUA_OK)
-        tl_lua_fail(L, "%s: %s: '%s': %s", r->context, r->key, field->name,
-                    luaL_tolstring(L, -1, NULL));
+        tl_lua_fail(L, "%s: %s: '%s': %s", r->context, r->key, field->name, luaL_tolstring(L, -1, NULL));
 }
 
 /* Finds the values of field `i`. */
@@ -173,8 +166,8 @@ static void take_values(lua_State *L, request *r, size_t i, size_t listed)
         return;
     }
     if (type != LUA_TSTRING)
-        tl_lua_fail(L, "%s: %s: '%s' must be the name of a field or a function(%s), not %s",
-                    r->context, r->key, field->name, r->kind->item, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "%s: %s: '%s' must be the name of a field or a function(%s), not %s", r->context, r->key,
+                    field->name, r->kind->item, tl_lua_describe(L, -1));
     ask_field(L, r, field, lua_tostring(L, -1), values);
     lua_pop(L, 1);
 }
@@ -196,9 +189,8 @@ static const tl_lua_selection *push_all(lua_State *L, const tl_lua_kind *kind)
 
 /* The fields that the table at `table` asks for under `key`, of all blocks or all contacts of the model at index 1.
  * `context` names the method. Pushes one value, which must stay on the stack as long as they are used. */
-static const tl_extra_field *extra_fields(lua_State *L, int table, const char *key,
-                                          const char *context, const tl_lua_kind *kind,
-                                          size_t *count)
+static const tl_extra_field *extra_fields(lua_State *L, int table, const char *key, const char *context,
+                                          const tl_lua_kind *kind, size_t *count)
 {
     table = lua_absindex(L, table);
     *count = 0;
@@ -209,9 +201,8 @@ static const tl_extra_field *extra_fields(lua_State *L, int table, const char *k
         return NULL;
     }
     if (!lua_istable(L, -1))
-        tl_lua_fail(
-            L, "%s: %s must be a table, as in {\"%s\", name = function(%s) ... end}, not %s",
-            context, key, kind->fields(&r.count)[0].name, kind->item, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "%s: %s must be a table, as in {\"%s\", name = function(%s) ... end}, not %s", context, key,
+                    kind->fields(&r.count)[0].name, kind->item, tl_lua_describe(L, -1));
     luaL_checkstack(L, 16, "too many values");
     r.given = lua_gettop(L);
     size_t entries = 0, listed = lua_rawlen(L, r.given);
@@ -240,8 +231,7 @@ static int32_t read_contacts(lua_State *L, int table, const char *context)
     else if (type == LUA_TSTRING && strcmp(lua_tostring(L, -1), "slipping") == 0)
         choice = TL_HTML_CONTACTS_SLIPPING;
     else if (type != LUA_TNIL)
-        tl_lua_fail(L, "%s: contacts must be true, false or \"slipping\", not %s", context,
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L, "%s: contacts must be true, false or \"slipping\", not %s", context, tl_lua_describe(L, -1));
     lua_pop(L, 1);
     return choice;
 }
@@ -266,8 +256,7 @@ static double read_limit(lua_State *L, int table, const char *context)
     if (tl_lua_option(L, table, "safety_limit") != LUA_TNIL) {
         limit = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
         if (!(limit > 0) || !isfinite(limit))
-            tl_lua_fail(L, "%s: safety_limit must be a number above 0, not %s", context,
-                        tl_lua_describe(L, -1));
+            tl_lua_fail(L, "%s: safety_limit must be a number above 0, not %s", context, tl_lua_describe(L, -1));
     }
     lua_settop(L, table);
     return limit;
@@ -281,10 +270,9 @@ void tl_lua_page_read(lua_State *L, int given, const char *context, tl_html *htm
     int table = lua_gettop(L);
     html->safety_limit = read_limit(L, table, context);
     html->keyblocks = push_keyblocks(L, table);
-    html->block_fields = extra_fields(L, table, "block_fields", context, &tl_lua_block_kind,
-                                      &html->block_field_count);
-    html->contact_fields = extra_fields(L, table, "contact_fields", context, &tl_lua_contact_kind,
-                                        &html->contact_field_count);
+    html->block_fields = extra_fields(L, table, "block_fields", context, &tl_lua_block_kind, &html->block_field_count);
+    html->contact_fields =
+        extra_fields(L, table, "contact_fields", context, &tl_lua_contact_kind, &html->contact_field_count);
 }
 
 static int model_write_html(lua_State *L, tl_model *model)
@@ -295,8 +283,7 @@ static int model_write_html(lua_State *L, tl_model *model)
     tl_lua_page_read(L, 3, "write_html", &html);
     tl_lua_watch watch = tl_lua_watch_begin(L);
     tl_lua_ok(L, model,
-              tl_lua_watch_end(L, &watch, tl_write_html(model, prefix, &html), "write_html",
-                               "no frame was written"));
+              tl_lua_watch_end(L, &watch, tl_write_html(model, prefix, &html), "write_html", "no frame was written"));
     return 0;
 }
 
@@ -310,14 +297,11 @@ static int model_write_vtk(lua_State *L, tl_model *model)
     const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
     tl_vtk_parts parts = tl_vtk_parts_default();
     tl_lua_read_function(L, 3, "write_vtk", field_keys, &parts);
-    parts.block_fields = extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind,
-                                      &parts.block_field_count);
-    parts.contact_fields = extra_fields(L, 3, "contact_fields", "write_vtk", &tl_lua_contact_kind,
-                                        &parts.contact_field_count);
+    parts.block_fields = extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind, &parts.block_field_count);
+    parts.contact_fields =
+        extra_fields(L, 3, "contact_fields", "write_vtk", &tl_lua_contact_kind, &parts.contact_field_count);
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_lua_ok(
-        L, model,
-        tl_lua_watch_end(L, &watch, tl_write_vtk(model, prefix, &parts), "write_vtk", NO_FILE));
+    tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, tl_write_vtk(model, prefix, &parts), "write_vtk", NO_FILE));
     return 0;
 }
 
@@ -325,8 +309,7 @@ static int model_write_blocks(lua_State *L, tl_model *model)
 {
     const char *path = tl_lua_text(L, 2, "write_blocks", "the file's name");
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_lua_ok(L, model,
-              tl_lua_watch_end(L, &watch, tl_write_blocks(model, path), "write_blocks", NO_FILE));
+    tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, tl_write_blocks(model, path), "write_blocks", NO_FILE));
     return 0;
 }
 
@@ -336,16 +319,13 @@ static int model_write_section(lua_State *L, tl_model *model)
     tl_halfspace plane;
     tl_lua_read_function(L, 3, "write_section", NULL, &plane);
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_lua_ok(L, model,
-              tl_lua_watch_end(L, &watch, tl_write_section(model, prefix, &plane), "write_section",
-                               NO_FILE));
+    tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, tl_write_section(model, prefix, &plane), "write_section", NO_FILE));
     return 0;
 }
 
 const tl_lua_topic tl_lua_page_topics[] = {
     {.name = "write_html",
-     .usage =
-         "model:write_html(\"out/run\", {title = \"Slope\", block_fields = {\"kinetic_energy\"}})",
+     .usage = "model:write_html(\"out/run\", {title = \"Slope\", block_fields = {\"kinetic_energy\"}})",
      .function = "write_html",
      .keys = page_keys,
      .arguments = 2,
@@ -358,8 +338,7 @@ const tl_lua_topic tl_lua_page_topics[] = {
      .arguments = 2,
      .method = model_write_vtk},
     {.name = "write_section",
-     .usage =
-         "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
+     .usage = "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
      .function = "write_section",
      .arguments = 2,
      .method = model_write_section},

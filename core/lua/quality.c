@@ -15,8 +15,8 @@
 void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
 {
     char numbers[120];
-    tl_text_print(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
-                  r->mass, r->stiffness);
+    tl_text_print(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt, r->mass,
+                  r->stiffness);
     if (r->by == TL_STEP_BY_SPEED)
         tl_text_print(numbers, sizeof numbers, "dt = %.4g s", r->dt);
     if (r->block == TL_NO_ID) {
@@ -27,8 +27,7 @@ void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
         lua_pop(L, 2);
     } else if (r->partner == TL_NO_ID) {
         static const char *const how[] = {"", " by turning", " by the speed at which it moves"};
-        lua_pushfstring(L, "block %I controls the step%s: %s", (lua_Integer)r->block, how[r->by],
-                        numbers);
+        lua_pushfstring(L, "block %I controls the step%s: %s", (lua_Integer)r->block, how[r->by], numbers);
     } else {
         lua_pushfstring(L, "block %I controls the step, with the stiffest contact at block %I: %s",
                         (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
@@ -43,12 +42,9 @@ typedef struct extreme_name {
 } extreme_name;
 
 static const extreme_name extremes[] = {
-    {"smallest_volume", "smallest_volume_block", "smallest volume", " m3",
-     offsetof(tl_quality, smallest_volume)},
-    {"smallest_edge", "smallest_edge_block", "smallest edge", " m",
-     offsetof(tl_quality, smallest_edge)},
-    {"smallest_face", "smallest_face_block", "smallest face", " m2",
-     offsetof(tl_quality, smallest_face)},
+    {"smallest_volume", "smallest_volume_block", "smallest volume", " m3", offsetof(tl_quality, smallest_volume)},
+    {"smallest_edge", "smallest_edge_block", "smallest edge", " m", offsetof(tl_quality, smallest_edge)},
+    {"smallest_face", "smallest_face_block", "smallest face", " m2", offsetof(tl_quality, smallest_face)},
     {"worst_aspect", "worst_aspect_block", "worst aspect", "", offsetof(tl_quality, worst_aspect)},
 };
 
@@ -65,10 +61,8 @@ static void push_reason(lua_State *L, tl_model *model, const tl_refused_cut *cut
     char text[240];
     const char *joint = tl_tag_name(model, cut->joint);
     tl_text_print(
-        text, sizeof text,
-        "%s%s%s does not cut block %u: a side would be %.3g m thick, less than the limit of %.3g m",
-        *joint ? "joint '" : "a plane without joint", joint, *joint ? "'" : "", cut->block,
-        cut->thickness, cut->limit);
+        text, sizeof text, "%s%s%s does not cut block %u: a side would be %.3g m thick, less than the limit of %.3g m",
+        *joint ? "joint '" : "a plane without joint", joint, *joint ? "'" : "", cut->block, cut->thickness, cut->limit);
     lua_pushstring(L, text);
 }
 
@@ -106,8 +100,7 @@ static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
         tl_text_print(numbers, sizeof numbers, "%.4g%s", e.value, extremes[i].unit);
         printf("%-18s%s, block %u\n", extremes[i].label, numbers, e.block);
     }
-    printf("%-18s%zu made, %zu refused, %zu on existing faces\n", "cuts", q->cuts, q->refused,
-           q->coincident);
+    printf("%-18s%zu made, %zu refused, %zu on existing faces\n", "cuts", q->cuts, q->refused, q->coincident);
     for (size_t i = 0; i < q->refused_listed && i < SHOWN; i++) {
         push_reason(L, model, &q->refused_cuts[i]);
         printf("%-18s%s\n", i ? "" : "refused", lua_tostring(L, -1));
@@ -143,8 +136,8 @@ static int module_report(lua_State *L)
     tl_quality q;
     tl_lua_ok(L, model, tl_model_quality(model, &q));
     lua_createtable(L, 0, 20);
-    TL_LUA_SET_COUNTS(L, {"blocks", q.blocks}, {"bodies", q.bodies}, {"cuts", q.cuts},
-                      {"refused", q.refused}, {"coincident", q.coincident});
+    TL_LUA_SET_COUNTS(L, {"blocks", q.blocks}, {"bodies", q.bodies}, {"cuts", q.cuts}, {"refused", q.refused},
+                      {"coincident", q.coincident});
     TL_LUA_SET_NUMBERS(L, {"volume", q.volume}, {"volume_error", q.volume_error});
     for (size_t i = 0; i < EXTREMES; i++) {
         tl_extreme e = extreme_of(&q, &extremes[i]);
@@ -178,8 +171,7 @@ static void push_filter_result(lua_State *L, const tl_filter_result *r)
         lua_createtable(L, 0, 6);
         tl_lua_set_count(L, "block", s->block); /* a number: it may have been deleted */
         TL_LUA_SET_NUMBERS(L, {"volume", s->volume}, {"edge", s->edge}, {"aspect", s->aspect});
-        const char *which[] = {s->small ? "volume" : NULL, s->short_edge ? "edge" : NULL,
-                               s->thin ? "aspect" : NULL};
+        const char *which[] = {s->small ? "volume" : NULL, s->short_edge ? "edge" : NULL, s->thin ? "aspect" : NULL};
         lua_createtable(L, 3, 0);
         for (int k = 0; k < 3; k++)
             if (which[k]) {
@@ -229,16 +221,14 @@ static const tl_lua_key keyblocks_keys[] = {
     {"friction", "number or {JOINT = number}",
      "friction angle of the joints, degrees, in [0, 90): one for all, or by joint: {[\"*\"] = 35, "
      "J1 = 30, [\"J1:3\"] = 25}; the closest name counts"},
-    {"cohesion", "number or {JOINT = number}",
-     "cohesion of the joints, Pa, likewise; 0 where none is given"},
+    {"cohesion", "number or {JOINT = number}", "cohesion of the joints, Pa, likewise; 0 where none is given"},
     {NULL, NULL, NULL},
 };
 
 static tl_joint_strength read_strength(lua_State *L, const char *key, const char *joint)
 {
     if (lua_type(L, -1) != LUA_TNUMBER)
-        tl_lua_fail(L, "keyblocks: %s of joint '%s' must be a number, not %s", key, joint,
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L, "keyblocks: %s of joint '%s' must be a number, not %s", key, joint, tl_lua_describe(L, -1));
     double number = lua_tonumber(L, -1);
     if (!isfinite(number))
         tl_lua_fail(L, "keyblocks: %s of joint '%s' must be finite", key, joint);
@@ -260,10 +250,8 @@ static size_t read_strengths(lua_State *L, const char *key, tl_joint_strength *l
             if (!list)
                 continue;
             if (lua_type(L, -2) != LUA_TSTRING)
-                tl_lua_fail(L, "keyblocks: %s: the joints are named by text, not by %s", key,
-                            tl_lua_describe(L, -2));
-            list[count] =
-                read_strength(L, key, tl_lua_text(L, -2, "keyblocks", "the name of a joint"));
+                tl_lua_fail(L, "keyblocks: %s: the joints are named by text, not by %s", key, tl_lua_describe(L, -2));
+            list[count] = read_strength(L, key, tl_lua_text(L, -2, "keyblocks", "the name of a joint"));
         }
     } else if (type != LUA_TNIL) {
         tl_lua_fail(L, "keyblocks: %s must be a number or a table {JOINT = number}, not %s", key,
@@ -300,8 +288,8 @@ static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *al
         lua_createtable(L, 0, 10);
         tl_lua_set_block(L, "block", block->block);
         tl_lua_set_text(L, "mode", modes[block->mode]);
-        TL_LUA_SET_NUMBERS(L, {"safety", block->safety}, {"volume", block->volume},
-                           {"mass", block->mass}, {"driving_force", block->driving});
+        TL_LUA_SET_NUMBERS(L, {"safety", block->safety}, {"volume", block->volume}, {"mass", block->mass},
+                           {"driving_force", block->driving});
         tl_lua_set_vec3(L, "force", block->force);
         if (block->mode != TL_KEYBLOCK_STABLE)
             tl_lua_set_vec3(L, "direction", block->direction);
@@ -368,8 +356,8 @@ static int model_verdict(lua_State *L, tl_model *model)
     tl_lua_set_vec3(L, "direction", v.direction);
     TL_LUA_SET_NUMBERS(L, {"ratio", v.ratio}, {"closed", v.closed}, {"volume", v.volume},
                        {"displacement", v.displacement}, {"slip", v.slip}, {"opening", v.opening});
-    TL_LUA_SET_COUNTS(L, {"moved", v.moved}, {"farthest", v.farthest}, {"slipped", v.slipped},
-                      {"opened", v.opened}, {"contacts", v.contacts}, {"slipping", v.slipping});
+    TL_LUA_SET_COUNTS(L, {"moved", v.moved}, {"farthest", v.farthest}, {"slipped", v.slipped}, {"opened", v.opened},
+                      {"contacts", v.contacts}, {"slipping", v.slipping});
     return 1;
 }
 
@@ -381,8 +369,7 @@ static const tl_lua_key verdict_fields[] = {
     {"text", "", "all of this as one line"},
     {"stage", "", "name given to model:stage, or \"\""},
     {"ratio", "", "the local unbalanced force ratio"},
-    {"closed", "",
-     "blocks that have not moved, but closed their joints, have displacements up to this, m"},
+    {"closed", "", "blocks that have not moved, but closed their joints, have displacements up to this, m"},
     {"moved, volume", "",
      "blocks that have moved by more than that, and by more than a twentieth of the largest "
      "displacement, a body of several parts as one; their volume, m3"},
@@ -413,15 +400,14 @@ static int model_profile(lua_State *L, tl_model *model)
     tl_profile profile = tl_model_profile(model);
     lua_createtable(L, 0, 6);
     lua_createtable(L, 0, TL_PHASE_COUNT);
-#define SET(item, name, doc)                                                                       \
-    lua_pushnumber(L, profile.seconds[TL_PHASE_##item]);                                           \
+#define SET(item, name, doc)                                                                                           \
+    lua_pushnumber(L, profile.seconds[TL_PHASE_##item]);                                                               \
     lua_setfield(L, -2, #name);
     TL_PHASES(SET)
 #undef SET
     lua_setfield(L, -2, "seconds");
-    TL_LUA_SET_COUNTS(L, {"steps", (size_t)profile.steps}, {"pairs", profile.pairs},
-                      {"contacts", profile.contacts}, {"loaded", profile.loaded},
-                      {"points", profile.points});
+    TL_LUA_SET_COUNTS(L, {"steps", (size_t)profile.steps}, {"pairs", profile.pairs}, {"contacts", profile.contacts},
+                      {"loaded", profile.loaded}, {"points", profile.points});
     return 1;
 }
 
@@ -491,13 +477,10 @@ static const tl_lua_key keyblock_results[] = {
      "\"falling\", \"sliding\" (on one face), \"sliding on two\", or \"stable\": removable, but "
      "pressed in by its weight"},
     {"safety", "", "factor of safety: 0 falling, math.huge stable"},
-    {"faces", "",
-     "the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}"},
-    {"direction, driving_force", "",
-     "of the motion, and the force along it, N; a stable one has no direction"},
+    {"faces", "", "the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}"},
+    {"direction, driving_force", "", "of the motion, and the force along it, N; a stable one has no direction"},
     {"force, mass, volume", "", "weight and load, N; of the body, kg and m3"},
-    {"pyramid", "",
-     "edges of the joint pyramid, unit vectors: it can move in all directions between them"},
+    {"pyramid", "", "edges of the joint pyramid, unit vectors: it can move in all directions between them"},
     {NULL, NULL, NULL},
 };
 
@@ -526,10 +509,9 @@ const tl_lua_topic tl_lua_quality_topics[] = {
      .method = model_keyblocks},
     {.name = "stage",
      .usage = "model:stage(\"excavated\")",
-     .doc =
-         "Begins a stage: displacements of all blocks count from now, as after reset_displacement, "
-         "and so does what model:verdict and pages tell of slip and opening. What laws keep stays. "
-         "The name is at most 63 bytes; copies and files have it.",
+     .doc = "Begins a stage: displacements of all blocks count from now, as after reset_displacement, "
+            "and so does what model:verdict and pages tell of slip and opening. What laws keep stays. "
+            "The name is at most 63 bytes; copies and files have it.",
      .arguments = 1,
      .method = model_stage},
     {.name = "verdict",

@@ -34,7 +34,7 @@ typedef struct scan_level {
 typedef struct scan_state {
     scan_level levels[LEVELS]; /* levels[0] is no bracket but the whole chunk */
     int depth;                 /* levels[depth] is the innermost */
-    char before; /* last character that counts: of a name 'a', of a text in quotes '"'; 0: none */
+    char before;               /* last character that counts: of a name 'a', of a text in quotes '"'; 0: none */
     /* the last name, when `before` is 'a'; in quotes: the name right before the quotes, or "" */
     char name[NAME];
     bool in_quotes, in_comment;
@@ -448,9 +448,8 @@ static void complete_member(lua_State *L, const char *word, const char *text, si
 static void complete_global(lua_State *L, const char *word)
 {
     static const char *const words[] = {
-        "and",      "break",  "do",   "else", "elseif", "end",   "false", "for",
-        "function", "goto",   "if",   "in",   "local",  "nil",   "not",   "or",
-        "repeat",   "return", "then", "true", "until",  "while",
+        "and", "break", "do",  "else", "elseif", "end",    "false",  "for",  "function", "goto",  "if",
+        "in",  "local", "nil", "not",  "or",     "repeat", "return", "then", "true",     "until", "while",
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         add(word, words[i]);
@@ -540,8 +539,7 @@ static bool asks_help(const char *text, const scan_state *scan)
     const scan_level *level = &scan->levels[scan->depth];
     if (scan->in_quotes)
         return strcmp(scan->name[0] ? scan->name : level->callee, "help") == 0;
-    return scan->depth == 0 && scan->before == 'a' && strcmp(scan->name, "help") == 0 &&
-           strncmp(text, "help ", 5) == 0;
+    return scan->depth == 0 && scan->before == 'a' && strcmp(scan->name, "help") == 0 && strncmp(text, "help ", 5) == 0;
 }
 
 /* Runs protected. Argument: the word, as a light userdata, with which the line ends that is typed. */

@@ -74,8 +74,7 @@ static double read_period(lua_State *L)
     const char *end;
     double period = tl_number_read(text, &end);
     if (end == text || *end || !(period >= 0) || !isfinite(period))
-        tl_lua_fail(L, "the environment's TALUS_PROGRESS = '%s' is not a number of seconds >= 0",
-                    text);
+        tl_lua_fail(L, "the environment's TALUS_PROGRESS = '%s' is not a number of seconds >= 0", text);
     return period;
 }
 
@@ -238,8 +237,8 @@ static void set_numbers(lua_State *L, const tl_solve_result *result)
 {
     tl_lua_set_count(L, "cycles", (size_t)result->cycles);
     TL_LUA_SET_NUMBERS(L, {"ratio", result->ratio}, {"ratio_maximum", result->ratio_maximum},
-                       {"ratio_local", result->ratio_local}, {"time", result->time},
-                       {"wall", result->wall}, {"max_velocity", result->max_velocity});
+                       {"ratio_local", result->ratio_local}, {"time", result->time}, {"wall", result->wall},
+                       {"max_velocity", result->max_velocity});
 }
 
 /* Fields of a result that are blocks. */
@@ -353,8 +352,7 @@ static double share_done(const progress *p, const tl_solve *limits, const tl_sol
     return fmin(share, 1);
 }
 
-static void add_goal(line *l, progress *p, const tl_solve *limits, const tl_solve_result *result,
-                     double t)
+static void add_goal(line *l, progress *p, const tl_solve *limits, const tl_solve_result *result, double t)
 {
     double ratio = ratio_of(result), share = share_done(p, limits, result);
     double left = share > 0 ? (t - p->began) * (1 - share) / share : INFINITY;
@@ -373,8 +371,7 @@ static void add_goal(line *l, progress *p, const tl_solve *limits, const tl_solv
     if (limits->max_time > 0)
         add(l, 2, "%.0f %% of the time", floor(100 * share));
     if (now_is.change < -TREND)
-        add_time_left(
-            l, fmin(left, fmax(0, (logarithm(limits->ratio) - now_is.value) / now_is.slope)));
+        add_time_left(l, fmin(left, fmax(0, (logarithm(limits->ratio) - now_is.value) / now_is.slope)));
 }
 
 static void count_contacts(progress *p, const tl_model *model, double t)
@@ -387,8 +384,7 @@ static void count_contacts(progress *p, const tl_model *model, double t)
 }
 
 /* After a step: writes the line when it is time to. `limits`: what ends the run. */
-static void progress_run(progress *p, const tl_model *model, const tl_solve *limits,
-                         const tl_solve_result *result)
+static void progress_run(progress *p, const tl_model *model, const tl_solve *limits, const tl_solve_result *result)
 {
     if (!p->on)
         return;
@@ -595,11 +591,10 @@ static void progress_generate(void *user, const tl_generate_progress *done)
 /* Writes a summary into the table at the top of the stack. */
 static void set_summary(lua_State *L, const tl_generate_summary *s)
 {
-    TL_LUA_SET_COUNTS(L, {"before", s->before}, {"after", s->after}, {"cuts", s->cuts},
-                      {"refused", s->refused}, {"coincident", s->coincident});
-    TL_LUA_SET_NUMBERS(L, {"smallest_volume", s->smallest_volume},
-                       {"smallest_edge", s->smallest_edge}, {"smallest_face", s->smallest_face},
-                       {"volume_error", s->volume_error});
+    TL_LUA_SET_COUNTS(L, {"before", s->before}, {"after", s->after}, {"cuts", s->cuts}, {"refused", s->refused},
+                      {"coincident", s->coincident});
+    TL_LUA_SET_NUMBERS(L, {"smallest_volume", s->smallest_volume}, {"smallest_edge", s->smallest_edge},
+                       {"smallest_face", s->smallest_face}, {"volume_error", s->volume_error});
 }
 
 /* The number of tables in the list at index 3; 0 when it is none. */
@@ -609,10 +604,8 @@ static size_t entry_count(lua_State *L, const char *generator)
         return 0;
     for (lua_pushnil(L); lua_next(L, 3); lua_pop(L, 1))
         if (!lua_isinteger(L, -2))
-            tl_lua_fail(
-                L,
-                "generate '%s': give a list of parameter tables, or parameters by name, not both",
-                generator);
+            tl_lua_fail(L, "generate '%s': give a list of parameter tables, or parameters by name, not both",
+                        generator);
     return lua_rawlen(L, 3);
 }
 
@@ -624,12 +617,10 @@ static const tl_args *read_entries(lua_State *L, const char *generator, size_t c
     tl_args *list = lua_newuserdatauv(L, count * sizeof *list, 0);
     lua_rawseti(L, anchor, 0);
     for (size_t i = 0; i < count; i++) {
-        const char *context =
-            lua_pushfstring(L, "generate '%s', entry %I", generator, (lua_Integer)i + 1);
+        const char *context = lua_pushfstring(L, "generate '%s', entry %I", generator, (lua_Integer)i + 1);
         lua_rawgeti(L, 3, (lua_Integer)i + 1);
         if (!lua_istable(L, -1))
-            tl_lua_fail(L, "%s: the parameters must be a table, not %s", context,
-                        tl_lua_describe(L, -1));
+            tl_lua_fail(L, "%s: the parameters must be a table, not %s", context, tl_lua_describe(L, -1));
         tl_lua_args(L, -1, context, NULL, &list[i]);
         lua_rawseti(L, anchor, (lua_Integer)i + 1);
         lua_settop(L, anchor);

@@ -125,8 +125,7 @@ static int model_save(lua_State *L, tl_model *model)
 static void take_function(lua_State *L, int anchor, int key, const char *what)
 {
     if (!lua_isnil(L, -1) && !lua_isfunction(L, -1))
-        tl_lua_fail(L, "talus.restore: %s of a drive must be a function(t), not %s", what,
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L, "talus.restore: %s of a drive must be a function(t), not %s", what, tl_lua_describe(L, -1));
     lua_setiuservalue(L, anchor, key);
 }
 
@@ -181,8 +180,7 @@ static void read_threads(lua_State *L, int64_t *threads)
     if (tl_lua_option(L, 2, "threads") == LUA_TNIL)
         return;
     if (!lua_isinteger(L, -1) || lua_tointeger(L, -1) < 1 || lua_tointeger(L, -1) > 256)
-        tl_lua_fail(L, "talus.restore: threads = %s is not a whole number in [1, 256]",
-                    luaL_tolstring(L, -1, NULL));
+        tl_lua_fail(L, "talus.restore: threads = %s is not a whole number in [1, 256]", luaL_tolstring(L, -1, NULL));
     *threads = lua_tointeger(L, -1);
 }
 

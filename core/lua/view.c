@@ -232,14 +232,12 @@ static void push_verb_line(lua_State *L, tl_model *model, const tl_view_command 
         lua_pushfstring(L, "model:blocks { hidden = true }:%s()", verb);
     else
         lua_pushfstring(L, "model:blocks { id = %s%s }:%s()",
-                        command->block_count == 1 ? number(L, ids[0])
-                                                  : list(L, ids, command->block_count),
+                        command->block_count == 1 ? number(L, ids[0]) : list(L, ids, command->block_count),
                         any_hidden(model, command) ? ", hidden = \"any\"" : "", verb);
 }
 
 /* Pushes the line that does the command, which is not pause, go or step; raises when a block is not there. */
-static void push_line(lua_State *L, tl_model *model, const tl_view_command *command,
-                      const char *prefix)
+static void push_line(lua_State *L, tl_model *model, const tl_view_command *command, const char *prefix)
 {
     for (size_t i = 0; i < command->block_count; i++)
         if (tl_block_check(model, command->blocks[i]) != TL_OK) {
@@ -254,12 +252,11 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
         lua_pushfstring(L,
                         "model:generate(\"joint\", { joint = %s, dip = %s, dip_direction = %s, "
                         "origin = %s })",
-                        quoted(L, command->joint), number(L, command->dip),
-                        number(L, command->dip_direction), list(L, origin, 3));
+                        quoted(L, command->joint), number(L, command->dip), number(L, command->dip_direction),
+                        list(L, origin, 3));
         break;
     case TL_VIEW_FRICTION:
-        lua_pushfstring(L, "model:joint(%s, { friction = %s })", quoted(L, command->joint),
-                        number(L, command->value));
+        lua_pushfstring(L, "model:joint(%s, { friction = %s })", quoted(L, command->joint), number(L, command->value));
         break;
     case TL_VIEW_VTK: lua_pushfstring(L, "model:write_vtk(%s)", quoted(L, prefix)); break;
     case TL_VIEW_SNAPSHOT:
@@ -404,8 +401,7 @@ void tl_lua_view_end(lua_State *L, tl_lua_model *owner)
 /* Reads a key of the table at index 2 that is a text; NULL when it is left out. The text lives as long as the table. */
 static const char *read_text(lua_State *L, const char *key)
 {
-    const char *text =
-        tl_lua_option(L, 2, key) == LUA_TNIL ? NULL : tl_lua_text(L, -1, "view", key);
+    const char *text = tl_lua_option(L, 2, key) == LUA_TNIL ? NULL : tl_lua_text(L, -1, "view", key);
     if (text && !text[0])
         tl_lua_fail(L, "view: %s must not be empty", key);
     lua_settop(L, 2);
@@ -426,9 +422,8 @@ static bool read_wait(lua_State *L)
 static FILE *open_log(lua_State *L, const char *path)
 {
     tl_error error;
-    static const char head[] =
-        "-- Work on a model that was seen while it ran: loadfile(THIS)(model) repeats it.\n"
-        "local model = ...\n";
+    static const char head[] = "-- Work on a model that was seen while it ran: loadfile(THIS)(model) repeats it.\n"
+                               "local model = ...\n";
     if (tl_write_file(path, head, sizeof head - 1, &error) != TL_OK) /* makes the folders */
         tl_lua_fail(L, "view: log: %s", error.text);
     FILE *log = fopen(path, "a");
@@ -451,8 +446,7 @@ static void refuse_again(lua_State *L, const viewing *v)
 /* Pushes the keys that a call may have: those of view, and the parameters of the screen. */
 static const tl_lua_key *push_keys(lua_State *L, const tl_kind *screen)
 {
-    size_t own = sizeof view_keys / sizeof view_keys[0] - 1,
-           more = screen ? screen->param_count : 0;
+    size_t own = sizeof view_keys / sizeof view_keys[0] - 1, more = screen ? screen->param_count : 0;
     tl_lua_key *keys = lua_newuserdatauv(L, (own + more + 1) * sizeof *keys, 0);
     memcpy(keys, view_keys, own * sizeof *keys);
     for (size_t i = 0; i < more; i++)

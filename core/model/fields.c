@@ -19,40 +19,36 @@ static double kinetic_energy(const tl_model *m, uint32_t row)
 
 /* The fields: name, kind, unit, what they are, and their value. It is that of the block in `row` of the blocks b, or
  * of its `body`. */
-#define BLOCK_FIELDS(FIELD)                                                                        \
-    FIELD(id, COUNT, "", "number of the block, never used again", b->id[row])                      \
-    FIELD(group, TEXT, "", "name of its group", b->group[row])                                     \
-    FIELD(density, SCALAR, "kg/m3", "mass per volume", b->density[row])                            \
-    FIELD(volume, SCALAR, "m3", "volume of the block alone", b->volume[row])                       \
-    FIELD(mass, SCALAR, "kg", "mass of the block alone", b->density[row] * b->volume[row])         \
-    FIELD(inertia, SYM3, "kg m2",                                                                  \
-          "inertia of the block about its centroid, in the axes of the model",                     \
-          tl_block_inertia(m, row))                                                                \
-    FIELD(centroid, VEC3, "m", "present place of the centroid", tl_block_centroid(m, row))         \
-    FIELD(displacement, VEC3, "m", "of the centroid, since creation or reset_displacement",        \
-          tl_block_displacement(m, row))                                                           \
-    FIELD(rotation, QUAT, "", "unit quaternion w, x, y, z of its body", bodies->q[body])           \
-    FIELD(velocity, VEC3, "m/s", "of the centroid, half a step ago", tl_block_velocity(m, row))    \
-    FIELD(angular_velocity, VEC3, "rad/s", "of its body", bodies->w[body])                         \
-    FIELD(force, VEC3, "N", "unbalanced force on its body", bodies->force[body])                   \
-    FIELD(moment, VEC3, "N m", "unbalanced moment about its body's centroid",                      \
-          bodies->moment[body])                                                                    \
-    FIELD(fixed, BOOL, "", "whether its body is held in every component",                          \
-          bodies->fixed[body] == TL_FIX_ALL)                                                       \
-    FIELD(hidden, BOOL, "", "hidden blocks are not cut", b->hidden[row] != 0)                      \
-    FIELD(body, COUNT, "", "id of its rigid body: the lowest id of its blocks", bodies->id[body])  \
-    FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(tl_block_velocity(m, row)))   \
+#define BLOCK_FIELDS(FIELD)                                                                                            \
+    FIELD(id, COUNT, "", "number of the block, never used again", b->id[row])                                          \
+    FIELD(group, TEXT, "", "name of its group", b->group[row])                                                         \
+    FIELD(density, SCALAR, "kg/m3", "mass per volume", b->density[row])                                                \
+    FIELD(volume, SCALAR, "m3", "volume of the block alone", b->volume[row])                                           \
+    FIELD(mass, SCALAR, "kg", "mass of the block alone", b->density[row] * b->volume[row])                             \
+    FIELD(inertia, SYM3, "kg m2", "inertia of the block about its centroid, in the axes of the model",                 \
+          tl_block_inertia(m, row))                                                                                    \
+    FIELD(centroid, VEC3, "m", "present place of the centroid", tl_block_centroid(m, row))                             \
+    FIELD(displacement, VEC3, "m", "of the centroid, since creation or reset_displacement",                            \
+          tl_block_displacement(m, row))                                                                               \
+    FIELD(rotation, QUAT, "", "unit quaternion w, x, y, z of its body", bodies->q[body])                               \
+    FIELD(velocity, VEC3, "m/s", "of the centroid, half a step ago", tl_block_velocity(m, row))                        \
+    FIELD(angular_velocity, VEC3, "rad/s", "of its body", bodies->w[body])                                             \
+    FIELD(force, VEC3, "N", "unbalanced force on its body", bodies->force[body])                                       \
+    FIELD(moment, VEC3, "N m", "unbalanced moment about its body's centroid", bodies->moment[body])                    \
+    FIELD(fixed, BOOL, "", "whether its body is held in every component", bodies->fixed[body] == TL_FIX_ALL)           \
+    FIELD(hidden, BOOL, "", "hidden blocks are not cut", b->hidden[row] != 0)                                          \
+    FIELD(body, COUNT, "", "id of its rigid body: the lowest id of its blocks", bodies->id[body])                      \
+    FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(tl_block_velocity(m, row)))                       \
     FIELD(kinetic_energy, SCALAR, "J", "of the block alone", kinetic_energy(m, row))
 
 /* What else files show. */
-#define BLOCK_ARRAYS(FIELD)                                                                        \
-    FIELD(rotation_vector, VEC3, "rad", "axis times angle", tl_q_vector(bodies->q[body]))          \
-    FIELD(displacement_size, SCALAR, "m", "length of the displacement",                            \
-          tl_v3_norm(tl_block_displacement(m, row)))
+#define BLOCK_ARRAYS(FIELD)                                                                                            \
+    FIELD(rotation_vector, VEC3, "rad", "axis times angle", tl_q_vector(bodies->q[body]))                              \
+    FIELD(displacement_size, SCALAR, "m", "length of the displacement", tl_v3_norm(tl_block_displacement(m, row)))
 
 #define NUMBER(name, kind, unit, doc, value) F_##name,
 #define FIELD(name, kind, unit, doc, value) {#name, TL_FIELD_##kind, unit, doc},
-#define CASE(name, kind, unit, doc, value)                                                         \
+#define CASE(name, kind, unit, doc, value)                                                                             \
     case F_##name: TL_FIELD_PUT(out, value); break;
 
 enum { BLOCK_FIELDS(NUMBER) F_COUNT, F_BEFORE_ARRAYS = F_COUNT - 1, BLOCK_ARRAYS(NUMBER) F_ALL };

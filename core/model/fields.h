@@ -29,11 +29,11 @@ static inline void tl_put_tensor(double *to, tl_sym3 t)
 }
 
 /* Puts a value of any kind in the order of tl_field_value. */
-#define TL_FIELD_PUT(to, value)                                                                    \
-    _Generic((value), tl_vec3                                                                      \
-             : tl_put_vector, tl_quat                                                              \
-             : tl_put_quaternion, tl_sym3                                                          \
-             : tl_put_tensor, default                                                              \
+#define TL_FIELD_PUT(to, value)                                                                                        \
+    _Generic((value), tl_vec3                                                                                          \
+             : tl_put_vector, tl_quat                                                                                  \
+             : tl_put_quaternion, tl_sym3                                                                              \
+             : tl_put_tensor, default                                                                                  \
              : tl_put_number)((to), (value))
 
 /* A field of blocks, or what else files show of them, by a name that there is. */

@@ -32,75 +32,61 @@ static const char *const timestep_names[] = {"paper", "body", NULL};
 
 /* A row that is not TL_PARAM_PASSING is a setting: models save, restore and hash it. */
 static const tl_param model_params[] = {
-    TL_PARAM(TL_PARAM_VEC3, tl_model_config, gravity, "m/s2", "acceleration of gravity",
-             .def = {0.0, 0.0, -9.81}),
-    TL_PARAM(TL_PARAM_INT, tl_model_config, seed, "",
-             "seed of every random draw: the same seed gives the same model", .def = {1.0},
-             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_INT, tl_model_config, threads, "",
-             "number of threads; results do not depend on it", .def = {1.0}, .min = 1.0,
-             .max = 256.0, .flags = TL_PARAM_PASSING),
+    TL_PARAM(TL_PARAM_VEC3, tl_model_config, gravity, "m/s2", "acceleration of gravity", .def = {0.0, 0.0, -9.81}),
+    TL_PARAM(TL_PARAM_INT, tl_model_config, seed, "", "seed of every random draw: the same seed gives the same model",
+             .def = {1.0}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_model_config, threads, "", "number of threads; results do not depend on it", .def = {1.0},
+             .min = 1.0, .max = 256.0, .flags = TL_PARAM_PASSING),
     TL_PARAM(TL_PARAM_ENUM, tl_model_config, rotation, "",
-             "how blocks turn: Euler's equations, or the paper's single moment of inertia",
-             .def = {TL_ROTATION_EXACT}, .choices = rotation_names),
+             "how blocks turn: Euler's equations, or the paper's single moment of inertia", .def = {TL_ROTATION_EXACT},
+             .choices = rotation_names),
     TL_PARAM(TL_PARAM_BOOL, tl_model_config, reuse_geometry, "",
              "whether a field contact that hardly moved goes by slopes of its force", .def = {1.0}),
-    TL_PARAM(
-        TL_PARAM_ENUM, tl_model_config, contact_points, "",
-        "where the points of a face-face contact lie: also inside, which integrates the pressure "
-        "of elastic faces exactly, or at the corners only, up to a tilt of 5 degrees: springs as "
-        "those of rigid statics, and of rigid blocks of 3DEC; docs/how_stiff.md compares both",
-        .def = {TL_POINTS_CONSISTENT}, .choices = point_names),
+    TL_PARAM(TL_PARAM_ENUM, tl_model_config, contact_points, "",
+             "where the points of a face-face contact lie: also inside, which integrates the pressure "
+             "of elastic faces exactly, or at the corners only, up to a tilt of 5 degrees: springs as "
+             "those of rigid statics, and of rigid blocks of 3DEC; docs/how_stiff.md compares both",
+             .def = {TL_POINTS_CONSISTENT}, .choices = point_names),
     MORE_MODEL_PARAMS};
 
 static const tl_param insitu_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_insitu, at, "m",
-             "point at whose height the stress holds; the gradient counts from there",
-             .def = {0.0, 0.0, 0.0}),
+             "point at whose height the stress holds; the gradient counts from there", .def = {0.0, 0.0, 0.0}),
 };
 
 /* The components of insitu's two tensors, as members of a tl_sym3. */
 static const tl_param tensor_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, xx, "Pa or Pa/m", "normal component, tension positive",
-             .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, yy, "Pa or Pa/m", "normal component, tension positive",
-             .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, zz, "Pa or Pa/m", "normal component, tension positive",
-             .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, xy, "Pa or Pa/m", "shear component", .def = {0.0},
-             .alias = "yx"),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, yz, "Pa or Pa/m", "shear component", .def = {0.0},
-             .alias = "zy"),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, zx, "Pa or Pa/m", "shear component", .def = {0.0},
-             .alias = "xz"),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, xx, "Pa or Pa/m", "normal component, tension positive", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, yy, "Pa or Pa/m", "normal component, tension positive", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, zz, "Pa or Pa/m", "normal component, tension positive", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, xy, "Pa or Pa/m", "shear component", .def = {0.0}, .alias = "yx"),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, yz, "Pa or Pa/m", "shear component", .def = {0.0}, .alias = "zy"),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, zx, "Pa or Pa/m", "shear component", .def = {0.0}, .alias = "xz"),
 };
 
 static const tl_param timestep_params[] = {
-    TL_PARAM(
-        TL_PARAM_REAL, tl_timestep, fraction, "",
-        "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule "
-        "paper 0.1",
-        .min = TL_FRACTION_LEAST, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_timestep, fraction, "",
+             "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule "
+             "paper 0.1",
+             .min = TL_FRACTION_LEAST, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_ENUM, tl_timestep, rule, "",
              "critical step from the lightest block and the stiffest contact (paper), or from "
              "each body's own mass and stiffness (body)",
              .def = {TL_TIMESTEP_BODY}, .choices = timestep_names),
-    TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "a fixed time step instead of the rule",
-             .min = TL_STEP_LEAST, .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "a fixed time step instead of the rule", .min = TL_STEP_LEAST,
+             .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_param mass_scaling_params[] = {
     TL_PARAM(TL_PARAM_BOOL, tl_mass_scaling, on, "", "whether the inertia is scaled", .def = {1.0}),
-    TL_PARAM(
-        TL_PARAM_REAL, tl_mass_scaling, dt, "s",
-        "for motion that is to be right: the step. Only bodies in contact whose own stable step "
-        "is shorter get inertia, as much as they need for it",
-        .min = TL_STEP_LEAST, .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(
-        TL_PARAM_REAL, tl_mass_scaling, most, "",
-        "with dt: mass that may be added, as a share of the mass of all bodies that can move; a "
-        "step that would need more fails. Left out, 0.05",
-        .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN | TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_mass_scaling, dt, "s",
+             "for motion that is to be right: the step. Only bodies in contact whose own stable step "
+             "is shorter get inertia, as much as they need for it",
+             .min = TL_STEP_LEAST, .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_mass_scaling, most, "",
+             "with dt: mass that may be added, as a share of the mass of all bodies that can move; a "
+             "step that would need more fails. Left out, 0.05",
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN | TL_PARAM_OPTIONAL),
 };
 
 static const tl_param profile_params[] = {
@@ -111,10 +97,8 @@ static const tl_param profile_params[] = {
 };
 
 static const tl_param load_params[] = {
-    TL_PARAM(TL_PARAM_VEC3, tl_load, force, "N", "force on the body of each block",
-             .def = {0.0, 0.0, 0.0}),
-    TL_PARAM(TL_PARAM_VEC3, tl_load, moment, "N m", "moment on the body of each block",
-             .def = {0.0, 0.0, 0.0}),
+    TL_PARAM(TL_PARAM_VEC3, tl_load, force, "N", "force on the body of each block", .def = {0.0, 0.0, 0.0}),
+    TL_PARAM(TL_PARAM_VEC3, tl_load, moment, "N m", "moment on the body of each block", .def = {0.0, 0.0, 0.0}),
     TL_PARAM(TL_PARAM_VEC3, tl_load, at, "m",
              "point where the force acts, which goes with the body; its centroid when left out",
              .flags = TL_PARAM_OPTIONAL),
@@ -125,9 +109,8 @@ static const tl_param contact_area_params[] = {
              "minimum area of field contacts, as a share of the smaller block's mean face area; "
              "with 0 they have no more than their own",
              .def = {TL_AREA_FRACTION}, .min = 0.0, .max = 1.0),
-    TL_PARAM(TL_PARAM_REAL, tl_contact_area, absolute, "m2",
-             "minimum area in square metres instead of the share", .min = 0.0, .max = INFINITY,
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_contact_area, absolute, "m2", "minimum area in square metres instead of the share",
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_STRING, tl_contact_area, joint, "",
              "the joint (\"J1\") or plane (\"J1:3\") it applies to; every joint when left out",
              .flags = TL_PARAM_OPTIONAL),
@@ -136,14 +119,12 @@ static const tl_param contact_area_params[] = {
 static const tl_param cycle_params[] = {
     TL_PARAM(TL_PARAM_INT, tl_cycle_args, cycles, "", "number of steps to run",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0.0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_INT, tl_cycle_args, every, "", "steps between calls of on_progress",
-             .def = {500.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_cycle_args, every, "", "steps between calls of on_progress", .def = {500.0}, .min = 1.0,
+             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };
 
-static const char *const ratio_measures[] = {[TL_RATIO_AVERAGE] = "average",
-                                             [TL_RATIO_MAXIMUM] = "maximum",
-                                             [TL_RATIO_LOCAL] = "local",
-                                             NULL};
+static const char *const ratio_measures[] = {
+    [TL_RATIO_AVERAGE] = "average", [TL_RATIO_MAXIMUM] = "maximum", [TL_RATIO_LOCAL] = "local", NULL};
 
 const char *tl_ratio_measure_name(tl_ratio_measure measure)
 {
@@ -151,75 +132,62 @@ const char *tl_ratio_measure_name(tl_ratio_measure measure)
 }
 
 static const tl_param solve_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_solve, ratio, "",
-             "ends when the unbalanced force ratio falls below this; 0 for never", .def = {1e-5},
-             .min = 0.0, .max = 1.0),
+    TL_PARAM(TL_PARAM_REAL, tl_solve, ratio, "", "ends when the unbalanced force ratio falls below this; 0 for never",
+             .def = {1e-5}, .min = 0.0, .max = 1.0),
     TL_PARAM(TL_PARAM_ENUM, tl_solve, measure, "",
-             "which unbalanced force ratio ends the run: see theory.md, Convergence",
-             .def = {TL_RATIO_LOCAL}, .choices = ratio_measures),
+             "which unbalanced force ratio ends the run: see theory.md, Convergence", .def = {TL_RATIO_LOCAL},
+             .choices = ratio_measures),
     TL_PARAM(TL_PARAM_REAL, tl_solve, velocity, "m/s", "ends when no block is faster than this",
              .flags = TL_PARAM_OPTIONAL, .min = 0.0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_BOOL, tl_solve, stop_at_failure, "",
-             "ends when some block is seen to fail steadily", .def = {0.0}),
-    TL_PARAM(TL_PARAM_INT, tl_solve, max_cycles, "", "largest number of steps of this call",
-             .def = {1000000.0}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_REAL, tl_solve, max_time, "s", "longest simulated time of this call",
-             .min = 0.0, .max = INFINITY,
+    TL_PARAM(TL_PARAM_BOOL, tl_solve, stop_at_failure, "", "ends when some block is seen to fail steadily",
+             .def = {0.0}),
+    TL_PARAM(TL_PARAM_INT, tl_solve, max_cycles, "", "largest number of steps of this call", .def = {1000000.0},
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_solve, max_time, "s", "longest simulated time of this call", .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_INT, tl_solve, every, "", "steps between calls of on_progress and stop",
-             .def = {500.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_solve, every, "", "steps between calls of on_progress and stop", .def = {500.0},
+             .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };
 
 static const tl_param write_vtk_params[] = {
-    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, blocks, "", "whether the frame has a file of the blocks",
+    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, blocks, "", "whether the frame has a file of the blocks", .def = {1.0}),
+    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, contacts, "", "whether the frame has a file of the contacts", .def = {1.0}),
+    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, joints, "", "whether the frame has a file of the faces that joints made",
              .def = {1.0}),
-    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, contacts, "",
-             "whether the frame has a file of the contacts", .def = {1.0}),
-    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, joints, "",
-             "whether the frame has a file of the faces that joints made", .def = {1.0}),
 };
 
 static const tl_param write_html_params[] = {
-    TL_PARAM(TL_PARAM_STRING, tl_html, title, "",
-             "title of the page; the name at the end of its path when left out",
+    TL_PARAM(TL_PARAM_STRING, tl_html, title, "", "title of the page; the name at the end of its path when left out",
              .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_param view_params[] = {
-    TL_PARAM(TL_PARAM_STRING, tl_view_options, title, "", "title of the page",
-             .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_BOOL, tl_view_options, commands, "",
-             "whether commands are taken; without, the page only shows", .def = {1.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_view_options, share, "",
-             "most of the run's time that goes into frames", .def = {0.02}, .min = 0.0, .max = 1.0,
-             .flags = TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_STRING, tl_view_options, title, "", "title of the page", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_BOOL, tl_view_options, commands, "", "whether commands are taken; without, the page only shows",
+             .def = {1.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_view_options, share, "", "most of the run's time that goes into frames", .def = {0.02},
+             .min = 0.0, .max = 1.0, .flags = TL_PARAM_MIN_OPEN),
 };
 
 static const tl_param write_blocks_params[] = {
-    TL_PARAM(TL_PARAM_STRING, write_blocks_args, path, "", "name of the file",
-             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_STRING, write_blocks_args, path, "", "name of the file", .flags = TL_PARAM_REQUIRED),
 };
 
 static const tl_param write_section_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "dip of the plane below horizontal",
-             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 90.0),
-    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg",
-             "its dip direction, clockwise from north (+y)", .def = {0.0}, .min = 0.0,
-             .max = 360.0),
-    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "a point on the plane",
-             .def = {0.0, 0.0, 0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "dip of the plane below horizontal", .flags = TL_PARAM_REQUIRED,
+             .min = 0.0, .max = 90.0),
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg", "its dip direction, clockwise from north (+y)",
+             .def = {0.0}, .min = 0.0, .max = 360.0),
+    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "a point on the plane", .def = {0.0, 0.0, 0.0}),
 };
 
 static const tl_param filter_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_filter, volume, "m3", "blocks smaller than this are slivers",
-             .min = 0.0, .max = INFINITY,
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_REAL, tl_filter, edge, "m", "blocks with a shorter edge are slivers",
-             .min = 0.0, .max = INFINITY,
+    TL_PARAM(TL_PARAM_REAL, tl_filter, volume, "m3", "blocks smaller than this are slivers", .min = 0.0,
+             .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_filter, edge, "m", "blocks with a shorter edge are slivers", .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_REAL, tl_filter, aspect, "",
-             "blocks whose diameter is more than this times their thickness are slivers",
-             .min = 1.0, .max = INFINITY,
+             "blocks whose diameter is more than this times their thickness are slivers", .min = 1.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_ENUM, tl_filter, action, "",
              "what is done with them: nothing; they are deleted; or each is joined to the block it "
@@ -229,8 +197,7 @@ static const tl_param filter_params[] = {
 
 static const tl_param keyblocks_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_keyblock_query, gravity, "m/s2",
-             "acceleration that acts on the blocks; that of the model when left out",
-             .flags = TL_PARAM_OPTIONAL),
+             "acceleration that acts on the blocks; that of the model when left out", .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_param law_test_params[] = {
@@ -243,14 +210,13 @@ static const tl_param law_test_params[] = {
              "normal stiffness of the surroundings: normal_stress is that of the start, and rises "
              "by so much a metre of dilation",
              .flags = TL_PARAM_OPTIONAL, .min = 0.0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, tl_law_test, speed, "m/s",
-             "speed of shear, or of closing where nothing is sheared", .def = {1e-5}, .min = 0.0,
-             .max = INFINITY, .flags = TL_PARAM_MIN_OPEN),
-    TL_PARAM(TL_PARAM_INT, tl_law_test, steps, "", "steps of each leg of the path", .def = {200.0},
-             .min = 1.0, .max = TL_LAW_TEST_STEPS),
+    TL_PARAM(TL_PARAM_REAL, tl_law_test, speed, "m/s", "speed of shear, or of closing where nothing is sheared",
+             .def = {1e-5}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_law_test, steps, "", "steps of each leg of the path", .def = {200.0}, .min = 1.0,
+             .max = TL_LAW_TEST_STEPS),
     TL_PARAM(TL_PARAM_INT, tl_law_test, every, "",
-             "steps from one point of the curve to the next; the end of a leg is always one",
-             .def = {1.0}, .min = 1.0, .max = TL_LAW_TEST_STEPS),
+             "steps from one point of the curve to the next; the end of a leg is always one", .def = {1.0}, .min = 1.0,
+             .max = TL_LAW_TEST_STEPS),
 };
 
 static const tl_param law_leg_params[] = {
@@ -266,10 +232,10 @@ static const tl_param law_leg_params[] = {
              "how long the leg takes; when left out its length over the speed, or 1 s of one "
              "without length",
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
-    TL_PARAM(TL_PARAM_REAL, tl_law_leg, speed, "m/s", "in the place of the test's", .min = 0.0,
-             .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
-    TL_PARAM(TL_PARAM_INT, tl_law_leg, steps, "", "in the place of the test's", .min = 1.0,
-             .max = TL_LAW_TEST_STEPS, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_law_leg, speed, "m/s", "in the place of the test's", .min = 0.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_law_leg, steps, "", "in the place of the test's", .min = 1.0, .max = TL_LAW_TEST_STEPS,
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 typedef struct model_function {
@@ -282,8 +248,7 @@ typedef struct model_function {
 
 static const model_function functions[] = {
     {"model", "Makes an empty model.", PARAMS(model_params)},
-    {"insitu", "Puts an initial stress on the face contacts that exist now, once.",
-     PARAMS(insitu_params)},
+    {"insitu", "Puts an initial stress on the face contacts that exist now, once.", PARAMS(insitu_params)},
     {"tensor", "A symmetric tensor by its components.", PARAMS(tensor_params)},
     {"timestep", "Chooses how the time step is found.", PARAMS(timestep_params)},
     {"mass_scaling",
@@ -305,8 +270,7 @@ static const model_function functions[] = {
      PARAMS(contact_area_params)},
     {"cycle", "Runs a number of steps.", PARAMS(cycle_params)},
     {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},
-    {"profile", "Times the phases of the steps, and tells what a step works on.",
-     PARAMS(profile_params)},
+    {"profile", "Times the phases of the steps, and tells what a step works on.", PARAMS(profile_params)},
     {"write_vtk",
      "Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. "
      "Their names begin with the folder and the name given first.",
@@ -324,8 +288,7 @@ static const model_function functions[] = {
      "Shows the model in a browser while it runs, and takes commands from there. Gives the address "
      "to open. The page shows the model whenever a run makes steps, and while view waits.",
      PARAMS(view_params)},
-    {"write_blocks", "Writes all blocks as they stand into a JSON file.",
-     PARAMS(write_blocks_params)},
+    {"write_blocks", "Writes all blocks as they stand into a JSON file.", PARAMS(write_blocks_params)},
     {"filter",
      "Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to "
      "neighbours.",
@@ -359,10 +322,9 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {"model",        "insitu",   "tensor",       "timestep",
-                                        "mass_scaling", "load",     "contact_area", "cycle",
-                                        "solve",        "profile",  "write_vtk",    "write_section",
-                                        "write_html",   "view",     "write_blocks", "filter",
-                                        "keyblocks",    "law_test", "law_leg",      NULL};
+    static const char *const names[] = {"model",     "insitu",        "tensor",     "timestep", "mass_scaling",
+                                        "load",      "contact_area",  "cycle",      "solve",    "profile",
+                                        "write_vtk", "write_section", "write_html", "view",     "write_blocks",
+                                        "filter",    "keyblocks",     "law_test",   "law_leg",  NULL};
     return names;
 }

@@ -90,8 +90,7 @@ tl_status tl_history_add(tl_model *m, const tl_history *what, tl_history **wante
     *made = NULL;
     const char *bad = tl_history_unsound(m, what);
     if (bad)
-        return tl_fail(&m->error, TL_E_ARGUMENT, "history '%.*s': %s", TL_HISTORY_NAME, what->name,
-                       bad);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "history '%.*s': %s", TL_HISTORY_NAME, what->name, bad);
     tl_history fresh = *what;
     fresh.first = m->cycles;
     fresh.lost = fresh.list = false;
@@ -122,12 +121,11 @@ tl_history *tl_history_at(const tl_model *m, size_t i)
 tl_status tl_history_sample(tl_model *m, tl_history *h, const double *values, size_t width)
 {
     if (width < 1 || width > TL_HISTORY_WIDEST || (h->count && width != h->width))
-        return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "history '%s': a sample of %zu numbers, where there must be %zu", h->name,
-                       width, h->count ? h->width : 1);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "history '%s': a sample of %zu numbers, where there must be %zu",
+                       h->name, width, h->count ? h->width : 1);
     if (h->count && h->cycles[h->count - 1] >= m->cycles)
-        return tl_fail(&m->error, TL_E_ARGUMENT, "history '%s': cycle %lld is sampled already",
-                       h->name, (long long)m->cycles);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "history '%s': cycle %lld is sampled already", h->name,
+                       (long long)m->cycles);
     h->width = width;
     if (h->count == h->capacity && !hold_samples(h, h->capacity ? 2 * h->capacity : FIRST_CAPACITY))
         return tl_fail_memory(&m->error);

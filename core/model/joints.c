@@ -68,10 +68,8 @@ static tl_status unknown_joint(tl_model *m, const char *text)
         names[i] = m->joints[i].name;
     names[m->joint_count] = NULL;
     const char *nearest = tl_nearest_name(text, names, m->joint_count);
-    tl_fail(&m->error, TL_E_NOT_FOUND,
-            "unknown joint '%s'; %s '%s' (or use \"*\" for every contact)", text,
-            nearest ? "did you mean" : "the first of the model's joints is",
-            nearest ? nearest : names[0]);
+    tl_fail(&m->error, TL_E_NOT_FOUND, "unknown joint '%s'; %s '%s' (or use \"*\" for every contact)", text,
+            nearest ? "did you mean" : "the first of the model's joints is", nearest ? nearest : names[0]);
     free(names);
     return m->error.status;
 }
@@ -108,16 +106,14 @@ tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag)
     tag->plane = plane_number(colon + 1);
     uint32_t planes = m->joints[tag->joint - 1].planes;
     if (tag->plane < 1 || tag->plane > planes)
-        return tl_fail(&m->error, TL_E_NOT_FOUND,
-                       "unknown plane '%s': joint '%s' has planes 1 to %u", text,
+        return tl_fail(&m->error, TL_E_NOT_FOUND, "unknown plane '%s': joint '%s' has planes 1 to %u", text,
                        m->joints[tag->joint - 1].name, planes);
     return TL_OK;
 }
 
 bool tl_tag_matches(tl_tag pattern, tl_tag tag)
 {
-    return pattern.joint == 0 ||
-           (pattern.joint == tag.joint && (pattern.plane == 0 || pattern.plane == tag.plane));
+    return pattern.joint == 0 || (pattern.joint == tag.joint && (pattern.plane == 0 || pattern.plane == tag.plane));
 }
 
 /* How closely a matching pattern names its tag: plane before set before "*". */
@@ -142,8 +138,7 @@ tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag)
     tl_min_area_rule rule = m->min_area;
     int best = 0;
     for (size_t i = 0; i < m->joint_min_area_count; i++)
-        if (tl_tag_matches(m->joint_min_areas[i].tag, tag) &&
-            closeness(m->joint_min_areas[i].tag) > best) {
+        if (tl_tag_matches(m->joint_min_areas[i].tag, tag) && closeness(m->joint_min_areas[i].tag) > best) {
             best = closeness(m->joint_min_areas[i].tag);
             rule = m->joint_min_areas[i].rule;
         }
@@ -208,15 +203,13 @@ tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *given)
     if (status != TL_OK)
         return status;
     if (!(area->fraction >= 0) || !isfinite(area->fraction))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: fraction = %g must be >= 0",
-                       area->fraction);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: fraction = %g must be >= 0", area->fraction);
     if (!isnan(area->absolute) && !(area->absolute >= 0 && isfinite(area->absolute)))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: absolute = %g must be >= 0",
-                       area->absolute);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: absolute = %g must be >= 0", area->absolute);
     if (!isnan(area->absolute) && area->fraction != TL_AREA_FRACTION)
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "contact_area: fraction = %g and absolute = %g m2 are both given: give one",
-                       area->fraction, area->absolute);
+                       "contact_area: fraction = %g and absolute = %g m2 are both given: give one", area->fraction,
+                       area->absolute);
     tl_joint_min_area entry = {.rule = {area->fraction, area->absolute}};
     status = tl_joint_parse(m, area->joint ? area->joint : "*", &entry.tag);
     if (status != TL_OK)
@@ -240,9 +233,8 @@ size_t tl_joint_count(const tl_model *m)
 tl_joint_info tl_joint_at(const tl_model *m, size_t index)
 {
     const tl_law *law = tl_law_of(m, (tl_tag){(uint32_t)index + 1, 0});
-    return (tl_joint_info){.name = m->joints[index].name,
-                           .planes = m->joints[index].planes,
-                           .law = law ? law->kind : NULL};
+    return (tl_joint_info){
+        .name = m->joints[index].name, .planes = m->joints[index].planes, .law = law ? law->kind : NULL};
 }
 
 size_t tl_law_count(const tl_model *m)

@@ -60,14 +60,13 @@ tl_status tl_model_create(const tl_model_config *given, tl_model **model, tl_err
     if (status != TL_OK)
         return status;
     if (config.threads < 1 || config.threads > TL_MAX_THREADS)
-        return tl_fail(error, TL_E_ARGUMENT, "model: threads = %lld is outside [1, %d]",
-                       (long long)config.threads, TL_MAX_THREADS);
+        return tl_fail(error, TL_E_ARGUMENT, "model: threads = %lld is outside [1, %d]", (long long)config.threads,
+                       TL_MAX_THREADS);
     if (!tl_v3_finite(config.gravity))
         return tl_fail(error, TL_E_ARGUMENT, "model: gravity must be three finite numbers");
     status = tl_check_choice(error, "model: rotation", config.rotation, TL_ROTATION_PAPER);
     if (status == TL_OK)
-        status = tl_check_choice(error, "model: contact_points", config.contact_points,
-                                 TL_POINTS_CORNERS);
+        status = tl_check_choice(error, "model: contact_points", config.contact_points, TL_POINTS_CORNERS);
     if (status != TL_OK)
         return status;
     tl_model *m = calloc(1, sizeof *m);

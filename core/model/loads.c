@@ -22,12 +22,10 @@ tl_lump tl_face_plate(const tl_model *m, uint32_t row, uint32_t face)
         tl_vec3 e = tl_v3_sub(tl_m3_mul(r, p->vertex[p->loop[i]]), at);
         tl_vec3 f = tl_v3_sub(tl_m3_mul(r, p->vertex[p->loop[i + 1]]), at);
         double third = tl_v3_norm(tl_v3_cross(e, f)) / 6;
-        const tl_vec3 middle[3] = {tl_v3_scale(0.5, e), tl_v3_scale(0.5, tl_v3_add(e, f)),
-                                   tl_v3_scale(0.5, f)};
+        const tl_vec3 middle[3] = {tl_v3_scale(0.5, e), tl_v3_scale(0.5, tl_v3_add(e, f)), tl_v3_scale(0.5, f)};
         for (int k = 0; k < 3; k++) {
             tl_vec3 x = middle[k];
-            const double products[] = {x.x * x.x, x.y * x.y, x.z * x.z,
-                                       x.x * x.y, x.y * x.z, x.z * x.x};
+            const double products[] = {x.x * x.x, x.y * x.y, x.z * x.z, x.x * x.y, x.y * x.z, x.z * x.x};
             out.mass += third;
             out.place = tl_v3_madd(out.place, third, x);
             for (int j = 0; j < 6; j++)
@@ -40,12 +38,8 @@ tl_lump tl_face_plate(const tl_model *m, uint32_t row, uint32_t face)
     const double own[] = {c.x * c.x, c.y * c.y, c.z * c.z, c.x * c.y, c.y * c.z, c.z * c.x};
     for (int j = 0; j < 6; j++)
         square[j] -= out.mass * own[j];
-    out.inertia = (tl_sym3){square[1] + square[2],
-                            square[2] + square[0],
-                            square[0] + square[1],
-                            -square[3],
-                            -square[4],
-                            -square[5]};
+    out.inertia = (tl_sym3){
+        square[1] + square[2], square[2] + square[0], square[0] + square[1], -square[3], -square[4], -square[5]};
     out.place = tl_v3_add(tl_body_place(&m->bodies, body), tl_v3_add(at, c));
     return out;
 }
@@ -137,10 +131,8 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     if (status != TL_OK)
         return status;
     bool placed = !isnan(load.at.x);
-    if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) ||
-        (placed && !tl_v3_finite(load.at)))
-        return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "load: force, moment and at must be finite numbers");
+    if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) || (placed && !tl_v3_finite(load.at)))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "load: force, moment and at must be finite numbers");
     status = tl_blocks_check(m, ids, count);
     if (status != TL_OK)
         return status;
@@ -151,9 +143,8 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         tl_vec3 from = tl_v3_sub(tl_v3_sub(load.at, m->origin), tl_body_place(&m->bodies, body));
-        m->bodies.load[body] =
-            (tl_body_load){load.force, load.moment,
-                           placed ? tl_m3_tmul(&m->bodies.pose[body].r, from) : tl_v3(0, 0, 0)};
+        m->bodies.load[body] = (tl_body_load){load.force, load.moment,
+                                              placed ? tl_m3_tmul(&m->bodies.pose[body].r, from) : tl_v3(0, 0, 0)};
         if (m->bodies.fixed[body])
             tl_load_begins_anew(m, body);
     }
@@ -303,8 +294,7 @@ static bool is_motion(tl_vec3 v)
     return fabs(v.x) <= TL_FASTEST && fabs(v.y) <= TL_FASTEST && fabs(v.z) <= TL_FASTEST;
 }
 
-static tl_status bad_motion(tl_error *error, const char *verb, const char *name, tl_vec3 v,
-                            const char *unit)
+static tl_status bad_motion(tl_error *error, const char *verb, const char *name, tl_vec3 v, const char *unit)
 {
     return tl_fail(error, TL_E_ARGUMENT,
                    "%s: %s = {%g, %g, %g} %s must be three finite numbers of at most %g: no model "
@@ -312,8 +302,7 @@ static tl_status bad_motion(tl_error *error, const char *verb, const char *name,
                    verb, name, v.x, v.y, v.z, unit, TL_FASTEST);
 }
 
-tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity,
-                          tl_vec3 angular_velocity)
+tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity, tl_vec3 angular_velocity)
 {
     if (!is_motion(velocity))
         return bad_motion(error, verb, "velocity", velocity, "m/s");

@@ -18,8 +18,7 @@ static inline bool tl_load_changed(const tl_model *m, uint32_t body)
     if (!m->loads_changed || isnan(m->bodies.load_before[body].force.x))
         return false;
     tl_wrench now = tl_load_wrench(&m->bodies, body), before = m->bodies.load_before[body];
-    return !tl_v3_is_zero(tl_v3_sub(now.force, before.force)) ||
-           !tl_v3_is_zero(tl_v3_sub(now.moment, before.moment));
+    return !tl_v3_is_zero(tl_v3_sub(now.force, before.force)) || !tl_v3_is_zero(tl_v3_sub(now.moment, before.moment));
 }
 
 /* Evaluates all drives at time t; false when a user's function ends the run. */
@@ -43,8 +42,7 @@ void tl_drives_settle(tl_model *m);
  * step is so short that a model could run with it. */
 #define TL_FASTEST 1e50
 /* TL_E_ARGUMENT with a sentence, after the name of a verb, unless both are finite and no component is above that. */
-tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity,
-                          tl_vec3 angular_velocity);
+tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity, tl_vec3 angular_velocity);
 
 /* A mass with its centroid, relative to the origin, and its inertia about it. */
 typedef struct tl_lump {

@@ -106,17 +106,15 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
     if (status != TL_OK)
         return status;
     if (!tl_v3_finite(gravity))
-        return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "gravity = {%g, %g, %g} must be three finite numbers", gravity.x, gravity.y,
-                       gravity.z);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "gravity = {%g, %g, %g} must be three finite numbers", gravity.x,
+                       gravity.y, gravity.z);
     if (m->dt > 0 && !m->gravity_changed) {
         m->gravity_before = m->config.gravity;
         m->gravity_changed = true;
     }
     m->config.gravity = gravity;
     m->remarked = 0;
-    if (gravity.z > sqrt(gravity.x * gravity.x + gravity.y * gravity.y) &&
-        tl_model_says(m, TL_REMARK_GRAVITY))
+    if (gravity.z > sqrt(gravity.x * gravity.x + gravity.y * gravity.y) && tl_model_says(m, TL_REMARK_GRAVITY))
         tl_model_say(m,
                      "gravity = {%g, %g, %g} points upward, for z is up: blocks will fall to the "
                      "sky; give {%g, %g, %g} for weight",
@@ -189,15 +187,13 @@ static int compare_ids(const void *x, const void *y)
 
 const tl_cut_part *tl_cut_part_of(const tl_model *m, tl_id id)
 {
-    return m->cut_part_count ? bsearch(&id, m->cut_parts, m->cut_part_count, sizeof *m->cut_parts, compare_ids)
-                         : NULL;
+    return m->cut_part_count ? bsearch(&id, m->cut_parts, m->cut_part_count, sizeof *m->cut_parts, compare_ids) : NULL;
 }
 
 tl_id tl_split_of(const tl_model *m, tl_id block)
 {
     const tl_split *split =
-        m->split_count ? bsearch(&block, m->splits, m->split_count, sizeof *split, compare_ids)
-                       : NULL;
+        m->split_count ? bsearch(&block, m->splits, m->split_count, sizeof *split, compare_ids) : NULL;
     return split ? split->whole : TL_NO_ID;
 }
 
@@ -224,8 +220,7 @@ uint32_t tl_block_row(tl_model *m, tl_id id)
     uint32_t row = tl_block_row_quiet(m, id);
     if (row == TL_NO_ROW)
         tl_fail(&m->error, TL_E_STALE, "block %u %s", id,
-                id != TL_NO_ID && id < m->next_id ? "no longer exists: it was cut or deleted"
-                                                  : "does not exist");
+                id != TL_NO_ID && id < m->next_id ? "no longer exists: it was cut or deleted" : "does not exist");
     return row;
 }
 

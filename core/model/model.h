@@ -218,22 +218,22 @@ struct tl_model {
     double *damping_state;
 
     double time;
-    double dt;              /* of the last step; 0 before the first */
-    tl_vec3 gravity_before; /* gravity in the last step, where it has been set since; else zero */
+    double dt;                           /* of the last step; 0 before the first */
+    tl_vec3 gravity_before;              /* gravity in the last step, where it has been set since; else zero */
     bool gravity_changed, loads_changed; /* since the last step, while dt is not 0 */
     int64_t cycles;
     atomic_bool interrupted;
     bool (*interrupt_asked)(void);                                       /* or NULL */
     void (*show_generate)(void *user, const tl_generate_progress *done); /* or NULL */
     void *show_generate_user;
-    bool running;  /* inside a callback: no blocks may be made or deleted */
-    bool driving;  /* inside a drive's function: nothing that a step depends on may be set */
-    bool reading;  /* the same, and no run may begin: tl_model_only_read */
-    uint32_t said; /* bit r: remark r has been made */
+    bool running;                  /* inside a callback: no blocks may be made or deleted */
+    bool driving;                  /* inside a drive's function: nothing that a step depends on may be set */
+    bool reading;                  /* the same, and no run may begin: tl_model_only_read */
+    uint32_t said;                 /* bit r: remark r has been made */
     char stage[TL_STAGE_NAME + 1]; /* from which displacements count; "": none has been named */
-    uint64_t remarked;           /* changes of blocks and laws at the last look at their numbers */
-    bool mass_scaling;           /* of all free bodies */
-    double added_dt, added_most; /* of the bodies that need it: tl_mass_scaling; NaN: off */
+    uint64_t remarked;             /* changes of blocks and laws at the last look at their numbers */
+    bool mass_scaling;             /* of all free bodies */
+    double added_dt, added_most;   /* of the bodies that need it: tl_mass_scaling; NaN: off */
 
     bool profiling;
     double phase_began; /* s, of the clock */

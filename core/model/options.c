@@ -11,19 +11,17 @@
 #include <math.h>
 #include <string.h>
 
-#define UNSET                                                                                      \
-    {                                                                                              \
-        NAN, NAN, NAN                                                                              \
+#define UNSET                                                                                                          \
+    {                                                                                                                  \
+        NAN, NAN, NAN                                                                                                  \
     }
 
 /* Defaults of what no table of parameters has. */
 static const tl_block_filter block_filter = {.fixed = -1};
-static const tl_block_set block_set = {
-    .density = NAN, .velocity = UNSET, .angular_velocity = UNSET};
+static const tl_block_set block_set = {.density = NAN, .velocity = UNSET, .angular_velocity = UNSET};
 
 /* A struct: the function whose table has its defaults, or they themselves; all else is zero. */
-#define KNOWN(type, function, defaults)                                                            \
-    [TL_OPTIONS_OF_##type] = {#type, function, defaults, sizeof(type)}
+#define KNOWN(type, function, defaults) [TL_OPTIONS_OF_##type] = {#type, function, defaults, sizeof(type)}
 
 static const struct {
     const char *name, *function;
@@ -88,8 +86,7 @@ tl_status tl_options_read(tl_options which, const void *given, void *own, tl_err
         return TL_OK;
     memcpy(&size, given, sizeof size);
     if (size <= sizeof size)
-        return tl_fail(error, TL_E_ARGUMENT,
-                       "%s: size = %u must be sizeof(%s); begin with %s_default()", name, size,
+        return tl_fail(error, TL_E_ARGUMENT, "%s: size = %u must be sizeof(%s); begin with %s_default()", name, size,
                        name, name);
     if (size > known[which].size)
         return tl_fail(error, TL_E_ARGUMENT,

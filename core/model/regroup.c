@@ -22,8 +22,7 @@
 tl_sym3 tl_block_inertia(const tl_model *m, uint32_t row)
 {
     const tl_mat3 *r = &m->bodies.pose[m->blocks.body[row]].r;
-    return tl_s3_scale(m->blocks.density[row],
-                       tl_s3_turn(tl_poly_mass(m->blocks.shape[row]).inertia, r));
+    return tl_s3_scale(m->blocks.density[row], tl_s3_turn(tl_poly_mass(m->blocks.shape[row]).inertia, r));
 }
 
 tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row)
@@ -79,8 +78,7 @@ static tl_status new_shape(tl_model *m, const parts *sum, uint32_t row, tl_poly 
     const tl_mat3 *to = &b->pose[sum->leader].r;
     tl_vec3 shift = tl_m3_tmul(to, tl_v3_sub(tl_body_place(b, old), sum->place));
     tl_mat3 turn = tl_m3_tproduct(to, &b->pose[old].r);
-    return tl_poly_transformed(m->blocks.shape[row], old == sum->leader ? NULL : &turn, shift,
-                               shape, &m->error);
+    return tl_poly_transformed(m->blocks.shape[row], old == sum->leader ? NULL : &turn, shift, shape, &m->error);
 }
 
 /* The inverse of a body's inertia applied to its angular momentum. */
@@ -185,8 +183,7 @@ static gone gone_from(const tl_model *m, uint32_t row, tl_base from, uint32_t le
 {
     const tl_quat *q = m->bodies.q;
     const uint32_t body = m->blocks.body[row];
-    const tl_quat turn =
-        body == leader ? from.turn : tl_q_mul(from.turn, tl_q_mul(tl_q_conj(q[body]), q[leader]));
+    const tl_quat turn = body == leader ? from.turn : tl_q_mul(from.turn, tl_q_mul(tl_q_conj(q[body]), q[leader]));
     return (gone){tl_block_point_moved(m, row, &from, tl_block_local(m, row)), turn};
 }
 
@@ -223,9 +220,8 @@ static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
         }
         new_body *one = &r->new_bodies[r->of[group[row]]];
         const uint32_t leader = m->blocks.body[group[row]];
-        r->members[one->start + one->count++] =
-            (member){row, gone_from(m, row, tl_block_base(m, row), leader),
-                     gone_from(m, row, tl_block_made(m, row), leader)};
+        r->members[one->start + one->count++] = (member){row, gone_from(m, row, tl_block_base(m, row), leader),
+                                                         gone_from(m, row, tl_block_made(m, row), leader)};
     }
     memset(r->stays + m->bodies.table.rows, 1, count);
     return true;
@@ -246,8 +242,7 @@ static tl_status make_body(tl_model *m, regroup *r, new_body *one)
     free(rows);
     if (status == TL_OK)
         status = tl_poly_mark_seams(r->shapes + one->start, one->count, &m->error);
-    return status == TL_OK ? tl_poly_share_planes(r->shapes + one->start, one->count, &m->error)
-                           : status;
+    return status == TL_OK ? tl_poly_share_planes(r->shapes + one->start, one->count, &m->error) : status;
 }
 
 /* Writes the row of a new body over that of its leader. */
@@ -258,8 +253,8 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
     b->pose[body].u = tl_v3(0, 0, 0);
     b->fixed[body] = (uint8_t)sum->fixed;
     tl_vec3 v = tl_v3_scale(1 / sum->mass, sum->momentum);
-    b->v[body] = tl_v3(sum->fixed & TL_FIX_X ? 0 : v.x, sum->fixed & TL_FIX_Y ? 0 : v.y,
-                       sum->fixed & TL_FIX_Z ? 0 : v.z);
+    b->v[body] =
+        tl_v3(sum->fixed & TL_FIX_X ? 0 : v.x, sum->fixed & TL_FIX_Y ? 0 : v.y, sum->fixed & TL_FIX_Z ? 0 : v.z);
     if (b->force_before)
         b->force_before[body] = b->moment_before[body] = tl_v3(0, 0, 0);
     if (b->load_before)
@@ -273,8 +268,7 @@ static bool reserve_rows(tl_model *m, const regroup *r)
 {
     tl_blocks *blocks = &m->blocks;
     return tl_table_reserve(&m->bodies.table, m->bodies.table.rows + 2 * r->new_body_count) &&
-           TL_COLUMN_NEED(&blocks->table, blocks, local, 0) && tl_blocks_hold_base(m) &&
-           tl_blocks_hold_made(m);
+           TL_COLUMN_NEED(&blocks->table, blocks, local, 0) && tl_blocks_hold_base(m) && tl_blocks_hold_made(m);
 }
 
 /* Rows of the new bodies, in between those that stay; the others go. */
@@ -321,9 +315,8 @@ static void finish_body(tl_model *m, const regroup *r, const new_body *one)
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
     tl_body_measure(m, one->body);
-    bodies->w[one->body] = one->parts.fixed & TL_FIX_ROTATION
-                               ? tl_v3(0, 0, 0)
-                               : spin_velocity(bodies, one->body, one->parts.spin);
+    bodies->w[one->body] =
+        one->parts.fixed & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : spin_velocity(bodies, one->body, one->parts.spin);
     bodies->pose[one->body].v_moved = bodies->v[one->body];
     bodies->pose[one->body].w_moved = bodies->w[one->body];
     for (uint32_t k = 0; k < one->count; k++) {
@@ -441,8 +434,7 @@ static tl_status check_parts(tl_model *m, const tl_id *ids, size_t count, const 
         bool loaded = tl_body_loaded(&m->bodies, body);
         if (m->bodies.drive[body] || loaded)
             status =
-                tl_fail(&m->error, TL_E_STATE,
-                        "cannot %s: block %u is %s; take that off first and set it again after",
+                tl_fail(&m->error, TL_E_STATE, "cannot %s: block %u is %s; take that off first and set it again after",
                         verb, ids[i], loaded ? "loaded" : "driven");
     }
     return status;

@@ -118,8 +118,7 @@ typedef struct body_sum {
 static void add_block(body_sum *sum, const tl_poly *shape, double density, const tl_mass *one)
 {
     sum->mass += density * one->volume;
-    sum->inertia = tl_s3_madd(sum->inertia, density,
-                              tl_inertia_about(one->inertia, one->volume, one->centroid));
+    sum->inertia = tl_s3_madd(sum->inertia, density, tl_inertia_about(one->inertia, one->volume, one->centroid));
     for (uint32_t v = 0; v < shape->vertex_count; v++) {
         double r = tl_v3_norm(shape->vertex[v]);
         sum->distance += r;
@@ -154,11 +153,10 @@ static tl_status check_measure(tl_error *error, const char *name, double value, 
 {
     if (value >= TL_LEAST_MEASURE && value <= TL_MOST_MEASURE)
         return TL_OK;
-    return tl_fail(
-        error, TL_E_NUMERIC,
-        "a block would have the %s %g %s, outside [%g, %g]: are its size or density in the "
-        "wrong unit?",
-        name, isnan(value) ? (double)NAN : value, unit, TL_LEAST_MEASURE, TL_MOST_MEASURE);
+    return tl_fail(error, TL_E_NUMERIC,
+                   "a block would have the %s %g %s, outside [%g, %g]: are its size or density in the "
+                   "wrong unit?",
+                   name, isnan(value) ? (double)NAN : value, unit, TL_LEAST_MEASURE, TL_MOST_MEASURE);
 }
 
 tl_status tl_check_measures(tl_error *error, const tl_poly *shape, double density)
@@ -221,8 +219,7 @@ void tl_extremes_drop(tl_model *m, uint32_t row)
         return;
     measures of = measure(m, row);
     x->total -= of.volume;
-    x->known = of.volume > AS_SMALL * x->volume && of.edge > AS_SMALL * x->edge &&
-               of.face > AS_SMALL * x->face;
+    x->known = of.volume > AS_SMALL * x->volume && of.edge > AS_SMALL * x->edge && of.face > AS_SMALL * x->face;
 }
 
 tl_extremes tl_extremes_of(tl_model *m)

@@ -30,8 +30,7 @@ static bool contains(const tl_model *m, uint32_t row, tl_vec3 point)
 /* Signed height of a point over a half-space's plane. */
 static double height(const tl_halfspace *plane, tl_vec3 point)
 {
-    return tl_v3_dot(tl_plane_normal(plane->dip, plane->dip_direction),
-                     tl_v3_sub(point, plane->origin));
+    return tl_v3_dot(tl_plane_normal(plane->dip, plane->dip_direction), tl_v3_sub(point, plane->origin));
 }
 
 static bool in_bounds(const tl_bounds *box, tl_vec3 p, double slack)

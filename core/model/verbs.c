@@ -77,8 +77,7 @@ static constraint constraint_of(const tl_model *m, uint32_t body)
 static bool has_constraint(const tl_model *m, uint32_t body, constraint before)
 {
     constraint now = constraint_of(m, body);
-    double faster =
-        tl_v3_norm2(tl_v3_sub(now.v, before.v)) + tl_v3_norm2(tl_v3_sub(now.w, before.w));
+    double faster = tl_v3_norm2(tl_v3_sub(now.v, before.v)) + tl_v3_norm2(tl_v3_sub(now.w, before.w));
     return now.fixed == before.fixed && now.drive == before.drive && faster == 0;
 }
 
@@ -151,8 +150,7 @@ tl_status tl_model_stage(tl_model *m, const char *name)
 {
     tl_rows_tidy(m);
     if (strlen(name) > TL_STAGE_NAME || !tl_text_is_clean(name))
-        return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "stage: the name '%s' must be one line of UTF-8 of at most %d bytes",
+        return tl_fail(&m->error, TL_E_ARGUMENT, "stage: the name '%s' must be one line of UTF-8 of at most %d bytes",
                        tl_text_is_utf8(name) ? name : "...", TL_STAGE_NAME);
     const size_t rows = m->blocks.table.rows;
     if (rows && !tl_blocks_hold_base(m))
@@ -171,18 +169,14 @@ static bool given(tl_vec3 v)
 static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
 {
     if (!isnan(set->density) && !(set->density > 0 && isfinite(set->density)))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "set: density = %g kg/m3 must be > 0",
-                       set->density);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: density = %g kg/m3 must be > 0", set->density);
     for (size_t i = 0; i < count && !isnan(set->density); i++) {
-        tl_status status = tl_check_measures(
-            &m->error, m->blocks.shape[tl_block_row_quiet(m, ids[i])], set->density);
+        tl_status status = tl_check_measures(&m->error, m->blocks.shape[tl_block_row_quiet(m, ids[i])], set->density);
         if (status != TL_OK)
-            return tl_error_prefix(&m->error, "set: density = %g kg/m3, block %u: ", set->density,
-                                   ids[i]);
+            return tl_error_prefix(&m->error, "set: density = %g kg/m3, block %u: ", set->density, ids[i]);
     }
     if (set->group && !tl_text_is_utf8(set->group))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "set: group = '%s' is not a text in UTF-8",
-                       set->group);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: group = '%s' is not a text in UTF-8", set->group);
     const tl_vec3 none = {0, 0, 0};
     return tl_check_motion(&m->error, "set", given(set->velocity) ? set->velocity : none,
                            given(set->angular_velocity) ? set->angular_velocity : none);
@@ -196,8 +190,7 @@ typedef struct moved_parts {
 
 /* Gives the bodies of the blocks their motion. What gets the velocity is the common centroid of those of its blocks
  * that are listed: of one block its own. `moved`: [bodies], zeros, or NULL when all bodies are of one block. */
-static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set,
-                       moved_parts *moved)
+static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set, moved_parts *moved)
 {
     tl_bodies *b = &m->bodies;
     for (size_t i = 0; i < count; i++) {
@@ -217,9 +210,8 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         b->v[body] = set->velocity;
         if (moved && b->member_count[body] > 1)
-            b->v[body] = tl_v3_sub(
-                set->velocity,
-                tl_v3_cross(b->w[body], tl_v3_scale(1 / moved[body].mass, moved[body].moment)));
+            b->v[body] = tl_v3_sub(set->velocity,
+                                   tl_v3_cross(b->w[body], tl_v3_scale(1 / moved[body].mass, moved[body].moment)));
     }
 }
 

@@ -6,9 +6,8 @@
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "model.", m, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "model.", m, member)
-#define LIST(keep, member, count, capacity)                                                        \
-    TL_WALK_LIST(walk, TL_KEEP_##keep, "model.", m, member, &m->count, &m->capacity,               \
-                 offsetof(tl_memory, other))
+#define LIST(keep, member, count, capacity)                                                                            \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "model.", m, member, &m->count, &m->capacity, offsetof(tl_memory, other))
 
 tl_settings tl_config_settings(void)
 {

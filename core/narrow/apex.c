@@ -44,8 +44,7 @@ static bool hold(tl_apex *p, const tl_field_faces *f, uint32_t face, double leas
     return true;
 }
 
-tl_apex_faces tl_apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count,
-                             double one_plane)
+tl_apex_faces tl_apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count, double one_plane)
 {
     tl_apex p = {.count = 0};
     tl_apex_faces out = {.known = true};
@@ -85,9 +84,8 @@ void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec
 
 /* Of the points that an apex may be, that nearest the centre of pressure is taken. Roundings of the force count by the
  * way from there. */
-void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
-                        double by_swept, const double by_power[TL_FIELD_POWERS],
-                        tl_field_sums *sums)
+void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force, double by_swept,
+                        const double by_power[TL_FIELD_POWERS], tl_field_sums *sums)
 {
     if (!(sums->pressure > 0))
         return;
@@ -101,12 +99,10 @@ void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double b
         sums->energy += 0.25 * side * (tl_v3_dot(x, sums->force) - by_force);
         sums->volume += (1.0 / 3) * side * (tl_v3_dot(x, sums->swept) - by_swept);
         for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++)
-            sums->powers[k].whole +=
-                side * (tl_v3_dot(x, sums->powers[k].force) - by_power[k]) / (5 + k);
+            sums->powers[k].whole += side * (tl_v3_dot(x, sums->powers[k].force) - by_power[k]) / (5 + k);
         for (uint32_t k = 0; k < p->strays; k++) {
             uint32_t face = p->stray[k];
-            sums->energy +=
-                0.25 * (f->c[face] - tl_v3_dot(tl_field_normal(f, face), x)) * p->volume[k];
+            sums->energy += 0.25 * (f->c[face] - tl_v3_dot(tl_field_normal(f, face), x)) * p->volume[k];
         }
     }
 }

@@ -16,16 +16,14 @@ typedef struct tl_apex {
 
 /* Which of some faces of a block, all of which bound K, hold an apex. Planes are one within the offset `one_plane`.
  * Faces that pass by are allowed where the volume is not wanted. */
-tl_apex_faces tl_apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count,
-                             double one_plane);
+tl_apex_faces tl_apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count, double one_plane);
 /* The apex of faces that have been chosen, here or at another place. */
 tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by);
 /* Adds a side of the cell of a face that passes by: int d dS over it, and its normal into the cell. */
 void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec3 n, double d);
 /* Adds what both blocks give by their apexes to the energy, the volume and, where they are wanted, the powers of d. Of
  * S: int d x . n dS, int x . n dS, int d^2 x . n dS, int d^3 x . n dS. */
-void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
-                        double by_swept, const double by_power[TL_FIELD_POWERS],
-                        tl_field_sums *sums);
+void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force, double by_swept,
+                        const double by_power[TL_FIELD_POWERS], tl_field_sums *sums);
 
 #endif

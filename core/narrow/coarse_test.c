@@ -56,13 +56,11 @@ static void center(const void *object, ccd_vec3_t *out)
 
 bool tl_coarse_test(const tl_pair_view *view, double reach)
 {
-    grown_block a = {
-        .vertex = view->a->vertex, .count = view->a->vertex_count, .ball = 0.5 * reach};
+    grown_block a = {.vertex = view->a->vertex, .count = view->a->vertex_count, .ball = 0.5 * reach};
     grown_block b = {.vertex = view->vertex_b, .count = view->b->vertex_count, .ball = 0.5 * reach};
     a.center = tl_points_mean(a.vertex, a.count);
     b.center = tl_points_mean(b.vertex, b.count);
-    a.far = b.far =
-        1e3 * (tl_v3_norm(tl_v3_sub(b.center, a.center)) + view->a->size + view->b->size + reach);
+    a.far = b.far = 1e3 * (tl_v3_norm(tl_v3_sub(b.center, a.center)) + view->a->size + view->b->size + reach);
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = support;

@@ -37,8 +37,7 @@ static double corner_share(tl_point2 before, tl_point2 here, tl_point2 after)
     tl_point2 u = tl_from_to(before, here), v = tl_from_to(here, after);
     double uv = (u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y);
     double s = u.x * v.y - u.y * v.x, ahead = u.x * v.x + u.y * v.y;
-    if (s > 0 &&
-        (ahead <= 0 || s * s >= TL_CORNER * TL_CORNER * uv)) /* the sine is less than the angle */
+    if (s > 0 && (ahead <= 0 || s * s >= TL_CORNER * TL_CORNER * uv)) /* the sine is less than the angle */
         return 1;
     double turn = tl_asin(fmin(1, fmax(-1, s / sqrt(uv))));
     turn = ahead < 0 ? TL_PI - turn : turn;
@@ -120,8 +119,7 @@ static bool reserve(tl_outlines *p, size_t na, size_t nb)
 }
 
 /* What the corner is where edges `one` and `other` of B meet at `cut`: B's own, if they are neighbours. */
-static tl_corner meet(uint32_t one, uint32_t other, tl_point2 cut, const tl_point2 *clip,
-                      uint32_t count)
+static tl_corner meet(uint32_t one, uint32_t other, tl_point2 cut, const tl_point2 *clip, uint32_t count)
 {
     tl_corner c = {.at = cut};
     uint32_t i = one - TL_EDGE_B, j = other - TL_EDGE_B;
@@ -131,14 +129,12 @@ static tl_corner meet(uint32_t one, uint32_t other, tl_point2 cut, const tl_poin
         c.key = tl_corner_key(TL_POINT_B, v);
         return c;
     }
-    c.key = one < other ? tl_key_of(TL_POINT_CROSSING, one, other)
-                        : tl_key_of(TL_POINT_CROSSING, other, one);
+    c.key = one < other ? tl_key_of(TL_POINT_CROSSING, one, other) : tl_key_of(TL_POINT_CROSSING, other, one);
     return c;
 }
 
 /* Where edge i of A crosses line j of B, from o to q. */
-static tl_corner cross(const tl_outlines *p, uint32_t na, uint32_t i, uint32_t j, tl_point2 o,
-                       tl_point2 q)
+static tl_corner cross(const tl_outlines *p, uint32_t na, uint32_t i, uint32_t j, tl_point2 o, tl_point2 q)
 {
     tl_point2 from = p->face[i], to = p->face[i + 1 == na ? 0 : i + 1];
     return (tl_corner){.at = tl_part_way(from, to, tl_cross2(o, q, from), tl_cross2(o, q, to)),
@@ -146,8 +142,7 @@ static tl_corner cross(const tl_outlines *p, uint32_t na, uint32_t i, uint32_t j
 }
 
 /* Keeps what lies left of the line from clip[j] to clip[j + 1]; returns the number of corners. */
-static size_t clip_by(tl_outlines *p, size_t count, uint32_t na, uint32_t j, uint32_t nb,
-                      double near)
+static size_t clip_by(tl_outlines *p, size_t count, uint32_t na, uint32_t j, uint32_t nb, double near)
 {
     tl_point2 o = p->clip[j], q = p->clip[j + 1 == nb ? 0 : j + 1];
     double low = 0, on2 = near * near * tl_distance2(o, q);
@@ -170,8 +165,7 @@ static size_t clip_by(tl_outlines *p, size_t count, uint32_t na, uint32_t j, uin
             continue;
         tl_corner c = here->edge < TL_EDGE_B
                           ? cross(p, na, here->edge, j, o, q)
-                          : meet(here->edge, TL_EDGE_B + j, tl_part_way(here->at, after->at, h, g),
-                                 p->clip, nb);
+                          : meet(here->edge, TL_EDGE_B + j, tl_part_way(here->at, after->at, h, g), p->clip, nb);
         c.edge = h > 0 ? TL_EDGE_B + j : here->edge;
         p->next[kept++] = c;
     }
@@ -224,20 +218,19 @@ static size_t clip_outlines(tl_outlines *p, uint32_t na, uint32_t nb, double nea
 }
 
 /* Projects both outlines, counter-clockwise seen against the patch normal, and clips. */
-static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb,
-                         const tl_common_polygon *of, tl_outlines *p)
+static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl_common_polygon *of,
+                         tl_outlines *p)
 {
     const tl_poly *a = view->a, *b = view->b;
     for (uint32_t i = 0; i < of->na; i++)
         p->face[i] = tl_frame2_project(&of->frame, a->vertex[a->loop[a->start[fa] + i]]);
     for (uint32_t i = 0; i < of->nb; i++)
-        p->clip[i] =
-            tl_frame2_project(&of->frame, view->vertex_b[b->loop[b->start[fb] + of->nb - 1 - i]]);
+        p->clip[i] = tl_frame2_project(&of->frame, view->vertex_b[b->loop[b->start[fb] + of->nb - 1 - i]]);
     return clip_outlines(p, of->na, of->nb, of->near);
 }
 
-bool tl_common_polygon_find(const tl_pair_view *view, uint32_t fa, uint32_t fb,
-                            tl_narrow_scratch *scratch, tl_common_polygon *out)
+bool tl_common_polygon_find(const tl_pair_view *view, uint32_t fa, uint32_t fb, tl_narrow_scratch *scratch,
+                            tl_common_polygon *out)
 {
     const tl_poly *a = view->a, *b = view->b;
     const double least = TL_MERGE * fmax(a->size, b->size) * view->size;

@@ -28,8 +28,8 @@ typedef struct tl_common_polygon {
 } tl_common_polygon;
 
 /* false: out of memory. */
-bool tl_common_polygon_find(const tl_pair_view *view, uint32_t fa, uint32_t fb,
-                            tl_narrow_scratch *scratch, tl_common_polygon *out);
+bool tl_common_polygon_find(const tl_pair_view *view, uint32_t fa, uint32_t fb, tl_narrow_scratch *scratch,
+                            tl_common_polygon *out);
 /* The share by which an edge of the polygon goes along with B: 0 of A's edges, 1 of B's, 0.5 where both have one. */
 double tl_common_edge_ride(const tl_common_polygon *of, uint32_t edge);
 /* Gives each corner its share, to be blended by its turning angle, and each edge its fan area. Drops corners of share

@@ -44,8 +44,7 @@ TL_INLINE bool tl_on_line(tl_point2 o, tl_point2 q, tl_point2 at, double near)
 }
 
 /* Whether two edges lie along each other: both ends of one on the line of the other. */
-TL_INLINE bool tl_edges_coincide(tl_point2 from, tl_point2 to, tl_point2 o, tl_point2 q,
-                                 double near)
+TL_INLINE bool tl_edges_coincide(tl_point2 from, tl_point2 to, tl_point2 o, tl_point2 q, double near)
 {
     return (tl_on_line(o, q, from, near) && tl_on_line(o, q, to, near)) ||
            (tl_on_line(from, to, o, near) && tl_on_line(from, to, q, near));

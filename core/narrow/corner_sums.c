@@ -99,8 +99,7 @@ static void find_origins(corners *c)
 }
 
 /* The corners of two faces, and their areas; there may be none. false: out of memory. */
-static bool find_corners(const tl_pair_view *view, const tl_corner_faces *faces,
-                         tl_narrow_scratch *scratch, corners *c)
+static bool find_corners(const tl_pair_view *view, const tl_corner_faces *faces, tl_narrow_scratch *scratch, corners *c)
 {
     tl_common_polygon *p = &c->polygon;
     if (!tl_common_polygon_find(view, faces->fa, faces->fb, scratch, p) || !reserve(scratch, c))
@@ -137,8 +136,7 @@ static plane_rate plane_rate_of(const tl_common_polygon *p, const motion *by)
     const tl_vec3 apart = tl_v3_sub(p->a.normal, p->b.normal);
     const double inverse = 1 / tl_v3_norm(apart);
     const tl_vec3 change = tl_v3_scale(-inverse, tl_v3_cross(by->turn, p->b.normal));
-    return (plane_rate){in_plane(&p->frame, change),
-                        -p->frame.secant * tl_v3_dot(p->frame.n, change)};
+    return (plane_rate){in_plane(&p->frame, change), -p->frame.secant * tl_v3_dot(p->frame.n, change)};
 }
 
 /* How high a plane lies over a place of the patch's plane. */
@@ -148,8 +146,8 @@ static double height_of(tl_plane plane, const tl_frame2 *f, tl_vec3 x)
 }
 
 /* How fast lines go there that are A's, and how much faster those that are B's. */
-static void find_rates(const tl_common_polygon *p, const motion *by, const plane_rate *plane,
-                       tl_point2 at, tl_point2 *of_a, tl_point2 *more)
+static void find_rates(const tl_common_polygon *p, const motion *by, const plane_rate *plane, tl_point2 at,
+                       tl_point2 *of_a, tl_point2 *more)
 {
     const tl_frame2 *f = &p->frame;
     const tl_vec3 x = tl_frame2_point(f, at);
@@ -161,8 +159,7 @@ static void find_rates(const tl_common_polygon *p, const motion *by, const plane
 
 /* The rate of the corner where two edges of the directions u and v meet, which go with B by the shares `before` and
  * `after`. */
-static tl_point2 rate_of_meeting(tl_point2 u, tl_point2 v, double before, double after,
-                                 tl_point2 of_a, tl_point2 more)
+static tl_point2 rate_of_meeting(tl_point2 u, tl_point2 v, double before, double after, tl_point2 of_a, tl_point2 more)
 {
     const double across = u.x * v.y - u.y * v.x;
     const double lengths = sqrt((u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y));
@@ -171,8 +168,7 @@ static tl_point2 rate_of_meeting(tl_point2 u, tl_point2 v, double before, double
         along = (after - before) * (more.x * v.y - more.y * v.x) / across;
     else
         share = 0.5 * (before + after);
-    return (tl_point2){of_a.x + share * more.x + along * u.x,
-                       of_a.y + share * more.y + along * u.y};
+    return (tl_point2){of_a.x + share * more.x + along * u.x, of_a.y + share * more.y + along * u.y};
 }
 
 static size_t after(const corners *c, size_t i)
@@ -191,8 +187,8 @@ static void find_corner_rates(const corners *c, const motion *by, const plane_ra
         const size_t last = before(c, i), next = after(c, i);
         const tl_point2 here = c->at[i];
         find_rates(&c->polygon, by, plane, here, &c->of_a[i], &c->more[i]);
-        c->rate[i] = rate_of_meeting(tl_from_to(c->at[last], here), tl_from_to(here, c->at[next]),
-                                     c->ride[last], c->ride[i], c->of_a[i], c->more[i]);
+        c->rate[i] = rate_of_meeting(tl_from_to(c->at[last], here), tl_from_to(here, c->at[next]), c->ride[last],
+                                     c->ride[i], c->of_a[i], c->more[i]);
     }
 }
 
@@ -232,8 +228,8 @@ static void find_share_rates(const corners *c)
             continue;
         c->share_rate[k] = 0;
         if (corner[k].share < 1)
-            c->share_rate[k] = (turn_of(c, i) - turn_of(c, last)) *
-                               share_slope(c->at[last], c->at[i], c->at[after(c, i)]);
+            c->share_rate[k] =
+                (turn_of(c, i) - turn_of(c, last)) * share_slope(c->at[last], c->at[i], c->at[after(c, i)]);
     }
 }
 
@@ -260,8 +256,7 @@ static tl_point2 centroid_rate(const corners *c)
 }
 
 /* Adds to the rates of the areas what the rates of the shares make of them. */
-static void add_by_shares(const tl_corner *c, const double *fan, const double *share_rate,
-                          size_t count, double *rate)
+static void add_by_shares(const tl_corner *c, const double *fan, const double *share_rate, size_t count, double *rate)
 {
     for (size_t i = 0; i < count; i++) {
         double chance = c[i].share, more = share_rate[i], between = 0;
@@ -298,8 +293,8 @@ static void find_area_rates(const corners *c)
 }
 
 /* The rate of the overlap at a place of the plane that moves. */
-static double overlap_rate(const tl_corner_faces *f, const tl_frame2 *plane, const motion *by,
-                           tl_vec3 x, tl_point2 rate)
+static double overlap_rate(const tl_corner_faces *f, const tl_frame2 *plane, const motion *by, tl_vec3 x,
+                           tl_point2 rate)
 {
     const tl_point2 slope = in_plane(plane, tl_v3_add(f->a.normal, f->b.normal));
     return tl_v3_dot(f->b.normal, way_at(by, x)) - slope.x * rate.x - slope.y * rate.y;
@@ -326,8 +321,7 @@ static void add_slopes(double area, double o, double rate, double sum[WHOLES])
 }
 
 /* Rates of all sums in a motion. */
-static void find_sum_rates(const corners *c, const tl_corner_faces *faces, const motion *by,
-                           double sum[WHOLES])
+static void find_sum_rates(const corners *c, const tl_corner_faces *faces, const motion *by, double sum[WHOLES])
 {
     const tl_common_polygon *p = &c->polygon;
     const plane_rate plane = plane_rate_of(p, by);
@@ -353,10 +347,8 @@ static void find_sum_rates(const corners *c, const tl_corner_faces *faces, const
 /* Puts what is one component of the gradients. */
 static void put_slopes(const double rate[WHOLES], int axis, tl_field_sums *out)
 {
-    tl_vec3 *const force[] = {&out->force, &out->swept, &out->powers[0].force,
-                              &out->powers[1].force};
-    tl_vec3 *const moment[] = {&out->moment, &out->swept_moment, &out->powers[0].moment,
-                               &out->powers[1].moment};
+    tl_vec3 *const force[] = {&out->force, &out->swept, &out->powers[0].force, &out->powers[1].force};
+    tl_vec3 *const moment[] = {&out->moment, &out->swept_moment, &out->powers[0].moment, &out->powers[1].moment};
     for (int k = 0; k < WHOLES; k++)
         (&(axis < 3 ? force[k] : moment[k])->x)[axis % 3] = -rate[k];
 }

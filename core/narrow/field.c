@@ -154,8 +154,8 @@ static bool before(const tl_field_line *line, unsigned lane, size_t i, size_t j)
 
 /* Adds the polygon of a lane to a draft. `own` are its two planes, `bound` those whose lines come after the first one,
  * which is that of d = 0. */
-static void draw_polygon(mesh_draft *draft, const uint16_t own[2], const uint16_t *bound,
-                         const tl_field_line *line, size_t lines, unsigned lane)
+static void draw_polygon(mesh_draft *draft, const uint16_t own[2], const uint16_t *bound, const tl_field_line *line,
+                         size_t lines, unsigned lane)
 {
     uint8_t side[TL_MESH_SIDES];
     uint32_t sides = 0;
@@ -208,13 +208,12 @@ static uint32_t corner_of(tl_field_mesh *mesh, const uint8_t own[2], uint8_t one
 /* Whether a polygon is part of S. */
 static bool on_surface(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon)
 {
-    return mesh->own[polygon][0] < f->a && mesh->own[polygon][1] >= f->a &&
-           mesh->own[polygon][1] < f->a + f->b;
+    return mesh->own[polygon][0] < f->a && mesh->own[polygon][1] >= f->a && mesh->own[polygon][1] < f->a + f->b;
 }
 
 /* Whether another polygon of S has a side between two corners, the other way round. */
-static bool has_neighbour(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon,
-                          uint8_t from, uint8_t to)
+static bool has_neighbour(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon, uint8_t from,
+                          uint8_t to)
 {
     const uint8_t *loop = mesh->loop;
     for (uint32_t k = 0; k < mesh->polygons; loop += mesh->sides[k++])
@@ -225,13 +224,11 @@ static bool has_neighbour(const tl_field_mesh *mesh, const tl_field_faces *f, ui
 }
 
 /* Whether the polygon of two planes has a side between two corners. */
-static bool has_side(const tl_field_mesh *mesh, uint8_t one, uint8_t other, uint8_t from,
-                     uint8_t to)
+static bool has_side(const tl_field_mesh *mesh, uint8_t one, uint8_t other, uint8_t from, uint8_t to)
 {
     const uint8_t *loop = mesh->loop;
     for (uint32_t k = 0; k < mesh->polygons; loop += mesh->sides[k++]) {
-        if (mesh->own[k][0] != (one < other ? one : other) ||
-            mesh->own[k][1] != (one < other ? other : one))
+        if (mesh->own[k][0] != (one < other ? one : other) || mesh->own[k][1] != (one < other ? other : one))
             continue;
         for (uint32_t i = 0; i < mesh->sides[k]; i++) {
             uint8_t next = loop[i + 1 < mesh->sides[k] ? i + 1 : 0];
@@ -244,8 +241,8 @@ static bool has_side(const tl_field_mesh *mesh, uint8_t one, uint8_t other, uint
 
 /* Whether all polygons are there that meet in a side of a polygon: of its two planes and that of the label two by two,
  * but for two borders. */
-static bool has_all(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon,
-                    uint8_t label, uint8_t from, uint8_t to)
+static bool has_all(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon, uint8_t label, uint8_t from,
+                    uint8_t to)
 {
     for (int own = 0; own < 2; own++) {
         uint8_t by = mesh->own[polygon][own];
@@ -258,8 +255,7 @@ static bool has_all(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t
 
 /* Whether the polygons hang together: with seams all of them, else those of S. A side on the surface of K, with d = 0,
  * belongs to one only. The label of a side is that between its corner and the one before. */
-static bool hangs_together(const tl_field_mesh *mesh, const mesh_draft *draft,
-                           const tl_field_faces *f)
+static bool hangs_together(const tl_field_mesh *mesh, const mesh_draft *draft, const tl_field_faces *f)
 {
     const uint8_t *loop = mesh->loop, *label = draft->label;
     for (uint32_t k = 0; k < mesh->polygons; k++) {
@@ -268,8 +264,7 @@ static bool hangs_together(const tl_field_mesh *mesh, const mesh_draft *draft,
             uint8_t from = loop[i ? i - 1 : sides - 1], to = loop[i];
             if (label[i] == TL_MESH_ZERO || !(f->seamed || on_surface(mesh, f, k)))
                 continue;
-            if (!(f->seamed ? has_all(mesh, f, k, label[i], from, to)
-                            : has_neighbour(mesh, f, k, from, to)))
+            if (!(f->seamed ? has_all(mesh, f, k, label[i], from, to) : has_neighbour(mesh, f, k, from, to)))
                 return false;
         }
         loop += sides;
@@ -295,8 +290,7 @@ static void make_mesh(const mesh_draft *draft, const tl_field_faces *faces, tl_f
         mesh->sides[k] = (uint8_t)sides;
         fits = sides > 2;
         for (uint32_t i = 0; i < sides && fits; i++) {
-            uint32_t corner =
-                corner_of(mesh, draft->own[k], label[i], label[i + 1 < sides ? i + 1 : 0]);
+            uint32_t corner = corner_of(mesh, draft->own[k], label[i], label[i + 1 < sides ? i + 1 : 0]);
             fits = corner < TL_MESH_CORNERS;
             *loop++ = (uint8_t)corner;
         }
@@ -453,8 +447,7 @@ static void take(work *w, int l)
 /* ---------------------------------------------------------------- polygons --------------- */
 
 /* Puts a plane into a row, in the lanes from `lane` on. */
-TL_INLINE void fill(tl_field_plane *restrict row, int lane, const double n[3], double c,
-                    double face)
+TL_INLINE void fill(tl_field_plane *restrict row, int lane, const double n[3], double c, double face)
 {
 #pragma omp simd
     for (int l = 0; l < (int)LANES; l++) {
@@ -468,8 +461,7 @@ TL_INLINE void fill(tl_field_plane *restrict row, int lane, const double n[3], d
 }
 
 /* Puts the first `count` of some planes into the lanes from `lane` on. */
-TL_VECTORIZED static void lay_rows(rows *r, int lane, const tl_field_faces *f, const list *from,
-                                   uint32_t count)
+TL_VECTORIZED static void lay_rows(rows *r, int lane, const tl_field_faces *f, const list *from, uint32_t count)
 {
     const double none[3] = {0};
     uint32_t most = count > r->most ? count : r->most;
@@ -540,8 +532,7 @@ static void draw(work *w, int lane, size_t lines)
         bound[i] = in_place[0];
     if (j < count)
         bound[j] = in_place[1];
-    draw_polygon(of->draft, own, bound, w->line, count + 1 < lines ? count + 1 : lines,
-                 (unsigned)lane);
+    draw_polygon(of->draft, own, bound, w->line, count + 1 < lines ? count + 1 : lines, (unsigned)lane);
 }
 
 /* Integrates the polygons in the lanes. */
@@ -578,8 +569,7 @@ static void integrate_batch(work *w)
 
 /* Puts a polygon into the lanes: in a plane, of the depth of the pair's i-th plane, bounded by neither that nor the
  * j-th. */
-static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, bool between,
-                double length)
+static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, bool between, double length)
 {
     tl_field_lanes *p = &w->lanes;
     int l = w->filled++;
@@ -729,8 +719,7 @@ static void integrate_anew(work *w, pair *of, mesh_draft *draft)
 }
 
 /* An empty work for pairs of so many planes. false: out of memory. */
-static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t count,
-                       tl_field_scratch *scratch)
+static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t count, tl_field_scratch *scratch)
 {
     uint32_t most = 0, all = 0;
     w->flat = false;
@@ -752,8 +741,8 @@ static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t co
     return true;
 }
 
-bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
-                            uint32_t count, tl_field_scratch *scratch)
+bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[], uint32_t count,
+                            tl_field_scratch *scratch)
 {
     pair pairs[TL_FIELD_PAIRS];
     mesh_draft drafts[TL_FIELD_PAIRS];

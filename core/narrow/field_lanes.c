@@ -60,8 +60,8 @@ TL_VECTORIZED static void place_axes(tl_field_lanes *restrict p)
 }
 
 /* The line in which d_h - k d is zero, for a plane h; k is 1 for a face between cells, else 0. */
-TL_VECTORIZED static void draw_line(tl_field_lanes *restrict p, const tl_field_plane *restrict h,
-                                    double between, tl_field_line *restrict line)
+TL_VECTORIZED static void draw_line(tl_field_lanes *restrict p, const tl_field_plane *restrict h, double between,
+                                    tl_field_line *restrict line)
 {
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
@@ -135,8 +135,7 @@ TL_VECTORIZED static void cross_lines(tl_field_line *line, size_t count)
     }
 }
 
-size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat,
-                     tl_field_line *line)
+size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat, tl_field_line *line)
 {
     size_t lines = 0;
     place_axes(p);
@@ -149,8 +148,7 @@ size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t c
 }
 
 /* Adds 1 to the lanes of which a corner at one end of the line d = 0 lies beyond a plane. */
-TL_VECTORIZED static void count_beyond(const tl_field_lanes *restrict p,
-                                       const tl_field_plane *restrict h,
+TL_VECTORIZED static void count_beyond(const tl_field_lanes *restrict p, const tl_field_plane *restrict h,
                                        const tl_field_line *restrict own, double *restrict count)
 {
 #pragma omp simd
@@ -166,8 +164,8 @@ TL_VECTORIZED static void count_beyond(const tl_field_lanes *restrict p,
     }
 }
 
-uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes,
-                                 uint32_t count, const tl_field_line *own)
+uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes, uint32_t count,
+                                 const tl_field_line *own)
 {
     double beyond[LANES] = {0};
     uint32_t out = 0;
@@ -183,8 +181,7 @@ uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *
 
 /* Takes a corner of each polygon for the origin of its plane: far from it nothing would be left of small ones but
  * roundings. */
-TL_VECTORIZED static void place_origin(tl_field_lanes *restrict p,
-                                       const tl_field_line *restrict line, size_t count)
+TL_VECTORIZED static void place_origin(tl_field_lanes *restrict p, const tl_field_line *restrict line, size_t count)
 {
     for (const tl_field_line *restrict i = line; i < line + count; i++) {
 #pragma omp simd
@@ -230,8 +227,7 @@ TL_INLINE triangle triangle_of(const tl_field_lanes *p, const tl_field_line *i, 
 }
 
 /* Sums the triangles between the origin and each line's part. */
-TL_VECTORIZED static void add_lines(tl_field_lanes *restrict p, const tl_field_line *restrict line,
-                                    size_t count)
+TL_VECTORIZED static void add_lines(tl_field_lanes *restrict p, const tl_field_line *restrict line, size_t count)
 {
     for (const tl_field_line *restrict i = line; i < line + count; i++) {
 #pragma omp simd
@@ -266,8 +262,7 @@ void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t cou
 }
 
 /* x n + y t + z s of a lane. */
-TL_INLINE void put_vector(const tl_field_lanes *p, double to[3][LANES], unsigned l, double x,
-                          double y, double z)
+TL_INLINE void put_vector(const tl_field_lanes *p, double to[3][LANES], unsigned l, double x, double y, double z)
 {
     to[0][l] = x * p->n[0][l] + y * p->t[0][l] + z * p->s[0][l];
     to[1][l] = x * p->n[1][l] + y * p->t[1][l] + z * p->s[1][l];
@@ -298,8 +293,7 @@ TL_VECTORIZED static void share_out(const tl_field_lanes *restrict p, tl_field_p
         put_vector(p, out->swept_moment, l, 0, is + os * area, -(it + ot * area));
         put_vector(p, out->pressed, l, h * d, ot * d + dt, os * d + ds);
         put_vector(p, out->first, l, h * area, ot * area + it, os * area + is);
-        out->second[l] = (h * h + ot * ot + os * os) * area + part * (p->itt[l] + p->iss[l]) +
-                         2 * (ot * it + os * is);
+        out->second[l] = (h * h + ot * ot + os * os) * area + part * (p->itt[l] + p->iss[l]) + 2 * (ot * it + os * is);
         put_vector(p, out->deepest_at, l, h, ot + p->deepest_t[l], os + p->deepest_s[l]);
     }
 }
@@ -314,8 +308,7 @@ void tl_field_share(const tl_field_lanes *p, tl_field_parts *out)
 /* Sums of products of n numbers are those of all ways to choose n with repetition, h_n. Over a triangle of area w with
  * the depths a, b, c: int d^n dS = 2 w h_n(a, b, c) / ((n + 1) (n + 2)). The integral of d^n x is the sum over its
  * corners of 2 w x_a h_n(a, b, c, a) / ((n + 1) (n + 2) (n + 3)). */
-TL_VECTORIZED static void sum_powers(tl_field_lanes *restrict p, const tl_field_line *restrict line,
-                                     size_t count)
+TL_VECTORIZED static void sum_powers(tl_field_lanes *restrict p, const tl_field_line *restrict line, size_t count)
 {
     for (const tl_field_line *restrict i = line; i < line + count; i++) {
 #pragma omp simd
@@ -344,8 +337,7 @@ TL_VECTORIZED static void sum_powers(tl_field_lanes *restrict p, const tl_field_
     }
 }
 
-TL_VECTORIZED static void share_powers(const tl_field_lanes *restrict p,
-                                       tl_field_parts *restrict out)
+TL_VECTORIZED static void share_powers(const tl_field_lanes *restrict p, tl_field_parts *restrict out)
 {
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
@@ -363,8 +355,7 @@ TL_VECTORIZED static void share_powers(const tl_field_lanes *restrict p,
     }
 }
 
-void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count,
-                         tl_field_parts *out)
+void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count, tl_field_parts *out)
 {
     memset(p->flat, 0, offsetof(tl_field_lanes, origin_t) - offsetof(tl_field_lanes, flat));
     sum_powers(p, line, count);

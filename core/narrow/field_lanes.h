@@ -10,19 +10,18 @@
 /* The line that one other plane draws in each of eight polygons. */
 typedef struct tl_field_line {
     double gt[TL_LANES], gs[TL_LANES], c[TL_LANES]; /* unit normal, offset */
-    double from[TL_LANES], to[TL_LANES]; /* places between which the line bounds the polygon */
+    double from[TL_LANES], to[TL_LANES];            /* places between which the line bounds the polygon */
 } tl_field_line;
 
 /* Eight polygons. */
 typedef struct tl_field_lanes {
     double n[3][TL_LANES], h[TL_LANES]; /* plane */
-    double between
-        [TL_LANES]; /* 1: between two cells; n = n_a - n_b and h are yet to be divided by the length of n */
-    double length[TL_LANES]; /* that; of a border minus the cosine of both planes */
-    double face_n[3][TL_LANES], face_c[TL_LANES]; /* the face whose depth counts */
-    double one_plane[TL_LANES];                   /* offset within which planes are one */
-    double share[TL_LANES];                /* of the integrals: 1; 1/2 for a tie; 0 for none */
-    double t[3][TL_LANES], s[3][TL_LANES]; /* axes in the plane */
+    double between[TL_LANES]; /* 1: between two cells; n = n_a - n_b and h are yet to be divided by the length of n */
+    double length[TL_LANES];  /* that; of a border minus the cosine of both planes */
+    double face_n[3][TL_LANES], face_c[TL_LANES];    /* the face whose depth counts */
+    double one_plane[TL_LANES];                      /* offset within which planes are one */
+    double share[TL_LANES];                          /* of the integrals: 1; 1/2 for a tie; 0 for none */
+    double t[3][TL_LANES], s[3][TL_LANES];           /* axes in the plane */
     double d0[TL_LANES], dt[TL_LANES], ds[TL_LANES]; /* depth in the plane: d0 + dt x_t + ds x_s */
     /* integrals of d^3 and d^4; |grad d|^2 times them by lines; of d^2 and d^3 times x_t and x_s */
     double flat[2][TL_LANES], steep[2][TL_LANES], power_t[2][TL_LANES], power_s[2][TL_LANES];
@@ -65,17 +64,15 @@ typedef struct tl_field_plane {
 /* Draws the lines of some planes, the first of `line`, and finds between which places they bound the polygons; how
  * many lines there are. Polygons between cells lie where no face is nearer than theirs, and theirs is not passed:
  * `line[0]` is that of d = 0. Others, with `flat`, lie on a face and within all other planes. */
-size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat,
-                     tl_field_line *line);
+size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat, tl_field_line *line);
 /* Lanes, a bit each, of which a corner with d = 0 lies beyond one of some planes. */
-uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes,
-                                 uint32_t count, const tl_field_line *own);
+uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes, uint32_t count,
+                                 const tl_field_line *own);
 /* Integrates the polygons that these lines bound. */
 void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count);
 /* What the polygons give whose lines have been summed. */
 void tl_field_share(const tl_field_lanes *p, tl_field_parts *out);
 /* After both: the integrals of higher powers of d. */
-void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count,
-                         tl_field_parts *out);
+void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count, tl_field_parts *out);
 
 #endif

@@ -51,9 +51,9 @@ typedef struct corners {
 /* Places and depths of eight corners, and how much larger roundings of offsets are there; NaN where planes hardly
  * meet. The first plane of a corner is a face's. The others are as near, or are borders, numbers from `faces` on, and
  * hold it. */
-TL_INLINE void place_corners(const tl_field_faces *restrict f, const uint8_t *restrict plane,
-                             uint32_t faces, bool seamed, double *restrict x, double *restrict y,
-                             double *restrict z, double *restrict d, double *restrict blur)
+TL_INLINE void place_corners(const tl_field_faces *restrict f, const uint8_t *restrict plane, uint32_t faces,
+                             bool seamed, double *restrict x, double *restrict y, double *restrict z,
+                             double *restrict d, double *restrict blur)
 {
     const double *restrict nx = f->n[0], *restrict ny = f->n[1], *restrict nz = f->n[2];
     const double *restrict c = f->c;
@@ -91,17 +91,15 @@ TL_INLINE void place_corners(const tl_field_faces *restrict f, const uint8_t *re
     }
 }
 
-TL_VECTORIZED static void place_corners_of_faces(const tl_field_faces *restrict f,
-                                                 const uint8_t *restrict plane, double *restrict x,
-                                                 double *restrict y, double *restrict z,
+TL_VECTORIZED static void place_corners_of_faces(const tl_field_faces *restrict f, const uint8_t *restrict plane,
+                                                 double *restrict x, double *restrict y, double *restrict z,
                                                  double *restrict d, double *restrict blur)
 {
     place_corners(f, plane, 0, false, x, y, z, d, blur);
 }
 
-TL_VECTORIZED static void place_seamed_corners(const tl_field_faces *restrict f,
-                                               const uint8_t *restrict plane, double *restrict x,
-                                               double *restrict y, double *restrict z,
+TL_VECTORIZED static void place_seamed_corners(const tl_field_faces *restrict f, const uint8_t *restrict plane,
+                                               double *restrict x, double *restrict y, double *restrict z,
                                                double *restrict d, double *restrict blur)
 {
     place_corners(f, plane, f->a + f->b, true, x, y, z, d, blur);
@@ -109,11 +107,9 @@ TL_VECTORIZED static void place_seamed_corners(const tl_field_faces *restrict f,
 
 /* Whether none of the planes from `first` to before `end` is nearer to any of eight corners than d. Allowed is a slack
  * that grows with the roundings. */
-TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_t first,
-                                       uint32_t end, const double *restrict x,
-                                       const double *restrict y, const double *restrict z,
-                                       const double *restrict d, const double *restrict blur,
-                                       double slack)
+TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_t first, uint32_t end,
+                                       const double *restrict x, const double *restrict y, const double *restrict z,
+                                       const double *restrict d, const double *restrict blur, double slack)
 {
     double least[LANES];
     for (uint32_t l = 0; l < LANES; l++)
@@ -174,8 +170,8 @@ typedef struct polygons {
     const uint8_t *loop[LANES];
     uint32_t sides[LANES], most;
     double n[3][LANES], length[LANES]; /* n_i - n_j, then divided by its length, and that */
-    double gradient
-        [LANES]; /* 1: of S, 0: between cells of one block; of a border the sign of its part in the gradient */
+    double
+        gradient[LANES]; /* 1: of S, 0: between cells of one block; of a border the sign of its part in the gradient */
     double cells[LANES]; /* how many of the cells beside it have their energy from their sides */
     integrals of;
 } polygons;
@@ -203,12 +199,11 @@ TL_INLINE void add_triangle(const polygons *p, const polygon_corner *u, const po
         double wx = w->x[0][l], wy = w->x[1][l], wz = w->x[2][l], wd = w->d[l];
         double ax = vx - ux, ay = vy - uy, az = vz - uz;
         double bx = wx - ux, by = wy - uy, bz = wz - uz;
-        double twice = p->n[0][l] * (ay * bz - az * by) + p->n[1][l] * (az * bx - ax * bz) +
-                       p->n[2][l] * (ax * by - ay * bx);
+        double twice =
+            p->n[0][l] * (ay * bz - az * by) + p->n[1][l] * (az * bx - ax * bz) + p->n[2][l] * (ax * by - ay * bx);
         double third = twice * (1.0 / 6), twelfth = twice * (1.0 / 24);
         double x = ux + vx + wx, y = uy + vy + wy, z = uz + vz + wz, d = ud + vd + wd;
-        double squares =
-            ux * ux + uy * uy + uz * uz + vx * vx + vy * vy + vz * vz + wx * wx + wy * wy + wz * wz;
+        double squares = ux * ux + uy * uy + uz * uz + vx * vx + vy * vy + vz * vz + wx * wx + wy * wy + wz * wz;
         s->area[l] += 0.5 * twice;
         s->d[l] += third * d;
         s->dd[l] += twelfth * (d * d + ud * ud + vd * vd + wd * wd);
@@ -228,9 +223,8 @@ typedef struct power_integrals {
 } power_integrals;
 
 /* Adds a triangle of each polygon: see sum_powers of field_lanes.c. */
-TL_INLINE void add_triangle_powers(const polygons *p, const polygon_corner *u,
-                                   const polygon_corner *v, const polygon_corner *w,
-                                   power_integrals *s)
+TL_INLINE void add_triangle_powers(const polygons *p, const polygon_corner *u, const polygon_corner *v,
+                                   const polygon_corner *w, power_integrals *s)
 {
     const polygon_corner *corner[] = {u, v, w};
 #pragma omp simd
@@ -238,8 +232,8 @@ TL_INLINE void add_triangle_powers(const polygons *p, const polygon_corner *u,
         double ax = v->x[0][l] - u->x[0][l], bx = w->x[0][l] - u->x[0][l];
         double ay = v->x[1][l] - u->x[1][l], by = w->x[1][l] - u->x[1][l];
         double az = v->x[2][l] - u->x[2][l], bz = w->x[2][l] - u->x[2][l];
-        double twice = p->n[0][l] * (ay * bz - az * by) + p->n[1][l] * (az * bx - ax * bz) +
-                       p->n[2][l] * (ax * by - ay * bx);
+        double twice =
+            p->n[0][l] * (ay * bz - az * by) + p->n[1][l] * (az * bx - ax * bz) + p->n[2][l] * (ax * by - ay * bx);
         double a = u->d[l], b = v->d[l], c = w->d[l], a2 = a * a;
         double h1 = a + b, h2 = a2 + b * h1, h3 = a * a2 + b * h2, h4 = a2 * a2 + b * h3;
         h1 += c;
@@ -366,8 +360,7 @@ TL_VECTORIZED static void add_given(const polygons *restrict p, double (*restric
 enum { POWER_FORCE = 0, POWER_MOMENT = 3, BY_POWER = 6, POWER, POWER_GIVEN };
 
 TL_VECTORIZED static void add_power(const polygons *restrict p, const double *restrict over,
-                                    const double *restrict next,
-                                    const double (*restrict moment)[LANES], double per,
+                                    const double *restrict next, const double (*restrict moment)[LANES], double per,
                                     double (*restrict out)[LANES])
 {
 #pragma omp simd
@@ -387,8 +380,7 @@ TL_VECTORIZED static void add_power(const polygons *restrict p, const double *re
     }
 }
 
-static void add_powers(const corners *at, const polygons *p,
-                       double given[TL_FIELD_POWERS][POWER_GIVEN][LANES])
+static void add_powers(const corners *at, const polygons *p, double given[TL_FIELD_POWERS][POWER_GIVEN][LANES])
 {
     power_integrals all;
     const power_integrals *s = &all;
@@ -398,8 +390,7 @@ static void add_powers(const corners *at, const polygons *p,
 }
 
 /* Sum of eight lanes. */
-TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES],
-                                    double *restrict sum)
+TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES], double *restrict sum)
 {
     for (int k = 0; k < count; k++) {
         const double *v = given[k];
@@ -409,8 +400,7 @@ TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES],
 
 /* Loops and sides of the polygons from number `first` on, before `end`; how many they are. Those left over are the
  * last again. */
-static uint32_t begin_loops(const tl_field_mesh *mesh, uint32_t first, uint32_t end,
-                            const uint8_t **loop, polygons *p)
+static uint32_t begin_loops(const tl_field_mesh *mesh, uint32_t first, uint32_t end, const uint8_t **loop, polygons *p)
 {
     const uint32_t count = end - first < LANES ? end - first : LANES;
     p->most = 0;
@@ -425,8 +415,8 @@ static uint32_t begin_loops(const tl_field_mesh *mesh, uint32_t first, uint32_t 
 }
 
 /* The same with the planes of polygons between cells. */
-static uint32_t begin_polygons(const tl_field_faces *f, const tl_apex apex[2], uint32_t first,
-                               uint32_t end, const uint8_t **loop, polygons *p)
+static uint32_t begin_polygons(const tl_field_faces *f, const tl_apex apex[2], uint32_t first, uint32_t end,
+                               const uint8_t **loop, polygons *p)
 {
     const tl_field_mesh *mesh = f->mesh;
     const uint32_t count = begin_loops(mesh, first, end, loop, p);
@@ -446,8 +436,8 @@ static uint32_t begin_polygons(const tl_field_faces *f, const tl_apex apex[2], u
 
 /* The same of polygons at borders, and what they have instead of the length of n_i - n_j. With what sign they pass on
  * through a seam what presses, if they do (add_border of field.c). */
-static void begin_borders(const tl_field_faces *f, uint32_t first, const uint8_t **loop,
-                          polygons *p, double slope[LANES], double through[LANES])
+static void begin_borders(const tl_field_faces *f, uint32_t first, const uint8_t **loop, polygons *p,
+                          double slope[LANES], double through[LANES])
 {
     const tl_field_mesh *mesh = f->mesh;
     const uint32_t faces = f->a + f->b, of_b = faces + f->border_a;
@@ -470,8 +460,7 @@ static void begin_borders(const tl_field_faces *f, uint32_t first, const uint8_t
 }
 
 /* Adds the sides of cells that pass by an apex. */
-static void add_strays(const tl_field_faces *f, const polygons *p, uint32_t first, uint32_t count,
-                       tl_apex apex[2])
+static void add_strays(const tl_field_faces *f, const polygons *p, uint32_t first, uint32_t count, tl_apex apex[2])
 {
     for (uint32_t l = 0; l < count; l++) {
         uint32_t i = f->mesh->own[first + l][0], j = f->mesh->own[first + l][1];
@@ -505,9 +494,8 @@ static tl_vec3 vector_of(const double sum[GIVEN], int column)
 }
 
 /* Adds the polygons at borders, from number `first` on. */
-static void add_borders(const tl_field_faces *f, const corners *at, uint32_t first,
-                        const uint8_t *loop, double powers[TL_FIELD_POWERS][POWER_GIVEN][LANES],
-                        tl_field_sums *sums)
+static void add_borders(const tl_field_faces *f, const corners *at, uint32_t first, const uint8_t *loop,
+                        double powers[TL_FIELD_POWERS][POWER_GIVEN][LANES], tl_field_sums *sums)
 {
     polygons p;
     double slope[LANES], through[LANES], sum[GIVEN];
@@ -592,9 +580,8 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++) {
         double all[POWER_GIVEN];
         sum_lanes(POWER_GIVEN, powers[k], all);
-        sums->powers[k] = (tl_field_power){.whole = all[POWER],
-                                           .force = {all[0], all[1], all[2]},
-                                           .moment = {all[3], all[4], all[5]}};
+        sums->powers[k] = (tl_field_power){
+            .whole = all[POWER], .force = {all[0], all[1], all[2]}, .moment = {all[3], all[4], all[5]}};
         by_power[k] = all[BY_POWER];
     }
     tl_apex_add_shares(apex, f, sum[BY_FORCE], sum[BY_SWEPT], by_power, sums);

@@ -58,18 +58,16 @@ static inline uint32_t tl_mesh_lanes(const tl_field_mesh *mesh)
  * still enclose something: the deepest point is then not in both blocks. */
 typedef struct tl_field_faces {
     uint32_t a, b, border_a, border_b; /* how many of each */
-    uint32_t seam_a,
-        seam_b;       /* so many borders, the last of A's and of B's, are seams to other parts */
-    double *n[3], *c; /* [all of them]; with a mesh there is room for TL_FIELD_KNOWN + 1 */
+    uint32_t seam_a, seam_b;           /* so many borders, the last of A's and of B's, are seams to other parts */
+    double *n[3], *c;                  /* [all of them]; with a mesh there is room for TL_FIELD_KNOWN + 1 */
     /* What is known of another place; NULL: nobody keeps it. It is of use for up to TL_FIELD_KNOWN planes. The bits
      * must be of all faces that bounded K. They must be forgotten when a corner of one block lies in the other, and on
      * or beyond a face that is not among them. The function leaves what it finds here. */
     tl_field_mesh *mesh;
-    const tl_mesh_inner
-        *inner;  /* corners of one block in the other, for a new mesh; NULL: make none */
-    bool seamed; /* the nearest face need not bound K: there are borders, or faces of other parts */
-    bool energy_only; /* the volume is not wanted, nor found where it costs more */
-    bool powers;      /* int d^2 dV and int d^3 dV are wanted, too */
+    const tl_mesh_inner *inner; /* corners of one block in the other, for a new mesh; NULL: make none */
+    bool seamed;                /* the nearest face need not bound K: there are borders, or faces of other parts */
+    bool energy_only;           /* the volume is not wanted, nor found where it costs more */
+    bool powers;                /* int d^2 dV and int d^3 dV are wanted, too */
 } tl_field_faces;
 
 static inline tl_vec3 tl_field_normal(const tl_field_faces *f, uint32_t face)
@@ -88,10 +86,9 @@ enum { TL_FIELD_POWERS = 2 };
 
 /* Integrals over S and K, moments about the origin. Those marked * include the borders. */
 typedef struct tl_field_sums {
-    double energy, volume; /* of K: G and its volume (see energy_only); m^4, m^3 */
-    tl_vec3 force, moment; /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
-    tl_vec3 swept,
-        swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
+    double energy, volume;       /* of K: G and its volume (see energy_only); m^4, m^3 */
+    tl_vec3 force, moment;       /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
+    tl_vec3 swept, swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
     /* int d n dS over the seams: what passes from one part of a body to the next, and into `force` of both */
     tl_vec3 through, through_moment;
     tl_vec3 area;     /* int n dS; m^2 */

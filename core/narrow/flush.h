@@ -33,9 +33,8 @@ typedef struct tl_flush_limits {
 
 TL_INLINE tl_flush_limits tl_flush_limits_of(bool corners)
 {
-    return corners ? (tl_flush_limits){TL_CORNERS_TILT,        TL_CORNERS_FIELD_TILT,
-                                       TL_CORNERS_DEPTH,       TL_CORNERS_FIELD_DEPTH,
-                                       TL_CORNERS_POINTS_TILT, TL_CORNERS_POINTS_DEPTH}
+    return corners ? (tl_flush_limits){TL_CORNERS_TILT,        TL_CORNERS_FIELD_TILT,  TL_CORNERS_DEPTH,
+                                       TL_CORNERS_FIELD_DEPTH, TL_CORNERS_POINTS_TILT, TL_CORNERS_POINTS_DEPTH}
                    : (tl_flush_limits){TL_FLUSH_TILT,  TL_FIELD_TILT, TL_FLUSH_DEPTH,
                                        TL_FIELD_DEPTH, TL_FLUSH_TILT, TL_FLUSH_DEPTH};
 }

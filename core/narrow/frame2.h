@@ -75,8 +75,7 @@ typedef struct tl_patch_gap {
 
 TL_INLINE tl_patch_gap tl_patch_gap_of(const tl_frame2 *f, tl_plane b)
 {
-    return (tl_patch_gap){f->rest + tl_v3_dot(b.normal, f->o) - b.offset,
-                          f->rest_x + tl_v3_dot(b.normal, f->t1),
+    return (tl_patch_gap){f->rest + tl_v3_dot(b.normal, f->o) - b.offset, f->rest_x + tl_v3_dot(b.normal, f->t1),
                           f->rest_y + tl_v3_dot(b.normal, f->t2)};
 }
 

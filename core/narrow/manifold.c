@@ -69,8 +69,8 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
 }
 
 /* Whether the faces of a patch with bonds are still one. */
-static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule,
-                        const tl_manifold_before *before, tl_narrow_scratch *scratch)
+static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule, const tl_manifold_before *before,
+                        tl_narrow_scratch *scratch)
 {
     const tl_face_pair f = before->faces;
     double left = INFINITY;
@@ -94,19 +94,15 @@ bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, tl_fa
     m->extra = extra;
     if (!tl_manifold_reserve(m, TL_FIELD_POINTS))
         return false;
-    m->facet = (tl_facet){.kind = TL_FACET_FIELD,
-                          .ia = faces.a,
-                          .ib = faces.b,
-                          .na = press->normal,
-                          .offset = press->overlap};
+    m->facet =
+        (tl_facet){.kind = TL_FACET_FIELD, .ia = faces.a, .ib = faces.b, .na = press->normal, .offset = press->overlap};
     for (uint32_t k = 0; k < TL_FIELD_POINTS && press->area > 0; k++)
-        m->points[m->point_count++] =
-            (tl_contact_point){.p = press->point, .area = press->area, .key = k};
+        m->points[m->point_count++] = (tl_contact_point){.p = press->point, .area = press->area, .key = k};
     return true;
 }
 
-tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region,
-                                 const tl_touch_rule *rule, const tl_manifold_before *before)
+tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region, const tl_touch_rule *rule,
+                                 const tl_manifold_before *before)
 {
     return (tl_press_query){.view = view,
                             .region = region,
@@ -129,8 +125,7 @@ static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_to
     tl_press_extra *extra = &scratch->extra;
     scratch->manifold.point_count = 0;
     scratch->manifold.valid = TL_LIST_MARGIN * view->size;
-    return tl_press_find(&query, 1, scratch, press, extra) &&
-           tl_manifold_press(press, extra, faces, scratch);
+    return tl_press_find(&query, 1, scratch, press, extra) && tl_manifold_press(press, extra, faces, scratch);
 }
 
 /* ---------------------------------------------------------------- all of it -------------- */
@@ -159,8 +154,7 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
 
 /* The face whose outward normal is nearest a direction, and the cosine between them. It must reach to within the
  * contact tolerance of the block's end in that direction. A face can be nearer still and lie elsewhere. */
-static uint16_t touching_face(const tl_pair_view *view, bool of_b, tl_vec3 direction,
-                              double *cosine)
+static uint16_t touching_face(const tl_pair_view *view, bool of_b, tl_vec3 direction, double *cosine)
 {
     const tl_poly *p = of_b ? view->b : view->a;
     const tl_vec3 *vertex = of_b ? view->vertex_b : p->vertex;

@@ -29,8 +29,8 @@ typedef struct tl_manifold_before {
 bool tl_manifold_find(const tl_pair_view *view, const tl_region *region, const tl_touch_rule *rule,
                       const tl_manifold_before *before, tl_narrow_scratch *scratch);
 /* What the press of a field contact is found for. */
-tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region,
-                                 const tl_touch_rule *rule, const tl_manifold_before *before);
+tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region, const tl_touch_rule *rule,
+                                 const tl_manifold_before *before);
 /* A field contact of a press, and of two flush faces, into scratch->manifold. false: out of memory. */
 bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, tl_face_pair faces,
                        tl_narrow_scratch *scratch);

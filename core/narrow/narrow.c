@@ -26,8 +26,7 @@ bool tl_manifold_reserve(tl_manifold *m, size_t count)
     if (m->point_count + count <= m->point_capacity)
         return true;
     size_t capacity = 2 * (m->point_count + count);
-    tl_contact_point *points =
-        capacity > UINT16_MAX ? NULL : realloc(m->points, capacity * sizeof *points);
+    tl_contact_point *points = capacity > UINT16_MAX ? NULL : realloc(m->points, capacity * sizeof *points);
     if (!points) {
         m->failed = true;
         return false;

@@ -43,8 +43,7 @@ static void add_point(const patch *p, tl_point2 at, double area, uint32_t key)
 static void add_corner(const patch *p, const tl_corner *c, double area)
 {
     double reach = p->rule.reach;
-    tl_point2 at = {tl_drawn_in(reach, p->of->centroid.x, c->at.x),
-                    tl_drawn_in(reach, p->of->centroid.y, c->at.y)};
+    tl_point2 at = {tl_drawn_in(reach, p->of->centroid.x, c->at.x), tl_drawn_in(reach, p->of->centroid.y, c->at.y)};
     add_point(p, at, area, c->key);
 }
 
@@ -72,8 +71,7 @@ static bool reserve(tl_patch_points *out, size_t count)
     if (count <= out->capacity)
         return true;
     size_t capacity = 2 * count;
-    double *block =
-        capacity > UINT16_MAX ? NULL : malloc(capacity * (4 * sizeof(double) + sizeof(uint32_t)));
+    double *block = capacity > UINT16_MAX ? NULL : malloc(capacity * (4 * sizeof(double) + sizeof(uint32_t)));
     if (!block)
         return false;
     free(out->p[0]);
@@ -103,8 +101,7 @@ static double ride_of(const tl_common_polygon *of)
 {
     double whole = 0, of_b = 0;
     for (size_t i = 0; i < of->count; i++) {
-        const tl_corner *here = &of->corner[i],
-                        *after = &of->corner[i + 1 == of->count ? 0 : i + 1];
+        const tl_corner *here = &of->corner[i], *after = &of->corner[i + 1 == of->count ? 0 : i + 1];
         double fan = 0.5 * tl_cross2(of->centroid, here->at, after->at);
         fan = fan > 0 ? fan : 0;
         whole += fan;
@@ -131,10 +128,7 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
     const bool corners = rule->corners && tl_at_corners(view->a, fa, view->b, fb);
     tl_common_polygon common;
     tl_patch_points *out = &scratch->patch;
-    const patch one = {.of = &common,
-                       .rule = tl_point_rule_of(corners),
-                       .faces = tl_key_of(0, fa, fb),
-                       .out = out};
+    const patch one = {.of = &common, .rule = tl_point_rule_of(corners), .faces = tl_key_of(0, fa, fb), .out = out};
     out->count = 0;
     if (!tl_common_polygon_find(view, fa, fb, scratch, &common)) {
         scratch->manifold.failed = true;
@@ -155,8 +149,7 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
         add_corners(&one, &scratch->outlines);
     } else {
         add_edges(&one, common.corner, common.count);
-        add_point(&one, common.centroid, one.rule.centroid * common.area,
-                  tl_key_of(TL_POINT_CENTROID, 0, 0));
+        add_point(&one, common.centroid, one.rule.centroid * common.area, tl_key_of(TL_POINT_CENTROID, 0, 0));
     }
     return common.frame.secant * common.area;
 }
@@ -180,7 +173,7 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
                           .ride = from->ride,
                           .laid = {view->turn, view->shift}};
     for (size_t i = 0; i < from->count; i++)
-        m->points[m->point_count++] = (tl_contact_point){
-            .p = tl_columns_get(from->p, i), .area = from->area[i], .key = from->key[i]};
+        m->points[m->point_count++] =
+            (tl_contact_point){.p = tl_columns_get(from->p, i), .area = from->area[i], .key = from->key[i]};
     return area;
 }

@@ -64,9 +64,7 @@ static void add_own(walk *w, uint32_t kind, uint32_t i)
 {
     uint8_t at = (uint8_t)(kind == TL_POINT_A ? i : TL_OUTLINE_CORNERS + i);
     add(w, tl_corner_key(kind, i),
-        (tl_outline_corner){
-            .from = at, .to = at, .over = TL_HEIGHT_OWN, .under = TL_HEIGHT_OWN + 1},
-        at);
+        (tl_outline_corner){.from = at, .to = at, .over = TL_HEIGHT_OWN, .under = TL_HEIGHT_OWN + 1}, at);
 }
 
 /* Adds the corner where edge i of A crosses line j of B, and polygon goes on along `edge`. */
@@ -193,16 +191,13 @@ static uint32_t bits_of_bytes(uint64_t x)
 static uint32_t coinciding_edges(uint32_t na, uint32_t nb, uint64_t on_a, uint64_t on_b)
 {
     uint64_t a = along(on_a, na), b = along(on_b, nb);
-    return (bytes_with_bits(a) | bits_of_bytes(b)) | (bits_of_bytes(a) | bytes_with_bits(b))
-                                                         << TL_OUTLINE_CORNERS;
+    return (bytes_with_bits(a) | bits_of_bytes(b)) | (bits_of_bytes(a) | bytes_with_bits(b)) << TL_OUTLINE_CORNERS;
 }
 
-const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
-                                uint64_t inside_b)
+const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a, uint64_t inside_b)
 {
     uint32_t sides = na << 8 | nb;
-    uint64_t mix =
-        (inside_a ^ sides) * UINT64_C(0x9e3779b97f4a7c15) ^ inside_b * UINT64_C(0xd6e8feb86659fd93);
+    uint64_t mix = (inside_a ^ sides) * UINT64_C(0x9e3779b97f4a7c15) ^ inside_b * UINT64_C(0xd6e8feb86659fd93);
     tl_outline *o = &cache[(mix ^ mix >> 29) * UINT64_C(0xd6e8feb86659fd93) >> 57];
     if (o->sides == sides && o->inside_a == inside_a && o->inside_b == inside_b)
         return o;
@@ -230,8 +225,7 @@ tl_patch_batch *tl_batch_begin(tl_narrow_scratch *scratch, bool corners, double 
     return scratch->batch;
 }
 
-static void take_face(tl_lanes3 *corner, uint32_t lane, const tl_poly *p, uint32_t face,
-                      bool backward)
+static void take_face(tl_lanes3 *corner, uint32_t lane, const tl_poly *p, uint32_t face, bool backward)
 {
     const uint16_t *loop = p->loop + p->start[face];
     uint32_t count = tl_poly_face_size(p, face);
@@ -246,8 +240,8 @@ static void fill_face(tl_lanes3 *corner, uint32_t lane, uint32_t count, uint32_t
         tl_lanes3_put(&corner[i], lane, tl_lanes3_get(&corner[0], lane));
 }
 
-void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa,
-                  const tl_poly *b, uint32_t fb, double size, double reach)
+void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
+                  double size, double reach)
 {
     batch->used |= 1u << lane;
     batch->na[lane] = tl_poly_face_size(a, fa);
@@ -323,8 +317,7 @@ TL_INLINE void view(tl_patch_batch *b)
             double *restrict turn = b->turn.m[i][j];
 #pragma omp simd
             EACH_LANE(l)
-            turn[l] =
-                r0[l] * b->r_b.m[0][j][l] + r1[l] * b->r_b.m[1][j][l] + r2[l] * b->r_b.m[2][j][l];
+            turn[l] = r0[l] * b->r_b.m[0][j][l] + r1[l] * b->r_b.m[1][j][l] + r2[l] * b->r_b.m[2][j][l];
         }
 #pragma omp simd
         EACH_LANE(l)
@@ -376,8 +369,7 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
     {
         tl_frame2 f = frame_at(&w->frame, l);
         tl_mat3 turn = tl_lanes9_get(&b->turn, l);
-        tl_vec3 v =
-            tl_v3_add(tl_m3_mul(&turn, tl_lanes3_get(&b->b[j], l)), tl_lanes3_get(&b->shift, l));
+        tl_vec3 v = tl_v3_add(tl_m3_mul(&turn, tl_lanes3_get(&b->b[j], l)), tl_lanes3_get(&b->shift, l));
         tl_point2 at = tl_frame2_project(&f, v);
         w->x[CORNERS + j][l] = at.x;
         w->y[CORNERS + j][l] = at.y;
@@ -386,8 +378,8 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
 
 /* Notes which corners of a face, from row `first` on, lie inside or on the line from row `from` to row `to`. It does
  * so in bit `bit` of each corner's byte. Those on the line lie inside unless it is `strict`. */
-TL_INLINE void note_inside(const tl_patch_batch *b, work *w, uint32_t first, uint32_t count,
-                           uint32_t from, uint32_t to, uint32_t bit, bool strict)
+TL_INLINE void note_inside(const tl_patch_batch *b, work *w, uint32_t first, uint32_t count, uint32_t from, uint32_t to,
+                           uint32_t bit, bool strict)
 {
     uint64_t *restrict inside = strict ? w->inside_b : w->inside_a;
     uint64_t *restrict on_line = strict ? w->on_b : w->on_a;
@@ -479,9 +471,8 @@ static void find_outlines(tl_patch_batch *b, work *w)
             b->outline[l] = *some;
     b->alike = true;
     for (uint32_t l = 1; l < TL_LANES; l++)
-        b->alike =
-            b->alike && b->outline[l].count == b->outline[0].count &&
-            memcmp(b->outline[l].corner, b->outline[0].corner, sizeof b->outline[0].corner) == 0;
+        b->alike = b->alike && b->outline[l].count == b->outline[0].count &&
+                   memcmp(b->outline[l].corner, b->outline[0].corner, sizeof b->outline[0].corner) == 0;
 }
 
 /* Looks up what corner k is placed by where it is of the same features in all lanes. */

@@ -37,8 +37,7 @@ typedef struct tl_outline {
  * each, which corner i of A lies inside; the same with `inside_b`. */
 #define TL_OUTLINES 128
 
-const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
-                                uint64_t inside_b);
+const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a, uint64_t inside_b);
 
 typedef double tl_batch1[TL_LANES];
 
@@ -55,8 +54,7 @@ typedef struct tl_patch_batch {
     /* their faces: corners counter-clockwise seen against the patch's normal, B's in B's frame */
     tl_lanes3 a[TL_OUTLINE_CORNERS], b[TL_OUTLINE_CORNERS], normal_a, normal_b;
     tl_batch1 offset_a, offset_b;
-    tl_batch1 near, least,
-        reach; /* corners nearer to each other are one; least area; largest gap */
+    tl_batch1 near, least, reach; /* corners nearer to each other are one; least area; largest gap */
     /* the patches */
     uint64_t laid[TL_LANES];      /* whether there is one, of full corners that stand clear */
     tl_outline outline[TL_LANES]; /* its corners */
@@ -82,13 +80,12 @@ tl_patch_batch *tl_batch_begin(tl_narrow_scratch *scratch, bool corners, double 
 /* Whether two faces are for a batch. */
 static inline bool tl_batch_takes(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
 {
-    return tl_poly_face_size(a, fa) <= TL_OUTLINE_CORNERS &&
-           tl_poly_face_size(b, fb) <= TL_OUTLINE_CORNERS;
+    return tl_poly_face_size(a, fa) <= TL_OUTLINE_CORNERS && tl_poly_face_size(b, fb) <= TL_OUTLINE_CORNERS;
 }
 /* Puts two faces, of blocks the smaller of which has this size, into a lane: where they are is yet to be
  * told. Patches with every gap beyond `reach` are left out. */
-void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa,
-                  const tl_poly *b, uint32_t fb, double size, double reach);
+void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
+                  double size, double reach);
 /* Lays the patches of all lanes. */
 void tl_batch_lay(tl_patch_batch *batch);
 /* A lane that is laid has as many points as tl_patch_lay gives it, in the same order. They are `middles` middles (0
@@ -107,8 +104,8 @@ static inline tl_batch_counts tl_batch_count(const tl_patch_batch *b, uint32_t l
 }
 
 /* Whether a lane's points, counted, have these keys, which are `stride` apart. */
-static inline bool tl_batch_has_keys(const tl_patch_batch *b, uint32_t lane, tl_batch_counts n,
-                                     const uint32_t *key, size_t stride)
+static inline bool tl_batch_has_keys(const tl_patch_batch *b, uint32_t lane, tl_batch_counts n, const uint32_t *key,
+                                     size_t stride)
 {
     const tl_outline *o = &b->outline[lane];
     uint32_t faces = b->faces[lane], others = 0;
@@ -122,8 +119,8 @@ static inline bool tl_batch_has_keys(const tl_patch_batch *b, uint32_t lane, tl_
 }
 
 /* Rotations of the bodies of a lane, and the way from A's to B's in the model's axes. */
-static inline void tl_batch_between(tl_patch_batch *batch, uint32_t lane, const tl_mat3 *r_a,
-                                    const tl_mat3 *r_b, tl_vec3 apart)
+static inline void tl_batch_between(tl_patch_batch *batch, uint32_t lane, const tl_mat3 *r_a, const tl_mat3 *r_b,
+                                    tl_vec3 apart)
 {
     tl_lanes9_put(&batch->r_a, lane, r_a);
     tl_lanes9_put(&batch->r_b, lane, r_b);

@@ -7,8 +7,8 @@
 #include <talus/vmath.h>
 
 /* Vectors turned and shifted: each is four lanes, of which the next vector takes the last one's place. */
-TL_VECTORIZED static void place(const tl_mat3 *turn, tl_vec3 shift, const tl_vec3 *restrict from,
-                                size_t stride, size_t count, double *restrict to)
+TL_VECTORIZED static void place(const tl_mat3 *turn, tl_vec3 shift, const tl_vec3 *restrict from, size_t stride,
+                                size_t count, double *restrict to)
 {
     const double(*m)[3] = turn->m, t[4] = {shift.x, shift.y, shift.z, shift.z};
     const double x[4] = {m[0][0], m[1][0], m[2][0], m[2][0]};
@@ -40,8 +40,7 @@ bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow_scratch *scra
         vertex += b->vertex_count;
         normal += b->plane_count;
         place(&v->turn, v->shift, b->vertex, sizeof(tl_vec3), b->vertex_count, &v->vertex_b->x);
-        place(&v->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->plane_count,
-              &v->normal_b->x);
+        place(&v->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->plane_count, &v->normal_b->x);
     }
     return true;
 }

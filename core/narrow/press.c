@@ -43,8 +43,7 @@ typedef struct press_planes {
  *
  * The planes of the faces that press, where they are moved out and lean. */
 
-static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query[], uint32_t count,
-                          press_planes p[])
+static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query[], uint32_t count, press_planes p[])
 {
     size_t all = 0;
     uint32_t faces[TL_FIELD_PAIRS];
@@ -95,8 +94,7 @@ tl_plane tl_pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
     return is_moved(of, of_b, face) ? moved_plane(of, of_b) : tl_view_plane(of->view, of_b, face);
 }
 
-static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
-                          uint32_t count)
+static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin, uint32_t count)
 {
     for (uint32_t k = begin; k < begin + count; k++) {
         tl_plane plane = tl_pressing_plane(of, of_b, of->region->face[k]);
@@ -109,8 +107,8 @@ static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, 
 }
 
 /* Adds faces on other parts; how many are seams through which something passes, with it. */
-static uint32_t add_covered(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
-                            uint32_t count, uint32_t *seams)
+static uint32_t add_covered(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin, uint32_t count,
+                            uint32_t *seams)
 {
     const tl_poly *poly = of_b ? of->view->b : of->view->a;
     *seams = 0;
@@ -245,8 +243,7 @@ static tl_field_power with_min_area(const tl_field_sums *f, double min_area)
     if (!(min_area > 0))
         return (tl_field_power){f->energy, force, moment};
     double g = f->energy, v = f->volume, s = 4 * g / v, area = 0.25 * v * v / g;
-    double r = sqrt(area * area + min_area * min_area), ds = 0.5 * s * r,
-           dr = 0.25 * s * s * area / r;
+    double r = sqrt(area * area + min_area * min_area), ds = 0.5 * s * r, dr = 0.25 * s * s * area / r;
     double by_g = ds * 4 / v - dr * area / g, by_v = -ds * s / v + dr * 2 * area / v;
     return (tl_field_power){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, force), by_v, f->swept),
                             tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
@@ -313,8 +310,7 @@ static void blend_powers(const patches *p, tl_field_power field[TL_PRESS_POWERS]
 }
 
 /* The integrals over the patch of the flush faces. false: out of memory. */
-static bool sum_patch(const tl_press_query *of, press_planes *p, tl_narrow_scratch *scratch,
-                      tl_field_sums *out)
+static bool sum_patch(const tl_press_query *of, press_planes *p, tl_narrow_scratch *scratch, tl_field_sums *out)
 {
     list_planes(p, of, of->region->blunt_a, of->region->blunt_b);
     p->faces.mesh = NULL;
@@ -340,8 +336,7 @@ static bool has_shared_planes(const tl_press_query *of)
 static bool is_of_use(const tl_press_query *of)
 {
     const tl_region *r = of->region;
-    return r->mesh && of->shift == 0 && !of->lean &&
-           r->a + r->b + r->border_a + r->border_b <= TL_FIELD_KNOWN;
+    return r->mesh && of->shift == 0 && !of->lean && r->a + r->b + r->border_a + r->border_b <= TL_FIELD_KNOWN;
 }
 
 /* Whether a number is so far above the smallest ones that its square is known to all digits. */
@@ -428,10 +423,8 @@ static void part(patches *p)
             tl_patch_share *by = &p->of[k].by;
             if (j == k)
                 continue;
-            by->push =
-                tl_v3_madd(tl_v3_scale(1 - whole[j].share, by->push), -by->share, whole[j].push);
-            by->turn =
-                tl_v3_madd(tl_v3_scale(1 - whole[j].share, by->turn), -by->share, whole[j].turn);
+            by->push = tl_v3_madd(tl_v3_scale(1 - whole[j].share, by->push), -by->share, whole[j].push);
+            by->turn = tl_v3_madd(tl_v3_scale(1 - whole[j].share, by->turn), -by->share, whole[j].turn);
             by->share *= 1 - whole[j].share;
         }
 }
@@ -451,15 +444,14 @@ static bool find_patches(const tl_press_query *of, press_planes *p, const tl_fie
     const bool corners = of->corners && tl_at_corners(a, fa, b, fb);
     const double steep = tl_flush_limits_of(corners).field_tilt;
     const bool flush = tl_region_tilt(view, fa, fb) < steep;
-    if (flush &&
-        !add_patch(of, p, (tl_face_pair){r->flush_a, r->flush_b}, corners, field, scratch, out))
+    if (flush && !add_patch(of, p, (tl_face_pair){r->flush_a, r->flush_b}, corners, field, scratch, out))
         return false;
     for (uint32_t k = 0; k < r->a && of->corners; k++)
         for (uint32_t m = r->a; m < r->a + r->b; m++) {
             const tl_face_pair f = {r->face[k], r->face[m]};
             if ((f.a == fa && f.b == fb) || f.a >= a->face_count || f.b >= b->face_count ||
-                tl_v3_dot(a->plane[f.a].normal, view->normal_b[f.b]) > 0 ||
-                !(tl_region_tilt(view, f.a, f.b) < steep) || !tl_at_corners(a, f.a, b, f.b))
+                tl_v3_dot(a->plane[f.a].normal, view->normal_b[f.b]) > 0 || !(tl_region_tilt(view, f.a, f.b) < steep) ||
+                !tl_at_corners(a, f.a, b, f.b))
                 continue;
             if (!add_patch(of, p, f, true, field, scratch, out))
                 return false;
@@ -469,9 +461,8 @@ static bool find_patches(const tl_press_query *of, press_planes *p, const tl_fie
 }
 
 /* What a law that is not linear needs of a press, with the area of the field and its overlap. */
-static void put_powers(const tl_press_query *of, tl_vec3 origin,
-                       const tl_field_power powers[TL_PRESS_POWERS], tl_press *press,
-                       tl_press_extra *extra)
+static void put_powers(const tl_press_query *of, tl_vec3 origin, const tl_field_power powers[TL_PRESS_POWERS],
+                       tl_press *press, tl_press_extra *extra)
 {
     const double volume = powers[TL_PRESS_VOLUME].whole;
     const double area = 0.25 * volume * volume / press->energy;
@@ -502,9 +493,8 @@ static bool press_of(const tl_press_query *of, press_planes *p, tl_field_sums *s
     const tl_pair_view *view = of->view;
     const tl_region *region = of->region;
     *press = (tl_press){0};
-    if (!(sums->deepest > TL_TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
-        !(sums->energy > 0) || is_noise(of, p, sums) ||
-        !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest)))
+    if (!(sums->deepest > TL_TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) || !(sums->energy > 0) ||
+        is_noise(of, p, sums) || !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest)))
         return no_press(region);
     const double min_area = of->volumes ? 0 : of->min_area;
     tl_field_power field = with_min_area(sums, min_area), powers[TL_PRESS_POWERS];
@@ -602,8 +592,8 @@ static void begin_anew(const tl_press_query *of, press_planes *p, tl_mesh_inner 
     tl_region_inner_corners(of->view, of->region, inner);
 }
 
-static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                     tl_press press[], tl_press_extra extra[])
+static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch, tl_press press[],
+                     tl_press_extra extra[])
 {
     press_planes p[TL_FIELD_PAIRS];
     uint64_t known[TL_FIELD_PAIRS];
@@ -638,8 +628,8 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
 }
 
 /* What slip has added to energies and volumes in the last step: they are found again without. */
-static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                        tl_press press[], tl_press_extra extra[])
+static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch, tl_press press[],
+                        tl_press_extra extra[])
 {
     tl_press_query before[TL_FIELD_PAIRS];
     tl_region region[TL_FIELD_PAIRS];
@@ -676,8 +666,8 @@ static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_
     return true;
 }
 
-bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                   tl_press press[], tl_press_extra extra[])
+bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch, tl_press press[],
+                   tl_press_extra extra[])
 {
     return find_all(query, count, scratch, press, extra) &&
            (!extra || find_lifted(query, count, scratch, press, extra));

@@ -21,8 +21,8 @@ typedef struct tl_press_query {
      * way */
     double shift;
     tl_face_pair shifted;
-    const tl_plane *
-        lean; /* of A and of B: before they are moved out these faces lean so, in the own frames; NULL: not at all */
+    const tl_plane
+        *lean; /* of A and of B: before they are moved out these faces lean so, in the own frames; NULL: not at all */
     double opened; /* part of the shift that slip has opened in the last step, m */
     bool corners;  /* the patch has points at its corners only */
     bool volumes;  /* the powers are wanted, for a law that is not linear: press.c */
@@ -37,8 +37,8 @@ typedef struct tl_press_query {
 tl_plane tl_pressing_plane(const tl_press_query *query, bool of_b, uint32_t face);
 /* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common; and what those that have
  * more have besides. NULL: neither powers nor what slip has opened are wanted. false: out of memory. */
-bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                   tl_press press[], tl_press_extra extra[]);
+bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch, tl_press press[],
+                   tl_press_extra extra[]);
 
 /* The share of the patch, 1 - w, and its gradient: by a way of B, and by a turn about the origin of the sums. */
 typedef struct tl_patch_share {

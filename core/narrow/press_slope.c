@@ -20,8 +20,8 @@ static motion motion_between(tl_vec3 point, const tl_pair_pose *from, const tl_p
     tl_mat3 q = tl_m3_product_t(&to->turn, &from->turn);
     tl_vec3 arm = tl_v3_sub(from->shift, point);
     return (motion){.way = tl_v3_sub(tl_v3_sub(to->shift, point), tl_m3_mul(&q, arm)),
-                    .turn = tl_v3_scale(0.5, tl_v3(q.m[2][1] - q.m[1][2], q.m[0][2] - q.m[2][0],
-                                                   q.m[1][0] - q.m[0][1]))};
+                    .turn =
+                        tl_v3_scale(0.5, tl_v3(q.m[2][1] - q.m[1][2], q.m[0][2] - q.m[2][0], q.m[1][0] - q.m[0][1]))};
 }
 
 /* Way at the rim of the area for a turn of 1. Of a corner the area is smaller than its overlap. */
@@ -65,8 +65,8 @@ static tl_vec3 difference(tl_vec3 to, tl_vec3 from, double per)
     return tl_v3_scale(per, tl_v3_sub(to, from));
 }
 
-bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
-                         tl_narrow_scratch *scratch, tl_press_slope *slope)
+bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_narrow_scratch *scratch,
+                         tl_press_slope *slope)
 {
     const tl_region *region = query->region;
     slope->known = true;
@@ -76,8 +76,7 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
         tl_field_mesh mesh[2];
         tl_region same[2] = {*region, *region};
         tl_press side[2];
-        tl_pair_view view[] = {moved(query->view, at->point, axis, -by),
-                               moved(query->view, at->point, axis, by)};
+        tl_pair_view view[] = {moved(query->view, at->point, axis, -by), moved(query->view, at->point, axis, by)};
         tl_press_query there[] = {*query, *query};
         for (int k = 0; k < 2; k++) {
             mesh[k] = region->mesh ? *region->mesh : (tl_field_mesh){0};
@@ -98,8 +97,8 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
     return true;
 }
 
-bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
-                   const tl_pair_pose *to, tl_press *out)
+bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from, const tl_pair_pose *to,
+                   tl_press *out)
 {
     const motion by = motion_between(at->point, from, to);
     const double x[] = {by.way.x, by.way.y, by.way.z, by.turn.x, by.turn.y, by.turn.z};

@@ -17,11 +17,11 @@ enum { TL_PRESS_SLOPE_COST = 12 };
 /* How far B has moved between two places, over the overlap of the press: along, and by turns at the rim of its area. */
 double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to);
 /* Slopes at a place where the press was found for a query. false: out of memory. */
-bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
-                         tl_narrow_scratch *scratch, tl_press_slope *slope);
+bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_narrow_scratch *scratch,
+                         tl_press_slope *slope);
 /* The press when B has moved a little from where its slopes were found. false: by more than TL_PRESS_NEAR. */
-bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
-                   const tl_pair_pose *to, tl_press *out);
+bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from, const tl_pair_pose *to,
+                   tl_press *out);
 
 /* Tolerance: motion, over the overlap, up to which slopes are used. The force is wrong by its square, then. Test:
  * property/press_properties. */

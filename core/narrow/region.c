@@ -27,8 +27,7 @@ typedef struct planes {
     double *x, *y, *z, *c;
     double *low, *high; /* of the other block's vertices, over the plane */
     double *outside;    /* of each face: how far it lies outside one face of the other block */
-    size_t
-        faces; /* the first planes are those of faces, the others of faces of other parts (seam.c) */
+    size_t faces;       /* the first planes are those of faces, the others of faces of other parts (seam.c) */
 } planes;
 
 /* 0, TL_COVERED or TL_SEAM. */
@@ -89,8 +88,8 @@ static planes columns_of(const tl_pair_view *view, bool of_b, double *at)
 }
 
 /* How high the vertices of a block lie over eight planes, from number g on, of the other block. */
-TL_VECTORIZED static void vertex_heights(const planes *restrict q, size_t g, const tl_vec3 *vertex,
-                                         size_t count, double (*restrict height)[TL_LANES])
+TL_VECTORIZED static void vertex_heights(const planes *restrict q, size_t g, const tl_vec3 *vertex, size_t count,
+                                         double (*restrict height)[TL_LANES])
 {
     const double *restrict x = q->x + g, *restrict y = q->y + g, *restrict z = q->z + g;
     const double *restrict c = q->c + g;
@@ -108,8 +107,7 @@ TL_VECTORIZED static void vertex_heights(const planes *restrict q, size_t g, con
 }
 
 /* The largest height over one of the planes of a face's lowest vertex. */
-TL_VECTORIZED static void find_outside(const tl_poly *poly, size_t faces,
-                                       const double (*restrict height)[TL_LANES],
+TL_VECTORIZED static void find_outside(const tl_poly *poly, size_t faces, const double (*restrict height)[TL_LANES],
                                        double *restrict outside)
 {
     for (size_t f = 0; f < faces; f++) {
@@ -168,8 +166,7 @@ static void find_gap(const planes *a, const planes *b, tl_region *out)
 }
 
 /* Adds the faces of a block that are covered so; returns how many. */
-static uint32_t list(const planes *p, int how, bool seams, double margin, double deepest,
-                     uint16_t *face)
+static uint32_t list(const planes *p, int how, bool seams, double margin, double deepest, uint16_t *face)
 {
     uint32_t count = 0;
     for (size_t f = 0; f < p->count; f++) {
@@ -217,8 +214,8 @@ static void find_flush(const planes *a, const planes *b, tl_region *out)
     for (uint32_t k = 0; k < out->a && out->flush; k++)
         for (uint32_t m = 0; m < out->b; m++) {
             double c = -cosine(a, of_a[k], b, of_b[m]);
-            if (c <= most || of_a[k] >= a->faces || of_b[m] >= b->faces ||
-                cosine(a, of_a[k], a, first_a) < FACING || cosine(b, of_b[m], b, first_b) < FACING)
+            if (c <= most || of_a[k] >= a->faces || of_b[m] >= b->faces || cosine(a, of_a[k], a, first_a) < FACING ||
+                cosine(b, of_b[m], b, first_b) < FACING)
                 continue;
             most = c;
             out->flush_a = of_a[k];
@@ -230,8 +227,7 @@ static void find_flush(const planes *a, const planes *b, tl_region *out)
 
 /* Puts the faces that meet the flush one in blunt edges before the others of a block; how many they are, with it. The
  * least by which one falls behind it. */
-static uint32_t gather_blunt(const planes *p, uint16_t *face, uint32_t count, uint16_t flush,
-                             double *lead)
+static uint32_t gather_blunt(const planes *p, uint16_t *face, uint32_t count, uint16_t flush, double *lead)
 {
     uint32_t blunt = 0;
     for (uint32_t k = 0; k < count; k++) {
@@ -256,20 +252,16 @@ static void find_leads(const planes *a, const planes *b, tl_region *out, uint16_
     out->blunt_b = gather_blunt(b, of_b, out->b, out->flush_b, &out->blunt_lead);
     for (uint32_t k = 0; k < out->a; k++)
         for (uint32_t m = 0; m < out->b; m++)
-            if ((k >= out->blunt_a || m >= out->blunt_b) &&
-                cosine(a, face[k], b, of_b[m]) <= -FACING)
-                out->flush_lead =
-                    fmin(out->flush_lead, out->flush_gap - fmax(a->low[face[k]], b->low[of_b[m]]));
+            if ((k >= out->blunt_a || m >= out->blunt_b) && cosine(a, face[k], b, of_b[m]) <= -FACING)
+                out->flush_lead = fmin(out->flush_lead, out->flush_gap - fmax(a->low[face[k]], b->low[of_b[m]]));
 }
 
-bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch,
-                    tl_region *out)
+bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch, tl_region *out)
 {
     const size_t count_a = view->a->plane_count, count_b = view->b->plane_count;
     const size_t rows_a = padded(count_a), rows_b = padded(count_b);
     *out = (tl_region){0};
-    uint32_t vertices = view->a->vertex_count > view->b->vertex_count ? view->a->vertex_count
-                                                                      : view->b->vertex_count;
+    uint32_t vertices = view->a->vertex_count > view->b->vertex_count ? view->a->vertex_count : view->b->vertex_count;
     if (!reserve(scratch, 7 * (rows_a + rows_b) + TL_LANES * (size_t)vertices, count_a + count_b))
         return false;
     const planes a = columns_of(view, false, scratch->plane);
@@ -365,8 +357,7 @@ bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region)
 }
 
 /* The three listed faces of a block that meet in a vertex at the sharpest. false: there are no three. */
-static bool faces_at(const tl_pair_view *view, const tl_region *r, bool of_b, uint32_t vertex,
-                     uint8_t face[3])
+static bool faces_at(const tl_pair_view *view, const tl_region *r, bool of_b, uint32_t vertex, uint8_t face[3])
 {
     const tl_poly *p = of_b ? view->b : view->a;
     uint32_t begin = of_b ? r->a : 0, end = begin + (of_b ? r->b : r->a);

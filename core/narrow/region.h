@@ -14,9 +14,8 @@ typedef struct tl_region {
     tl_field_mesh *mesh;  /* what is known of the field at another place; NULL: nobody keeps it */
     /* the face along whose normal the blocks are farthest apart, or overlap the least: min over B - max over A */
     double gap;
-    tl_vec3 n; /* its normal, A to B, in A's frame */
-    double
-        gap_with_borders; /* the same with the faces on seams: what the parts have in common is no thicker */
+    tl_vec3 n;               /* its normal, A to B, in A's frame */
+    double gap_with_borders; /* the same with the faces on seams: what the parts have in common is no thicker */
     /* two nearly antiparallel faces along which they overlap the least; 0 and 0 when `flush` is false */
     bool flush;
     uint16_t flush_a, flush_b;
@@ -30,8 +29,7 @@ typedef struct tl_region {
 /* Fills the region of a pair that has been placed. Faces that stay away from the other block while the pair moves by
  * `margin` are not listed. With a border all real faces are that may be the nearest to some point. false: out of
  * memory. */
-bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch,
-                    tl_region *region);
+bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch, tl_region *region);
 /* Chooses the flush faces of a region anew, when the pair has moved. */
 void tl_region_choose_flush(const tl_pair_view *view, tl_region *region);
 /* Whether the faces marked in `bounding` are all that bound the common volume. The corners of one block that lie in

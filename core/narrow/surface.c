@@ -81,8 +81,7 @@ static void keep(draft *p)
 
 /* ---------------------------------------------------------------- patches ---------------- */
 
-bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t face_b,
-                          tl_surface *surface)
+bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t face_b, tl_surface *surface)
 {
     const tl_poly *a = view->a, *b = view->b;
     tl_plane pa = tl_view_plane(view, false, face_a), pb = tl_view_plane(view, true, face_b);
@@ -144,8 +143,8 @@ static bool begin(draft *p, const tl_pair_view *view, tl_plane equal)
     return true;
 }
 
-static bool cut_by_depths(draft *p, const tl_press_query *of, bool of_b, const uint16_t *faces,
-                          uint32_t count, uint32_t nearest)
+static bool cut_by_depths(draft *p, const tl_press_query *of, bool of_b, const uint16_t *faces, uint32_t count,
+                          uint32_t nearest)
 {
     tl_plane near = tl_pressing_plane(of, of_b, nearest);
     for (uint32_t k = 0; k < count && p->count; k++)
@@ -154,8 +153,7 @@ static bool cut_by_depths(draft *p, const tl_press_query *of, bool of_b, const u
     return true;
 }
 
-static bool cut_by_borders(draft *p, const tl_pair_view *view, bool of_b, const uint16_t *faces,
-                           uint32_t count)
+static bool cut_by_borders(draft *p, const tl_pair_view *view, bool of_b, const uint16_t *faces, uint32_t count)
 {
     for (uint32_t k = 0; k < count && p->count; k++)
         if (!cut(p, tl_view_plane(view, of_b, faces[k])))
@@ -194,8 +192,7 @@ bool tl_surface_add_field(const tl_press_query *of, tl_surface *surface)
             draft p = {surface, 0};
             if (tl_v3_norm2(equal.normal) < ONE_DIRECTION)
                 continue;
-            if (!begin(&p, view, equal) || !cut(&p, a) ||
-                !cut_by_depths(&p, of, false, in_a, region->a, in_a[i]) ||
+            if (!begin(&p, view, equal) || !cut(&p, a) || !cut_by_depths(&p, of, false, in_a, region->a, in_a[i]) ||
                 !cut_by_depths(&p, of, true, in_b, region->b, in_b[j]) ||
                 !cut_by_borders(&p, view, false, border_a, region->border_a) ||
                 !cut_by_borders(&p, view, true, border_b, region->border_b))

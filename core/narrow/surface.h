@@ -12,8 +12,7 @@ typedef struct tl_surface {
 } tl_surface;
 
 /* Adds the common polygon of two faces, halfway between them. false: out of memory, as below. */
-bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t face_b,
-                          tl_surface *surface);
+bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t face_b, tl_surface *surface);
 /* Adds the polygons on which the depths in both blocks are equal (field.h), where their faces press. There is one for
  * each face of A and face of B that are the nearest there. */
 bool tl_surface_add_field(const tl_press_query *query, tl_surface *surface);

@@ -54,11 +54,8 @@ static const struct {
                          sizeof(tl_damping_ops),
                          {{AT(tl_damping_ops, update)}, {AT(tl_damping_ops, step_factor)}},
                          {{AT(tl_damping_ops, create)}, {AT(tl_damping_ops, destroy)}}},
-    [TL_KIND_GENERATOR] = {"generator",
-                           sizeof(tl_generator_ops),
-                           sizeof(tl_generator_ops),
-                           {{AT(tl_generator_ops, generate)}},
-                           {{0}}},
+    [TL_KIND_GENERATOR] =
+        {"generator", sizeof(tl_generator_ops), sizeof(tl_generator_ops), {{AT(tl_generator_ops, generate)}}, {{0}}},
     [TL_KIND_SCREEN] = {"screen",
                         sizeof(tl_screen_ops),
                         sizeof(tl_screen_ops),
@@ -91,8 +88,7 @@ static uint32_t size_of(const void *structure)
 
 /* A struct's size must fit the version: equal to ours at our minor, no smaller at a newer one, no
  * larger at an older one. */
-static tl_status check_size(const version *v, const char *what, uint32_t size, size_t first,
-                            size_t ours)
+static tl_status check_size(const version *v, const char *what, uint32_t size, size_t first, size_t ours)
 {
     const uint32_t host_minor = TL_ABI_MINOR;
     bool fits = size == ours;
@@ -102,14 +98,13 @@ static tl_status check_size(const version *v, const char *what, uint32_t size, s
         fits = size >= ours;
     if (fits)
         return TL_OK;
-    return tl_fail(v->error, TL_E_PLUGIN,
-                   "%s has size %u, which is not that of ABI %u.%u (%zu here)", what, size,
+    return tl_fail(v->error, TL_E_PLUGIN, "%s has size %u, which is not that of ABI %u.%u (%zu here)", what, size,
                    TL_ABI_MAJOR, v->minor, ours);
 }
 
 /* Copies `count` rows that are `stride` apart into a dense array of rows of `ours` bytes. */
-static tl_status copy_rows(const version *v, const char *what, const void *rows, uint32_t count,
-                           uint32_t stride, size_t first, size_t ours, void **copy)
+static tl_status copy_rows(const version *v, const char *what, const void *rows, uint32_t count, uint32_t stride,
+                           size_t first, size_t ours, void **copy)
 {
     *copy = NULL;
     if (count == 0)
@@ -124,10 +119,8 @@ static tl_status copy_rows(const version *v, const char *what, const void *rows,
         const char *row = (const char *)rows + (size_t)i * stride;
         uint32_t size = size_of(row);
         tl_status status = check_size(v, what, size, first, ours);
-        if (status == TL_OK &&
-            (stride < size || stride > MOST_STRIDE || stride % sizeof(void *) != 0))
-            status = tl_fail(v->error, TL_E_PLUGIN, "%s: stride %u does not fit rows of %u bytes",
-                             what, stride, size);
+        if (status == TL_OK && (stride < size || stride > MOST_STRIDE || stride % sizeof(void *) != 0))
+            status = tl_fail(v->error, TL_E_PLUGIN, "%s: stride %u does not fit rows of %u bytes", what, stride, size);
         if (status != TL_OK) {
             free(to);
             return status;
@@ -147,8 +140,7 @@ static bool same(const char *a, const char *b)
 
 static bool names_clash(const tl_param *a, const tl_param *b)
 {
-    return same(a->name, b->name) || same(a->name, b->alias) || same(a->alias, b->name) ||
-           same(a->alias, b->alias);
+    return same(a->name, b->name) || same(a->name, b->alias) || same(a->alias, b->name) || same(a->alias, b->alias);
 }
 
 static tl_status check_choices(const tl_param *p, tl_error *error)
@@ -159,8 +151,8 @@ static tl_status check_choices(const tl_param *p, tl_error *error)
     if (count == 0)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' is an enum without choices", p->name);
     if (!(p->def[0] >= 0 && p->def[0] < (double)count))
-        return tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default %g is none of %zu choices",
-                       p->name, p->def[0], count);
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default %g is none of %zu choices", p->name, p->def[0],
+                       count);
     return TL_OK;
 }
 
@@ -171,19 +163,16 @@ static tl_status check_default(const tl_param *p, tl_error *error)
     bool numeric = p->type == TL_PARAM_REAL || p->type == TL_PARAM_INT || p->type == TL_PARAM_VEC3;
     if (!numeric || p->flags & (TL_PARAM_REQUIRED | TL_PARAM_OPTIONAL))
         return isfinite(p->def[0]) ? TL_OK
-                                   : tl_fail(error, TL_E_PLUGIN,
-                                             "parameter '%s': its default is not finite", p->name);
+                                   : tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default is not finite", p->name);
     for (int i = 0; i < (p->type == TL_PARAM_VEC3 ? 3 : 1); i++) {
         char number[TL_NUMBER_TEXT], range[TL_RANGE_TEXT];
         tl_number_text(p->def[i], number);
         tl_param_range(p, range, sizeof range);
         if (!tl_param_in_range(p, p->def[i]))
-            return tl_fail(error, TL_E_PLUGIN,
-                           "parameter '%s': its default %s is outside its own range %s", p->name,
+            return tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default %s is outside its own range %s", p->name,
                            number, range[0] ? range : "of finite numbers");
         if (p->type == TL_PARAM_INT && floor(p->def[i]) < p->def[i])
-            return tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default %s is not whole",
-                           p->name, number);
+            return tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default %s is not whole", p->name, number);
     }
     return TL_OK;
 }
@@ -196,8 +185,7 @@ static bool any_unclean(const char *a, const char *b)
 
 static tl_status unclean(tl_error *error, const char *what, const char *name)
 {
-    return tl_fail(error, TL_E_PLUGIN, "%s '%s' has a control character in its unit or doc", what,
-                   name);
+    return tl_fail(error, TL_E_PLUGIN, "%s '%s' has a control character in its unit or doc", what, name);
 }
 
 static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *error)
@@ -205,37 +193,31 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
     const tl_param *p = &kind->params[index];
     size_t bytes = tl_param_bytes(p->type);
     if (!tl_name_is_valid(p->name) || (p->alias && !tl_name_is_valid(p->alias)))
-        return tl_fail(error, TL_E_PLUGIN, "parameter %u has a bad name or alias ('%.60s')",
-                       index + 1, p->name ? p->name : "");
+        return tl_fail(error, TL_E_PLUGIN, "parameter %u has a bad name or alias ('%.60s')", index + 1,
+                       p->name ? p->name : "");
     if (!p->unit || !p->doc)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has no %s", p->name,
                        p->doc ? "unit (\"\" for a pure number)" : "doc");
     if (any_unclean(p->unit, p->doc))
         return unclean(error, "parameter", p->name);
     if (bytes == 0)
-        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the unknown type %u", p->name,
-                       p->type);
-    if (kind->type != TL_KIND_GENERATOR &&
-        (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
-        return tl_fail(
-            error, TL_E_PLUGIN,
-            "parameter '%s' is a %s, which lives only as long as the call: a %s cannot keep "
-            "it",
-            p->name, p->type == TL_PARAM_STRING ? "string" : "list of points",
-            tl_kind_type_name(kind->type));
-    if (p->offset > kind->params_size || bytes > kind->params_size - p->offset)
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the unknown type %u", p->name, p->type);
+    if (kind->type != TL_KIND_GENERATOR && (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
         return tl_fail(error, TL_E_PLUGIN,
-                       "parameter '%s' lies at bytes %zu to %zu, outside its struct of %zu",
+                       "parameter '%s' is a %s, which lives only as long as the call: a %s cannot keep "
+                       "it",
+                       p->name, p->type == TL_PARAM_STRING ? "string" : "list of points",
+                       tl_kind_type_name(kind->type));
+    if (p->offset > kind->params_size || bytes > kind->params_size - p->offset)
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' lies at bytes %zu to %zu, outside its struct of %zu",
                        p->name, p->offset, p->offset + bytes, kind->params_size);
     if (isnan(p->min) || isnan(p->max) || p->min > p->max)
-        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the empty range %g to %g", p->name,
-                       p->min, p->max);
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the empty range %g to %g", p->name, p->min, p->max);
     if (p->flags & TL_PARAM_REQUIRED && p->flags & TL_PARAM_OPTIONAL)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' is both required and optional", p->name);
     for (uint32_t i = 0; i < index; i++)
         if (names_clash(p, &kind->params[i]))
-            return tl_fail(error, TL_E_PLUGIN, "parameters '%s' and '%s' share a name",
-                           kind->params[i].name, p->name);
+            return tl_fail(error, TL_E_PLUGIN, "parameters '%s' and '%s' share a name", kind->params[i].name, p->name);
     return check_default(p, error);
 }
 
@@ -245,11 +227,9 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
 {
     const tl_state *s = &kind->states[index];
     if (!tl_name_is_valid(s->name))
-        return tl_fail(error, TL_E_PLUGIN, "state %u has a bad name ('%.60s')", index + 1,
-                       s->name ? s->name : "");
+        return tl_fail(error, TL_E_PLUGIN, "state %u has a bad name ('%.60s')", index + 1, s->name ? s->name : "");
     if (!s->unit || !s->doc)
-        return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name,
-                       s->doc ? "unit" : "doc");
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name, s->doc ? "unit" : "doc");
     if (any_unclean(s->unit, s->doc))
         return unclean(error, "state", s->name);
     if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_LIFT)
@@ -259,16 +239,15 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
     if (kind->type == TL_KIND_DAMPING && s->kind != TL_STATE_SCALAR)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' of a damping must be a scalar", s->name);
     if (s->transfer == TL_TRANSFER_ENERGY && (s->kind != TL_STATE_SCALAR || s->initial != 0))
-        return tl_fail(error, TL_E_PLUGIN,
-                       "state '%s' is an energy: it must be a scalar that begins at 0", s->name);
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' is an energy: it must be a scalar that begins at 0", s->name);
     if (!isfinite(s->initial))
         return tl_fail(error, TL_E_PLUGIN, "state '%s': its initial value is not finite", s->name);
     for (uint32_t i = 0; i < index; i++) {
         if (same(s->name, kind->states[i].name))
             return tl_fail(error, TL_E_PLUGIN, "two states have the name '%s'", s->name);
         if (s->transfer == TL_TRANSFER_ENERGY && kind->states[i].transfer == TL_TRANSFER_ENERGY)
-            return tl_fail(error, TL_E_PLUGIN, "states '%s' and '%s' are both energies of shear",
-                           kind->states[i].name, s->name);
+            return tl_fail(error, TL_E_PLUGIN, "states '%s' and '%s' are both energies of shear", kind->states[i].name,
+                           s->name);
     }
     return TL_OK;
 }
@@ -287,8 +266,7 @@ static tl_status check_ops(uint32_t type, const void *ops, tl_error *error)
         missing = missing || is_there(ops, o) ? missing : o;
     if (!missing && is_there(ops, &pair[0]) != is_there(ops, &pair[1]))
         missing = is_there(ops, &pair[0]) ? &pair[1] : &pair[0];
-    return missing ? tl_fail(error, TL_E_PLUGIN, "its operation '%s' is missing", missing->name)
-                   : TL_OK;
+    return missing ? tl_fail(error, TL_E_PLUGIN, "its operation '%s' is missing", missing->name) : TL_OK;
 }
 
 /* Copies the operations into a block of their own. */
@@ -327,8 +305,8 @@ static tl_status check_rows(const tl_kind *kind, tl_error *error)
     if (status != TL_OK)
         return status;
     if (kind->type >= TL_KIND_GENERATOR && kind->state_count > 0)
-        return tl_fail(error, TL_E_PLUGIN, "a %s has no states, this one declares %u",
-                       tl_kind_type_name(kind->type), kind->state_count);
+        return tl_fail(error, TL_E_PLUGIN, "a %s has no states, this one declares %u", tl_kind_type_name(kind->type),
+                       kind->state_count);
     for (uint32_t i = 0; i < kind->state_count && status == TL_OK; i++) {
         status = check_state(kind, i, error);
         columns += kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1;
@@ -336,8 +314,7 @@ static tl_status check_rows(const tl_kind *kind, tl_error *error)
     if (status != TL_OK)
         return status;
     if (columns > TL_STATE_COLUMNS)
-        return tl_fail(error, TL_E_PLUGIN,
-                       "its states take %u columns (a scalar 1, a tangent 3); %d at the most",
+        return tl_fail(error, TL_E_PLUGIN, "its states take %u columns (a scalar 1, a tangent 3); %d at the most",
                        columns, TL_STATE_COLUMNS);
     return TL_OK;
 }
@@ -349,11 +326,11 @@ static tl_status copy_kind(const version *v, tl_kind *kind)
     const tl_param *params = kind->params;
     const tl_state *states = kind->states;
     void *own_params = NULL, *own_states = NULL;
-    tl_status status = copy_rows(v, "a parameter", params, kind->param_count, kind->param_stride,
-                                 FIRST_PARAM_SIZE, sizeof *params, &own_params);
+    tl_status status = copy_rows(v, "a parameter", params, kind->param_count, kind->param_stride, FIRST_PARAM_SIZE,
+                                 sizeof *params, &own_params);
     if (status == TL_OK)
-        status = copy_rows(v, "a state", states, kind->state_count, kind->state_stride,
-                           FIRST_STATE_SIZE, sizeof *states, &own_states);
+        status = copy_rows(v, "a state", states, kind->state_count, kind->state_stride, FIRST_STATE_SIZE,
+                           sizeof *states, &own_states);
     kind->params = own_params;
     kind->states = own_states;
     kind->param_stride = sizeof *params;
@@ -368,24 +345,21 @@ static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *e
 {
     const tl_kind *kind = &plugin->kinds[index];
     if (!tl_name_is_valid(kind->name))
-        return tl_fail(error, TL_E_PLUGIN,
-                       "kind %u has the bad name '%.60s': small letters, digits and _ only",
+        return tl_fail(error, TL_E_PLUGIN, "kind %u has the bad name '%.60s': small letters, digits and _ only",
                        index + 1, kind->name ? kind->name : "");
     if (!kind->doc)
-        return tl_fail(error, TL_E_PLUGIN, "%s '%s' has no doc", tl_kind_type_name(kind->type),
-                       kind->name);
+        return tl_fail(error, TL_E_PLUGIN, "%s '%s' has no doc", tl_kind_type_name(kind->type), kind->name);
     if (!tl_text_is_clean(kind->doc))
         return unclean(error, tl_kind_type_name(kind->type), kind->name);
     if (kind->params_size > MOST_PARAM_BYTES)
         return tl_fail(error, TL_E_PLUGIN,
                        "%s '%s' has a params_size of %zu bytes; %zu at the most: is it sizeof its "
                        "struct of parameters?",
-                       tl_kind_type_name(kind->type), kind->name, kind->params_size,
-                       MOST_PARAM_BYTES);
+                       tl_kind_type_name(kind->type), kind->name, kind->params_size, MOST_PARAM_BYTES);
     for (uint32_t i = 0; i < index; i++)
         if (plugin->kinds[i].type == kind->type && same(plugin->kinds[i].name, kind->name))
-            return tl_fail(error, TL_E_PLUGIN, "it holds two %ss named '%s'",
-                           tl_kind_type_name(kind->type), kind->name);
+            return tl_fail(error, TL_E_PLUGIN, "it holds two %ss named '%s'", tl_kind_type_name(kind->type),
+                           kind->name);
     return TL_OK;
 }
 
@@ -397,12 +371,11 @@ static void drop_unknown(tl_plugin *plugin, tl_kind *kinds, char note[TL_NOTE_TE
         if (kinds[i].type <= TL_KIND_SCREEN)
             kinds[kept++] = kinds[i];
         else if (i == kept)
-            snprintf(
-                note, TL_NOTE_TEXT,
-                "kind %u, '%.60s', is of the unknown type %u and is left out: this Talus knows "
-                "laws (%d), dampings (%d), generators (%d) and screens (%d)",
-                i + 1, kinds[i].name ? kinds[i].name : "", kinds[i].type, TL_KIND_LAW,
-                TL_KIND_DAMPING, TL_KIND_GENERATOR, TL_KIND_SCREEN);
+            snprintf(note, TL_NOTE_TEXT,
+                     "kind %u, '%.60s', is of the unknown type %u and is left out: this Talus knows "
+                     "laws (%d), dampings (%d), generators (%d) and screens (%d)",
+                     i + 1, kinds[i].name ? kinds[i].name : "", kinds[i].type, TL_KIND_LAW, TL_KIND_DAMPING,
+                     TL_KIND_GENERATOR, TL_KIND_SCREEN);
     }
     size_t length = strlen(note);
     if (given - kept > 1)
@@ -436,8 +409,7 @@ static tl_status read_kinds(const version *v, tl_plugin *plugin, tl_kind *kinds)
 tl_status tl_descriptor_version(const tl_plugin *given, tl_error *error)
 {
     if (given->size < offsetof(tl_plugin, abi_minor) + sizeof given->abi_minor)
-        return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin",
-                       given->size);
+        return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin", given->size);
     if (given->abi_major != TL_ABI_MAJOR)
         return tl_fail(error, TL_E_PLUGIN,
                        "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew "
@@ -446,8 +418,7 @@ tl_status tl_descriptor_version(const tl_plugin *given, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char note[TL_NOTE_TEXT],
-                             tl_error *error)
+tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char note[TL_NOTE_TEXT], tl_error *error)
 {
     *plugin = NULL;
     note[0] = '\0';
@@ -461,15 +432,13 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
     if (!given->id || !given->id[0] || !given->version || !given->doc || !given->licence)
         return tl_fail(error, TL_E_PLUGIN, "its descriptor lacks an id, version, doc or licence");
     if (any_unclean(given->id, given->version) || any_unclean(given->doc, given->licence))
-        return tl_fail(
-            error, TL_E_PLUGIN,
-            "its id, version, doc or licence has a control character in it; its id is '%.60s'",
-            given->id);
+        return tl_fail(error, TL_E_PLUGIN,
+                       "its id, version, doc or licence has a control character in it; its id is '%.60s'", given->id);
     if (given->kind_count == 0)
         return tl_fail(error, TL_E_PLUGIN, "it holds no law, damping, generator or screen");
     void *kinds;
-    status = copy_rows(&v, "a kind", given->kinds, given->kind_count, given->kind_stride,
-                       FIRST_KIND_SIZE, sizeof(tl_kind), &kinds);
+    status = copy_rows(&v, "a kind", given->kinds, given->kind_count, given->kind_stride, FIRST_KIND_SIZE,
+                       sizeof(tl_kind), &kinds);
     if (status != TL_OK)
         return status;
     tl_plugin *copy = malloc(sizeof *copy);
@@ -482,9 +451,8 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
     copy->kind_stride = sizeof(tl_kind);
     drop_unknown(copy, kinds, note);
     tl_text_clean(note, TL_NOTE_TEXT);
-    status = copy->kind_count > 0
-                 ? read_kinds(&v, copy, kinds)
-                 : tl_fail(error, TL_E_PLUGIN, "it holds nothing of use: %s", note);
+    status = copy->kind_count > 0 ? read_kinds(&v, copy, kinds)
+                                  : tl_fail(error, TL_E_PLUGIN, "it holds nothing of use: %s", note);
     if (status == TL_OK)
         *plugin = copy;
     else

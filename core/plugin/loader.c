@@ -65,8 +65,8 @@
 static bool own_file(char file[PATH_MAX])
 {
     Dl_info info;
-    bool named = dladdr((void *)(uintptr_t)&own_file, &info) != 0 && info.dli_fname &&
-                 strchr(info.dli_fname, '/') && realpath(info.dli_fname, file);
+    bool named = dladdr((void *)(uintptr_t)&own_file, &info) != 0 && info.dli_fname && strchr(info.dli_fname, '/') &&
+                 realpath(info.dli_fname, file);
     return named || realpath("/proc/self/exe", file);
 }
 
@@ -111,11 +111,9 @@ static bool find_fault(const char *path, bool above, uid_t program, char *why, s
     if (stat(path, &s) != 0)
         snprintf(why, size, "%s cannot be looked at", path);
     else if (!is_trusted(s.st_uid, program))
-        snprintf(why, size, "%s belongs to user %lu, who is neither root nor you", path,
-                 (unsigned long)s.st_uid);
+        snprintf(why, size, "%s belongs to user %lu, who is neither root nor you", path, (unsigned long)s.st_uid);
     else if (above ? others_may_rename_in(&s) : others_may_write(&s))
-        snprintf(why, size, "users other than its owner may write %s (mode %04o)", path,
-                 (unsigned)(s.st_mode & 07777));
+        snprintf(why, size, "users other than its owner may write %s (mode %04o)", path, (unsigned)(s.st_mode & 07777));
     else
         return false;
     return true;
@@ -137,8 +135,7 @@ static bool path_is_trusted(const char *path, const char *program, char *why, si
     if (stat(real, &s) == 0)
         file = !S_ISDIR(s.st_mode);
     /* upward; the folder of a file is as near as the file itself */
-    for (char *slash; !fault && (slash = strrchr(real, '/')) != NULL && slash != real;
-         file = false) {
+    for (char *slash; !fault && (slash = strrchr(real, '/')) != NULL && slash != real; file = false) {
         *slash = '\0';
         fault = find_fault(real, !file, owner, why, size);
     }
@@ -158,16 +155,15 @@ tl_status tl_library_find(const char *file, char *path, size_t size, tl_error *e
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
         struct stat info;
         int n = snprintf(place, sizeof place, "%.*s/%s/%s", here, own, folders[i], file);
-        if (n < 0 || (size_t)n >= sizeof place || !realpath(place, plain) ||
-            stat(plain, &info) != 0 || !S_ISREG(info.st_mode) || strlen(plain) >= size)
+        if (n < 0 || (size_t)n >= sizeof place || !realpath(place, plain) || stat(plain, &info) != 0 ||
+            !S_ISREG(info.st_mode) || strlen(plain) >= size)
             continue;
         if (!path_is_trusted(plain, own, why, sizeof why))
             return tl_fail(error, TL_E_PLUGIN, "%s: Talus runs nothing from there", why);
         strcpy(path, plain);
         return TL_OK;
     }
-    return tl_fail(error, TL_E_NOT_FOUND, "no file '%s' of Talus beside '%s' or in share/lua/5.4",
-                   file, own);
+    return tl_fail(error, TL_E_NOT_FOUND, "no file '%s' of Talus beside '%s' or in share/lua/5.4", file, own);
 }
 
 /* ---------------------------------------------------------------- what is loaded ----------
@@ -272,15 +268,13 @@ static tl_status check_new(const tl_plugin *plugin, tl_error *error)
 {
     for (const record *r = first_record(); r; r = next_record(r))
         if (r->plugin && strcmp(r->plugin->id, plugin->id) == 0)
-            return tl_fail(error, TL_E_PLUGIN, "plugin '%s' is already loaded from %s", plugin->id,
-                           r->path);
+            return tl_fail(error, TL_E_PLUGIN, "plugin '%s' is already loaded from %s", plugin->id, r->path);
     for (uint32_t k = 0; k < plugin->kind_count; k++) {
         const tl_kind *mine = &plugin->kinds[k], *theirs;
         const record *other = provider(mine->type, mine->name, &theirs);
         if (other)
             return tl_fail(error, TL_E_PLUGIN, "%s '%s' is already provided by plugin '%s' from %s",
-                           tl_kind_type_name(mine->type), mine->name, other->plugin->id,
-                           other->path);
+                           tl_kind_type_name(mine->type), mine->name, other->plugin->id, other->path);
     }
     return TL_OK;
 }
@@ -368,11 +362,10 @@ tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name)
     while (tl_plugin_kind(type, count))
         count++;
     if (count == 0)
-        return tl_fail(
-            error, TL_E_NOT_FOUND,
-            "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
-            "the plugins",
-            what, name, what);
+        return tl_fail(error, TL_E_NOT_FOUND,
+                       "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
+                       "the plugins",
+                       what, name, what);
     const char **names = malloc(count * sizeof *names);
     if (!names)
         return tl_fail_memory(error);
@@ -387,8 +380,8 @@ tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name)
 
 #define ENTRY "tl_plugin_entry"
 /* Why a folder or file that nobody has named is left alone; what is wrong comes first. */
-#define UNTRUSTED                                                                                  \
-    "%s: nothing is loaded from there unless it is named, with --plugin FILE or in "               \
+#define UNTRUSTED                                                                                                      \
+    "%s: nothing is loaded from there unless it is named, with --plugin FILE or in "                                   \
     "TALUS_PLUGIN_PATH"
 
 /* Folders searched at most: a TALUS_PLUGIN_PATH longer than this is a mistake. */
@@ -426,14 +419,12 @@ static tl_status tell_refusal(tl_plugin_entry_fn entry, tl_error *error)
         if (status != TL_OK)
             return status;
         if (given)
-            return tl_fail(
-                error, TL_E_PLUGIN,
-                "it was built for plugin ABI %u.%u and cannot do without it, this Talus has "
-                "%u.%u",
-                given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
+            return tl_fail(error, TL_E_PLUGIN,
+                           "it was built for plugin ABI %u.%u and cannot do without it, this Talus has "
+                           "%u.%u",
+                           given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
     }
-    return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR,
-                   TL_ABI_MINOR);
+    return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR, TL_ABI_MINOR);
 }
 
 /* Asks an opened file for its descriptor and takes it into the registry. */

@@ -17,32 +17,31 @@
 #include <talus/fields.h>
 
 /* The fields: name, kind, unit, what tl_contact_facts has them by (of several numbers the first), and what they are. */
-#define CONTACT_FIELDS(FIELD)                                                                      \
-    FIELD(id, COUNT, "", id, "number of the contact, never used again")                            \
-    FIELD(blocks, IDS, "", a, "its two blocks, the older first")                                   \
-    FIELD(joint, TEXT, "", tag.joint, "joint and plane (\"J1:3\"), or empty")                      \
-    FIELD(area, SCALAR, "m2", area,                                                                \
-          "of the common polygon of two faces, or of the surface of pressure")                     \
-    FIELD(normal, VEC3, "", normal, "unit normal from the first block to the second")              \
-    FIELD(point, VEC3, "m", point, "centroid of the polygon, or centre of pressure")               \
-    FIELD(gap, SCALAR, "m", gap, "smallest gap, negative when overlapping")                        \
-    FIELD(normal_force, SCALAR, "N", normal_force, "compression positive")                         \
-    FIELD(shear_force, VEC3, "N", shear_force, "on the second block")                              \
-    FIELD(normal_stress, SCALAR, "Pa", normal_stress, "normal force over area")                    \
-    FIELD(shear_stress, SCALAR, "Pa", shear_stress, "length of shear force over area")             \
-    FIELD(shear_displacement, VEC3, "m", shear_displacement,                                       \
-          "of the second block against the first at the point, along the contact: difference of "  \
-          "their displacements")                                                                   \
-    FIELD(state, TEXT, "", state, "\"elastic\", \"slipping\", \"open\" or \"failed\"")             \
+#define CONTACT_FIELDS(FIELD)                                                                                          \
+    FIELD(id, COUNT, "", id, "number of the contact, never used again")                                                \
+    FIELD(blocks, IDS, "", a, "its two blocks, the older first")                                                       \
+    FIELD(joint, TEXT, "", tag.joint, "joint and plane (\"J1:3\"), or empty")                                          \
+    FIELD(area, SCALAR, "m2", area, "of the common polygon of two faces, or of the surface of pressure")               \
+    FIELD(normal, VEC3, "", normal, "unit normal from the first block to the second")                                  \
+    FIELD(point, VEC3, "m", point, "centroid of the polygon, or centre of pressure")                                   \
+    FIELD(gap, SCALAR, "m", gap, "smallest gap, negative when overlapping")                                            \
+    FIELD(normal_force, SCALAR, "N", normal_force, "compression positive")                                             \
+    FIELD(shear_force, VEC3, "N", shear_force, "on the second block")                                                  \
+    FIELD(normal_stress, SCALAR, "Pa", normal_stress, "normal force over area")                                        \
+    FIELD(shear_stress, SCALAR, "Pa", shear_stress, "length of shear force over area")                                 \
+    FIELD(shear_displacement, VEC3, "m", shear_displacement,                                                           \
+          "of the second block against the first at the point, along the contact: difference of "                      \
+          "their displacements")                                                                                       \
+    FIELD(state, TEXT, "", state, "\"elastic\", \"slipping\", \"open\" or \"failed\"")                                 \
     FIELD(law, TEXT, "", law, "name of the law of its joint, or empty")
 
 /* What else files show. */
-#define CONTACT_ARRAYS(FIELD)                                                                      \
-    FIELD(plane, COUNT, "", tag.plane, "")                                                         \
-    FIELD(contact_id, COUNT, "", id, "")                                                           \
-    FIELD(block_id, COUNT, "", a, "")                                                              \
-    FIELD(block_a, COUNT, "", a, "")                                                               \
-    FIELD(block_b, COUNT, "", b, "")                                                               \
+#define CONTACT_ARRAYS(FIELD)                                                                                          \
+    FIELD(plane, COUNT, "", tag.plane, "")                                                                             \
+    FIELD(contact_id, COUNT, "", id, "")                                                                               \
+    FIELD(block_id, COUNT, "", a, "")                                                                                  \
+    FIELD(block_a, COUNT, "", a, "")                                                                                   \
+    FIELD(block_b, COUNT, "", b, "")                                                                                   \
     FIELD(slip, SCALAR, "m", slip, "")
 
 #define NUMBER(name, kind, unit, from, doc) F_##name,
@@ -193,8 +192,7 @@ tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row)
         return status;
     *row = tl_contact_row(m->detect, contact);
     if (*row == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
-                       contact);
+        return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted", contact);
     return TL_OK;
 }
 
@@ -298,8 +296,7 @@ static bool is_between(const unsigned char *ma, const unsigned char *mb, uint32_
     return !ma || !mb || (ma[a] && mb[b]) || (ma[b] && mb[a]);
 }
 
-tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id **ids,
-                             size_t *count)
+tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id **ids, size_t *count)
 {
     *ids = NULL;
     *count = 0;
@@ -322,8 +319,7 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id 
         status = tl_fail_memory(&m->error);
     size_t n = 0;
     for (uint32_t row = 0; status == TL_OK && row < c->table.rows; row++)
-        if (c->point_count[row] && tl_tag_matches(joint, c->tag[row]) &&
-            is_between(ma, mb, c->a[row], c->b[row]))
+        if (c->point_count[row] && tl_tag_matches(joint, c->tag[row]) && is_between(ma, mb, c->a[row], c->b[row]))
             list[n++] = c->id[row];
     if (n > 1)
         qsort(list, n, sizeof *list, compare_id);

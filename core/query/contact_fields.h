@@ -25,7 +25,7 @@ typedef struct tl_contact_facts {
     tl_vec3 shear_force;                /* N, on b */
     tl_vec3 shear_displacement;         /* of b against a, across the normal, m */
     double opening;                     /* of b away from a, along the normal, m */
-    double slip; /* m: 0 until tl_law_states_slip has told it (point_fields.h) */
+    double slip;                        /* m: 0 until tl_law_states_slip has told it (point_fields.h) */
 } tl_contact_facts;
 
 /* A field of contacts, or what else files show of them, by a name that there is. */

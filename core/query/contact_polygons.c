@@ -52,8 +52,7 @@ static void find_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         p->failed = !add_polygons(j->model, j->rows[i], &d->narrow[thread], &p->surface);
         if (p->failed)
             break;
-        place(j->model, d->contacts.a[j->rows[i]], p->surface.corner + corners,
-              p->surface.corners - corners);
+        place(j->model, d->contacts.a[j->rows[i]], p->surface.corner + corners, p->surface.corners - corners);
         j->out->first[i] = (uint32_t)(p->surface.polygons - polygons);
     }
 }
@@ -101,8 +100,7 @@ static bool join(const part *parts, size_t chunks, tl_contact_polygons *out)
     return true;
 }
 
-tl_status tl_contact_polygons_find(tl_model *m, const uint32_t *rows, size_t count,
-                                   tl_contact_polygons *out)
+tl_status tl_contact_polygons_find(tl_model *m, const uint32_t *rows, size_t count, tl_contact_polygons *out)
 {
     size_t chunks = (count + CHUNK - 1) / CHUNK;
     *out = (tl_contact_polygons){.contacts = count};

@@ -112,12 +112,11 @@ static tl_status parse_strength(work *w)
         status = tl_joint_parse(w->model, s->joint, &w->strength[i]);
         if (status == TL_OK && !isnan(s->friction) && !(s->friction >= 0 && s->friction < 90))
             status = tl_fail(&w->model->error, TL_E_ARGUMENT,
-                             "keyblocks: joint '%s': friction = %g deg is outside [0, 90)",
-                             s->joint, s->friction);
+                             "keyblocks: joint '%s': friction = %g deg is outside [0, 90)", s->joint, s->friction);
         if (status == TL_OK && !isnan(s->cohesion) && !(s->cohesion >= 0 && s->cohesion <= LARGEST))
-            status = tl_fail(&w->model->error, TL_E_ARGUMENT,
-                             "keyblocks: joint '%s': cohesion = %g Pa is outside [0, %g]", s->joint,
-                             s->cohesion, LARGEST);
+            status =
+                tl_fail(&w->model->error, TL_E_ARGUMENT, "keyblocks: joint '%s': cohesion = %g Pa is outside [0, %g]",
+                        s->joint, s->cohesion, LARGEST);
     }
     return status;
 }
@@ -130,9 +129,8 @@ static tl_status find_gravity(work *w)
     const double most = fmax(fmax(fabs(g.x), fabs(g.y)), fabs(g.z));
     if (most == 0 || (most >= 1 / LARGEST && most <= LARGEST))
         return TL_OK;
-    return tl_fail(&w->model->error, TL_E_ARGUMENT,
-                   "keyblocks: gravity of %g m/s2 must be 0 or within [%g, %g]", most, 1 / LARGEST,
-                   LARGEST);
+    return tl_fail(&w->model->error, TL_E_ARGUMENT, "keyblocks: gravity of %g m/s2 must be 0 or within [%g, %g]", most,
+                   1 / LARGEST, LARGEST);
 }
 
 /* ---------------------------------------------------------------- faces ------------------ */
@@ -159,10 +157,10 @@ static tl_status add_face(work *w, const tl_touch *touch, tl_vec3 normal)
             return tl_fail_memory(&w->model->error);
         tl_vec3 along = part_along(w, normal);
         double lean = tl_v3_norm(along);
-        w->faces[w->count++] = (constraint){
-            .normal = normal,
-            .along = lean > TL_TOUCH_ALONG ? tl_v3_scale(1 / lean, along) : tl_v3(0, 0, 0),
-            .lean = lean};
+        w->faces[w->count++] =
+            (constraint){.normal = normal,
+                         .along = lean > TL_TOUCH_ALONG ? tl_v3_scale(1 / lean, along) : tl_v3(0, 0, 0),
+                         .lean = lean};
     }
     constraint *face = &w->faces[i];
     face->area += touch->area;
@@ -188,8 +186,7 @@ static tl_status gather_faces(work *w, uint32_t body)
     w->count = 0;
     tl_status status = TL_OK;
     for (size_t k = 0; k < count && status == TL_OK; k++)
-        for (size_t i = w->touches.start[member[k]];
-             i < w->touches.start[member[k] + 1] && status == TL_OK; i++) {
+        for (size_t i = w->touches.start[member[k]]; i < w->touches.start[member[k] + 1] && status == TL_OK; i++) {
             const tl_touch *touch = &w->touches.at[i];
             status = add_face(w, touch, tl_touch_normal(m, touch, now));
         }
@@ -241,8 +238,7 @@ static bool leaves_room(const work *w)
         if (tl_v3_is_zero(w->faces[i].along))
             continue;
         one = one ? one : &w->faces[i];
-        parallel =
-            parallel && tl_v3_norm(tl_v3_cross(one->along, w->faces[i].along)) <= TL_TOUCH_ALONG;
+        parallel = parallel && tl_v3_norm(tl_v3_cross(one->along, w->faces[i].along)) <= TL_TOUCH_ALONG;
     }
     return !one || (parallel && w->held_count < 2);
 }
@@ -269,8 +265,7 @@ static tl_status find_pyramid(work *w, size_t first, bool *empty)
 static void put_face(const work *w, tl_keyblock *block, size_t face, double normal_force)
 {
     const constraint *c = &w->faces[face];
-    block->faces[block->face_count++] =
-        (tl_keyblock_face){c->joint, c->normal, c->area, normal_force / c->lean};
+    block->faces[block->face_count++] = (tl_keyblock_face){c->joint, c->normal, c->area, normal_force / c->lean};
 }
 
 /* Sets direction and factor of safety from the sliding force s and the faces put. */
@@ -293,8 +288,7 @@ static bool slides_on_one(const work *w, tl_vec3 r, tl_keyblock *block)
     for (size_t i = 0; i < w->count; i++) {
         double normal_force = tl_v3_dot(r, w->faces[i].along);
         tl_vec3 s = tl_v3_madd(r, -normal_force, w->faces[i].along);
-        if (!(normal_force > 0) || tl_v3_norm(s) <= TL_TOUCH_ALONG * size ||
-            !is_free(w, tl_v3_unit(s), i, i))
+        if (!(normal_force > 0) || tl_v3_norm(s) <= TL_TOUCH_ALONG * size || !is_free(w, tl_v3_unit(s), i, i))
             continue;
         block->mode = TL_KEYBLOCK_SLIDING;
         put_face(w, block, i, normal_force);

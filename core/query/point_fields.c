@@ -99,8 +99,7 @@ tl_status tl_law_states_list(tl_model *m, tl_law_states *states)
     if (!states->at)
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < m->joint_law_count; i++)
-        for (tl_state_columns at = {0};
-             !seen_before(m, i) && tl_state_next(m->joint_laws[i].kind, UINT32_MAX, &at);)
+        for (tl_state_columns at = {0}; !seen_before(m, i) && tl_state_next(m->joint_laws[i].kind, UINT32_MAX, &at);)
             add(states, m->joint_laws[i].kind, &at);
     states->column = malloc(m->joint_law_count * states->count * sizeof *states->column);
     if (!states->column) {
@@ -109,8 +108,7 @@ tl_status tl_law_states_list(tl_model *m, tl_law_states *states)
     }
     for (size_t i = 0; i < m->joint_law_count; i++)
         for (size_t s = 0; s < states->count; s++)
-            states->column[i * states->count + s] =
-                column_in(m->joint_laws[i].kind, &states->at[s]);
+            states->column[i * states->count + s] = column_in(m->joint_laws[i].kind, &states->at[s]);
     return TL_OK;
 }
 
@@ -133,8 +131,7 @@ static const tl_law_state *law_states_find(const tl_law_states *states, const ch
 /* ---------------------------------------------------------------- values ----------------- */
 
 /* First column of an entry in the law of a contact, or TL_NO_ROW. */
-static uint32_t column_of(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
-                          uint32_t contact)
+static uint32_t column_of(const tl_model *m, const tl_law_states *states, const tl_law_state *of, uint32_t contact)
 {
     uint32_t law = m->detect->contacts.law[contact];
     if (law == TL_NO_ROW)
@@ -143,8 +140,7 @@ static uint32_t column_of(const tl_model *m, const tl_law_states *states, const 
 }
 
 /* Whether the law of a contact has the state. */
-static bool law_states_has(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
-                           uint32_t contact)
+static bool law_states_has(const tl_model *m, const tl_law_states *states, const tl_law_state *of, uint32_t contact)
 {
     return column_of(m, states, of, contact) != TL_NO_ROW;
 }
@@ -156,24 +152,22 @@ static double number_at(const tl_points_table *p, uint32_t column, size_t row)
 }
 
 /* Value of an entry at point k of a contact; NaN where the contact's law has no such state. Changes nothing. */
-static void law_state_at_point(const tl_model *m, const tl_law_states *states,
-                               const tl_law_state *of, uint32_t contact, size_t k, double value[3])
+static void law_state_at_point(const tl_model *m, const tl_law_states *states, const tl_law_state *of, uint32_t contact,
+                               size_t k, double value[3])
 {
     uint32_t column = column_of(m, states, of, contact);
     size_t row = tl_point_row(&m->detect->contacts, contact, k);
     for (size_t w = 0; w < of->width; w++)
-        value[w] =
-            column == TL_NO_ROW ? NAN : number_at(&m->detect->points, column + (uint32_t)w, row);
+        value[w] = column == TL_NO_ROW ? NAN : number_at(&m->detect->points, column + (uint32_t)w, row);
 }
 
-void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
-                             uint32_t contact, double value[3])
+void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, const tl_law_state *of, uint32_t contact,
+                             double value[3])
 {
     const tl_points_table *p = &m->detect->points;
     uint32_t column = column_of(m, states, of, contact);
     size_t count = tl_point_count(m, contact);
-    bool adds =
-        of->state->transfer == TL_TRANSFER_SPLIT || of->state->transfer == TL_TRANSFER_ENERGY;
+    bool adds = of->state->transfer == TL_TRANSFER_SPLIT || of->state->transfer == TL_TRANSFER_ENERGY;
     double area = 0, sum[3] = {0, 0, 0};
     for (size_t k = 0; k < count && column != TL_NO_ROW; k++) {
         size_t row = tl_point_row(&m->detect->contacts, contact, k);
@@ -186,14 +180,12 @@ void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, con
         value[w] = column == TL_NO_ROW ? NAN : adds ? sum[w] : area > 0 ? sum[w] / area : 0;
 }
 
-double tl_law_states_slip(const tl_model *m, const tl_law_states *states, uint32_t contact,
-                          tl_vec3 shear_displacement)
+double tl_law_states_slip(const tl_model *m, const tl_law_states *states, uint32_t contact, tl_vec3 shear_displacement)
 {
     for (size_t i = 0; i < states->count; i++) {
         const tl_law_state *state = &states->at[i];
         double value[3];
-        if (state->width != 1 || strcmp(state->state->name, "slip") != 0 ||
-            !law_states_has(m, states, state, contact))
+        if (state->width != 1 || strcmp(state->state->name, "slip") != 0 || !law_states_has(m, states, state, contact))
             continue;
         tl_law_state_of_contact(m, states, state, contact, value);
         return value[0];
@@ -219,9 +211,8 @@ static tl_status unknown_name(tl_model *m, const char *item, const tl_field *fie
         names[count + i] = states->at[i].name;
     const char *nearest = tl_nearest_name(name, names, count + more);
     free(names);
-    return tl_fail(&m->error, TL_E_NOT_FOUND, "a %s has no field%s '%.80s'%s%s%s", item,
-                   states ? " or state" : "", name, nearest ? "; did you mean '" : "",
-                   nearest ? nearest : "", nearest ? "'?" : "");
+    return tl_fail(&m->error, TL_E_NOT_FOUND, "a %s has no field%s '%.80s'%s%s%s", item, states ? " or state" : "",
+                   name, nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
 }
 
 /* Looks a name up among fields and, unless NULL, states. `item` is "block". The text `state` is taken for a number;
@@ -236,8 +227,7 @@ static tl_status value_find(tl_model *m, const char *item, const tl_field *field
         of->field = i;
         of->width = strcmp(name, "state") == 0 ? 1 : tl_field_width(fields[i].kind);
         if (of->width == 0)
-            return tl_fail(&m->error, TL_E_ARGUMENT, "the field '%s' of a %s is a text, no number",
-                           name, item);
+            return tl_fail(&m->error, TL_E_ARGUMENT, "the field '%s' of a %s is a text, no number", name, item);
         return TL_OK;
     }
     of->state = states ? law_states_find(states, name) : NULL;
@@ -249,9 +239,8 @@ static tl_status value_find(tl_model *m, const char *item, const tl_field *field
 
 /* The same of contacts or their points, which it brings up to date: lists the states of their laws, to be freed in
  * any case. */
-static tl_status contact_value_find(tl_model *m, const char *item, const tl_field *fields,
-                                    size_t count, tl_law_states *states, const char *name,
-                                    tl_value_of *of)
+static tl_status contact_value_find(tl_model *m, const char *item, const tl_field *fields, size_t count,
+                                    tl_law_states *states, const char *name, tl_value_of *of)
 {
     *states = (tl_law_states){0};
     tl_status status = tl_detect_refresh(m);
@@ -260,8 +249,7 @@ static tl_status contact_value_find(tl_model *m, const char *item, const tl_fiel
     return status == TL_OK ? value_find(m, item, fields, count, states, name, of) : status;
 }
 
-tl_status tl_blocks_values(tl_model *m, const tl_id *ids, size_t count, const char *field,
-                           double *out, size_t *width)
+tl_status tl_blocks_values(tl_model *m, const tl_id *ids, size_t count, const char *field, double *out, size_t *width)
 {
     size_t all;
     const tl_field *fields = tl_block_fields(&all);
@@ -281,8 +269,8 @@ tl_status tl_blocks_values(tl_model *m, const tl_id *ids, size_t count, const ch
 }
 
 /* One value of a contact. */
-static tl_status contact_value(tl_model *m, const tl_law_states *states, const tl_value_of *of,
-                               tl_id contact, double *out)
+static tl_status contact_value(tl_model *m, const tl_law_states *states, const tl_value_of *of, tl_id contact,
+                               double *out)
 {
     uint32_t row;
     tl_status status = tl_contact_find(m, contact, &row);
@@ -298,8 +286,7 @@ static tl_status contact_value(tl_model *m, const tl_law_states *states, const t
     return TL_OK;
 }
 
-tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const char *name,
-                             double *out, size_t *width)
+tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const char *name, double *out, size_t *width)
 {
     size_t all;
     const tl_field *fields = tl_contact_fields(&all);
@@ -338,25 +325,23 @@ tl_status tl_states_list(tl_model *m, tl_id contact, tl_law_state **list, size_t
 
 /* The fields: name, kind, unit, what they are, and the value of point k of a contact for writer w, in `row` of points
  * p. */
-#define POINT_FIELDS(FIELD)                                                                        \
-    FIELD(position, VEC3, "m", "present place of the point",                                       \
-          tl_v3_add(w->model->origin, w->place[k]))                                                \
-    FIELD(area, SCALAR, "m2", "share of the contact's area", p->area[row])                         \
-    FIELD(normal_force, SCALAR, "N", "compression positive", p->f_n[row])                          \
-    FIELD(shear_force, VEC3, "N", "on the second block", tl_columns_get(p->f_s, row))              \
-    FIELD(gap, SCALAR, "m",                                                                        \
-          "of the walls at the point, negative when overlapping; of a field contact the mean "     \
-          "over its area",                                                                         \
-          w->gap[k])                                                                               \
-    FIELD(closure, SCALAR, "m",                                                                    \
-          "how far the walls have approached since the law's reference state",                     \
-          -w->gap[k] - (p->reference ? p->reference[row] : 0))                                     \
-    FIELD(state, TEXT, "", "\"elastic\", \"slipping\", \"open\" or \"failed\"",                    \
+#define POINT_FIELDS(FIELD)                                                                                            \
+    FIELD(position, VEC3, "m", "present place of the point", tl_v3_add(w->model->origin, w->place[k]))                 \
+    FIELD(area, SCALAR, "m2", "share of the contact's area", p->area[row])                                             \
+    FIELD(normal_force, SCALAR, "N", "compression positive", p->f_n[row])                                              \
+    FIELD(shear_force, VEC3, "N", "on the second block", tl_columns_get(p->f_s, row))                                  \
+    FIELD(gap, SCALAR, "m",                                                                                            \
+          "of the walls at the point, negative when overlapping; of a field contact the mean "                         \
+          "over its area",                                                                                             \
+          w->gap[k])                                                                                                   \
+    FIELD(closure, SCALAR, "m", "how far the walls have approached since the law's reference state",                   \
+          -w->gap[k] - (p->reference ? p->reference[row] : 0))                                                         \
+    FIELD(state, TEXT, "", "\"elastic\", \"slipping\", \"open\" or \"failed\"",                                        \
           tl_contact_state_of_flags(p->flags[row], p->flags[row]))
 
 #define NUMBER(name, kind, unit, doc, value) F_##name,
 #define FIELD(name, kind, unit, doc, value) {#name, TL_FIELD_##kind, unit, doc},
-#define CASE(name, kind, unit, doc, value)                                                         \
+#define CASE(name, kind, unit, doc, value)                                                                             \
     case F_##name: TL_FIELD_PUT(w->out, value); break;
 
 enum { POINT_FIELDS(NUMBER) F_COUNT };
@@ -435,8 +420,8 @@ static tl_status write_contact(tl_model *m, writer *w, tl_id id)
     return TL_OK;
 }
 
-tl_status tl_points_values(tl_model *m, const tl_id *contacts, size_t count, const char *name,
-                           double *out, size_t *width)
+tl_status tl_points_values(tl_model *m, const tl_id *contacts, size_t count, const char *name, double *out,
+                           size_t *width)
 {
     tl_law_states states;
     tl_value_of of;

@@ -154,8 +154,7 @@ typedef struct common {
 } common;
 
 /* Looks at a pair as it lies, or lay, unless that has been done. false: out of memory. */
-static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint32_t b, bool now,
-                 common *out)
+static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint32_t b, bool now, common *out)
 {
     if (out->looked)
         return true;
@@ -163,8 +162,7 @@ static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint
     const tl_touch_rule rule = {.reach = INFINITY};
     tl_pair_view view = view_of(m, a, b, now);
     tl_region region;
-    if (!tl_pair_place(&view, scratch) ||
-        !tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
+    if (!tl_pair_place(&view, scratch) || !tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
         return false;
     uint32_t fa = region.flush_a, fb = region.flush_b;
     if (!region.flush || region.gap > GAP * view.size || region.flush_gap < -OVERLAP * view.size ||
@@ -185,8 +183,7 @@ static double least_area(const tl_model *m, uint32_t row, uint32_t face)
 }
 
 /* Notes that the block in `row`, of a pair that does not touch now, has left what it lay on, if it did. */
-static bool note_left(const search *s, worker *w, uint32_t row, common *before,
-                      const uint32_t pair[2])
+static bool note_left(const search *s, worker *w, uint32_t row, common *before, const uint32_t pair[2])
 {
     if (!look(s->m, &w->scratch, pair[0], pair[1], false, before))
         return false;
@@ -201,8 +198,8 @@ static bool note_left(const search *s, worker *w, uint32_t row, common *before,
 static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
 {
     const tl_bounds *p = &s->bounds[a], *q = &s->bounds[b];
-    bool apart = p->min.x > q->max.x || q->min.x > p->max.x || p->min.y > q->max.y ||
-                 q->min.y > p->max.y || p->min.z > q->max.z || q->min.z > p->max.z;
+    bool apart = p->min.x > q->max.x || q->min.x > p->max.x || p->min.y > q->max.y || q->min.y > p->max.y ||
+                 p->min.z > q->max.z || q->min.z > p->max.z;
     if (apart || s->m->blocks.body[a] == s->m->blocks.body[b])
         return true;
     const uint32_t row[] = {a, b};
@@ -217,8 +214,7 @@ static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
             return false;
         const common *it = kept && before.area > 0 ? &before : &now;
         double least = kept && it == &now ? least_area(s->m, row[side], it->face[side]) : 0;
-        const tl_touch touch = {row[side], it->face[side], row[1 - side],
-                                it->area,  it->joint,      share};
+        const tl_touch touch = {row[side], it->face[side], row[1 - side], it->area, it->joint, share};
         if (it->area > least && !add(&w->found, touch))
             return false;
         if (!kept && !(now.area > 0) && !note_left(s, w, row[side], &before, row))
@@ -259,8 +255,7 @@ typedef struct begin {
 static int compare_begin(const void *x, const void *y)
 {
     const begin *a = x, *b = y;
-    return a->at != b->at ? (a->at > b->at) - (a->at < b->at)
-                          : (a->row > b->row) - (a->row < b->row);
+    return a->at != b->at ? (a->at > b->at) - (a->at < b->at) : (a->row > b->row) - (a->row < b->row);
 }
 
 static bool prepare(search *s)
@@ -317,8 +312,7 @@ static void test_pairs(void *user, size_t first, size_t end, size_t chunk, unsig
 static int compare_touch(const void *x, const void *y)
 {
     const tl_touch *a = x, *b = y;
-    return a->row != b->row ? (a->row > b->row) - (a->row < b->row)
-                            : (a->other > b->other) - (a->other < b->other);
+    return a->row != b->row ? (a->row > b->row) - (a->row < b->row) : (a->other > b->other) - (a->other < b->other);
 }
 
 /* Takes what all threads have found together, in order. */

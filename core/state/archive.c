@@ -97,8 +97,7 @@ static uint64_t sum_of(const char *name, size_t name_bytes, const void *data, si
     return bytes ? XXH64(data, bytes, sum) : sum;
 }
 
-void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size,
-                    size_t items)
+void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size, size_t items)
 {
     size_t bytes = size * items;
     size_t packed = bytes < SHORT_DATA ? 0 : pack(w, data, bytes);
@@ -143,8 +142,7 @@ tl_status tl_archive_bad(const tl_archive *a, tl_error *error, const char *forma
     va_start(args, format);
     tl_text_vprint(what, sizeof what, format, args);
     va_end(args);
-    return tl_fail(error, TL_E_ARGUMENT, "cannot restore '%.200s': the file is damaged: %s",
-                   a->path, what);
+    return tl_fail(error, TL_E_ARGUMENT, "cannot restore '%.200s': the file is damaged: %s", a->path, what);
 }
 
 /* The version of the program that has written a file, by its first bytes: its first chunk in all formats since 7.
@@ -158,8 +156,8 @@ static void find_writer(const unsigned char *bytes, size_t length, char version[
     if (length < text)
         return;
     memcpy(&head, bytes + at, sizeof head);
-    if (head.name_bytes != strlen(name) || head.packed || head.stored >= WRITER ||
-        head.stored > length - text || memcmp(bytes + text - strlen(name), name, strlen(name)) != 0)
+    if (head.name_bytes != strlen(name) || head.packed || head.stored >= WRITER || head.stored > length - text ||
+        memcmp(bytes + text - strlen(name), name, strlen(name)) != 0)
         return;
     memcpy(version, bytes + text, head.stored);
     version[head.stored] = '\0';
@@ -167,22 +165,20 @@ static void find_writer(const unsigned char *bytes, size_t length, char version[
         *version = '\0';
 }
 
-static tl_status refuse_format(const char *path, const unsigned char *bytes, size_t length,
-                               uint32_t format, tl_error *error)
+static tl_status refuse_format(const char *path, const unsigned char *bytes, size_t length, uint32_t format,
+                               tl_error *error)
 {
     char writer[WRITER];
     find_writer(bytes, length, writer);
     const char *by = *writer ? ", written by Talus " : "";
-    return tl_fail(
-        error, TL_E_ARGUMENT,
-        "cannot restore '%.200s': it has format %u%s%s, and this version of Talus, " TALUS_VERSION
-        ", reads format %d: use the version that has written it",
-        path, format, by, writer, TL_ARCHIVE_FORMAT);
+    return tl_fail(error, TL_E_ARGUMENT,
+                   "cannot restore '%.200s': it has format %u%s%s, and this version of Talus, " TALUS_VERSION
+                   ", reads format %d: use the version that has written it",
+                   path, format, by, writer, TL_ARCHIVE_FORMAT);
 }
 
 /* By the first bytes of a file, as many as there are. */
-static tl_status check_file_head(const char *path, const unsigned char *bytes, size_t length,
-                                 tl_error *error)
+static tl_status check_file_head(const char *path, const unsigned char *bytes, size_t length, tl_error *error)
 {
     tl_archive_head head;
     if (length < sizeof head || memcmp(bytes, magic, sizeof magic) != 0)
@@ -190,11 +186,8 @@ static tl_status check_file_head(const char *path, const unsigned char *bytes, s
     memcpy(&head, bytes, sizeof head);
     if (head.order != TL_ARCHIVE_ORDER)
         return tl_fail(error, TL_E_ARGUMENT,
-                       "cannot restore '%.200s': it was written by a machine of another byte order",
-                       path);
-    return head.format == TL_ARCHIVE_FORMAT
-               ? TL_OK
-               : refuse_format(path, bytes, length, head.format, error);
+                       "cannot restore '%.200s': it was written by a machine of another byte order", path);
+    return head.format == TL_ARCHIVE_FORMAT ? TL_OK : refuse_format(path, bytes, length, head.format, error);
 }
 
 /* Whether stored data may stand for so many items. */
@@ -215,9 +208,8 @@ static bool read_chunk(const tl_archive *a, size_t *at, tl_chunk *chunk, uint64_
         return false;
     memcpy(&head, a->bytes + *at, sizeof head);
     left -= sizeof head;
-    if (XXH64(&head, TL_CHUNK_HEAD_SUMMED, 0) != head.head_sum || head.packed > 1 ||
-        head.name_bytes > TL_CHUNK_NAME || head.name_bytes > left ||
-        head.stored > left - head.name_bytes || !is_dense(&head))
+    if (XXH64(&head, TL_CHUNK_HEAD_SUMMED, 0) != head.head_sum || head.packed > 1 || head.name_bytes > TL_CHUNK_NAME ||
+        head.name_bytes > left || head.stored > left - head.name_bytes || !is_dense(&head))
         return false;
     const unsigned char *name = a->bytes + *at + sizeof head;
     *chunk = (tl_chunk){.name = (const char *)name,
@@ -246,8 +238,7 @@ static tl_status list_chunks(tl_archive *a, tl_error *error)
     do {
         before = sum;
         if (!read_chunk(a, &at, &chunk, &sum))
-            return tl_archive_bad(a, error,
-                                  "chunk %zu of it is not whole, or its checksum is wrong",
+            return tl_archive_bad(a, error, "chunk %zu of it is not whole, or its checksum is wrong",
                                   a->chunk_count + 1);
         if (a->chunk_count == capacity) {
             capacity = capacity ? 2 * capacity : 256;
@@ -264,13 +255,11 @@ static tl_status list_chunks(tl_archive *a, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_archive_of_bytes(tl_archive *a, const char *path, unsigned char *bytes, size_t length,
-                              tl_error *error)
+tl_status tl_archive_of_bytes(tl_archive *a, const char *path, unsigned char *bytes, size_t length, tl_error *error)
 {
     *a = (tl_archive){.path = strdup(path), .bytes = bytes, .length = length};
     a->unpacker = ZSTD_createDCtx(); /* unpacking then needs no memory of its own */
-    tl_status status = a->path && a->unpacker ? check_file_head(path, bytes, length, error)
-                                              : tl_fail_memory(error);
+    tl_status status = a->path && a->unpacker ? check_file_head(path, bytes, length, error) : tl_fail_memory(error);
     if (status == TL_OK)
         status = list_chunks(a, error);
     if (status != TL_OK)
@@ -367,15 +356,13 @@ bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size
             memcpy(to, chunk->data, bytes);
         return true;
     }
-    return bytes &&
-           ZSTD_decompressDCtx(a->unpacker, to, bytes, chunk->data, chunk->stored) == bytes;
+    return bytes && ZSTD_decompressDCtx(a->unpacker, to, bytes, chunk->data, chunk->stored) == bytes;
 }
 
 bool tl_archive_text(const tl_archive *a, const char *name, char *text, size_t capacity)
 {
     const tl_chunk *chunk = tl_archive_find(a, name);
-    if (!chunk || chunk->items >= capacity ||
-        !tl_archive_get(a, name, text, 1, (size_t)chunk->items))
+    if (!chunk || chunk->items >= capacity || !tl_archive_get(a, name, text, 1, (size_t)chunk->items))
         return false;
     text[chunk->items] = '\0';
     return strlen(text) == chunk->items;

@@ -29,8 +29,7 @@ typedef struct tl_archive_writer {
 /* Opens the archive that is to become `path`, durably. */
 tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *error);
 /* Adds a chunk of `items` items of `size` bytes; what fails is found by tl_archive_end. */
-void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size,
-                    size_t items);
+void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size, size_t items);
 /* Adds the bytes of a text. */
 void tl_archive_put_text(tl_archive_writer *w, const char *name, const char *text);
 /* Gives the file its name when all is well; else what was there stays. */
@@ -60,8 +59,8 @@ typedef struct tl_archive {
  * format, cut off or damaged. */
 tl_status tl_archive_open(tl_archive *archive, const char *path, tl_error *error);
 /* The same of bytes, which then belong to the archive; `path` is what sentences call it. */
-tl_status tl_archive_of_bytes(tl_archive *archive, const char *path, unsigned char *bytes,
-                              size_t length, tl_error *error);
+tl_status tl_archive_of_bytes(tl_archive *archive, const char *path, unsigned char *bytes, size_t length,
+                              tl_error *error);
 void tl_archive_close(tl_archive *archive);
 
 /* A chunk, or NULL. */
@@ -70,20 +69,18 @@ const tl_chunk *tl_archive_find(const tl_archive *archive, const char *name);
 size_t tl_archive_items(const tl_archive *archive, const char *name);
 /* Puts the items of a chunk into `to`, which has room for them. false: it is not there, has items of another size or
  * number, or does not unpack to them. */
-bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size,
-                    size_t items);
+bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size, size_t items);
 /* The bytes of a chunk as a text with its terminating zero. false: it is not there, needs more room or holds a
  * zero. */
 bool tl_archive_text(const tl_archive *archive, const char *name, char *text, size_t capacity);
 /* "cannot restore 'path': the file is damaged: ..." */
-tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char *format, ...)
-    TL_PRINTF(3, 4);
+tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char *format, ...) TL_PRINTF(3, 4);
 
 /* ---- what a file consists of ---- */
 
-#define TL_ARCHIVE_MAGIC                                                                           \
-    {                                                                                              \
-        'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'                                                \
+#define TL_ARCHIVE_MAGIC                                                                                               \
+    {                                                                                                                  \
+        'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'                                                                    \
     }
 /* Format of the file, and of what the chunks hold: another is refused. */
 #define TL_ARCHIVE_FORMAT 12

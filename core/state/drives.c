@@ -37,8 +37,8 @@ static tl_drive_asked asked_of(const tl_model *m, size_t index)
 }
 
 /* Asks for the functions of a drive that had some. */
-static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept,
-                     const tl_drive_record *from, const tl_drives_again *again, tl_drive *drive)
+static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept, const tl_drive_record *from,
+                     const tl_drives_again *again, tl_drive *drive)
 {
     tl_drive_asked asked = asked_of(m, index);
     asked.velocity = kept->velocity_asked;
@@ -50,21 +50,17 @@ static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept,
     drive->angular_velocity_at = given.angular_velocity_at;
     drive->user = given.user;
     drive->release = given.release;
-    if (found && !given.velocity_at == !asked.velocity &&
-        !given.angular_velocity_at == !asked.angular_velocity)
+    if (found && !given.velocity_at == !asked.velocity && !given.angular_velocity_at == !asked.angular_velocity)
         return TL_OK;
     return tl_fail(
-        &m->error, TL_E_STATE,
-        "block %llu%s is driven by a function for its %s%s%s, which has to be given again",
-        (unsigned long long)asked.block, asked.bodies > 1 ? " with others" : "",
-        asked.velocity ? "velocity" : "",
-        asked.velocity && asked.angular_velocity ? " and its " : "",
-        asked.angular_velocity ? "angular_velocity" : "");
+        &m->error, TL_E_STATE, "block %llu%s is driven by a function for its %s%s%s, which has to be given again",
+        (unsigned long long)asked.block, asked.bodies > 1 ? " with others" : "", asked.velocity ? "velocity" : "",
+        asked.velocity && asked.angular_velocity ? " and its " : "", asked.angular_velocity ? "angular_velocity" : "");
 }
 
 /* `from` has the drives of the original, of a copy; of a file it is NULL. */
-static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count,
-                      const tl_drive_record *from, const tl_drives_again *again)
+static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count, const tl_drive_record *from,
+                      const tl_drives_again *again)
 {
     if (count == 0)
         return TL_OK;
@@ -110,8 +106,8 @@ static tl_status restore_drives(tl_model *m, const tl_archive *a, const tl_drive
     for (size_t i = 0; i < count && read; i++)
         read = tl_v3_finite(kept[i].velocity) && tl_v3_finite(kept[i].angular_velocity) &&
                tl_v3_finite(kept[i].velocity_now) && tl_v3_finite(kept[i].angular_velocity_now);
-    tl_status status = read ? make(m, kept, count, NULL, again)
-                            : tl_archive_bad(a, &m->error, "'drives' is missing or does not fit");
+    tl_status status =
+        read ? make(m, kept, count, NULL, again) : tl_archive_bad(a, &m->error, "'drives' is missing or does not fit");
     free(kept);
     if (status == TL_E_STATE)
         tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);

@@ -66,9 +66,8 @@ static void save_histories(const tl_model *m, tl_archive_writer *w)
 
 static bool kept_is_sound(const tl_model *m, const history_kept *kept)
 {
-    return kept->selection <= 1 && kept->lost <= 1 && kept->list <= 1 && kept->first >= 0 &&
-           kept->first <= m->cycles && kept->ids <= UINT32_MAX &&
-           kept->width <= TL_HISTORY_WIDEST && (kept->width > 0 || kept->count == 0) &&
+    return kept->selection <= 1 && kept->lost <= 1 && kept->list <= 1 && kept->first >= 0 && kept->first <= m->cycles &&
+           kept->ids <= UINT32_MAX && kept->width <= TL_HISTORY_WIDEST && (kept->width > 0 || kept->count == 0) &&
            (kept->list || kept->width <= 1) &&
            (kept->count == 0 || kept->count - 1 <= (uint64_t)(m->cycles - kept->first));
 }
@@ -107,8 +106,8 @@ static bool has_lists(const tl_archive *a, size_t k, const tl_history *h)
 static bool samples_are_sound(const tl_model *m, const tl_history *h)
 {
     for (size_t i = 0; i < h->count; i++)
-        if ((i ? h->cycles[i] <= h->cycles[i - 1] : h->cycles[i] < h->first) ||
-            h->cycles[i] > m->cycles || !isfinite(h->times[i]))
+        if ((i ? h->cycles[i] <= h->cycles[i - 1] : h->cycles[i] < h->first) || h->cycles[i] > m->cycles ||
+            !isfinite(h->times[i]))
             return false;
     return true;
 }
@@ -134,14 +133,12 @@ static tl_status restore_one(tl_model *m, const tl_archive *a, size_t k, const h
     if (bad)
         return tl_archive_bad(a, &m->error, "%s", bad);
     if (!has_lists(a, k, &what))
-        return tl_archive_bad(a, &m->error, "a list of history '%s' is missing or does not fit",
-                              what.name);
+        return tl_archive_bad(a, &m->error, "a list of history '%s' is missing or does not fit", what.name);
     tl_history *h = tl_history_hold(m, &what, what.count);
     if (!h)
         return tl_fail_memory(&m->error);
-    return read_lists(m, a, k, h)
-               ? TL_OK
-               : tl_archive_bad(a, &m->error, "the samples of history '%s' do not fit", h->name);
+    return read_lists(m, a, k, h) ? TL_OK
+                                  : tl_archive_bad(a, &m->error, "the samples of history '%s' do not fit", h->name);
 }
 
 static tl_status restore_histories(tl_model *m, const tl_archive *a, const tl_drives_again *again)

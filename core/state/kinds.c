@@ -36,14 +36,12 @@ static void state_names(const tl_kind *kind, char text[NAMES])
     size_t length = 0;
     text[0] = '\0';
     for (uint32_t k = 0; k < kind->state_count && length < NAMES; k++)
-        length +=
-            (size_t)snprintf(text + length, NAMES - length, "%s\n", tl_kind_state(kind, k)->name);
+        length += (size_t)snprintf(text + length, NAMES - length, "%s\n", tl_kind_state(kind, k)->name);
 }
 
 /* ---------------------------------------------------------------- saving ----------------- */
 
-static void put_param(tl_archive_writer *w, const char *prefix, const tl_param *p,
-                      const void *params)
+static void put_param(tl_archive_writer *w, const char *prefix, const tl_param *p, const void *params)
 {
     char name[TL_CHUNK_NAME];
     const char *at = (const char *)params + p->offset;
@@ -57,8 +55,7 @@ static void put_param(tl_archive_writer *w, const char *prefix, const tl_param *
     }
 }
 
-static void put_kind(tl_archive_writer *w, const char *prefix, const tl_kind *kind,
-                     const void *params)
+static void put_kind(tl_archive_writer *w, const char *prefix, const tl_kind *kind, const void *params)
 {
     char name[TL_CHUNK_NAME], text[NAMES], plugin[PLUGIN_NAME];
     plugin_text(kind, plugin);
@@ -90,8 +87,7 @@ static void save_damping(const tl_model *m, tl_archive_writer *w)
     if (!m->damping)
         return;
     put_kind(w, "damping", m->damping, m->damping_params);
-    tl_archive_put(w, "damping.state", m->damping_state, sizeof *m->damping_state,
-                   m->damping->state_count);
+    tl_archive_put(w, "damping.state", m->damping_state, sizeof *m->damping_state, m->damping->state_count);
 }
 
 /* ---------------------------------------------------------------- restoring -------------- */
@@ -108,18 +104,16 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
     const char *what = type == TL_KIND_LAW ? "law" : "damping";
     *kind = tl_plugin_find(type, name);
     if (!*kind)
-        return tl_fail(
-            &m->error, TL_E_NOT_FOUND,
-            "cannot restore '%.200s': its %s '%.80s' is of the plugin %.120s, which is not "
-            "loaded: load it with --plugin, or name its folder in TALUS_PLUGIN_PATH",
-            a->path, what, name, plugin);
+        return tl_fail(&m->error, TL_E_NOT_FOUND,
+                       "cannot restore '%.200s': its %s '%.80s' is of the plugin %.120s, which is not "
+                       "loaded: load it with --plugin, or name its folder in TALUS_PLUGIN_PATH",
+                       a->path, what, name, plugin);
     plugin_text(*kind, now);
     if (strcmp(plugin, now) != 0)
-        return tl_fail(
-            &m->error, TL_E_STATE,
-            "cannot restore '%.200s': its %s '%.80s' is of the plugin %.120s, and %.120s is "
-            "loaded: load the plugin in the version that the file was saved with",
-            a->path, what, name, plugin, now);
+        return tl_fail(&m->error, TL_E_STATE,
+                       "cannot restore '%.200s': its %s '%.80s' is of the plugin %.120s, and %.120s is "
+                       "loaded: load the plugin in the version that the file was saved with",
+                       a->path, what, name, plugin, now);
     state_names(*kind, states_now);
     if (!tl_archive_text(a, tl_chunk_name(chunk, "%s.states", prefix), states, sizeof states) ||
         strcmp(states, states_now) != 0)
@@ -134,8 +128,8 @@ typedef struct read_param {
 } read_param;
 
 /* Reads a parameter as a script would give it. false: it is not there. `*given` is false for one that was left out. */
-static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p, read_param *r,
-                     tl_value *value, bool *given)
+static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p, read_param *r, tl_value *value,
+                     bool *given)
 {
     char name[TL_CHUNK_NAME];
     int64_t whole;
@@ -165,9 +159,7 @@ static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p,
         value->count = 3;
         *given = tl_archive_get(a, name, r->numbers, sizeof r->numbers, 1);
         break;
-    default:
-        *given = tl_archive_get(a, name, r->numbers, sizeof *r->numbers, 1);
-        value->number = r->numbers[0];
+    default: *given = tl_archive_get(a, name, r->numbers, sizeof *r->numbers, 1); value->number = r->numbers[0];
     }
     bool there = *given;
     if (there && (p->flags & TL_PARAM_OPTIONAL) && isnan(r->numbers[0]))
@@ -175,17 +167,15 @@ static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p,
     return there;
 }
 
-static tl_status read_params(tl_model *m, const tl_archive *a, const char *prefix,
-                             const tl_kind *kind, read_param *storage, tl_value *values,
-                             tl_args *args)
+static tl_status read_params(tl_model *m, const tl_archive *a, const char *prefix, const tl_kind *kind,
+                             read_param *storage, tl_value *values, tl_args *args)
 {
     *args = (tl_args){values, 0};
     for (uint32_t k = 0; k < kind->param_count; k++) {
         tl_param p = tl_param_row(kind->params, k, kind->param_stride);
         bool given;
         if (!read_one(a, prefix, &p, &storage[k], &values[args->count], &given))
-            return tl_archive_bad(a, &m->error, "parameter '%s' of %s is missing", p.name,
-                                  kind->name);
+            return tl_archive_bad(a, &m->error, "parameter '%s' of %s is missing", p.name, kind->name);
         args->count += given;
     }
     return TL_OK;
@@ -194,14 +184,13 @@ static tl_status read_params(tl_model *m, const tl_archive *a, const char *prefi
 /* Puts the file's name before a sentence that does not bear it. */
 static tl_status tell_path(tl_model *m, const tl_archive *a, tl_status status)
 {
-    return status == TL_OK || status == TL_E_MEMORY
-               ? status
-               : tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
+    return status == TL_OK || status == TL_E_MEMORY ? status
+                                                    : tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
 }
 
 /* Makes the law or damping of a prefix: a law into `law`, or the model's damping. */
-static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix,
-                              tl_kind_type type, tl_tag tag, tl_law *law)
+static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix, tl_kind_type type, tl_tag tag,
+                              tl_law *law)
 {
     const tl_kind *kind = NULL;
     tl_status status = find_kind(m, a, prefix, type, &kind);
@@ -210,8 +199,7 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     read_param *storage = calloc(kind->param_count + 1u, sizeof *storage);
     tl_value *values = calloc(kind->param_count + 1u, sizeof *values);
     tl_args args;
-    status = storage && values ? read_params(m, a, prefix, kind, storage, values, &args)
-                               : tl_fail_memory(&m->error);
+    status = storage && values ? read_params(m, a, prefix, kind, storage, values, &args) : tl_fail_memory(&m->error);
     if (status == TL_OK && law) {
         const char *joint = tag.joint ? tl_tag_name(m, tag) : "*";
         status = tell_path(m, a, tl_law_make_for(m, tag, joint, kind, &args, NULL, law));
@@ -241,11 +229,9 @@ static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_
         char prefix[PREFIX], name[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", m->joint_law_count);
         tl_tag tag;
-        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) ||
-            !tag_is_sound(m, tag))
+        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) || !tag_is_sound(m, tag))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
-        tl_status status =
-            restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count]);
+        tl_status status = restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count]);
         if (status != TL_OK)
             return status;
         m->joint_law_count++;
@@ -261,8 +247,7 @@ static tl_status restore_damping(tl_model *m, const tl_archive *a, const tl_driv
     tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL);
     if (status != TL_OK)
         return status;
-    if (!tl_archive_get(a, "damping.state", m->damping_state, sizeof *m->damping_state,
-                        m->damping->state_count))
+    if (!tl_archive_get(a, "damping.state", m->damping_state, sizeof *m->damping_state, m->damping->state_count))
         return tl_archive_bad(a, &m->error, "'damping.state' is missing");
     return TL_OK;
 }
@@ -294,11 +279,9 @@ static tl_status copy_damping(tl_model *to, const tl_model *from, const tl_drive
     (void)again;
     if (!from->damping)
         return TL_OK;
-    tl_status status =
-        tl_damping_make(to, from->damping, &(tl_args){NULL, 0}, from->damping_params);
+    tl_status status = tl_damping_make(to, from->damping, &(tl_args){NULL, 0}, from->damping_params);
     if (status == TL_OK && from->damping->state_count)
-        memcpy(to->damping_state, from->damping_state,
-               from->damping->state_count * sizeof *to->damping_state);
+        memcpy(to->damping_state, from->damping_state, from->damping->state_count * sizeof *to->damping_state);
     return status;
 }
 

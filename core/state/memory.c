@@ -25,8 +25,7 @@ static void add(void *user, const tl_entry *entry)
 
 static size_t narrow_bytes(const tl_narrow_scratch *n)
 {
-    return sizeof *n + n->vertex_capacity * sizeof *n->vertex_b +
-           n->normal_capacity * sizeof *n->normal_b +
+    return sizeof *n + n->vertex_capacity * sizeof *n->vertex_b + n->normal_capacity * sizeof *n->normal_b +
            (n->plane_capacity + n->press_capacity + n->corner_capacity) * sizeof(double) +
            n->field.lines * (sizeof(tl_field_line) + 2 * sizeof(tl_field_plane)) +
            n->field.numbers * sizeof *n->field.number + n->face_capacity * sizeof *n->face +
@@ -56,8 +55,8 @@ tl_memory tl_model_memory(const tl_model *m)
     tl_memory memory = {0};
     const tl_walk walk = {add, &memory};
     tl_model_walk((tl_model *)(uintptr_t)m, &walk);
-    memory.other += sizeof *m + m->joint_count * sizeof *m->joints +
-                    m->joint_law_count * sizeof *m->joint_laws + m->drive_count * sizeof *m->drives;
+    memory.other += sizeof *m + m->joint_count * sizeof *m->joints + m->joint_law_count * sizeof *m->joint_laws +
+                    m->drive_count * sizeof *m->drives;
     for (size_t i = 0; i < m->history_count; i++)
         memory.other += tl_history_bytes(m->histories[i]);
     for (size_t row = 0; row < m->blocks.table.rows; row++)

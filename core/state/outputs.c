@@ -139,10 +139,8 @@ static void save_frames(const tl_model *m, tl_archive_writer *w)
         const size_t k = (size_t)count++;
         tl_archive_put_text(w, tl_chunk_name(name, "frames.%zu.prefix", k), of->prefix);
         tl_archive_put_text(w, tl_chunk_name(name, "frames.%zu.kind", k), of->kind);
-        tl_archive_put(w, tl_chunk_name(name, "frames.%zu.times", k), of->times, sizeof *of->times,
-                       of->count);
-        tl_archive_put(w, tl_chunk_name(name, "frames.%zu.parts", k), of->parts, sizeof *of->parts,
-                       of->count);
+        tl_archive_put(w, tl_chunk_name(name, "frames.%zu.times", k), of->times, sizeof *of->times, of->count);
+        tl_archive_put(w, tl_chunk_name(name, "frames.%zu.parts", k), of->parts, sizeof *of->parts, of->count);
     }
     tl_archive_put(w, "frames", &count, sizeof count, 1);
 }
@@ -151,13 +149,10 @@ static void save_frames(const tl_model *m, tl_archive_writer *w)
 static bool read_frames(const tl_archive *a, size_t k, size_t count, tl_vtk_series *to)
 {
     char name[TL_CHUNK_NAME];
-    if (!tl_archive_get(a, tl_chunk_name(name, "frames.%zu.times", k), to->times, sizeof *to->times,
-                        count) ||
-        !tl_archive_get(a, tl_chunk_name(name, "frames.%zu.parts", k), to->parts, sizeof *to->parts,
-                        count))
+    if (!tl_archive_get(a, tl_chunk_name(name, "frames.%zu.times", k), to->times, sizeof *to->times, count) ||
+        !tl_archive_get(a, tl_chunk_name(name, "frames.%zu.parts", k), to->parts, sizeof *to->parts, count))
         return false;
-    while (to->count < count && isfinite(to->times[to->count]) &&
-           to->parts[to->count] >> TL_VTK_PARTS == 0)
+    while (to->count < count && isfinite(to->times[to->count]) && to->parts[to->count] >> TL_VTK_PARTS == 0)
         tl_vtk_series_add(to, to->times[to->count], to->parts[to->count]);
     return to->count == count;
 }
@@ -167,17 +162,15 @@ static tl_status restore_series(tl_model *m, size_t k, const tl_archive *a)
     char prefix[LONGEST_PREFIX], kind[LONGEST_KIND], name[TL_CHUNK_NAME];
     const size_t count = tl_archive_items(a, tl_chunk_name(name, "frames.%zu.times", k));
     tl_vtk_series *series = NULL;
-    bool read =
-        tl_archive_text(a, tl_chunk_name(name, "frames.%zu.prefix", k), prefix, sizeof prefix) &&
-        tl_archive_text(a, tl_chunk_name(name, "frames.%zu.kind", k), kind, sizeof kind);
+    bool read = tl_archive_text(a, tl_chunk_name(name, "frames.%zu.prefix", k), prefix, sizeof prefix) &&
+                tl_archive_text(a, tl_chunk_name(name, "frames.%zu.kind", k), kind, sizeof kind);
     if (read) {
         series = tl_vtk_series_of(m, prefix, kind);
         if (!series || !reserve_frames(series, count))
             return tl_fail_memory(&m->error);
         read = series->count == 0 && read_frames(a, k, count, series);
     }
-    return read ? TL_OK
-                : tl_archive_bad(a, &m->error, "a series of frames is missing or does not fit");
+    return read ? TL_OK : tl_archive_bad(a, &m->error, "a series of frames is missing or does not fit");
 }
 
 static tl_status restore_frames(tl_model *m, const tl_archive *a)
@@ -201,13 +194,11 @@ static void save_pages(const tl_model *m, tl_archive_writer *w)
     size_t count = 0;
     for (const tl_page *page = m->outputs ? m->outputs->pages : NULL; page; page = page->next) {
         const tl_page_end *end = &page->end;
-        const uint64_t numbers[NUMBERS] = {end->frames, end->at, end->checked, end->digest.a,
-                                           end->digest.b};
+        const uint64_t numbers[NUMBERS] = {end->frames, end->at, end->checked, end->digest.a, end->digest.b};
         if (end->frames == 0)
             continue;
         tl_archive_put_text(w, tl_chunk_name(name, "pages.%zu.prefix", count), page->prefix);
-        tl_archive_put(w, tl_chunk_name(name, "pages.%zu.end", count), numbers, sizeof *numbers,
-                       NUMBERS);
+        tl_archive_put(w, tl_chunk_name(name, "pages.%zu.end", count), numbers, sizeof *numbers, NUMBERS);
         count++;
     }
     const uint64_t saved = count;
@@ -216,22 +207,19 @@ static void save_pages(const tl_model *m, tl_archive_writer *w)
 
 static bool end_is_sound(const tl_page_end *end)
 {
-    return end->frames > 0 && end->frames <= UINT32_MAX && end->at <= LONGEST_PAGE &&
-           end->checked <= TL_PAGE_CHECKED && end->checked <= end->at;
+    return end->frames > 0 && end->frames <= UINT32_MAX && end->at <= LONGEST_PAGE && end->checked <= TL_PAGE_CHECKED &&
+           end->checked <= end->at;
 }
 
 static tl_status restore_page(tl_model *m, size_t k, const tl_archive *a)
 {
     char prefix[LONGEST_PREFIX], name[TL_CHUNK_NAME];
     uint64_t numbers[NUMBERS];
-    bool read =
-        tl_archive_text(a, tl_chunk_name(name, "pages.%zu.prefix", k), prefix, sizeof prefix) &&
-        tl_archive_get(a, tl_chunk_name(name, "pages.%zu.end", k), numbers, sizeof *numbers,
-                       NUMBERS);
+    bool read = tl_archive_text(a, tl_chunk_name(name, "pages.%zu.prefix", k), prefix, sizeof prefix) &&
+                tl_archive_get(a, tl_chunk_name(name, "pages.%zu.end", k), numbers, sizeof *numbers, NUMBERS);
     tl_page_end end = {0};
     if (read)
-        end = (tl_page_end){
-            numbers[FRAMES], numbers[AT], numbers[CHECKED], {numbers[DIGEST_A], numbers[DIGEST_B]}};
+        end = (tl_page_end){numbers[FRAMES], numbers[AT], numbers[CHECKED], {numbers[DIGEST_A], numbers[DIGEST_B]}};
     if (!read || !end_is_sound(&end))
         return tl_archive_bad(a, &m->error, "a page is missing or does not fit");
     tl_page *page = tl_page_of(m, prefix);

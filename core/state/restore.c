@@ -71,8 +71,7 @@ static bool read_table(reader *r, tl_table *table)
     char full[TL_CHUNK_NAME];
     uint64_t rows;
     snprintf(full, sizeof full, "%.80s.rows", r->name);
-    if (!tl_archive_get(r->archive, full, &rows, sizeof rows, 1) || rows > UINT32_MAX ||
-        !has_columns(r, table, rows))
+    if (!tl_archive_get(r->archive, full, &rows, sizeof rows, 1) || rows > UINT32_MAX || !has_columns(r, table, rows))
         return false;
     r->lacked = !tl_table_resize(table, (size_t)rows);
     for (size_t k = 0; k < table->column_count && !r->lacked; k++) {
@@ -97,8 +96,8 @@ static void read_entry(void *user, const tl_entry *e)
     else if (e->form == TL_ENTRY_LIST)
         read = read_list(r, e);
     else
-        read = tl_archive_get(r->archive, r->name, e->at, e->size, 1) &&
-               (e->form != TL_ENTRY_FLAG || tl_is_flag(e->at));
+        read =
+            tl_archive_get(r->archive, r->name, e->at, e->size, 1) && (e->form != TL_ENTRY_FLAG || tl_is_flag(e->at));
     r->bad = !read;
 }
 
@@ -106,9 +105,8 @@ static tl_status told(const reader *r, tl_model *m)
 {
     if (!r->bad)
         return TL_OK;
-    return r->lacked
-               ? tl_fail_memory(&m->error)
-               : tl_archive_bad(r->archive, &m->error, "'%s' is missing or does not fit", r->name);
+    return r->lacked ? tl_fail_memory(&m->error)
+                     : tl_archive_bad(r->archive, &m->error, "'%s' is missing or does not fit", r->name);
 }
 
 static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
@@ -152,12 +150,11 @@ static bool struct_is_sound(const tl_model *m, tl_settings of)
 static bool settings_are_sound(const tl_model *m)
 {
     return struct_is_sound(m, tl_config_settings()) && struct_is_sound(m, tl_timestep_settings()) &&
-           tl_v3_finite(m->gravity_before) && (!m->loads_changed || m->bodies.load_before) &&
-           tl_v3_finite(m->origin) && isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 &&
-           memchr(m->stage, 0, sizeof m->stage) && tl_text_is_clean(m->stage) && m->cycles >= 0 &&
-           m->cycles <= MOST_CYCLES && m->gone == 0 && (m->said & ~ALL_REMARKS) == 0 &&
-           !(m->added_dt <= 0) && !(m->added_most < 0) && m->structure <= MOST_CHANGES &&
-           m->constraints <= MOST_CHANGES && m->laws <= MOST_CHANGES;
+           tl_v3_finite(m->gravity_before) && (!m->loads_changed || m->bodies.load_before) && tl_v3_finite(m->origin) &&
+           isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 && memchr(m->stage, 0, sizeof m->stage) &&
+           tl_text_is_clean(m->stage) && m->cycles >= 0 && m->cycles <= MOST_CYCLES && m->gone == 0 &&
+           (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) && !(m->added_most < 0) &&
+           m->structure <= MOST_CHANGES && m->constraints <= MOST_CHANGES && m->laws <= MOST_CHANGES;
 }
 
 static bool rule_is_sound(const tl_min_area_rule *rule)
@@ -171,8 +168,7 @@ static bool joints_are_sound(const tl_model *m)
 {
     bool sound = rule_is_sound(&m->min_area);
     for (size_t i = 0; i < m->joint_min_area_count && sound; i++)
-        sound = m->joint_min_areas[i].tag.joint <= m->joint_count &&
-                rule_is_sound(&m->joint_min_areas[i].rule);
+        sound = m->joint_min_areas[i].tag.joint <= m->joint_count && rule_is_sound(&m->joint_min_areas[i].rule);
     for (size_t i = 0; i < m->record.listed && sound; i++)
         sound = m->record.list[i].joint.joint <= m->joint_count;
     return sound && m->record.listed <= TL_REFUSED_LISTED;
@@ -201,20 +197,20 @@ static bool edits_are_sound(const tl_model *m)
 {
     for (size_t i = 0; i < m->cut_part_count; i++) {
         const tl_cut_part *h = &m->cut_parts[i];
-        if (h->id >= m->next_id || h->root == TL_NO_ID || h->root >= h->id ||
-            (i && h->id <= h[-1].id) || !matrix_is_sound(&h->r) || !is_place(h->place))
+        if (h->id >= m->next_id || h->root == TL_NO_ID || h->root >= h->id || (i && h->id <= h[-1].id) ||
+            !matrix_is_sound(&h->r) || !is_place(h->place))
             return false;
     }
     for (size_t i = 0; i < m->split_count; i++) {
         const tl_split *s = &m->splits[i];
-        if (s->block == TL_NO_ID || s->block >= m->next_id || s->whole == TL_NO_ID ||
-            s->whole >= m->next_id || (i && s->block <= s[-1].block))
+        if (s->block == TL_NO_ID || s->block >= m->next_id || s->whole == TL_NO_ID || s->whole >= m->next_id ||
+            (i && s->block <= s[-1].block))
             return false;
     }
     for (size_t i = 0; i < m->face_load_count; i++) {
         const tl_face_load *f = &m->face_loads[i];
-        if (f->block == TL_NO_ID || f->block >= m->next_id || !tl_v3_finite(f->force) ||
-            !tl_v3_finite(f->moment) || (i && f->block < f[-1].block))
+        if (f->block == TL_NO_ID || f->block >= m->next_id || !tl_v3_finite(f->force) || !tl_v3_finite(f->moment) ||
+            (i && f->block < f[-1].block))
             return false;
     }
     if (m->next_contact > MOST_CONTACTS)
@@ -245,9 +241,8 @@ static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
     tl_id least = row ? b->id[row - 1] + 1 : 1;
     return b->id[row] >= least && b->id[row] < m->next_id && b->body[row] < m->bodies.table.rows &&
            b->changed[row] <= m->structure && b->group[row] < groups && b->density[row] > 0 &&
-           isfinite(b->density[row]) && measure_is_sound(b->volume[row]) &&
-           b->size[row] == tl_cbrt(b->volume[row]) && b->mean_face[row] > 0 &&
-           isfinite(b->mean_face[row]) && b->hidden[row] <= 1 && b->stays[row] == 1 &&
+           isfinite(b->density[row]) && measure_is_sound(b->volume[row]) && b->size[row] == tl_cbrt(b->volume[row]) &&
+           b->mean_face[row] > 0 && isfinite(b->mean_face[row]) && b->hidden[row] <= 1 && b->stays[row] == 1 &&
            (!b->local || tl_v3_finite(b->local[row])) && base_is_sound(tl_block_base(m, row)) &&
            base_is_sound(tl_block_made(m, row));
 }
@@ -259,16 +254,16 @@ static bool body_is_sound(const tl_model *m, uint32_t row, size_t drives)
     const tl_bodies *b = &m->bodies;
     const tl_pose *p = &b->pose[row];
     tl_id least = row ? b->id[row - 1] + 1 : 1;
-    bool placed = is_place(p->x_ref) && is_place(p->u) && matrix_is_sound(&p->r) &&
-                  is_turn(b->q[row]) && is_turn(b->axes[row]);
+    bool placed =
+        is_place(p->x_ref) && is_place(p->u) && matrix_is_sound(&p->r) && is_turn(b->q[row]) && is_turn(b->axes[row]);
     tl_vec3 i = b->moments[row];
     bool heavy = measure_is_sound(b->mass[row]) && measure_is_sound(i.x) && measure_is_sound(i.y) &&
                  measure_is_sound(i.z) && measure_is_sound(b->round[row]) && b->radius[row] > 0 &&
                  isfinite(b->radius[row]);
-    return b->id[row] >= least && placed && heavy && !(b->odometer[row] < 0) &&
-           b->fixed[row] <= TL_FIX_ALL && b->drive[row] <= drives &&
-           (!b->load || (tl_v3_finite(b->load[row].force) && tl_v3_finite(b->load[row].moment) &&
-                         tl_v3_finite(b->load[row].arm)));
+    return b->id[row] >= least && placed && heavy && !(b->odometer[row] < 0) && b->fixed[row] <= TL_FIX_ALL &&
+           b->drive[row] <= drives &&
+           (!b->load ||
+            (tl_v3_finite(b->load[row].force) && tl_v3_finite(b->load[row].moment) && tl_v3_finite(b->load[row].arm)));
 }
 
 /* Whether every body is that of the block of its id, the lowest of its blocks. */
@@ -337,23 +332,19 @@ static tl_status take_names(tl_model *m, const char *all, size_t bytes, take_nam
     return status;
 }
 
-static tl_status read_names(tl_model *m, const tl_archive *a, const char *chunk_name,
-                            take_name *take)
+static tl_status read_names(tl_model *m, const tl_archive *a, const char *chunk_name, take_name *take)
 {
     const tl_chunk *chunk = tl_archive_find(a, chunk_name);
     size_t bytes = chunk && chunk->size == 1 && chunk->items < SIZE_MAX ? (size_t)chunk->items : 0;
     char *all = malloc(bytes + 1);
     if (!all)
         return tl_fail_memory(&m->error);
-    bool read = chunk && tl_archive_get(a, chunk_name, all, 1, bytes) &&
-                (bytes == 0 || all[bytes - 1] == '\0');
+    bool read = chunk && tl_archive_get(a, chunk_name, all, 1, bytes) && (bytes == 0 || all[bytes - 1] == '\0');
     tl_status status = read ? take_names(m, all, bytes, take) : TL_E_ARGUMENT;
     free(all);
     if (status == TL_E_MEMORY)
         return tl_fail_memory(&m->error);
-    return status == TL_OK
-               ? TL_OK
-               : tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", chunk_name);
+    return status == TL_OK ? TL_OK : tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", chunk_name);
 }
 
 static tl_status take_group(tl_model *m, const char *name)
@@ -478,10 +469,8 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
 {
     uint32_t columns;
     bool initial;
-    if (!tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) ||
-        columns > TL_STATE_COLUMNS ||
-        !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) ||
-        !tl_is_flag(&initial))
+    if (!tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) || columns > TL_STATE_COLUMNS ||
+        !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) || !tl_is_flag(&initial))
         return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
     bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d));
     return held ? TL_OK : tl_fail_memory(&m->error);
@@ -520,16 +509,13 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
     unsigned char *used = calloc(d->press_count + 1, 1);
     if (!used)
         return tl_fail_memory(&m->error);
-    const char *bad = columns < states_needed(m) ? "states of the laws are missing"
-                                                 : tl_detect_unsound(m, d, used);
+    const char *bad = columns < states_needed(m) ? "states of the laws are missing" : tl_detect_unsound(m, d, used);
     free(used);
     if (bad)
         return unsound(a, m, bad);
     tl_contacts_unlist(d);
     bool edited = d->structure != m->structure; /* all is listed anew before it is next used */
-    return tl_detect_make_lanes(d, &d->layout) && (edited || tl_contacts_index(m))
-               ? TL_OK
-               : tl_fail_memory(&m->error);
+    return tl_detect_make_lanes(d, &d->layout) && (edited || tl_contacts_index(m)) ? TL_OK : tl_fail_memory(&m->error);
 }
 
 static tl_status read_cycle(tl_model *m, const tl_archive *a)
@@ -562,8 +548,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
     return status == TL_OK ? read_cycle(m, a) : status;
 }
 
-tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_drive_again_fn again,
-                                   void *user, tl_model **model, tl_error *error)
+tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_drive_again_fn again, void *user,
+                                   tl_model **model, tl_error *error)
 {
     tl_model *m;
     *model = NULL;
@@ -582,8 +568,8 @@ tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_driv
     return TL_OK;
 }
 
-tl_status tl_model_restore(const char *path, int64_t threads, tl_drive_again_fn again, void *user,
-                           tl_model **model, tl_error *error)
+tl_status tl_model_restore(const char *path, int64_t threads, tl_drive_again_fn again, void *user, tl_model **model,
+                           tl_error *error)
 {
     tl_archive a;
     *model = NULL;

@@ -6,8 +6,7 @@
 #include "model/model.h"
 #include "state/archive.h"
 
-tl_status tl_model_restore_archive(const tl_archive *archive, int64_t threads,
-                                   tl_drive_again_fn again, void *user, tl_model **model,
-                                   tl_error *error);
+tl_status tl_model_restore_archive(const tl_archive *archive, int64_t threads, tl_drive_again_fn again, void *user,
+                                   tl_model **model, tl_error *error);
 
 #endif

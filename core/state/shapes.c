@@ -68,8 +68,7 @@ static shape_counts *count_all(const tl_model *m)
     return counts;
 }
 
-static bool save_part(const tl_model *m, const shape_counts *counts, part which,
-                      tl_archive_writer *w)
+static bool save_part(const tl_model *m, const shape_counts *counts, part which, tl_archive_writer *w)
 {
     size_t blocks = m->blocks.table.rows, total = 0, size = parts[which].size;
     for (size_t row = 0; row < blocks; row++)
@@ -109,8 +108,8 @@ typedef struct reading {
 
 static bool count_is_sound(const shape_counts *c)
 {
-    return c->vertices >= 4 && c->vertices <= TL_POLY_MAX_VERTICES && c->faces >= 4 &&
-           c->faces <= TL_POLY_MAX_FACES && c->edges == c->vertices + c->faces - 2 && c->seams <= 1;
+    return c->vertices >= 4 && c->vertices <= TL_POLY_MAX_VERTICES && c->faces >= 4 && c->faces <= TL_POLY_MAX_FACES &&
+           c->edges == c->vertices + c->faces - 2 && c->seams <= 1;
 }
 
 /* Loops and starts name what there is; every face has three corners at least. */
@@ -125,8 +124,8 @@ static bool loops_are_sound(const tl_poly *p)
         if (p->loop[h] >= p->vertex_count)
             return false;
     for (uint32_t e = 0; e < p->edge_count; e++)
-        if (p->edge[e].a >= p->vertex_count || p->edge[e].b >= p->vertex_count ||
-            p->edge[e].left >= p->face_count || p->edge[e].right >= p->face_count)
+        if (p->edge[e].a >= p->vertex_count || p->edge[e].b >= p->vertex_count || p->edge[e].left >= p->face_count ||
+            p->edge[e].right >= p->face_count)
             return false;
     return true;
 }
@@ -137,8 +136,7 @@ static bool numbers_are_sound(const tl_poly *p, size_t joints)
         if (!tl_v3_finite(p->vertex[v]) || tl_v3_norm(p->vertex[v]) > TL_FARTHEST)
             return false;
     for (uint32_t f = 0; f < p->face_count; f++)
-        if (!tl_v3_finite(p->plane[f].normal) || !isfinite(p->plane[f].offset) ||
-            p->tag[f].joint > joints)
+        if (!tl_v3_finite(p->plane[f].normal) || !isfinite(p->plane[f].offset) || p->tag[f].joint > joints)
             return false;
     for (uint32_t f = 0; f < p->face_count; f++)
         if (p->covered[f] > TL_SEAM)
@@ -163,8 +161,7 @@ static tl_poly *next_shape(reading *r, const shape_counts *c)
     return p;
 }
 
-static tl_status restore_shape(tl_model *m, uint32_t row, const shape_counts *c, reading *r,
-                               const tl_archive *archive)
+static tl_status restore_shape(tl_model *m, uint32_t row, const shape_counts *c, reading *r, const tl_archive *archive)
 {
     tl_poly *p = next_shape(r, c);
     if (!p)
@@ -176,13 +173,12 @@ static tl_status restore_shape(tl_model *m, uint32_t row, const shape_counts *c,
                               (unsigned long long)m->blocks.id[row]);
     tl_poly_find_size(p);
     if (tl_poly_check(p, TL_POLY_BENT, &why) != TL_OK)
-        return tl_archive_bad(archive, &m->error, "the shape of block %llu: %s",
-                              (unsigned long long)m->blocks.id[row], why.text);
+        return tl_archive_bad(archive, &m->error, "the shape of block %llu: %s", (unsigned long long)m->blocks.id[row],
+                              why.text);
     return TL_OK;
 }
 
-static tl_status read_parts(tl_model *m, const shape_counts *counts, reading *r,
-                            const tl_archive *archive)
+static tl_status read_parts(tl_model *m, const shape_counts *counts, reading *r, const tl_archive *archive)
 {
     for (part which = 0; which < PARTS; which++) {
         size_t total = 0, size = parts[which].size;
@@ -193,8 +189,7 @@ static tl_status read_parts(tl_model *m, const shape_counts *counts, reading *r,
             return tl_fail_memory(&m->error);
         r->at[which] = r->all[which];
         if (!tl_archive_get(archive, parts[which].name, r->all[which], size, total))
-            return tl_archive_bad(archive, &m->error, "'%s' does not fit the blocks",
-                                  parts[which].name);
+            return tl_archive_bad(archive, &m->error, "'%s' does not fit the blocks", parts[which].name);
     }
     return TL_OK;
 }
@@ -211,8 +206,7 @@ static tl_status read_counts(tl_model *m, shape_counts *counts, const tl_archive
     return TL_OK;
 }
 
-static tl_status restore_shapes(tl_model *m, const tl_archive *archive,
-                                const tl_drives_again *again)
+static tl_status restore_shapes(tl_model *m, const tl_archive *archive, const tl_drives_again *again)
 {
     (void)again;
     size_t blocks = m->blocks.table.rows;

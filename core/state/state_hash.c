@@ -79,8 +79,7 @@ static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
     if (d->contacts.press[contact] == TL_NO_ROW)
         return;
     const tl_press_row *row = &d->press[d->contacts.press[contact]];
-    const double numbers[] = {row->shift, row->spare[0], row->spare[1], row->opening[0],
-                              row->opening[1]};
+    const double numbers[] = {row->shift, row->spare[0], row->spare[1], row->opening[0], row->opening[1]};
     if (row->shift == 0 && row->spare[0] == 0 && row->spare[1] == 0)
         return;
     tl_hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
@@ -188,12 +187,10 @@ static void hash_shape(tl_hash *hash, const tl_poly *p)
 /* Of a drive's functions it is only told that they are there: what they do is the script's. */
 static void hash_drive(tl_hash *hash, const tl_drive *drive)
 {
-    const double parts[] = {drive->velocity.x,         drive->velocity.y,
-                            drive->velocity.z,         drive->angular_velocity.x,
-                            drive->angular_velocity.y, drive->angular_velocity.z};
+    const double parts[] = {drive->velocity.x,         drive->velocity.y,         drive->velocity.z,
+                            drive->angular_velocity.x, drive->angular_velocity.y, drive->angular_velocity.z};
     tl_hash_numbers(hash, parts, sizeof parts / sizeof *parts);
-    tl_hash_word(hash, (uint64_t)(drive->velocity_at != NULL) << 1 |
-                           (uint64_t)(drive->angular_velocity_at != NULL));
+    tl_hash_word(hash, (uint64_t)(drive->velocity_at != NULL) << 1 | (uint64_t)(drive->angular_velocity_at != NULL));
 }
 
 static void hash_blocks(tl_hash *hash, const tl_model *m)
@@ -236,9 +233,7 @@ static void hash_laws(tl_hash *hash, const tl_model *m)
         tl_hash one = tl_hash_start();
         hash_tag(&one, m->joint_min_areas[i].tag);
         tl_hash_numbers(&one,
-                        (const double[]){m->joint_min_areas[i].rule.fraction,
-                                         m->joint_min_areas[i].rule.absolute},
-                        2);
+                        (const double[]){m->joint_min_areas[i].rule.fraction, m->joint_min_areas[i].rule.absolute}, 2);
         hash_any_order(&sum, &one);
     }
     tl_hash_word(hash, sum.a);
@@ -265,8 +260,7 @@ static void hash_reals(tl_hash *hash, const tl_model *m, const tl_settings *of)
         const uint32_t type = of->params[i].type;
         const double *at = tl_setting_at(m, of, i), fraction = tl_timestep_fraction(m);
         if (at && (type == TL_PARAM_REAL || type == TL_PARAM_VEC3))
-            tl_hash_numbers(hash, at == &m->timestep.fraction ? &fraction : at,
-                            type == TL_PARAM_VEC3 ? 3 : 1);
+            tl_hash_numbers(hash, at == &m->timestep.fraction ? &fraction : at, type == TL_PARAM_VEC3 ? 3 : 1);
     }
 }
 
@@ -289,8 +283,7 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
     const struct tl_cycle *c = m->cycle;
     const tl_settings config = tl_config_settings(), timestep = tl_timestep_settings();
     /* c->dt, the step in use, stays while it is hardly too short */
-    tl_hash_numbers(hash,
-                    (const double[]){m->time, m->dt, c ? c->dt : 0, c ? c->kinetic_before : 0}, 4);
+    tl_hash_numbers(hash, (const double[]){m->time, m->dt, c ? c->dt : 0, c ? c->kinetic_before : 0}, 4);
     tl_hash_numbers(hash, &m->origin.x, 3);
     hash_reals(hash, m, &config);
     hash_reals(hash, m, &timestep);

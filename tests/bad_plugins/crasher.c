@@ -19,8 +19,7 @@ static const char *const times[] = {"update", "stiffness", NULL};
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_ENUM, params, how, "", "how it crashes", .choices = ways),
     TL_PARAM(TL_PARAM_ENUM, params, when, "", "in which function", .choices = times),
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "stiffness", .def = {1e8}, .min = 0,
-             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "stiffness", .def = {1e8}, .min = 0, .max = INFINITY),
 };
 
 /* Uses up the stack; as far as the compiler knows it may end. */
@@ -89,21 +88,17 @@ static tl_status generate(const tl_host *host, const void *given)
     return TL_OK;
 }
 
-static const tl_law_ops law_ops = {
-    .size = sizeof law_ops, .update = update, .stiffness = stiffness};
-static const tl_damping_ops damping_ops = {
-    .size = sizeof damping_ops, .update = damp, .step_factor = step_factor};
+static const tl_law_ops law_ops = {.size = sizeof law_ops, .update = update, .stiffness = stiffness};
+static const tl_damping_ops damping_ops = {.size = sizeof damping_ops, .update = damp, .step_factor = step_factor};
 static const tl_generator_ops generator_ops = {.size = sizeof generator_ops, .generate = generate};
 
-#define KIND(type_, ops_)                                                                          \
-    {                                                                                              \
-        .size = sizeof(tl_kind), .type = (type_), .name = "crasher",                               \
-        .doc = "A kind for the test of crashes.", TL_KIND_PARAMS(params, param_table),             \
-        .ops = (ops_)                                                                              \
+#define KIND(type_, ops_)                                                                                              \
+    {                                                                                                                  \
+        .size = sizeof(tl_kind), .type = (type_), .name = "crasher", .doc = "A kind for the test of crashes.",         \
+        TL_KIND_PARAMS(params, param_table), .ops = (ops_)                                                             \
     }
 
-static const tl_kind kinds[] = {KIND(TL_KIND_LAW, &law_ops), KIND(17, NULL),
-                                KIND(TL_KIND_DAMPING, &damping_ops),
+static const tl_kind kinds[] = {KIND(TL_KIND_LAW, &law_ops), KIND(17, NULL), KIND(TL_KIND_DAMPING, &damping_ops),
                                 KIND(TL_KIND_GENERATOR, &generator_ops)};
 
 TL_PLUGIN(kinds, .id = "bad.crasher", .version = "1", .doc = "A plugin for the test of crashes.",

@@ -12,12 +12,11 @@ typedef struct law_params {
 } law_params;
 
 static const tl_param law_table[] = {
-    TL_PARAM(TL_PARAM_REAL, law_params, kn, "Pa/m", "normal stiffness", .flags = TL_PARAM_REQUIRED,
-             .min = 0, .max = 1e20),
-    TL_PARAM(TL_PARAM_REAL, law_params, ks, "Pa/m", "shear stiffness", .flags = TL_PARAM_REQUIRED,
-             .min = 0, .max = 1e20),
-    TL_PARAM(TL_PARAM_REAL, law_params, beyond, "m", "closure from which on it fails",
-             .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, law_params, kn, "Pa/m", "normal stiffness", .flags = TL_PARAM_REQUIRED, .min = 0,
+             .max = 1e20),
+    TL_PARAM(TL_PARAM_REAL, law_params, ks, "Pa/m", "shear stiffness", .flags = TL_PARAM_REQUIRED, .min = 0,
+             .max = 1e20),
+    TL_PARAM(TL_PARAM_REAL, law_params, beyond, "m", "closure from which on it fails", .def = {0.0}),
     TL_PARAM(TL_PARAM_BOOL, law_params, fails, "", "whether it does", .def = {0.0}),
 };
 
@@ -56,8 +55,7 @@ static void law_stiffness(const void *self, double *kn, double *ks)
     *ks = p->ks;
 }
 
-static const tl_law_ops law_ops = {
-    .size = sizeof law_ops, .update = update_law, .stiffness = law_stiffness};
+static const tl_law_ops law_ops = {.size = sizeof law_ops, .update = update_law, .stiffness = law_stiffness};
 static const tl_law_ops liar_ops = {
     .size = sizeof liar_ops, .update = update_law, .stiffness = law_stiffness, .never_fails = true};
 
@@ -69,10 +67,10 @@ typedef struct damping_params {
 } damping_params;
 
 static const tl_param damping_table[] = {
-    TL_PARAM(TL_PARAM_REAL, damping_params, factor, "", "share of the force of the step before",
-             .def = {0.1}, .min = 0, .max = 1),
-    TL_PARAM(TL_PARAM_REAL, damping_params, step, "", "factor of the time step, of any size",
-             .def = {1.0}, .min = -INFINITY, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, damping_params, factor, "", "share of the force of the step before", .def = {0.1}, .min = 0,
+             .max = 1),
+    TL_PARAM(TL_PARAM_REAL, damping_params, step, "", "factor of the time step, of any size", .def = {1.0},
+             .min = -INFINITY, .max = INFINITY),
     TL_PARAM(TL_PARAM_BOOL, damping_params, fails, "", "whether it fails", .def = {0.0}),
 };
 
@@ -80,8 +78,8 @@ static const tl_state damping_states[] = {
     TL_STATE(TL_STATE_SCALAR, "calls", "", "steps made"),
 };
 
-static tl_status begin_damping(const void *self, const tl_damping_totals *totals,
-                               double *const *state, tl_report *report)
+static tl_status begin_damping(const void *self, const tl_damping_totals *totals, double *const *state,
+                               tl_report *report)
 {
     (void)self;
     (void)totals;
@@ -115,11 +113,10 @@ static const tl_damping_ops damping_ops = {.size = sizeof damping_ops,
 
 /* ---------------------------------------------------------------- plugin ----------------- */
 
-#define LAW(name_, ops_)                                                                           \
-    {                                                                                              \
-        .size = sizeof(tl_kind), .type = TL_KIND_LAW, .name = (name_),                             \
-        .doc = "Springs that fail.", TL_KIND_PARAMS(law_params, law_table),                        \
-        TL_KIND_STATES(law_states), .ops = &(ops_),                                                \
+#define LAW(name_, ops_)                                                                                               \
+    {                                                                                                                  \
+        .size = sizeof(tl_kind), .type = TL_KIND_LAW, .name = (name_), .doc = "Springs that fail.",                    \
+        TL_KIND_PARAMS(law_params, law_table), TL_KIND_STATES(law_states), .ops = &(ops_),                             \
     }
 
 static const tl_kind kinds[] = {
@@ -129,5 +126,5 @@ static const tl_kind kinds[] = {
             TL_KIND_PARAMS(damping_params, damping_table), TL_KIND_STATES(damping_states)),
 };
 
-TL_PLUGIN(kinds, .id = "bad.failing", .version = "1",
-          .doc = "A plugin for the test of steps that are undone.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kinds, .id = "bad.failing", .version = "1", .doc = "A plugin for the test of steps that are undone.",
+          .licence = "BSD-3-Clause");

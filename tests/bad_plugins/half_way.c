@@ -5,8 +5,7 @@
 
 enum { FAIL, SILENT, NORMAL, TAG, PERSISTENCE, DENSITY, LOOK };
 
-static const char *const modes[] = {"fail",        "silent",  "normal", "tag",
-                                    "persistence", "density", "look",   NULL};
+static const char *const modes[] = {"fail", "silent", "normal", "tag", "persistence", "density", "look", NULL};
 
 typedef struct params {
     int32_t mode;
@@ -33,17 +32,15 @@ static tl_status look(const tl_host *host)
             return host->fail(host, TL_E_STATE, "block %zu has no group or lineage", i);
     }
     host->log(host, "%zu blocks", count);
-    return host->fail(host, TL_E_STATE, "%zu blocks of volume %.6f from %g,%g,%g to %g,%g,%g",
-                      count, volume, all.min.x, all.min.y, all.min.z, all.max.x, all.max.y,
-                      all.max.z);
+    return host->fail(host, TL_E_STATE, "%zu blocks of volume %.6f from %g,%g,%g to %g,%g,%g", count, volume, all.min.x,
+                      all.min.y, all.min.z, all.max.x, all.max.y, all.max.z);
 }
 
 static tl_status generate(const tl_host *host, const void *given)
 {
     const params *p = given;
     tl_tag tag;
-    tl_status status =
-        host->create_box(host, tl_v3(10, 10, 10), tl_v3(11, 12, 13), 2000, "half_way");
+    tl_status status = host->create_box(host, tl_v3(10, 10, 10), tl_v3(11, 12, 13), 2000, "half_way");
     if (status == TL_OK)
         status = host->joint(host, "new", &tag.joint);
     if (status != TL_OK)
@@ -66,9 +63,8 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "half_way", .doc = "A generator that never succeeds.",
-            TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_KIND(TL_KIND_GENERATOR, ops, .name = "half_way",
+                                    .doc = "A generator that never succeeds.", TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "bad.half_way", .version = "1",
-          .doc = "A plugin for the test of the host's services.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "bad.half_way", .version = "1", .doc = "A plugin for the test of the host's services.",
+          .licence = "BSD-3-Clause");

@@ -6,5 +6,5 @@
 
 static const tl_kind kind = PLAIN_KIND("later_minor", TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN_SINCE(77, kind, .id = "bad.later_minor", .version = "1",
-                .doc = "A plugin for the loader's test.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(77, kind, .id = "bad.later_minor", .version = "1", .doc = "A plugin for the loader's test.",
+                .licence = "BSD-3-Clause");

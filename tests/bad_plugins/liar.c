@@ -5,36 +5,20 @@
 #include <stdint.h>
 #include <string.h>
 
-enum {
-    NONE,
-    NEGATIVE,
-    NOT_A_NUMBER,
-    INFINITE,
-    STATE,
-    TILTED,
-    ROUNDING,
-    WEAK,
-    WEAK_SHEAR,
-    PLACE,
-    NORMAL,
-    SHEAR
-};
+enum { NONE, NEGATIVE, NOT_A_NUMBER, INFINITE, STATE, TILTED, ROUNDING, WEAK, WEAK_SHEAR, PLACE, NORMAL, SHEAR };
 
 typedef struct params {
     int32_t lie;
     double kn, factor;
 } params;
 
-static const char *const lies[] = {
-    "none", "negative",   "not_a_number", "infinite", "state", "tilted", "rounding",
-    "weak", "weak_shear", "place",        "normal",   "shear", NULL};
+static const char *const lies[] = {"none", "negative",   "not_a_number", "infinite", "state", "tilted", "rounding",
+                                   "weak", "weak_shear", "place",        "normal",   "shear", NULL};
 
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_ENUM, params, lie, "", "what is wrong with the law", .choices = lies),
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "stiffness", .def = {1e8}, .min = 0,
-             .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, factor, "", "by which it lies", .def = {100}, .min = 0,
-             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "stiffness", .def = {1e8}, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, factor, "", "by which it lies", .def = {100}, .min = 0, .max = INFINITY),
 };
 
 static const tl_state state_table[] = {
@@ -91,9 +75,8 @@ static void stiffness(const void *self, double *kn, double *ks)
 
 static const tl_law_ops ops = {.size = sizeof ops, .update = update, .stiffness = stiffness};
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_LAW, ops, .name = "liar", .doc = "A law for the tests of the step.",
-            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind = TL_KIND(TL_KIND_LAW, ops, .name = "liar", .doc = "A law for the tests of the step.",
+                                    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "bad.liar", .version = "1", .doc = "A plugin for the tests of the step.",
           .licence = "BSD-3-Clause");

@@ -57,14 +57,10 @@ static void stiffness(const void *self, double *kn, double *ks)
     *kn = *ks = 1e6;
 }
 
-static const tl_law_ops law_ops = {.size = sizeof law_ops,
-                                   .create = create,
-                                   .update = update_law,
-                                   .stiffness = stiffness,
-                                   .destroy = free};
+static const tl_law_ops law_ops = {
+    .size = sizeof law_ops, .create = create, .update = update_law, .stiffness = stiffness, .destroy = free};
 
-static tl_status begin(const void *self, const tl_damping_totals *totals, double *const *state,
-                       tl_report *report)
+static tl_status begin(const void *self, const tl_damping_totals *totals, double *const *state, tl_report *report)
 {
     (void)totals;
     (void)state;
@@ -100,10 +96,10 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops generator_ops = {.size = sizeof generator_ops, .generate = generate};
 
-#define KIND(type_, ops_)                                                                          \
-    {                                                                                              \
-        .size = sizeof(tl_kind), .type = (type_), .name = "mumbles", .doc = "It says nothing.",    \
-        TL_KIND_PARAMS(params, param_table), .ops = &(ops_),                                       \
+#define KIND(type_, ops_)                                                                                              \
+    {                                                                                                                  \
+        .size = sizeof(tl_kind), .type = (type_), .name = "mumbles", .doc = "It says nothing.",                        \
+        TL_KIND_PARAMS(params, param_table), .ops = &(ops_),                                                           \
     }
 
 static const tl_kind kinds[] = {KIND(TL_KIND_LAW, law_ops), KIND(TL_KIND_DAMPING, damping_ops),

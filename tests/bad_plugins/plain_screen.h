@@ -4,8 +4,7 @@
 
 #include <talus/plugin.h>
 
-static inline tl_status open_screen(const tl_screen_page *page, const void *params, void **self,
-                                    tl_report *report)
+static inline tl_status open_screen(const tl_screen_page *page, const void *params, void **self, tl_report *report)
 {
     static char nothing;
     (void)page;
@@ -50,12 +49,11 @@ static inline void close_screen(void *self)
 }
 
 /* A plugin of one screen with these functions, which takes commands by `take_`; what else its kind has follows. */
-#define PLAIN_SCREEN(name_, take_, ...)                                                            \
-    static const tl_screen_ops ops = {sizeof ops, open_screen, address,     watchers,              \
-                                      put,        take_,       close_screen};                      \
-    static const tl_kind kind = TL_KIND(TL_KIND_SCREEN, ops, .name = (name_),                      \
-                                        .doc = "A screen for the loader's test.", __VA_ARGS__);    \
-    TL_PLUGIN_SINCE(7, kind, .id = "bad." name_, .version = "1",                                   \
-                    .doc = "A plugin for the loader's test.", .licence = "BSD-3-Clause")
+#define PLAIN_SCREEN(name_, take_, ...)                                                                                \
+    static const tl_screen_ops ops = {sizeof ops, open_screen, address, watchers, put, take_, close_screen};           \
+    static const tl_kind kind =                                                                                        \
+        TL_KIND(TL_KIND_SCREEN, ops, .name = (name_), .doc = "A screen for the loader's test.", __VA_ARGS__);          \
+    TL_PLUGIN_SINCE(7, kind, .id = "bad." name_, .version = "1", .doc = "A plugin for the loader's test.",             \
+                    .licence = "BSD-3-Clause")
 
 #endif

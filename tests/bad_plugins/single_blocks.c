@@ -5,9 +5,8 @@
 
 enum { JOIN, JOIN_CUT, REMOVE, REMOVE_JOINED, PART, HIDE, HIDE_SHOW, BEYOND, LONG_GROUP, SKEW };
 
-static const char *const modes[] = {"join",       "join_cut", "remove",    "remove_joined",
-                                    "part",       "hide",     "hide_show", "beyond",
-                                    "long_group", "skew",     NULL};
+static const char *const modes[] = {"join",      "join_cut", "remove",     "remove_joined", "part", "hide",
+                                    "hide_show", "beyond",   "long_group", "skew",          NULL};
 
 typedef struct params {
     int32_t mode;
@@ -23,8 +22,7 @@ static tl_status make_row(const tl_host *host, int64_t count)
 {
     tl_status status = TL_OK;
     for (int64_t i = 0; i < count && status == TL_OK; i++)
-        status =
-            host->create_box(host, tl_v3((double)i, 0, 0), tl_v3((double)i + 1, 1, 1), 2000, "row");
+        status = host->create_box(host, tl_v3((double)i, 0, 0), tl_v3((double)i + 1, 1, 1), 2000, "row");
     return status;
 }
 
@@ -56,8 +54,7 @@ static tl_status generate(const tl_host *host, const void *given)
     static const size_t three[] = {0, 1, 2}, middle[] = {1};
     size_t above;
     tl_status status = make_row(host, p->count);
-    bool joins =
-        p->mode == JOIN || p->mode == JOIN_CUT || p->mode == REMOVE_JOINED || p->mode == PART;
+    bool joins = p->mode == JOIN || p->mode == JOIN_CUT || p->mode == REMOVE_JOINED || p->mode == PART;
     if (status == TL_OK && joins)
         status = host->join(host, three, 3);
     if (status != TL_OK)
@@ -65,9 +62,7 @@ static tl_status generate(const tl_host *host, const void *given)
     switch (p->mode) {
     case JOIN_CUT: return cut_flat(host);
     case REMOVE:
-    case REMOVE_JOINED:
-        status = host->remove(host, 1);
-        return status == TL_OK ? cut_upright(host) : status;
+    case REMOVE_JOINED: status = host->remove(host, 1); return status == TL_OK ? cut_upright(host) : status;
     case PART: return host->part(host, middle, 1);
     case HIDE:
     case HIDE_SHOW:
@@ -79,8 +74,7 @@ static tl_status generate(const tl_host *host, const void *given)
         return status == TL_OK ? cut_flat(host) : status;
     case BEYOND: return host->remove(host, (size_t)p->count);
     case LONG_GROUP:
-        return host->set_group(
-            host, 0, "a name of a group that is much longer than sixty-three letters, and goes on");
+        return host->set_group(host, 0, "a name of a group that is much longer than sixty-three letters, and goes on");
     case SKEW: return host->cut_block(host, 0, tl_v3(0, 0, 2), tl_v3(0, 0, 0.5), &above);
     default: return TL_OK;
     }
@@ -88,9 +82,8 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "single_blocks", .doc = "Works on single blocks.",
-            TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_KIND(TL_KIND_GENERATOR, ops, .name = "single_blocks", .doc = "Works on single blocks.",
+                                    TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "test.single_blocks", .version = "1", .doc = "Generator of the tests.",
           .licence = "BSD-3-Clause");

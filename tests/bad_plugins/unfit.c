@@ -45,17 +45,14 @@ typedef struct law_params {
 } law_params;
 
 static const char *const law_faults[] = {
-    "none",         "runs",          "repeats",      "alone",        "split",  "energies",
-    "writes_input", "writes_behind", "writes_state", "padding",      "finite", "plane",
-    "still",        "turned",        "softer",       "shear_softer", "cycle",  "states",
-    "stateless",    "pulls",         "adds_state",   "reads",        "stored", "heat",
-    "lost",         "unwritten",     "area",         "flags",        NULL};
+    "none",         "runs",      "repeats",   "alone", "split",      "energies", "writes_input", "writes_behind",
+    "writes_state", "padding",   "finite",    "plane", "still",      "turned",   "softer",       "shear_softer",
+    "cycle",        "states",    "stateless", "pulls", "adds_state", "reads",    "stored",       "heat",
+    "lost",         "unwritten", "area",      "flags", NULL};
 
 static const tl_param law_table[] = {
-    TL_PARAM(TL_PARAM_ENUM, law_params, law_fault, "", "what is wrong with the law",
-             .choices = law_faults),
-    TL_PARAM(TL_PARAM_REAL, law_params, kn, "Pa/m", "stiffness", .def = {1e8}, .min = 1e6,
-             .max = 1e10),
+    TL_PARAM(TL_PARAM_ENUM, law_params, law_fault, "", "what is wrong with the law", .choices = law_faults),
+    TL_PARAM(TL_PARAM_REAL, law_params, kn, "Pa/m", "stiffness", .def = {1e8}, .min = 1e6, .max = 1e10),
 };
 
 static const tl_state law_state[] = {
@@ -87,16 +84,13 @@ static void spoil(const law_params *p, const tl_law_batch *batch, uint32_t i)
             batch->f_s[j][i] += 1e-6 * batch->f_n[i] * batch->normal[j][i];
         break;
     case STILL: batch->f_n[i] *= batch->du_n[i] == 0 ? 0.999 : 1; break;
-    case TURNED: /* east is not like north */
-        batch->f_n[i] *= 1 + 1e-6 * fabs(batch->normal[0][i]);
-        break;
+    case TURNED: /* east is not like north */ batch->f_n[i] *= 1 + 1e-6 * fabs(batch->normal[0][i]); break;
     default: break;
     }
 }
 
 /* What is wrong with the energies of a point. */
-static void spoil_energies(const law_params *p, const tl_law_batch *batch, uint32_t i,
-                           double before)
+static void spoil_energies(const law_params *p, const tl_law_batch *batch, uint32_t i, double before)
 {
     if (!batch->stored)
         return;
@@ -205,9 +199,8 @@ typedef struct damping_params {
     int32_t damping_fault;
 } damping_params;
 
-static const char *const damping_faults[] = {"none",   "runs",   "repeats", "alone",  "split",
-                                             "writes", "state",  "finite",  "brakes", "alpha",
-                                             "rests",  "factor", "states",  NULL};
+static const char *const damping_faults[] = {"none",   "runs",   "repeats", "alone", "split",  "writes", "state",
+                                             "finite", "brakes", "alpha",   "rests", "factor", "states", NULL};
 
 static const tl_param damping_table[] = {
     TL_PARAM(TL_PARAM_ENUM, damping_params, damping_fault, "", "what is wrong with the damping",
@@ -218,8 +211,8 @@ static const tl_state damping_state[] = {
     {.size = sizeof(tl_state), .name = "steps", .unit = "", .doc = "steps so far"},
 };
 
-static tl_status damping_begin(const void *self, const tl_damping_totals *totals,
-                               double *const *state, tl_report *report)
+static tl_status damping_begin(const void *self, const tl_damping_totals *totals, double *const *state,
+                               tl_report *report)
 {
     const damping_params *p = self;
     (void)totals;
@@ -260,10 +253,8 @@ static double damping_factor(const void *self)
     return ((const damping_params *)self)->damping_fault == D_FACTOR ? 1.5 : 1;
 }
 
-static const tl_damping_ops damping_ops = {.size = sizeof damping_ops,
-                                           .begin = damping_begin,
-                                           .update = damping_update,
-                                           .step_factor = damping_factor};
+static const tl_damping_ops damping_ops = {
+    .size = sizeof damping_ops, .begin = damping_begin, .update = damping_update, .step_factor = damping_factor};
 
 /* ---------------------------------------------------------------- generator -------------- */
 
@@ -274,14 +265,12 @@ typedef struct generator_params {
     tl_vec3 at;
 } generator_params;
 
-static const char *const generator_faults[] = {"none",     "repeats", "parameters",
-                                               "failures", "goes_on", NULL};
+static const char *const generator_faults[] = {"none", "repeats", "parameters", "failures", "goes_on", NULL};
 
 static const tl_param generator_table[] = {
-    TL_PARAM(TL_PARAM_ENUM, generator_params, generator_fault, "",
-             "what is wrong with the generator", .choices = generator_faults),
-    TL_PARAM(TL_PARAM_VEC3, generator_params, at, "m", "lowest corner of the first cube",
-             .def = {20, 0, 0}),
+    TL_PARAM(TL_PARAM_ENUM, generator_params, generator_fault, "", "what is wrong with the generator",
+             .choices = generator_faults),
+    TL_PARAM(TL_PARAM_VEC3, generator_params, at, "m", "lowest corner of the first cube", .def = {20, 0, 0}),
 };
 
 static tl_status generate(const tl_host *host, const void *given)
@@ -294,8 +283,7 @@ static tl_status generate(const tl_host *host, const void *given)
     if (p->generator_fault == G_PARAMETERS)
         ((generator_params *)(uintptr_t)given)->at.x = 0;
     for (int i = 0; i < 3; i++, at.x += 2) {
-        tl_status status =
-            host->create_box(host, at, (tl_vec3){at.x + 1, at.y + 1, at.z + 1}, 2000, NULL);
+        tl_status status = host->create_box(host, at, (tl_vec3){at.x + 1, at.y + 1, at.z + 1}, 2000, NULL);
         if (status != TL_OK && p->generator_fault != G_FAILURES && p->generator_fault != G_GOES_ON)
             return status;
         if (status != TL_OK)
@@ -318,12 +306,10 @@ static const char *const screen_faults[] = {"none",  "opens",   "address",    "n
                                             "hasty", "made_up", "parameters", "behind", NULL};
 
 static const tl_param screen_table[] = {
-    TL_PARAM(TL_PARAM_ENUM, screen_params, screen_fault, "", "what is wrong with the screen",
-             .choices = screen_faults),
+    TL_PARAM(TL_PARAM_ENUM, screen_params, screen_fault, "", "what is wrong with the screen", .choices = screen_faults),
 };
 
-static tl_status open_screen(const tl_screen_page *page, const void *given, void **self,
-                             tl_report *report)
+static tl_status open_screen(const tl_screen_page *page, const void *given, void **self, tl_report *report)
 {
     static int32_t fault;
     (void)page;
@@ -377,25 +363,21 @@ static void close_screen(void *self)
     (void)self;
 }
 
-static const tl_screen_ops screen_ops = {
-    sizeof screen_ops, open_screen, address, watchers, put, take, close_screen};
+static const tl_screen_ops screen_ops = {sizeof screen_ops, open_screen, address, watchers, put, take, close_screen};
 
 /* ---------------------------------------------------------------- descriptor ------------- */
 
 static const tl_kind kinds[] = {
-    TL_KIND(TL_KIND_LAW, law_ops, .name = "unfit",
-            .doc = "A law for the tests of the conformance check.",
+    TL_KIND(TL_KIND_LAW, law_ops, .name = "unfit", .doc = "A law for the tests of the conformance check.",
             TL_KIND_PARAMS(law_params, law_table), TL_KIND_STATES(law_state)),
-    TL_KIND(TL_KIND_DAMPING, damping_ops, .name = "unfit",
-            .doc = "A damping for the tests of the conformance check.",
+    TL_KIND(TL_KIND_DAMPING, damping_ops, .name = "unfit", .doc = "A damping for the tests of the conformance check.",
             TL_KIND_PARAMS(damping_params, damping_table), TL_KIND_STATES(damping_state)),
     TL_KIND(TL_KIND_GENERATOR, generator_ops, .name = "unfit",
             .doc = "A generator for the tests of the conformance check.",
             TL_KIND_PARAMS(generator_params, generator_table)),
-    TL_KIND(TL_KIND_SCREEN, screen_ops, .name = "unfit",
-            .doc = "A screen for the tests of the conformance check.",
+    TL_KIND(TL_KIND_SCREEN, screen_ops, .name = "unfit", .doc = "A screen for the tests of the conformance check.",
             TL_KIND_PARAMS(screen_params, screen_table)),
 };
 
-TL_PLUGIN(kinds, .id = "bad.unfit", .version = "1",
-          .doc = "A plugin for the tests of the conformance check.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kinds, .id = "bad.unfit", .version = "1", .doc = "A plugin for the tests of the conformance check.",
+          .licence = "BSD-3-Clause");

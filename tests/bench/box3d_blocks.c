@@ -174,8 +174,7 @@ static double mean_speed(const blocks *made)
     double sum = 0;
     for (int i = 0; i < made->count; i++) {
         b3Vec3 v = b3Body_GetLinearVelocity(made->body[i]);
-        sum +=
-            sqrt((double)v.x * (double)v.x + (double)v.y * (double)v.y + (double)v.z * (double)v.z);
+        sum += sqrt((double)v.x * (double)v.x + (double)v.y * (double)v.y + (double)v.z * (double)v.z);
     }
     return sum / made->free;
 }
@@ -198,8 +197,7 @@ static void row(const options *given, const blocks *made, carried contacts)
 {
     printf("workload,size,blocks,contacts,points,threads,reuse,rate,unit,block_steps_per_s,speed\n"
            "%s,%s,%d,%.0f,%.0f,1,%s,",
-           given->workload, given->size, made->free, contacts.pairs, contacts.points,
-           given->recycle);
+           given->workload, given->size, made->free, contacts.pairs, contacts.points, given->recycle);
 }
 
 /* Stretches of steps, one after the other, each with the mean of the contacts at its beginning and its end. */
@@ -220,8 +218,8 @@ static void measure(const options *given)
         before = after;
     }
     row(given, &made, (carried){median(pairs, given->reps), median(points, given->reps)});
-    printf("%.5g,contacts/s,%.5g,%.3g\n", median(rates, given->reps),
-           made.free / median(times, given->reps), mean_speed(&made));
+    printf("%.5g,contacts/s,%.5g,%.3g\n", median(rates, given->reps), made.free / median(times, given->reps),
+           mean_speed(&made));
 }
 
 static void fall(options given)
@@ -256,13 +254,8 @@ static void fall(options given)
 
 static options read_options(int count, char **words)
 {
-    options given = {.file = "blocks.txt",
-                     .workload = "box3d",
-                     .size = "",
-                     .recycle = "on",
-                     .dt = 2e-4,
-                     .steps = 100,
-                     .reps = 3};
+    options given = {
+        .file = "blocks.txt", .workload = "box3d", .size = "", .recycle = "on", .dt = 2e-4, .steps = 100, .reps = 3};
     const struct {
         const char *name, **text;
         double *real;
@@ -277,8 +270,7 @@ static options read_options(int count, char **words)
         const char *equals = strchr(words[i], '=');
         size_t length = equals ? (size_t)(equals - words[i]) : 0;
         size_t k = 0, all = sizeof known / sizeof known[0];
-        while (k < all && (!equals || strlen(known[k].name) != length ||
-                           strncmp(words[i], known[k].name, length) != 0))
+        while (k < all && (!equals || strlen(known[k].name) != length || strncmp(words[i], known[k].name, length) != 0))
             k++;
         if (k == all)
             fail("unknown argument ", words[i]);

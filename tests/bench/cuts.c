@@ -47,8 +47,7 @@ static void make_blocks(tl_poly **block)
 }
 
 /* Cuts per second; adds the time and the cuts to the sums. */
-static void time_kind(const char *name, kind which, tl_poly *const *block, double *time,
-                      double *cuts)
+static void time_kind(const char *name, kind which, tl_poly *const *block, double *time, double *cuts)
 {
     static tl_plane plane[BLOCKS];
     size_t made = 0;
@@ -64,8 +63,7 @@ static void time_kind(const char *name, kind which, tl_poly *const *block, doubl
             tl_poly_free(result.above);
         }
     double taken = seconds() - began, all = (double)BLOCKS * ROUNDS;
-    printf("%-28s %6.2f million cuts/s, %3.0f%% made\n", name, 1e-6 * all / taken,
-           100 * (double)made / all);
+    printf("%-28s %6.2f million cuts/s, %3.0f%% made\n", name, 1e-6 * all / taken, 100 * (double)made / all);
     *time += taken;
     *cuts += all;
 }

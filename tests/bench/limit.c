@@ -88,8 +88,7 @@ static double seconds(kernel_fn kernel, void *data, tl_pool *pool)
     return t[reps / 2];
 }
 
-static void row(const char *kernel, const char *where, size_t items, unsigned threads, double rate,
-                const char *unit)
+static void row(const char *kernel, const char *where, size_t items, unsigned threads, double rate, const char *unit)
 {
     printf("limit %s,%s,%zu,%u,%.5g,%s\n", kernel, where, items, threads, rate, unit);
     fflush(stdout);
@@ -459,8 +458,7 @@ static void clip_range(void *user, size_t begin, size_t end, size_t chunk, unsig
             v3 p = {r.x + apart.x, r.y + apart.y, r.z + apart.z};
             first = k ? first : p;
             qb.at[k] = (corner){dot(p, e), dot(p, g)};
-            qa.at[k] =
-                (corner){read_lanes(c[QUAD_A + 2 * k], i), read_lanes(c[QUAD_A + 2 * k + 1], i)};
+            qa.at[k] = (corner){read_lanes(c[QUAD_A + 2 * k], i), read_lanes(c[QUAD_A + 2 * k + 1], i)};
         }
         integral sum = common(&qa, &qb);
         lanes third = 1.0 / (3.0 * sum.area + 1e-300), x = sum.x * third, y = sum.y * third;
@@ -490,18 +488,9 @@ static pairs pairs_make(size_t count)
     s.b = columns(4 * count);
     for (uint32_t i = 0; i < s.frames; i++) {
         double angle = 0.5 * tl_uniform(3u * i), sine = sin(angle), cosine = cos(angle);
-        const double frame[FRAME_COLUMNS] = {cosine,
-                                             -sine,
-                                             0,
-                                             sine,
-                                             cosine,
-                                             0,
-                                             0,
-                                             0,
-                                             1,
-                                             0.5 * tl_uniform(3u * i + 1),
-                                             0.5 * tl_uniform(3u * i + 2),
-                                             0.999 * i};
+        const double frame[FRAME_COLUMNS] = {
+            cosine,   -sine, 0, sine, cosine, 0, 0, 0, 1, 0.5 * tl_uniform(3u * i + 1), 0.5 * tl_uniform(3u * i + 2),
+            0.999 * i};
         for (int k = 0; k < FRAME_COLUMNS; k++)
             s.frame[k][i] = frame[k];
     }
@@ -543,8 +532,7 @@ static void check_areas(const pairs *s)
     }
     double mean = sum / (double)s->count;
     if (!(mean > 0.5 && mean < 0.9) || depth > 1e-9) {
-        fprintf(stderr, "limit: clip found a mean area of %g m2, depth wrong by %g m\n", mean,
-                depth);
+        fprintf(stderr, "limit: clip found a mean area of %g m2, depth wrong by %g m\n", mean, depth);
         exit(1);
     }
 }

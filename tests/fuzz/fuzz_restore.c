@@ -44,8 +44,7 @@ static void free_parts(parts *p)
 static bool unpack(const tl_chunk_head *head, const uint8_t *stored, part *out)
 {
     size_t bytes = head->packed ? (size_t)(head->size * head->items) : (size_t)head->stored;
-    if (head->packed &&
-        (head->size > MOST_UNPACKED || head->items > MOST_UNPACKED || bytes > MOST_UNPACKED))
+    if (head->packed && (head->size > MOST_UNPACKED || head->items > MOST_UNPACKED || bytes > MOST_UNPACKED))
         return false;
     out->data = malloc(bytes + 1);
     out->bytes = bytes;
@@ -92,19 +91,13 @@ static size_t put_together(const parts *p, uint8_t *data, size_t most)
     memcpy(data, &file, sizeof file);
     for (size_t i = 0; i <= p->count; i++) {
         bool last = i == p->count;
-        const part *one = last ? &(part){.name = "end",
-                                         .name_bytes = 3,
-                                         .size = 8,
-                                         .items = 1,
-                                         .bytes = 8,
-                                         .data = (uint8_t *)&sum}
-                               : &p->list[i];
+        const part *one =
+            last ? &(part){.name = "end", .name_bytes = 3, .size = 8, .items = 1, .bytes = 8, .data = (uint8_t *)&sum}
+                 : &p->list[i];
         if (!last && strcmp(one->name, "end") == 0)
             continue;
-        tl_chunk_head head = {.name_bytes = (uint32_t)one->name_bytes,
-                              .size = one->size,
-                              .items = one->items,
-                              .stored = one->bytes};
+        tl_chunk_head head = {
+            .name_bytes = (uint32_t)one->name_bytes, .size = one->size, .items = one->items, .stored = one->bytes};
         if (most - at < sizeof head + one->name_bytes + one->bytes)
             return 0;
         head.sum = XXH64(one->name, one->name_bytes, 0);

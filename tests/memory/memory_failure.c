@@ -36,10 +36,10 @@ static atomic_long asked, fails_at;
 static atomic_bool for_good;
 
 /* A pointer to a function, from one to an object: C has no cast for it. */
-#define LOOK_UP(name)                                                                              \
-    do {                                                                                           \
-        void *found = dlsym(RTLD_NEXT, #name);                                                     \
-        memcpy(&next.name, &found, sizeof found);                                                  \
+#define LOOK_UP(name)                                                                                                  \
+    do {                                                                                                               \
+        void *found = dlsym(RTLD_NEXT, #name);                                                                         \
+        memcpy(&next.name, &found, sizeof found);                                                                      \
     } while (0)
 
 static void look_up(void)

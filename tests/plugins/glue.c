@@ -20,12 +20,12 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, soft, "Pa/m", "stiffness along the walls",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, angle, "deg", "angle of friction",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, strength, "Pa", "strength of the glue, in tension and in shear",
-             .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, climb, "deg", "angle at which slip lifts the walls",
-             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 45),
+    TL_PARAM(TL_PARAM_REAL, params, angle, "deg", "angle of friction", .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN,
+             .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, strength, "Pa", "strength of the glue, in tension and in shear", .min = 0,
+             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, climb, "deg", "angle at which slip lifts the walls", .flags = TL_PARAM_MAX_OPEN,
+             .min = 0, .max = 45),
 };
 
 static const tl_state state_table[] = {
@@ -74,8 +74,7 @@ static void move(const params *p, const tl_law_batch *batch, uint32_t i)
         heat += tl_law_snap_work(gone, spring, c.du_n[0]);
     }
     total = open ? 0 : total;
-    batch->flags[i] = (*glue > 0 ? 0u : (uint32_t)TL_POINT_FAILED) |
-                      (open ? (uint32_t)TL_POINT_OPEN : 0u) |
+    batch->flags[i] = (*glue > 0 ? 0u : (uint32_t)TL_POINT_FAILED) | (open ? (uint32_t)TL_POINT_OPEN : 0u) |
                       (slip > 0 ? (uint32_t)TL_POINT_SLIPPING : 0u);
     c.f_n[0] = total;
     TL_PUT_SHEAR(c, 0, open ? 0 : trial > 0 ? (trial - along_spring * slip) / trial : 0, f);
@@ -109,18 +108,15 @@ static tl_status create(const void *given, void **self, tl_report *report)
     const params *p = given;
     if (p->climb <= p->angle)
         return tl_keep(p, sizeof *p, self, report);
-    snprintf(report->text, sizeof report->text,
-             "climb = %g deg must be <= angle = %g deg, or slip would make energy", p->climb,
-             p->angle);
+    snprintf(report->text, sizeof report->text, "climb = %g deg must be <= angle = %g deg, or slip would make energy",
+             p->climb, p->angle);
     return TL_E_ARGUMENT;
 }
 
-static const tl_law_ops ops =
-    TL_LAW_OPS(.pulls = tl_pulls_bonded, .across_gap = across_gap, .linear = 1);
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_bonded, .across_gap = across_gap, .linear = 1);
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_LAW, ops, .name = "glue", .doc = "Brittle glue on walls that ride up.",
-            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind = TL_KIND(TL_KIND_LAW, ops, .name = "glue", .doc = "Brittle glue on walls that ride up.",
+                                    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-TL_PLUGIN_SINCE(8, kind, .id = "elsewhere.glue", .version = "1",
-                .doc = "A law from another folder.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(8, kind, .id = "elsewhere.glue", .version = "1", .doc = "A law from another folder.",
+                .licence = "BSD-3-Clause");

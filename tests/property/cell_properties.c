@@ -53,8 +53,7 @@ static void draw_corners(tl_vec3 *corner, size_t n)
     double twice = 0;
     tl_vec3 centre = {0, 0, 0};
     for (size_t k = 0; k < n; k++) {
-        double angle = 6.283185307179586 * ((double)k + between(0, 0.7)) / (double)n,
-               x = cos(angle);
+        double angle = 6.283185307179586 * ((double)k + between(0, 0.7)) / (double)n, x = cos(angle);
         double y = flat * sin(angle);
         corner[k] = tl_v3(x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn), 0);
     }
@@ -82,8 +81,7 @@ static void lay(scene *s, size_t n)
     for (size_t k = 0; k < n; k++) {
         tl_vec3 middle = tl_v3_scale(0.5, tl_v3_add(corner[k], corner[(k + 1) % n]));
         put_point(s, k, tl_v3_scale(5. / 6, middle), 36. / 75 * triangle[k]);
-        put_point(s, n + k, tl_v3_scale(5. / 8, corner[k]),
-                  16. / 75 * (triangle[k] + triangle[(k + n - 1) % n]));
+        put_point(s, n + k, tl_v3_scale(5. / 8, corner[k]), 16. / 75 * (triangle[k] + triangle[(k + n - 1) % n]));
     }
     put_point(s, 2 * n, tl_v3(0, 0, 0), 7. / 75 * all);
     s->size = sqrt(all);

@@ -91,8 +91,7 @@ static size_t tangle(uint64_t *seed, tl_flat *at)
         for (size_t i = 0; i + 2 < n; i++)
             for (size_t j = i + 2; j < n; j++) {
                 tl_flat a = at[i], b = at[i + 1], c = at[j], d = at[(j + 1) % n];
-                if ((i == 0 && j == n - 1) ||
-                    (tl_flat_cross(a, b, c) > 0) == (tl_flat_cross(a, b, d) > 0) ||
+                if ((i == 0 && j == n - 1) || (tl_flat_cross(a, b, c) > 0) == (tl_flat_cross(a, b, d) > 0) ||
                     (tl_flat_cross(c, d, a) > 0) == (tl_flat_cross(c, d, b) > 0))
                     continue;
                 for (size_t p = i + 1, q = j; p < q; p++, q--) {
@@ -180,12 +179,10 @@ static int misplaced(uint64_t *seed, const tl_flat *at, size_t n, const convex_p
     int wrong = 0;
     double extent = extent_of(at, n);
     for (int k = 0; k < 60; k++) {
-        tl_flat p = {at[0].x + extent * between(seed, -1, 1),
-                     at[0].y + extent * between(seed, -1, 1)};
+        tl_flat p = {at[0].x + extent * between(seed, -1, 1), at[0].y + extent * between(seed, -1, 1)};
         double near = INFINITY;
         for (size_t q = 0; q < parts->parts; q++)
-            near = fmin(near, off_edges(at, parts->corner + parts->start[q],
-                                        parts->start[q + 1] - parts->start[q], p));
+            near = fmin(near, off_edges(at, parts->corner + parts->start[q], parts->start[q + 1] - parts->start[q], p));
         if (near > 1e-6 * extent)
             wrong += parts_with(at, parts, p) != is_inside(at, n, p);
     }
@@ -198,8 +195,7 @@ static size_t reflex(const tl_flat *at, size_t n)
     size_t count = 0;
     double sign = twice_area(at, n) > 0 ? 1 : -1;
     for (size_t i = 0; i < n; i++)
-        count += sign * tl_flat_height(at[i], at[(i + 1) % n], at[(i + 2) % n]) <
-                 -1e-9 * extent_of(at, n);
+        count += sign * tl_flat_height(at[i], at[(i + 1) % n], at[(i + 2) % n]) < -1e-9 * extent_of(at, n);
     return count;
 }
 
@@ -227,8 +223,7 @@ static double check_parts(uint64_t *seed, const tl_flat *at, size_t n, const con
         for (size_t i = 0; i < count; i++) {
             double farthest = 0, length = tl_flat_apart(at[c[i]], at[c[(i + 1) % count]]);
             for (size_t j = 0; j < count; j++)
-                farthest =
-                    fmax(farthest, tl_flat_cross(at[c[i]], at[c[(i + 1) % count]], at[c[j]]));
+                farthest = fmax(farthest, tl_flat_cross(at[c[i]], at[c[(i + 1) % count]], at[c[j]]));
             thinnest = fmin(thinnest, farthest / length / extent);
         }
     }
@@ -311,8 +306,7 @@ static bool crosses(const tl_flat *at, size_t n)
     for (size_t i = 0; i + 2 < n; i++)
         for (size_t j = i + 2; j < n; j++) {
             tl_flat a = at[i], b = at[i + 1], c = at[j], d = at[(j + 1) % n];
-            if ((i != 0 || j != n - 1) &&
-                (tl_flat_cross(a, b, c) > 0) != (tl_flat_cross(a, b, d) > 0) &&
+            if ((i != 0 || j != n - 1) && (tl_flat_cross(a, b, c) > 0) != (tl_flat_cross(a, b, d) > 0) &&
                 (tl_flat_cross(c, d, a) > 0) != (tl_flat_cross(c, d, b) > 0))
                 return true;
         }
@@ -353,8 +347,7 @@ TEST(touching_folded_and_flat_ones_are_refused)
     convex_parts parts;
     size_t one, other;
     /* a square with a square hole, joined by a cut there and back */
-    const tl_flat keyhole[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0},
-                               {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}};
+    const tl_flat keyhole[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0}, {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}};
     CHECK_INT(convex_divide(keyhole, 10, &parts, &one, &other), CONVEX_CROSSES);
     const tl_flat spike[] = {{0, 0}, {2, 0}, {1, 0}, {1, 1}};
     CHECK_INT(convex_divide(spike, 4, &parts, &one, &other), CONVEX_CROSSES);
@@ -380,14 +373,12 @@ TEST(few_parts)
     CHECK_INT(parts.parts, 2);
     free(parts.corner);
     free(parts.start);
-    const tl_flat slope[] = {{0, 0},   {100, 0}, {100, 20}, {70, 20},
-                             {60, 40}, {50, 40}, {40, 60},  {0, 60}};
+    const tl_flat slope[] = {{0, 0}, {100, 0}, {100, 20}, {70, 20}, {60, 40}, {50, 40}, {40, 60}, {0, 60}};
     CHECK_INT(convex_divide(slope, 8, &parts, &one, &other), CONVEX_DONE);
     CHECK_INT(parts.parts, 3);
     free(parts.corner);
     free(parts.start);
 }
 
-TEST_MAIN(RUN(parts_make_up_the_polygon), RUN(corners_on_lines_do_not_count),
-          RUN(what_crosses_itself_is_refused), RUN(touching_folded_and_flat_ones_are_refused),
-          RUN(few_parts))
+TEST_MAIN(RUN(parts_make_up_the_polygon), RUN(corners_on_lines_do_not_count), RUN(what_crosses_itself_is_refused),
+          RUN(touching_folded_and_flat_ones_are_refused), RUN(few_parts))

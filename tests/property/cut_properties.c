@@ -96,8 +96,8 @@ static void count_result(tally *t, tl_cut_result result)
 
 static void report(const char *name, const tally *t)
 {
-    printf("    %s: %d cuts, %d made, %d missed, %d coincident, %d too thin, volume to %.1e\n",
-           name, t->cuts, t->made, t->missed, t->coincident, t->refused, t->worst);
+    printf("    %s: %d cuts, %d made, %d missed, %d coincident, %d too thin, volume to %.1e\n", name, t->cuts, t->made,
+           t->missed, t->coincident, t->refused, t->worst);
 }
 
 static void check_volume(double sum, double whole, tally *t)
@@ -231,10 +231,9 @@ static tl_model *model_of_a_box(tl_vec3 min)
     tl_model *m;
     tl_stage stage;
     tl_vec3 max = tl_v3_add(min, tl_v3(SIDE, SIDE, SIDE));
-    if (!CHECK_INT(tl_model_create(&config, &m, &error), TL_OK) ||
-        !CHECK_INT(stage_begin(m, &stage), TL_OK) ||
-        !CHECK_INT(tl_stage_add_box(&stage, min, max, 2600, NULL), TL_OK) ||
-        !CHECK_INT(tl_joint_intern(m, "J"), 1) || !CHECK_INT(tl_stage_commit(&stage), TL_OK))
+    if (!CHECK_INT(tl_model_create(&config, &m, &error), TL_OK) || !CHECK_INT(stage_begin(m, &stage), TL_OK) ||
+        !CHECK_INT(tl_stage_add_box(&stage, min, max, 2600, NULL), TL_OK) || !CHECK_INT(tl_joint_intern(m, "J"), 1) ||
+        !CHECK_INT(tl_stage_commit(&stage), TL_OK))
         exit(1);
     return m;
 }

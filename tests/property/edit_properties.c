@@ -41,8 +41,7 @@ static bool from_elsewhere[MOST_IDS][MOST_IDS];
 typedef struct press {
     tl_vec3 force;
     uint32_t kind, points;
-    bool
-        stressed; /* it has an initial stress, and holds its faces for it: a new detection knows nothing of that */
+    bool stressed; /* it has an initial stress, and holds its faces for it: a new detection knows nothing of that */
 } press;
 
 static tl_vec3 press_of(tl_model *m, uint32_t c)
@@ -102,8 +101,8 @@ static press *presses(tl_model *m, size_t rows)
         CHECK(c->a[i] < c->b[i] && c->b[i] < rows);
         CHECK(m->blocks.body[c->a[i]] != m->blocks.body[c->b[i]]);
         note_references(m, i);
-        out[c->a[i] * rows + c->b[i]] = (press){press_of(m, i), (uint32_t)c->facet[i].kind,
-                                                c->point_count[i], is_stressed(m, i)};
+        out[c->a[i] * rows + c->b[i]] =
+            (press){press_of(m, i), (uint32_t)c->facet[i].kind, c->point_count[i], is_stressed(m, i)};
     }
     return out;
 }
@@ -120,8 +119,7 @@ static void check_lists(const tl_model *m)
             uint32_t contact = d->by_block[e];
             CHECK(c->a[contact] == row || c->b[contact] == row);
             if (e > d->by_block_start[row])
-                CHECK(tl_contact_partner(c, d->by_block[e - 1], row) <
-                      tl_contact_partner(c, contact, row));
+                CHECK(tl_contact_partner(c, d->by_block[e - 1], row) < tl_contact_partner(c, contact, row));
         }
     for (uint32_t i = 0; i < d->pair_count; i++) {
         const tl_pair *p = &d->pairs[i];
@@ -138,8 +136,7 @@ static bool are_same(const press *x, const press *y, double size, bool kept)
 {
     double unit = size * size * size, size_y = tl_v3_norm(y->force) / unit;
     bool other = kept || x->kind != y->kind || x->points != y->points;
-    double allowed =
-        x->kind == TL_FACET_FIELD ? ANEW_FIELD + OTHER_KIND * size_y : ANEW + CORNERS * size_y;
+    double allowed = x->kind == TL_FACET_FIELD ? ANEW_FIELD + OTHER_KIND * size_y : ANEW + CORNERS * size_y;
     if (other)
         allowed = KEPT / fmin(size, 1) + OTHER_KIND * size_y;
     return scene_apart(x->force, y->force) <= (allowed + (size_y < SEEN ? SEEN : 0)) * unit;
@@ -158,8 +155,8 @@ static size_t check_presses(const tl_model *m, const press *x, const press *y, b
             if (one->stressed || forgot)
                 continue;
             if (!CHECK(are_same(one, other, size, kept)))
-                printf("blocks %u and %u of size %g press by %g, anew by %g\n", m->blocks.id[a],
-                       m->blocks.id[b], size, tl_v3_norm(one->force), tl_v3_norm(other->force));
+                printf("blocks %u and %u of size %g press by %g, anew by %g\n", m->blocks.id[a], m->blocks.id[b], size,
+                       tl_v3_norm(one->force), tl_v3_norm(other->force));
         }
     return pressing;
 }
@@ -216,10 +213,9 @@ static tl_model *rock(uint64_t *seed)
     scene_box(m, tl_v3(0, 0, 0), tl_v3(3, 3, 2));
     int planes = 3 + (int)(4 * check_random(seed));
     for (int i = 0; i < planes; i++)
-        joint_plane(
-            m, scene_direction(seed),
-            tl_v3(scene_between(seed, 0, 3), scene_between(seed, 0, 3), scene_between(seed, 0, 2)),
-            (double)INFINITY);
+        joint_plane(m, scene_direction(seed),
+                    tl_v3(scene_between(seed, 0, 3), scene_between(seed, 0, 3), scene_between(seed, 0, 2)),
+                    (double)INFINITY);
     scene_box(m, tl_v3(-2, -2, -1), tl_v3(5, 5, 0));
     tl_id floor = m->blocks.id[m->blocks.table.rows - 1];
     scene_ok(m, tl_blocks_fix(m, &floor, 1, TL_FIX_ALL));
@@ -234,8 +230,7 @@ static void shake(tl_model *m, uint64_t *seed)
     tl_rows_tidy(m);
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
         if (m->bodies.fixed[body] != TL_FIX_ALL)
-            scene_move(m, body, tl_v3_scale(SHAKE, scene_direction(seed)),
-                       tl_v3_scale(SHAKE, scene_direction(seed)));
+            scene_move(m, body, tl_v3_scale(SHAKE, scene_direction(seed)), tl_v3_scale(SHAKE, scene_direction(seed)));
 }
 
 static tl_id any_block(const tl_model *m, uint64_t *seed)
@@ -298,11 +293,9 @@ static void edit(tl_model *m, uint64_t *seed)
     case 5: add_box(m); break;
     case 6: scene_law(m, "coulomb", KN, 0.5 * KN, scene_between(seed, 20, 40)); break;
     case 7:
-        scene_ok(m, tl_model_contact_area(
-                        m, &(tl_contact_area){sizeof(tl_contact_area), 1e-3, NAN, NULL}));
+        scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), 1e-3, NAN, NULL}));
         compare(m);
-        scene_ok(
-            m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), 0, NAN, NULL}));
+        scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), 0, NAN, NULL}));
         break;
     case 8: scene_ok(m, tl_blocks_fix(m, &id, 1, TL_FIX_ALL)); break;
     default: scene_ok(m, tl_blocks_free(m, &id, 1)); break;
@@ -378,8 +371,8 @@ TEST(untidy_rows_change_nothing)
                 double x = scene_between(&seed, -1, 4);
                 tl_stage stage;
                 scene_ok(m, tl_stage_begin_empty(m, &stage));
-                scene_ok(m, tl_stage_add_box(&stage, tl_v3(x, x, 3.0 + 2 * k),
-                                             tl_v3(x + 1, x + 1, 4.0 + 2 * k), 2000, "box"));
+                scene_ok(m, tl_stage_add_box(&stage, tl_v3(x, x, 3.0 + 2 * k), tl_v3(x + 1, x + 1, 4.0 + 2 * k), 2000,
+                                             "box"));
                 scene_ok(m, tl_stage_commit(&stage));
             }
             scene_ok(m, tl_model_cycle(m, 3, &result));

@@ -143,8 +143,8 @@ SCENE_UNUSED static void exact_press(scene_pair *p, double depth)
     for (int pass = 0; pass < 4; pass++) {
         best_axis best = brute_force(scene_place(p));
         real by = -(real)depth - best.s;
-        p->shift = tl_v3_add(p->shift, tl_v3((double)(by * best.n.x), (double)(by * best.n.y),
-                                             (double)(by * best.n.z)));
+        p->shift =
+            tl_v3_add(p->shift, tl_v3((double)(by * best.n.x), (double)(by * best.n.y), (double)(by * best.n.z)));
     }
 }
 

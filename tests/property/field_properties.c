@@ -15,8 +15,7 @@ static tl_field_power integral_of(scene *s)
     tl_field_sums sums;
     list_scene(s);
     CHECK(tl_field_integrate(&s->planes.faces, &s->scratch, &sums));
-    return s->power > 1 ? sums.powers[s->power - 2]
-                        : (tl_field_power){sums.energy, sums.force, sums.moment};
+    return s->power > 1 ? sums.powers[s->power - 2] : (tl_field_power){sums.energy, sums.force, sums.moment};
 }
 
 /* The integral after B has been moved along an axis, or turned about the origin, by some way. */
@@ -51,8 +50,7 @@ static double off_by(scene *s, const tl_field_power *sums, double h)
     double force = tl_v3_norm(sums->force), size = s->pair.view.size;
     tl_vec3 g = scene_minus_gradient(energy_after, s, h * size, false),
             m = scene_minus_gradient(energy_after, s, h, true);
-    return fmax(tl_v3_norm(tl_v3_sub(g, sums->force)) / force,
-                tl_v3_norm(tl_v3_sub(m, sums->moment)) / (force * size));
+    return fmax(tl_v3_norm(tl_v3_sub(g, sums->force)) / force, tl_v3_norm(tl_v3_sub(m, sums->moment)) / (force * size));
 }
 
 /* false: the blocks do not press on each other. */
@@ -67,8 +65,7 @@ static bool check_gradient(scene *s, double depth, uint64_t seed)
         off = fmin(off, off_by(s, &sums, steps[k] * depth));
     worst = fmax(worst, off);
     if (!CHECK(off < GRADIENT))
-        printf("  seed %d, overlap %g: off by %g of %g\n", (int)seed, depth, off,
-               tl_v3_norm(sums.force));
+        printf("  seed %d, overlap %g: off by %g of %g\n", (int)seed, depth, off, tl_v3_norm(sums.force));
     return true;
 }
 
@@ -213,8 +210,7 @@ static double volume_in_common(const scene *s)
             tl_poly_free(cut.above);
             left = cut.below;
         } else if (cut.result != TL_CUT_MISS || tl_v3_dot(n, left->vertex[0]) > plane.offset) {
-            volume =
-                cut.result == TL_CUT_MISS ? 0 : NAN; /* all of it is outside; too thin to be cut */
+            volume = cut.result == TL_CUT_MISS ? 0 : NAN; /* all of it is outside; too thin to be cut */
             tl_poly_free(left);
             left = NULL;
         }
@@ -231,8 +227,7 @@ TEST(volume_is_that_of_what_is_left_by_cuts)
     for (uint64_t k = 1; k <= CASES(400); k++) {
         uint64_t seed = k + 7000;
         static scene s;
-        make_scene(&s, random_kind(&seed), random_kind(&seed), scene_between(&seed, 0.02, 0.4),
-                   false, &seed);
+        make_scene(&s, random_kind(&seed), random_kind(&seed), scene_between(&seed, 0.02, 0.4), false, &seed);
         list_scene(&s);
         tl_field_sums found;
         CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &found));
@@ -287,8 +282,7 @@ TEST(energy_from_the_surface_is_that_from_all)
         uint64_t seed = k + 15000;
         tl_field_mesh mesh = {0};
         static scene s;
-        make_scene(&s, random_kind(&seed), random_kind(&seed),
-                   pow(10, scene_between(&seed, -4, -0.5)), false, &seed);
+        make_scene(&s, random_kind(&seed), random_kind(&seed), pow(10, scene_between(&seed, -4, -0.5)), false, &seed);
         s.power = 2;
         list_scene(&s);
         tl_field_sums all, few;
@@ -325,8 +319,8 @@ TEST(a_far_origin_moves_nothing)
     for (uint64_t k = 1; k <= CASES(400); k++) {
         uint64_t seed = k + 12000;
         static scene s;
-        make_scene(&s, random_kind(&seed) % 4, random_kind(&seed) % 4,
-                   pow(10, scene_between(&seed, -5, -1)), false, &seed);
+        make_scene(&s, random_kind(&seed) % 4, random_kind(&seed) % 4, pow(10, scene_between(&seed, -5, -1)), false,
+                   &seed);
         tl_field_sums near, far;
         tl_vec3 by = scene_direction(&seed);
         list_scene(&s);
@@ -359,8 +353,8 @@ TEST(flush_faces_have_the_force_of_springs)
     static scene s;
     for (int k = -6; k < -1; k++) {
         double o = pow(10, k);
-        s = (scene){.pair = scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(3, 3, 1),
-                                          tl_q_identity(), tl_v3(0.2, 0.1, 1 - o))};
+        s = (scene){.pair = scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(3, 3, 1), tl_q_identity(),
+                                          tl_v3(0.2, 0.1, 1 - o))};
         s.origin = tl_v3(0.1, 0, 0.5);
         list_scene(&s);
         tl_field_sums sums;

@@ -39,8 +39,8 @@ static bool may_meet(const tl_pair_view *view, bool of_b, uint32_t face)
     return true;
 }
 
-static void add_planes(planes *p, const tl_pair_view *view, bool of_b, const uint8_t *border,
-                       bool wanted, tl_vec3 origin, uint32_t *count)
+static void add_planes(planes *p, const tl_pair_view *view, bool of_b, const uint8_t *border, bool wanted,
+                       tl_vec3 origin, uint32_t *count)
 {
     const tl_poly *poly = of_b ? view->b : view->a;
     for (uint32_t f = 0; f < poly->face_count; f++) {
@@ -57,8 +57,8 @@ static void add_planes(planes *p, const tl_pair_view *view, bool of_b, const uin
     }
 }
 
-static void list_planes(planes *p, const tl_pair_view *view, const uint8_t *border_a,
-                        const uint8_t *border_b, tl_vec3 origin)
+static void list_planes(planes *p, const tl_pair_view *view, const uint8_t *border_a, const uint8_t *border_b,
+                        tl_vec3 origin)
 {
     p->faces = (tl_field_faces){.n = {p->number[0], p->number[1], p->number[2]}, .c = p->number[3]};
     add_planes(p, view, false, border_a, false, origin, &p->faces.a);
@@ -82,8 +82,7 @@ static void list_scene(scene *s)
     const tl_pair_view *view = scene_place(&s->pair);
     /* faces that cannot meet may be left out of blocks that do; of blocks that are apart all are needed to tell */
     s->planes.all = s->borders || s->apart || !tl_coarse_test(view, 0);
-    list_planes(&s->planes, view, s->borders ? s->border_a : NULL, s->borders ? s->border_b : NULL,
-                s->origin);
+    list_planes(&s->planes, view, s->borders ? s->border_a : NULL, s->borders ? s->border_b : NULL, s->origin);
     s->planes.faces.powers = s->power > 1;
 }
 

@@ -48,8 +48,7 @@ typedef struct surface {
 static bool is_clear(const tl_poly *p)
 {
     for (uint32_t e = 0; e < p->edge_count; e++)
-        if (tl_v3_dot(p->plane[p->edge[e].left].normal, p->plane[p->edge[e].right].normal) >
-            cos(10 * TL_PI / 180))
+        if (tl_v3_dot(p->plane[p->edge[e].left].normal, p->plane[p->edge[e].right].normal) > cos(10 * TL_PI / 180))
             return false;
     return tl_poly_shortest_edge(p) > 0.03 * p->size && tl_poly_thickness(p) > 0.1 * p->size;
 }
@@ -80,8 +79,7 @@ static tl_poly *random_block(void)
 /* How far corner k of a polygon lies from the line of its neighbours. */
 static double ear_height(const surface *s, const uint16_t *loop, uint32_t n, uint32_t k)
 {
-    tl_vec3 a = s->vertex[loop[(k + n - 1) % n]], b = s->vertex[loop[k]],
-            c = s->vertex[loop[(k + 1) % n]];
+    tl_vec3 a = s->vertex[loop[(k + n - 1) % n]], b = s->vertex[loop[k]], c = s->vertex[loop[(k + 1) % n]];
     return tl_v3_norm(tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a))) / tl_v3_norm(tl_v3_sub(c, a));
 }
 
@@ -102,8 +100,7 @@ static void add_ears(surface *s, uint16_t *loop, uint32_t n)
         uint32_t k;
         do
             k = below(n);
-        while (ear_height(s, loop, n, k) < 1e-6 ||
-               (n == 4 && ear_height(s, loop, n, (k + 2) % 4) < 1e-6));
+        while (ear_height(s, loop, n, k) < 1e-6 || (n == 4 && ear_height(s, loop, n, (k + 2) % 4) < 1e-6));
         add_triangle(s, loop[(k + n - 1) % n], loop[k], loop[(k + 1) % n]);
         memmove(loop + k, loop + k + 1, (n - k - 1) * sizeof *loop);
         n--;
@@ -148,8 +145,8 @@ static void triangulate(const tl_poly *p, bool inner, surface *s)
             uint16_t a = p->loop[h], b = p->loop[tl_poly_after(p, f, h)];
             loop[n++] = a;
             for (uint32_t e = 0; e < p->edge_count; e++)
-                if (middle[e] != UINT16_MAX && ((p->edge[e].a == a && p->edge[e].b == b) ||
-                                                (p->edge[e].a == b && p->edge[e].b == a)))
+                if (middle[e] != UINT16_MAX &&
+                    ((p->edge[e].a == a && p->edge[e].b == b) || (p->edge[e].a == b && p->edge[e].b == a)))
                     loop[n++] = middle[e];
         }
         if (inner && check_random(&seed) < 0.3)
@@ -200,14 +197,11 @@ static tl_poly *block_of(surface *s)
 {
     tl_poly *p = NULL;
     for (uint32_t f = 0; f < s->faces; f++) {
-        tl_vec3 a = s->vertex[s->loop[3 * f]], b = s->vertex[s->loop[3 * f + 1]],
-                c = s->vertex[s->loop[3 * f + 2]];
+        tl_vec3 a = s->vertex[s->loop[3 * f]], b = s->vertex[s->loop[3 * f + 1]], c = s->vertex[s->loop[3 * f + 2]];
         tl_vec3 n = tl_v3_unit(tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a)));
         s->plane[f] = (tl_plane){n, tl_v3_dot(n, a)};
     }
-    CHECK_INT(tl_poly_make(s->vertex, s->vertices, s->plane, NULL, s->start, s->loop, s->faces, &p,
-                           &error),
-              TL_OK);
+    CHECK_INT(tl_poly_make(s->vertex, s->vertices, s->plane, NULL, s->start, s->loop, s->faces, &p, &error), TL_OK);
     CHECK_INT(tl_poly_flatten(&p, &error), TL_OK);
     return p;
 }
@@ -258,8 +252,7 @@ static double smallest_face(const tl_poly *p)
         double size = 0;
         for (uint32_t i = p->start[f]; i < p->start[f + 1]; i++)
             for (uint32_t j = i + 1; j < p->start[f + 1]; j++)
-                size =
-                    fmax(size, tl_v3_norm(tl_v3_sub(p->vertex[p->loop[i]], p->vertex[p->loop[j]])));
+                size = fmax(size, tl_v3_norm(tl_v3_sub(p->vertex[p->loop[i]], p->vertex[p->loop[j]])));
         least = fmin(least, size);
     }
     return least;

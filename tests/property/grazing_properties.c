@@ -16,8 +16,7 @@
 /* A box sheared along x and y by its height. */
 static tl_poly *some_block(uint64_t *seed, tl_vec3 *side)
 {
-    *side = tl_v3(scene_between(seed, 0.3, 2), scene_between(seed, 0.3, 2),
-                  scene_between(seed, 0.3, 2));
+    *side = tl_v3(scene_between(seed, 0.3, 2), scene_between(seed, 0.3, 2), scene_between(seed, 0.3, 2));
     return scene_box_shape(side->x, side->y, side->z);
 }
 

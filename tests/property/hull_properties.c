@@ -48,8 +48,7 @@ static int is_its_own_hull(const tl_poly *p)
     tl_poly *q = NULL;
     if (tl_poly_hull(p->vertex, p->vertex_count, &q, &error))
         return 0;
-    int same = q->vertex_count == p->vertex_count && q->face_count == p->face_count &&
-               q->edge_count == p->edge_count &&
+    int same = q->vertex_count == p->vertex_count && q->face_count == p->face_count && q->edge_count == p->edge_count &&
                !memcmp(p->vertex, q->vertex, p->vertex_count * sizeof *p->vertex) &&
                !memcmp(p->loop, q->loop, 2 * p->edge_count * sizeof *p->loop) &&
                !memcmp(p->start, q->start, (p->face_count + 1) * sizeof *p->start) &&
@@ -146,8 +145,7 @@ TEST(rotated_bricks)
             int corner = k % 3 != 1 && k / 3 % 3 != 1 && k / 9 != 1;
             if (k == 13 || (!corner && check_random(&seed) < 0.5))
                 continue;
-            tl_vec3 local = {0.5 * (k % 3) * side.x, 0.5 * (k / 3 % 3) * side.y,
-                             0.5 * (k / 9) * side.z};
+            tl_vec3 local = {0.5 * (k % 3) * side.x, 0.5 * (k / 3 % 3) * side.y, 0.5 * (k / 9) * side.z};
             x[n++] = tl_v3_add(at, tl_m3_mul(&r, local));
         }
         shuffle(x, n);
@@ -200,8 +198,7 @@ TEST(lattice_points)
         size_t n = 4 + (size_t)(check_random(&seed) * 30);
         double noise = i % 2 ? pow(10, uniform(-14, -5)) : 0;
         for (size_t k = 0; k < n; k++)
-            x[k] = tl_v3(floor(uniform(0, 4)) + noise * uniform(-1, 1),
-                         floor(uniform(0, 4)) + noise * uniform(-1, 1),
+            x[k] = tl_v3(floor(uniform(0, 4)) + noise * uniform(-1, 1), floor(uniform(0, 4)) + noise * uniform(-1, 1),
                          floor(uniform(0, 4)) + noise * uniform(-1, 1));
         tl_poly *p = NULL;
         size_t vertex = 0;

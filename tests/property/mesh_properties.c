@@ -18,19 +18,16 @@ static bool same_sums(const tl_field_sums *one, const tl_field_sums *other, doub
     bool same = fabs(one->energy - other->energy) <= tiny * other->energy &&
                 fabs(one->volume - other->volume) <= tiny * other->volume &&
                 fabs(one->deepest - other->deepest) <= tiny * other->deepest;
-    same = same && agree(one->force, other->force, force) &&
-           agree(one->moment, other->moment, force * length) &&
+    same = same && agree(one->force, other->force, force) && agree(one->moment, other->moment, force * length) &&
            agree(one->through, other->through, force) &&
-           agree(one->through_moment, other->through_moment, force * length) &&
-           agree(one->swept, other->swept, area) &&
-           agree(one->swept_moment, other->swept_moment, area * length) &&
-           agree(one->area, other->area, area) &&
+           agree(one->through_moment, other->through_moment, force * length) && agree(one->swept, other->swept, area) &&
+           agree(one->swept_moment, other->swept_moment, area * length) && agree(one->area, other->area, area) &&
            agree(one->pressed, other->pressed, force * length);
     for (int k = 0; k < TL_FIELD_POWERS; k++) {
         const tl_field_power *p = &one->powers[k], *q = &other->powers[k];
         double scale = force * pow(2 * overlap, k + 1);
-        same = same && fabs(p->whole - q->whole) <= tiny * q->whole + 1e-300 &&
-               agree(p->force, q->force, scale) && agree(p->moment, q->moment, scale * length);
+        same = same && fabs(p->whole - q->whole) <= tiny * q->whole + 1e-300 && agree(p->force, q->force, scale) &&
+               agree(p->moment, q->moment, scale * length);
     }
     return same;
 }

@@ -43,8 +43,8 @@ static void settle(face_pair *p)
     tl_pair_view *view = scene_place(&p->pair);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            view->turn.m[i][j] = p->r_a.m[0][i] * p->r_b.m[0][j] + p->r_a.m[1][i] * p->r_b.m[1][j] +
-                                 p->r_a.m[2][i] * p->r_b.m[2][j];
+            view->turn.m[i][j] =
+                p->r_a.m[0][i] * p->r_b.m[0][j] + p->r_a.m[1][i] * p->r_b.m[1][j] + p->r_a.m[2][i] * p->r_b.m[2][j];
     view->shift = tl_m3_tmul(&p->r_a, p->apart);
     view->size = fmin(p->pair.a->size, p->pair.b->size);
     CHECK(tl_pair_place(view, &p->pair.scratch));
@@ -56,8 +56,7 @@ static void place(face_pair *p, tl_quat turn, tl_vec3 shift)
     tl_mat3 r = tl_q_matrix(turn);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            p->r_b.m[i][j] = p->r_a.m[i][0] * r.m[0][j] + p->r_a.m[i][1] * r.m[1][j] +
-                             p->r_a.m[i][2] * r.m[2][j];
+            p->r_b.m[i][j] = p->r_a.m[i][0] * r.m[0][j] + p->r_a.m[i][1] * r.m[1][j] + p->r_a.m[i][2] * r.m[2][j];
     p->apart = tl_m3_mul(&p->r_a, shift);
     p->pair.turn = turn;
     p->pair.shift = shift;
@@ -69,8 +68,7 @@ static face_pair make(uint64_t *seed, int kind)
     size_t na = 3 + (size_t)(6 * check_random(seed)), nb = 3 + (size_t)(6 * check_random(seed));
     double ra = scene_between(seed, 0.5, 2), rb = scene_between(seed, 0.5, 2);
     double phase = scene_between(seed, 0, 7), turn = scene_between(seed, 0, 7);
-    double x = scene_between(seed, -1, 1), y = scene_between(seed, -1, 1),
-           c = cos(TL_PI / (double)na);
+    double x = scene_between(seed, -1, 1), y = scene_between(seed, -1, 1), c = cos(TL_PI / (double)na);
     tl_vec3 axis = tl_v3(0, 0, 1);
     if (kind != ANYHOW && kind != NEAR_EDGE) {
         nb = na;
@@ -90,8 +88,8 @@ static face_pair make(uint64_t *seed, int kind)
     }
     face_pair p = {.r_a = tl_q_matrix(scene_any_turn(seed))};
     p.pair = scene_pair_of(scene_drum(na, ra, 1, phase),
-                           scene_drum(nb, rb, 1, kind == ANYHOW || kind == NEAR_EDGE ? 0 : phase),
-                           tl_q_identity(), tl_v3(0, 0, 0));
+                           scene_drum(nb, rb, 1, kind == ANYHOW || kind == NEAR_EDGE ? 0 : phase), tl_q_identity(),
+                           tl_v3(0, 0, 0));
     if (kind == NEAR_EDGE) { /* a corner of B, at rb along x, near the middle of an edge of A */
         double out = ra * c + small(seed, 3, 10);
         x = out * cos(edge) - rb * cos(turn);
@@ -99,8 +97,7 @@ static face_pair make(uint64_t *seed, int kind)
     }
     if (check_random(seed) < 0.5) /* tilted, up to beyond what is flush */
         axis = tl_v3_madd(axis, small(seed, 2, 9), scene_direction(seed));
-    tl_quat tilt =
-        scene_turn(scene_direction(seed), check_random(seed) < 0.3 ? 0 : small(seed, 2, 9));
+    tl_quat tilt = scene_turn(scene_direction(seed), check_random(seed) < 0.3 ? 0 : small(seed, 2, 9));
     p.fa = face_towards(p.pair.a, 1);
     p.fb = face_towards(p.pair.b, -1);
     place(&p, tl_q_mul(scene_turn(axis, turn), tilt), tl_v3(x, y, 1 - 1e-4));
@@ -109,8 +106,8 @@ static face_pair make(uint64_t *seed, int kind)
 
 /* Whether corner i of a face lies about as far from a line as the snap distance, or nearer where neither of its edges
  * lies along the line: on which side it is then hangs on the order in which lines clip. */
-static bool hangs(const tl_vec3 *vertex, const uint16_t *loop, uint32_t count, uint32_t i,
-                  tl_vec3 o, tl_vec3 across, double snap)
+static bool hangs(const tl_vec3 *vertex, const uint16_t *loop, uint32_t count, uint32_t i, tl_vec3 o, tl_vec3 across,
+                  double snap)
 {
     double h[3];
     for (uint32_t k = 0; k < 3; k++)
@@ -129,8 +126,7 @@ static bool undecided(const face_pair *p)
     tl_vec3 n = p->pair.a->plane[p->fa].normal;
     for (int s = 0; s < 2; s++) {
         const tl_poly *of = poly[s], *by = poly[1 - s];
-        const uint16_t *line = by->loop + by->start[face[1 - s]],
-                       *loop = of->loop + of->start[face[s]];
+        const uint16_t *line = by->loop + by->start[face[1 - s]], *loop = of->loop + of->start[face[s]];
         uint32_t lines = tl_poly_face_size(by, face[1 - s]), count = tl_poly_face_size(of, face[s]);
         for (uint32_t j = 0; j < lines; j++) {
             tl_vec3 o = vertex[1 - s][line[j]], q = vertex[1 - s][line[(j + 1) % lines]];
@@ -281,8 +277,7 @@ TEST(other_features_have_other_keys)
             memcpy(key, g->key, (count < 64 ? count : 64) * sizeof *key);
             tl_vec3 way = tl_v3(small(&seed, 0.5, 3), small(&seed, 0.5, 3), 0);
             place(&p, p.pair.turn, tl_v3_add(p.pair.shift, way));
-            bool same = lay_one(&p, false) > 0 && g->count == count &&
-                        memcmp(g->key, key, count * sizeof *key) == 0;
+            bool same = lay_one(&p, false) > 0 && g->count == count && memcmp(g->key, key, count * sizeof *key) == 0;
             tl_patch_batch *batch = tl_batch_begin(&scratch, false, STEEP);
             add(batch, 0, &p);
             tl_batch_lay(batch);

@@ -23,8 +23,7 @@ typedef struct scene {
     tl_id a, b; /* the boxes while they are whole */
 } scene;
 
-static const double corners[3][2][3] = {
-    {{0, 0, 0}, {1, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}, {{0, 0, 2}, {1, 1, 3}}};
+static const double corners[3][2][3] = {{{0, 0, 0}, {1, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}, {{0, 0, 2}, {1, 1, 3}}};
 static const char *const groups[] = {"a", "b", "c"};
 
 static void generate(tl_model *m, const char *name, const tl_value *values, size_t count)
@@ -38,11 +37,10 @@ static void generate(tl_model *m, const char *name, const tl_value *values, size
 
 static tl_id add_box(tl_model *m, int which)
 {
-    tl_value values[] = {
-        {.key = "min", .type = TL_VALUE_NUMBERS, .data = corners[which][0], .count = 3},
-        {.key = "max", .type = TL_VALUE_NUMBERS, .data = corners[which][1], .count = 3},
-        {.key = "density", .type = TL_VALUE_NUMBER, .number = 1000},
-        {.key = "group", .type = TL_VALUE_STRING, .text = groups[which]}};
+    tl_value values[] = {{.key = "min", .type = TL_VALUE_NUMBERS, .data = corners[which][0], .count = 3},
+                         {.key = "max", .type = TL_VALUE_NUMBERS, .data = corners[which][1], .count = 3},
+                         {.key = "density", .type = TL_VALUE_NUMBER, .number = 1000},
+                         {.key = "group", .type = TL_VALUE_STRING, .text = groups[which]}};
     generate(m, "box", values, 4);
     return m->blocks.id[m->blocks.table.rows - 1];
 }
@@ -65,17 +63,16 @@ static void cut(const scene *s, int which, double persistence)
     static const char *const names[] = {"J1", "J2", "J3"};
     static const double dips[] = {25, 70, 85}, directions[] = {80, 200, 330};
     static const double center[3] = {1.5, 0.5, 0.5};
-    tl_value values[] = {
-        {.key = "joint", .type = TL_VALUE_STRING, .text = names[which]},
-        {.key = "dip", .type = TL_VALUE_NUMBER, .number = dips[which]},
-        {.key = "dip_dev", .type = TL_VALUE_NUMBER, .number = 5},
-        {.key = "dip_direction", .type = TL_VALUE_NUMBER, .number = directions[which]},
-        {.key = "dip_direction_dev", .type = TL_VALUE_NUMBER, .number = 5},
-        {.key = "spacing", .type = TL_VALUE_NUMBER, .number = 0.4},
-        {.key = "spacing_dev", .type = TL_VALUE_NUMBER, .number = 0.1},
-        {.key = "number", .type = TL_VALUE_NUMBER, .number = PLANES},
-        {.key = "origin", .type = TL_VALUE_NUMBERS, .data = center, .count = 3},
-        {.key = "persistence", .type = TL_VALUE_NUMBER, .number = persistence}};
+    tl_value values[] = {{.key = "joint", .type = TL_VALUE_STRING, .text = names[which]},
+                         {.key = "dip", .type = TL_VALUE_NUMBER, .number = dips[which]},
+                         {.key = "dip_dev", .type = TL_VALUE_NUMBER, .number = 5},
+                         {.key = "dip_direction", .type = TL_VALUE_NUMBER, .number = directions[which]},
+                         {.key = "dip_direction_dev", .type = TL_VALUE_NUMBER, .number = 5},
+                         {.key = "spacing", .type = TL_VALUE_NUMBER, .number = 0.4},
+                         {.key = "spacing_dev", .type = TL_VALUE_NUMBER, .number = 0.1},
+                         {.key = "number", .type = TL_VALUE_NUMBER, .number = PLANES},
+                         {.key = "origin", .type = TL_VALUE_NUMBERS, .data = center, .count = 3},
+                         {.key = "persistence", .type = TL_VALUE_NUMBER, .number = persistence}};
     generate(s->model, "jointset", values, 10);
 }
 
@@ -96,8 +93,7 @@ static pieces pieces_of(const tl_model *m, const char *group)
 
 static bool same(const pieces *p, const pieces *q)
 {
-    return p->count == q->count &&
-           memcmp(p->volume, q->volume, (size_t)p->count * sizeof *p->volume) == 0;
+    return p->count == q->count && memcmp(p->volume, q->volume, (size_t)p->count * sizeof *p->volume) == 0;
 }
 
 /* Area of the faces of a joint on the blocks of a group. */
@@ -171,10 +167,8 @@ TEST(separate_blocks_are_cut_in_any_order)
             hide(&s, second, false);
             tl_id *ids;
             size_t count;
-            tl_block_filter rest = {.size = sizeof(tl_block_filter),
-                                    .group = order == 0 ? "a" : "b",
-                                    .fixed = -1,
-                                    .hidden = -1};
+            tl_block_filter rest = {
+                .size = sizeof(tl_block_filter), .group = order == 0 ? "a" : "b", .fixed = -1, .hidden = -1};
             CHECK_INT(tl_blocks_select(s.model, &rest, &ids, &count), TL_OK);
             CHECK_INT(tl_blocks_hide(s.model, ids, count, true), TL_OK);
             cut(&s, 1 - order, 0.5);

@@ -47,8 +47,7 @@ static tl_field_power whole_of(scene *s)
 {
     tl_press_extra extra;
     tl_press press = press_with(s, s->power < 0 ? NULL : &extra);
-    return s->power < 0 ? (tl_field_power){press.energy, press.force, press.moment}
-                        : extra.powers[s->power];
+    return s->power < 0 ? (tl_field_power){press.energy, press.force, press.moment} : extra.powers[s->power];
 }
 
 static tl_vec3 axis_of(int k)
@@ -90,8 +89,7 @@ static void make_flush(scene *s, double tilt, double depth, uint64_t *seed)
     tl_quat turn = tl_q_mul(scene_turn(tl_v3_unit(hinge), tilt * 3.14159265358979 / 180),
                             scene_turn(tl_v3(0, 0, 1), scene_between(seed, 0, 3)));
     tl_vec3 shift = tl_v3(scene_between(seed, -0.6, 0.6), scene_between(seed, -0.6, 0.6), 0);
-    *s = (scene){.pair = scene_pair_of(scene_box_shape(1, 1.2, 0.8), scene_box_shape(1.4, 1, 1.1),
-                                       turn, shift)};
+    *s = (scene){.pair = scene_pair_of(scene_box_shape(1, 1.2, 0.8), scene_box_shape(1.4, 1, 1.1), turn, shift)};
     /* down until the lowest corner over the face is so deep */
     const tl_pair_view *view = scene_place(&s->pair);
     double low = INFINITY;
@@ -130,15 +128,14 @@ static void try_gradients(int count, bool corners, double steep, double deep)
         s.corners = corners;
         s.power = -1;
         tl_press press = press_of(&s);
-        for (; tl_v3_norm(press.force) > 1e-6 && s.power < (corners ? TL_PRESS_POWERS : 0);
-             s.power++) {
+        for (; tl_v3_norm(press.force) > 1e-6 && s.power < (corners ? TL_PRESS_POWERS : 0); s.power++) {
             double off = least_off(&s, depth);
             worst = fmax(worst, off);
             cases++;
             blended += press.patch > 0 && press.patch < 1;
             if (!CHECK(off < 1e-6))
-                printf("  seed %d, tilt %g, overlap %g, patch %g, power %d: off by %g\n", (int)k,
-                       tilt, depth, press.patch, s.power, off);
+                printf("  seed %d, tilt %g, overlap %g, patch %g, power %d: off by %g\n", (int)k, tilt, depth,
+                       press.patch, s.power, off);
         }
         scene_pair_free(&s.pair);
     }
@@ -196,12 +193,10 @@ TEST(slopes_go_on_with_the_press)
         CHECK(tl_region_find(view, s.margin * view->size, &s.pair.scratch, &region));
         const tl_face_pair shifted = shifted_of(&region);
         if (at.area > 0) {
-            CHECK(tl_press_slope_find(&(tl_press_query){.view = view,
-                                                        .region = &region,
-                                                        .min_area = s.least,
-                                                        .shift = s.shift,
-                                                        .shifted = shifted},
-                                      &at, &s.pair.scratch, &slope));
+            CHECK(tl_press_slope_find(
+                &(tl_press_query){
+                    .view = view, .region = &region, .min_area = s.least, .shift = s.shift, .shifted = shifted},
+                &at, &s.pair.scratch, &slope));
             CHECK(slope.known);
             nudge(&s, &at, 0.5 * TL_PRESS_NEAR * (1 - 1e-5), &seed); /* short of it for rounding */
             tl_press found = press_of(&s);
@@ -209,17 +204,16 @@ TEST(slopes_go_on_with_the_press)
             tl_press near;
             CHECK(tl_press_near(&at, &slope, &from, &to, &near));
             double force = tl_v3_norm(found.force), size = s.pair.view.size;
-            double off = fmax(scene_apart(near.force, found.force),
-                              scene_apart(near.moment, found.moment) / size) /
-                         force;
+            double off =
+                fmax(scene_apart(near.force, found.force), scene_apart(near.moment, found.moment) / size) / force;
             off = fmax(off, fabs(near.energy / found.energy - 1));
             off = fmax(off, fabs(near.area / found.area - 1));
             off = fmax(off, fabs(near.deepest / found.deepest - 1));
             off = fmax(off, scene_apart(near.point, found.point) / size);
             worst = fmax(worst, off);
             if (!CHECK(off < 4 * TL_PRESS_NEAR * TL_PRESS_NEAR))
-                printf("  seed %d, patch %g, overlap %g, radius %g: off by %g\n", (int)k, at.patch,
-                       at.deepest, at.radius, off);
+                printf("  seed %d, patch %g, overlap %g, radius %g: off by %g\n", (int)k, at.patch, at.deepest,
+                       at.radius, off);
             cases++;
         }
         scene_pair_free(&s.pair);
@@ -246,10 +240,9 @@ TEST(faces_left_out_do_not_matter)
     for (uint64_t k = 1; k <= (uint64_t)check_cases(3000); k++) {
         uint64_t seed = k;
         static scene s;
-        s = (scene){.pair = scene_pair_of(
-                        shape_of(&seed, (int)(k % 5)), shape_of(&seed, (int)(k / 5 % 5)),
-                        scene_any_turn(&seed),
-                        tl_v3_scale(scene_between(&seed, 0.4, 1.2), scene_direction(&seed)))};
+        s = (scene){.pair = scene_pair_of(shape_of(&seed, (int)(k % 5)), shape_of(&seed, (int)(k / 5 % 5)),
+                                          scene_any_turn(&seed),
+                                          tl_v3_scale(scene_between(&seed, 0.4, 1.2), scene_direction(&seed)))};
         const tl_pair_view *view = scene_place(&s.pair);
         tl_region region;
         tl_press some, all;
@@ -257,8 +250,7 @@ TEST(faces_left_out_do_not_matter)
         CHECK(tl_region_find(view, margin, &s.pair.scratch, &region));
         s.pair.shift = tl_v3_madd(s.pair.shift, margin, scene_direction(&seed));
         view = scene_place(&s.pair);
-        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch,
-                            &some, NULL));
+        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch, &some, NULL));
         s.margin = 1e3;
         all = press_of(&s);
         double force = tl_v3_norm(all.force);
@@ -293,10 +285,9 @@ TEST(faces_that_bounded_before_change_nothing)
         const bool powers = k % 3 == 0;
         tl_field_mesh mesh = {0};
         static scene s;
-        s = (scene){.pair = scene_pair_of(
-                        shape_of(&seed, (int)(k % 5)), shape_of(&seed, (int)(k / 5 % 5)),
-                        scene_any_turn(&seed),
-                        tl_v3_scale(scene_between(&seed, 0.2, 1.2), scene_direction(&seed)))};
+        s = (scene){.pair = scene_pair_of(shape_of(&seed, (int)(k % 5)), shape_of(&seed, (int)(k / 5 % 5)),
+                                          scene_any_turn(&seed),
+                                          tl_v3_scale(scene_between(&seed, 0.2, 1.2), scene_direction(&seed)))};
         const tl_pair_view *view = scene_place(&s.pair);
         tl_region region;
         tl_press with, without;
@@ -307,20 +298,17 @@ TEST(faces_that_bounded_before_change_nothing)
             uint64_t before = mesh.bounding;
             const tl_field_mesh mesh_before = mesh;
             /* a minimum area that comes and goes: volumes are wanted with it */
-            double least =
-                k % 4 == 0 && check_random(&seed) < 0.3 ? 0.01 * view->size * view->size : 0;
+            double least = k % 4 == 0 && check_random(&seed) < 0.3 ? 0.01 * view->size * view->size : 0;
             view = scene_place(&s.pair);
             region.mesh = NULL;
-            CHECK(tl_press_find(
-                &(tl_press_query){
-                    .view = view, .region = &region, .min_area = least, .volumes = powers},
-                1, &s.pair.scratch, &without, &extra_without));
+            CHECK(
+                tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least, .volumes = powers},
+                              1, &s.pair.scratch, &without, &extra_without));
             region.mesh = &mesh;
             forgotten += before && !tl_region_corners_agree(view, &region);
-            CHECK(tl_press_find(
-                &(tl_press_query){
-                    .view = view, .region = &region, .min_area = least, .volumes = powers},
-                1, &s.pair.scratch, &with, &extra_with));
+            CHECK(
+                tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least, .volumes = powers},
+                              1, &s.pair.scratch, &with, &extra_with));
             /* a plate that sticks out on both sides as far is pressed by nothing, but for roundings */
             if (tl_v3_norm(without.force) < 1e-9 * without.energy / without.deepest)
                 continue;
@@ -337,8 +325,7 @@ TEST(faces_that_bounded_before_change_nothing)
             for (int i = 0; i < TL_PRESS_POWERS && powers && force > 0; i++) {
                 const tl_field_power *one = &extra_with.powers[i], *two = &extra_without.powers[i];
                 CHECK_NEAR(one->whole, two->whole, 1e-9 * two->whole);
-                CHECK_NEAR(scene_apart(one->force, two->force), 0,
-                           1e-9 * two->whole / without.deepest);
+                CHECK_NEAR(scene_apart(one->force, two->force), 0, 1e-9 * two->whole / without.deepest);
             }
         }
         scene_pair_free(&s.pair);
@@ -347,8 +334,8 @@ TEST(faces_that_bounded_before_change_nothing)
     CHECK(changes > check_cases(100));
     CHECK(forgotten > check_cases(40));
     CHECK(stood > check_cases(1500));
-    printf("  %d places, other faces %d times, by a corner %d times, the same polygons %d times\n",
-           cases, changes, forgotten, stood);
+    printf("  %d places, other faces %d times, by a corner %d times, the same polygons %d times\n", cases, changes,
+           forgotten, stood);
 }
 
 /* A block whose lower side is folded along y by an angle, its lowest edge at the origin. */
@@ -378,8 +365,7 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
         tl_quat was = scene_turn(hinge, (other ? -angle : 0) * TL_PI / 180);
         tl_quat is = tl_q_mul(scene_turn(hinge, tilt * TL_PI / 180), was);
         tl_poly *plate = scene_box_shape(3, 3, 1), *block = folded(angle);
-        s = (scene){.pair = swapped ? scene_pair_of(block, plate, tl_q_conj(was),
-                                                    tl_q_rotate(tl_q_conj(was), up))
+        s = (scene){.pair = swapped ? scene_pair_of(block, plate, tl_q_conj(was), tl_q_rotate(tl_q_conj(was), up))
                                     : scene_pair_of(plate, block, was, up)};
         tl_region region;
         tl_press some, all;
@@ -390,8 +376,7 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
         s.pair.shift = swapped ? tl_q_rotate(tl_q_conj(is), up) : up;
         view = scene_place(&s.pair);
         tl_region_choose_flush(view, &region);
-        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch,
-                            &some, NULL));
+        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch, &some, NULL));
         all = press_of(&s);
         double force = tl_v3_norm(all.force);
         cases += force > 0;
@@ -407,5 +392,4 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
 
 TEST_MAIN(RUN(force_is_the_gradient_through_the_blend), RUN(force_is_the_gradient_at_corners),
           RUN(slopes_go_on_with_the_press), RUN(faces_left_out_do_not_matter),
-          RUN(faces_that_bounded_before_change_nothing),
-          RUN(faces_that_become_flush_are_found_in_an_old_list))
+          RUN(faces_that_bounded_before_change_nothing), RUN(faces_that_become_flush_are_found_in_an_old_list))

@@ -33,13 +33,11 @@ static sums sums_of(const tl_surface *s, const tl_poly *a)
     const tl_vec3 *x = s->corner;
     for (size_t p = 0; p < s->polygons; x += s->size[p++])
         for (size_t i = 1; i + 1 < s->size[p]; i++) {
-            double area =
-                0.5 * tl_v3_norm(tl_v3_cross(tl_v3_sub(x[i], x[0]), tl_v3_sub(x[i + 1], x[0])));
+            double area = 0.5 * tl_v3_norm(tl_v3_cross(tl_v3_sub(x[i], x[0]), tl_v3_sub(x[i + 1], x[0])));
             tl_vec3 sum = tl_v3_add(x[0], tl_v3_add(x[i], x[i + 1]));
             out.area += area;
             out.first = tl_v3_madd(out.first, area / 3, sum);
-            out.pressure +=
-                area / 3 * (depth_in(a, x[0]) + depth_in(a, x[i]) + depth_in(a, x[i + 1]));
+            out.pressure += area / 3 * (depth_in(a, x[0]) + depth_in(a, x[i]) + depth_in(a, x[i + 1]));
         }
     return out;
 }
@@ -59,8 +57,7 @@ static void integrate(const tl_pair_view *view, tl_field_sums *out)
         number[0][i] = n.x;
         number[1][i] = n.y;
         number[2][i] = n.z;
-        number[3][i] =
-            of_b ? view->b->plane[f].offset + tl_v3_dot(n, view->shift) : view->a->plane[f].offset;
+        number[3][i] = of_b ? view->b->plane[f].offset + tl_v3_dot(n, view->shift) : view->a->plane[f].offset;
     }
     CHECK(tl_field_integrate(&faces, &scratch, out));
     tl_field_free(&scratch);
@@ -96,15 +93,15 @@ TEST(field_polygons_are_those_that_are_integrated)
         integrate(view, &field);
         double size = view->size;
         if (field.extent > 1e-6 * size * size) {
-            double off = fmax(fabs(found.area - field.extent) / (size * size),
-                              fmax(fabs(found.pressure - field.pressure),
-                                   tl_v3_norm(tl_v3_sub(found.first, field.first))) /
-                                  (size * size * size));
+            double off =
+                fmax(fabs(found.area - field.extent) / (size * size),
+                     fmax(fabs(found.pressure - field.pressure), tl_v3_norm(tl_v3_sub(found.first, field.first))) /
+                         (size * size * size));
             worst = fmax(worst, off);
             cases++;
             if (!CHECK(off < 1e-10))
-                printf("  seed %d: %zu polygons, area %.12g for %.12g\n", (int)k, surface.polygons,
-                       found.area, field.extent);
+                printf("  seed %d: %zu polygons, area %.12g for %.12g\n", (int)k, surface.polygons, found.area,
+                       field.extent);
         } else {
             CHECK(found.area < 1e-5 * size * size);
         }
@@ -122,8 +119,8 @@ TEST(a_patch_has_the_area_of_its_points)
         uint64_t seed = k + 40000;
         static scene_pair pair;
         double tilt = scene_between(&seed, -4, -2.6), z = scene_between(&seed, -1e-3, 1e-3);
-        tl_quat turn = tl_q_mul(scene_turn(tl_v3(1, 0, 0), pow(10, tilt)),
-                                scene_turn(tl_v3(0, 0, 1), scene_between(&seed, 0, 6)));
+        tl_quat turn =
+            tl_q_mul(scene_turn(tl_v3(1, 0, 0), pow(10, tilt)), scene_turn(tl_v3(0, 0, 1), scene_between(&seed, 0, 6)));
         tl_vec3 shift = tl_v3(scene_between(&seed, -1, 1), scene_between(&seed, -1, 1), 1 + z);
         pair = scene_pair_of(scene_box_shape(1, 1.3, 1), scene_drum(5, 0.7, 1, 0.2), turn, shift);
         const tl_pair_view *view = scene_place(&pair);
@@ -158,5 +155,4 @@ TEST(a_patch_has_the_area_of_its_points)
     CHECK(cases > CASES(1500));
 }
 
-TEST_MAIN(RUN(field_polygons_are_those_that_are_integrated),
-          RUN(a_patch_has_the_area_of_its_points))
+TEST_MAIN(RUN(field_polygons_are_those_that_are_integrated), RUN(a_patch_has_the_area_of_its_points))

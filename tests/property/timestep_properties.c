@@ -56,8 +56,7 @@ static void add_rock(tl_stage *stage, tl_model *m, uint64_t *seed, double size, 
     scene_ok(m, tl_stage_add_box(stage, tl_v3(-h, -h, -h), tl_v3(h, h, h), density, "rock"));
     int planes = 3 + (int)(5 * check_random(seed));
     for (int i = 0; i < planes; i++) {
-        tl_vec3 at = {scene_between(seed, -h, h), scene_between(seed, -h, h),
-                      scene_between(seed, -h, h)};
+        tl_vec3 at = {scene_between(seed, -h, h), scene_between(seed, -h, h), scene_between(seed, -h, h)};
         tl_tag tag = {1, (uint32_t)i + 1};
         scene_ok(m, stage_cut(stage, scene_direction(seed), at, tag, 1));
     }
@@ -68,8 +67,7 @@ static void add_hulls(tl_stage *stage, tl_model *m, uint64_t *seed, double size,
 {
     double r = 0.28 * size;
     for (int i = 0; i < 8; i++) {
-        tl_vec3 at = {(i % 2 - 0.5) * 0.5 * size, (i / 2 % 2 - 0.5) * 0.5 * size,
-                      (i / 4 - 0.5) * 0.5 * size};
+        tl_vec3 at = {(i % 2 - 0.5) * 0.5 * size, (i / 2 % 2 - 0.5) * 0.5 * size, (i / 4 - 0.5) * 0.5 * size};
         tl_vec3 half = {r * scene_between(seed, 0.2, 1.1), r * scene_between(seed, 0.2, 1.1),
                         r * scene_between(seed, 0.2, 1.1)};
         tl_poly *p = scene_random_hull(seed, 9, half);
@@ -94,8 +92,7 @@ static tl_model *build(recipe r, scale s)
     (r.rock ? add_rock : add_hulls)(&stage, m, &seed, size, density);
     scene_ok(m, tl_stage_commit(&stage));
     scene_law(m, "elastic", r.kn * s.stiffness, 0.5 * r.kn * s.stiffness, -1);
-    scene_ok(m, tl_model_contact_area(
-                    m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
+    scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
     scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN}));
     tl_id first = m->blocks.id[0];
     if (check_random(&seed) < 0.5)
@@ -148,8 +145,7 @@ TEST(no_step_is_longer_than_its_floor_allows)
         double dt = step_of(m);
         CHECK(dt > 0 && dt <= shortest * (1 + ROUNDING));
         /* mass scaling makes all as slow as the slowest, which has that bound, too */
-        scene_ok(
-            m, tl_model_mass_scaling(m, &(tl_mass_scaling){sizeof(tl_mass_scaling), 1, NAN, NAN}));
+        scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){sizeof(tl_mass_scaling), 1, NAN, NAN}));
         double scaled = step_of(m);
         if (r.rule == TL_TIMESTEP_BODY)
             CHECK(scaled >= dt * (1 - ROUNDING));
@@ -179,8 +175,7 @@ TEST(a_contact_that_vanishes_never_makes_the_step_long)
     uint64_t seed = 7;
     for (int i = 0; i < MODELS; i++) {
         recipe r = draw(&seed);
-        tl_vec3 side = {r.size * scene_between(&seed, 0.2, 1),
-                        r.size * scene_between(&seed, 0.2, 1),
+        tl_vec3 side = {r.size * scene_between(&seed, 0.2, 1), r.size * scene_between(&seed, 0.2, 1),
                         r.size * scene_between(&seed, 0.2, 1)};
         bool corner = check_random(&seed) < 0.5;
         double depth = 1e-4 * r.size, on_it = 0, shortest, longest;
@@ -190,10 +185,8 @@ TEST(a_contact_that_vanishes_never_makes_the_step_long)
         scene_block(m, scene_box_shape(side.x, side.y, side.z), scene_turn(tl_v3(0, 0, 1), 0),
                     tl_v3(0, 0, 0.5 * side.z - depth));
         scene_law(m, "elastic", r.kn, r.kn, -1);
-        scene_ok(m, tl_model_contact_area(
-                        m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
-        scene_ok(m,
-                 tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN}));
+        scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
+        scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN}));
         scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
         face_steps(m, r.kn, &shortest, &longest);
         scene_put(m, 1, tl_v3(0, 0, 5 * r.size), scene_turn(tl_v3(0, 0, 1), 0));
@@ -239,8 +232,7 @@ TEST(rates_above_a_limit_are_those_of_all)
         double known = highest.value * pow(10, scene_between(&seed, -2, 1));
         double *told = rates_of(m, known);
         tl_row_value found = tl_rates_anew(m, known);
-        CHECK(found.value > known ? found.value == highest.value && found.row == highest.row
-                                  : highest.value <= known);
+        CHECK(found.value > known ? found.value == highest.value && found.row == highest.row : highest.value <= known);
         for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
             CHECK(told[body] == exact[body] || (told[body] > exact[body] && told[body] <= known));
             skipped += told[body] > exact[body];
@@ -252,7 +244,5 @@ TEST(rates_above_a_limit_are_those_of_all)
     CHECK(skipped > MODELS);
 }
 
-TEST_MAIN(RUN(no_step_is_longer_than_its_floor_allows),
-          RUN(the_step_follows_units_density_and_stiffness),
-          RUN(a_contact_that_vanishes_never_makes_the_step_long),
-          RUN(rates_above_a_limit_are_those_of_all))
+TEST_MAIN(RUN(no_step_is_longer_than_its_floor_allows), RUN(the_step_follows_units_density_and_stiffness),
+          RUN(a_contact_that_vanishes_never_makes_the_step_long), RUN(rates_above_a_limit_are_those_of_all))

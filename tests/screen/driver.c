@@ -38,8 +38,7 @@ typedef struct driver {
 
 static void nap(double ms)
 {
-    const struct timespec t = {(time_t)(ms / 1e3),
-                               (long)(1e6 * (ms - 1e3 * (double)(time_t)(ms / 1e3)))};
+    const struct timespec t = {(time_t)(ms / 1e3), (long)(1e6 * (ms - 1e3 * (double)(time_t)(ms / 1e3)))};
     if (ms > 0)
         nanosleep(&t, NULL);
 }
@@ -61,8 +60,7 @@ static int put(driver *d, int begin, uint32_t news, uint32_t now)
     d->now = realloc(d->now, 32 + (size_t)now);
     if (!d->news || !d->now)
         return 0;
-    tl_screen_frame frame = {
-        .size = sizeof frame, .begin = begin != 0, .news = d->news, .now = d->now};
+    tl_screen_frame frame = {.size = sizeof frame, .begin = begin != 0, .news = d->news, .now = d->now};
     frame.news_length = news > 0 ? write_chunk(d->news, "NEWS", d->puts, news) : 0;
     frame.now_length = write_chunk(d->now, "NOWF", d->puts, now);
     frame.now_length += write_chunk(d->now + frame.now_length, "DONE", d->puts, 4);
@@ -93,11 +91,8 @@ static void open_screen(driver *d, int64_t port, uint32_t commands)
 {
     tl_report report = {.size = sizeof report};
     char *text = strdup(page_text); /* valid during `open` only */
-    const tl_screen_page page = {.size = sizeof page,
-                                 .text = text,
-                                 .length = strlen(page_text),
-                                 .commands = commands,
-                                 .check = check};
+    const tl_screen_page page = {
+        .size = sizeof page, .text = text, .length = strlen(page_text), .commands = commands, .check = check};
     d->puts = 0;
     if (d->ops->open(&page, &port, &d->self, &report) == TL_OK)
         printf("at %s\n", d->ops->address(d->self));

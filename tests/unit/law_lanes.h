@@ -32,8 +32,8 @@ static inline law law_open(const char *name, const tl_args *args)
         exit(1);
     l.ops = l.kind->ops;
     tl_error error = {TL_OK, ""};
-    tl_status status = tl_args_read(l.kind->params, l.kind->param_count, l.kind->param_stride, args,
-                                    false, l.params, name, &error);
+    tl_status status =
+        tl_args_read(l.kind->params, l.kind->param_count, l.kind->param_stride, args, false, l.params, name, &error);
     if (!CHECK_INT(status, TL_OK))
         printf("%s\n", error.text);
     tl_report report = {.size = sizeof report};
@@ -97,8 +97,7 @@ static inline void law_step(const law *l, lanes *p, uint32_t begin, uint32_t cou
 
 static inline double lane_shear(const lanes *p, int i)
 {
-    return sqrt(p->f_s[0][i] * p->f_s[0][i] + p->f_s[1][i] * p->f_s[1][i] +
-                p->f_s[2][i] * p->f_s[2][i]);
+    return sqrt(p->f_s[0][i] * p->f_s[0][i] + p->f_s[1][i] * p->f_s[1][i] + p->f_s[2][i] * p->f_s[2][i]);
 }
 
 #endif

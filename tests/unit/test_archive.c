@@ -71,8 +71,7 @@ static void put(made *to, const char *name, tl_chunk_head head, const void *data
 
 static tl_chunk_head head_of(const char *name, size_t bytes)
 {
-    return (tl_chunk_head){
-        .name_bytes = (uint32_t)strlen(name), .size = 1, .items = bytes, .stored = bytes};
+    return (tl_chunk_head){.name_bytes = (uint32_t)strlen(name), .size = 1, .items = bytes, .stored = bytes};
 }
 
 static void end(made *to)
@@ -152,5 +151,5 @@ TEST(an_older_format_tells_its_writer)
     }
 }
 
-TEST_MAIN(RUN(many_chunks_come_back), RUN(cut_off_anywhere_it_is_refused),
-          RUN(heads_that_do_not_fit_are_refused), RUN(an_older_format_tells_its_writer))
+TEST_MAIN(RUN(many_chunks_come_back), RUN(cut_off_anywhere_it_is_refused), RUN(heads_that_do_not_fit_are_refused),
+          RUN(an_older_format_tells_its_writer))

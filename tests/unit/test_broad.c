@@ -17,8 +17,7 @@ static tl_bounds bounds_of(const tl_model *m, uint32_t row)
     const tl_poly *p = m->blocks.shape[row];
     tl_bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t i = 0; i < p->vertex_count; i++) {
-        tl_vec3 x = tl_v3_add(tl_body_place(&m->bodies, body),
-                              tl_m3_mul(&m->bodies.pose[body].r, p->vertex[i]));
+        tl_vec3 x = tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.pose[body].r, p->vertex[i]));
         b.min = tl_v3_min(b.min, x);
         b.max = tl_v3_max(b.max, x);
     }
@@ -27,9 +26,8 @@ static tl_bounds bounds_of(const tl_model *m, uint32_t row)
 
 static int overlap(tl_bounds a, tl_bounds b, double growth)
 {
-    return a.min.x <= b.max.x + growth && b.min.x <= a.max.x + growth &&
-           a.min.y <= b.max.y + growth && b.min.y <= a.max.y + growth &&
-           a.min.z <= b.max.z + growth && b.min.z <= a.max.z + growth;
+    return a.min.x <= b.max.x + growth && b.min.x <= a.max.x + growth && a.min.y <= b.max.y + growth &&
+           b.min.y <= a.max.y + growth && a.min.z <= b.max.z + growth && b.min.z <= a.max.z + growth;
 }
 
 /* Every pair of bounds nearer than the contact tolerance is listed, once, in order; nothing is listed
@@ -56,8 +54,8 @@ static size_t check_pairs(tl_model *m)
             double size = fmin(m->blocks.size[a], m->blocks.size[b]);
             int on = listed[a * rows + b];
             missing += !on && overlap(bounds[a], bounds[b], TL_CONTACT_TOLERANCE * size);
-            double far = 2 * d->reach + TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * 0.501 *
-                                            (m->blocks.size[a] + m->blocks.size[b]);
+            double far = 2 * d->reach +
+                         TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * 0.501 * (m->blocks.size[a] + m->blocks.size[b]);
             absurd += on && !overlap(bounds[a], bounds[b], far);
         }
     CHECK_INT(missing, 0);
@@ -73,8 +71,7 @@ static void random_boxes(tl_model *m, uint64_t *seed, int count, double extent, 
     scene_ok(m, stage_begin(m, &stage));
     for (int i = 0; i < count; i++) {
         double size = pow(10, scene_between(seed, -decades, 0));
-        tl_vec3 low = {scene_between(seed, 0, extent), scene_between(seed, 0, extent),
-                       scene_between(seed, 0, extent)};
+        tl_vec3 low = {scene_between(seed, 0, extent), scene_between(seed, 0, extent), scene_between(seed, 0, extent)};
         tl_vec3 far = {size * scene_between(seed, 0.3, 1), size * scene_between(seed, 0.3, 1),
                        size * scene_between(seed, 0.3, 1)};
         scene_ok(m, tl_stage_add_box(&stage, low, tl_v3_add(low, far), 2000, "box"));
@@ -134,8 +131,7 @@ TEST(one_huge_block_does_not_multiply_the_pairs)
         tl_vec3 low = {1.5 * (i % 32), 1.5 * (double)(i / 32), 0};
         scene_ok(m, tl_stage_add_box(&stage, low, tl_v3_add(low, tl_v3(1, 1, 1)), 2000, "box"));
     }
-    scene_ok(m,
-             tl_stage_add_box(&stage, tl_v3(-500, -500, -1000), tl_v3(500, 500, 0), 2000, "box"));
+    scene_ok(m, tl_stage_add_box(&stage, tl_v3(-500, -500, -1000), tl_v3(500, 500, 0), 2000, "box"));
     scene_ok(m, tl_stage_commit(&stage));
     CHECK_INT(check_pairs(m), 1000);
     CHECK_INT(m->detect->contacts.table.rows, 1000);
@@ -169,8 +165,7 @@ static bool as_found(const tl_model *m, uint32_t c, const tl_manifold *found)
 
 /* All pairs against the contacts there are, those that are far apart along some face left out; the band between the
  * tolerances of birth and death, too. */
-static void check_contacts(tl_model *m, tl_narrow_scratch *scratch, int *closed, int *lost,
-                           int *stale)
+static void check_contacts(tl_model *m, tl_narrow_scratch *scratch, int *closed, int *lost, int *stale)
 {
     const tl_manifold_before none = {.kind = TL_FACET_PATCH};
     for (uint32_t a = 0; a < MOVING; a++)
@@ -197,15 +192,14 @@ static void check_contacts(tl_model *m, tl_narrow_scratch *scratch, int *closed,
         }
 }
 
-static void move_about(int64_t threads, double most_step, int steps, int *closed, int *lost,
-                       int *stale)
+static void move_about(int64_t threads, double most_step, int steps, int *closed, int *lost, int *stale)
 {
     tl_model *m = scene_model(threads);
     uint64_t seed = 21;
     tl_narrow_scratch scratch = {0};
     for (int i = 0; i < MOVING; i++) {
-        tl_poly *p = i % 3 ? scene_random_hull(&seed, 10, tl_v3(0.5, 0.5, 0.5))
-                           : scene_box_shape(1, 0.2 + 0.025 * i, 0.7);
+        tl_poly *p =
+            i % 3 ? scene_random_hull(&seed, 10, tl_v3(0.5, 0.5, 0.5)) : scene_box_shape(1, 0.2 + 0.025 * i, 0.7);
         scene_block(m, p, scene_any_turn(&seed), tl_v3(i % 3 * 1.0, i / 3 % 3 * 1.0, i / 9 * 1.0));
     }
     scene_law(m, "coulomb", STIFFNESS, STIFFNESS, 30);
@@ -250,6 +244,5 @@ TEST(moving_blocks_lose_no_contact)
         printf("  %d closed pairs, %d lost, %d stale\n", closed, lost, stale);
 }
 
-TEST_MAIN(RUN(grid_lists_all_near_pairs), RUN(grid_lists_pairs_of_many_blocks),
-          RUN(grid_serves_clusters_far_apart), RUN(one_huge_block_does_not_multiply_the_pairs),
-          RUN(moving_blocks_lose_no_contact))
+TEST_MAIN(RUN(grid_lists_all_near_pairs), RUN(grid_lists_pairs_of_many_blocks), RUN(grid_serves_clusters_far_apart),
+          RUN(one_huge_block_does_not_multiply_the_pairs), RUN(moving_blocks_lose_no_contact))

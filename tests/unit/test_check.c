@@ -28,8 +28,7 @@ static void hear(void *user, const tl_check_finding *f)
 /* One fault of the plugin that has them all, in the law, the damping, the generator or the screen; the others behave. */
 static findings run_unfit(const char *param, const char *fault)
 {
-    static const char *const params[] = {"law_fault", "damping_fault", "generator_fault",
-                                         "screen_fault"};
+    static const char *const params[] = {"law_fault", "damping_fault", "generator_fault", "screen_fault"};
     findings h = {0};
     tl_value values[4];
     size_t faults;
@@ -193,9 +192,7 @@ TEST(points_are_parameters_too)
     values[0].type = TL_VALUE_POINTS;
     values[2].type = TL_VALUE_FLAT;
     const tl_args args = {values, 4};
-    CHECK_INT(
-        tl_plugin_check(TALUS_TEST_PLUGIN_DIR "/prism.so", &args, NULL, NULL, &faults, &error),
-        TL_OK);
+    CHECK_INT(tl_plugin_check(TALUS_TEST_PLUGIN_DIR "/prism.so", &args, NULL, NULL, &faults, &error), TL_OK);
     CHECK_INT(faults, 0);
 }
 
@@ -212,12 +209,10 @@ TEST(what_cannot_be_tried_is_told)
     CHECK_INT(tl_plugin_check(UNFIT, &wrong_args, NULL, NULL, &faults, &error), TL_E_ARGUMENT);
     CHECK_CONTAINS(error.text, "kn = -3");
     /* a generator that needs a file */
-    CHECK(tl_plugin_check(TALUS_TEST_PLUGIN_DIR "/import_solid.so", NULL, NULL, NULL, &faults,
-                          &error) != TL_OK);
+    CHECK(tl_plugin_check(TALUS_TEST_PLUGIN_DIR "/import_solid.so", NULL, NULL, NULL, &faults, &error) != TL_OK);
     CHECK_CONTAINS(error.text, "file");
 }
 
-TEST_MAIN(RUN(each_check_finds_what_breaks_it), RUN(others_are_found_among_the_rest),
-          RUN(a_fault_tells_its_parameters), RUN(the_plugins_of_talus_pass),
-          RUN(a_screen_that_is_there_passes), RUN(points_are_parameters_too),
+TEST_MAIN(RUN(each_check_finds_what_breaks_it), RUN(others_are_found_among_the_rest), RUN(a_fault_tells_its_parameters),
+          RUN(the_plugins_of_talus_pass), RUN(a_screen_that_is_there_passes), RUN(points_are_parameters_too),
           RUN(what_cannot_be_tried_is_told))

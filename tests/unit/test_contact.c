@@ -222,10 +222,8 @@ static tl_model *pile(int64_t threads, int reuse)
     scene_box(m, tl_v3(-4, -4, -1), tl_v3(4, 4, 0));
     uint64_t seed = 12;
     for (int i = 0; i < 60; i++) {
-        tl_vec3 place = {1.16 * (i % 4) - 1.74, 1.16 * (i / 4 % 4) - 1.74,
-                         0.505 + 1.005 * (i / 16)};
-        tl_poly *shape =
-            i % 3 ? scene_random_hull(&seed, 12, tl_v3(0.5, 0.5, 0.5)) : scene_box_shape(1, 1, 1);
+        tl_vec3 place = {1.16 * (i % 4) - 1.74, 1.16 * (i / 4 % 4) - 1.74, 0.505 + 1.005 * (i / 16)};
+        tl_poly *shape = i % 3 ? scene_random_hull(&seed, 12, tl_v3(0.5, 0.5, 0.5)) : scene_box_shape(1, 1, 1);
         tl_quat turn = i % 3 ? scene_any_turn(&seed) : scene_turn(tl_v3(0, 0, 1), 0.02 * i);
         scene_block(m, shape, turn, place);
     }
@@ -367,8 +365,8 @@ TEST(reused_geometry_agrees_with_new_geometry)
     CHECK(worst <= 1e-5);
     CHECK(worst_twin <= 1e-5);
     if (getenv("TALUS_TEST_VERBOSE"))
-        printf("  compared %d (%d), %u born, worst %.3g, of the twin %.3g\n", compared, alike,
-               newest, worst, worst_twin);
+        printf("  compared %d (%d), %u born, worst %.3g, of the twin %.3g\n", compared, alike, newest, worst,
+               worst_twin);
     tl_model_destroy(m);
 }
 
@@ -458,11 +456,9 @@ TEST(growing_contacts_have_room_for_what_they_had)
     }
 }
 
-TEST_MAIN(RUN(growing_contacts_have_room_for_what_they_had),
-          RUN(contact_is_born_before_touching_and_dies_after), RUN(fast_block_is_found),
-          RUN(contact_in_tension_does_not_die), RUN(ids_stay_and_are_not_used_again),
-          RUN(contacts_survive_changes_of_other_blocks),
-          RUN(contact_takes_the_joint_of_the_touching_faces),
+TEST_MAIN(RUN(growing_contacts_have_room_for_what_they_had), RUN(contact_is_born_before_touching_and_dies_after),
+          RUN(fast_block_is_found), RUN(contact_in_tension_does_not_die), RUN(ids_stay_and_are_not_used_again),
+          RUN(contacts_survive_changes_of_other_blocks), RUN(contact_takes_the_joint_of_the_touching_faces),
           RUN(of_two_joints_the_older_one_rules), RUN(same_bits_twice_and_on_two_threads),
           RUN(reused_geometry_agrees_with_new_geometry), RUN(asking_again_changes_nothing),
           RUN(queries_between_changes_do_not_change_results))

@@ -23,8 +23,7 @@ static void hash(tl_hash *to, const tl_detect *d, uint32_t c)
     tl_hash_word(to, note);
 }
 
-static bool show(tl_model *m, uint32_t c, const tl_pair_view *view, tl_narrow_scratch *scratch,
-                 tl_surface *surface)
+static bool show(tl_model *m, uint32_t c, const tl_pair_view *view, tl_narrow_scratch *scratch, tl_surface *surface)
 {
     shown++;
     return tl_patch_place.show(m, c, view, scratch, surface);
@@ -65,8 +64,7 @@ static bool find(const tl_model *m, const tl_pair_view *view, tl_narrow_scratch 
     return true;
 }
 
-static bool take(tl_model *m, uint32_t c, bool same, tl_narrow_scratch *scratch,
-                 const tl_point_lanes *lanes)
+static bool take(tl_model *m, uint32_t c, bool same, tl_narrow_scratch *scratch, const tl_point_lanes *lanes)
 {
     (void)same;
     return tl_contact_transfer(m, c, scratch, lanes);

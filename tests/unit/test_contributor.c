@@ -25,8 +25,7 @@ static tl_status prepare(tl_model *m)
         tl_table_init(&springs.table, &springs);
         TL_COLUMN(&springs.table, &springs, force, TL_COLUMN_STEP);
     }
-    return tl_table_resize(&springs.table, m->bodies.table.rows) ? TL_OK
-                                                                 : tl_fail_memory(&m->error);
+    return tl_table_resize(&springs.table, m->bodies.table.rows) ? TL_OK : tl_fail_memory(&m->error);
 }
 
 static tl_status apply(tl_model *m)
@@ -36,8 +35,7 @@ static tl_status apply(tl_model *m)
         springs.force[body] = -K * stretch_of(m, body);
         springs.stored += 0.5 * K * stretch_of(m, body) * stretch_of(m, body);
     }
-    return m->cycles == springs.fails_at ? tl_fail(&m->error, TL_E_PLUGIN, "a spring broke")
-                                         : TL_OK;
+    return m->cycles == springs.fails_at ? tl_fail(&m->error, TL_E_PLUGIN, "a spring broke") : TL_OK;
 }
 
 static void gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
@@ -119,9 +117,7 @@ TEST(a_cube_swings_on_it_and_makes_no_energy)
     scene_ok(m, tl_model_dt(m, &dt));
     const double mass = m->bodies.mass[0], period = 2 * TL_PI * sqrt(mass / K);
     CHECK(dt > 0 && dt < period / TL_PI);
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep),
-                                                    .fraction = NAN,
-                                                    .dt = period / 400}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = period / 400}));
     for (int k = 0; k < 400; k++) {
         tl_energy energy;
         run(m, 1);
@@ -132,8 +128,7 @@ TEST(a_cube_swings_on_it_and_makes_no_energy)
     CHECK_NEAR(low, -2 * mass * G / K, 1e-4 * mass * G / K);
     CHECK_TEXT(m->cycle->ledger.term[0].name, "contacts");
     CHECK_TEXT(m->cycle->ledger.term[1].name, "springs");
-    CHECK(m->cycle->ledger.term[1].stored == springs.stored &&
-          m->cycle->ledger.term[2].name[0] == 0);
+    CHECK(m->cycle->ledger.term[1].stored == springs.stored && m->cycle->ledger.term[2].name[0] == 0);
     CHECK_NEAR(stretch_of(m, 0), 0, 1e-3 * mass * G / K); /* after one period */
     tl_model_destroy(m);
 }

@@ -22,8 +22,7 @@ static tl_cut cut_by(const tl_poly *p, tl_vec3 normal, tl_vec3 point)
 {
     tl_vec3 n = tl_v3_unit(normal);
     tl_cut cut;
-    CHECK_INT(tl_poly_cut(p, (tl_plane){n, tl_v3_dot(n, point)}, 0, (tl_tag){2, 5}, &cut, &error),
-              TL_OK);
+    CHECK_INT(tl_poly_cut(p, (tl_plane){n, tl_v3_dot(n, point)}, 0, (tl_tag){2, 5}, &cut, &error), TL_OK);
     CHECK((cut.result == TL_CUT_MADE) == (cut.below && cut.above));
     return cut;
 }
@@ -193,8 +192,7 @@ TEST(neighbours_get_the_same_vertices)
         tl_poly *p = NULL, *q = NULL;
         CHECK_INT(tl_poly_hull(left, 5, &p, &error), TL_OK);
         CHECK_INT(tl_poly_hull(right, 5, &q, &error), TL_OK);
-        tl_vec3 n =
-            tl_v3(check_random(&seed) - 0.5, check_random(&seed) - 0.5, check_random(&seed) - 0.5);
+        tl_vec3 n = tl_v3(check_random(&seed) - 0.5, check_random(&seed) - 0.5, check_random(&seed) - 0.5);
         tl_cut a = cut_by(p, n, tl_v3(0, 3e3, 0)), b = cut_by(q, n, tl_v3(0, 3e3, 0));
         if (a.result == TL_CUT_MADE && b.result == TL_CUT_MADE) {
             tl_vec3 seam_a[8], seam_b[8];
@@ -243,8 +241,7 @@ TEST(orthogonal_grid)
     blocks[0] = box(tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < planes[k]; i++)
-            count =
-                cut_all(blocks, count, (tl_plane){axis[k], 0.5 + spacing[k] * (i - planes[k] / 2)});
+            count = cut_all(blocks, count, (tl_plane){axis[k], 0.5 + spacing[k] * (i - planes[k] / 2)});
     CHECK_INT(count, 96);
     uint32_t faces = 0, vertices = 0, edges = 0;
     double sum = 0, squares = 0, smallest = 1, largest = 0;
@@ -290,7 +287,6 @@ TEST(large_polyhedron)
     tl_poly_free(p);
 }
 
-TEST_MAIN(RUN(box_cut_across), RUN(through_vertices_and_edges),
-          RUN(planes_beside_and_touching_miss), RUN(coincident_names_the_face),
-          RUN(thin_sides_are_refused), RUN(neighbours_get_the_same_vertices), RUN(orthogonal_grid),
-          RUN(large_polyhedron))
+TEST_MAIN(RUN(box_cut_across), RUN(through_vertices_and_edges), RUN(planes_beside_and_touching_miss),
+          RUN(coincident_names_the_face), RUN(thin_sides_are_refused), RUN(neighbours_get_the_same_vertices),
+          RUN(orthogonal_grid), RUN(large_polyhedron))

@@ -6,9 +6,9 @@
 #include <stdalign.h>
 #include <talus/talus.h>
 
-#define NUMBER(name, value)                                                                        \
-    {                                                                                              \
-        .key = (name), .type = TL_VALUE_NUMBER, .number = (value)                                  \
+#define NUMBER(name, value)                                                                                            \
+    {                                                                                                                  \
+        .key = (name), .type = TL_VALUE_NUMBER, .number = (value)                                                      \
     }
 
 enum { BODIES = 8 };
@@ -29,8 +29,7 @@ typedef struct bodies {
     alignas(64) double damping_force[3][BODIES], damping_moment[3][BODIES], alpha[BODIES];
 } bodies;
 
-static tl_status damping_open(damping *d, const char *name, const tl_value *values, size_t count,
-                              tl_report *report)
+static tl_status damping_open(damping *d, const char *name, const tl_value *values, size_t count, tl_report *report)
 {
     *d = (damping){.kind = tl_plugin_find(TL_KIND_DAMPING, name)};
     if (!CHECK(d->kind != NULL))
@@ -40,8 +39,8 @@ static tl_status damping_open(damping *d, const char *name, const tl_value *valu
     d->state[0] = &d->value;
     tl_args args = {values, count};
     tl_error error = {TL_OK, ""};
-    tl_status status = tl_args_read(d->kind->params, d->kind->param_count, d->kind->param_stride,
-                                    &args, false, d->params, name, &error);
+    tl_status status = tl_args_read(d->kind->params, d->kind->param_count, d->kind->param_stride, &args, false,
+                                    d->params, name, &error);
     if (!CHECK_INT(status, TL_OK))
         printf("%s\n", error.text);
     *report = (tl_report){.size = sizeof *report};

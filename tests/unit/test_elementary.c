@@ -36,9 +36,7 @@ static double uniform(void)
 /* Of both signs, of sizes from 2^low to 2^high. */
 static double spread(int low, int high)
 {
-    double x =
-        1 +
-        uniform(); /* one draw after the other: compilers choose the order within an expression */
+    double x = 1 + uniform(); /* one draw after the other: compilers choose the order within an expression */
     x = ldexp(x, low + (int)(uniform() * (high - low)));
     return uniform() < 0.5 ? -x : x;
 }
@@ -69,28 +67,28 @@ typedef struct function {
     double (*x)(void), (*y)(void);
 } function;
 
-#define OF_ONE(name)                                                                               \
-    static double our_##name(double x, double y)                                                   \
-    {                                                                                              \
-        (void)y;                                                                                   \
-        return tl_##name(x);                                                                       \
-    }                                                                                              \
-    static long double exact_##name(long double x, long double y)                                  \
-    {                                                                                              \
-        (void)y;                                                                                   \
-        return name##l(x);                                                                         \
+#define OF_ONE(name)                                                                                                   \
+    static double our_##name(double x, double y)                                                                       \
+    {                                                                                                                  \
+        (void)y;                                                                                                       \
+        return tl_##name(x);                                                                                           \
+    }                                                                                                                  \
+    static long double exact_##name(long double x, long double y)                                                      \
+    {                                                                                                                  \
+        (void)y;                                                                                                       \
+        return name##l(x);                                                                                             \
     }
 /* Of tl_lane_NAME. */
-#define OF_LANE(name)                                                                              \
-    static double our_lane_##name(double x, double y)                                              \
-    {                                                                                              \
-        (void)y;                                                                                   \
-        return tl_lane_##name(x);                                                                  \
-    }                                                                                              \
-    static long double exact_lane_##name(long double x, long double y)                             \
-    {                                                                                              \
-        (void)y;                                                                                   \
-        return name##l(x);                                                                         \
+#define OF_LANE(name)                                                                                                  \
+    static double our_lane_##name(double x, double y)                                                                  \
+    {                                                                                                                  \
+        (void)y;                                                                                                       \
+        return tl_lane_##name(x);                                                                                      \
+    }                                                                                                                  \
+    static long double exact_lane_##name(long double x, long double y)                                                 \
+    {                                                                                                                  \
+        (void)y;                                                                                                       \
+        return name##l(x);                                                                                             \
     }
 OF_ONE(sin)
 OF_ONE(cos)
@@ -215,8 +213,7 @@ TEST(lanes)
         check_errors(&lane_functions[f]);
     printf("bits 0x%016llx\n", (unsigned long long)bits);
     CHECK(bits == LANE_BITS);
-    CHECK(tl_lane_exp(0) == 1 && tl_lane_log(1) == 0 && tl_lane_tan(0) == 0 &&
-          tl_lane_asinh(0) == 0);
+    CHECK(tl_lane_exp(0) == 1 && tl_lane_log(1) == 0 && tl_lane_tan(0) == 0 && tl_lane_asinh(0) == 0);
     CHECK(tl_lane_exp(-1e9) == tl_lane_exp(-708) && tl_lane_exp(1e9) == tl_lane_exp(709));
     CHECK(isnan(tl_lane_exp(NAN)) && isnan(tl_lane_log(NAN)) && isnan(tl_lane_tan(NAN)));
     CHECK(isnan(tl_lane_log1p(NAN)) && isnan(tl_lane_asinh(NAN)) && isnan(tl_lane_log(INFINITY)));

@@ -10,8 +10,7 @@
 static tl_vec3 some_direction(uint64_t *seed)
 {
     for (;;) {
-        tl_vec3 v = {2 * check_random(seed) - 1, 2 * check_random(seed) - 1,
-                     2 * check_random(seed) - 1};
+        tl_vec3 v = {2 * check_random(seed) - 1, 2 * check_random(seed) - 1, 2 * check_random(seed) - 1};
         if (tl_v3_norm(v) > 0.1 && tl_v3_norm(v) < 1)
             return tl_v3_unit(v);
     }
@@ -72,6 +71,5 @@ TEST(there_is_a_direction_across_every_normal)
         CHECK(tl_v3_dot(tl_facing_aside(tl_v3(0, 0, z)), tl_v3(0, 0, z)) == 0);
 }
 
-TEST_MAIN(RUN(a_patch_has_the_bisector_for_its_normal),
-          RUN(the_overlap_of_a_point_is_what_it_lies_under_both_faces),
+TEST_MAIN(RUN(a_patch_has_the_bisector_for_its_normal), RUN(the_overlap_of_a_point_is_what_it_lies_under_both_faces),
           RUN(a_field_contact_has_one_overlap), RUN(there_is_a_direction_across_every_normal))

@@ -47,10 +47,9 @@ static void stiffness(const void *self, double *kn, double *ks)
 static const tl_param stiffness_param[] = {
     {.size = sizeof(tl_param), .type = TL_PARAM_REAL, .name = "kn", .def = {1e7}}};
 
-#define STATE(name_, kind_, transfer_)                                                             \
-    {                                                                                              \
-        .size = sizeof(tl_state), .kind = (kind_), .transfer = (transfer_), .name = (name_),       \
-        .unit = "", .doc = ""                                                                      \
+#define STATE(name_, kind_, transfer_)                                                                                 \
+    {                                                                                                                  \
+        .size = sizeof(tl_state), .kind = (kind_), .transfer = (transfer_), .name = (name_), .unit = "", .doc = ""     \
     }
 
 static const tl_state first_states[] = {STATE("area", TL_STATE_SCALAR, TL_TRANSFER_COPY),
@@ -59,21 +58,17 @@ static const tl_state first_states[] = {STATE("area", TL_STATE_SCALAR, TL_TRANSF
 static const tl_state second_states[] = {STATE("worn", TL_STATE_TANGENT, TL_TRANSFER_COPY),
                                          STATE("way", TL_STATE_TANGENT, TL_TRANSFER_COPY)};
 
-static const tl_law_ops first_ops = {
-    .size = sizeof first_ops, .update = update_first, .stiffness = stiffness};
-static const tl_law_ops second_ops = {
-    .size = sizeof second_ops, .update = update_second, .stiffness = stiffness};
+static const tl_law_ops first_ops = {.size = sizeof first_ops, .update = update_first, .stiffness = stiffness};
+static const tl_law_ops second_ops = {.size = sizeof second_ops, .update = update_second, .stiffness = stiffness};
 
-#define LAW(name_, states_, count_, ops_)                                                          \
-    {                                                                                              \
-        .size = sizeof(tl_kind), .type = TL_KIND_LAW, .name = (name_), .doc = "",                  \
-        .params_size = sizeof(double), .params = stiffness_param, .param_count = 1,                \
-        .param_stride = sizeof(tl_param), .states = (states_), .state_count = (count_),            \
-        .state_stride = sizeof(tl_state), .ops = (ops_)                                            \
+#define LAW(name_, states_, count_, ops_)                                                                              \
+    {                                                                                                                  \
+        .size = sizeof(tl_kind), .type = TL_KIND_LAW, .name = (name_), .doc = "", .params_size = sizeof(double),       \
+        .params = stiffness_param, .param_count = 1, .param_stride = sizeof(tl_param), .states = (states_),            \
+        .state_count = (count_), .state_stride = sizeof(tl_state), .ops = (ops_)                                       \
     }
 
-static const tl_kind laws[] = {LAW("first", first_states, 3, &first_ops),
-                               LAW("second", second_states, 2, &second_ops)};
+static const tl_kind laws[] = {LAW("first", first_states, 3, &first_ops), LAW("second", second_states, 2, &second_ops)};
 
 static tl_plugin plugin = {.size = sizeof plugin,
                            .abi_major = TL_ABI_MAJOR,

@@ -76,20 +76,15 @@ static void meddle(tl_model *m, uint64_t seed)
     case 2:
     case 3: let_go(m, row); break;
     case 4:
-        scene_ok(m, tl_blocks_drive(m, &id, 1,
-                                    &(tl_drive){.size = sizeof(tl_drive),
-                                                .velocity = v,
-                                                .angular_velocity = tl_v3_neg(v)}));
+        scene_ok(
+            m, tl_blocks_drive(m, &id, 1,
+                               &(tl_drive){.size = sizeof(tl_drive), .velocity = v, .angular_velocity = tl_v3_neg(v)}));
         break;
     case 5:
-        scene_ok(m, tl_blocks_set(
-                        m, &id, 1,
-                        &(tl_block_set){sizeof(tl_block_set), NAN, NULL, v, tl_v3(NAN, NAN, NAN)}));
+        scene_ok(m,
+                 tl_blocks_set(m, &id, 1, &(tl_block_set){sizeof(tl_block_set), NAN, NULL, v, tl_v3(NAN, NAN, NAN)}));
         break;
-    case 6:
-        scene_law(m, "coulomb", 1e8 * (1 + check_random(&seed)), 1e8,
-                  20 + 20 * check_random(&seed));
-        break;
+    case 6: scene_law(m, "coulomb", 1e8 * (1 + check_random(&seed)), 1e8, 20 + 20 * check_random(&seed)); break;
     default:
         scene_ok(m, tl_model_insitu(m, &(tl_insitu){.size = sizeof(tl_insitu),
                                                     .stress = {.xx = -2e5 * check_random(&seed),
@@ -116,8 +111,7 @@ static void compare(tl_model *m, tl_model *twin)
             wrong += memcmp(&r, &s, sizeof r) != 0;
         }
     for (uint32_t i = 0; i < m->detect->contacts.table.rows; i++)
-        wrong += memcmp(&m->detect->contacts.force[i], &twin->detect->contacts.force[i],
-                        sizeof(tl_vec3)) != 0;
+        wrong += memcmp(&m->detect->contacts.force[i], &twin->detect->contacts.force[i], sizeof(tl_vec3)) != 0;
     CHECK_INT(wrong, 0);
 }
 
@@ -229,8 +223,7 @@ static void ageing_stiffness(const void *self, double *kn, double *ks)
 /* The law of the scene's contacts, with a state. */
 static tl_kind ageing_kind(tl_model *m, const tl_law_ops *ops)
 {
-    static const tl_state states[] = {
-        {.name = "age", .kind = TL_STATE_SCALAR, .transfer = TL_TRANSFER_COPY}};
+    static const tl_state states[] = {{.name = "age", .kind = TL_STATE_SCALAR, .transfer = TL_TRANSFER_COPY}};
     tl_kind kind = *m->joint_laws[0].kind;
     kind.states = states;
     kind.state_count = 1;
@@ -245,8 +238,7 @@ static tl_kind ageing_kind(tl_model *m, const tl_law_ops *ops)
 /* How many points the law was given in a step, after many; and the least age of a point. `warm`: the law makes heat. */
 static size_t points_a_step(double age, double warm, double *least, size_t *all)
 {
-    static const tl_law_ops ops = {
-        .size = sizeof ops, .update = ageing_update, .stiffness = ageing_stiffness};
+    static const tl_law_ops ops = {.size = sizeof ops, .update = ageing_update, .stiffness = ageing_stiffness};
     tl_model *m = wall(1);
     tl_law *law = &m->joint_laws[0];
     const tl_kind *kind = law->kind;
@@ -309,6 +301,5 @@ TEST(failed_steps_leave_what_rests)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(RUN(at_rest_is_as_followed), RUN(landing_on_what_rests),
-          RUN(recomputed_geometry_is_followed), RUN(freed_contacts_keep_their_forces),
-          RUN(laws_that_go_on_are_followed), RUN(failed_steps_leave_what_rests))
+TEST_MAIN(RUN(at_rest_is_as_followed), RUN(landing_on_what_rests), RUN(recomputed_geometry_is_followed),
+          RUN(freed_contacts_keep_their_forces), RUN(laws_that_go_on_are_followed), RUN(failed_steps_leave_what_rests))

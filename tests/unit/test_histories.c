@@ -50,8 +50,7 @@ TEST(a_list_of_histories)
     tl_history *h = add(m), *other = NULL;
     tl_id id = 1;
     const double numbers[TL_HISTORY_WIDEST + 1] = {0};
-    CHECK(tl_history_at(m, 0) == h && tl_history_at(m, 1) == NULL && h->count == 2 &&
-          h->first == 0);
+    CHECK(tl_history_at(m, 0) == h && tl_history_at(m, 1) == NULL && h->count == 2 && h->first == 0);
     CHECK(tl_history_sample(m, h, numbers, 3) == TL_E_ARGUMENT && says(m, "cycle 5 is sampled"));
     m->cycles = 6;
     CHECK(tl_history_sample(m, h, numbers, 2) == TL_E_ARGUMENT && says(m, "there must be 3"));
@@ -68,8 +67,7 @@ TEST(a_list_of_histories)
         {{.name = "k", .every = 1, .source = 4}, "impossible setting"},
         {{.name = "k", .every = 1, .source = TL_FROM_BLOCKS}, "too few"},
         {{.name = "k", .every = 1, .source = TL_FROM_MODEL, .id_count = 1, .ids = &id}, "too many"},
-        {{.name = "k", .every = 1, .source = TL_FROM_BLOCKS, .id_count = 2, .ids = &id},
-         "too many"},
+        {{.name = "k", .every = 1, .source = TL_FROM_BLOCKS, .id_count = 2, .ids = &id}, "too many"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         CHECK(tl_history_add(m, &bad[i].what, &other) == TL_E_ARGUMENT && says(m, bad[i].part));
@@ -101,12 +99,11 @@ TEST(copies_and_files_have_them)
     CHECK(store(m, &other[1], &error) == TL_OK);
     for (int k = 0; k < 2; k++) {
         const tl_history *o = tl_history_at(other[k], 0);
-        CHECK(o && !tl_history_at(other[k], 1) && strcmp(o->name, h->name) == 0 &&
-              strcmp(o->asked, h->asked) == 0 && o->every == 5 && o->first == 0 && o->selection &&
-              o->list && !o->lost && o->source == h->source && o->take == h->take);
+        CHECK(o && !tl_history_at(other[k], 1) && strcmp(o->name, h->name) == 0 && strcmp(o->asked, h->asked) == 0 &&
+              o->every == 5 && o->first == 0 && o->selection && o->list && !o->lost && o->source == h->source &&
+              o->take == h->take);
         CHECK(o->id_count == 2 && memcmp(o->ids, h->ids, 2 * sizeof *h->ids) == 0);
-        CHECK(o->count == 2 && o->width == 3 &&
-              memcmp(o->cycles, h->cycles, 2 * sizeof *h->cycles) == 0 &&
+        CHECK(o->count == 2 && o->width == 3 && memcmp(o->cycles, h->cycles, 2 * sizeof *h->cycles) == 0 &&
               memcmp(o->times, h->times, 2 * sizeof *h->times) == 0 &&
               memcmp(o->values, h->values, 6 * sizeof *h->values) == 0);
         tl_model_destroy(other[k]);

@@ -106,9 +106,9 @@ TEST(noise_on_the_corners)
         tl_vec3 points[8];
         cube(points);
         for (int k = 0; k < 8; k++)
-            points[k] = tl_v3_add(points[k], tl_v3(noise * (check_random(&seed) - 0.5),
-                                                   noise * (check_random(&seed) - 0.5),
-                                                   noise * (check_random(&seed) - 0.5)));
+            points[k] =
+                tl_v3_add(points[k], tl_v3(noise * (check_random(&seed) - 0.5), noise * (check_random(&seed) - 0.5),
+                                           noise * (check_random(&seed) - 0.5)));
         tl_poly *p = hull_of(points, 8);
         CHECK_INT(p->vertex_count, 8);
         if (noise < 5e-7)
@@ -155,8 +155,7 @@ TEST(thin_plate_far_from_zero)
     tl_vec3 points[8];
     cube(points);
     for (int i = 0; i < 8; i++)
-        points[i] =
-            tl_v3(1e6 + 10 * points[i].x, -1e6 + 10 * points[i].y, 1e6 + 0.125 * points[i].z);
+        points[i] = tl_v3(1e6 + 10 * points[i].x, -1e6 + 10 * points[i].y, 1e6 + 0.125 * points[i].z);
     tl_poly *p = hull_of(points, 8);
     expect_counts(p, 8, 12, 6);
     CHECK_NEAR(tl_poly_mass(p).volume, 12.5, 1e-13);
@@ -168,10 +167,9 @@ TEST(point_inside_is_named)
     tl_vec3 points[10];
     cube(points);
     points[8] = tl_v3(0.5, 0.5, 0.21);
-    expect_refusal(
-        points, 9,
-        "vertex 9 lies 0.21 inside the hull of the others; a block must be convex: leave "
-        "it out or make two blocks of it");
+    expect_refusal(points, 9,
+                   "vertex 9 lies 0.21 inside the hull of the others; a block must be convex: leave "
+                   "it out or make two blocks of it");
     /* Wherever it stands in the list. */
     tl_vec3 swap = points[2];
     points[2] = points[8];
@@ -232,8 +230,7 @@ TEST(many_vertices)
             points[i] = tl_v3(r * cos(angle), r * sin(angle), z);
         }
         if (count == 4096) {
-            expect_refusal(points, count,
-                           "the 4096 vertices make 8170 faces: one block can have 4096");
+            expect_refusal(points, count, "the 4096 vertices make 8170 faces: one block can have 4096");
             break;
         }
         tl_poly *p = hull_of(points, count);
@@ -246,8 +243,7 @@ TEST(many_vertices)
     }
 }
 
-TEST_MAIN(RUN(cube_has_six_exact_faces), RUN(points_on_faces_and_edges_are_left_out),
-          RUN(repeated_vertices_count_once), RUN(noise_on_the_corners), RUN(drums),
-          RUN(tetrahedron), RUN(many_vertices), RUN(thin_plate_far_from_zero),
+TEST_MAIN(RUN(cube_has_six_exact_faces), RUN(points_on_faces_and_edges_are_left_out), RUN(repeated_vertices_count_once),
+          RUN(noise_on_the_corners), RUN(drums), RUN(tetrahedron), RUN(many_vertices), RUN(thin_plate_far_from_zero),
           RUN(point_inside_is_named), RUN(flat_and_degenerate_points_are_refused),
           RUN(numbers_that_cannot_be_computed_with_are_refused))

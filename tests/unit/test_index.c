@@ -44,14 +44,12 @@ static void check_lists(const tl_model *m)
 
 static tl_vec3 any_place(uint64_t *seed, double half)
 {
-    return tl_v3(scene_between(seed, -half, half), scene_between(seed, -half, half),
-                 scene_between(seed, -half, half));
+    return tl_v3(scene_between(seed, -half, half), scene_between(seed, -half, half), scene_between(seed, -half, half));
 }
 
 static void add_block(tl_model *m, uint64_t *seed)
 {
-    tl_vec3 half = {scene_between(seed, 0.3, 0.6), scene_between(seed, 0.3, 0.6),
-                    scene_between(seed, 0.3, 0.6)};
+    tl_vec3 half = {scene_between(seed, 0.3, 0.6), scene_between(seed, 0.3, 0.6), scene_between(seed, 0.3, 0.6)};
     tl_vec3 at = any_place(seed, 0.5 * WIDTH);
     scene_box(m, tl_v3_sub(at, half), tl_v3_add(at, half));
 }

@@ -34,10 +34,9 @@ static const double zero[3] = {0, 0, 0}, size[3] = {6, 6, 6}, middle[3] = {3, 3,
 
 static tl_status joint_set(tl_model *m, const char *name, double dip, double direction)
 {
-    tl_value values[] = {text("joint", name),    number("dip", dip),
-                         number("spacing", 0.8), number("dip_direction", direction),
-                         number("number", 5),    vector("origin", middle),
-                         number("dip_dev", 5),   number("persistence", 0.9)};
+    tl_value values[] = {
+        text("joint", name), number("dip", dip),       number("spacing", 0.8), number("dip_direction", direction),
+        number("number", 5), vector("origin", middle), number("dip_dev", 5),   number("persistence", 0.9)};
     tl_args args = {values, sizeof values / sizeof *values};
     return tl_generate(m, "jointset", &args, NULL);
 }
@@ -57,14 +56,12 @@ static tl_status tunnel(tl_model *m)
 
 static tl_model *rock(void)
 {
-    tl_model_config config = {
-        .size = sizeof(tl_model_config), .seed = 3, .threads = 1, .gravity = {0, 0, -10}};
+    tl_model_config config = {.size = sizeof(tl_model_config), .seed = 3, .threads = 1, .gravity = {0, 0, -10}};
     tl_error error;
     tl_model *m;
     tl_value values[] = {vector("min", zero), vector("max", size), number("density", 2000)};
     tl_args args = {values, 3};
-    if (tl_model_create(&config, &m, &error) != TL_OK ||
-        tl_generate(m, "box", &args, NULL) != TL_OK)
+    if (tl_model_create(&config, &m, &error) != TL_OK || tl_generate(m, "box", &args, NULL) != TL_OK)
         exit(1);
     tl_value law[] = {number("kn", 1e8), number("ks", 1e8), number("friction", 30)};
     args = (tl_args){law, 3};
@@ -157,8 +154,7 @@ static tl_status write_rock(tl_model *m)
 }
 
 /* Cancelled, no file appears; then all of them. */
-static void every_moment_of_writing(tl_status (*write)(tl_model *), const char *folder,
-                                    size_t files)
+static void every_moment_of_writing(tl_status (*write)(tl_model *), const char *folder, size_t files)
 {
     tl_model *m = rock();
     CHECK_INT(write(m), TL_OK);

@@ -34,14 +34,12 @@ static tl_model *random_pair(uint64_t seed, bool swapped, tl_quat turn, tl_vec3 
         p = scene_pair_of(scene_box_shape(1, 1.2, 1), scene_random_hull(&seed, 10, tl_v3(1, 1, 1)),
                           scene_any_turn(&seed), tl_v3_scale(1.7, scene_direction(&seed)));
     } else if (kind == 1) {
-        p = scene_pair_of(
-            scene_box_shape(1, 1.2, 1), scene_box_shape(0.8, 1, 1.1),
-            scene_turn(tl_v3(0.1, 0.2, 1), scene_between(&seed, 0, 7)),
-            tl_v3(scene_between(&seed, -0.5, 0.5), scene_between(&seed, -0.5, 0.5), 1.5));
+        p = scene_pair_of(scene_box_shape(1, 1.2, 1), scene_box_shape(0.8, 1, 1.1),
+                          scene_turn(tl_v3(0.1, 0.2, 1), scene_between(&seed, 0, 7)),
+                          tl_v3(scene_between(&seed, -0.5, 0.5), scene_between(&seed, -0.5, 0.5), 1.5));
     } else {
-        p = scene_pair_of(scene_random_hull(&seed, 12, tl_v3(1, 1, 1)),
-                          scene_random_hull(&seed, 12, tl_v3(1, 1, 0.6)), scene_any_turn(&seed),
-                          tl_v3_scale(1.9, scene_direction(&seed)));
+        p = scene_pair_of(scene_random_hull(&seed, 12, tl_v3(1, 1, 1)), scene_random_hull(&seed, 12, tl_v3(1, 1, 0.6)),
+                          scene_any_turn(&seed), tl_v3_scale(1.9, scene_direction(&seed)));
     }
     exact_press(&p, OVERLAP);
     tl_quat second = tl_q_mul(turn, p.turn);
@@ -75,8 +73,7 @@ TEST(order_of_the_blocks_does_not_matter)
         if (scene_contact(m, 0, 1) != TL_NO_ROW && scene_contact(s, 0, 1) != TL_NO_ROW) {
             CHECK_REL(contact_area(s, 0, 1), contact_area(m, 0, 1), SAME_FORCE);
             tl_vec3 moment = tl_contact_moment(m, 0, false);
-            if (!CHECK(scene_apart(moment, tl_contact_moment(s, 0, true)) <=
-                       SAME_FORCE * tl_v3_norm(f)))
+            if (!CHECK(scene_apart(moment, tl_contact_moment(s, 0, true)) <= SAME_FORCE * tl_v3_norm(f)))
                 printf("  seed %d: by %g, kinds %u %u\n", (int)seed,
                        scene_apart(moment, tl_contact_moment(s, 0, true)) / tl_v3_norm(f),
                        m->detect->contacts.facet[0].kind, s->detect->contacts.facet[0].kind);
@@ -132,8 +129,7 @@ TEST(offset_of_a_million_changes_nothing)
         tl_model *m = scene_model(1);
         tl_vec3 o = offsets[i];
         scene_box(m, o, tl_v3_add(o, tl_v3(1, 1, 1)));
-        scene_box(m, tl_v3_add(o, tl_v3(0.25, 0.5, 1 - overlap)),
-                  tl_v3_add(o, tl_v3(1.25, 1.5, 2 - overlap)));
+        scene_box(m, tl_v3_add(o, tl_v3(0.25, 0.5, 1 - overlap)), tl_v3_add(o, tl_v3(1.25, 1.5, 2 - overlap)));
         scene_law(m, "elastic", KN, KN, -1);
         scene_forces(m);
         forces[i] = scene_force(m, 0, 1);
@@ -146,8 +142,7 @@ TEST(offset_of_a_million_changes_nothing)
     tl_vec3 o = {1e6, 1e6, -1e6};
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_box(m, o, tl_v3_add(o, tl_v3(1, 1, 1)));
-    scene_box(m, tl_v3_add(o, tl_v3(0.25, 0.5, 1 - overlap)),
-              tl_v3_add(o, tl_v3(1.25, 1.5, 2 - overlap)));
+    scene_box(m, tl_v3_add(o, tl_v3(0.25, 0.5, 1 - overlap)), tl_v3_add(o, tl_v3(1.25, 1.5, 2 - overlap)));
     scene_law(m, "elastic", KN, KN, -1);
     scene_forces(m);
     CHECK(scene_apart(scene_force(m, 1, 2), forces[0]) <= 1e-9 * forces[0].z);
@@ -216,8 +211,7 @@ static void slide_off(double tilt_degrees, tl_vec3 about, double allowed)
     CHECK_NEAR(last, 0, 0);
     CHECK(jump <= allowed * most);
     if (getenv("TALUS_TEST_VERBOSE"))
-        printf("  tilt %g about %g %g: jump %.3g of %.3g\n", tilt_degrees, about.x, about.y, jump,
-               most);
+        printf("  tilt %g about %g %g: jump %.3g of %.3g\n", tilt_degrees, about.x, about.y, jump, most);
     tl_model_destroy(m);
 }
 
@@ -456,8 +450,6 @@ TEST(shear_turns_with_the_blocks)
 TEST_MAIN(RUN(order_of_the_blocks_does_not_matter), RUN(motion_of_the_whole_model_turns_the_forces),
           RUN(bodies_moved_together_keep_their_forces), RUN(offset_of_a_million_changes_nothing),
           RUN(small_block_on_a_huge_one), RUN(sliding_off_an_edge_is_continuous),
-          RUN(edge_passing_over_an_edge_is_continuous),
-          RUN(tipping_from_face_to_edge_is_continuous),
-          RUN(edges_and_corners_of_eight_blocks_carry_nothing),
-          RUN(eight_blocks_under_isotropic_stress), RUN(spin_about_the_normal_is_resisted),
-          RUN(shear_turns_with_the_blocks))
+          RUN(edge_passing_over_an_edge_is_continuous), RUN(tipping_from_face_to_edge_is_continuous),
+          RUN(edges_and_corners_of_eight_blocks_carry_nothing), RUN(eight_blocks_under_isotropic_stress),
+          RUN(spin_about_the_normal_is_resisted), RUN(shear_turns_with_the_blocks))

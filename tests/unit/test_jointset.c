@@ -13,8 +13,7 @@ enum { SEEDS = 200, PLANES = 15 };
 /* A mean is right within three standard errors. */
 #define ERRORS 3
 
-static tl_generate_summary generate(tl_model *m, const char *name, const tl_value *values,
-                                    size_t count)
+static tl_generate_summary generate(tl_model *m, const char *name, const tl_value *values, size_t count)
 {
     tl_generate_summary summary = {0};
     tl_args args = {values, count};
@@ -38,8 +37,7 @@ static tl_model *model_with_box(int64_t seed, const double *min, const double *m
 
 /* The planes of the joint "J": upward normals, and where each crosses the line through `origin` along
  * `mean`. Returns how many were found. */
-static int find_planes(const tl_model *m, tl_vec3 origin, tl_vec3 mean, tl_vec3 *normal,
-                       double *offset)
+static int find_planes(const tl_model *m, tl_vec3 origin, tl_vec3 mean, tl_vec3 *normal, double *offset)
 {
     uint32_t wanted = tl_joint_find(m, "J");
     int found = 0;
@@ -85,8 +83,7 @@ static void check_moments(const moments *s, double mean, double deviation)
 static const double low[3] = {-12, -12, -12}, high[3] = {12, 12, 12}, at[3] = {0.5, -0.25, 1};
 
 /* Gathers the planes of SEEDS models, with dip, direction and gap each in its own moments. */
-static void gather(const char *distribution, double spacing_dev, moments *dip, moments *direction,
-                   moments *gap)
+static void gather(const char *distribution, double spacing_dev, moments *dip, moments *direction, moments *gap)
 {
     tl_vec3 mean = tl_plane_normal(35, 140), origin = {at[0], at[1], at[2]}, normal[PLANES];
     double offset[PLANES];
@@ -156,14 +153,9 @@ TEST(fisher_poles_have_their_moments)
         double sum = 0, sum_e = 0, sum_f = 0;
         for (int seed = 1; seed <= SEEDS; seed++) {
             tl_model *m = model_with_box(seed, low, high);
-            tl_value values[] = {text("joint", "J"),
-                                 number("dip", 35),
-                                 number("dip_direction", 140),
-                                 number("spacing", 0.5),
-                                 number("number", PLANES),
-                                 vector("origin", at),
-                                 text("distribution", "fisher"),
-                                 number("fisher_k", k)};
+            tl_value values[] = {
+                text("joint", "J"),       number("dip", 35),    number("dip_direction", 140),   number("spacing", 0.5),
+                number("number", PLANES), vector("origin", at), text("distribution", "fisher"), number("fisher_k", k)};
             generate(m, "jointset", values, 8);
             CHECK_INT(find_planes(m, origin, mean, normal, offset), PLANES);
             for (int i = 0; i < PLANES; i++) {
@@ -239,8 +231,8 @@ TEST(a_disc_cuts_the_blocks_it_reaches_into)
         for (int i = 0; i < 8; i++)
             for (int j = 0; j < 8; j++)
                 expected += square_distance(center[1], center[2], i, j) < radius;
-        tl_value disc[] = {text("joint", "D"), number("dip", 90), number("dip_direction", 90),
-                           vector("origin", center), number("radius", radius)};
+        tl_value disc[] = {text("joint", "D"), number("dip", 90), number("dip_direction", 90), vector("origin", center),
+                           number("radius", radius)};
         remark[0] = '\0';
         CHECK_INT(generate(m, "joint", disc, 5).cuts, expected);
         CHECK((remark[0] != '\0') == (expected == 0));
@@ -255,8 +247,8 @@ TEST(a_disc_cuts_a_block_through_or_falls_on_its_face)
     static const double corner[3] = {0, 0, 0}, top[3] = {1, 1, 1}, inside[3] = {0.5, 0.5, 0.5};
     static const double beside[3] = {3, 0.5, 1}, on[3] = {0.5, 0.5, 1};
     tl_model *m = model_with_box(1, corner, top);
-    tl_value disc[] = {text("joint", "D"), number("dip", 0), number("dip_direction", 0),
-                       vector("origin", inside), number("radius", 1e-3)};
+    tl_value disc[] = {text("joint", "D"), number("dip", 0), number("dip_direction", 0), vector("origin", inside),
+                       number("radius", 1e-3)};
     CHECK_INT(generate(m, "joint", disc, 5).cuts, 1);
     CHECK_NEAR(m->blocks.volume[0], 0.5, 1e-14);
     disc[3] = vector("origin", beside);
@@ -268,8 +260,7 @@ TEST(a_disc_cuts_a_block_through_or_falls_on_its_face)
 
 /* ---------------------------------------------------------------- mistakes --------------- */
 
-static void refused(tl_model *m, const char *name, const tl_value *values, size_t count,
-                    const char *part)
+static void refused(tl_model *m, const char *name, const tl_value *values, size_t count, const char *part)
 {
     char before[33], after[33];
     size_t joints = m->joint_count;
@@ -290,9 +281,8 @@ TEST(a_joint_that_meets_nothing_is_remarked)
     tl_value values[] = {text("joint", "J1"),   number("dip", 0),     number("dip_direction", 0),
                          vector("origin", far), number("number", 15), number("spacing", 1)};
     generate(m, "jointset", values, 6);
-    CHECK_TEXT(remark,
-               "generator 'jointset': joint set 'J1': none of its 15 planes meets a visible "
-               "block");
+    CHECK_TEXT(remark, "generator 'jointset': joint set 'J1': none of its 15 planes meets a visible "
+                       "block");
     remark[0] = '\0';
     generate(m, "joint", values, 4);
     CHECK_TEXT(remark, "generator 'joint': joint 'J1': its plane meets no visible block");
@@ -300,8 +290,8 @@ TEST(a_joint_that_meets_nothing_is_remarked)
     CHECK_INT(m->joints[0].planes, 16);
     /* persistence 0 leaves every block whole, but they were met */
     remark[0] = '\0';
-    tl_value missed[] = {text("joint", "J1"), number("dip", 10), number("dip_direction", 0),
-                         vector("origin", inside), number("persistence", 0)};
+    tl_value missed[] = {text("joint", "J1"), number("dip", 10), number("dip_direction", 0), vector("origin", inside),
+                         number("persistence", 0)};
     CHECK_INT(generate(m, "joint", missed, 5).cuts, 0);
     CHECK_TEXT(remark, "");
     tl_model_destroy(m);
@@ -311,8 +301,8 @@ TEST(mistakes_are_refused)
 {
     static const double corner[3] = {0, 0, 0}, top[3] = {1, 1, 1};
     tl_model *m = model_with_box(1, corner, top);
-    tl_value v[] = {text("joint", "J"), number("dip", 10), number("dip_direction", 0),
-                    number("spacing", 0), number("number", 3)};
+    tl_value v[] = {text("joint", "J"), number("dip", 10), number("dip_direction", 0), number("spacing", 0),
+                    number("number", 3)};
     refused(m, "jointset", v, 5, "generator 'jointset': spacing = 0 m must be > 0");
     v[3].number = 1;
     v[4].number = 0;
@@ -337,8 +327,7 @@ TEST(mistakes_are_refused)
                     number("dip_direction_dev", 2)};
     refused(m, "jointset", f, 6, "fisher_k = 0 is outside (0, 1e+09]");
     f[5].number = 10;
-    refused(m, "jointset", f, 7,
-            "dip_direction_dev = 2 deg does not go with distribution = 'fisher'");
+    refused(m, "jointset", f, 7, "dip_direction_dev = 2 deg does not go with distribution = 'fisher'");
     tl_model_destroy(m);
 }
 

@@ -131,8 +131,7 @@ TEST(inert_lanes_stay_zero_and_all_is_finite)
                 CHECK(isfinite(p.stored[i]) && p.stored[i] >= 0);
                 CHECK(isfinite(p.dissipated[i]) && p.dissipated[i] >= 0);
                 if (i % 7 == 3)
-                    CHECK(p.f_n[i] == 0 && lane_shear(&p, i) == 0 && p.stored[i] == 0 &&
-                          p.dissipated[i] == 0);
+                    CHECK(p.f_n[i] == 0 && lane_shear(&p, i) == 0 && p.stored[i] == 0 && p.dissipated[i] == 0);
             }
         }
         law_close(&l);
@@ -349,8 +348,7 @@ TEST(dilation_ends_at_its_limit_and_may_not_exceed_friction)
     CHECK_REL(p.state[1][0], 2e-4 * tan(20 * rad), 1e-14);
     law_close(&l);
     const char *const names[] = {"coulomb", "coulomb_tensile"};
-    const tl_value steep[] = {NUMBER("kn", KN), NUMBER("ks", KS), NUMBER("friction", 10),
-                              NUMBER("dilation", 11)};
+    const tl_value steep[] = {NUMBER("kn", KN), NUMBER("ks", KS), NUMBER("friction", 10), NUMBER("dilation", 11)};
     for (int k = 0; k < 2; k++) {
         const tl_kind *kind = tl_plugin_find(TL_KIND_LAW, names[k]);
         const tl_law_ops *ops = kind->ops;
@@ -359,12 +357,11 @@ TEST(dilation_ends_at_its_limit_and_may_not_exceed_friction)
         tl_error error = {TL_OK, ""};
         tl_report report = {.size = sizeof report};
         const tl_args args = {steep, 4};
-        CHECK_INT(tl_args_read(kind->params, kind->param_count, kind->param_stride, &args, false,
-                               params, names[k], &error),
-                  TL_OK);
+        CHECK_INT(
+            tl_args_read(kind->params, kind->param_count, kind->param_stride, &args, false, params, names[k], &error),
+            TL_OK);
         CHECK_INT(ops->create(params, &self, &report), TL_E_ARGUMENT);
-        CHECK_TEXT(report.text,
-                   "dilation = 11 deg must be <= friction = 10 deg, or slip would make energy");
+        CHECK_TEXT(report.text, "dilation = 11 deg must be <= friction = 10 deg, or slip would make energy");
     }
 }
 

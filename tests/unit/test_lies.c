@@ -24,8 +24,7 @@ static void add_settings(tl_model *m)
     scene_ok(m, tl_blocks_load(m, &second, 1, &load));
     scene_ok(m, tl_write_vtk(m, TALUS_TEST_TMP "/truth", NULL));
     scene_ok(m, tl_blocks_reset_displacement(m, &second, 1));
-    const tl_history what = {
-        .name = "kinetic", .asked = "kinetic", .source = TL_FROM_MODEL, .every = 1};
+    const tl_history what = {.name = "kinetic", .asked = "kinetic", .source = TL_FROM_MODEL, .every = 1};
     tl_history *history;
     const double values[2] = {1, 2};
     scene_ok(m, tl_history_add(m, &what, &history));
@@ -45,8 +44,7 @@ static void add_edits(tl_model *m)
     d->cut_contacts = calloc(1, sizeof *d->cut_contacts);
     d->cut_points = calloc(1, sizeof *d->cut_points);
     m->face_loads = calloc(1, sizeof *m->face_loads);
-    if (!CHECK(m->cut_parts && m->splits && m->asked_ids && d->cut_contacts && d->cut_points &&
-               m->face_loads))
+    if (!CHECK(m->cut_parts && m->splits && m->asked_ids && d->cut_contacts && d->cut_points && m->face_loads))
         exit(1);
     m->cut_parts[0] = (tl_cut_part){.id = 2, .root = 1, .r = tl_m3_identity()};
     m->splits[0] = (tl_split){.block = 2, .whole = 1};
@@ -133,8 +131,7 @@ static tl_status restored(tl_error *error)
         scene_ok(m, tl_model_cycle(m, 3, NULL));
         scene_ok(m, tl_generate(m, "joint",
                                 TL_ARGS(tl_arg_text("joint", "late"), tl_arg_number("dip", 20),
-                                        tl_arg_number("dip_direction", 50),
-                                        TL_ARG_VECTOR("origin", 0.5, 0.5, 1.5)),
+                                        tl_arg_number("dip_direction", 50), TL_ARG_VECTOR("origin", 0.5, 0.5, 1.5)),
                                 NULL));
         scene_ok(m, tl_model_cycle(m, 3, NULL));
         scene_ok(m, tl_model_copy(m, NULL, NULL, &copy));
@@ -163,9 +160,9 @@ static const double no_turn[4] = {0, 0, 0, 0};
 /* Of the field contact, and of the first span. */
 #define PRESS(member, instead) LIE("detect.press", offsetof(tl_press_row, member), instead)
 #define SPAN(member, instead) LIE("detect.layout.spans", offsetof(tl_span, member), instead)
-#define LIE(chunk, at, instead)                                                                    \
-    {                                                                                              \
-        chunk, at, sizeof(instead), &(instead)                                                     \
+#define LIE(chunk, at, instead)                                                                                        \
+    {                                                                                                                  \
+        chunk, at, sizeof(instead), &(instead)                                                                         \
     }
 
 /* One for each kind of thing that is looked at. */
@@ -518,6 +515,5 @@ TEST(what_cannot_be_read_is_refused)
     CHECK(m == NULL);
 }
 
-TEST_MAIN(RUN(what_is_true_is_restored), RUN(a_lie_is_refused),
-          RUN(what_is_left_out_is_missed_or_not_needed), RUN(what_is_not_loaded_is_named),
-          RUN(what_does_not_matter_is_restored), RUN(what_cannot_be_read_is_refused))
+TEST_MAIN(RUN(what_is_true_is_restored), RUN(a_lie_is_refused), RUN(what_is_left_out_is_missed_or_not_needed),
+          RUN(what_is_not_loaded_is_named), RUN(what_does_not_matter_is_restored), RUN(what_cannot_be_read_is_refused))

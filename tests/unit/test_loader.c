@@ -65,15 +65,14 @@ static size_t found[TL_KIND_SCREEN + 1];
 
 TEST(default_search_finds_every_plugin_once_in_order)
 {
-    static const char *const known[] = {"coulomb", "adaptive",
-                                        "box"}; /* a screen need not be there */
+    static const char *const known[] = {"coulomb", "adaptive", "box"}; /* a screen need not be there */
     for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
         found[type] = kinds_of((tl_kind_type)type);
         CHECK(found[type] >= 3 || type == TL_KIND_SCREEN);
         CHECK(type == TL_KIND_SCREEN || tl_plugin_find((tl_kind_type)type, known[type]) != NULL);
         for (size_t i = 1; i < found[type]; i++)
-            CHECK(strcmp(tl_plugin_kind((tl_kind_type)type, i - 1)->name,
-                         tl_plugin_kind((tl_kind_type)type, i)->name) < 0);
+            CHECK(strcmp(tl_plugin_kind((tl_kind_type)type, i - 1)->name, tl_plugin_kind((tl_kind_type)type, i)->name) <
+                  0);
     }
     CHECK(tl_plugin_find(TL_KIND_LAW, "box") == NULL);
     size_t files = files_in_folder();
@@ -102,16 +101,13 @@ TEST(a_search_for_nothing_is_no_error)
 TEST(broken_plugins_are_refused_with_the_reason)
 {
     refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.8, this Talus has 1.8");
-    refused(bad_folder, "later_major",
-            "it was built for plugin ABI 3.8, this Talus has 1.8: build it anew");
-    refused(bad_folder, "later_minor",
-            "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.8");
+    refused(bad_folder, "later_major", "it was built for plugin ABI 3.8, this Talus has 1.8: build it anew");
+    refused(bad_folder, "later_minor", "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.8");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
     refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.8)");
     refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
-    refused(bad_folder, "name_clash",
-            "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
+    refused(bad_folder, "name_clash", "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
     refused(bad_folder, "bad_default",
             "law 'bad_default': parameter 'value': its default 2 is outside its own range [0, 2)");
     refused(bad_folder, "missing_ops", "law 'missing_ops': its operation 'stiffness' is missing");
@@ -120,19 +116,16 @@ TEST(broken_plugins_are_refused_with_the_reason)
     refused(bad_folder, "outside", "law 'outside': parameter 'value' lies at bytes 0 to 8");
     refused(bad_folder, "no_unit", "law 'no_unit': parameter 'value' has no unit");
     refused(bad_folder, "twice", "law 'twice': parameters 'value' and 'value' share a name");
-    refused(
-        bad_folder, "many_states",
-        "law 'many_states': its states take 9 columns (a scalar 1, a tangent 3); 8 at the most");
+    refused(bad_folder, "many_states",
+            "law 'many_states': its states take 9 columns (a scalar 1, a tangent 3); 8 at the most");
     refused(bad_folder, "endless_params",
             "law 'endless_params' has a params_size of 18446744073709551615 bytes; 1048576 at the "
             "most");
     refused(bad_folder, "large_params",
             "law 'large_params' has a params_size of 100000000000 bytes; 1048576 at the most");
-    refused(bad_folder, "only_unknown",
-            "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
+    refused(bad_folder, "only_unknown", "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
     refused(bad_folder, "deaf_screen", "screen 'deaf_screen': its operation 'take' is missing");
-    refused(bad_folder, "begun_energy",
-            "state 'some' is an energy: it must be a scalar that begins at 0");
+    refused(bad_folder, "begun_energy", "state 'some' is an energy: it must be a scalar that begins at 0");
     refused(bad_folder, "two_energies", "states 'one' and 'two' are both energies of shear");
     refused(bad_folder, "screen_states", "a screen has no states, this one declares 1");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
@@ -218,8 +211,7 @@ int main(void)
 {
     /* A folder given twice, a file in place of a folder and an empty entry do no harm. */
     char search[4096];
-    snprintf(search, sizeof search, ":%s::%s/:/dev/null:%s/no_such_folder:", good_folder,
-             good_folder, good_folder);
+    snprintf(search, sizeof search, ":%s::%s/:/dev/null:%s/no_such_folder:", good_folder, good_folder, good_folder);
     setenv("TALUS_PLUGIN_PATH", search, 1);
     tl_plugins_load_default();
     RUN(default_search_finds_every_plugin_once_in_order);

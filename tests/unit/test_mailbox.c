@@ -252,8 +252,7 @@ static void *read_on(void *given)
 {
     reader *r = given;
     watcher w;
-    uint32_t next =
-        UINT32_MAX; /* news that must come next; those of a beginning are numbered from its own */
+    uint32_t next = UINT32_MAX; /* news that must come next; those of a beginning are numbered from its own */
     const struct timespec moment = {0, 50000};
     mark k = {0, 0};
     mailbox_join(r->m, &w);
@@ -326,9 +325,8 @@ TEST(readers_on_other_threads_get_whole_frames_in_order)
     mailbox_destroy(m);
 }
 
-TEST_MAIN(RUN(a_watcher_gets_all_news_and_what_there_is_now),
-          RUN(a_beginning_takes_the_place_of_all_before_it), RUN(a_frame_on_its_way_stays_whole),
-          RUN(many_news_come_in_their_order),
+TEST_MAIN(RUN(a_watcher_gets_all_news_and_what_there_is_now), RUN(a_beginning_takes_the_place_of_all_before_it),
+          RUN(a_frame_on_its_way_stays_whole), RUN(many_news_come_in_their_order),
           RUN(commands_come_in_their_order_and_no_more_than_there_is_room_for), RUN(waiting_ends),
           RUN(waiting_is_ended_by_a_command_and_by_one_who_begins_to_look),
           RUN(readers_on_other_threads_get_whole_frames_in_order))

@@ -111,8 +111,7 @@ TEST(volume_of_a_needle_keeps_all_digits)
         }
         tl_poly *p;
         tl_error error;
-        if (!CHECK_INT(tl_poly_make(x, 8, box->plane, NULL, start, box->loop, 6, &p, &error),
-                       TL_OK))
+        if (!CHECK_INT(tl_poly_make(x, 8, box->plane, NULL, start, box->loop, 6, &p, &error), TL_OK))
             continue;
         CHECK_NEAR(tl_poly_mass(p).volume, 1, 1e-15);
         tl_poly_free(p);
@@ -142,8 +141,7 @@ TEST(faces_and_edges)
 {
     tl_poly *p = unit_box();
     static const double area[6] = {6, 6, 3, 3, 2, 2};
-    static const tl_vec3 centre[6] = {{0, 1, 1.5},   {1, 1, 1.5}, {0.5, 0, 1.5},
-                                      {0.5, 2, 1.5}, {0.5, 1, 0}, {0.5, 1, 3}};
+    static const tl_vec3 centre[6] = {{0, 1, 1.5}, {1, 1, 1.5}, {0.5, 0, 1.5}, {0.5, 2, 1.5}, {0.5, 1, 0}, {0.5, 1, 3}};
     for (uint32_t f = 0; f < 6; f++) {
         CHECK_NEAR(tl_poly_face_area(p, f), area[f], 0);
         CHECK_NEAR(tl_v3_norm(tl_v3_sub(tl_poly_face_centroid(p, f), centre[f])), 0, 1e-15);
@@ -186,7 +184,6 @@ TEST(contains_up_to_the_tolerance)
     tl_poly_free(p);
 }
 
-TEST_MAIN(RUN(mass_of_exact_cases), RUN(mass_far_from_zero),
-          RUN(volume_of_a_needle_keeps_all_digits), RUN(inertia_turns_with_the_body),
-          RUN(faces_and_edges), RUN(centroid_of_a_face_is_that_of_its_area),
+TEST_MAIN(RUN(mass_of_exact_cases), RUN(mass_far_from_zero), RUN(volume_of_a_needle_keeps_all_digits),
+          RUN(inertia_turns_with_the_body), RUN(faces_and_edges), RUN(centroid_of_a_face_is_that_of_its_area),
           RUN(contains_up_to_the_tolerance))

@@ -50,10 +50,9 @@ static double neighbour(double value, int steps)
 
 TEST(texts_of_single_numbers)
 {
-    const double numbers[] = {0,       1,       -1,       0.1,    0.3,   1e5,  999999,
-                              1e6,     1234567, 12345678, 0.5,    1e-4,  1e-5, 9.5e-5,
-                              1e-10,   1e-11,   9.9e14,   1e15,   1e22,  1e23, 5e-324,
-                              1.7e308, 2600,    9.81,     1 / 3., 2 / 3.};
+    const double numbers[] = {0,        1,    -1,     0.1,     0.3,    1e5,   999999, 1e6,    1234567,
+                              12345678, 0.5,  1e-4,   1e-5,    9.5e-5, 1e-10, 1e-11,  9.9e14, 1e15,
+                              1e22,     1e23, 5e-324, 1.7e308, 2600,   9.81,  1 / 3., 2 / 3.};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         CHECK(agrees(numbers[i]));
         CHECK(agrees(-numbers[i]));
@@ -97,8 +96,7 @@ static int reads(const char *text)
     double value = tl_number_read(text, &end), wanted = strtod(text, &wanted_end);
     if (memcmp(&value, &wanted, sizeof value) == 0 && end == wanted_end)
         return 1;
-    printf("  '%.60s': %a up to '%.20s' is not %a up to '%.20s'\n", text, value, end, wanted,
-           wanted_end);
+    printf("  '%.60s': %a up to '%.20s' is not %a up to '%.20s'\n", text, value, end, wanted, wanted_end);
     return 0;
 }
 
@@ -164,8 +162,7 @@ TEST(long_numbers_are_read)
     static char text[4000];
     for (int tail = 700; tail < 1700; tail += 37) {
         for (int last = 0; last < 2; last++) {
-            int n = snprintf(text, sizeof text,
-                             "1.00000000000000011102230246251565404236316680908203125");
+            int n = snprintf(text, sizeof text, "1.00000000000000011102230246251565404236316680908203125");
             memset(text + n, '0', (size_t)tail);
             snprintf(text + n + tail, 40, "%de%d", last, tail % 5 - 2);
             CHECK(reads(text));
@@ -190,8 +187,7 @@ TEST(random_numbers_are_read)
         char text[1200];
         snprintf(text, sizeof text, "%.*g", 1 + (int)(bits >> 8 & 31), from_bits(bits));
         wrong += !reads(text);
-        snprintf(text, sizeof text, "%.*f", (int)(bits >> 8 & 63),
-                 ldexp(tl_uniform(bits), (int)(bits % 1100) - 100));
+        snprintf(text, sizeof text, "%.*f", (int)(bits >> 8 & 63), ldexp(tl_uniform(bits), (int)(bits % 1100) - 100));
         wrong += !reads(text);
         snprintf(text, sizeof text, "%.800g", from_bits(tl_key(9, i)));
         wrong += !reads(text);
@@ -212,16 +208,16 @@ static int library_print(char *to, size_t size, const char *format, ...)
 }
 
 /* Both writers, in a room of every size. */
-#define WRITES(...)                                                                                \
-    for (size_t size_ = 0; size_ < 60; size_++) {                                                  \
-        char wanted[400], got[400];                                                                \
-        memset(wanted, '#', sizeof wanted);                                                        \
-        memset(got, '#', sizeof got);                                                              \
-        wanted[size_] = got[size_] = '\0'; /* a size of 0 writes no end */                         \
-        int length = library_print(wanted, size_, __VA_ARGS__);                                    \
-        CHECK_INT(tl_text_print(got, size_, __VA_ARGS__), length);                                 \
-        CHECK(strcmp(got, wanted) == 0);                                                           \
-        CHECK(memcmp(got + size_, wanted + size_, sizeof got - size_) == 0);                       \
+#define WRITES(...)                                                                                                    \
+    for (size_t size_ = 0; size_ < 60; size_++) {                                                                      \
+        char wanted[400], got[400];                                                                                    \
+        memset(wanted, '#', sizeof wanted);                                                                            \
+        memset(got, '#', sizeof got);                                                                                  \
+        wanted[size_] = got[size_] = '\0'; /* a size of 0 writes no end */                                             \
+        int length = library_print(wanted, size_, __VA_ARGS__);                                                        \
+        CHECK_INT(tl_text_print(got, size_, __VA_ARGS__), length);                                                     \
+        CHECK(strcmp(got, wanted) == 0);                                                                               \
+        CHECK(memcmp(got + size_, wanted + size_, sizeof got - size_) == 0);                                           \
     }
 
 TEST(texts_are_written)
@@ -231,8 +227,8 @@ TEST(texts_are_written)
     WRITES("100 %% of %s", "it");
     WRITES("%d %u %x %X %o %c%c", -5, 7u, 255u, 255u, 8u, 'a', 'b');
     WRITES("%ld %lu %lld %llu", -5l, 7ul, INT64_MIN + 0ll, UINT64_MAX + 0ull);
-    WRITES("%zu %zd %jd %td %hhu %hd", (size_t)-1, (size_t)5, (intmax_t)-9, (ptrdiff_t)-3,
-           (unsigned char)200, (short)-2);
+    WRITES("%zu %zd %jd %td %hhu %hd", (size_t)-1, (size_t)5, (intmax_t)-9, (ptrdiff_t)-3, (unsigned char)200,
+           (short)-2);
     WRITES("%04o|%-8s|%8s|%.2s|%-*s|%*d|%.*s|", 7u, "ab", "cd", "efgh", 6, "x", 5, 42, 3, "long");
     WRITES("%.*s|%*d", -1, "whole", -5, 42);
     WRITES("%g %e %f %a %G %E %A", 0.1, 1e300, 1e22, 0.1, 1e-9, -3.5, 1e-300);

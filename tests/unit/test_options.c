@@ -13,17 +13,16 @@ static void compare(const char *function, const void *defaults, size_t bytes)
     const tl_param *params = tl_function_params(function, &count, NULL);
     CHECK(params != NULL && bytes <= sizeof own);
     memcpy(own, defaults, bytes);
-    CHECK_INT(tl_args_read(params, count, sizeof *params, &none, false, own, function, &error),
-              TL_OK);
+    CHECK_INT(tl_args_read(params, count, sizeof *params, &none, false, own, function, &error), TL_OK);
     if (!CHECK(memcmp(own, defaults, bytes) == 0))
         printf("  the defaults of %s are not those of its table\n", function);
 }
 
-#define COMPARE(function, type)                                                                    \
-    do {                                                                                           \
-        type defaults = type##_default();                                                          \
-        CHECK_INT(defaults.size, sizeof(type));                                                    \
-        compare(function, &defaults, sizeof defaults);                                             \
+#define COMPARE(function, type)                                                                                        \
+    do {                                                                                                               \
+        type defaults = type##_default();                                                                              \
+        CHECK_INT(defaults.size, sizeof(type));                                                                        \
+        compare(function, &defaults, sizeof defaults);                                                                 \
     } while (0)
 
 TEST(defaults_are_those_of_the_tables)
@@ -82,8 +81,7 @@ TEST(nothing_means_the_defaults)
     CHECK_INT(count, 0);
     free(ids);
     tl_solve_result result;
-    const tl_history clock = {
-        .name = "clock", .asked = "kinetic", .source = TL_FROM_MODEL, .every = 1};
+    const tl_history clock = {.name = "clock", .asked = "kinetic", .source = TL_FROM_MODEL, .every = 1};
     CHECK_INT(tl_model_cycle_calling(m, 2, NULL, &result), TL_OK);
     CHECK_INT(result.cycles, 2);
     CHECK_INT(tl_model_cycle_calling(m, 2, NULL, NULL), TL_OK);
@@ -93,10 +91,10 @@ TEST(nothing_means_the_defaults)
 }
 
 /* The call is refused for the size of its options, which it names first. */
-#define REFUSES(call, options)                                                                     \
-    do {                                                                                           \
-        CHECK_INT(call, TL_E_ARGUMENT);                                                            \
-        CHECK_CONTAINS(tl_model_error(m)->text, options ": size = 0");                             \
+#define REFUSES(call, options)                                                                                         \
+    do {                                                                                                               \
+        CHECK_INT(call, TL_E_ARGUMENT);                                                                                \
+        CHECK_CONTAINS(tl_model_error(m)->text, options ": size = 0");                                                 \
     } while (0)
 
 TEST(a_wrong_size_is_refused)
@@ -174,11 +172,9 @@ TEST(remedies_are_in_the_words_of_who_called)
         if (lua)
             tl_model_speak_lua(m, 1);
         CHECK_INT(tl_model_solve(m, NULL, NULL), TL_OK);
-        CHECK_CONTAINS(remark,
-                       lua ? "model:damping(\"local\")" : "tl_model_damping() with \"local\"");
+        CHECK_CONTAINS(remark, lua ? "model:damping(\"local\")" : "tl_model_damping() with \"local\"");
         CHECK_INT(tl_joint_law(m, "*", NULL, NULL), TL_E_STATE);
-        CHECK_CONTAINS(tl_model_error(m)->text,
-                       lua ? "model:joint(\"*\", LAW" : "give tl_joint_law() one");
+        CHECK_CONTAINS(tl_model_error(m)->text, lua ? "model:joint(\"*\", LAW" : "give tl_joint_law() one");
         tl_model *twin;
         CHECK_INT(tl_model_copy(m, NULL, NULL, &twin), TL_OK);
         CHECK_INT(tl_joint_law(twin, "*", NULL, NULL), TL_E_STATE);
@@ -188,7 +184,6 @@ TEST(remedies_are_in_the_words_of_who_called)
     }
 }
 
-TEST_MAIN(RUN(defaults_are_those_of_the_tables), RUN(defaults_without_a_table),
-          RUN(an_older_struct_is_filled_up), RUN(nothing_means_the_defaults),
-          RUN(a_wrong_size_is_refused), RUN(a_choice_that_there_is_not_is_refused),
+TEST_MAIN(RUN(defaults_are_those_of_the_tables), RUN(defaults_without_a_table), RUN(an_older_struct_is_filled_up),
+          RUN(nothing_means_the_defaults), RUN(a_wrong_size_is_refused), RUN(a_choice_that_there_is_not_is_refused),
           RUN(remedies_are_in_the_words_of_who_called))

@@ -73,8 +73,7 @@ TEST(signs_without_an_outline)
     CHECK_INT(squares(1, 3, 0)->count, 0); /* apart */
     uint64_t seed = 5;
     int found = 0;
-    for (int i = 0; i < 20000;
-         i++) { /* of no two squares: nothing, or at least what a polygon could be */
+    for (int i = 0; i < 20000; i++) { /* of no two squares: nothing, or at least what a polygon could be */
         uint64_t a = (uint64_t)(check_random(&seed) * 4294967296.) & 0x0f0f0f0f;
         uint64_t b = (uint64_t)(check_random(&seed) * 4294967296.) & 0x0f0f0f0f;
         const tl_outline *o = tl_outline_of(table, 4, 4, a, b);

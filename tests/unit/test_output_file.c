@@ -200,6 +200,5 @@ TEST(the_end_of_the_program_leaves_nothing)
 }
 
 TEST_MAIN(RUN(clean_folder), RUN(a_file_is_written_and_replaced), RUN(clean_folder),
-          RUN(only_regular_files_are_replaced), RUN(clean_folder),
-          RUN(a_link_stays_and_its_file_is_replaced), RUN(paths_that_are_none), RUN(clean_folder),
-          RUN(the_end_of_the_program_leaves_nothing))
+          RUN(only_regular_files_are_replaced), RUN(clean_folder), RUN(a_link_stays_and_its_file_is_replaced),
+          RUN(paths_that_are_none), RUN(clean_folder), RUN(the_end_of_the_program_leaves_nothing))

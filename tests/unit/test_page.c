@@ -296,6 +296,6 @@ static void clean_folder(void)
     mkdir(FOLDER, 0777);
 }
 
-TEST_MAIN(RUN(clean_folder), RUN(frames_are_added), RUN(a_page_that_was_changed_begins_anew),
-          RUN(what_is_refused), RUN(what_may_not_be_written), RUN(a_page_has_a_longest_length),
-          RUN(a_full_disk_is_noticed), RUN(a_killed_writer_leaves_a_whole_page))
+TEST_MAIN(RUN(clean_folder), RUN(frames_are_added), RUN(a_page_that_was_changed_begins_anew), RUN(what_is_refused),
+          RUN(what_may_not_be_written), RUN(a_page_has_a_longest_length), RUN(a_full_disk_is_noticed),
+          RUN(a_killed_writer_leaves_a_whole_page))

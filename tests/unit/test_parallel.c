@@ -22,8 +22,7 @@ static void do_range(void *user, size_t begin, size_t end, size_t chunk, unsigne
 {
     record *r = user;
     size_t whole = begin + r->chunk;
-    if (begin != chunk * r->chunk || end != (whole < r->count ? whole : r->count) ||
-        thread >= r->threads)
+    if (begin != chunk * r->chunk || end != (whole < r->count ? whole : r->count) || thread >= r->threads)
         atomic_fetch_add(&r->wrong, 1);
     double sum = 0;
     for (size_t i = begin; i < end; i++) {

@@ -23,10 +23,9 @@ static const tl_param table[] = {
              .flags = TL_PARAM_MAX_OPEN, .def = {30}, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, sample_params, spacing, "m", "distance between planes",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, sample_params, scale, "", "some factor", .def = {-2}, .min = -INFINITY,
-             .max = 0),
-    TL_PARAM(TL_PARAM_REAL, sample_params, limit, "s", "longest time", .flags = TL_PARAM_OPTIONAL,
-             .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, sample_params, scale, "", "some factor", .def = {-2}, .min = -INFINITY, .max = 0),
+    TL_PARAM(TL_PARAM_REAL, sample_params, limit, "s", "longest time", .flags = TL_PARAM_OPTIONAL, .min = 0,
+             .max = INFINITY),
     TL_PARAM(TL_PARAM_INT, sample_params, number, "", "how many", .def = {7}, .min = 1, .max = 100),
     TL_PARAM(TL_PARAM_BOOL, sample_params, on, "", "whether", .def = {1}),
     TL_PARAM(TL_PARAM_ENUM, sample_params, rule, "", "which rule", .def = {1}, .choices = rules),
@@ -139,8 +138,7 @@ TEST(numbers_must_be_finite_and_whole)
     refused(number("limit", INFINITY), "limit = inf is not a finite number");
     refused(number("number", 2.5), "number must be a whole number, not the number 2.5");
     refused(list("origin", TL_VALUE_NUMBERS, bad, 3), "origin.y = nan is not a finite number");
-    refused(list("vertices", TL_VALUE_POINTS, worse, 2),
-            "vertices, row 2, z = inf is not a finite number");
+    refused(list("vertices", TL_VALUE_POINTS, worse, 2), "vertices, row 2, z = inf is not a finite number");
 }
 
 TEST(wrong_types_name_both)
@@ -149,8 +147,7 @@ TEST(wrong_types_name_both)
     refused(text("friction", "30"), "friction must be a number, not the string '30'");
     refused(number("on", 1), "on must be true or false, not the number 1");
     refused(number("name", 3.25), "name must be a string, not the number 3.25");
-    refused((tl_value){.key = "number", .type = TL_VALUE_BOOL, .number = 1},
-            "number must be a whole number, not true");
+    refused((tl_value){.key = "number", .type = TL_VALUE_BOOL, .number = 1}, "number must be a whole number, not true");
     refused(number("origin", 1), "origin must be a list of 3 numbers {x, y, z}, not the number 1");
     refused(list("origin", TL_VALUE_NUMBERS, two, 2),
             "origin must be a list of 3 numbers {x, y, z}, not a list of 2 numbers");
@@ -158,14 +155,11 @@ TEST(wrong_types_name_both)
             "vertices must be a list of points {{x, y, z}, ...}, not a list of 2 numbers");
     refused((tl_value){.key = "friction", .type = TL_VALUE_OTHER, .text = "function"},
             "friction must be a number, not a function");
-    refused((tl_value){.key = "vertices",
-                       .type = TL_VALUE_OTHER,
-                       .text = "list whose row 4 has 2 numbers"},
+    refused((tl_value){.key = "vertices", .type = TL_VALUE_OTHER, .text = "list whose row 4 has 2 numbers"},
             "vertices must be a list of points {{x, y, z}, ...}, not a list whose row 4 has 2 "
             "numbers");
     refused(number("rule", 1), "rule must be a name in quotes, not the number 1");
-    refused(text("rule", "papre"),
-            "unknown rule 'papre'; did you mean 'paper'? (known: paper, body)");
+    refused(text("rule", "papre"), "unknown rule 'papre'; did you mean 'paper'? (known: paper, body)");
 }
 
 TEST(unknown_keys_get_the_nearest_name)
@@ -173,17 +167,15 @@ TEST(unknown_keys_get_the_nearest_name)
     static const char known[] = "(known: friction, phi, spacing, scale, limit, number, on, rule, "
                                 "origin, at, name, label, vertices)";
     char sentence[TL_ERROR_TEXT];
-    snprintf(sentence, sizeof sentence, "unknown parameter 'frction'; did you mean 'friction'? %s",
-             known);
+    snprintf(sentence, sizeof sentence, "unknown parameter 'frction'; did you mean 'friction'? %s", known);
     refused(number("frction", 1), sentence);
     snprintf(sentence, sizeof sentence, "unknown parameter 'qqqqqq' %s", known);
     refused(number("qqqqqq", 1), sentence);
     error = (tl_error){TL_OK, ""};
     tl_value values[] = {number("a", 1)};
     char nothing;
-    CHECK_INT(
-        tl_args_read(NULL, 0, 0, &(tl_args){values, 1}, false, &nothing, "damping 'none'", &error),
-        TL_E_ARGUMENT);
+    CHECK_INT(tl_args_read(NULL, 0, 0, &(tl_args){values, 1}, false, &nothing, "damping 'none'", &error),
+              TL_E_ARGUMENT);
     CHECK_TEXT(error.text, "damping 'none': unknown parameter 'a' (it takes none)");
 }
 
@@ -191,9 +183,7 @@ TEST(missing_and_double_parameters)
 {
     sample_params t;
     CHECK_INT(read_all(&t, NULL, 0, false), TL_E_ARGUMENT);
-    CHECK_TEXT(
-        error.text,
-        "joint 'J1', law 'x': parameter 'spacing' is missing, in m (distance between planes)");
+    CHECK_TEXT(error.text, "joint 'J1', law 'x': parameter 'spacing' is missing, in m (distance between planes)");
     CHECK_INT(tl_args_read(table, ROWS, sizeof *table, NULL, false, &t, "", &error), TL_E_ARGUMENT);
     CHECK_TEXT(error.text, "parameter 'spacing' is missing, in m (distance between planes)");
     tl_value values[] = {number("spacing", 1), number("friction", 10), number("phi", 20)};
@@ -240,9 +230,7 @@ TEST(tables_of_other_versions_are_read)
         row.size = SHORT;
         memcpy(narrow + i * SHORT, &row, SHORT);
     }
-    CHECK_INT(tl_args_read((const tl_param *)(const void *)narrow, 3, SHORT, &args, false, &t, "",
-                           &error),
-              TL_OK);
+    CHECK_INT(tl_args_read((const tl_param *)(const void *)narrow, 3, SHORT, &args, false, &t, "", &error), TL_OK);
     CHECK(t.friction == 30 && t.spacing == 3 && t.name == NULL);
 }
 
@@ -317,16 +305,13 @@ TEST(long_texts_are_cut)
     values[0] = text("spacing", longer);
     CHECK_INT(read_all(&t, values, 1, false), TL_E_ARGUMENT);
     CHECK_CONTAINS(error.text, "spacing must be a number, not the string 'zzzz");
-    CHECK_INT(
-        tl_args_read(table, ROWS, sizeof *table, &(tl_args){values, 1}, false, &t, longer, &error),
-        TL_E_ARGUMENT);
+    CHECK_INT(tl_args_read(table, ROWS, sizeof *table, &(tl_args){values, 1}, false, &t, longer, &error),
+              TL_E_ARGUMENT);
     CHECK(strlen(error.text) < sizeof error.text);
 }
 
 TEST_MAIN(RUN(defaults_fill_what_is_not_given), RUN(values_of_every_type_arrive),
-          RUN(ranges_with_open_and_missing_ends), RUN(numbers_must_be_finite_and_whole),
-          RUN(wrong_types_name_both), RUN(unknown_keys_get_the_nearest_name),
-          RUN(missing_and_double_parameters), RUN(keep_writes_only_what_is_given),
-          RUN(tables_of_other_versions_are_read), RUN(nearest_names),
-          RUN(edit_distance_is_a_metric_on_short_words), RUN(number_texts_read_back_the_same),
-          RUN(long_texts_are_cut))
+          RUN(ranges_with_open_and_missing_ends), RUN(numbers_must_be_finite_and_whole), RUN(wrong_types_name_both),
+          RUN(unknown_keys_get_the_nearest_name), RUN(missing_and_double_parameters),
+          RUN(keep_writes_only_what_is_given), RUN(tables_of_other_versions_are_read), RUN(nearest_names),
+          RUN(edit_distance_is_a_metric_on_short_words), RUN(number_texts_read_back_the_same), RUN(long_texts_are_cut))

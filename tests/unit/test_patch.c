@@ -72,8 +72,7 @@ static moments common_moments(const flat *a, size_t na, const flat *b, size_t nb
             double h = side_of(r, s, p), k = side_of(r, s, q);
             double u = side_of(p, q, r), v = side_of(p, q, s);
             if (h * k < 0 && u * v < 0)
-                all[count++] =
-                    (flat){p.x + h / (h - k) * (q.x - p.x), p.y + h / (h - k) * (q.y - p.y)};
+                all[count++] = (flat){p.x + h / (h - k) * (q.x - p.x), p.y + h / (h - k) * (q.y - p.y)};
         }
     if (count < 3)
         return (moments){0};
@@ -192,8 +191,7 @@ TEST(drums_of_many_sides_keep_their_area)
         double whole = polygon_moments(a, sides).area;
         moments found = point_moments(m);
         /* nearly coincident, the reference is all of the face; corners nearer than 1e-7 are merged */
-        moments want =
-            fmax(twist, x) > 1e-6 ? common_moments(a, sides, b, sides) : polygon_moments(a, sides);
+        moments want = fmax(twist, x) > 1e-6 ? common_moments(a, sides, b, sides) : polygon_moments(a, sides);
         CHECK_NEAR(found.area, want.area, 4e-6 * whole);
         CHECK_NEAR(found.xx, want.xx, 1e-3 * whole);
         CHECK_NEAR(found.yy, want.yy, 1e-3 * whole);
@@ -255,8 +253,7 @@ static void check_stiffness(tl_poly *a, tl_poly *b, double twist, double x, doub
         scene_forces(m);
         tl_vec3 force = d->contacts.force[0];
         /* moment of the change of force on B about the centroid of the polygon */
-        tl_vec3 change =
-            tl_v3_sub(about, tl_contact_moment(m, 0, false)); /* on B, about A's centroid */
+        tl_vec3 change = tl_v3_sub(about, tl_contact_moment(m, 0, false)); /* on B, about A's centroid */
         change = tl_v3_sub(change, tl_v3_cross(c, tl_v3_sub(force, before)));
         CHECK_NEAR(-tl_v3_dot(change, axis) / (KN * inertia * angle), 1, 2e-4);
         CHECK_NEAR(force.z / before.z, 1, 1e-5);
@@ -315,10 +312,8 @@ static void wobble(tl_model *m, double tilt, tl_vec3 lift, double *jump, double 
         last = start;
         for (double w = 1e-10; w < 1.2e-2; w *= 1.03) {
             load now = at_wobble(m, tilt, sign * w, lift);
-            double step =
-                fmax(scene_apart(now.force, last.force), scene_apart(now.moment, last.moment));
-            double all =
-                fmax(scene_apart(now.force, start.force), scene_apart(now.moment, start.moment));
+            double step = fmax(scene_apart(now.force, last.force), scene_apart(now.moment, last.moment));
+            double all = fmax(scene_apart(now.force, start.force), scene_apart(now.moment, start.moment));
             *jump = fmax(*jump, step / force);
             *most = fmax(*most, all / force);
             last = now;
@@ -393,9 +388,8 @@ TEST(faces_that_share_only_an_edge_have_no_points)
     static const double shifts[][3] = {{1, 0, 1},         {1, 1, 1},         {1, 0.3, 1},
                                        {1 - 1e-11, 0, 1}, {1, 0, 1 - 1e-11}, {1 - 1e-12, 1, 1}};
     for (size_t i = 0; i < sizeof shifts / sizeof *shifts; i++) {
-        scene_pair p =
-            scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1), tl_q_identity(),
-                          tl_v3(shifts[i][0], shifts[i][1], shifts[i][2]));
+        scene_pair p = scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1), tl_q_identity(),
+                                     tl_v3(shifts[i][0], shifts[i][1], shifts[i][2]));
         const tl_touch_rule rule = {.min_area = 0.01, .reach = 1.5e-3};
         CHECK_INT(build_by(&p, &rule)->point_count, 0);
         scene_pair_free(&p);
@@ -405,8 +399,8 @@ TEST(faces_that_share_only_an_edge_have_no_points)
 /* A patch whose planes are farther apart than the reach is left out. */
 TEST(patch_beyond_the_reach_is_left_out)
 {
-    scene_pair p = scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1),
-                                 tl_q_identity(), tl_v3(0, 0, 1.002));
+    scene_pair p =
+        scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1), tl_q_identity(), tl_v3(0, 0, 1.002));
     tl_touch_rule rule = {.reach = 0.0019};
     CHECK_INT(build_by(&p, &rule)->point_count, 0);
     rule.reach = 0.0021;
@@ -419,24 +413,22 @@ TEST(patch_beyond_the_reach_is_left_out)
 TEST(what_presses_beyond_a_blunt_edge_counts)
 {
     const double rise = 0.3 * tan(3 * TL_PI / 180);
-    const tl_vec3 points[] = {{-0.5, -0.5, -0.5}, {0.5, -0.5, -0.5},       {-0.5, 0.5, -0.5},
-                              {0.5, 0.5, -0.5},   {0.8, -0.5, rise - 0.5}, {0.8, 0.5, rise - 0.5},
-                              {-0.5, -0.5, 0.5},  {0.8, -0.5, 0.5},        {-0.5, 0.5, 0.5},
-                              {0.8, 0.5, 0.5}};
+    const tl_vec3 points[] = {{-0.5, -0.5, -0.5},      {0.5, -0.5, -0.5},      {-0.5, 0.5, -0.5}, {0.5, 0.5, -0.5},
+                              {0.8, -0.5, rise - 0.5}, {0.8, 0.5, rise - 0.5}, {-0.5, -0.5, 0.5}, {0.8, -0.5, 0.5},
+                              {-0.5, 0.5, 0.5},        {0.8, 0.5, 0.5}};
     static const double overlaps[] = {1e-6, 1e-5, 1e-4, 1e-3, 3e-3};
     int patches = 0;
     for (size_t i = 0; i < sizeof overlaps / sizeof *overlaps; i++) {
         double o = overlaps[i];
-        scene_pair p = scene_pair_of(scene_box_shape(3, 3, 1), scene_hull_shape(points, 10),
-                                     tl_q_identity(), tl_v3(0, 0, 1 - o));
+        scene_pair p =
+            scene_pair_of(scene_box_shape(3, 3, 1), scene_hull_shape(points, 10), tl_q_identity(), tl_v3(0, 0, 1 - o));
         const tl_manifold *m = build_by(&p, &any_reach);
         bool patch = m->facet.kind == TL_FACET_PATCH;
         double found = patch ? o * point_moments(m).area : 2 * tl_v3_norm(m->press->force);
         tl_region region;
         tl_press all;
         CHECK(tl_region_find(&p.view, TL_LIST_MARGIN * p.view.size, &p.scratch, &region));
-        CHECK(tl_press_find(&(tl_press_query){.view = &p.view, .region = &region}, 1, &p.scratch,
-                            &all, NULL));
+        CHECK(tl_press_find(&(tl_press_query){.view = &p.view, .region = &region}, 1, &p.scratch, &all, NULL));
         CHECK_REL(found, 2 * tl_v3_norm(all.force), 1e-3);
         patches += patch;
         scene_pair_free(&p);
@@ -446,7 +438,7 @@ TEST(what_presses_beyond_a_blunt_edge_counts)
 
 TEST_MAIN(RUN(points_integrate_the_common_polygon), RUN(drums_of_many_sides_keep_their_area),
           RUN(turning_stiffness_is_exact_about_every_axis), RUN(unit_square_resists_by_one_twelfth),
-          RUN(wobble_of_a_closed_patch_changes_little),
-          RUN(wobble_of_a_half_open_patch_does_not_jump), RUN(tiny_wobble_leaves_the_rule_alone),
-          RUN(drums_wobble_without_jumps), RUN(faces_that_share_only_an_edge_have_no_points),
-          RUN(patch_beyond_the_reach_is_left_out), RUN(what_presses_beyond_a_blunt_edge_counts))
+          RUN(wobble_of_a_closed_patch_changes_little), RUN(wobble_of_a_half_open_patch_does_not_jump),
+          RUN(tiny_wobble_leaves_the_rule_alone), RUN(drums_wobble_without_jumps),
+          RUN(faces_that_share_only_an_edge_have_no_points), RUN(patch_beyond_the_reach_is_left_out),
+          RUN(what_presses_beyond_a_blunt_edge_counts))

@@ -55,22 +55,19 @@ TEST(make_derives_edges_and_stars)
     tl_poly_free(NULL);
 }
 
-static void expect_failure(const tl_vec3 *vertices, size_t vertex_count, const uint32_t *start,
-                           const uint16_t *loop, size_t face_count, const char *sentence)
+static void expect_failure(const tl_vec3 *vertices, size_t vertex_count, const uint32_t *start, const uint16_t *loop,
+                           size_t face_count, const char *sentence)
 {
     tl_plane planes[4];
     tetrahedron_planes(planes);
     tl_poly *p = (tl_poly *)&planes;
     tl_error error = {0};
-    CHECK_INT(
-        tl_poly_make(vertices, vertex_count, planes, NULL, start, loop, face_count, &p, &error),
-        TL_E_GEOMETRY);
+    CHECK_INT(tl_poly_make(vertices, vertex_count, planes, NULL, start, loop, face_count, &p, &error), TL_E_GEOMETRY);
     CHECK_INT(error.status, TL_E_GEOMETRY);
     CHECK_CONTAINS(error.text, sentence);
     CHECK(p == NULL);
     /* The sentence is optional. */
-    CHECK_INT(tl_poly_make(vertices, vertex_count, planes, NULL, start, loop, face_count, &p, NULL),
-              TL_E_GEOMETRY);
+    CHECK_INT(tl_poly_make(vertices, vertex_count, planes, NULL, start, loop, face_count, &p, NULL), TL_E_GEOMETRY);
 }
 
 TEST(make_refuses_what_is_not_closed)
@@ -82,8 +79,7 @@ TEST(make_refuses_what_is_not_closed)
     static const uint16_t thirteen[13] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3, 1};
     static const uint32_t ragged[5] = {0, 2, 6, 9, 12}, longer[5] = {0, 3, 6, 9, 13};
     tl_vec3 bad[4] = {corners[0], corners[1], {0, NAN, 0}, corners[3]};
-    expect_failure(corners, 4, starts, reversed, 4,
-                   "the edge from vertex 3 to vertex 2 belongs to 2");
+    expect_failure(corners, 4, starts, reversed, 4, "the edge from vertex 3 to vertex 2 belongs to 2");
     expect_failure(corners, 4, starts, twice, 4, "the edge from vertex 1 to vertex 3");
     expect_failure(corners, 4, starts, loopy, 4, "the edge from vertex 1 to vertex 1");
     expect_failure(corners, 4, starts, unknown, 4, "face 1 names vertex 5 of 4");
@@ -112,9 +108,8 @@ TEST(box_is_exact)
 
 TEST(box_without_volume_is_refused)
 {
-    const tl_vec3 zero = {0, 0, 0},
-                  max[6] = {{1, 1, 0},   {1, -1, 1},       {1, 1, 1e-6},
-                            {NAN, 1, 1}, {INFINITY, 1, 1}, {1e-200, 1e-200, 1e-200}};
+    const tl_vec3 zero = {0, 0, 0}, max[6] = {{1, 1, 0},   {1, -1, 1},       {1, 1, 1e-6},
+                                              {NAN, 1, 1}, {INFINITY, 1, 1}, {1e-200, 1e-200, 1e-200}};
     for (int i = 0; i < 6; i++) {
         tl_poly *p = NULL;
         tl_error error = {0};
@@ -202,7 +197,6 @@ TEST(check_finds_what_is_wrong)
     }
 }
 
-TEST_MAIN(RUN(make_derives_edges_and_stars), RUN(make_refuses_what_is_not_closed),
-          RUN(box_is_exact), RUN(box_without_volume_is_refused),
-          RUN(transformed_by_identity_is_the_same), RUN(transformed_moves_and_turns),
-          RUN(check_finds_what_is_wrong))
+TEST_MAIN(RUN(make_derives_edges_and_stars), RUN(make_refuses_what_is_not_closed), RUN(box_is_exact),
+          RUN(box_without_volume_is_refused), RUN(transformed_by_identity_is_the_same),
+          RUN(transformed_moves_and_turns), RUN(check_finds_what_is_wrong))

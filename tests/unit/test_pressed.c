@@ -81,5 +81,4 @@ TEST(forces_that_are_not_told_are_slopes_of_energies)
     CHECK(stress > 1e-7); /* so it was that way */
 }
 
-TEST_MAIN(RUN(a_law_that_tells_forces_is_taken_at_its_word),
-          RUN(forces_that_are_not_told_are_slopes_of_energies))
+TEST_MAIN(RUN(a_law_that_tells_forces_is_taken_at_its_word), RUN(forces_that_are_not_told_are_slopes_of_energies))

@@ -40,8 +40,7 @@ TEST(diagonal_in_order_is_left_alone)
 TEST(diagonal_is_only_put_in_order)
 {
     static const double value[3] = {0.3, 1.1, 1.2};
-    static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
-                                    {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     for (int i = 0; i < 6; i++) {
         tl_sym3 t = {.xx = value[order[i][0]], .yy = value[order[i][1]], .zz = value[order[i][2]]};
         tl_vec3 m;
@@ -72,8 +71,8 @@ TEST(random_tensors)
         double t[3][3];
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
-                t[j][k] = r.m[j][0] * want.x * r.m[k][0] + r.m[j][1] * want.y * r.m[k][1] +
-                          r.m[j][2] * want.z * r.m[k][2];
+                t[j][k] =
+                    r.m[j][0] * want.x * r.m[k][0] + r.m[j][1] * want.y * r.m[k][1] + r.m[j][2] * want.z * r.m[k][2];
         tl_sym3 tensor = {t[0][0], t[1][1], t[2][2], t[0][1], t[1][2], t[2][0]};
         tl_vec3 m;
         tl_quat q;
@@ -88,5 +87,4 @@ TEST(random_tensors)
     }
 }
 
-TEST_MAIN(RUN(diagonal_in_order_is_left_alone), RUN(diagonal_is_only_put_in_order),
-          RUN(random_tensors))
+TEST_MAIN(RUN(diagonal_in_order_is_left_alone), RUN(diagonal_is_only_put_in_order), RUN(random_tensors))

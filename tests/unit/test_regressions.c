@@ -35,10 +35,8 @@ TEST(nearly_parallel_edges_stay_in_contact)
         tl_quat turn = scene_turn(tl_v3(0, 0, 1), angle);
         tl_vec3 edge = {0, 0.5 * (sin(lean) - cos(lean)), -half};
         tl_vec3 place = tl_v3_sub(tl_v3(0, 0, sqrt(0.5) - OVERLAP), tl_q_rotate(turn, edge));
-        scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(1, 0, 0), TL_PI / 4),
-                    tl_v3(0, 0, 0));
-        scene_block(m, scene_box_shape(1, 1, 1), tl_q_mul(turn, scene_turn(tl_v3(1, 0, 0), lean)),
-                    place);
+        scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(1, 0, 0), TL_PI / 4), tl_v3(0, 0, 0));
+        scene_block(m, scene_box_shape(1, 1, 1), tl_q_mul(turn, scene_turn(tl_v3(1, 0, 0), lean)), place);
         scene_law(m, "coulomb", KN, KN, 30);
         scene_forces(m);
         double first = scene_force(m, 0, 1).z, last = first, common = 1;
@@ -323,13 +321,9 @@ TEST(tiny_steps_in_large_coordinates_add_up)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(RUN(nearly_parallel_edges_stay_in_contact),
-          RUN(crossing_edges_press_with_the_cube_of_their_depth),
-          RUN(parallel_faces_that_do_not_meet_change_nothing),
-          RUN(joint_is_that_of_a_face_that_touches), RUN(edge_on_face_presses_all_along),
-          RUN(corner_on_face_presses_with_the_cube_of_its_depth),
-          RUN(tilted_face_presses_with_the_square_of_its_depth),
-          RUN(faces_half_a_degree_apart_share_the_force),
-          RUN(ties_do_not_trigger_the_full_search_every_step),
-          RUN(touching_without_area_is_not_looked_at_every_step),
+TEST_MAIN(RUN(nearly_parallel_edges_stay_in_contact), RUN(crossing_edges_press_with_the_cube_of_their_depth),
+          RUN(parallel_faces_that_do_not_meet_change_nothing), RUN(joint_is_that_of_a_face_that_touches),
+          RUN(edge_on_face_presses_all_along), RUN(corner_on_face_presses_with_the_cube_of_its_depth),
+          RUN(tilted_face_presses_with_the_square_of_its_depth), RUN(faces_half_a_degree_apart_share_the_force),
+          RUN(ties_do_not_trigger_the_full_search_every_step), RUN(touching_without_area_is_not_looked_at_every_step),
           RUN(tiny_steps_in_large_coordinates_add_up))

@@ -10,8 +10,7 @@
 #include <talus/state.h>
 #include <xxhash.h>
 
-static const char truth[] = TALUS_TEST_TMP "/costs.talus",
-                  lie_path[] = TALUS_TEST_TMP "/cost.talus";
+static const char truth[] = TALUS_TEST_TMP "/costs.talus", lie_path[] = TALUS_TEST_TMP "/cost.talus";
 
 #define MOST_BYTES (100u << 20)
 #define LIES 300
@@ -59,9 +58,8 @@ static void write_bytes(const unsigned char *bytes, size_t length)
 /* A number as a liar would choose it: of the size of what is there, or of none. */
 static uint64_t lie_about(uint64_t *seed, uint64_t was)
 {
-    const uint64_t all[] = {0,          1,         was + 1,   was - 1,    2 * was,
-                            64 * was,   was << 20, 1 << 27,   270000000u, UINT32_MAX,
-                            1ull << 40, INT64_MAX, UINT64_MAX};
+    const uint64_t all[] = {0,       1,          was + 1,    was - 1,    2 * was,   64 * was,  was << 20,
+                            1 << 27, 270000000u, UINT32_MAX, 1ull << 40, INT64_MAX, UINT64_MAX};
     return all[(size_t)scene_between(seed, 0, sizeof all / sizeof *all - 0.001)];
 }
 
@@ -109,16 +107,14 @@ static void change_bytes(uint64_t *seed, char what[200])
         place = chunk + fields[(size_t)scene_between(seed, 0, 2.999)];
     } else {
         size_t words = head.stored / 8;
-        place = chunk + sizeof head + head.name_bytes +
-                8 * (size_t)scene_between(seed, 0, (double)words - 0.001);
+        place = chunk + sizeof head + head.name_bytes + 8 * (size_t)scene_between(seed, 0, (double)words - 0.001);
     }
     uint64_t was, is;
     memcpy(&was, bytes + place, sizeof was);
     is = lie_about(seed, was);
     memcpy(bytes + place, &is, sizeof is);
     snprintf(what, 200, "%.*s, byte %zu: %llu for %llu", (int)head.name_bytes,
-             (const char *)bytes + chunk + sizeof head, place - chunk, (unsigned long long)is,
-             (unsigned long long)was);
+             (const char *)bytes + chunk + sizeof head, place - chunk, (unsigned long long)is, (unsigned long long)was);
     sum_up(bytes, length);
     write_bytes(bytes, length);
     free(bytes);

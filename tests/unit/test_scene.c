@@ -37,11 +37,10 @@ static void add_box(tl_model *m, double x, double size)
 static void cut(tl_model *m, const char *joint, double x)
 {
     const double origin[] = {x, 0, 0};
-    const tl_value values[] = {
-        {.key = "joint", .type = TL_VALUE_STRING, .text = joint},
-        {.key = "dip", .type = TL_VALUE_NUMBER, .number = 90},
-        {.key = "dip_direction", .type = TL_VALUE_NUMBER, .number = 90},
-        {.key = "origin", .type = TL_VALUE_NUMBERS, .data = origin, .count = 3}};
+    const tl_value values[] = {{.key = "joint", .type = TL_VALUE_STRING, .text = joint},
+                               {.key = "dip", .type = TL_VALUE_NUMBER, .number = 90},
+                               {.key = "dip_direction", .type = TL_VALUE_NUMBER, .number = 90},
+                               {.key = "origin", .type = TL_VALUE_NUMBERS, .data = origin, .count = 3}};
     const tl_args args = {values, 4};
     tl_generate_summary summary;
     CHECK_INT(tl_generate(m, "joint", &args, &summary), TL_OK);
@@ -257,8 +256,7 @@ TEST(refused_cuts_are_told_when_there_are_more)
     cut(m, "thin", 2 - 1e-5);
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK); /* not sent: it is told again */
     CHECK_INT(first_of(&f, "REFU"), 2);
-    CHECK_TEXT(next_frame(&f, &scene, m),
-               "SHAP REFU FRAM LINE FIND DONE"); /* its face takes the joint */
+    CHECK_TEXT(next_frame(&f, &scene, m), "SHAP REFU FRAM LINE FIND DONE"); /* its face takes the joint */
     CHECK_INT(first_of(&f, "REFU"), 2);
     tl_scene_forget(&scene);
     CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP REFU TOUC FRAM LINE FIND DONE");
@@ -312,8 +310,7 @@ TEST(fields_have_a_value_for_each)
 
 static int digit_of(unsigned char letter)
 {
-    static const char letters[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const char *at = letter ? strchr(letters, letter) : NULL;
     return at ? (int)(at - letters) : -1;
 }
@@ -348,9 +345,8 @@ static void fill(unsigned char *data, size_t bytes, uint64_t *state)
 
 TEST(what_is_packed_unpacks)
 {
-    static const size_t sizes[] = {0,      1,      2,      3,      4,      5,
-                                   100,    32768,  32769,  196607, 262143, 262144,
-                                   262145, 524288, 524289, 700001, 3000000};
+    static const size_t sizes[] = {0,      1,      2,      3,      4,      5,      100,    32768,  32769,
+                                   196607, 262143, 262144, 262145, 524288, 524289, 700001, 3000000};
     tl_model *one = empty_model(1), *three = empty_model(3);
     uint64_t state = 7;
     for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
@@ -377,6 +373,5 @@ TEST(what_is_packed_unpacks)
     tl_model_destroy(three);
 }
 
-TEST_MAIN(RUN(what_is_sent_once), RUN(what_has_changed_is_sent_again),
-          RUN(refused_cuts_are_told_when_there_are_more), RUN(an_empty_model_is_a_frame),
-          RUN(fields_have_a_value_for_each), RUN(what_is_packed_unpacks))
+TEST_MAIN(RUN(what_is_sent_once), RUN(what_has_changed_is_sent_again), RUN(refused_cuts_are_told_when_there_are_more),
+          RUN(an_empty_model_is_a_frame), RUN(fields_have_a_value_for_each), RUN(what_is_packed_unpacks))

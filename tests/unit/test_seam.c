@@ -132,8 +132,7 @@ TEST(the_depth_in_the_parts_of_a_box_is_that_in_the_box)
         tl_bounds b = tl_poly_bounds(parts[i]);
         for (int k = 0; k < 64; k++) {
             tl_vec3 t = tl_v3((k % 4 + 0.5) / 4, (k / 4 % 4 + 0.5) / 4, (k / 16 + 0.5) / 4);
-            tl_vec3 x = tl_v3(b.min.x + t.x * (b.max.x - b.min.x), t.y,
-                              b.min.z + t.z * (b.max.z - b.min.z));
+            tl_vec3 x = tl_v3(b.min.x + t.x * (b.max.x - b.min.x), t.y, b.min.z + t.z * (b.max.z - b.min.z));
             CHECK_NEAR(depth_in(parts[i], x), depth_in(whole, x), 1e-15);
         }
     }
@@ -216,11 +215,8 @@ static double field(tl_model *m, tl_id block, const char *name, int component)
 static double slide(int pieces, double kn, double *place)
 {
     tl_model *m;
-    const tl_model_config config = {.size = sizeof(tl_model_config),
-                                    .gravity = {0, 0, -10},
-                                    .seed = 1,
-                                    .threads = 1,
-                                    .reuse_geometry = 1};
+    const tl_model_config config = {
+        .size = sizeof(tl_model_config), .gravity = {0, 0, -10}, .seed = 1, .threads = 1, .reuse_geometry = 1};
     CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
     if (pieces == 2) {
         make_box(m, tl_v3(0, 0, 0), tl_v3(2, 1, 1));
@@ -238,10 +234,8 @@ static double slide(int pieces, double kn, double *place)
     const tl_args args = {law, 3};
     CHECK_INT(tl_joint_law(m, "*", "coulomb", &args), TL_OK);
     CHECK_INT(tl_blocks_fix(m, &base, 1, TL_FIX_ALL), TL_OK);
-    tl_block_set set = {.size = sizeof(tl_block_set),
-                        .density = NAN,
-                        .velocity = {0.5, 0, 0},
-                        .angular_velocity = {NAN, NAN, NAN}};
+    tl_block_set set = {
+        .size = sizeof(tl_block_set), .density = NAN, .velocity = {0.5, 0, 0}, .angular_velocity = {NAN, NAN, NAN}};
     CHECK_INT(tl_blocks_set(m, &slider, 1, &set), TL_OK);
     double worst = 0;
     tl_solve_result result;
@@ -272,9 +266,8 @@ static bool hang_together(double gap, double lean, double unit)
 {
     uint32_t label[2][2];
     tl_poly *low = box(0, 1, -1, 0), *on = box(0.25, 0.75, gap, gap + 1), *part[2];
-    const tl_mat3 turn = {{{unit * cos(lean), 0, unit * sin(lean)},
-                           {0, unit, 0},
-                           {unit * -sin(lean), 0, unit * cos(lean)}}};
+    const tl_mat3 turn = {
+        {{unit * cos(lean), 0, unit * sin(lean)}, {0, unit, 0}, {unit * -sin(lean), 0, unit * cos(lean)}}};
     const tl_mat3 scale = {{{unit, 0, 0}, {0, unit, 0}, {0, 0, unit}}};
     tl_vec3 corner[2][8];
     for (int i = 0; i < 8; i++) {

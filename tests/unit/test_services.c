@@ -17,8 +17,7 @@ static tl_model *model_new(int64_t seed)
     return m;
 }
 
-static tl_generate_summary generate(tl_model *m, const char *name, const tl_value *values,
-                                    size_t count)
+static tl_generate_summary generate(tl_model *m, const char *name, const tl_value *values, size_t count)
 {
     tl_generate_summary summary = {0};
     tl_args args = {values, count};
@@ -100,8 +99,7 @@ static void face_heights(const tl_model *m, const char *joint, double *height, s
         const tl_poly *p = m->blocks.shape[row];
         for (uint32_t f = 0; f < p->face_count; f++)
             if (p->tag[f].joint == wanted && p->tag[f].plane <= planes)
-                height[p->tag[f].plane] =
-                    tl_model_point(m, m->blocks.body[row], tl_poly_face_centroid(p, f)).z;
+                height[p->tag[f].plane] = tl_model_point(m, m->blocks.body[row], tl_poly_face_centroid(p, f)).z;
     }
 }
 
@@ -174,8 +172,7 @@ static void plane_normals(const tl_model *m, const char *joint, tl_vec3 *normal,
         const tl_poly *p = m->blocks.shape[row];
         for (uint32_t f = 0; f < p->face_count; f++)
             if (p->tag[f].joint == wanted && p->tag[f].plane <= planes)
-                normal[p->tag[f].plane] =
-                    p->plane[f].normal.z > 0 ? p->plane[f].normal : tl_v3_neg(p->plane[f].normal);
+                normal[p->tag[f].plane] = p->plane[f].normal.z > 0 ? p->plane[f].normal : tl_v3_neg(p->plane[f].normal);
     }
 }
 
@@ -221,8 +218,7 @@ TEST(persistence_is_a_probability_for_each_block)
         box(m, zero, high);
         cut_set(m, (set){"columns", 90, 0, 90, 0, 1, 0, 399, 1, origin});
         CHECK_INT(tl_block_count(m), 400);
-        tl_generate_summary s =
-            cut_set(m, (set){"J", 0, 0, 0, 0, 1, 0, 1, persistences[n], origin});
+        tl_generate_summary s = cut_set(m, (set){"J", 0, 0, 0, 0, 1, 0, 1, persistences[n], origin});
         double expected = 400 * persistences[n];
         /* Five standard deviations of the binomial. */
         CHECK_NEAR((double)s.cuts, expected, 5 * sqrt(expected * (1 - persistences[n])));
@@ -260,8 +256,7 @@ TEST(a_polyhedron_is_the_hull_of_its_vertices)
 }
 
 /* The call fails with a sentence that contains `part`, and leaves blocks, joints and groups alone. */
-static void refused(tl_model *m, const char *name, const tl_value *values, size_t count,
-                    const char *part)
+static void refused(tl_model *m, const char *name, const tl_value *values, size_t count, const char *part)
 {
     size_t blocks = tl_block_count(m), joints = m->joint_count, groups = m->group_count;
     uint32_t planes = joints ? m->joints[0].planes : 0;
@@ -283,32 +278,27 @@ TEST(mistakes_leave_the_model_as_it_was)
     tl_model *m = model_new(1);
     box(m, zero, one);
     cut_set(m, (set){"J", 0, 0, 0, 0, 0.5, 0, 1, 1, half});
-    refused(m, "bix", NULL, 0,
-            "unknown generator 'bix'; did you mean 'box'? (known: blocks, box, ");
+    refused(m, "bix", NULL, 0, "unknown generator 'bix'; did you mean 'box'? (known: blocks, box, ");
     tl_value upside[] = {vector("min", one), vector("max", zero), number("density", 1)};
-    refused(m, "box", upside, 3,
-            "generator 'box' of plugin 'talus.box': max.x = 0 m must be > min.x = 1 m");
+    refused(m, "box", upside, 3, "generator 'box' of plugin 'talus.box': max.x = 0 m must be > min.x = 1 m");
     tl_value weightless[] = {vector("min", zero), vector("max", one), number("density", 0)};
     refused(m, "box", weightless, 3, "generator 'box': density = 0 kg/m3 must be > 0");
-    tl_value plane[] = {{.key = "vertices", .type = TL_VALUE_POINTS, .data = flat, .count = 4},
-                        number("density", 1)};
+    tl_value plane[] = {{.key = "vertices", .type = TL_VALUE_POINTS, .data = flat, .count = 4}, number("density", 1)};
     refused(m, "polyhedron", plane, 2, "generator 'polyhedron' of plugin 'talus.polyhedron': ");
     plane[0].count = 3;
     refused(m, "polyhedron", plane, 2, "generator 'polyhedron' of plugin 'talus.polyhedron': ");
     plane[0].count = 0;
     refused(m, "polyhedron", plane, 2, "generator 'polyhedron' of plugin 'talus.polyhedron': ");
-    tl_value set_values[] = {text("joint", "K"), number("dip", 10), number("dip_direction", 10),
-                             number("spacing", 0.1), number("spacing_dev", 0.1)};
+    tl_value set_values[] = {text("joint", "K"), number("dip", 10), number("dip_direction", 10), number("spacing", 0.1),
+                             number("spacing_dev", 0.1)};
     refused(m, "jointset", set_values, 5,
             "generator 'jointset' of plugin 'talus.jointset': spacing_dev = 0.1 m must be < "
             "spacing = 0.1 m");
     refused(m, "jointset", set_values, 3, "generator 'jointset': parameter 'spacing' is missing");
     set_values[0].text = "K:1";
-    refused(m, "joint", set_values, 3,
-            "generator 'joint' of plugin 'talus.joint': joint = 'K:1' is not a name");
+    refused(m, "joint", set_values, 3, "generator 'joint' of plugin 'talus.joint': joint = 'K:1' is not a name");
     set_values[0].text = "";
-    refused(m, "joint", set_values, 3,
-            "generator 'joint' of plugin 'talus.joint': joint = '' is not a name");
+    refused(m, "joint", set_values, 3, "generator 'joint' of plugin 'talus.joint': joint = '' is not a name");
     set_values[1].number = 91;
     refused(m, "joint", set_values, 3, "generator 'joint': dip = 91 deg is outside [0, 90]");
     tl_model_destroy(m);
@@ -319,8 +309,7 @@ TEST(a_generator_that_fails_half_way_leaves_no_trace)
     tl_error error = {TL_OK, ""};
     if (!CHECK_INT(tl_plugin_load(TALUS_BAD_PLUGIN_DIR "/half_way.so", &error), TL_OK))
         printf("%s\n", error.text);
-    static const char *const modes[] = {"fail", "silent",      "normal",
-                                        "tag",  "persistence", "density"};
+    static const char *const modes[] = {"fail", "silent", "normal", "tag", "persistence", "density"};
     static const char *const reasons[] = {"went half way",
                                           "no reason given (status 3: a shape is degenerate",
                                           "which is not of unit length",

@@ -9,13 +9,13 @@
 /* The member lies in what the struct has left at its end. */
 #define DUMMY (offsetof(tl_model_config, contact_points) + sizeof(int32_t))
 static const char *const dummies[] = {"one", "two", "three", NULL};
-#define MORE_MODEL_PARAMS                                                                          \
-    {.size = sizeof(tl_param),                                                                     \
-     .type = TL_PARAM_ENUM,                                                                        \
-     .name = "dummy",                                                                              \
-     .unit = "",                                                                                   \
-     .offset = DUMMY,                                                                              \
-     .def = {1.0},                                                                                 \
+#define MORE_MODEL_PARAMS                                                                                              \
+    {.size = sizeof(tl_param),                                                                                         \
+     .type = TL_PARAM_ENUM,                                                                                            \
+     .name = "dummy",                                                                                                  \
+     .unit = "",                                                                                                       \
+     .offset = DUMMY,                                                                                                  \
+     .def = {1.0},                                                                                                     \
      .choices = dummies},
 
 #include "model/functions.c"
@@ -54,8 +54,7 @@ TEST(has_its_default_and_is_read)
     CHECK_INT(tl_args_read(params, count, 0, &args, false, &config, "model", &error), TL_OK);
     CHECK_INT(dummy_of(&config), 2);
     value.text = "four";
-    CHECK_INT(tl_args_read(params, count, 0, &args, false, &config, "model", &error),
-              TL_E_ARGUMENT);
+    CHECK_INT(tl_args_read(params, count, 0, &args, false, &config, "model", &error), TL_E_ARGUMENT);
     CHECK_CONTAINS(error.text, "unknown dummy 'four'");
 }
 
@@ -94,5 +93,5 @@ TEST(is_hashed)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(RUN(has_its_default_and_is_read), RUN(is_saved_restored_and_copied),
-          RUN(is_refused_where_it_cannot_be), RUN(is_hashed))
+TEST_MAIN(RUN(has_its_default_and_is_read), RUN(is_saved_restored_and_copied), RUN(is_refused_where_it_cannot_be),
+          RUN(is_hashed))

@@ -9,8 +9,7 @@
 static const tl_vec3 up = {0, 0, 1}, down = {0, 0, -1};
 
 /* Sums of an overlap o over an area that grow with x at the rates given: minus the gradients are along x. */
-static tl_field_sums sums_at(double area, double by_area, double overlap, double by_overlap,
-                             double x)
+static tl_field_sums sums_at(double area, double by_area, double overlap, double by_overlap, double x)
 {
     double a = area + by_area * x, o = overlap + by_overlap * x;
     return (tl_field_sums){
@@ -50,8 +49,7 @@ TEST(between_them_the_gradient_is_that_of_the_share)
     for (double part = 0.12; part < 0.5; part += 0.05)
         for (double overlap = 1e-3; overlap < 0.01; overlap += 2e-3) {
             tl_patch_share s = share_at(part, overlap, 0);
-            double more = share_at(part, overlap, h).share,
-                   less = share_at(part, overlap, -h).share;
+            double more = share_at(part, overlap, h).share, less = share_at(part, overlap, -h).share;
             CHECK(s.share > 0 && s.share < 1);
             CHECK_NEAR(s.push.x, (more - less) / (2 * h), 1e-7);
         }

@@ -60,17 +60,11 @@ TEST(bodies_follow_what_generators_do)
 TEST(mistakes_of_a_generator_are_told)
 {
     static const char *const modes[] = {"beyond", "long_group", "skew"};
-    static const char *const reasons[] = {"it asks for block 4 of 4, counted from 0",
-                                          "is longer than 63 letters",
+    static const char *const reasons[] = {"it asks for block 4 of 4, counted from 0", "is longer than 63 letters",
                                           "which is not of unit length"};
     for (int i = 0; i < 3; i++) {
-        tl_model *m = run(modes[i],
-                          i == 0   ? TL_E_PLUGIN
-                          : i == 1 ? TL_E_ARGUMENT
-                                   : TL_E_NUMERIC,
-                          NULL);
-        CHECK_CONTAINS(tl_model_error(m)->text,
-                       "generator 'single_blocks' of plugin 'test.single_blocks': ");
+        tl_model *m = run(modes[i], i == 0 ? TL_E_PLUGIN : i == 1 ? TL_E_ARGUMENT : TL_E_NUMERIC, NULL);
+        CHECK_CONTAINS(tl_model_error(m)->text, "generator 'single_blocks' of plugin 'test.single_blocks': ");
         CHECK_CONTAINS(tl_model_error(m)->text, reasons[i]);
         CHECK_INT(tl_block_count(m), 0);
         CHECK_INT(m->group_count, 0);

@@ -44,8 +44,7 @@ static rig rig_of(tl_poly *still, tl_poly *moved, bool swapped, double least)
     if (!swapped)
         scene_block(r.m, moved, none, away);
     scene_law(r.m, "elastic", KN, KN, -1);
-    tl_contact_area area = {
-        .size = sizeof(tl_contact_area), .fraction = 0, .absolute = least > 0 ? least : NAN};
+    tl_contact_area area = {.size = sizeof(tl_contact_area), .fraction = 0, .absolute = least > 0 ? least : NAN};
     scene_ok(r.m, tl_model_contact_area(r.m, &area));
     return r;
 }
@@ -163,8 +162,7 @@ static double worst_slope(rig *r, place at, double depth, double *worst)
         tl_vec3 axis = {k % 3 == 0, k % 3 == 1, k % 3 == 2}, still = {0, 0, 0};
         double best = INFINITY;
         for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
-            double off = off_slope(r, at, &l, k < 3 ? axis : still, k < 3 ? still : axis,
-                                   motions[i] * depth);
+            double off = off_slope(r, at, &l, k < 3 ? axis : still, k < 3 ? still : axis, motions[i] * depth);
             if (off >= 0)
                 best = fmin(best, off);
         }
@@ -206,8 +204,8 @@ TEST(hulls_press_by_the_slope_of_what_they_store)
         tl_poly *shape[2];
         for (int k = 0; k < 2; k++)
             shape[k] = scene_random_hull(&seed, 12 + s % 8, tl_v3(0.5, 0.45, 0.4));
-        scene_pair p = scene_pair_of(shape[0], shape[1], scene_any_turn(&seed),
-                                     tl_v3_scale(1.2, scene_direction(&seed)));
+        scene_pair p =
+            scene_pair_of(shape[0], shape[1], scene_any_turn(&seed), tl_v3_scale(1.2, scene_direction(&seed)));
         double depth = pow(10, scene_between(&seed, -4, -1));
         place at = pressed(&p, depth);
         tl_narrow_scratch_free(&p.scratch);
@@ -294,8 +292,7 @@ static place rocking(const motion_path *w, double t)
 static place sliding(const motion_path *w, double t)
 {
     double s = w->value[0] + (w->value[1] - w->value[0]) * t;
-    return stand(0.5 + s * cos(w->yaw), 0.03 + s * sin(w->yaw), w->yaw, w->roll, w->along,
-                 w->depth);
+    return stand(0.5 + s * cos(w->yaw), 0.03 + s * sin(w->yaw), w->yaw, w->roll, w->along, w->depth);
 }
 
 /* Checks that nothing jumps on a path; what jumps, with the value that tells the path from others. */
@@ -356,8 +353,8 @@ TEST(hulls_at_random_do_not_jump)
         tl_poly *shape[2];
         for (int k = 0; k < 2; k++)
             shape[k] = scene_random_hull(&seed, 12 + s % 8, tl_v3(0.5, 0.45, 0.4));
-        scene_pair p = scene_pair_of(shape[0], shape[1], scene_any_turn(&seed),
-                                     tl_v3_scale(1.2, scene_direction(&seed)));
+        scene_pair p =
+            scene_pair_of(shape[0], shape[1], scene_any_turn(&seed), tl_v3_scale(1.2, scene_direction(&seed)));
         motion_path w = {.at = straight, .from = pressed(&p, scene_between(&seed, 1e-3, 2e-2))};
         p.turn = tl_q_mul(scene_turn(scene_direction(&seed), 4 * degree), p.turn);
         p.shift = tl_v3_madd(p.shift, 0.1, scene_direction(&seed));
@@ -382,8 +379,7 @@ static place over_ridge(const motion_path *w, double t)
     double tilt = w->value[0] + (w->value[1] - w->value[0]) * t;
     tl_quat q = scene_turn(tl_v3(0, 0, 1), w->yaw);
     q = tl_q_mul(scene_turn(tl_v3(1, 0, 0), tilt), q);
-    return (place){tl_v3_add(tl_v3(0, 0, -w->depth), tl_q_rotate(q, tl_v3(w->along, 0.05, 0.25))),
-                   q};
+    return (place){tl_v3_add(tl_v3(0, 0, -w->depth), tl_q_rotate(q, tl_v3(w->along, 0.05, 0.25))), q};
 }
 
 TEST(patches_come_in_without_a_jump)
@@ -395,9 +391,8 @@ TEST(patches_come_in_without_a_jump)
         for (int turn = 0; turn < 4; turn++)
             for (int deep = 0; deep < 4; deep++) {
                 double drop = 0.6 * tan(slope * degree);
-                tl_vec3 p[8] = {{-1, 0, 0},       {1, 0, 0},        {-1, -0.6, -drop},
-                                {1, -0.6, -drop}, {-1, 0.6, -drop}, {1, 0.6, -drop},
-                                {-1, 0, -1},      {1, 0, -1}};
+                tl_vec3 p[8] = {{-1, 0, 0},       {1, 0, 0},       {-1, -0.6, -drop}, {1, -0.6, -drop},
+                                {-1, 0.6, -drop}, {1, 0.6, -drop}, {-1, 0, -1},       {1, 0, -1}};
                 rig r = rig_of(scene_hull_shape(p, 8), scene_box_shape(0.6, 0.6, 0.5), turn % 2, 0);
                 motion_path w = {.at = over_ridge, .yaw = 0.25 * turn, .depth = depths[deep]};
                 w.along = turn % 3 ? 0.1 : 1.27;
@@ -495,9 +490,8 @@ TEST(a_minimum_area_joins_that_of_a_face)
     tl_model_destroy(r.m);
 }
 
-TEST_MAIN(RUN(edges_press_by_the_slope_of_what_they_store),
-          RUN(hulls_press_by_the_slope_of_what_they_store),
-          RUN(an_edge_over_a_border_rocks_without_a_jump),
-          RUN(an_end_passes_over_a_border_without_a_jump), RUN(hulls_at_random_do_not_jump),
-          RUN(patches_come_in_without_a_jump), RUN(which_vertex_is_the_lowest_does_not_matter),
-          RUN(a_minimum_area_joins_that_of_a_corner), RUN(a_minimum_area_joins_that_of_a_face))
+TEST_MAIN(RUN(edges_press_by_the_slope_of_what_they_store), RUN(hulls_press_by_the_slope_of_what_they_store),
+          RUN(an_edge_over_a_border_rocks_without_a_jump), RUN(an_end_passes_over_a_border_without_a_jump),
+          RUN(hulls_at_random_do_not_jump), RUN(patches_come_in_without_a_jump),
+          RUN(which_vertex_is_the_lowest_does_not_matter), RUN(a_minimum_area_joins_that_of_a_corner),
+          RUN(a_minimum_area_joins_that_of_a_face))

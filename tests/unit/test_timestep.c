@@ -14,9 +14,8 @@
 
 #include <talus/number.h>
 
-#define KN 1e8 /* Pa/m */
-#define ALIKE                                                                                      \
-    1e-5 /* areas and arms are kept within 1e-6 of a block's size, and count twice or more */
+#define KN 1e8     /* Pa/m */
+#define ALIKE 1e-5 /* areas and arms are kept within 1e-6 of a block's size, and count twice or more */
 #define STEPS 5000 /* in which blocks fall, roll and come to rest */
 #define BLOCKS 27
 
@@ -29,8 +28,7 @@ static tl_model *shower(void)
     scene_box(m, tl_v3(-3, -3, -1), tl_v3(6, 6, 0));
     for (int i = 0; i < BLOCKS; i++) {
         tl_vec3 at = {i % 3 * 1.1, i / 3 % 3 * 1.1, 0.7 + i / 9 * 1.1};
-        scene_block(m, scene_random_hull(&seed, 16, tl_v3(0.5, 0.4, 0.5)), scene_any_turn(&seed),
-                    at);
+        scene_block(m, scene_random_hull(&seed, 16, tl_v3(0.5, 0.4, 0.5)), scene_any_turn(&seed), at);
     }
     scene_law(m, "coulomb", KN, KN, 30);
     tl_id base = m->blocks.id[0];
@@ -62,10 +60,9 @@ static double compare_step(tl_model *m, double *copy)
 TEST(kept_rates_are_those_of_the_present_contacts)
 {
     tl_model *m = shower();
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep),
-                                                    .rule = TL_TIMESTEP_BODY,
-                                                    .fraction = 0.5,
-                                                    .dt = NAN}));
+    scene_ok(m,
+             tl_model_timestep(
+                 m, &(tl_timestep){.size = sizeof(tl_timestep), .rule = TL_TIMESTEP_BODY, .fraction = 0.5, .dt = NAN}));
     double copy[BLOCKS + 1], worst = 0;
     size_t most = 0;
     for (int i = 0; i < STEPS; i++) {
@@ -88,8 +85,7 @@ TEST(mass_scaling_knows_which_bodies_have_contacts)
     for (int i = 0; i < STEPS; i++) {
         compare_step(m, copy);
         for (uint32_t row = 1; row < m->blocks.table.rows; row++) {
-            uint32_t begin = m->detect->by_block_start[row],
-                     end = m->detect->by_block_start[row + 1];
+            uint32_t begin = m->detect->by_block_start[row], end = m->detect->by_block_start[row + 1];
             bool carries = false;
             for (uint32_t e = begin; e < end; e++)
                 carries = carries || m->detect->contacts.area[m->detect->by_block[e]] > 0;
@@ -173,16 +169,13 @@ TEST(time_stands_where_nothing_can_move)
     scene_ok(m, tl_model_dt(m, &dt));
     CHECK(m->time == 0 && dt == 0);
     /* what is held but moves needs a step */
-    tl_block_set moves = {.size = sizeof(tl_block_set),
-                          .density = NAN,
-                          .velocity = {1, 0, 0},
-                          .angular_velocity = {0, 0, 0}};
+    tl_block_set moves = {
+        .size = sizeof(tl_block_set), .density = NAN, .velocity = {1, 0, 0}, .angular_velocity = {0, 0, 0}};
     scene_ok(m, tl_blocks_set(m, &m->blocks.id[0], 1, &moves));
     CHECK_INT(ten_steps(m), TL_E_STATE);
     CHECK_CONTAINS(tl_model_error(m)->text, "no law says how stiff a contact is");
     /* and where the user gives one, time goes on */
-    scene_ok(
-        m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.25}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.25}));
     scene_ok(m, ten_steps(m));
     CHECK_NEAR(m->time, 2.5, 1e-15);
     CHECK_NEAR(m->bodies.pose[0].u.x, 2.5, 1e-15);
@@ -198,8 +191,7 @@ TEST(a_fall_begins_after_steps_without_time)
     scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
     scene_ok(m, ten_steps(m));
     scene_ok(m, tl_blocks_free(m, &m->blocks.id[0], 1));
-    scene_ok(
-        m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.125}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.125}));
     scene_ok(m, ten_steps(m));
     CHECK_NEAR(m->bodies.pose[0].u.z, -5 * 1.25 * 1.25, 1e-14);
     tl_model_destroy(m);
@@ -315,8 +307,7 @@ static int remarks_of(double share, double density, bool scaling)
     tl_model *m = eight_cubes(1, share, &h);
     tl_block_set lighter = {sizeof(tl_block_set), density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
     scene_ok(m, tl_blocks_set(m, &m->blocks.id[2], 1, &lighter));
-    scene_ok(m, tl_model_mass_scaling(
-                    m, &(tl_mass_scaling){sizeof(tl_mass_scaling), scaling, NAN, NAN}));
+    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){sizeof(tl_mass_scaling), scaling, NAN, NAN}));
     scene_ok(m, ten_steps(m));
     tl_model_destroy(m);
     return h.remarks;
@@ -389,11 +380,8 @@ TEST(nothing_is_said_where_no_sliver_is_to_blame)
     CHECK_INT(remarks_of_a_crowded_column(), 0);
 }
 
-TEST_MAIN(RUN(kept_rates_are_those_of_the_present_contacts),
-          RUN(mass_scaling_knows_which_bodies_have_contacts),
-          RUN(a_body_without_contacts_stands_on_its_largest_face),
-          RUN(a_body_in_contact_has_the_law_of_its_contacts),
+TEST_MAIN(RUN(kept_rates_are_those_of_the_present_contacts), RUN(mass_scaling_knows_which_bodies_have_contacts),
+          RUN(a_body_without_contacts_stands_on_its_largest_face), RUN(a_body_in_contact_has_the_law_of_its_contacts),
           RUN(time_stands_where_nothing_can_move), RUN(a_fall_begins_after_steps_without_time),
-          RUN(the_reason_for_no_step_is_the_true_one),
-          RUN(a_sliver_is_told_of_once_with_its_remedy),
+          RUN(the_reason_for_no_step_is_the_true_one), RUN(a_sliver_is_told_of_once_with_its_remedy),
           RUN(nothing_is_said_where_no_sliver_is_to_blame))

@@ -16,8 +16,7 @@ static tl_model *cube_on_plate(const char *law, double twist)
 {
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
-    scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(0, 0, 1), twist),
-                tl_v3(0.1, 0.2, 0.5 - OVERLAP));
+    scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(0, 0, 1), twist), tl_v3(0.1, 0.2, 0.5 - OVERLAP));
     scene_law(m, law, KN, KN, strcmp(law, "elastic") == 0 ? -1 : 30);
     scene_forces(m);
     return m;
@@ -134,8 +133,7 @@ TEST(totals_stay_at_unchanged_area)
         tl_vec3 centre = area_centre(m);
         totals before = sum_points(m, centre);
         tl_contact_point points[64];
-        size_t count =
-            other_points(m, scene_between(&seed, 0, 3), scene_between(&seed, 0.8, 1.2), points);
+        size_t count = other_points(m, scene_between(&seed, 0, 3), scene_between(&seed, 0.8, 1.2), points);
         transfer(m, points, count);
         CHECK_NEAR(scene_apart(area_centre(m), centre), 0, 1e-14);
         totals now = sum_points(m, centre);
@@ -155,10 +153,9 @@ TEST(totals_stay_with_fewer_points)
     totals before = sum_points(m, c);
     tl_contact_point points[4];
     for (int k = 0; k < 4; k++)
-        points[k] =
-            (tl_contact_point){.p = tl_v3_add(c, tl_v3(k & 1 ? 0.3 : -0.3, k & 2 ? 0.3 : -0.3, 0)),
-                               .area = before.area / 4,
-                               .key = (uint32_t)(2000 + k)};
+        points[k] = (tl_contact_point){.p = tl_v3_add(c, tl_v3(k & 1 ? 0.3 : -0.3, k & 2 ? 0.3 : -0.3, 0)),
+                                       .area = before.area / 4,
+                                       .key = (uint32_t)(2000 + k)};
     transfer(m, points, 4);
     totals now = sum_points(m, c);
     check_totals(&now, &before, 1e-12);
@@ -278,8 +275,7 @@ TEST(wobbling_takes_shear_by_area)
     CHECK(worst_moment <= 0.03); /* the polygon's own moment of area changes by as much */
     CHECK_REL(heat, 0.5 / KN * (begun - energy), 1e-9);
     if (getenv("TALUS_TEST_VERBOSE"))
-        printf("  %d changes, %g stays, forces within %.3g, moments %.3g\n", changes, stays, worst,
-               worst_moment);
+        printf("  %d changes, %g stays, forces within %.3g, moments %.3g\n", changes, stays, worst, worst_moment);
     tl_model_destroy(m);
 }
 
@@ -330,8 +326,7 @@ static void some_stiffness(const void *self, double *kn, double *ks)
 
 TEST(states_are_copied_split_or_reset)
 {
-    static const tl_law_ops ops = {
-        .size = sizeof ops, .update = no_update, .stiffness = some_stiffness};
+    static const tl_law_ops ops = {.size = sizeof ops, .update = no_update, .stiffness = some_stiffness};
     static const tl_state states[] = {
         {.name = "copied", .kind = TL_STATE_SCALAR, .transfer = TL_TRANSFER_COPY, .initial = 1},
         {.name = "split", .kind = TL_STATE_SCALAR, .transfer = TL_TRANSFER_SPLIT, .initial = 2},
@@ -466,8 +461,6 @@ TEST(shear_forces_stay_in_the_plane_of_their_point)
 }
 
 TEST_MAIN(RUN(totals_stay_at_unchanged_area), RUN(totals_stay_with_fewer_points),
-          RUN(points_of_hardly_any_area_get_no_more_stress_than_there_was),
-          RUN(wobbling_takes_shear_by_area), RUN(uniform_stress_stays_uniform),
-          RUN(states_are_copied_split_or_reset), RUN(failed_bonds_stay_failed),
-          RUN(used_strength_is_the_share_of_what_the_law_bears),
-          RUN(shear_forces_stay_in_the_plane_of_their_point))
+          RUN(points_of_hardly_any_area_get_no_more_stress_than_there_was), RUN(wobbling_takes_shear_by_area),
+          RUN(uniform_stress_stays_uniform), RUN(states_are_copied_split_or_reset), RUN(failed_bonds_stay_failed),
+          RUN(used_strength_is_the_share_of_what_the_law_bears), RUN(shear_forces_stay_in_the_plane_of_their_point))

@@ -98,8 +98,7 @@ static void fail(tl_model *m, const char *part)
     tl_model_energy(m, &energy[1]);
     CHECK(memcmp(&energy[0], &energy[1], sizeof energy[0]) == 0);
     CHECK_NEAR(m->time, time, 0);
-    if (m->cycles > 0 &&
-        m->split_count == 0) /* contacts that were found by the step count from it on */
+    if (m->cycles > 0 && m->split_count == 0) /* contacts that were found by the step count from it on */
         CHECK_REL(carried(m), force, 1e-12);
 }
 
@@ -155,8 +154,7 @@ TEST(a_step_that_the_damping_fails_is_undone)
             if (k == 0) { /* the same damping, but that it fails: its states are set back by hand */
                 double calls = m[k]->damping_state[0];
                 scene_ok(m[k], tl_model_damping(m[k], "failing_damping", &(tl_args){&told, 1}));
-                fail(m[k],
-                     "damping 'failing_damping' of plugin 'bad.failing': it was told to fail");
+                fail(m[k], "damping 'failing_damping' of plugin 'bad.failing': it was told to fail");
                 scene_ok(m[k], tl_model_damping(m[k], "failing_damping", &(tl_args){NULL, 0}));
                 m[k]->damping_state[0] = calls;
             } else {
@@ -205,8 +203,7 @@ TEST(a_step_after_a_cut_is_undone)
             double calls = m[k]->damping_state[0];
             if (k == 0) {
                 scene_ok(m[k], tl_model_damping(m[k], "failing_damping", &(tl_args){&told, 1}));
-                fail(m[k],
-                     "damping 'failing_damping' of plugin 'bad.failing': it was told to fail");
+                fail(m[k], "damping 'failing_damping' of plugin 'bad.failing': it was told to fail");
             }
             scene_ok(m[k], tl_model_damping(m[k], "failing_damping", &(tl_args){NULL, 0}));
             m[k]->damping_state[0] = calls;
@@ -227,8 +224,7 @@ TEST(a_force_beyond_all_numbers_is_undone)
         for (int k = 0; k < 2; k++) {
             m[k] = scene(2, 5, laws[law], NULL);
             run(m[k], STEPS);
-            const tl_insitu tame = {.size = sizeof(tl_insitu),
-                                    .stress = {.xx = -1e3, .yy = -1e3, .zz = -1e3}};
+            const tl_insitu tame = {.size = sizeof(tl_insitu), .stress = {.xx = -1e3, .yy = -1e3, .zz = -1e3}};
             scene_ok(m[k], tl_model_insitu(m[k], &tame));
             for (size_t i = 0; i < m[k]->detect->points.table.rows; i++)
                 m[k]->detect->points.f_n0[i] = 1.7e308;
@@ -316,5 +312,4 @@ TEST(laws_that_never_fail_need_no_memory_for_it)
 TEST_MAIN(RUN(a_step_that_a_law_fails_is_undone), RUN(a_step_that_the_damping_fails_is_undone),
           RUN(a_factor_of_the_step_that_cannot_be_is_refused), RUN(a_step_after_a_cut_is_undone),
           RUN(a_force_beyond_all_numbers_is_undone), RUN(a_step_that_would_fling_a_block_is_undone),
-          RUN(nothing_goes_on_from_a_step_that_cannot_be_undone),
-          RUN(laws_that_never_fail_need_no_memory_for_it))
+          RUN(nothing_goes_on_from_a_step_that_cannot_be_undone), RUN(laws_that_never_fail_need_no_memory_for_it))

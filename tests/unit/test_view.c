@@ -20,8 +20,7 @@ static struct {
     int check; /* what the page says of the command "{" */
 } screen;
 
-static tl_status open_screen(const tl_screen_page *page, const void *params, void **self,
-                             tl_report *report)
+static tl_status open_screen(const tl_screen_page *page, const void *params, void **self, tl_report *report)
 {
     char why[64];
     (void)params;
@@ -85,8 +84,7 @@ static void close_screen(void *self)
     screen.open--;
 }
 
-static const tl_screen_ops ops = {sizeof ops, open_screen, address,     watchers,
-                                  put,        take,        close_screen};
+static const tl_screen_ops ops = {sizeof ops, open_screen, address, watchers, put, take, close_screen};
 static const tl_kind kind = TL_KIND(TL_KIND_SCREEN, ops, .name = "memory", .doc = "Keeps all.");
 
 /* ---------------------------------------------------------------- a model ---------------- */
@@ -111,8 +109,7 @@ static void cut(tl_model *m, double x)
 {
     const double origin[] = {x, 0, 0};
     const tl_value values[] = {tl_arg_text("joint", "east"), tl_arg_number("dip", 90),
-                               tl_arg_number("dip_direction", 90),
-                               tl_arg_numbers("origin", origin, 3)};
+                               tl_arg_number("dip_direction", 90), tl_arg_numbers("origin", origin, 3)};
     const tl_args args = {values, 4};
     tl_generate_summary summary;
     CHECK_INT(tl_generate(m, "joint", &args, &summary), TL_OK);
@@ -175,8 +172,7 @@ TEST(news_adds_up_to_all_there_is_to_know)
     CHECK_INT(tl_view_tell(view, TL_VIEW_RUNNING, "a \"line\"", NULL), TL_OK);
     CHECK_INT(tl_view_tell(view, TL_VIEW_RUNNING, NULL, "why"), TL_OK);
     CHECK_INT(tl_view_show(view, &html), TL_OK);
-    CHECK_TEXT(names_of(screen.news, screen.news_length),
-               "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC LIVE LIVE");
+    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC LIVE LIVE");
     CHECK_INT(screen.begun, 1);
     end(m, view);
 }
@@ -194,8 +190,7 @@ TEST(texts_are_shown_in_utf8)
     for (size_t i = 0; i + 4 < screen.news_length; i++)
         if (memcmp(screen.news + i, "LIVE", 4) == 0)
             live = (const char *)screen.news + i + 8;
-    CHECK_CONTAINS(
-        live, "\"line\": \"\xe6\x96\xad \\ufffd\\ufffd\", \"refused\": \"\\ufffd\\u001b\\u000a\"");
+    CHECK_CONTAINS(live, "\"line\": \"\xe6\x96\xad \\ufffd\\ufffd\", \"refused\": \"\\ufffd\\u001b\\u000a\"");
     end(m, view);
 }
 
@@ -217,8 +212,7 @@ TEST(a_frame_that_is_not_taken_is_shown_again)
     CHECK_INT(tl_view_show(view, &html), TL_E_MEMORY);
     screen.fails = 0;
     CHECK_INT(tl_view_show(view, &html), TL_OK);
-    CHECK_TEXT(names_of(screen.news, screen.news_length),
-               "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC");
+    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC");
     end(m, view);
 }
 
@@ -352,6 +346,5 @@ TEST(a_view_that_cannot_begin_leaves_nothing)
 
 TEST_MAIN(RUN(news_adds_up_to_all_there_is_to_know), RUN(texts_are_shown_in_utf8),
           RUN(a_frame_that_is_not_taken_is_shown_again), RUN(news_that_has_grown_begins_anew),
-          RUN(frames_are_due_when_somebody_looks_and_something_is_new),
-          RUN(frames_take_their_share_and_no_more), RUN(commands_come_as_they_are_meant),
-          RUN(a_view_that_cannot_begin_leaves_nothing))
+          RUN(frames_are_due_when_somebody_looks_and_something_is_new), RUN(frames_take_their_share_and_no_more),
+          RUN(commands_come_as_they_are_meant), RUN(a_view_that_cannot_begin_leaves_nothing))

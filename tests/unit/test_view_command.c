@@ -95,8 +95,7 @@ TEST(what_is_no_command_is_refused)
             "dip = 91 must be in [0, 90]");
     refused("{\"op\":\"cut\",\"joint\":\"J\",\"dip\":9,\"dip_direction\":-1,\"origin\":[0,0,0]}",
             "dip_direction = -1 must be in [0, 360]");
-    refused("{\"op\":\"cut\",\"joint\":\"J\",\"dip\":9,\"dip_direction\":1,\"origin\":[0,0]}",
-            "',' is missing");
+    refused("{\"op\":\"cut\",\"joint\":\"J\",\"dip\":9,\"dip_direction\":1,\"origin\":[0,0]}", "',' is missing");
     refused("{\"op\":\"cut\",\"joint\":\"J\",\"dip\":nan,\"dip_direction\":1,\"origin\":[0,0,0]}",
             "dip must be a number");
     refused("{\"op\":\"an op that is much too long\"}", "op is longer than 15 bytes");
@@ -105,18 +104,16 @@ TEST(what_is_no_command_is_refused)
 /* Anything gives a command of the list or a sentence, and reads no byte behind the end: the sanitizers look on. */
 TEST(random_texts_are_read_to_their_end)
 {
-    static const char *const parts[] = {
-        "{",  "}",     "[",      "]",        ",",         ":",          "\"",
-        "\\", "\\u12", "\"op\"", "\"step\"", "\"n\"",     "\"blocks\"", "1",
-        "-",  "e9",    ".5",     " ",        "\"joint\"", "\"cut\"",    "\xff"};
+    static const char *const parts[] = {"{",  "}",     "[",      "]",        ",",         ":",          "\"",
+                                        "\\", "\\u12", "\"op\"", "\"step\"", "\"n\"",     "\"blocks\"", "1",
+                                        "-",  "e9",    ".5",     " ",        "\"joint\"", "\"cut\"",    "\xff"};
     uint64_t seed = 7;
     int taken = 0;
     for (int i = 0; i < 20000; i++) {
         char text[256];
         size_t length = 0, count = (size_t)(12 * check_random(&seed));
         for (size_t k = 0; k < count; k++) {
-            const char *part =
-                parts[(size_t)(sizeof parts / sizeof parts[0] * check_random(&seed))];
+            const char *part = parts[(size_t)(sizeof parts / sizeof parts[0] * check_random(&seed))];
             memcpy(text + length, part, strlen(part));
             length += strlen(part);
         }
@@ -132,5 +129,5 @@ TEST(random_texts_are_read_to_their_end)
     CHECK(taken < 20000);
 }
 
-TEST_MAIN(RUN(each_command_takes_what_it_needs), RUN(texts_are_those_of_json),
-          RUN(what_is_no_command_is_refused), RUN(random_texts_are_read_to_their_end))
+TEST_MAIN(RUN(each_command_takes_what_it_needs), RUN(texts_are_those_of_json), RUN(what_is_no_command_is_refused),
+          RUN(random_texts_are_read_to_their_end))

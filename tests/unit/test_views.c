@@ -9,8 +9,7 @@
 static void create_box(tl_model *m, double x, double z)
 {
     const double min[] = {x, 0, z}, max[] = {x + 1, 1, z + 1};
-    const tl_value values[] = {vector("min", min), vector("max", max),
-                               number("density", 2000 + 100 * z)};
+    const tl_value values[] = {vector("min", min), vector("max", max), number("density", 2000 + 100 * z)};
     tl_args args = {values, 3};
     tl_generate_summary summary;
     CHECK_INT(tl_generate(m, "box", &args, &summary), TL_OK);
@@ -119,8 +118,7 @@ TEST(contact_forces_balance)
         double mass = bodies.mass.data[body];
         const double weight[] = {mass, 0, -10 * mass};
         for (size_t k = 0; k < 3; k++)
-            CHECK_NEAR(bodies.force.data[bodies.force.stride * body + k], sum[body][k] + weight[k],
-                       1e-9 * mass);
+            CHECK_NEAR(bodies.force.data[bodies.force.stride * body + k], sum[body][k] + weight[k], 1e-9 * mass);
     }
     tl_model_destroy(m);
 }
@@ -148,8 +146,7 @@ TEST(meshes_move_with_their_bodies)
         CHECK_NEAR(tl_v3_norm(tl_v3_sub(at, placed.vertices[i])), 0, 1e-9);
     }
     for (size_t f = 0; f < local.face_count; f++)
-        CHECK_NEAR(tl_v3_norm(tl_v3_sub(tl_m3_mul(&r, local.normals[f]), placed.normals[f])), 0,
-                   1e-12);
+        CHECK_NEAR(tl_v3_norm(tl_v3_sub(tl_m3_mul(&r, local.normals[f]), placed.normals[f])), 0, 1e-12);
     tl_block_mesh_free(&placed);
     CHECK_INT(tl_block_mesh_local(m, 99, &placed), TL_E_STALE);
     tl_block_mesh_free(&first);
@@ -170,9 +167,7 @@ TEST(the_structure_tells_of_rows)
     CHECK_INT(tl_blocks_load(m, &top, 1, &load), TL_OK);
     CHECK_INT(tl_blocks_hide(m, &top, 1, false), TL_OK);
     CHECK(tl_structure(m) == was);
-    CHECK_INT(tl_blocks_load(m, &top, 1,
-                             &(tl_load){sizeof(tl_load), {0, 0, 0}, {0, 0, 0}, {NAN, NAN, NAN}}),
-              TL_OK);
+    CHECK_INT(tl_blocks_load(m, &top, 1, &(tl_load){sizeof(tl_load), {0, 0, 0}, {0, 0, 0}, {NAN, NAN, NAN}}), TL_OK);
     CHECK_INT(tl_blocks_join(m, pair, 2), TL_OK);
     CHECK(tl_structure(m) != was);
     tl_block_views blocks = tl_view_blocks(m);
@@ -203,6 +198,5 @@ TEST(an_empty_model_has_empty_views)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(RUN(views_are_the_fields), RUN(contact_forces_balance),
-          RUN(meshes_move_with_their_bodies), RUN(the_structure_tells_of_rows),
-          RUN(an_empty_model_has_empty_views))
+TEST_MAIN(RUN(views_are_the_fields), RUN(contact_forces_balance), RUN(meshes_move_with_their_bodies),
+          RUN(the_structure_tells_of_rows), RUN(an_empty_model_has_empty_views))

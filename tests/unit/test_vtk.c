@@ -52,23 +52,18 @@ static void add_box(tl_model *m, double x, double y, double z, const char *group
     CHECK_INT(tl_blocks_set(m, &first, 1, &set), TL_OK);
 }
 
-static void add_set(tl_model *m, const char *name, double dip, double direction, int planes,
-                    tl_vec3 origin)
+static void add_set(tl_model *m, const char *name, double dip, double direction, int planes, tl_vec3 origin)
 {
     const double at[] = {origin.x, origin.y, origin.z};
-    const tl_value values[] = {
-        string("joint", name), number("dip", dip),       number("dip_direction", direction),
-        number("spacing", 1),  number("number", planes), vector("origin", at)};
+    const tl_value values[] = {string("joint", name), number("dip", dip),       number("dip_direction", direction),
+                               number("spacing", 1),  number("number", planes), vector("origin", at)};
     generate(m, "jointset", values, 6);
 }
 
 static tl_model *empty_model(void)
 {
-    tl_model_config config = {.size = sizeof(tl_model_config),
-                              .gravity = {0, 0, -10},
-                              .seed = 1,
-                              .threads = 1,
-                              .reuse_geometry = 1};
+    tl_model_config config = {
+        .size = sizeof(tl_model_config), .gravity = {0, 0, -10}, .seed = 1, .threads = 1, .reuse_geometry = 1};
     tl_model *m = NULL;
     tl_error error = {TL_OK, ""};
     tl_plugins_load_default();
@@ -87,14 +82,13 @@ static tl_model *cut_box(void)
     add_set(m, "north", 90, 0, 9, (tl_vec3){0, 1, 0});
     add_set(m, "up", 0, 0, 9, (tl_vec3){0, 0, 1});
     const double origin[] = {2.3, 1.6, 0.9};
-    const tl_value values[] = {string("joint", "oblique"), number("dip", 50),
-                               number("dip_direction", 320), vector("origin", origin)};
+    const tl_value values[] = {string("joint", "oblique"), number("dip", 50), number("dip_direction", 320),
+                               vector("origin", origin)};
     generate(m, "joint", values, 4);
     const tl_value law[] = {number("kn", 1e8), number("ks", 1e8)};
     const tl_args args = {law, 2};
     CHECK_INT(tl_joint_law(m, "*", "elastic", &args), TL_OK);
-    const tl_value bonded[] = {number("kn", 1e8), number("ks", 1e8), number("tension", 1e9),
-                               number("cohesion", 1e9)};
+    const tl_value bonded[] = {number("kn", 1e8), number("ks", 1e8), number("tension", 1e9), number("cohesion", 1e9)};
     const tl_args strong = {bonded, 4};
     CHECK_INT(tl_joint_law(m, "oblique", "coulomb_tensile", &strong), TL_OK);
     return m;
@@ -133,8 +127,7 @@ static void note_expected(tl_model *m)
     CHECK_INT(tl_contacts_select(m, NULL, &ids, &contacts), TL_OK);
     free(ids);
     if (CHECK(file != NULL)) {
-        fprintf(file, "blocks %zu\ncontacts %zu\nvolume 24\ngroup %s\n", tl_block_count(m),
-                contacts, LONG_GROUP);
+        fprintf(file, "blocks %zu\ncontacts %zu\nvolume 24\ngroup %s\n", tl_block_count(m), contacts, LONG_GROUP);
         fclose(file);
     }
 }
@@ -184,8 +177,8 @@ TEST(added_fields_fit_the_model)
 TEST(sections_for_the_reader)
 {
     tl_model *m = cut_box();
-    const tl_halfspace across = {90, 90, {1.5, 0, 0}}, along = {90, 90, {2, 0, 0}},
-                       steep = {50, 320, {2, 1.5, 1}}, outside = {0, 0, {0, 0, 5}};
+    const tl_halfspace across = {90, 90, {1.5, 0, 0}}, along = {90, 90, {2, 0, 0}}, steep = {50, 320, {2, 1.5, 1}},
+                       outside = {0, 0, {0, 0, 5}};
     CHECK_INT(tl_write_section(m, FOLDER "/cut", &across), TL_OK);
     CHECK_INT(tl_write_section(m, FOLDER "/along", &along), TL_OK);
     CHECK_INT(tl_write_section(m, FOLDER "/steep", &steep), TL_OK);
@@ -307,8 +300,8 @@ static char *index_of(const char *name, int frames)
     double time = 0;
     end += sprintf(end, "{\"file-series-version\":\"1.0\",\"files\":[");
     for (int i = 0; i < frames; i++, time += 1e-9)
-        end += tl_text_print(end, 100, "%s{\"name\":\"%s_blocks_%06d.vtk\",\"time\":%.17g}",
-                             i ? "," : "", name, i, time);
+        end +=
+            tl_text_print(end, 100, "%s{\"name\":\"%s_blocks_%06d.vtk\",\"time\":%.17g}", i ? "," : "", name, i, time);
     sprintf(end, "]}");
     return text;
 }
@@ -408,8 +401,7 @@ static void clean_folder(void)
 }
 
 TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(added_fields_fit_the_model),
-          RUN(sections_for_the_reader), RUN(an_empty_model_has_files_too),
-          RUN(prefixes_count_their_own_frames), RUN(a_prefix_names_files), RUN(a_file_is_no_folder),
-          RUN(a_failed_frame_leaves_nothing), RUN(a_full_disk_is_noticed),
-          RUN(an_index_is_kept_in_its_place), RUN(an_index_that_was_changed_is_written_anew),
-          RUN(a_killed_writer_leaves_a_whole_series))
+          RUN(sections_for_the_reader), RUN(an_empty_model_has_files_too), RUN(prefixes_count_their_own_frames),
+          RUN(a_prefix_names_files), RUN(a_file_is_no_folder), RUN(a_failed_frame_leaves_nothing),
+          RUN(a_full_disk_is_noticed), RUN(an_index_is_kept_in_its_place),
+          RUN(an_index_that_was_changed_is_written_anew), RUN(a_killed_writer_leaves_a_whole_series))

@@ -28,13 +28,12 @@ TL_API const char *const *tl_side_names(void);
 
 /* Which outer faces; all that is given must hold. */
 typedef struct tl_boundary_where {
-    int32_t side; /* tl_side: in that plane of the box about all blocks, looking outward */
-    tl_vec3 normal,
-        at;        /* in the plane through `at`, looking along `normal` (of any length); NaN: any */
-    tl_bounds box; /* with all corners in the box; NaN: any */
-    tl_vec3 facing;   /* looking so, within an angle; NaN: any */
-    double within;    /* degrees */
-    double tolerance; /* m, off the plane or out of the box; NaN: 1e-3 of the block's size */
+    int32_t side;       /* tl_side: in that plane of the box about all blocks, looking outward */
+    tl_vec3 normal, at; /* in the plane through `at`, looking along `normal` (of any length); NaN: any */
+    tl_bounds box;      /* with all corners in the box; NaN: any */
+    tl_vec3 facing;     /* looking so, within an angle; NaN: any */
+    double within;      /* degrees */
+    double tolerance;   /* m, off the plane or out of the box; NaN: 1e-3 of the block's size */
 } tl_boundary_where;
 
 /* What is done at these faces. */
@@ -74,15 +73,14 @@ typedef struct tl_boundary_result {
  * with tl_blocks_load the force keeps its direction and its point goes with the body. Where a face is cut, its parts
  * get their shares: for a traction that is uniform, or normal and linear, what it is on each. Free the results with
  * tl_boundary_free, one by one; a failed call leaves them empty. `results` may be NULL. */
-TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count,
-                                   bool add, tl_boundary_result *results);
+TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count, bool add,
+                                   tl_boundary_result *results);
 /* Frees the lists of a result and empties it. NULL and an empty one are left alone. */
 TL_API void tl_boundary_free(tl_boundary_result *result);
 
 /* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts, in the last
  * step, weight and load put on them, the other way. Each body counts once; inertia of driven ones does not. */
-TL_API tl_status tl_blocks_reaction(tl_model *model, const tl_id *ids, size_t count,
-                                    tl_vec3 *force);
+TL_API tl_status tl_blocks_reaction(tl_model *model, const tl_id *ids, size_t count, tl_vec3 *force);
 
 #ifdef __cplusplus
 }

@@ -26,8 +26,8 @@ typedef void (*tl_check_fn)(void *user, const tl_check_finding *finding);
 /* Loads the file and checks all its kinds; `tell` hears of each check in turn. `args`, which may be NULL, are values of
  * parameters of any of the kinds. `*faults` is the number of checks that found something. Fails when the file is no
  * plugin, or nothing can be tried with its parameters. */
-TL_API tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tell,
-                                 void *user, size_t *faults, tl_error *error);
+TL_API tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tell, void *user, size_t *faults,
+                                 tl_error *error);
 
 #ifdef __cplusplus
 }

@@ -13,22 +13,22 @@ extern "C" {
 #endif
 
 /* The structs of options. Each has a function of its name with _default, tl_solve_default() and so on. */
-#define TL_OPTIONS(X)                                                                              \
-    X(tl_model_config)                                                                             \
-    X(tl_filter)                                                                                   \
-    X(tl_insitu)                                                                                   \
-    X(tl_timestep)                                                                                 \
-    X(tl_mass_scaling)                                                                             \
-    X(tl_contact_area)                                                                             \
-    X(tl_solve)                                                                                    \
-    X(tl_block_filter)                                                                             \
-    X(tl_block_set)                                                                                \
-    X(tl_load)                                                                                     \
-    X(tl_drive)                                                                                    \
-    X(tl_contact_filter)                                                                           \
-    X(tl_keyblock_query)                                                                           \
-    X(tl_vtk_parts)                                                                                \
-    X(tl_html)                                                                                     \
+#define TL_OPTIONS(X)                                                                                                  \
+    X(tl_model_config)                                                                                                 \
+    X(tl_filter)                                                                                                       \
+    X(tl_insitu)                                                                                                       \
+    X(tl_timestep)                                                                                                     \
+    X(tl_mass_scaling)                                                                                                 \
+    X(tl_contact_area)                                                                                                 \
+    X(tl_solve)                                                                                                        \
+    X(tl_block_filter)                                                                                                 \
+    X(tl_block_set)                                                                                                    \
+    X(tl_load)                                                                                                         \
+    X(tl_drive)                                                                                                        \
+    X(tl_contact_filter)                                                                                               \
+    X(tl_keyblock_query)                                                                                               \
+    X(tl_vtk_parts)                                                                                                    \
+    X(tl_html)                                                                                                         \
     X(tl_view_options)
 
 typedef enum tl_options {
@@ -42,12 +42,12 @@ typedef enum tl_options {
  * become 0. The functions below call it with the size that the caller's headers give. */
 TL_API void tl_options_default(tl_options which, void *options, size_t size);
 
-#define TL_OPTIONS_ITEM(type)                                                                      \
-    static inline type type##_default(void)                                                        \
-    {                                                                                              \
-        type options;                                                                              \
-        tl_options_default(TL_OPTIONS_OF_##type, &options, sizeof options);                        \
-        return options;                                                                            \
+#define TL_OPTIONS_ITEM(type)                                                                                          \
+    static inline type type##_default(void)                                                                            \
+    {                                                                                                                  \
+        type options;                                                                                                  \
+        tl_options_default(TL_OPTIONS_OF_##type, &options, sizeof options);                                            \
+        return options;                                                                                                \
     }
 TL_OPTIONS(TL_OPTIONS_ITEM)
 #undef TL_OPTIONS_ITEM

@@ -47,11 +47,10 @@ static inline tl_sum2 tl_sine_of(tl_sum2 x)
     double z = x.hi * x.hi;
     double p =
         -1. / 6 +
-        z * (1. / 120 + z * (-1. / 5040 +
-                             z * (1. / 362880 +
-                                  z * (-1. / 39916800 +
-                                       z * (1. / 6227020800 + z * (-1. / 1307674368000 +
-                                                                   z * (1. / 355687428096000)))))));
+        z * (1. / 120 +
+             z * (-1. / 5040 +
+                  z * (1. / 362880 + z * (-1. / 39916800 + z * (1. / 6227020800 + z * (-1. / 1307674368000 +
+                                                                                       z * (1. / 355687428096000)))))));
     return tl_sum2_of(x.hi, x.hi * z * p + x.lo * (1 - 0.5 * z));
 }
 
@@ -63,9 +62,8 @@ static inline tl_sum2 tl_cosine_of(tl_sum2 x)
         1. / 24 +
         z * (-1. / 720 +
              z * (1. / 40320 +
-                  z * (-1. / 3628800 + z * (1. / 479001600 + z * (-1. / 87178291200 +
-                                                                  z * (1. / 20922789888000 -
-                                                                       z / 6402373705728000.))))));
+                  z * (-1. / 3628800 + z * (1. / 479001600 + z * (-1. / 87178291200 + z * (1. / 20922789888000 -
+                                                                                           z / 6402373705728000.))))));
     tl_sum2 c = tl_sum2_of(1, -half);
     return tl_sum2_of(c.hi, c.lo + (z * z * p - half_lo - x.hi * x.lo));
 }
@@ -155,9 +153,7 @@ static inline tl_sum2 tl_arc_of(double y, double x)
     double rest = ((fma(-t, below.hi, above.hi) + above.lo) - t * below.lo) / below.hi;
     double z = t * t;
     double p =
-        z * (-1. / 3 +
-             z * (1. / 5 +
-                  z * (-1. / 7 + z * (1. / 9 + z * (-1. / 11 + z * (1. / 13 + z * (-1. / 15)))))));
+        z * (-1. / 3 + z * (1. / 5 + z * (-1. / 7 + z * (1. / 9 + z * (-1. / 11 + z * (1. / 13 + z * (-1. / 15)))))));
     if (k == 0)
         return tl_sum2_of(t, t * p + rest);
     tl_sum2 sum = tl_sum2_of(table[k].hi, t);
@@ -181,8 +177,7 @@ static inline double tl_atan2(double y, double x)
     small = ldexp(small, -exponent);
     tl_sum2 angle = large > 0 ? tl_arc_of(small, large) : (tl_sum2){0, 0};
     if (ay > ax)
-        angle = tl_sum2_of(0x1.921fb54442d18p+0,
-                           -angle.hi + (0x1.1a62633145c07p-54 - angle.lo)); /* pi/2 - angle */
+        angle = tl_sum2_of(0x1.921fb54442d18p+0, -angle.hi + (0x1.1a62633145c07p-54 - angle.lo)); /* pi/2 - angle */
     double out = angle.hi + angle.lo;
     if (signbit(x))
         out = 0x1.921fb54442d18p+1 - (angle.hi - (0x1.1a62633145c07p-53 - angle.lo));
@@ -216,14 +211,12 @@ static inline double tl_log1p(double x)
         lost = 0;
     /* log(1 + f) = 2 artanh s = f - s (f - r) */
     double r =
-        z * (2. / 3 +
-             z * (2. / 5 +
-                  z * (2. / 7 +
-                       z * (2. / 9 +
-                            z * (2. / 11 +
-                                 z * (2. / 13 +
-                                      z * (2. / 15 +
-                                           z * (2. / 17 + z * (2. / 19 + z * (2. / 21))))))))));
+        z *
+        (2. / 3 +
+         z * (2. / 5 +
+              z * (2. / 7 + z * (2. / 9 + z * (2. / 11 +
+                                               z * (2. / 13 +
+                                                    z * (2. / 15 + z * (2. / 17 + z * (2. / 19 + z * (2. / 21))))))))));
     /* log 2 in two parts; the product of e with the first is exact */
     return e * 0x1.62e42feep-1 + (f - (s * (f - r) - (e * 0x1.a39ef35793c76p-33 + lost / w)));
 }
@@ -248,10 +241,9 @@ static inline double tl_expm1(double x)
                        r * (1. / 5040 +
                             r * (1. / 40320 +
                                  r * (1. / 362880 +
-                                      r * (1. / 3628800 + r * (1. / 39916800 +
-                                                               r * (1. / 479001600 +
-                                                                    r * (1. / 6227020800 +
-                                                                         r / 87178291200.))))))))));
+                                      r * (1. / 3628800 +
+                                           r * (1. / 39916800 +
+                                                r * (1. / 479001600 + r * (1. / 6227020800 + r / 87178291200.))))))))));
     tl_sum2 q = tl_sum2_of(r, r * r * (0.5 + r * p) + e * (1 + r));
     if (n == 0)
         return q.hi;
@@ -309,18 +301,17 @@ static inline double tl_lane_exp(double x)
     double scale = tl_of_bits((tl_bits_of(k) + 1023) << 52);
     double high = x - n * 0x1.62e42feep-1, low = n * 0x1.a39ef35793c76p-33;
     double r = high - low, e = (high - r) - low;
-    double p = 1. / 6 +
-               r * (1. / 24 +
-                    r * (1. / 120 +
-                         r * (1. / 720 +
-                              r * (1. / 5040 +
-                                   r * (1. / 40320 +
-                                        r * (1. / 362880 +
-                                             r * (1. / 3628800 +
-                                                  r * (1. / 39916800 +
-                                                       r * (1. / 479001600 +
-                                                            r * (1. / 6227020800 +
-                                                                 r * (1. / 87178291200.)))))))))));
+    double p =
+        1. / 6 +
+        r * (1. / 24 +
+             r * (1. / 120 +
+                  r * (1. / 720 +
+                       r * (1. / 5040 +
+                            r * (1. / 40320 + r * (1. / 362880 +
+                                                   r * (1. / 3628800 + r * (1. / 39916800 +
+                                                                            r * (1. / 479001600 +
+                                                                                 r * (1. / 6227020800 +
+                                                                                      r * (1. / 87178291200.)))))))))));
     double s = 1 + r, lost = (1 - s) + r;
     return scale * (s + (lost + (e + r * r * (0.5 + r * p))));
 }
@@ -336,14 +327,12 @@ static inline double tl_lane_log(double x)
     double s = f / (2 + f), z = s * s;
     /* log(1 + f) = 2 artanh s = f - s (f - r) */
     double r =
-        z * (2. / 3 +
-             z * (2. / 5 +
-                  z * (2. / 7 +
-                       z * (2. / 9 +
-                            z * (2. / 11 +
-                                 z * (2. / 13 +
-                                      z * (2. / 15 +
-                                           z * (2. / 17 + z * (2. / 19 + z * (2. / 21))))))))));
+        z *
+        (2. / 3 +
+         z * (2. / 5 +
+              z * (2. / 7 + z * (2. / 9 + z * (2. / 11 +
+                                               z * (2. / 13 +
+                                                    z * (2. / 15 + z * (2. / 17 + z * (2. / 19 + z * (2. / 21))))))))));
     double log = e * 0x1.62e42feep-1 + (f - (s * (f - r) - e * 0x1.a39ef35793c76p-33));
     return log + (x - x); /* not-a-number stays one */
 }
@@ -373,18 +362,16 @@ static inline double tl_lane_tan(double x)
     double z = y * y;
     double s =
         -1. / 6 +
-        z * (1. / 120 + z * (-1. / 5040 +
-                             z * (1. / 362880 +
-                                  z * (-1. / 39916800 +
-                                       z * (1. / 6227020800 + z * (-1. / 1307674368000 +
-                                                                   z * (1. / 355687428096000)))))));
+        z * (1. / 120 +
+             z * (-1. / 5040 +
+                  z * (1. / 362880 + z * (-1. / 39916800 + z * (1. / 6227020800 + z * (-1. / 1307674368000 +
+                                                                                       z * (1. / 355687428096000)))))));
     double c = 1. / 24 +
                z * (-1. / 720 +
                     z * (1. / 40320 +
                          z * (-1. / 3628800 +
-                              z * (1. / 479001600 +
-                                   z * (-1. / 87178291200 + z * (1. / 20922789888000 -
-                                                                 z * (1. / 6402373705728000.)))))));
+                              z * (1. / 479001600 + z * (-1. / 87178291200 +
+                                                         z * (1. / 20922789888000 - z * (1. / 6402373705728000.)))))));
     double half = 0.5 * z, one = 1 - half;
     double sine = y + (y * z * s + lo * one);
     double cosine = one + (((1 - one) - half) + (z * z * c - y * lo));

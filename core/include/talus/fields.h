@@ -17,14 +17,14 @@ TL_API size_t tl_field_width(tl_field_kind kind);
 
 /* Writes a field of blocks, by its name: component k of the field of ids[i] to out[width * i + k]. `*width` is set;
  * with `out` NULL that is all. TL_E_NOT_FOUND for an unknown name, TL_E_ARGUMENT for a field that is a text. */
-TL_API tl_status tl_blocks_values(tl_model *model, const tl_id *ids, size_t count,
-                                  const char *field, double *out, size_t *width);
+TL_API tl_status tl_blocks_values(tl_model *model, const tl_id *ids, size_t count, const char *field, double *out,
+                                  size_t *width);
 
 /* The same of contacts. `name` is a field, or a state of a law (NaN where the contact's law has no such state): the
  * mean of the contact's points, weighted by their areas, or the sum of a state that goes with the area
  * (TL_TRANSFER_SPLIT, TL_TRANSFER_ENERGY). `state` is a number here: 0 elastic, 1 slipping, 2 open, 3 failed. */
-TL_API tl_status tl_contacts_values(tl_model *model, const tl_id *ids, size_t count,
-                                    const char *name, double *out, size_t *width);
+TL_API tl_status tl_contacts_values(tl_model *model, const tl_id *ids, size_t count, const char *name, double *out,
+                                    size_t *width);
 
 /* ---------------------------------------------------------------- contact points --------- */
 
@@ -33,11 +33,10 @@ TL_API tl_status tl_contacts_values(tl_model *model, const tl_id *ids, size_t co
 TL_API const tl_field *tl_point_fields(size_t *count);
 /* Counts the points of contacts: those of contacts[i] have the places start[i] to start[i + 1] - 1 in what
  * tl_points_values writes. `start` has count + 1 entries. */
-TL_API tl_status tl_points_start(tl_model *model, const tl_id *contacts, size_t count,
-                                 size_t *start);
+TL_API tl_status tl_points_start(tl_model *model, const tl_id *contacts, size_t count, size_t *start);
 /* Writes a field, or a state, of the points of contacts, contact after contact; as tl_contacts_values. */
-TL_API tl_status tl_points_values(tl_model *model, const tl_id *contacts, size_t count,
-                                  const char *name, double *out, size_t *width);
+TL_API tl_status tl_points_values(tl_model *model, const tl_id *contacts, size_t count, const char *name, double *out,
+                                  size_t *width);
 
 /* ---------------------------------------------------------------- states of laws --------- */
 

@@ -30,12 +30,7 @@ typedef enum tl_history_source {
 } tl_history_source;
 
 /* What is made of the values of several blocks or contacts. */
-typedef enum tl_history_take {
-    TL_TAKE_MEAN,
-    TL_TAKE_SUM,
-    TL_TAKE_MIN,
-    TL_TAKE_MAX
-} tl_history_take;
+typedef enum tl_history_take { TL_TAKE_MEAN, TL_TAKE_SUM, TL_TAKE_MIN, TL_TAKE_MAX } tl_history_take;
 
 typedef struct tl_history {
     char name[TL_HISTORY_NAME + 1];
@@ -63,8 +58,7 @@ TL_API void tl_history_end(struct tl_model *model, size_t i);
 TL_API tl_history *tl_history_at(const struct tl_model *model, size_t i);
 /* Adds a sample at the present cycle and time. TL_E_ARGUMENT: of another width than those before, or none in [1,
  * TL_HISTORY_WIDEST]; of a cycle that is sampled already. */
-TL_API tl_status tl_history_sample(struct tl_model *model, tl_history *history,
-                                   const double *values, size_t width);
+TL_API tl_status tl_history_sample(struct tl_model *model, tl_history *history, const double *values, size_t width);
 
 #ifdef __cplusplus
 }

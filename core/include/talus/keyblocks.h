@@ -65,8 +65,7 @@ typedef struct tl_keyblocks {
 
 /* Finds the removable ones of the bodies that can move and are not driven (Shi's theorem). Bodies are taken as they lay
  * when they were made, those that have moved by more than 1 % of their size as they lie now. */
-TL_API tl_status tl_model_keyblocks(struct tl_model *model, const tl_keyblock_query *query,
-                                    tl_keyblocks *keyblocks);
+TL_API tl_status tl_model_keyblocks(struct tl_model *model, const tl_keyblock_query *query, tl_keyblocks *keyblocks);
 /* Frees the lists of a result and empties it. */
 TL_API void tl_keyblocks_free(tl_keyblocks *keyblocks);
 

@@ -46,20 +46,19 @@
  *     TL_PARAM_POSITIVE(params, distance, "m", "slip over which the friction falls", .alias = "dc"),
  *
  * > 0, and must be given. */
-#define TL_PARAM_POSITIVE(owner, member, unit, ...)                                                \
-    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__,                                      \
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
+#define TL_PARAM_POSITIVE(owner, member, unit, ...)                                                                    \
+    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__, .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN,          \
+             .min = 0, .max = INFINITY)
 /* > 0, and NaN where it is not given. */
-#define TL_PARAM_POSITIVE_OR_NONE(owner, member, unit, ...)                                        \
-    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__,                                      \
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
+#define TL_PARAM_POSITIVE_OR_NONE(owner, member, unit, ...)                                                            \
+    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN,          \
+             .min = 0, .max = INFINITY)
 /* >= 0, and 0 where it is not given. */
-#define TL_PARAM_NOT_NEGATIVE(owner, member, unit, ...)                                            \
+#define TL_PARAM_NOT_NEGATIVE(owner, member, unit, ...)                                                                \
     TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__, .min = 0, .max = INFINITY)
 /* An angle in [0, 90) deg. `more`: TL_PARAM_REQUIRED or the like, or 0. */
-#define TL_PARAM_ANGLE(owner, member, more, ...)                                                   \
-    TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__,                                     \
-             .flags = TL_PARAM_MAX_OPEN | (more), .min = 0, .max = 90)
+#define TL_PARAM_ANGLE(owner, member, more, ...)                                                                       \
+    TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__, .flags = TL_PARAM_MAX_OPEN | (more), .min = 0, .max = 90)
 
 /* ---------------------------------------------------------------- create ----------------- */
 
@@ -106,12 +105,12 @@ static inline void *tl_grown(void *items, size_t *capacity, size_t needed, size_
 #define TL_PARAM_KS(owner) TL_PARAM_POSITIVE(owner, ks, "Pa/m", "shear stiffness of the joint")
 
 /* Defines `stiffness`, for which the members kn_ and ks_ of the struct `type` are the bounds. */
-#define TL_LAW_STIFFNESS(type, kn_, ks_)                                                           \
-    static void stiffness(const void *self, double *kn, double *ks)                                \
-    {                                                                                              \
-        *kn = ((const type *)self)->kn_;                                                           \
-        *ks = ((const type *)self)->ks_;                                                           \
-    }                                                                                              \
+#define TL_LAW_STIFFNESS(type, kn_, ks_)                                                                               \
+    static void stiffness(const void *self, double *kn, double *ks)                                                    \
+    {                                                                                                                  \
+        *kn = ((const type *)self)->kn_;                                                                               \
+        *ks = ((const type *)self)->ks_;                                                                               \
+    }                                                                                                                  \
     _Static_assert(sizeof(type) > 0, "a struct")
 
 /* `pulls` of a law whose parameters do not change the answer. */
@@ -135,8 +134,7 @@ static inline uint32_t tl_pulls_none(const void *self)
 
 /* For `across_gap`: the lift of points with linear springs kn whose slip has opened the joint by `opening`, m (NULL: it
  * never does). */
-TL_IN_LOOP void tl_law_lift(const tl_law_batch *batch, double kn, const double *opening,
-                            double *lift)
+TL_IN_LOOP void tl_law_lift(const tl_law_batch *batch, double kn, const double *opening, double *lift)
 {
     for (uint32_t i = 0; i < batch->count; i++) {
         double spring = kn * batch->area[i];
@@ -152,10 +150,10 @@ TL_IN_LOOP void tl_law_hold_none(const tl_law_batch *batch, double *hold)
 }
 
 /* Operations of a law that has made itself with tl_keep: `create`, `update`, `stiffness` and what is given. */
-#define TL_LAW_OPS(...)                                                                            \
-    {                                                                                              \
-        .size = sizeof(tl_law_ops), .create = create, .update = update, .stiffness = stiffness,    \
-        .destroy = free, __VA_ARGS__                                                               \
+#define TL_LAW_OPS(...)                                                                                                \
+    {                                                                                                                  \
+        .size = sizeof(tl_law_ops), .create = create, .update = update, .stiffness = stiffness, .destroy = free,       \
+        __VA_ARGS__                                                                                                    \
     }
 
 /* Columns of a batch from one point on. */
@@ -189,13 +187,11 @@ TL_IN_LOOP tl_law_columns tl_law_columns_from(const tl_law_batch *batch, uint32_
 /* Motion of the step along the joint, m. */
 #define TL_SLIDE_AT(c, i) tl_v3((c).du_x[i], (c).du_y[i], (c).du_z[i])
 /* The same after the motion of the step, if nothing slips: f_s - spring du_s, eq. (7). `spring`: ks A, N/m. */
-#define TL_TRIAL_AT(c, i, spring)                                                                  \
-    tl_v3((c).f_x[i] - (spring) * (c).du_x[i], (c).f_y[i] - (spring) * (c).du_y[i],                \
-          (c).f_z[i] - (spring) * (c).du_z[i])
+#define TL_TRIAL_AT(c, i, spring)                                                                                      \
+    tl_v3((c).f_x[i] - (spring) * (c).du_x[i], (c).f_y[i] - (spring) * (c).du_y[i], (c).f_z[i] - (spring) * (c).du_z[i])
 /* Puts `scale` times a force into the columns. */
-#define TL_PUT_SHEAR(c, i, scale, force)                                                           \
-    ((c).f_x[i] = (scale) * (force).x, (c).f_y[i] = (scale) * (force).y,                           \
-     (c).f_z[i] = (scale) * (force).z)
+#define TL_PUT_SHEAR(c, i, scale, force)                                                                               \
+    ((c).f_x[i] = (scale) * (force).x, (c).f_y[i] = (scale) * (force).y, (c).f_z[i] = (scale) * (force).z)
 
 /* Lanes worked on at a time by a law that notes much of each, and a number of each of them: both stay in the nearest
  * cache. */
@@ -230,9 +226,8 @@ static inline tl_law_dilation tl_law_dilation_of(double angle, double limit)
 /* By how much the slip of a step opens a joint of linear springs, m. The slip adds to the pressure and so to the
  * strength: it is (trial - strength) / (ks A + kn A tangent(dilation) tangent(friction)). `total`: normal force, N;
  * none opens under tension. `friction`: its tangent; `opened`: so far, m. */
-TL_IN_LOOP double tl_law_lift_of_slip(tl_law_dilation by, double trial, double strength,
-                                      double total, double spring_n, double spring_s,
-                                      double friction, double opened)
+TL_IN_LOOP double tl_law_lift_of_slip(tl_law_dilation by, double trial, double strength, double total, double spring_n,
+                                      double spring_s, double friction, double opened)
 {
     double yield = spring_s + spring_n * by.tangent * friction;
     double grown = by.tangent * (trial - strength) / (yield > 0 ? yield : 1);
@@ -251,8 +246,7 @@ TL_IN_LOOP double tl_law_slip_work(double along, double size, double limit, doub
 }
 
 /* Heat of slip, J: that work less what it `pays` for opening the joint; 0 where nothing slips or there is no spring. */
-TL_IN_LOOP double tl_law_slip_heat(double along, double trial, double limit, double spring,
-                                   double pays)
+TL_IN_LOOP double tl_law_slip_heat(double along, double trial, double limit, double spring, double pays)
 {
     double most = TL_LAW_MOST(limit);
     double work = tl_law_slip_work(along, trial > most ? trial : 1, limit, spring);
@@ -282,8 +276,7 @@ TL_IN_LOOP double tl_law_snap_work(double gone, double spring, double du_n)
 
 /* Puts flags that were noted as numbers into the batch. A law notes them so because a loop over columns of two widths
  * is not vectorised for every machine. */
-TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-                                 const double *mark)
+TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint32_t lanes, const double *mark)
 {
     uint32_t *flags = batch->flags + begin;
     TL_EACH_ALONE
@@ -294,8 +287,7 @@ TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint
 /* Puts the elastic energy, J, of linear springs kn and ks into the batch, if it is asked for; 0 for a lane of no area.
  * It is that of a law without tension: where one part of a point presses and another pulls, with the forces P and Q,
  * the springs hold more. That is (P^2 + Q^2) / (2 kn A), by P Q / (kn A) more. */
-TL_IN_LOOP void tl_law_store_energy(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-                                    double kn, double ks)
+TL_IN_LOOP void tl_law_store_energy(const tl_law_batch *batch, uint32_t begin, uint32_t lanes, double kn, double ks)
 {
     if (!batch->stored)
         return;
@@ -313,9 +305,9 @@ TL_IN_LOOP void tl_law_store_energy(const tl_law_batch *batch, uint32_t begin, u
 /* ---------------------------------------------------------------- dampings --------------- */
 
 /* Operations of a damping that never fails: `update` and what is given. */
-#define TL_DAMPING_OPS(...)                                                                        \
-    {                                                                                              \
-        .size = sizeof(tl_damping_ops), .update = update, .never_fails = 1, __VA_ARGS__            \
+#define TL_DAMPING_OPS(...)                                                                                            \
+    {                                                                                                                  \
+        .size = sizeof(tl_damping_ops), .update = update, .never_fails = 1, __VA_ARGS__                                \
     }
 
 /* `step_factor` of a damping that leaves the stable time step as it is. */
@@ -326,8 +318,7 @@ static inline double tl_step_factor_one(const void *self)
 }
 
 /* `update` of a viscous damping whose coefficient, the same for all bodies, is its first state. */
-static inline tl_status tl_update_alpha_state(const void *self, const tl_damping_batch *batch,
-                                              tl_report *report)
+static inline tl_status tl_update_alpha_state(const void *self, const tl_damping_batch *batch, tl_report *report)
 {
     (void)self;
     (void)report;
@@ -340,14 +331,13 @@ static inline tl_status tl_update_alpha_state(const void *self, const tl_damping
 /* ---------------------------------------------------------------- generators ------------- */
 
 /* Rows of the table of parameters of a struct `owner` with the members density and group, of "block" or "blocks". */
-#define TL_PARAMS_ROCK(owner, made)                                                                \
-    TL_PARAM_POSITIVE(owner, density, "kg/m3", "density of the " made),                            \
+#define TL_PARAMS_ROCK(owner, made)                                                                                    \
+    TL_PARAM_POSITIVE(owner, density, "kg/m3", "density of the " made),                                                \
         TL_PARAM(TL_PARAM_STRING, owner, group, "", "group of the " made, .def_text = "rock")
 
 /* A tl_kind, as TL_KIND, of a generator that is the function `generate_`. */
-#define TL_GENERATOR_KIND(generate_, ...)                                                          \
-    TL_KIND(TL_KIND_GENERATOR,                                                                     \
-            ((const tl_generator_ops){.size = sizeof(tl_generator_ops), .generate = generate_}),   \
+#define TL_GENERATOR_KIND(generate_, ...)                                                                              \
+    TL_KIND(TL_KIND_GENERATOR, ((const tl_generator_ops){.size = sizeof(tl_generator_ops), .generate = generate_}),    \
             __VA_ARGS__)
 
 /* Bytes of a file that are read at once, at least. */
@@ -355,8 +345,7 @@ static inline tl_status tl_update_alpha_state(const void *self, const tl_damping
 
 /* Reads a whole file of at most `most` bytes: *count bytes, and a zero byte after them. Free *bytes, after a failure
  * too. */
-static inline tl_status tl_file_bytes(const tl_host *host, const char *file, size_t most,
-                                      char **bytes, size_t *count)
+static inline tl_status tl_file_bytes(const tl_host *host, const char *file, size_t most, char **bytes, size_t *count)
 {
     tl_status status = TL_OK;
     size_t capacity = 0;
@@ -364,8 +353,7 @@ static inline tl_status tl_file_bytes(const tl_host *host, const char *file, siz
     *count = 0;
     FILE *stream = fopen(file, "rb");
     if (!stream)
-        return host->fail(host, TL_E_IO, "file '%.200s' cannot be opened: %s", file,
-                          strerror(errno));
+        return host->fail(host, TL_E_IO, "file '%.200s' cannot be opened: %s", file, strerror(errno));
     while (status == TL_OK && !feof(stream)) {
         char *more = (char *)tl_grown(*bytes, &capacity, *count + TL_FILE_PART, 1);
         if (!more) {
@@ -375,11 +363,9 @@ static inline tl_status tl_file_bytes(const tl_host *host, const char *file, siz
         *bytes = more;
         *count += fread(more + *count, 1, capacity - 1 - *count, stream);
         if (ferror(stream))
-            status = host->fail(host, TL_E_IO, "file '%.200s' cannot be read: %s", file,
-                                strerror(errno));
+            status = host->fail(host, TL_E_IO, "file '%.200s' cannot be read: %s", file, strerror(errno));
         else if (*count > most)
-            status = host->fail(host, TL_E_IO, "file '%.200s' is larger than %zu bytes; divide it",
-                                file, most);
+            status = host->fail(host, TL_E_IO, "file '%.200s' is larger than %zu bytes; divide it", file, most);
     }
     fclose(stream);
     if (status == TL_OK)
@@ -434,8 +420,7 @@ static inline int tl_flat_segments_meet(tl_flat a, tl_flat b, tl_flat c, tl_flat
 
 /* Whether two edges of a polygon of n corners come as close as `near` without sharing a corner, or fold back on each
  * other. They are the first such, and begin at the corners *one and *other. */
-static inline int tl_polygon_crosses(const tl_flat *at, size_t n, double near, size_t *one,
-                                     size_t *other)
+static inline int tl_polygon_crosses(const tl_flat *at, size_t n, double near, size_t *one, size_t *other)
 {
     for (size_t i = 0; i < n; i++)
         for (size_t j = i + 1; j < n; j++) {
@@ -460,8 +445,7 @@ static inline int tl_polygon_crosses(const tl_flat *at, size_t n, double near, s
 /* An ear of a polygon whose corners are at[corner[0]], at[corner[1]], ..., counter-clockwise: a place in `corner` where
  * it turns left, by a height of more than `near`. No other corner is in its triangle with its neighbours. Where there
  * is none, *height is at most `near`, and the place that of the flattest corner. */
-static inline size_t tl_polygon_ear(const tl_flat *at, const size_t *corner, size_t count,
-                                    double near, double *height)
+static inline size_t tl_polygon_ear(const tl_flat *at, const size_t *corner, size_t count, double near, double *height)
 {
     size_t flattest = 0;
     double least = INFINITY;
@@ -472,8 +456,8 @@ static inline size_t tl_polygon_ear(const tl_flat *at, const size_t *corner, siz
         int ear = high > near;
         for (size_t q = 0; q < count && ear; q++) {
             size_t o = corner[q];
-            ear = o == i || o == j || o == l || tl_flat_cross(a, b, at[o]) < 0 ||
-                  tl_flat_cross(b, c, at[o]) < 0 || tl_flat_cross(c, a, at[o]) < 0;
+            ear = o == i || o == j || o == l || tl_flat_cross(a, b, at[o]) < 0 || tl_flat_cross(b, c, at[o]) < 0 ||
+                  tl_flat_cross(c, a, at[o]) < 0;
         }
         if (ear) {
             *height = high;

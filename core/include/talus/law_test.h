@@ -24,9 +24,9 @@ typedef struct tl_law_leg {
     double shear;         /* m */
     double closure;       /* m, of a test by closure only */
     double normal_stress; /* Pa, of a test by normal stress only */
-    double time;   /* s, > 0; NaN: its length over the speed, or 1 s of a leg without length */
-    double speed;  /* m/s, > 0; NaN: the test's */
-    int64_t steps; /* 0: the test's */
+    double time;          /* s, > 0; NaN: its length over the speed, or 1 s of a leg without length */
+    double speed;         /* m/s, > 0; NaN: the test's */
+    int64_t steps;        /* 0: the test's */
 } tl_law_leg;
 
 typedef struct tl_law_test {
@@ -60,8 +60,8 @@ TL_API tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_
 /* Runs the test. `points` has room for that many; `ends`, unless NULL, gets for each leg the index of its last point,
  * and `law` the kind that was tried. Shear acts along x, the normal is z: a tangent state has its columns in this
  * order. */
-TL_API tl_status tl_law_test_run(const tl_law_test *test, tl_law_point *points, size_t *ends,
-                                 const tl_kind **law, tl_error *error);
+TL_API tl_status tl_law_test_run(const tl_law_test *test, tl_law_point *points, size_t *ends, const tl_kind **law,
+                                 tl_error *error);
 
 #ifdef __cplusplus
 }

@@ -95,11 +95,9 @@ static inline const char *tl_decimal_read(const char *text, tl_decimal *d)
  * 754 rounds their product or quotient as it should be; others are left to strtod. */
 static inline double tl_decimal_value(tl_decimal *d)
 {
-    static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    if (FLT_EVAL_METHOD == 0 && d->count - d->sign <= 15 && d->exponent >= -22 &&
-        d->exponent <= 22) {
+    static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                  1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    if (FLT_EVAL_METHOD == 0 && d->count - d->sign <= 15 && d->exponent >= -22 && d->exponent <= 22) {
         long long whole = 0;
         for (size_t i = d->sign; i < d->count; i++)
             whole = 10 * whole + (d->text[i] - '0');

@@ -14,8 +14,7 @@ struct tl_halfspace;
 struct tl_keyblocks;
 
 /* Writes the next frame of the section of all blocks by a plane: PREFIX_section_NNNNNN.vtk and its index. */
-TL_API tl_status tl_write_section(struct tl_model *model, const char *prefix,
-                                  const struct tl_halfspace *plane);
+TL_API tl_status tl_write_section(struct tl_model *model, const char *prefix, const struct tl_halfspace *plane);
 
 /* A number of each block or of each contact, beside their fields. */
 typedef struct tl_extra_field {
@@ -33,8 +32,7 @@ typedef struct tl_vtk_parts {
 } tl_vtk_parts;
 /* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`,
  * and PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
-TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix,
-                              const tl_vtk_parts *parts);
+TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix, const tl_vtk_parts *parts);
 
 /* Which contacts a frame of a page has. */
 typedef enum tl_html_contacts {
@@ -52,7 +50,7 @@ typedef struct tl_html {
     const tl_extra_field *block_fields, *contact_fields;
     size_t block_field_count, contact_field_count;
     const struct tl_keyblocks *keyblocks; /* NULL: none */
-    double safety_limit; /* factor of safety that is asked for, marked in the legend; 0: none */
+    double safety_limit;                  /* factor of safety that is asked for, marked in the legend; 0: none */
 } tl_html;
 /* Adds a frame to the page PREFIX.html, for a browser (docs/screen.md). The first frame of a model replaces what is
  * there. Later ones go on with the page where it is as the model left it, else they begin it anew. A page of more than

@@ -110,10 +110,10 @@ typedef struct tl_param {
 } tl_param;
 
 /* Declares one row of a parameter table: TL_PARAM(struct type, member, "unit", "doc", .field = ...) */
-#define TL_PARAM(kind, owner, member, unit_, doc_, ...)                                            \
-    {                                                                                              \
-        .size = sizeof(tl_param), .type = (kind), .name = #member, .unit = (unit_), .doc = (doc_), \
-        .offset = offsetof(owner, member), __VA_ARGS__                                             \
+#define TL_PARAM(kind, owner, member, unit_, doc_, ...)                                                                \
+    {                                                                                                                  \
+        .size = sizeof(tl_param), .type = (kind), .name = #member, .unit = (unit_), .doc = (doc_),                     \
+        .offset = offsetof(owner, member), __VA_ARGS__                                                                 \
     }
 
 /* ---------------------------------------------------------------- states ----------------- */
@@ -128,7 +128,7 @@ typedef enum tl_state_kind {
 
 /* What becomes of a state when the contact polygon changes. */
 typedef enum tl_state_transfer {
-    TL_TRANSFER_COPY, /* intensive: the mean over the area that the point gets, within what there was */
+    TL_TRANSFER_COPY,  /* intensive: the mean over the area that the point gets, within what there was */
     TL_TRANSFER_SPLIT, /* extensive: the sum goes with the area */
     TL_TRANSFER_RESET, /* back to the initial value */
     /* 1.8, a scalar, J: what shear holds beyond f^2 / (2 ks area); the host keeps its sum over the points */
@@ -149,10 +149,9 @@ typedef struct tl_state {
 
 /* Declares one row of a state table: TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"). It is copied
  * from old points and begins at 0, unless .transfer or .initial follow the sentence. */
-#define TL_STATE(kind_, name_, unit_, ...)                                                         \
-    {                                                                                              \
-        .size = sizeof(tl_state), .kind = (kind_), .name = (name_), .unit = (unit_),               \
-        .doc = __VA_ARGS__                                                                         \
+#define TL_STATE(kind_, name_, unit_, ...)                                                                             \
+    {                                                                                                                  \
+        .size = sizeof(tl_state), .kind = (kind_), .name = (name_), .unit = (unit_), .doc = __VA_ARGS__                \
     }
 
 /* ---------------------------------------------------------------- reports ---------------- */
@@ -298,8 +297,7 @@ typedef struct tl_damping_ops {
     /* [main] */
     tl_status (*create)(const void *params, void **self, tl_report *report);
     /* [main] once a step before `update`: a controller adjusts its states. May be NULL. */
-    tl_status (*begin)(const void *self, const tl_damping_totals *totals, double *const *state,
-                       tl_report *report);
+    tl_status (*begin)(const void *self, const tl_damping_totals *totals, double *const *state, tl_report *report);
     /* [worker] */
     tl_status (*update)(const void *self, const tl_damping_batch *batch, tl_report *report);
     /* [main] factor on the stable time step, (0, 1] */
@@ -359,11 +357,9 @@ struct tl_host {
     /* Creates a block: the convex hull of `count` vertices. Refused with TL_E_GEOMETRY when they
      * span no volume, or when one lies inside the hull of the others. density in kg/m3 > 0;
      * group may be NULL. */
-    tl_status (*create_hull)(const tl_host *, const tl_vec3 *vertices, size_t count, double density,
-                             const char *group);
+    tl_status (*create_hull)(const tl_host *, const tl_vec3 *vertices, size_t count, double density, const char *group);
     /* Creates a block: an axis-aligned box, min < max in every component. */
-    tl_status (*create_box)(const tl_host *, tl_vec3 min, tl_vec3 max, double density,
-                            const char *group);
+    tl_status (*create_box)(const tl_host *, tl_vec3 min, tl_vec3 max, double density, const char *group);
     /* Finds or creates the joint set `name` and gives its number. */
     tl_status (*joint)(const tl_host *, const char *name, uint32_t *joint);
     /* The number of the next plane of a joint set, from 1. */
@@ -371,8 +367,7 @@ struct tl_host {
     /* Cuts every visible block that the plane through `point` with unit `normal` crosses, each with
      * probability `persistence` drawn from (seed, set, plane, block's lineage); body-wise for
      * joined blocks. The new faces carry `tag`. */
-    tl_status (*cut)(const tl_host *, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                     double persistence);
+    tl_status (*cut)(const tl_host *, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence);
     /* The visible blocks of the staging set. */
     size_t (*block_count)(const tl_host *);
     void (*block_info)(const tl_host *, size_t index, tl_block_info *info);
@@ -387,21 +382,19 @@ struct tl_host {
     /* since minor 1: as `cut`, by a disc of `radius` about `point` (INFINITY: the whole plane). A block is in the
      * disc's path when the disc reaches into the polygon in which the plane cuts the block. It is then cut through.
      * `met`, which may be NULL, gets the number of blocks in the path, whether the draw had them cut or not. */
-    tl_status (*cut_disc)(const tl_host *, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
-                          double persistence, size_t *met);
+    tl_status (*cut_disc)(const tl_host *, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag, double persistence,
+                          size_t *met);
 
     /* Single blocks. `index` counts the visible blocks as in block_info. Cuts keep indices: the side
      * away from the normal stays at its index, the other becomes the last. `hide` and `remove` make
      * one fewer of those after the index. */
 
     /* Whether the block's inside meets the common inside of half spaces. */
-    tl_status (*meets)(const tl_host *, size_t index, const tl_half_space *spaces, size_t count,
-                       bool *meets);
+    tl_status (*meets)(const tl_host *, size_t index, const tl_half_space *spaces, size_t count, bool *meets);
     /* Cuts one block without a joint: its new faces carry no tag and the two sides stay one body.
      * *above is the index of the part on the normal's side; SIZE_MAX: the plane does not divide the block, or would
      * leave a sliver. */
-    tl_status (*cut_block)(const tl_host *, size_t index, tl_vec3 normal, tl_vec3 point,
-                           size_t *above);
+    tl_status (*cut_block)(const tl_host *, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above);
     tl_status (*set_group)(const tl_host *, size_t index, const char *group);
     /* Takes blocks out of their bodies: those among them that hang together are one body, and so are
      * those left behind. Faces of joints cut by this generator part what shares them. */
@@ -454,8 +447,7 @@ typedef struct tl_screen_frame {
 typedef struct tl_screen_ops {
     uint32_t size;
     /* [main] Begins to show. The first `put` has `begin`. */
-    tl_status (*open)(const tl_screen_page *page, const void *params, void **self,
-                      tl_report *report);
+    tl_status (*open)(const tl_screen_page *page, const void *params, void **self, tl_report *report);
     /* [main] Where to look: an address for a browser, its token in it. Valid until `close`. */
     const char *(*address)(const void *self);
     /* [main] How many look now. Asked after every step, so it is a read of a number. */
@@ -510,17 +502,16 @@ typedef const tl_plugin *(*tl_plugin_entry_fn)(uint32_t host_major, uint32_t hos
 /* One kind with its operations, for a `static const tl_kind` or an array of them:
  *
  *     TL_KIND(TL_KIND_LAW, ops, .name = "my_law", .doc = "Falling friction.", TL_KIND_PARAMS(params, param_table)) */
-#define TL_KIND(type_, ops_, ...)                                                                  \
-    {                                                                                              \
-        .size = sizeof(tl_kind), .type = (type_), .ops = &(ops_), __VA_ARGS__                      \
+#define TL_KIND(type_, ops_, ...)                                                                                      \
+    {                                                                                                                  \
+        .size = sizeof(tl_kind), .type = (type_), .ops = &(ops_), __VA_ARGS__                                          \
     }
 /* Members of a tl_kind: its parameters, written to a struct `owner`, and its states. `table` is an array. */
-#define TL_KIND_PARAMS(owner, table)                                                               \
-    .params_size = sizeof(owner), .params = (table),                                               \
-    .param_count = sizeof(table) / sizeof(tl_param), .param_stride = sizeof(tl_param)
-#define TL_KIND_STATES(table)                                                                      \
-    .states = (table), .state_count = sizeof(table) / sizeof(tl_state),                            \
-    .state_stride = sizeof(tl_state)
+#define TL_KIND_PARAMS(owner, table)                                                                                   \
+    .params_size = sizeof(owner), .params = (table), .param_count = sizeof(table) / sizeof(tl_param),                  \
+    .param_stride = sizeof(tl_param)
+#define TL_KIND_STATES(table)                                                                                          \
+    .states = (table), .state_count = sizeof(table) / sizeof(tl_state), .state_stride = sizeof(tl_state)
 
 /* The descriptor and the entry of a plugin with the tl_kind, or the array of them, `kinds_`:
  *
@@ -529,19 +520,19 @@ typedef const tl_plugin *(*tl_plugin_entry_fn)(uint32_t host_major, uint32_t hos
  * It refuses hosts of another major version. TL_PLUGIN_SINCE also refuses those of a minor version below `least`, for a
  * plugin that cannot do without what came with it. Once in a plugin, in C, at file scope. */
 #define TL_PLUGIN(kinds_, ...) TL_PLUGIN_SINCE(0, kinds_, __VA_ARGS__)
-#define TL_PLUGIN_SINCE(least, kinds_, ...)                                                        \
-    TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)    \
-    {                                                                                              \
-        static const tl_plugin plugin = {.size = sizeof plugin,                                    \
-                                         .abi_major = TL_ABI_MAJOR,                                \
-                                         .abi_minor = TL_ABI_MINOR,                                \
-                                         .kinds = (const tl_kind *)&(kinds_),                      \
-                                         .kind_count = sizeof(kinds_) / sizeof(tl_kind),           \
-                                         .kind_stride = sizeof(tl_kind),                           \
-                                         __VA_ARGS__};                                             \
-        static const uint32_t least_minor = (least);                                               \
-        return host_major == TL_ABI_MAJOR && host_minor >= least_minor ? &plugin : NULL;           \
-    }                                                                                              \
+#define TL_PLUGIN_SINCE(least, kinds_, ...)                                                                            \
+    TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)                        \
+    {                                                                                                                  \
+        static const tl_plugin plugin = {.size = sizeof plugin,                                                        \
+                                         .abi_major = TL_ABI_MAJOR,                                                    \
+                                         .abi_minor = TL_ABI_MINOR,                                                    \
+                                         .kinds = (const tl_kind *)&(kinds_),                                          \
+                                         .kind_count = sizeof(kinds_) / sizeof(tl_kind),                               \
+                                         .kind_stride = sizeof(tl_kind),                                               \
+                                         __VA_ARGS__};                                                                 \
+        static const uint32_t least_minor = (least);                                                                   \
+        return host_major == TL_ABI_MAJOR && host_minor >= least_minor ? &plugin : NULL;                               \
+    }                                                                                                                  \
     _Static_assert(sizeof(kinds_) % sizeof(tl_kind) == 0, "give the kinds, not their address")
 
 #ifdef __cplusplus

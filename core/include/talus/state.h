@@ -28,8 +28,7 @@ typedef bool (*tl_drive_again_fn)(void *user, const tl_drive_asked *asked, tl_dr
  * where that of the model goes; the frames of VTK files written so far are not the copy's. `again`, which may be NULL,
  * is asked for the functions of drives: TL_E_STATE when it has none, and of a model whose last step failed and could
  * not be taken back. From a callback of a run it may be called, not from a drive's function. */
-TL_API tl_status tl_model_copy(tl_model *model, tl_drive_again_fn again, void *user,
-                               tl_model **copy);
+TL_API tl_status tl_model_copy(tl_model *model, tl_drive_again_fn again, void *user, tl_model **copy);
 
 /* Saves the model: all that the next steps depend on, to the bit, so that a restored model goes on as this one. The
  * file appears whole or not at all, durably, in the place of an older one; folders are made. The run goes on as if it
@@ -39,8 +38,8 @@ TL_API tl_status tl_model_save(tl_model *model, const char *path);
  * another format, cut off or damaged; TL_E_NOT_FOUND, TL_E_STATE: a plugin it needs is not loaded, or in another
  * version, or `again` has not given the functions of a drive. The file is not trusted: whatever its bytes, a model or a
  * sentence comes of it. */
-TL_API tl_status tl_model_restore(const char *path, int64_t threads, tl_drive_again_fn again,
-                                  void *user, tl_model **model, tl_error *error);
+TL_API tl_status tl_model_restore(const char *path, int64_t threads, tl_drive_again_fn again, void *user,
+                                  tl_model **model, tl_error *error);
 
 #ifdef __cplusplus
 }

@@ -43,7 +43,7 @@ typedef struct tl_model tl_model;
 
 typedef enum tl_rotation_rule {
     TL_ROTATION_EXACT, /* Euler's equations (19) in principal axes */
-    TL_ROTATION_PAPER /* one moment of inertia (20): 0.4 m r^2, r the mean centroid-vertex distance */
+    TL_ROTATION_PAPER  /* one moment of inertia (20): 0.4 m r^2, r the mean centroid-vertex distance */
 } tl_rotation_rule;
 
 /* Where the points of a face-face contact lie. */
@@ -106,20 +106,19 @@ TL_API double tl_model_time(const tl_model *model);
 TL_API int64_t tl_model_cycles(const tl_model *model);
 
 typedef struct tl_generate_summary {
-    size_t before, after; /* blocks */
-    size_t cuts, refused; /* cuts made; cuts refused because a side would be too thin */
-    size_t coincident;    /* cuts that fell on an existing face */
+    size_t before, after;                                 /* blocks */
+    size_t cuts, refused;                                 /* cuts made; cuts refused because a side would be too thin */
+    size_t coincident;                                    /* cuts that fell on an existing face */
     double smallest_volume, smallest_edge, smallest_face; /* of the model after */
     double volume_error; /* |volume after - volume before - volume created| / volume after */
 } tl_generate_summary;
 
 /* Runs a generator plugin on the visible blocks; commits its work whole or not at all. `summary` may be NULL. */
-TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_args *args,
-                             tl_generate_summary *summary);
+TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_args *args, tl_generate_summary *summary);
 /* The same for several sets of parameters, one after the other on the blocks as the ones before have left them: all or
  * none. A failure names the entry, counted from 1. */
-TL_API tl_status tl_generate_list(tl_model *model, const char *generator, const tl_args *args,
-                                  size_t count, tl_generate_summary *summary);
+TL_API tl_status tl_generate_list(tl_model *model, const char *generator, const tl_args *args, size_t count,
+                                  tl_generate_summary *summary);
 
 /* The extreme value of a measure over the blocks, and the block that has it; 0 without blocks. */
 typedef struct tl_extreme {
@@ -130,8 +129,8 @@ typedef struct tl_extreme {
 /* A cut that was not made because a side would have been thinner than `limit`. */
 typedef struct tl_refused_cut {
     tl_tag joint;
-    tl_vec3 normal, point; /* of the plane; upward normal as given */
-    tl_id block; /* the block, or a piece of it when other planes of the call have cut it */
+    tl_vec3 normal, point;   /* of the plane; upward normal as given */
+    tl_id block;             /* the block, or a piece of it when other planes of the call have cut it */
     double thickness, limit; /* of the thinner side, m */
 } tl_refused_cut;
 
@@ -150,11 +149,7 @@ typedef struct tl_quality {
 /* Measures the blocks: volumes, m3, edges, m, faces, m2, and what cuts have done. TL_E_MEMORY. */
 TL_API tl_status tl_model_quality(tl_model *model, tl_quality *quality);
 
-typedef enum tl_filter_action {
-    TL_FILTER_REPORT,
-    TL_FILTER_DELETE,
-    TL_FILTER_JOIN
-} tl_filter_action;
+typedef enum tl_filter_action { TL_FILTER_REPORT, TL_FILTER_DELETE, TL_FILTER_JOIN } tl_filter_action;
 
 typedef struct tl_filter {
     uint32_t size;               /* sizeof(tl_filter) */
@@ -179,13 +174,11 @@ typedef struct tl_filter_result {
 
 /* Finds the slivers and deletes them, or joins each to the body with which it shares the largest area. `result` may be
  * NULL. */
-TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter,
-                                 tl_filter_result *result);
+TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter, tl_filter_result *result);
 
 /* Sets the law of a joint: "*" every joint not named otherwise, "J1" a set, "J1:3" a plane of it.
  * `law` NULL changes properties of the law the joint has now; forces stay continuous. */
-TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law,
-                              const tl_args *args);
+TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law, const tl_args *args);
 
 typedef struct tl_insitu {
     uint32_t size;            /* sizeof(tl_insitu) */
@@ -339,13 +332,13 @@ TL_API void tl_model_interrupt_if(tl_model *model, bool (*asked)(void));
 /* ---------------------------------------------------------------- cost ------------------- */
 
 /* The phases of a step, in its order: name, what is done. */
-#define TL_PHASES(X)                                                                               \
-    X(DETECT, detect, "pairs and contacts up to date, gaps and motion of the contact points")      \
-    X(TIMESTEP, timestep, "the step to take")                                                      \
-    X(LAWS, laws, "contact forces, and their sums over each contact")                              \
-    X(GATHER, gather, "forces and moments of each body")                                           \
-    X(DAMPING, damping, "the damping's forces")                                                    \
-    X(MOVE, move, "velocities, places and rotations")                                              \
+#define TL_PHASES(X)                                                                                                   \
+    X(DETECT, detect, "pairs and contacts up to date, gaps and motion of the contact points")                          \
+    X(TIMESTEP, timestep, "the step to take")                                                                          \
+    X(LAWS, laws, "contact forces, and their sums over each contact")                                                  \
+    X(GATHER, gather, "forces and moments of each body")                                                               \
+    X(DAMPING, damping, "the damping's forces")                                                                        \
+    X(MOVE, move, "velocities, places and rotations")                                                                  \
     X(ENERGY, energy, "the ledger of energy")
 
 typedef enum tl_phase {
@@ -371,18 +364,18 @@ TL_API void tl_model_profiling(tl_model *model, bool on);
 TL_API tl_profile tl_model_profile(const tl_model *model);
 
 /* What a model holds, in bytes, room for growth included. */
-#define TL_MEMORY(X)                                                                               \
-    X(blocks, "columns of the blocks")                                                             \
-    X(shapes, "polyhedra")                                                                         \
-    X(bodies, "columns of the bodies")                                                             \
-    X(step, "columns of the bodies that live through a step only")                                 \
-    X(broad, "how far blocks have moved since pairs were listed")                                  \
-    X(pairs, "candidate pairs")                                                                    \
-    X(contacts, "columns of the contacts")                                                         \
-    X(facets, "faces of the contacts, and what field contacts keep beside their points")           \
-    X(points, "columns of the contact points")                                                     \
-    X(index, "lists of each block's contacts, and of contacts by number")                          \
-    X(spare, "second set of tables of contacts and points")                                        \
+#define TL_MEMORY(X)                                                                                                   \
+    X(blocks, "columns of the blocks")                                                                                 \
+    X(shapes, "polyhedra")                                                                                             \
+    X(bodies, "columns of the bodies")                                                                                 \
+    X(step, "columns of the bodies that live through a step only")                                                     \
+    X(broad, "how far blocks have moved since pairs were listed")                                                      \
+    X(pairs, "candidate pairs")                                                                                        \
+    X(contacts, "columns of the contacts")                                                                             \
+    X(facets, "faces of the contacts, and what field contacts keep beside their points")                               \
+    X(points, "columns of the contact points")                                                                         \
+    X(index, "lists of each block's contacts, and of contacts by number")                                              \
+    X(spare, "second set of tables of contacts and points")                                                            \
     X(other, "rows by number, scratch of the threads, joints and laws")
 
 typedef struct tl_memory {
@@ -416,8 +409,7 @@ typedef struct tl_block_filter {
 } tl_block_filter;
 
 /* Ids of the blocks that pass, ascending. The list is the caller's, to be freed with free(). */
-TL_API tl_status tl_blocks_select(tl_model *model, const tl_block_filter *filter, tl_id **ids,
-                                  size_t *count);
+TL_API tl_status tl_blocks_select(tl_model *model, const tl_block_filter *filter, tl_id **ids, size_t *count);
 /* The number of blocks, hidden ones too. */
 TL_API size_t tl_block_count(const tl_model *model);
 /* TL_OK when the block exists, else TL_E_STALE with a sentence. */
@@ -495,8 +487,7 @@ typedef struct tl_block_set {
 /* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those
  * that are listed. TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not
  * finite; then no block is changed. */
-TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count,
-                               const tl_block_set *set);
+TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count, const tl_block_set *set);
 
 /* Makes one rigid body of the blocks and of all blocks joined to them before. Mass, momentum and angular
  * momentum are those of the parts together; contacts between the parts end. Fixed parts must agree. */
@@ -513,8 +504,7 @@ typedef struct tl_load {
 } tl_load;
 
 /* Puts a load on the body of each block, in the place of the one it had; zero takes it off. */
-TL_API tl_status tl_blocks_load(tl_model *model, const tl_id *ids, size_t count,
-                                const tl_load *load);
+TL_API tl_status tl_blocks_load(tl_model *model, const tl_id *ids, size_t count, const tl_load *load);
 
 /* Velocity of a drive at time t, s; false ends the run after the step. */
 typedef bool (*tl_drive_fn)(void *user, double t, tl_vec3 *velocity);
@@ -529,21 +519,20 @@ typedef struct tl_drive {
 
 /* Prescribes the motion of the blocks' bodies, in the place of any fixing; free ends it. A function is
  * called on the caller's thread, once a step for all bodies of the call, at the middle of the step. */
-TL_API tl_status tl_blocks_drive(tl_model *model, const tl_id *ids, size_t count,
-                                 const tl_drive *drive);
+TL_API tl_status tl_blocks_drive(tl_model *model, const tl_id *ids, size_t count, const tl_drive *drive);
 
 /* ---------------------------------------------------------------- energy ----------------- */
 
 /* The terms of the ledger: name, unit and what it is. */
-#define TL_ENERGY(X)                                                                               \
-    X(kinetic, "J", "of motion, J")                                                                \
-    X(potential, "J", "minus the work of gravity, J")                                              \
-    X(stored, "J", "elastic, in all contacts, those of held blocks, too, J")                       \
-    X(friction, "J", "turned to heat by slip, J")                                                  \
-    X(damping, "J", "taken out by the damping, J")                                                 \
-    X(external, "J",                                                                               \
-      "work of loads and driven bodies, and given by setting velocities and by edits of blocks "   \
-      "and laws, J")                                                                               \
+#define TL_ENERGY(X)                                                                                                   \
+    X(kinetic, "J", "of motion, J")                                                                                    \
+    X(potential, "J", "minus the work of gravity, J")                                                                  \
+    X(stored, "J", "elastic, in all contacts, those of held blocks, too, J")                                           \
+    X(friction, "J", "turned to heat by slip, J")                                                                      \
+    X(damping, "J", "taken out by the damping, J")                                                                     \
+    X(external, "J",                                                                                                   \
+      "work of loads and driven bodies, and given by setting velocities and by edits of blocks "                       \
+      "and laws, J")                                                                                                   \
     X(balance, "", "error of the sum over the largest change of a term so far")
 
 /* Energy of the bodies that are free to move, J, all at one time and counted from the first step: the terms of
@@ -568,14 +557,12 @@ typedef struct tl_contact_filter {
 
 /* Ids of the contacts that pass, ascending; freed with free(). Detects contacts when the model has
  * changed since the last step. */
-TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *filter, tl_id **ids,
-                                    size_t *count);
+TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *filter, tl_id **ids, size_t *count);
 /* The fields a contact has, in the order of the reference; `*count` of them. */
 TL_API const tl_field *tl_contact_fields(size_t *count);
 /* The value of field `index` (of tl_contact_fields) of a contact, as of the last step. TL_E_STALE for a contact that is
  * no more. */
-TL_API tl_status tl_contact_field(tl_model *model, tl_id contact, size_t index,
-                                  tl_field_value *value);
+TL_API tl_status tl_contact_field(tl_model *model, tl_id contact, size_t index, tl_field_value *value);
 
 /* ---------------------------------------------------------------- state ------------------ */
 

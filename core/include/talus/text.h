@@ -12,12 +12,7 @@ static inline size_t tl_utf8_next(const char *text)
 {
     static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
     const unsigned char *c = (const unsigned char *)text;
-    size_t bytes = *c < 0x80   ? 1
-                   : *c < 0xc0 ? 0
-                   : *c < 0xe0 ? 2
-                   : *c < 0xf0 ? 3
-                   : *c < 0xf8 ? 4
-                               : 0;
+    size_t bytes = *c < 0x80 ? 1 : *c < 0xc0 ? 0 : *c < 0xe0 ? 2 : *c < 0xf0 ? 3 : *c < 0xf8 ? 4 : 0;
     unsigned code = bytes > 1 ? *c & (0x7fu >> bytes) : *c;
     for (size_t i = 1; i < bytes; i++) {
         if ((c[i] & 0xc0) != 0x80)

@@ -12,17 +12,17 @@
 
 /* Status codes and what each means, once. A function that can fail for a reason outside the
  * programmer's control returns one of these and puts a sentence into a tl_error or tl_report. */
-#define TL_STATUS_LIST(X)                                                                          \
-    X(TL_OK, "success")                                                                            \
-    X(TL_E_MEMORY, "out of memory")                                                                \
-    X(TL_E_ARGUMENT, "a parameter has the wrong name, type or value")                              \
-    X(TL_E_GEOMETRY, "a shape is degenerate, not convex or not closed")                            \
-    X(TL_E_NOT_FOUND, "something named does not exist")                                            \
-    X(TL_E_STALE, "a handle to something that was deleted or cut")                                 \
-    X(TL_E_STATE, "not possible in the model's present state")                                     \
-    X(TL_E_PLUGIN, "a plugin could not be loaded or broke the plugin interface")                   \
-    X(TL_E_NUMERIC, "a value that must be finite is not")                                          \
-    X(TL_E_IO, "a file could not be read or written")                                              \
+#define TL_STATUS_LIST(X)                                                                                              \
+    X(TL_OK, "success")                                                                                                \
+    X(TL_E_MEMORY, "out of memory")                                                                                    \
+    X(TL_E_ARGUMENT, "a parameter has the wrong name, type or value")                                                  \
+    X(TL_E_GEOMETRY, "a shape is degenerate, not convex or not closed")                                                \
+    X(TL_E_NOT_FOUND, "something named does not exist")                                                                \
+    X(TL_E_STALE, "a handle to something that was deleted or cut")                                                     \
+    X(TL_E_STATE, "not possible in the model's present state")                                                         \
+    X(TL_E_PLUGIN, "a plugin could not be loaded or broke the plugin interface")                                       \
+    X(TL_E_NUMERIC, "a value that must be finite is not")                                                              \
+    X(TL_E_IO, "a file could not be read or written")                                                                  \
     X(TL_E_CANCELLED, "stopped on request")
 
 #define TL_STATUS_ENUM(name, text) name,

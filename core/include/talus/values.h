@@ -94,18 +94,16 @@ struct tl_args_list : tl_args {
 extern "C" {
 #else
 #define TL_ARG_VECTOR(key, x, y, z) tl_arg_numbers((key), (const double[]){(x), (y), (z)}, 3)
-#define TL_ARGS(...)                                                                               \
-    (&(const tl_args){(const tl_value[]){__VA_ARGS__},                                             \
-                      sizeof((const tl_value[]){__VA_ARGS__}) / sizeof(tl_value)})
+#define TL_ARGS(...)                                                                                                   \
+    (&(const tl_args){(const tl_value[]){__VA_ARGS__}, sizeof((const tl_value[]){__VA_ARGS__}) / sizeof(tl_value)})
 #endif
 
 /* Checks `args` against a table of parameters and fills the struct `out`. Refused are unknown keys (with the nearest
  * known name), wrong types, values out of range, NaN and infinity, and missing required parameters. The sentence starts
  * with `context` ("joint 'J1', law 'coulomb'"). With `keep` true only the given parameters are written (a change
  * of one property) and nothing is required. On failure `out` is unspecified. Strings and points stay the caller's. */
-TL_API tl_status tl_args_read(const tl_param *params, size_t count, size_t stride,
-                              const tl_args *args, bool keep, void *out, const char *context,
-                              tl_error *error);
+TL_API tl_status tl_args_read(const tl_param *params, size_t count, size_t stride, const tl_args *args, bool keep,
+                              void *out, const char *context, tl_error *error);
 
 /* The range of a parameter as text: "[0, 90)", "> 0", ">= 0"; "" when it has none. */
 TL_API void tl_param_range(const tl_param *param, char *text, size_t size);

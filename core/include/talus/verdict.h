@@ -22,8 +22,8 @@ struct tl_model;
 TL_API tl_status tl_model_stage(struct tl_model *model, const char *name);
 
 typedef enum tl_standing {
-    TL_STANDING_UNKNOWN, /* no step has been made */
-    TL_STANDING_AT_REST, /* below the local ratio of the last solve that asked for one, else below 1e-5 */
+    TL_STANDING_UNKNOWN,      /* no step has been made */
+    TL_STANDING_AT_REST,      /* below the local ratio of the last solve that asked for one, else below 1e-5 */
     TL_STANDING_MOVING,       /* neither at rest nor failed */
     TL_STANDING_ACCELERATING, /* so, and the unbalanced forces push on */
     TL_STANDING_FAILED        /* by the criterion of `stop_at_failure`, in the last solve */
@@ -37,10 +37,10 @@ typedef struct tl_verdict {
     double ratio; /* the local unbalanced force ratio; NaN: no step has been made */
     /* m: blocks that have not moved, but closed their joints, have displacements up to this */
     double closed;
-    size_t moved;      /* bodies */
-    double volume;     /* of these, m3 */
-    tl_vec3 direction; /* of their mean motion by volume, a unit vector; 0: none has moved */
-    tl_id farthest; /* first block of the body that has moved the most; TL_NO_ID: there is none */
+    size_t moved;        /* bodies */
+    double volume;       /* of these, m3 */
+    tl_vec3 direction;   /* of their mean motion by volume, a unit vector; 0: none has moved */
+    tl_id farthest;      /* first block of the body that has moved the most; TL_NO_ID: there is none */
     double displacement; /* of that, m */
     /* The largest since the stage began, m: how far two bodies have moved along each other and apart. It is measured
      * where faces that look the same way meet, as the mean of their contacts by area. */

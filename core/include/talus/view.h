@@ -63,8 +63,7 @@ typedef struct tl_view_command {
 
 /* Reads a command: one JSON object with "op" and what that asks for, {"op": "delete", "blocks": [3, 5]}. 1, or 0 with a
  * sentence in `why`. A pure function. */
-TL_API int tl_view_command_read(const char *text, size_t length, tl_view_command *command,
-                                char *why, size_t size);
+TL_API int tl_view_command_read(const char *text, size_t length, tl_view_command *command, char *why, size_t size);
 /* The name of an op, as in a command. */
 TL_API const char *tl_view_op_name(tl_view_op op);
 
@@ -103,8 +102,7 @@ TL_API tl_status tl_view_show(tl_view *view, const struct tl_html *html);
 TL_API bool tl_view_take(tl_view *view, double seconds, tl_view_command *command);
 /* Tells with the next frame what the model does and, unless NULL, the line that was done or the sentence why a command
  * was not. */
-TL_API tl_status tl_view_tell(tl_view *view, tl_view_state state, const char *line,
-                              const char *refused);
+TL_API tl_status tl_view_tell(tl_view *view, tl_view_state state, const char *line, const char *refused);
 /* Ends it; NULL is ignored. Those who look get what was shown last. Before the model is destroyed. */
 TL_API void tl_view_close(tl_view *view);
 

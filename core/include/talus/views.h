@@ -42,12 +42,12 @@ TL_API tl_block_views tl_view_blocks(tl_model *model);
 /* A point p of the body's frame is at origin + reference + displacement + R(rotation) p. The three parts of the place
  * are kept apart, so that a small displacement of a body far from zero loses no digits. */
 typedef struct tl_body_views {
-    tl_vec3 origin;       /* of all bodies, m */
-    tl_index_view id;     /* the lowest id of its blocks */
-    tl_view reference;    /* centroid when the body was made, less the origin, m */
-    tl_view displacement; /* of the centroid since then, m: reset_displacement does not change it */
-    tl_view rotation;     /* since then: unit quaternion w, x, y, z */
-    tl_view velocity;     /* of the centroid, half a step ago, m/s */
+    tl_vec3 origin;           /* of all bodies, m */
+    tl_index_view id;         /* the lowest id of its blocks */
+    tl_view reference;        /* centroid when the body was made, less the origin, m */
+    tl_view displacement;     /* of the centroid since then, m: reset_displacement does not change it */
+    tl_view rotation;         /* since then: unit quaternion w, x, y, z */
+    tl_view velocity;         /* of the centroid, half a step ago, m/s */
     tl_view angular_velocity; /* rad/s */
     tl_view force, moment;    /* unbalanced, in the last step, N and N m about the centroid */
     tl_view mass;             /* kg */

@@ -150,8 +150,7 @@ static inline tl_mat3 tl_m3_tproduct(const tl_mat3 *a, const tl_mat3 *b)
 /* a transpose(b) */
 static inline tl_mat3 tl_m3_product_t(const tl_mat3 *a, const tl_mat3 *b)
 {
-    return tl_m3_of_rows(tl_m3_mul(b, tl_m3_row(a, 0)), tl_m3_mul(b, tl_m3_row(a, 1)),
-                         tl_m3_mul(b, tl_m3_row(a, 2)));
+    return tl_m3_of_rows(tl_m3_mul(b, tl_m3_row(a, 0)), tl_m3_mul(b, tl_m3_row(a, 1)), tl_m3_mul(b, tl_m3_row(a, 2)));
 }
 
 static inline tl_vec3 tl_s3_mul(tl_sym3 a, tl_vec3 v)
@@ -188,10 +187,8 @@ static inline tl_quat tl_q_identity(void)
 
 static inline tl_quat tl_q_mul(tl_quat a, tl_quat b)
 {
-    return (tl_quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-                     a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-                     a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-                     a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+    return (tl_quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                     a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
 
 static inline tl_quat tl_q_conj(tl_quat a)
@@ -277,8 +274,8 @@ static inline double tl_cos_degrees(double degrees)
 static inline tl_vec3 tl_plane_normal(double dip, double dip_direction)
 {
     double s = tl_sin_degrees(dip);
-    return (tl_vec3){s * tl_sin_degrees(dip_direction) + 0.0,
-                     s * tl_cos_degrees(dip_direction) + 0.0, tl_cos_degrees(dip) + 0.0};
+    return (tl_vec3){s * tl_sin_degrees(dip_direction) + 0.0, s * tl_cos_degrees(dip_direction) + 0.0,
+                     tl_cos_degrees(dip) + 0.0};
 }
 
 #endif

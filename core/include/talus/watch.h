@@ -25,8 +25,7 @@ typedef struct tl_cycle_args {
 } tl_cycle_args;
 /* tl_model_cycle with the functions of `calls`: each, progress, stop, with every and user. The rest of it is not read.
  * `calls` and `result` may be NULL. */
-TL_API tl_status tl_model_cycle_calling(struct tl_model *model, int64_t cycles,
-                                        const struct tl_solve *calls,
+TL_API tl_status tl_model_cycle_calling(struct tl_model *model, int64_t cycles, const struct tl_solve *calls,
                                         struct tl_solve_result *result);
 
 /* The unbalanced force ratios and the largest speed, m/s, of the last step; NaN before the first. */
@@ -52,8 +51,7 @@ typedef struct tl_generate_progress {
     size_t cuts, blocks;   /* cuts made; blocks there are, of the model and new ones */
 } tl_generate_progress;
 /* From now on `show` is called often while a generator works, on the caller's thread. NULL: no more. */
-TL_API void tl_model_watch_generate(struct tl_model *model,
-                                    void (*show)(void *user, const tl_generate_progress *done),
+TL_API void tl_model_watch_generate(struct tl_model *model, void (*show)(void *user, const tl_generate_progress *done),
                                     void *user);
 
 #ifdef __cplusplus

@@ -25,15 +25,11 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, target, "",
-             "share of the rate of kinetic energy that damping absorbs",
+    TL_PARAM(TL_PARAM_REAL, params, target, "", "share of the rate of kinetic energy that damping absorbs",
              .flags = TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN, .def = {0.5}, .min = 0, .max = 1),
-    TL_PARAM_POSITIVE_OR_NONE(params, start, "1/s",
-                              "first coefficient; not given: 0.01 / time step"),
-    TL_PARAM_POSITIVE_OR_NONE(params, minimum, "1/s",
-                              "smallest coefficient; not given: 1e-8 / time step"),
-    TL_PARAM_POSITIVE_OR_NONE(params, maximum, "1/s",
-                              "largest coefficient; not given: 1 / time step"),
+    TL_PARAM_POSITIVE_OR_NONE(params, start, "1/s", "first coefficient; not given: 0.01 / time step"),
+    TL_PARAM_POSITIVE_OR_NONE(params, minimum, "1/s", "smallest coefficient; not given: 1e-8 / time step"),
+    TL_PARAM_POSITIVE_OR_NONE(params, maximum, "1/s", "largest coefficient; not given: 1 / time step"),
     TL_PARAM(TL_PARAM_REAL, params, factor, "", "largest change of the coefficient in one step",
              .flags = TL_PARAM_MIN_OPEN, .def = {1.1}, .min = 1, .max = 10),
 };
@@ -46,8 +42,7 @@ static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
     if (p->minimum > p->maximum)
-        return tl_refuse(report, "minimum = %g 1/s must be <= maximum = %g 1/s", p->minimum,
-                         p->maximum);
+        return tl_refuse(report, "minimum = %g 1/s must be <= maximum = %g 1/s", p->minimum, p->maximum);
     return tl_keep(p, sizeof *p, self, report);
 }
 
@@ -57,8 +52,7 @@ static double clamp(double x, double low, double high)
 }
 
 /* Once a step: the servo. */
-static tl_status begin(const void *self, const tl_damping_totals *totals, double *const *state,
-                       tl_report *report)
+static tl_status begin(const void *self, const tl_damping_totals *totals, double *const *state, tl_report *report)
 {
     (void)report;
     const params *p = self;
@@ -87,11 +81,11 @@ static const tl_damping_ops ops = {.size = sizeof ops,
                                    .destroy = free,
                                    .never_fails = true};
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_DAMPING, ops, .name = "adaptive",
-    .doc = "Viscous damping that follows the rate of kinetic energy; vanishes at rest and in "
-           "steady motion.",
-    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_DAMPING, ops, .name = "adaptive",
+            .doc = "Viscous damping that follows the rate of kinetic energy; vanishes at rest and in "
+                   "steady motion.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.adaptive", .version = TALUS_VERSION, .doc = "Adaptive global damping.",
           .licence = "BSD-3-Clause");

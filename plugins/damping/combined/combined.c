@@ -25,8 +25,7 @@ static const tl_param param_table[] = {
 
 /* One component of all bodies. Selects, not branches, so that the loop vectorises. */
 TL_VECTORIZED static void combine(double alpha, uint32_t count, const double *restrict velocity,
-                                  const double *restrict force, const double *restrict before,
-                                  double *restrict out)
+                                  const double *restrict force, const double *restrict before, double *restrict out)
 {
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
@@ -45,8 +44,8 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
     for (int k = 0; k < 3; k++) {
         combine(p->alpha, batch->count, batch->velocity[k], batch->force[k], batch->force_before[k],
                 batch->damping_force[k]);
-        combine(p->alpha, batch->count, batch->angular_velocity[k], batch->moment[k],
-                batch->moment_before[k], batch->damping_moment[k]);
+        combine(p->alpha, batch->count, batch->angular_velocity[k], batch->moment[k], batch->moment_before[k],
+                batch->damping_moment[k]);
     }
     return TL_OK;
 }
@@ -59,12 +58,11 @@ static double step_factor(const void *self)
 
 static const tl_damping_ops ops = TL_DAMPING_OPS(.step_factor = step_factor, .before = true);
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_DAMPING, ops, .name = "combined",
-    .doc =
-        "Local damping that also damps vibration about a steady motion; for slow sliding and flow.",
-    TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_DAMPING, ops, .name = "combined",
+            .doc = "Local damping that also damps vibration about a steady motion; for slow sliding and flow.",
+            TL_KIND_PARAMS(params, param_table));
 
 /* Hosts give the forces of the step before since minor version 1, but since 2 to those that ask. */
-TL_PLUGIN_SINCE(1, kind, .id = "talus.combined", .version = TALUS_VERSION,
-                .doc = "Combined damping.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(1, kind, .id = "talus.combined", .version = TALUS_VERSION, .doc = "Combined damping.",
+                .licence = "BSD-3-Clause");

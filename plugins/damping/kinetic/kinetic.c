@@ -23,8 +23,7 @@ static const tl_state state_table[] = {
 };
 
 /* Once a step. */
-static tl_status begin(const void *self, const tl_damping_totals *totals, double *const *state,
-                       tl_report *report)
+static tl_status begin(const void *self, const tl_damping_totals *totals, double *const *state, tl_report *report)
 {
     (void)self;
     (void)report;
@@ -38,11 +37,11 @@ static const tl_damping_ops ops = {.size = sizeof ops,
                                    .step_factor = tl_step_factor_one,
                                    .never_fails = true};
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_DAMPING, ops, .name = "kinetic",
-    .doc = "Stops all bodies whenever the kinetic energy of the model has been at its peak; the "
-           "fastest way to an equilibrium of many blocks.",
-    TL_KIND_STATES(state_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_DAMPING, ops, .name = "kinetic",
+            .doc = "Stops all bodies whenever the kinetic energy of the model has been at its peak; the "
+                   "fastest way to an equilibrium of many blocks.",
+            TL_KIND_STATES(state_table));
 
 /* Hosts give the power of the forces since minor version 5. */
 TL_PLUGIN_SINCE(5, kind, .id = "talus.kinetic", .version = TALUS_VERSION, .doc = "Kinetic damping.",

@@ -39,10 +39,8 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
     (void)report;
     const params *p = self;
     for (int k = 0; k < 3; k++) {
-        oppose(p->alpha, batch->count, batch->velocity[k], batch->force[k],
-               batch->damping_force[k]);
-        oppose(p->alpha, batch->count, batch->angular_velocity[k], batch->moment[k],
-               batch->damping_moment[k]);
+        oppose(p->alpha, batch->count, batch->velocity[k], batch->force[k], batch->damping_force[k]);
+        oppose(p->alpha, batch->count, batch->angular_velocity[k], batch->moment[k], batch->damping_moment[k]);
     }
     return TL_OK;
 }
@@ -55,10 +53,9 @@ static double step_factor(const void *self)
 
 static const tl_damping_ops ops = TL_DAMPING_OPS(.step_factor = step_factor);
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_DAMPING, ops, .name = "local",
-            .doc = "Opposes motion by a share of the unbalanced force; for statics.",
-            TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_KIND(TL_KIND_DAMPING, ops, .name = "local",
+                                    .doc = "Opposes motion by a share of the unbalanced force; for statics.",
+                                    TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "talus.local", .version = TALUS_VERSION,
-          .doc = "Local (non-viscous) damping.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "talus.local", .version = TALUS_VERSION, .doc = "Local (non-viscous) damping.",
+          .licence = "BSD-3-Clause");

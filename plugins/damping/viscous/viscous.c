@@ -13,8 +13,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, alpha, "1/s", "damping coefficient", .flags = TL_PARAM_REQUIRED,
-             .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, alpha, "1/s", "damping coefficient", .flags = TL_PARAM_REQUIRED, .min = 0,
+             .max = INFINITY),
 };
 
 static tl_status update(const void *self, const tl_damping_batch *batch, tl_report *report)
@@ -28,9 +28,8 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
 
 static const tl_damping_ops ops = TL_DAMPING_OPS(.step_factor = tl_step_factor_one);
 
-static const tl_kind kind = TL_KIND(TL_KIND_DAMPING, ops, .name = "viscous",
-                                    .doc = "Constant viscous damping of all velocities.",
-                                    TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_DAMPING, ops, .name = "viscous", .doc = "Constant viscous damping of all velocities.",
+            TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "talus.viscous", .version = TALUS_VERSION, .doc = "Viscous damping.",
-          .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "talus.viscous", .version = TALUS_VERSION, .doc = "Viscous damping.", .licence = "BSD-3-Clause");

@@ -23,8 +23,7 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_STRING, params, file, "", "block model in JSON",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_FILE),
+    TL_PARAM(TL_PARAM_STRING, params, file, "", "block model in JSON", .flags = TL_PARAM_REQUIRED | TL_PARAM_FILE),
 };
 
 /* A block's body number and its index, to be sorted. */
@@ -63,13 +62,11 @@ static TL_PRINTF(3, 4) tl_status wrong(const reader *r, size_t line, const char 
     va_start(arguments, format);
     tl_text_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
-    return r->host->fail(r->host, TL_E_GEOMETRY, "file '%.200s', line %zu: %s", r->tree.file, line,
-                         text);
+    return r->host->fail(r->host, TL_E_GEOMETRY, "file '%.200s', line %zu: %s", r->tree.file, line, text);
 }
 
 /* The item `key` of an object, which is of this type if it is there; NULL where it is not. */
-static tl_status look_for(const reader *r, const json *object, const char *key, json_type type,
-                          const json **item)
+static tl_status look_for(const reader *r, const json *object, const char *key, json_type type, const json **item)
 {
     *item = json_get(&r->tree, object, key);
     if (!*item || (*item)->type == type)
@@ -78,8 +75,7 @@ static tl_status look_for(const reader *r, const json *object, const char *key, 
 }
 
 /* The same of one that must be there. */
-static tl_status take(const reader *r, const json *object, const char *key, json_type type,
-                      const json **item)
+static tl_status take(const reader *r, const json *object, const char *key, json_type type, const json **item)
 {
     tl_status status = look_for(r, object, key, type, item);
     if (status == TL_OK && !*item)
@@ -88,17 +84,15 @@ static tl_status take(const reader *r, const json *object, const char *key, json
 }
 
 /* A whole number in [low, high], or `fallback` when it is not there and there is a fallback >= low. */
-static tl_status take_whole(const reader *r, const json *object, const char *key, double low,
-                            double high, double fallback, double *number)
+static tl_status take_whole(const reader *r, const json *object, const char *key, double low, double high,
+                            double fallback, double *number)
 {
     const json *item;
     tl_status status = (fallback >= low ? look_for : take)(r, object, key, JSON_NUMBER, &item);
     *number = status == TL_OK && item ? item->number : fallback;
-    if (status != TL_OK || !item ||
-        (*number >= low && *number <= high && !(floor(*number) < *number)))
+    if (status != TL_OK || !item || (*number >= low && *number <= high && !(floor(*number) < *number)))
         return status;
-    return wrong(r, item->line, "%s = %g is not a whole number in [%g, %g]", key, *number, low,
-                 high);
+    return wrong(r, item->line, "%s = %g is not a whole number in [%g, %g]", key, *number, low, high);
 }
 
 /* ---------------------------------------------------------------- joints ----------------- */
@@ -188,8 +182,7 @@ static tl_status read_face(reader *r, const json *face, tl_block_shape *shape)
     for (const json *item = json_first(&r->tree, list); item; item = json_next(&r->tree, item)) {
         double v = item->type == JSON_NUMBER ? item->number : -1;
         if (!(v >= 0 && v < (double)shape->vertex_count) || floor(v) < v)
-            return wrong(r, item->line,
-                         "a corner must be the number of one of the block's vertices, from 0");
+            return wrong(r, item->line, "a corner must be the number of one of the block's vertices, from 0");
         r->loop[end++] = (uint32_t)v;
     }
     r->start[++shape->face_count] = end;
@@ -204,8 +197,7 @@ static tl_status read_faces(reader *r, const json *block, tl_block_shape *shape)
         return status;
     if (list->count > MOST_CORNERS)
         return wrong(r, list->line, "a block has more than 4096 faces");
-    for (const json *item = json_first(&r->tree, list); item && status == TL_OK;
-         item = json_next(&r->tree, item))
+    for (const json *item = json_first(&r->tree, list); item && status == TL_OK; item = json_next(&r->tree, item))
         status = read_face(r, item, shape);
     shape->start = r->start;
     shape->loops = r->loop;
@@ -225,8 +217,7 @@ static tl_status read_fixed(const reader *r, const json *block, uint32_t *fixed)
         for (uint32_t i = 0; i < 4 && item->type == JSON_TEXT; i++)
             bit |= strcmp(item->text, names[i]) == 0 ? 1u << i : 0;
         if (!bit)
-            return wrong(r, item->line,
-                         "'fixed' lists some of \"x\", \"y\", \"z\" and \"rotation\"");
+            return wrong(r, item->line, "'fixed' lists some of \"x\", \"y\", \"z\" and \"rotation\"");
         *fixed |= bit;
     }
     return TL_OK;
@@ -298,10 +289,8 @@ static tl_status check_head(const reader *r, const json *root)
     const json *format = json_get(&r->tree, root, "format");
     const json *version = json_get(&r->tree, root, "version");
     if (!format || format->type != JSON_TEXT || strcmp(format->text, FORMAT) != 0)
-        return wrong(r, root->line,
-                     "the file is no block model: it lacks \"format\": \"" FORMAT "\"");
-    if (!version || version->type != JSON_NUMBER || version->number < VERSION ||
-        version->number > VERSION)
+        return wrong(r, root->line, "the file is no block model: it lacks \"format\": \"" FORMAT "\"");
+    if (!version || version->type != JSON_NUMBER || version->number < VERSION || version->number > VERSION)
         return wrong(r, root->line, "the block model is not of version 1, which alone can be read");
     return TL_OK;
 }
@@ -319,8 +308,7 @@ static tl_status read_model(reader *r)
     r->members = malloc((list->count + 1) * sizeof *r->members);
     if (!r->members)
         return r->host->fail(r->host, TL_E_MEMORY, "out of memory");
-    for (const json *item = json_first(&r->tree, list); item && status == TL_OK;
-         item = json_next(&r->tree, item)) {
+    for (const json *item = json_first(&r->tree, list); item && status == TL_OK; item = json_next(&r->tree, item)) {
         status = read_block(r, item);
         if (status == TL_OK)
             status = r->host->progress(r->host, (double)r->block_count / (double)list->count);
@@ -348,9 +336,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "blocks",
-                                              .doc = "Creates the blocks of a block model in JSON.",
-                                              TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind =
+    TL_GENERATOR_KIND(generate, .name = "blocks", .doc = "Creates the blocks of a block model in JSON.",
+                      TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.blocks", .version = TALUS_VERSION, .doc = "Block model generator.",
           .licence = "BSD-3-Clause");

@@ -24,16 +24,15 @@ static tl_status damaged(const parser *p, const char *wanted)
     const json_tree *t = p->tree;
     if (!*p->at)
         return t->host->fail(t->host, TL_E_GEOMETRY,
-                             "file '%.200s' ends at line %zu where %s is expected: it is truncated",
-                             t->file, p->line, wanted);
+                             "file '%.200s' ends at line %zu where %s is expected: it is truncated", t->file, p->line,
+                             wanted);
     int shown = 0; /* letters of what is there instead, within the line */
     while (shown < MOST_SHOWN && (unsigned char)p->at[shown] >= ' ')
         shown++;
-    return t->host->fail(
-        t->host, TL_E_GEOMETRY,
-        "file '%.200s', line %zu: %s is expected, not '%.*s'; the file is damaged, "
-        "or no JSON",
-        t->file, p->line, wanted, shown, p->at);
+    return t->host->fail(t->host, TL_E_GEOMETRY,
+                         "file '%.200s', line %zu: %s is expected, not '%.*s'; the file is damaged, "
+                         "or no JSON",
+                         t->file, p->line, wanted, shown, p->at);
 }
 
 static void skip_space(parser *p)
@@ -167,8 +166,7 @@ static tl_status read_value(parser *p, size_t index, int depth)
     node->line = p->line;
     tl_status status = TL_OK;
     if (*p->at == '{' || *p->at == '[') {
-        status = depth < MOST_DEPTH ? read_items(p, index, depth)
-                                    : damaged(p, "less than 16 lists within each other");
+        status = depth < MOST_DEPTH ? read_items(p, index, depth) : damaged(p, "less than 16 lists within each other");
     } else if (*p->at == '"') {
         node->type = JSON_TEXT;
         status = read_text(p, &node->text);
@@ -198,8 +196,7 @@ tl_status json_read(json_tree *t, char **text)
     if (status == TL_OK && (*p.at || p.at != *text + count))
         status =
             t->host->fail(t->host, TL_E_GEOMETRY,
-                          "file '%.200s', line %zu: something follows the end; the file is damaged",
-                          t->file, p.line);
+                          "file '%.200s', line %zu: something follows the end; the file is damaged", t->file, p.line);
     return status;
 }
 

@@ -5,14 +5,7 @@
 #include <stdbool.h>
 #include <talus/plugin.h>
 
-typedef enum json_type {
-    JSON_NULL,
-    JSON_BOOL,
-    JSON_NUMBER,
-    JSON_TEXT,
-    JSON_LIST,
-    JSON_OBJECT
-} json_type;
+typedef enum json_type { JSON_NULL, JSON_BOOL, JSON_NUMBER, JSON_TEXT, JSON_LIST, JSON_OBJECT } json_type;
 
 typedef struct json {
     json_type type;

@@ -23,14 +23,12 @@ static tl_status generate(const tl_host *host, const void *given)
     static const char axis[3] = {'x', 'y', 'z'};
     for (int k = 0; k < 3; k++)
         if (!(low[k] < high[k]))
-            return host->fail(host, TL_E_ARGUMENT, "max.%c = %g m must be > min.%c = %g m", axis[k],
-                              high[k], axis[k], low[k]);
+            return host->fail(host, TL_E_ARGUMENT, "max.%c = %g m must be > min.%c = %g m", axis[k], high[k], axis[k],
+                              low[k]);
     return host->create_box(host, p->min, p->max, p->density, p->group);
 }
 
-static const tl_kind kind =
-    TL_GENERATOR_KIND(generate, .name = "box", .doc = "Creates one block, an axis-aligned box.",
-                      TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "box", .doc = "Creates one block, an axis-aligned box.",
+                                              TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "talus.box", .version = TALUS_VERSION, .doc = "Box generator.",
-          .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "talus.box", .version = TALUS_VERSION, .doc = "Box generator.", .licence = "BSD-3-Clause");

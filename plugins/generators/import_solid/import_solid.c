@@ -15,10 +15,9 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_STRING, params, file, "", "file of solids, ending in .stl or .obj",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_FILE),
-    TL_PARAM(TL_PARAM_REAL, params, scale, "", "factor on coordinates: 0.001 for millimetres",
-             .def = {1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_VEC3, params, translate, "m", "added to the scaled coordinates",
-             .def = {0, 0, 0}),
+    TL_PARAM(TL_PARAM_REAL, params, scale, "", "factor on coordinates: 0.001 for millimetres", .def = {1},
+             .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_VEC3, params, translate, "m", "added to the scaled coordinates", .def = {0, 0, 0}),
     TL_PARAMS_ROCK(params, "blocks"),
 };
 
@@ -35,10 +34,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_kind kind =
-    TL_GENERATOR_KIND(generate, .name = "import",
-                      .doc = "Creates a block of each closed convex solid in an STL or OBJ file.",
-                      TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(
+    generate, .name = "import", .doc = "Creates a block of each closed convex solid in an STL or OBJ file.",
+    TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "talus.import_solid", .version = TALUS_VERSION,
-          .doc = "Import of closed convex solids.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "talus.import_solid", .version = TALUS_VERSION, .doc = "Import of closed convex solids.",
+          .licence = "BSD-3-Clause");

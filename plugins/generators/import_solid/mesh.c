@@ -27,14 +27,12 @@ tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number)
 {
     double largest = fmax(fmax(fabs(at.x), fabs(at.y)), fabs(at.z));
     if (!tl_v3_finite(at) || largest > LARGEST_COORDINATE)
-        return m->host->fail(
-            m->host, TL_E_NUMERIC,
-            "file '%.200s', %s %zu: the corner {%g, %g, %g} is not finite or beyond "
-            "%g; the file is damaged",
-            m->file, place, number, at.x, at.y, at.z, LARGEST_COORDINATE);
-    tl_vec3 *vertex = m->vertices < MOST_CORNERS ? tl_grown(m->vertex, &m->vertex_capacity,
-                                                            m->vertices + 1, sizeof *vertex)
-                                                 : NULL;
+        return m->host->fail(m->host, TL_E_NUMERIC,
+                             "file '%.200s', %s %zu: the corner {%g, %g, %g} is not finite or beyond "
+                             "%g; the file is damaged",
+                             m->file, place, number, at.x, at.y, at.z, LARGEST_COORDINATE);
+    tl_vec3 *vertex =
+        m->vertices < MOST_CORNERS ? tl_grown(m->vertex, &m->vertex_capacity, m->vertices + 1, sizeof *vertex) : NULL;
     if (!vertex)
         return mesh_no_memory(m);
     m->vertex = vertex;
@@ -46,9 +44,7 @@ tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number)
 tl_status mesh_add_face(mesh *m, const uint32_t *corner, size_t count)
 {
     size_t corners = m->corners + count;
-    uint32_t *all = corners < MOST_CORNERS
-                        ? tl_grown(m->corner, &m->corner_capacity, corners, sizeof *all)
-                        : NULL;
+    uint32_t *all = corners < MOST_CORNERS ? tl_grown(m->corner, &m->corner_capacity, corners, sizeof *all) : NULL;
     m->corner = all ? all : m->corner;
     uint32_t *start = tl_grown(m->start, &m->face_capacity, m->faces + 2, sizeof *start);
     m->start = start ? start : m->start;
@@ -125,8 +121,7 @@ static tl_status weld(mesh *m)
 static tl_status face_fault(const mesh *m, uint32_t face, const char *what, const char *remedy)
 {
     tl_vec3 at = m->vertex[m->corner[m->start[face]]];
-    return MESH_FAULT(m, ": face %u, at {%g, %g, %g}, %s; %s", face + 1, at.x, at.y, at.z, what,
-                      remedy);
+    return MESH_FAULT(m, ": face %u, at {%g, %g, %g}, %s; %s", face + 1, at.x, at.y, at.z, what, remedy);
 }
 
 /* Normal, longest edge and height of a face; refuses one without area or not flat. */
@@ -257,9 +252,7 @@ static tl_status pair_edges(mesh *m)
     qsort(sides, m->corners, sizeof *sides, by_edge);
     faults f = {0};
     for (size_t from = 0, to = 0; from < m->corners; from = to) {
-        for (; to < m->corners && sides[to].low == sides[from].low &&
-               sides[to].high == sides[from].high;
-             to++)
+        for (; to < m->corners && sides[to].low == sides[from].low && sides[to].high == sides[from].high; to++)
             continue;
         look_at_edge(m, sides + from, to - from, &f);
     }
@@ -267,10 +260,9 @@ static tl_status pair_edges(mesh *m)
     for (int k = 0; k < FAULTS; k++) {
         tl_vec3 p = m->vertex[f.first[k].low], q = m->vertex[f.first[k].high];
         if (f.count[k] > 0)
-            return MESH_FAULT(
-                m, ": %s at %zu edge%s, the first from {%g, %g, %g} to {%g, %g, %g} of face %u; %s",
-                faults_text[k][0], f.count[k], f.count[k] == 1 ? "" : "s", p.x, p.y, p.z, q.x, q.y,
-                q.z, m->face_of[f.first[k].half] + 1, faults_text[k][1]);
+            return MESH_FAULT(m, ": %s at %zu edge%s, the first from {%g, %g, %g} to {%g, %g, %g} of face %u; %s",
+                              faults_text[k][0], f.count[k], f.count[k] == 1 ? "" : "s", p.x, p.y, p.z, q.x, q.y, q.z,
+                              m->face_of[f.first[k].half] + 1, faults_text[k][1]);
     }
     return TL_OK;
 }

@@ -34,14 +34,13 @@ typedef struct mesh {
     double reach; /* largest coordinate */
     /* after mesh_close */
     uint32_t *face_of; /* [corners] */
-    uint32_t *mate;  /* [corners] the half-edge that runs the other way on the solid's next face */
-    mesh_face *face; /* [faces] */
+    uint32_t *mate;    /* [corners] the half-edge that runs the other way on the solid's next face */
+    mesh_face *face;   /* [faces] */
     size_t solids;
 } mesh;
 
 /* Refuses the file, with a sentence that goes on behind its name. */
-#define MESH_FAULT(m, text, ...)                                                                   \
-    (m)->host->fail((m)->host, TL_E_GEOMETRY, "file '%.200s'" text, (m)->file, __VA_ARGS__)
+#define MESH_FAULT(m, text, ...) (m)->host->fail((m)->host, TL_E_GEOMETRY, "file '%.200s'" text, (m)->file, __VA_ARGS__)
 
 /* Adds a vertex; an unusable coordinate is refused with the place (a line or triangle) it stands at. */
 tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number);
@@ -61,7 +60,6 @@ uint32_t mesh_next(const mesh *m, uint32_t h);
 
 /* Creates a block of each solid, scaled and then moved; refuses those that are turned inside out, hollow
  * of volume or not convex. */
-tl_status solids_create(const mesh *m, double scale, tl_vec3 translate, double density,
-                        const char *group);
+tl_status solids_create(const mesh *m, double scale, tl_vec3 translate, double density, const char *group);
 
 #endif

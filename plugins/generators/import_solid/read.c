@@ -49,8 +49,8 @@ static char text_small(char letter)
 static tl_status text_check(const mesh *m, const bytes *data)
 {
     if (memchr(data->at, '\0', data->count))
-        return m->host->fail(m->host, TL_E_GEOMETRY,
-                             "file '%.200s' holds a zero byte: it is damaged, or no text", m->file);
+        return m->host->fail(m->host, TL_E_GEOMETRY, "file '%.200s' holds a zero byte: it is damaged, or no text",
+                             m->file);
     return TL_OK;
 }
 
@@ -104,9 +104,8 @@ static tl_status line_point(const mesh *m, line *l, tl_vec3 *point)
         if (word)
             number[i] = tl_number_read(word, &end);
         if (end == word || *end)
-            return MESH_FAULT(m, ", line %zu: three numbers are expected after '%.40s'%s%.40s%s",
-                              l->number, l->word, word ? ", not '" : ", the line ends",
-                              word ? word : "", word ? "'" : "");
+            return MESH_FAULT(m, ", line %zu: three numbers are expected after '%.40s'%s%.40s%s", l->number, l->word,
+                              word ? ", not '" : ", the line ends", word ? word : "", word ? "'" : "");
     }
     *point = (tl_vec3){number[0], number[1], number[2]};
     return TL_OK;
@@ -154,13 +153,11 @@ static tl_status read_binary(mesh *m, const bytes *data, size_t triangles)
 
 /* What a line of the text must begin with, in order; after LAST comes FACET again, or "endsolid". */
 enum { FACET, OUTER, FIRST, SECOND, THIRD, END_LOOP, END_FACET, STATES };
-static const char *const words[STATES] = {"facet",  "outer",   "vertex",  "vertex",
-                                          "vertex", "endloop", "endfacet"};
+static const char *const words[STATES] = {"facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet"};
 
 static tl_status unexpected(const mesh *m, const line *l, const char *wanted)
 {
-    return MESH_FAULT(m, ", line %zu: '%s' is expected, not '%.40s'; the file is damaged",
-                      l->number, wanted, l->word);
+    return MESH_FAULT(m, ", line %zu: '%s' is expected, not '%.40s'; the file is damaged", l->number, wanted, l->word);
 }
 
 static tl_status read_stl_line(mesh *m, line *l, int *state, bool *inside)
@@ -231,10 +228,9 @@ static tl_status read_stl(mesh *m, const bytes *data)
 /* Most corners of one face. */
 #define MOST_SIDES 4096
 
-static const char *const ignored[] = {"vt",     "vn",    "vp",       "g",          "o",
-                                      "s",      "mg",    "usemtl",   "mtllib",     "usemap",
-                                      "maplib", "l",     "p",        "shadow_obj", "trace_obj",
-                                      "lod",    "bevel", "c_interp", "d_interp"};
+static const char *const ignored[] = {"vt",        "vn",     "vp",     "g",        "o",       "s", "mg",
+                                      "usemtl",    "mtllib", "usemap", "maplib",   "l",       "p", "shadow_obj",
+                                      "trace_obj", "lod",    "bevel",  "c_interp", "d_interp"};
 
 /* Index of the vertex a word of a face names, or NONE. */
 static uint32_t vertex_of(const mesh *m, const char *word)
@@ -253,8 +249,7 @@ static tl_status read_face(mesh *m, line *l)
     size_t count = 0;
     for (char *word; (word = line_take(l)) != NULL && *word != '#'; count++) {
         if (count == MOST_SIDES)
-            return MESH_FAULT(m, ", line %zu: a face has more than %d corners", l->number,
-                              MOST_SIDES);
+            return MESH_FAULT(m, ", line %zu: a face has more than %d corners", l->number, MOST_SIDES);
         corner[count] = vertex_of(m, word);
         if (corner[count] == NONE)
             return MESH_FAULT(m,
@@ -263,8 +258,7 @@ static tl_status read_face(mesh *m, line *l)
                               l->number, word, m->vertices);
     }
     if (count < 3)
-        return MESH_FAULT(m, ", line %zu: a face of %zu corners; it must have 3 or more", l->number,
-                          count);
+        return MESH_FAULT(m, ", line %zu: a face of %zu corners; it must have 3 or more", l->number, count);
     return mesh_add_face(m, corner, count);
 }
 
@@ -316,8 +310,7 @@ tl_status mesh_read(mesh *m)
     bool stl = ends_in(m->file, ".stl");
     bytes data;
     if (!stl && !ends_in(m->file, ".obj"))
-        return m->host->fail(m->host, TL_E_ARGUMENT, "file '%.200s' does not end in .stl or .obj",
-                             m->file);
+        return m->host->fail(m->host, TL_E_ARGUMENT, "file '%.200s' does not end in .stl or .obj", m->file);
     tl_status status = tl_file_bytes(m->host, m->file, MOST_BYTES, &data.at, &data.count);
     if (status == TL_OK)
         status = stl ? read_stl(m, &data) : read_obj(m, &data);

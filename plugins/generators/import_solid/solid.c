@@ -68,8 +68,8 @@ static tl_status fault(const solids *s, size_t solid, const char *what, const ch
     const mesh *m = s->m;
     uint32_t face = s->face[s->first[solid]];
     tl_vec3 at = m->vertex[m->corner[m->start[face]]];
-    return MESH_FAULT(m, ": solid %zu, from face %u at {%g, %g, %g} on, %s; %s", solid + 1,
-                      face + 1, at.x, at.y, at.z, what, remedy);
+    return MESH_FAULT(m, ": solid %zu, from face %u at {%g, %g, %g} on, %s; %s", solid + 1, face + 1, at.x, at.y, at.z,
+                      what, remedy);
 }
 
 /* ---------------------------------------------------------------- volume ----------------- */
@@ -122,8 +122,7 @@ static bool look_at_bend(const solids *s, uint32_t h)
     double above, below, above_b, below_b;
     look_across(m, a, b, &above, &below);
     look_across(m, b, a, &above_b, &below_b);
-    double longest = fmax(m->face[a].longest, m->face[b].longest),
-           height = fmin(m->face[a].height, m->face[b].height);
+    double longest = fmax(m->face[a].longest, m->face[b].longest), height = fmin(m->face[a].height, m->face[b].height);
     /* a plane that is off at a low triangle is off by more at the far end of its neighbour */
     double rounding = ROUNDING * m->reach * (1 + longest / height);
     double tolerance = fmin(rounding, BEND * longest);
@@ -204,8 +203,8 @@ static tl_status check_volume(const solids *s, size_t solid, double volume)
                  "divide it into convex solids whose faces do not cross");
 }
 
-static tl_status create(const solids *s, size_t solid, double scale, tl_vec3 translate,
-                        double density, const char *group)
+static tl_status create(const solids *s, size_t solid, double scale, tl_vec3 translate, double density,
+                        const char *group)
 {
     const mesh *m = s->m;
     double size, volume = volume_of(s, solid, &size);
@@ -231,8 +230,7 @@ static tl_status create(const solids *s, size_t solid, double scale, tl_vec3 tra
     return status == TL_OK ? check_volume(s, solid, scale * scale * scale * volume) : status;
 }
 
-tl_status solids_create(const mesh *m, double scale, tl_vec3 translate, double density,
-                        const char *group)
+tl_status solids_create(const mesh *m, double scale, tl_vec3 translate, double density, const char *group)
 {
     solids s;
     tl_status status = solids_begin(m, &s) ? TL_OK : mesh_no_memory(m);

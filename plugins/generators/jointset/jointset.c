@@ -46,36 +46,29 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_STRING, params, joint, "", "name of the joint set",
-             .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "mean dip below horizontal",
-             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, dip_dev, "deg",
-             "deviation of the dip: largest, or standard when normal", .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg",
-             "mean dip direction, clockwise from north (+y)", .flags = TL_PARAM_REQUIRED, .min = 0,
-             .max = 360),
-    TL_PARAM(TL_PARAM_REAL, params, dip_direction_dev, "deg", "deviation of the dip direction",
-             .min = 0, .max = 180),
+    TL_PARAM(TL_PARAM_STRING, params, joint, "", "name of the joint set", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "mean dip below horizontal", .flags = TL_PARAM_REQUIRED, .min = 0,
+             .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, dip_dev, "deg", "deviation of the dip: largest, or standard when normal", .min = 0,
+             .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg", "mean dip direction, clockwise from north (+y)",
+             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 360),
+    TL_PARAM(TL_PARAM_REAL, params, dip_direction_dev, "deg", "deviation of the dip direction", .min = 0, .max = 180),
     TL_PARAM_POSITIVE(params, spacing, "m", "mean distance between planes"),
-    TL_PARAM_NOT_NEGATIVE(params, spacing_dev, "m",
-                          "deviation of the spacing; less than the spacing"),
-    TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1,
-             .max = 1e4),
-    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about",
-             .def = {0, 0, 0}),
-    TL_PARAM(TL_PARAM_REAL, params, persistence, "",
-             "probability that a block in a plane's path is cut", .def = {1}, .min = 0, .max = 1),
+    TL_PARAM_NOT_NEGATIVE(params, spacing_dev, "m", "deviation of the spacing; less than the spacing"),
+    TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1, .max = 1e4),
+    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about", .def = {0, 0, 0}),
+    TL_PARAM(TL_PARAM_REAL, params, persistence, "", "probability that a block in a plane's path is cut", .def = {1},
+             .min = 0, .max = 1),
     TL_PARAM(TL_PARAM_ENUM, params, distribution, "",
              "of the deviations: uniform within them, normal with them as standard deviations, or "
              "fisher about the mean pole",
              .def = {UNIFORM}, .choices = distributions),
     TL_PARAM(TL_PARAM_REAL, params, fisher_k, "", "concentration of the poles by fisher",
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = 1e9),
-    TL_PARAM_POSITIVE_OR_NONE(
-        params, radius, "m",
-        "of discs in the place of planes: a block is in a disc's path when the disc meets its "
-        "section"),
+    TL_PARAM_POSITIVE_OR_NONE(params, radius, "m",
+                              "of discs in the place of planes: a block is in a disc's path when the disc meets its "
+                              "section"),
 };
 
 /* Where the draws of one call are found: planes of an earlier call of the same set come first. */
@@ -126,8 +119,7 @@ static tl_vec3 draw_fisher(const draws *d, int64_t index, tl_vec3 mean, double k
 /* Deviation of a plane's dip or dip direction, in units of the one given. */
 static double deviation(const draws *d, const params *p, int64_t index, uint32_t kind)
 {
-    return p->distribution == NORMAL ? draw_normal(d, index, kind, NORMAL_LIMIT)
-                                     : draw_even(d, index, kind);
+    return p->distribution == NORMAL ? draw_normal(d, index, kind, NORMAL_LIMIT) : draw_even(d, index, kind);
 }
 
 /* Deviation of a gap, in units of spacing_dev. */
@@ -160,20 +152,18 @@ static tl_vec3 normal_of(const draws *d, const params *p, tl_vec3 mean, int64_t 
     if (p->distribution == FISHER)
         return draw_fisher(d, index, mean, p->fisher_k);
     double dip = p->dip + p->dip_dev * deviation(d, p, index, DRAW_DIP);
-    double direction =
-        p->dip_direction + p->dip_direction_dev * deviation(d, p, index, DRAW_DIRECTION);
+    double direction = p->dip_direction + p->dip_direction_dev * deviation(d, p, index, DRAW_DIRECTION);
     return tl_plane_normal(dip, direction);
 }
 
-static tl_status cut_plane(const draws *d, const params *p, tl_vec3 mean, int64_t index,
-                           size_t *met)
+static tl_status cut_plane(const draws *d, const params *p, tl_vec3 mean, int64_t index, size_t *met)
 {
     tl_tag tag = {d->joint, d->first + (uint32_t)index};
     tl_vec3 point = tl_v3_madd(p->origin, offset_of(d, p, index), mean);
     double radius = p->radius > 0 ? p->radius : INFINITY;
     size_t blocks = 0;
-    tl_status status = d->host->cut_disc(d->host, normal_of(d, p, mean, index), point, radius, tag,
-                                         p->persistence, &blocks);
+    tl_status status =
+        d->host->cut_disc(d->host, normal_of(d, p, mean, index), point, radius, tag, p->persistence, &blocks);
     *met += blocks;
     return status;
 }
@@ -182,8 +172,8 @@ static tl_status cut_plane(const draws *d, const params *p, tl_vec3 mean, int64_
 static tl_status check(const tl_host *host, const params *p)
 {
     if (!(p->spacing_dev < p->spacing))
-        return host->fail(host, TL_E_ARGUMENT, "spacing_dev = %g m must be < spacing = %g m",
-                          p->spacing_dev, p->spacing);
+        return host->fail(host, TL_E_ARGUMENT, "spacing_dev = %g m must be < spacing = %g m", p->spacing_dev,
+                          p->spacing);
     if (p->distribution == FISHER && !(p->fisher_k > 0))
         return host->fail(host, TL_E_ARGUMENT,
                           "distribution = 'fisher' needs fisher_k, the concentration of the poles "
@@ -195,8 +185,7 @@ static tl_status check(const tl_host *host, const params *p)
                           p->dip_dev > 0 ? "dip_dev" : "dip_direction_dev",
                           p->dip_dev > 0 ? p->dip_dev : p->dip_direction_dev);
     if (p->distribution != FISHER && p->fisher_k > 0)
-        return host->fail(host, TL_E_ARGUMENT,
-                          "fisher_k = %g goes with distribution = 'fisher' only", p->fisher_k);
+        return host->fail(host, TL_E_ARGUMENT, "fisher_k = %g goes with distribution = 'fisher' only", p->fisher_k);
     return TL_OK;
 }
 
@@ -225,10 +214,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_kind kind =
-    TL_GENERATOR_KIND(generate, .name = "jointset",
-                      .doc = "Cuts the visible blocks by a set of nearly parallel planes.",
-                      TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "jointset",
+                                              .doc = "Cuts the visible blocks by a set of nearly parallel planes.",
+                                              TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.jointset", .version = TALUS_VERSION, .doc = "Joint set generator.",
           .licence = "BSD-3-Clause");

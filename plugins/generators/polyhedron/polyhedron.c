@@ -12,8 +12,7 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_POINTS, params, vertices, "m", "corners of the block, in any order",
-             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_POINTS, params, vertices, "m", "corners of the block, in any order", .flags = TL_PARAM_REQUIRED),
     TL_PARAMS_ROCK(params, "block"),
 };
 
@@ -23,9 +22,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return host->create_hull(host, p->vertices.at, p->vertices.count, p->density, p->group);
 }
 
-static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "polyhedron",
-                                              .doc = "Creates one convex block from its vertices.",
-                                              TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind =
+    TL_GENERATOR_KIND(generate, .name = "polyhedron", .doc = "Creates one convex block from its vertices.",
+                      TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.polyhedron", .version = TALUS_VERSION, .doc = "Polyhedron generator.",
           .licence = "BSD-3-Clause");

@@ -39,8 +39,7 @@ static double dot(tl_flat o, tl_flat a, tl_flat b)
     return (a.x - o.x) * (b.x - o.x) + (a.y - o.y) * (b.y - o.y);
 }
 
-static convex_status check_simple(const tl_flat *at, size_t n, double extent, size_t *one,
-                                  size_t *other)
+static convex_status check_simple(const tl_flat *at, size_t n, double extent, size_t *one, size_t *other)
 {
     double near = CONVEX_FIT * extent;
     for (size_t i = 0; i < n; i++)
@@ -98,8 +97,7 @@ static bool flip(mesh *m, size_t h)
     size_t hn = m->next[h], hp = m->next[hn], tn = m->next[t], tp = m->next[tn];
     tl_flat a = m->at[m->from[h]], b = m->at[m->from[t]];
     tl_flat c = m->at[m->from[hp]], d = m->at[m->from[tp]];
-    double here = dot(c, a, b) * tl_flat_cross(d, b, a),
-           there = dot(d, b, a) * tl_flat_cross(c, a, b);
+    double here = dot(c, a, b) * tl_flat_cross(d, b, a), there = dot(d, b, a) * tl_flat_cross(c, a, b);
     if (here + there >= -ROUNDED * (fabs(here) + fabs(there)))
         return false;
     if (tl_flat_height(d, c, a) <= 0 || tl_flat_height(c, d, b) <= 0)
@@ -135,8 +133,7 @@ static size_t previous(const mesh *m, size_t h)
 static bool stays_convex(const mesh *m, size_t h, double least)
 {
     size_t into = previous(m, h), out = m->next[m->twin[h]];
-    return tl_flat_height(m->at[m->from[into]], m->at[m->from[h]], m->at[m->from[m->next[out]]]) >=
-           least;
+    return tl_flat_height(m->at[m->from[into]], m->at[m->from[h]], m->at[m->from[m->next[out]]]) >= least;
 }
 
 /* Takes the edge of half-edge h out when what it parts is convex together. */
@@ -160,8 +157,7 @@ static double thinness(const mesh *m, size_t h)
     const size_t sides[2] = {h, m->twin[h]};
     for (size_t s = 0; s < 2; s++) {
         size_t n = m->next[sides[s]];
-        least = fmin(least, tl_flat_height(m->at[m->from[sides[s]]], m->at[m->from[n]],
-                                           m->at[m->from[m->next[n]]]));
+        least = fmin(least, tl_flat_height(m->at[m->from[sides[s]]], m->at[m->from[n]], m->at[m->from[m->next[n]]]));
     }
     return least;
 }
@@ -239,8 +235,7 @@ static bool are_sound(const tl_flat *at, const convex_parts *parts, double area,
         size_t count = parts->start[p + 1] - parts->start[p];
         sum += area_of(at, corner, count);
         for (size_t i = 0; i < count; i++)
-            if (tl_flat_height(at[corner[i]], at[corner[(i + 1) % count]],
-                               at[corner[(i + 2) % count]]) <= 0)
+            if (tl_flat_height(at[corner[i]], at[corner[(i + 1) % count]], at[corner[(i + 2) % count]]) <= 0)
                 return false;
     }
     return parts->parts > 0 && fabs(sum - area) <= off;
@@ -264,8 +259,7 @@ static size_t list_corners(const tl_flat *at, size_t n, double near, bool clockw
     return count;
 }
 
-static convex_status divide(const tl_flat *at, size_t n, double area, double extent,
-                            convex_parts *parts)
+static convex_status divide(const tl_flat *at, size_t n, double area, double extent, convex_parts *parts)
 {
     double near = STRAIGHT * extent, ear;
     size_t edges = 3 * n;
@@ -289,8 +283,7 @@ static convex_status divide(const tl_flat *at, size_t n, double area, double ext
         flip_all(&m);
         merge(&m);
         list_parts(&m, seen, parts);
-        status = are_sound(at, parts, fabs(area), 4 * near * extent * (double)n) ? CONVEX_DONE
-                                                                                 : CONVEX_FAILED;
+        status = are_sound(at, parts, fabs(area), 4 * near * extent * (double)n) ? CONVEX_DONE : CONVEX_FAILED;
     }
     free(m.from);
     free(m.thin);
@@ -298,8 +291,7 @@ static convex_status divide(const tl_flat *at, size_t n, double area, double ext
     return status;
 }
 
-convex_status convex_divide(const tl_flat *at, size_t count, convex_parts *parts, size_t *one,
-                            size_t *other)
+convex_status convex_divide(const tl_flat *at, size_t count, convex_parts *parts, size_t *one, size_t *other)
 {
     *parts = (convex_parts){0};
     if (count < 3)

@@ -27,7 +27,6 @@ typedef enum convex_status {
 /* Divides a polygon, given either way round, into convex parts that meet along whole edges; corners on a straight line
  * may be left out. A convex polygon is one part. On CONVEX_DONE free corner and start; otherwise there is nothing to
  * free. */
-convex_status convex_divide(const tl_flat *at, size_t count, convex_parts *parts, size_t *one,
-                            size_t *other);
+convex_status convex_divide(const tl_flat *at, size_t count, convex_parts *parts, size_t *one, size_t *other);
 
 #endif

@@ -26,20 +26,19 @@
 
 /* ---------------------------------------------------------------- a body of parts -------- */
 
-static tl_status refuse(const tl_host *host, const char *name, convex_status why, size_t one,
-                        size_t other, size_t count)
+static tl_status refuse(const tl_host *host, const char *name, convex_status why, size_t one, size_t other,
+                        size_t count)
 {
     switch (why) {
     case CONVEX_MEMORY: return host->fail(host, TL_E_MEMORY, "out of memory");
     case CONVEX_COINCIDE:
-        return host->fail(host, TL_E_GEOMETRY, "%s: points %zu and %zu coincide; leave one out",
-                          name, one + 1, other + 1);
+        return host->fail(host, TL_E_GEOMETRY, "%s: points %zu and %zu coincide; leave one out", name, one + 1,
+                          other + 1);
     case CONVEX_CROSSES:
-        return host->fail(
-            host, TL_E_GEOMETRY,
-            "%s crosses or touches itself: the edge from point %zu to %zu meets the one "
-            "from point %zu to %zu; a section with a hole is given as several without",
-            name, one + 1, (one + 1) % count + 1, other + 1, (other + 1) % count + 1);
+        return host->fail(host, TL_E_GEOMETRY,
+                          "%s crosses or touches itself: the edge from point %zu to %zu meets the one "
+                          "from point %zu to %zu; a section with a hole is given as several without",
+                          name, one + 1, (one + 1) % count + 1, other + 1, (other + 1) % count + 1);
     case CONVEX_EMPTY:
         return host->fail(host, TL_E_GEOMETRY,
                           "%s: its %zu points enclose no area; give the corners of a polygon in "
@@ -48,15 +47,14 @@ static tl_status refuse(const tl_host *host, const char *name, convex_status why
     case CONVEX_DONE:
     case CONVEX_FAILED:
     default:
-        return host->fail(host, TL_E_GEOMETRY,
-                          "%s could not be divided into convex parts; give it in several pieces",
+        return host->fail(host, TL_E_GEOMETRY, "%s could not be divided into convex parts; give it in several pieces",
                           name);
     }
 }
 
 /* Creates the block of one part. */
-static tl_status create_part(const tl_host *host, tl_points points, const size_t *corner,
-                             size_t count, tl_vec3 axis, double density, const char *group)
+static tl_status create_part(const tl_host *host, tl_points points, const size_t *corner, size_t count, tl_vec3 axis,
+                             double density, const char *group)
 {
     tl_vec3 *ends = malloc(2 * count * sizeof *ends);
     if (!ends)
@@ -85,8 +83,8 @@ static tl_status join_from(const tl_host *host, size_t first, size_t count)
 
 /* Makes one body of the convex parts of a plane polygon, each with the same moved by `axis`. `points` are its corners,
  * at[i] where points.at[i] lies in its plane; `name` is its name in messages. */
-static tl_status extrude(const tl_host *host, const char *name, tl_points points, const tl_flat *at,
-                         tl_vec3 axis, double density, const char *group)
+static tl_status extrude(const tl_host *host, const char *name, tl_points points, const tl_flat *at, tl_vec3 axis,
+                         double density, const char *group)
 {
     convex_parts parts;
     size_t one = 0, other = 0;
@@ -96,8 +94,8 @@ static tl_status extrude(const tl_host *host, const char *name, tl_points points
     size_t first = parts.parts > 1 ? host->block_count(host) : 0;
     tl_status status = TL_OK;
     for (size_t p = 0; p < parts.parts && status == TL_OK; p++)
-        status = create_part(host, points, parts.corner + parts.start[p],
-                             parts.start[p + 1] - parts.start[p], axis, density, group);
+        status = create_part(host, points, parts.corner + parts.start[p], parts.start[p + 1] - parts.start[p], axis,
+                             density, group);
     if (status == TL_OK && parts.parts > 1)
         status = join_from(host, first, parts.parts);
     free(parts.corner);
@@ -115,8 +113,8 @@ typedef struct prism {
 } prism;
 
 static const tl_param prism_params[] = {
-    TL_PARAM(TL_PARAM_POINTS, prism, base, "m",
-             "corners of a polygon, in order; with top a convex one", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_POINTS, prism, base, "m", "corners of a polygon, in order; with top a convex one",
+             .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_POINTS, prism, top, "m", "corners of the other end, as many; or give axis",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, prism, axis, "m", "from the base to the other end; or give top",
@@ -137,8 +135,7 @@ static tl_status measure(const tl_host *host, polygon *g)
     size_t count = g->points.count;
     const tl_vec3 *at = g->points.at;
     if (count < 3 || count > MOST_SIDES)
-        return host->fail(host, TL_E_ARGUMENT, "%s: %zu points, but a polygon has 3 to %d", g->name,
-                          count, MOST_SIDES);
+        return host->fail(host, TL_E_ARGUMENT, "%s: %zu points, but a polygon has 3 to %d", g->name, count, MOST_SIDES);
     tl_vec3 area = {0, 0, 0};
     g->extent = 0;
     for (size_t i = 1; i < count; i++) {
@@ -147,11 +144,10 @@ static tl_status measure(const tl_host *host, polygon *g)
         area = tl_v3_add(area, tl_v3_cross(tl_v3_sub(at[i - 1], at[0]), arm));
     }
     if (!(tl_v3_norm(area) > FLAT * g->extent * g->extent))
-        return host->fail(
-            host, TL_E_GEOMETRY,
-            "%s: its %zu points enclose no area; give the corners of a convex polygon "
-            "in order",
-            g->name, count);
+        return host->fail(host, TL_E_GEOMETRY,
+                          "%s: its %zu points enclose no area; give the corners of a convex polygon "
+                          "in order",
+                          g->name, count);
     g->normal = tl_v3_unit(area);
     return TL_OK;
 }
@@ -170,8 +166,8 @@ static tl_status check_points(const tl_host *host, const polygon *g)
                               "points must lie in one plane",
                               g->name, i + 1, fabs(off));
         if (tl_v3_norm(tl_v3_sub(at[(i + 1) % count], at[i])) <= tolerance)
-            return host->fail(host, TL_E_GEOMETRY, "%s: points %zu and %zu coincide; leave one out",
-                              g->name, i + 1, (i + 1) % count + 1);
+            return host->fail(host, TL_E_GEOMETRY, "%s: points %zu and %zu coincide; leave one out", g->name, i + 1,
+                              (i + 1) % count + 1);
     }
     return TL_OK;
 }
@@ -199,11 +195,10 @@ static tl_status check_shape(const tl_host *host, const polygon *g)
     tl_status status = check_points(host, g);
     if (status != TL_OK || is_convex(g, &point, &edge))
         return status;
-    return host->fail(
-        host, TL_E_GEOMETRY,
-        "%s is not convex or crosses itself: point %zu lies outside the edge from "
-        "point %zu to %zu; give a convex polygon in order, or axis in the place of top",
-        g->name, point + 1, edge + 1, (edge + 1) % g->points.count + 1);
+    return host->fail(host, TL_E_GEOMETRY,
+                      "%s is not convex or crosses itself: point %zu lies outside the edge from "
+                      "point %zu to %zu; give a convex polygon in order, or axis in the place of top",
+                      g->name, point + 1, edge + 1, (edge + 1) % g->points.count + 1);
 }
 
 /* Makes the parts of a base that is not convex, moved by the axis. */
@@ -212,8 +207,7 @@ static tl_status divide(const tl_host *host, const prism *p, const polygon *base
     tl_flat at[MOST_SIDES];
     tl_vec3 t1 = tl_v3_perpendicular(base->normal), t2 = tl_v3_cross(base->normal, t1);
     if (fabs(tl_v3_dot(base->normal, p->axis)) <= FLAT * base->extent)
-        return host->fail(host, TL_E_GEOMETRY,
-                          "the ends meet or cross: axis lies in the plane of the base");
+        return host->fail(host, TL_E_GEOMETRY, "the ends meet or cross: axis lies in the plane of the base");
     for (size_t i = 0; i < base->points.count; i++) {
         tl_vec3 arm = tl_v3_sub(base->points.at[i], base->points.at[0]);
         at[i] = (tl_flat){tl_v3_dot(arm, t1), tl_v3_dot(arm, t2)};
@@ -247,8 +241,7 @@ static tl_status other_end(const tl_host *host, const prism *p, tl_vec3 *corner)
                           moved ? "axis and top both say where the other end is: give one of them"
                                 : "give axis (a vector) or top (points): where the other end is");
     if (!moved && p->top.count != count)
-        return host->fail(host, TL_E_ARGUMENT,
-                          "top has %zu points and base %zu: a prism has as many at both ends",
+        return host->fail(host, TL_E_ARGUMENT, "top has %zu points and base %zu: a prism has as many at both ends",
                           p->top.count, count);
     for (size_t i = 0; i < count; i++)
         corner[i] = moved ? tl_v3_add(p->base.at[i], p->axis) : p->top.at[i];
@@ -275,8 +268,7 @@ static tl_status generate_prism(const tl_host *host, const void *given)
     for (size_t i = 0; i < count; i++)
         corner[i] = base.points.at[i];
     status = other_end(host, p, corner + count);
-    polygon top = {.name = isnan(p->axis.x) ? "top" : "the moved base",
-                   .points = {corner + count, count}};
+    polygon top = {.name = isnan(p->axis.x) ? "top" : "the moved base", .points = {corner + count, count}};
     if (status == TL_OK)
         status = measure(host, &top);
     if (status == TL_OK)
@@ -302,20 +294,15 @@ typedef struct profile {
 /* The plane's letters name the two numbers of a point, in their order. */
 static const char *const planes[] = {"xz", "yz", "xy", "zx", "zy", "yx", NULL};
 /* Of the first number, the second, and the axis across the plane: 0 x, 1 y, 2 z. */
-static const unsigned char axes[][3] = {{0, 2, 1}, {1, 2, 0}, {0, 1, 2},
-                                        {2, 0, 1}, {2, 1, 0}, {1, 0, 2}};
+static const unsigned char axes[][3] = {{0, 2, 1}, {1, 2, 0}, {0, 1, 2}, {2, 0, 1}, {2, 1, 0}, {1, 0, 2}};
 
 static const tl_param profile_params[] = {
-    TL_PARAM(TL_PARAM_POINTS, profile, section, "m",
-             "corners of the section, in order, two numbers each",
+    TL_PARAM(TL_PARAM_POINTS, profile, section, "m", "corners of the section, in order, two numbers each",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_FLAT, .alias = "points"),
     TL_PARAM(TL_PARAM_ENUM, profile, plane, "",
-             "plane of the section: its letters say what the two numbers of a corner are",
-             .choices = planes),
-    TL_PARAM(TL_PARAM_REAL, profile, from, "m",
-             "where the section begins on the axis across its plane", .def = {0}),
-    TL_PARAM(TL_PARAM_REAL, profile, to, "m", "where it ends there, > from",
-             .flags = TL_PARAM_REQUIRED),
+             "plane of the section: its letters say what the two numbers of a corner are", .choices = planes),
+    TL_PARAM(TL_PARAM_REAL, profile, from, "m", "where the section begins on the axis across its plane", .def = {0}),
+    TL_PARAM(TL_PARAM_REAL, profile, to, "m", "where it ends there, > from", .flags = TL_PARAM_REQUIRED),
     TL_PARAMS_ROCK(profile, "block"),
 };
 
@@ -335,11 +322,10 @@ static tl_status generate_profile(const tl_host *host, const void *given)
     const unsigned char *axis = axes[p->plane];
     size_t count = p->section.count;
     if (count < 3 || count > MOST_SIDES)
-        return host->fail(host, TL_E_ARGUMENT, "section: %zu points, but a polygon has 3 to %d",
-                          count, MOST_SIDES);
+        return host->fail(host, TL_E_ARGUMENT, "section: %zu points, but a polygon has 3 to %d", count, MOST_SIDES);
     if (!(p->from < p->to))
-        return host->fail(host, TL_E_ARGUMENT, "from = %g m must be < to = %g m: they are along %c",
-                          p->from, p->to, "xyz"[axis[2]]);
+        return host->fail(host, TL_E_ARGUMENT, "from = %g m must be < to = %g m: they are along %c", p->from, p->to,
+                          "xyz"[axis[2]]);
     tl_flat at[MOST_SIDES];
     tl_vec3 corner[MOST_SIDES];
     for (size_t i = 0; i < count; i++) {
@@ -347,20 +333,17 @@ static tl_status generate_profile(const tl_host *host, const void *given)
         at[i] = (tl_flat){given_at.x, given_at.y};
         corner[i] = point_of(axis, given_at.x, given_at.y, p->from);
     }
-    return extrude(host, "section", (tl_points){corner, count}, at,
-                   point_of(axis, 0, 0, p->to - p->from), p->density, p->group);
+    return extrude(host, "section", (tl_points){corner, count}, at, point_of(axis, 0, 0, p->to - p->from), p->density,
+                   p->group);
 }
 
 static const tl_kind kinds[] = {
-    TL_GENERATOR_KIND(generate_prism, .name = "prism",
-                      .doc = "Creates one body between two polygons.",
+    TL_GENERATOR_KIND(generate_prism, .name = "prism", .doc = "Creates one body between two polygons.",
                       TL_KIND_PARAMS(prism, prism_params)),
-    TL_GENERATOR_KIND(
-        generate_profile, .name = "profile",
-        .doc = "Creates one body of a section in a plane, moved across it: a slope, a dam, a wall.",
-        TL_KIND_PARAMS(profile, profile_params)),
+    TL_GENERATOR_KIND(generate_profile, .name = "profile",
+                      .doc = "Creates one body of a section in a plane, moved across it: a slope, a dam, a wall.",
+                      TL_KIND_PARAMS(profile, profile_params)),
 };
 
 TL_PLUGIN(kinds, .id = "talus.prism", .version = TALUS_VERSION,
-          .doc = "Generators of prisms and of sections moved across their plane.",
-          .licence = "BSD-3-Clause");
+          .doc = "Generators of prisms and of sections moved across their plane.", .licence = "BSD-3-Clause");

@@ -48,8 +48,7 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_POINTS, params, face1, "m", "corners of one end, in order around it",
-             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_POINTS, params, face1, "m", "corners of one end, in order around it", .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_POINTS, params, face2, "m",
              "corners of the other end, in the order of those of face1 they are connected with",
              .flags = TL_PARAM_REQUIRED),
@@ -95,8 +94,7 @@ static bool outline_make(const tl_vec3 *corners, size_t count, outline *made)
 static bool is_convex(const tl_flat *at, const size_t *corner, size_t count, double near)
 {
     for (size_t i = 0; i < count; i++)
-        if (tl_flat_height(at[corner[i]], at[corner[(i + 1) % count]],
-                           at[corner[(i + 2) % count]]) < -near)
+        if (tl_flat_height(at[corner[i]], at[corner[(i + 1) % count]], at[corner[(i + 2) % count]]) < -near)
             return false;
     return true;
 }
@@ -151,8 +149,7 @@ static size_t clip_ears(const outline *section, double near, size_t *rest, piece
     return made;
 }
 
-static void join_all(const outline *section, double near, piece *pieces, size_t count,
-                     size_t *scratch)
+static void join_all(const outline *section, double near, piece *pieces, size_t count, size_t *scratch)
 {
     bool joined = true;
     while (joined) {
@@ -188,8 +185,8 @@ static void list_parts(const piece *pieces, size_t count, division *parts)
 static bool outline_divide(const outline *section, double near, division *parts)
 {
     size_t n = section->count;
-    *parts = (division){.corner = malloc(3 * n * sizeof *parts->corner),
-                        .start = malloc((n + 1) * sizeof *parts->start)};
+    *parts =
+        (division){.corner = malloc(3 * n * sizeof *parts->corner), .start = malloc((n + 1) * sizeof *parts->start)};
     size_t *rest = calloc(2 * n, sizeof *rest), *store = malloc(n * n * sizeof *store);
     piece *pieces = calloc(n, sizeof *pieces);
     bool enough = parts->corner && parts->start && rest && store && pieces;
@@ -254,15 +251,13 @@ static double size_of(const params *p)
     return tl_v3_norm(tl_v3_sub(max, min));
 }
 
-static tl_status check_face(const tl_host *host, const tl_points *face, const char *name,
-                            double near, outline *made)
+static tl_status check_face(const tl_host *host, const tl_points *face, const char *name, double near, outline *made)
 {
     for (size_t i = 0; i < face->count; i++)
         for (size_t j = i + 1; j < face->count; j++)
             if (tl_v3_norm(tl_v3_sub(face->at[i], face->at[j])) < near)
-                return host->fail(host, TL_E_GEOMETRY,
-                                  "%s has the same place {%g, %g, %g} as corners %zu and %zu", name,
-                                  face->at[i].x, face->at[i].y, face->at[i].z, i + 1, j + 1);
+                return host->fail(host, TL_E_GEOMETRY, "%s has the same place {%g, %g, %g} as corners %zu and %zu",
+                                  name, face->at[i].x, face->at[i].y, face->at[i].z, i + 1, j + 1);
     if (!outline_make(face->at, face->count, made))
         return fail_memory(host);
     size_t one, other, n = face->count;
@@ -276,19 +271,17 @@ static tl_status check_face(const tl_host *host, const tl_points *face, const ch
                           "%g m; give corners in one plane",
                           name, made->bend, near);
     if (!is_line && tl_polygon_crosses(made->at, n, near, &one, &other))
-        return host->fail(
-            host, TL_E_GEOMETRY,
-            "%s crosses or touches itself: its edge from corner %zu to %zu meets that "
-            "from corner %zu to %zu",
-            name, one + 1, (one + 1) % n + 1, other + 1, (other + 1) % n + 1);
+        return host->fail(host, TL_E_GEOMETRY,
+                          "%s crosses or touches itself: its edge from corner %zu to %zu meets that "
+                          "from corner %zu to %zu",
+                          name, one + 1, (one + 1) % n + 1, other + 1, (other + 1) % n + 1);
     if (is_line || made->area <= near * longest)
         return host->fail(host, TL_E_GEOMETRY, "%s has no area: %g m2", name, made->area);
     return TL_OK;
 }
 
 /* The plane of the side between corners i and j of both ends. */
-static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_t j,
-                            tl_half_space *side)
+static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_t j, tl_half_space *side)
 {
     const tl_vec3 *a = p->given->face1.at, *b = p->given->face2.at;
     tl_vec3 across = tl_v3_cross(tl_v3_sub(b[j], a[i]), tl_v3_sub(b[i], a[j]));
@@ -299,8 +292,7 @@ static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_
                           i + 1, j + 1);
     side->normal = tl_v3_unit(across);
     side->point =
-        tl_v3_scale(0.25, tl_v3_add(tl_v3_sub(a[j], a[i]),
-                                    tl_v3_add(tl_v3_sub(b[i], a[i]), tl_v3_sub(b[j], a[i]))));
+        tl_v3_scale(0.25, tl_v3_add(tl_v3_sub(a[j], a[i]), tl_v3_add(tl_v3_sub(b[i], a[i]), tl_v3_sub(b[j], a[i]))));
     side->point = tl_v3_add(a[i], side->point);
     double warp = fabs(tl_v3_dot(side->normal, tl_v3_sub(a[i], side->point)));
     warp = fmax(warp, fabs(tl_v3_dot(side->normal, tl_v3_sub(a[j], side->point))));
@@ -315,8 +307,7 @@ static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_
 }
 
 /* How far a corner of a part sticks out of a half space (positive), at most; and the least. */
-static void reach(const prism *p, size_t part, const tl_half_space *space, double *least,
-                  double *most)
+static void reach(const prism *p, size_t part, const tl_half_space *space, double *least, double *most)
 {
     *least = INFINITY;
     *most = -INFINITY;
@@ -375,8 +366,8 @@ static tl_status make_prism(const tl_host *host, const params *given, prism *p)
     p->given = given;
     size_t n = given->face1.count;
     if (n < 3 || given->face2.count < 3)
-        return host->fail(host, TL_E_ARGUMENT, "%s has %zu corners; at least 3 are needed",
-                          n < 3 ? "face1" : "face2", n < 3 ? n : given->face2.count);
+        return host->fail(host, TL_E_ARGUMENT, "%s has %zu corners; at least 3 are needed", n < 3 ? "face1" : "face2",
+                          n < 3 ? n : given->face2.count);
     if (n != given->face2.count)
         return host->fail(host, TL_E_ARGUMENT,
                           "face1 has %zu corners and face2 %zu: lines connect them, so there must "
@@ -449,8 +440,7 @@ static tl_status peel(const tl_host *host, const prism *p, size_t part, size_t i
 {
     for (size_t k = p->space[part]; k < p->space[part + 1]; k++) {
         size_t above;
-        tl_status status =
-            host->cut_block(host, index, p->spaces[k].normal, p->spaces[k].point, &above);
+        tl_status status = host->cut_block(host, index, p->spaces[k].normal, p->spaces[k].point, &above);
         if (status != TL_OK)
             return status;
         if (above != SIZE_MAX && !add_outer(c, above))
@@ -472,8 +462,8 @@ static tl_status carve(const tl_host *host, const prism *p, size_t block, carvin
         for (size_t i = 0; i < pieces; i++) {
             size_t index = c->outer[i];
             bool meets;
-            tl_status status = host->meets(host, index, p->spaces + p->space[part],
-                                           p->space[part + 1] - p->space[part], &meets);
+            tl_status status =
+                host->meets(host, index, p->spaces + p->space[part], p->space[part + 1] - p->space[part], &meets);
             if (status != TL_OK)
                 return status;
             if (!meets) {
@@ -538,8 +528,8 @@ static tl_status generate(const tl_host *host, const void *given)
         status = host->fail(host, TL_E_GEOMETRY,
                             "the tunnel meets no visible block: it runs from {%g, %g, %g} to "
                             "{%g, %g, %g}",
-                            p.ends[0].middle.x, p.ends[0].middle.y, p.ends[0].middle.z,
-                            p.ends[1].middle.x, p.ends[1].middle.y, p.ends[1].middle.z);
+                            p.ends[0].middle.x, p.ends[0].middle.y, p.ends[0].middle.z, p.ends[1].middle.x,
+                            p.ends[1].middle.y, p.ends[1].middle.z);
     if (status == TL_OK)
         status = set_free(host, p.given->group, &c);
     free_prism(&p);
@@ -548,10 +538,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_kind kind =
-    TL_GENERATOR_KIND(generate, .name = "tunnel",
-                      .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
-                      TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(
+    generate, .name = "tunnel", .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
+    TL_KIND_PARAMS(params, param_table));
 
 /* It needs the services for single blocks, which came with minor 1. */
 TL_PLUGIN_SINCE(1, kind, .id = "talus.tunnel", .version = TALUS_VERSION, .doc = "Tunnel generator.",

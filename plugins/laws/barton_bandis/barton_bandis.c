@@ -47,42 +47,37 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_REAL, params, jrc, "", "joint roughness coefficient of the length lab_length",
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 30),
-    TL_PARAM_POSITIVE(params, jcs, "Pa",
-                      "joint wall compressive strength of the length lab_length"),
+    TL_PARAM_POSITIVE(params, jcs, "Pa", "joint wall compressive strength of the length lab_length"),
     TL_PARAM(TL_PARAM_REAL, params, phi_r, "deg", "residual angle of friction",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = STEEPEST),
-    TL_PARAM(TL_PARAM_REAL, params, lab_length, "m", "length L0 of the specimen of jrc and jcs",
-             .def = {0.1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM_POSITIVE_OR_NONE(
-        params, length, "m",
-        "length L of the joint between crossings, in metres whatever the other units, for the "
-        "peak's slip is an empirical formula; not given: lab_length"),
+    TL_PARAM(TL_PARAM_REAL, params, lab_length, "m", "length L0 of the specimen of jrc and jcs", .def = {0.1},
+             .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE_OR_NONE(params, length, "m",
+                              "length L of the joint between crossings, in metres whatever the other units, for the "
+                              "peak's slip is an empirical formula; not given: lab_length"),
     TL_PARAM_POSITIVE(params, kni, "Pa/m", "normal stiffness of the unloaded joint", .alias = "kn"),
     TL_PARAM_POSITIVE(params, vm, "m", "largest closure, from the unloaded joint"),
     TL_PARAM_POSITIVE(params, ks, "Pa/m", "shear stiffness where nothing slips"),
-    TL_PARAM_POSITIVE_OR_NONE(
-        params, linear_from, "Pa",
-        "normal stress beyond which closure is linear; a smaller one allows a longer time "
-        "step; not given: the wall strength of the joint's length"),
-    TL_PARAM(TL_PARAM_REAL, params, reduction, "", "the shear strength is divided by it",
-             .def = {1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_POSITIVE_OR_NONE(params, linear_from, "Pa",
+                              "normal stress beyond which closure is linear; a smaller one allows a longer time "
+                              "step; not given: the wall strength of the joint's length"),
+    TL_PARAM(TL_PARAM_REAL, params, reduction, "", "the shear strength is divided by it", .def = {1},
+             .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_BOOL, params, dilation, "", "whether slip opens the joint", .def = {1}),
 };
 
 static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"),
-    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint",
-             .transfer = TL_TRANSFER_LIFT),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint", .transfer = TL_TRANSFER_LIFT),
 };
 
 typedef struct rough {
     double kni, vm, ks;
-    double v_linear, s_linear,
-        k_linear;    /* where closure becomes linear: closure, stress, stiffness */
-    double jrc, jcs; /* of the joint's length */
-    double residual; /* rad */
-    double tangent;  /* of it */
-    double per_peak; /* 1 / u_peak */
+    double v_linear, s_linear, k_linear; /* where closure becomes linear: closure, stress, stiffness */
+    double jrc, jcs;                     /* of the joint's length */
+    double residual;                     /* rad */
+    double tangent;                      /* of it */
+    double per_peak;                     /* 1 / u_peak */
     double per_reduction, dilation;
 } rough;
 
@@ -100,11 +95,10 @@ static tl_status create(const void *given, void **self, tl_report *report)
     double k = p->kni * (1 + linear / unit) * (1 + linear / unit);
     double peak = length / 500 * power(jrc / length, 0.33);
     if (!isfinite(k))
-        return tl_refuse(
-            report,
-            "linear_from = %g Pa is too much for kni vm = %g Pa: the stiffness there, kni (1 + "
-            "linear_from / (kni vm))^2, is no number",
-            linear, unit);
+        return tl_refuse(report,
+                         "linear_from = %g Pa is too much for kni vm = %g Pa: the stiffness there, kni (1 + "
+                         "linear_from / (kni vm))^2, is no number",
+                         linear, unit);
     const rough law = {.kni = p->kni,
                        .vm = p->vm,
                        .ks = p->ks,
@@ -157,10 +151,7 @@ TL_IN_LOOP double energy_at(const rough *law, double v)
         y * y *
         (1. / 2 +
          y * (1. / 3 +
-              y * (1. / 4 +
-                   y * (1. / 5 +
-                        y * (1. / 6 +
-                             y * (1. / 7 + y * (1. / 8 + y * (1. / 9 + y * (1. / 10)))))))));
+              y * (1. / 4 + y * (1. / 5 + y * (1. / 6 + y * (1. / 7 + y * (1. / 8 + y * (1. / 9 + y * (1. / 10)))))))));
     double closed = -(x + tl_lane_log1p(-x));
     double hyperbola = law->kni * law->vm * law->vm * (x < SERIES ? series : closed);
     return hyperbola + beyond * (law->s_linear + 0.5 * law->k_linear * beyond);
@@ -218,8 +209,8 @@ typedef struct trial {
 
 /* Stresses as if nothing slipped; whether some lane might be beyond its strength, of which this is the part without
  * roughness: tan x >= x below the residual angle. `limit` is that of lanes that do not slip. */
-TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t begin,
-                        uint32_t lanes, trial *restrict t)
+TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                        trial *restrict t)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict slip = batch->state[0] + begin;
@@ -270,8 +261,8 @@ TL_IN_LOOP double resist(const rough *given, uint32_t lanes, trial *restrict t)
 }
 
 /* One of Newton's passes for the slip of lanes that open by `opens` of it; how many have not found theirs. */
-TL_IN_LOOP double pass(const rough *given, uint32_t lanes, const trial *restrict t,
-                       const double *restrict opens, double *restrict slip, double *restrict found)
+TL_IN_LOOP double pass(const rough *given, uint32_t lanes, const trial *restrict t, const double *restrict opens,
+                       double *restrict slip, double *restrict found)
 {
     const rough law = *given;
     double left = 0;
@@ -330,10 +321,9 @@ TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
 }
 
 /* Forces, states, energies and flags; `mark` is for tl_law_put_flags. */
-TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t begin,
-                       uint32_t lanes, const trial *restrict t, double *restrict mark,
-                       double *restrict stored, double *restrict dissipated, const int slid,
-                       const int energy)
+TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                       const trial *restrict t, double *restrict mark, double *restrict stored,
+                       double *restrict dissipated, const int slid, const int energy)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict slip = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
@@ -368,8 +358,7 @@ TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t b
     }
 }
 
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     tl_law_scratch mark, stored, dissipated;
@@ -379,8 +368,7 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
         double *held = batch->stored ? batch->stored + begin : stored;
         double *heat = batch->dissipated ? batch->dissipated + begin : dissipated;
         bool near = press(self, batch, begin, lanes, &t) > 0;
-        bool slid = near && resist(self, lanes, &t) > 0,
-             energy = batch->stored || batch->dissipated;
+        bool slid = near && resist(self, lanes, &t) > 0, energy = batch->stored || batch->dissipated;
         if (slid)
             rub(self, lanes, &t);
         if (slid && energy)
@@ -421,14 +409,14 @@ static void pressed(const void *self, const tl_law_batch *batch, double *energy)
     }
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .pulls = tl_pulls_none,
-                                         .across_gap = across_gap, .pressed = pressed);
+static const tl_law_ops ops =
+    TL_LAW_OPS(.never_fails = 1, .pulls = tl_pulls_none, .across_gap = across_gap, .pressed = pressed);
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_LAW, ops, .name = "barton_bandis",
-    .doc = "Rough joints: hyperbolic closure, and friction from roughness and wall strength that "
-           "slip wears down.",
-    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "barton_bandis",
+            .doc = "Rough joints: hyperbolic closure, and friction from roughness and wall strength that "
+                   "slip wears down.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-TL_PLUGIN(kind, .id = "talus.barton_bandis", .version = TALUS_VERSION,
-          .doc = "Joint law of Barton and Bandis.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "talus.barton_bandis", .version = TALUS_VERSION, .doc = "Joint law of Barton and Bandis.",
+          .licence = "BSD-3-Clause");

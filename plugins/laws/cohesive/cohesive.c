@@ -46,10 +46,10 @@ static const tl_param param_table[] = {
     TL_PARAM_KS(params),
     TL_PARAM_POSITIVE(params, tension, "Pa", "tensile strength of the bond"),
     TL_PARAM_POSITIVE(params, cohesion, "Pa", "shear strength of the bond"),
-    TL_PARAM_POSITIVE(params, energy_tension, "J/m2",
-                      "work of fracture in tension, more than tension^2 / (2 kn)", .alias = "gi"),
-    TL_PARAM_POSITIVE(params, energy_shear, "J/m2",
-                      "work of fracture in shear, more than cohesion^2 / (2 ks)", .alias = "gii"),
+    TL_PARAM_POSITIVE(params, energy_tension, "J/m2", "work of fracture in tension, more than tension^2 / (2 kn)",
+                      .alias = "gi"),
+    TL_PARAM_POSITIVE(params, energy_shear, "J/m2", "work of fracture in shear, more than cohesion^2 / (2 ks)",
+                      .alias = "gii"),
     TL_PARAM_ANGLE(params, friction, 0, "angle of friction of what is broken"),
 };
 
@@ -66,8 +66,7 @@ typedef struct cohesive {
 } cohesive;
 
 /* A work of fracture no larger than the spring holds at onset would snap back. */
-static bool snaps(const char *energy, double given, const char *strength, double stress, double k,
-                  tl_report *report)
+static bool snaps(const char *energy, double given, const char *strength, double stress, double k, tl_report *report)
 {
     double least = 0.5 * stress * stress / k;
     if (given > least)
@@ -162,9 +161,8 @@ TL_IN_LOOP double most_pulled(double kn, double edge, double initial, double mea
 
 /* The law for up to TL_LANES points from `begin`. A NaN goes through all comparisons to the forces, where the host
  * finds it. `mark` is for tl_law_put_flags. */
-TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t begin,
-                     uint32_t lanes, double *restrict mark, double *restrict stored,
-                     double *restrict dissipated)
+TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                     double *restrict mark, double *restrict stored, double *restrict dissipated)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict damage = batch->state[0] + begin, *restrict rub_x = batch->state[1] + begin;
@@ -234,8 +232,7 @@ TL_IN_LOOP bool hold(const cohesive *given, const tl_law_batch *batch, uint32_t 
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict damage = batch->state[0] + begin;
-    const double *restrict rub_x = batch->state[1] + begin, *restrict rub_y =
-                                                                batch->state[2] + begin;
+    const double *restrict rub_x = batch->state[1] + begin, *restrict rub_y = batch->state[2] + begin;
     const double *restrict rub_z = batch->state[3] + begin;
     const double *restrict edge = batch->closure_edge + begin;
     const double *restrict apart = batch->closure_apart + begin;
@@ -282,8 +279,7 @@ TL_IN_LOOP bool hold(const cohesive *given, const tl_law_batch *batch, uint32_t 
 }
 
 /* The law for `lanes` points from `begin`; a constant number of them at each call. */
-TL_IN_LOOP void update_lanes(const cohesive *law, const tl_law_batch *batch, uint32_t begin,
-                             uint32_t lanes)
+TL_IN_LOOP void update_lanes(const cohesive *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes)
 {
     double mark[TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
     move(law, batch, begin, lanes, mark, batch->stored ? batch->stored + begin : stored,
@@ -291,8 +287,7 @@ TL_IN_LOOP void update_lanes(const cohesive *law, const tl_law_batch *batch, uin
     tl_law_put_flags(batch, begin, lanes, mark);
 }
 
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     uint32_t begin = 0;
@@ -320,11 +315,11 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
 static const tl_law_ops ops =
     TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_bonded, .across_gap = across_gap);
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_LAW, ops, .name = "cohesive",
-    .doc = "A bond that softens and breaks in tension and shear (mixed mode), with friction on "
-           "what is broken.",
-    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "cohesive",
+            .doc = "A bond that softens and breaks in tension and shear (mixed mode), with friction on "
+                   "what is broken.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-TL_PLUGIN_SINCE(8, kind, .id = "talus.cohesive", .version = TALUS_VERSION,
-                .doc = "Cohesive joint law of mixed mode.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(8, kind, .id = "talus.cohesive", .version = TALUS_VERSION, .doc = "Cohesive joint law of mixed mode.",
+                .licence = "BSD-3-Clause");

@@ -50,23 +50,19 @@ typedef struct params {
 
 static const tl_param param_table[] = {
     TL_PARAM_POSITIVE(params, an, "Pa^(1-en)/m", "normal stiffness at a normal stress of 1 Pa"),
-    TL_PARAM(TL_PARAM_REAL, params, en, "", "exponent of the normal stress in it",
-             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 1),
-    TL_PARAM_POSITIVE(params, as, "Pa^(1-es)/m", "shear stiffness at a normal stress of 1 Pa"),
-    TL_PARAM(TL_PARAM_REAL, params, es, "", "exponent of the normal stress in it", .min = 0,
+    TL_PARAM(TL_PARAM_REAL, params, en, "", "exponent of the normal stress in it", .flags = TL_PARAM_MAX_OPEN, .min = 0,
              .max = 1),
+    TL_PARAM_POSITIVE(params, as, "Pa^(1-es)/m", "shear stiffness at a normal stress of 1 Pa"),
+    TL_PARAM(TL_PARAM_REAL, params, es, "", "exponent of the normal stress in it", .min = 0, .max = 1),
     TL_PARAM_POSITIVE_OR_NONE(params, kn_max, "Pa/m",
                               "largest normal stiffness, for the time step; needed with en > 0"),
-    TL_PARAM_POSITIVE_OR_NONE(params, ks_max, "Pa/m",
-                              "largest shear stiffness, for the time step; needed with es > 0"),
-    TL_PARAM_ANGLE(params, phi_i, TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN,
-                   "angle of friction of the fresh joint"),
+    TL_PARAM_POSITIVE_OR_NONE(params, ks_max, "Pa/m", "largest shear stiffness, for the time step; needed with es > 0"),
+    TL_PARAM_ANGLE(params, phi_i, TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, "angle of friction of the fresh joint"),
     TL_PARAM_ANGLE(params, phi, TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN,
                    "angle of friction of the worn joint, at most phi_i", .alias = "friction"),
-    TL_PARAM_POSITIVE(params, roughness, "m",
-                      "slip R in which all but 1/e of the difference wears off"),
-    TL_PARAM(TL_PARAM_BOOL, params, softening, "",
-             "whether the stress falls after the strength that wears", .def = {1}),
+    TL_PARAM_POSITIVE(params, roughness, "m", "slip R in which all but 1/e of the difference wears off"),
+    TL_PARAM(TL_PARAM_BOOL, params, softening, "", "whether the stress falls after the strength that wears",
+             .def = {1}),
     TL_PARAM(TL_PARAM_BOOL, params, dilation, "", "whether slip opens the joint", .def = {1}),
 };
 
@@ -74,13 +70,10 @@ static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "wear", "deg", "how far the angle of friction has fallen from phi_i"),
     TL_STATE(TL_STATE_SCALAR, "reversal", "",
              "share of the strength at the last reversal, r, of motions along and across `way`"),
-    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint",
-             .transfer = TL_TRANSFER_LIFT),
-    TL_STATE(TL_STATE_SCALAR, "shear_energy", "J",
-             "what shear holds beyond a spring of stiffness ks_max",
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint", .transfer = TL_TRANSFER_LIFT),
+    TL_STATE(TL_STATE_SCALAR, "shear_energy", "J", "what shear holds beyond a spring of stiffness ks_max",
              .transfer = TL_TRANSFER_ENERGY),
-    TL_STATE(TL_STATE_TANGENT, "way", "",
-             "in the direction of the last motion: by how much r is less against it"),
+    TL_STATE(TL_STATE_TANGENT, "way", "", "in the direction of the last motion: by how much r is less against it"),
 };
 
 typedef struct yielding {
@@ -153,13 +146,11 @@ static tl_status create(const void *given, void **self, tl_report *report)
     if (p->phi > p->phi_i)
         return tl_refuse(report, "phi = %g deg must be <= phi_i = %g deg", p->phi, p->phi_i);
     if (p->en > 0 && isnan(p->kn_max))
-        return tl_refuse(
-            report, "en > 0 needs kn_max, the largest normal stiffness, Pa/m, which the time step "
-                    "follows from");
+        return tl_refuse(report, "en > 0 needs kn_max, the largest normal stiffness, Pa/m, which the time step "
+                                 "follows from");
     if (p->es > 0 && isnan(p->ks_max))
-        return tl_refuse(
-            report, "es > 0 needs ks_max, the largest shear stiffness, Pa/m, which the time step "
-                    "follows from");
+        return tl_refuse(report, "es > 0 needs ks_max, the largest shear stiffness, Pa/m, which the time step "
+                                 "follows from");
     yielding law = {.an = p->an,
                     .en = p->en,
                     .as = p->as,
@@ -199,8 +190,7 @@ typedef struct trial {
 } trial;
 
 /* Rise of the stress `t` along the way `d`, when the strength is `most`. */
-TL_IN_LOOP double rise(const yielding *law, double t, double most, double ratio, double ks,
-                       double d)
+TL_IN_LOOP double rise(const yielding *law, double t, double most, double ratio, double ks, double d)
 {
     double gap = most - t, reach = most * (1 - ratio);
     double exact = gap * (1 - tl_lane_exp(-ks * d / (reach > FAINT ? reach : FAINT)));
@@ -209,8 +199,8 @@ TL_IN_LOOP double rise(const yielding *law, double t, double most, double ratio,
 }
 
 /* Puts the closures of initial forces into `walls`; most joints have none. */
-TL_IN_LOOP void press(const yielding *given, const tl_law_batch *batch, uint32_t begin,
-                      uint32_t lanes, trial *restrict t, const int curved)
+TL_IN_LOOP void press(const yielding *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                      trial *restrict t, const int curved)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const yielding law = *given;
@@ -248,8 +238,8 @@ typedef struct wearing {
 } wearing;
 
 /* Found twice: with the angle before, and with the mean of it and of what that comes to. */
-TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, double v,
-                            double stress, double most, double ratio, double ks, double d)
+TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, double v, double stress, double most,
+                            double ratio, double ks, double d)
 {
     wearing w = {.up = rise(law, along, most, ratio, ks, d)};
     w.slip = d - w.up / (ks > 0 ? ks : 1);
@@ -272,8 +262,7 @@ typedef struct turning {
 
 /* Half of what was remembered is left after a way of the length `memory`; `share` is that of the strength which is used
  * along this way. */
-TL_IN_LOOP turning remember(double last, double toward, double share, double ratio, double way,
-                            double memory)
+TL_IN_LOOP turning remember(double last, double toward, double share, double ratio, double way, double memory)
 {
     double back = last - (toward > 0 ? toward : 0), renewed = way / (way + memory);
     double opposite = -share < MOST_RATIO ? -share : MOST_RATIO;
@@ -284,15 +273,13 @@ TL_IN_LOOP turning remember(double last, double toward, double share, double rat
 
 /* Closure, shear stress and wear. `moves`, a constant: 0 if no lane moves along the joint; then no angle is needed, and
  * the results are the same to the bit. How many lanes slip opens. */
-TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32_t begin,
-                        uint32_t lanes, trial *restrict t, const int curved, const int moves)
+TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                        trial *restrict t, const int curved, const int moves)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict worn = batch->state[0] + begin;
-    const double *restrict last = batch->state[1] + begin, *restrict opened =
-                                                               batch->state[2] + begin;
-    const double *restrict way_x = batch->state[4] + begin, *restrict way_y =
-                                                                batch->state[5] + begin;
+    const double *restrict last = batch->state[1] + begin, *restrict opened = batch->state[2] + begin;
+    const double *restrict way_x = batch->state[4] + begin, *restrict way_y = batch->state[5] + begin;
     const double *restrict way_z = batch->state[6] + begin;
     const yielding law = *given;
     double opens = 0;
@@ -306,8 +293,7 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double d = tl_v3_norm(du), per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0;
         tl_vec3 e = tl_v3_scale(per_way, du);
         double before = tl_v3_norm(force) * per, along = -tl_v3_dot(force, e) * per;
-        double angle = law.initial - worn[i] * TL_DEGREE,
-               most = moves ? stress * tl_lane_tan(angle) : 0;
+        double angle = law.initial - worn[i] * TL_DEGREE, most = moves ? stress * tl_lane_tan(angle) : 0;
         double toward = tl_v3_dot(e, way);
         double was = worn[i], ratio = last[i] + (toward < 0 ? toward : 0);
         wearing w = {.left = 1};
@@ -377,8 +363,8 @@ TL_IN_LOOP double afforded(double spring, double paid, double ends)
 
 /* Dilation, and what it leaves of the energy that shear has put in; whether some of that might be more than unloading
  * can give back. `opens`, a constant: 0 if no lane is opened by slip. */
-TL_IN_LOOP double lift(const yielding *given, const tl_law_batch *batch, uint32_t begin,
-                       uint32_t lanes, trial *restrict t, const int curved, const int opens)
+TL_IN_LOOP double lift(const yielding *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                       trial *restrict t, const int curved, const int opens)
 {
     const double *restrict area = batch->area + begin, *restrict opening = batch->state[2] + begin;
     const double *restrict held = batch->state[3] + begin, *restrict f_n = batch->f_n + begin;
@@ -438,9 +424,8 @@ TL_IN_LOOP void bound(uint32_t lanes, trial *restrict t)
 }
 
 /* Forces, states, energies and flags; `mark` is for tl_law_put_flags. */
-TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-                       const trial *restrict t, double *restrict mark, double *restrict stored,
-                       double *restrict dissipated)
+TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes, const trial *restrict t,
+                       double *restrict mark, double *restrict stored, double *restrict dissipated)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict wear = batch->state[0] + begin, *restrict reversal = batch->state[1] + begin;
@@ -470,16 +455,16 @@ TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes
     }
 }
 
-TL_IN_LOOP void update_lanes(const yielding *law, const tl_law_batch *batch, uint32_t begin,
-                             uint32_t lanes, const int curved)
+TL_IN_LOOP void update_lanes(const yielding *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                             const int curved)
 {
     tl_law_scratch mark, stored, dissipated;
     trial t;
     press(law, batch, begin, lanes, &t, curved);
     double opens = moving(batch, begin, lanes) > 0 ? slide(law, batch, begin, lanes, &t, curved, 1)
                                                    : slide(law, batch, begin, lanes, &t, curved, 0);
-    double near = opens > 0 ? lift(law, batch, begin, lanes, &t, curved, 1)
-                            : lift(law, batch, begin, lanes, &t, curved, 0);
+    double near =
+        opens > 0 ? lift(law, batch, begin, lanes, &t, curved, 1) : lift(law, batch, begin, lanes, &t, curved, 0);
     if (near > 0)
         bound(lanes, &t);
     settle(batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
@@ -487,8 +472,7 @@ TL_IN_LOOP void update_lanes(const yielding *law, const tl_law_batch *batch, uin
     tl_law_put_flags(batch, begin, lanes, mark);
 }
 
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     const yielding *law = self;
@@ -528,14 +512,14 @@ static void pressed(const void *self, const tl_law_batch *batch, double *energy)
     }
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .pulls = tl_pulls_none,
-                                         .across_gap = across_gap, .pressed = pressed);
+static const tl_law_ops ops =
+    TL_LAW_OPS(.never_fails = 1, .pulls = tl_pulls_none, .across_gap = across_gap, .pressed = pressed);
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_LAW, ops, .name = "continuously_yielding",
-    .doc = "A joint that yields from the first slip on, and whose friction wears down: for cyclic "
-           "loading.",
-    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "continuously_yielding",
+            .doc = "A joint that yields from the first slip on, and whose friction wears down: for cyclic "
+                   "loading.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.continuously_yielding", .version = TALUS_VERSION,
           .doc = "Continuously yielding joint law.", .licence = "BSD-3-Clause");

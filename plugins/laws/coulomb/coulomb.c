@@ -37,15 +37,13 @@ static const tl_param param_table[] = {
     TL_PARAM_KS(params),
     TL_PARAM_ANGLE(params, friction, 0, "angle of friction"),
     TL_PARAM_NOT_NEGATIVE(params, cohesion, "Pa", "shear strength at zero normal stress"),
-    TL_PARAM_ANGLE(params, dilation, 0,
-                   "angle of dilation: slip opens the joint; at most the friction"),
-    TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends",
-             .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
+    TL_PARAM_ANGLE(params, dilation, 0, "angle of dilation: slip opens the joint; at most the friction"),
+    TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends", .flags = TL_PARAM_OPTIONAL,
+             .min = 0, .max = INFINITY),
 };
 
 static const tl_state state_table[] = {
-    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint",
-             .transfer = TL_TRANSFER_LIFT),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint", .transfer = TL_TRANSFER_LIFT),
 };
 
 typedef struct coulomb {
@@ -57,9 +55,8 @@ static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
     if (p->dilation > p->friction)
-        return tl_refuse(
-            report, "dilation = %g deg must be <= friction = %g deg, or slip would make energy",
-            p->dilation, p->friction);
+        return tl_refuse(report, "dilation = %g deg must be <= friction = %g deg, or slip would make energy",
+                         p->dilation, p->friction);
     const coulomb law = {
         .kn = p->kn,
         .ks = p->ks,
@@ -130,8 +127,7 @@ TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t beg
         double trial = tl_v3_norm(f);
         if (dilates) {
             double strength = cohesion * c.area[i] + total * tangent;
-            lift = tl_law_lift_of_slip(dilation, trial, strength, total, kn * c.area[i], stiffness,
-                                       tangent, opened);
+            lift = tl_law_lift_of_slip(dilation, trial, strength, total, kn * c.area[i], stiffness, tangent, opened);
             opened = opened + lift;
             opening[i] = opened;
             total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
@@ -152,8 +148,7 @@ TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t beg
 }
 
 /* The law for up to TL_LANES lanes from `begin`; a constant number of them at each call. */
-TL_IN_LOOP void update_lanes(const coulomb *law, const tl_law_batch *batch, uint32_t begin,
-                             uint32_t lanes)
+TL_IN_LOOP void update_lanes(const coulomb *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes)
 {
     double mark[TL_LANES];
     if (law->dilation.tangent > 0 && batch->dissipated)
@@ -168,8 +163,7 @@ TL_IN_LOOP void update_lanes(const coulomb *law, const tl_law_batch *batch, uint
 }
 
 /* Energies at once, not in a loop of their own: their divisions are made while the next lanes are worked on. */
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     const coulomb *law = self;
@@ -199,13 +193,12 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
     tl_law_hold_none(batch, hold);
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_none,
-                                         .stateless = stateless, .across_gap = across_gap);
+static const tl_law_ops ops =
+    TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_none, .stateless = stateless, .across_gap = across_gap);
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_LAW, ops, .name = "coulomb",
-            .doc = "Coulomb friction with cohesion and dilation, and no tensile strength.",
-            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind = TL_KIND(TL_KIND_LAW, ops, .name = "coulomb",
+                                    .doc = "Coulomb friction with cohesion and dilation, and no tensile strength.",
+                                    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.coulomb", .version = TALUS_VERSION, .doc = "Coulomb joint law.",
           .licence = "BSD-3-Clause");

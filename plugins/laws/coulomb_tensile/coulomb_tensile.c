@@ -43,20 +43,16 @@ static const tl_param param_table[] = {
     TL_PARAM_ANGLE(params, residual_friction, TL_PARAM_OPTIONAL,
                    "angle of friction after the bond is lost; not given: friction"),
     TL_PARAM_NOT_NEGATIVE(params, residual_cohesion, "Pa", "cohesion after the bond is lost"),
-    TL_PARAM_NOT_NEGATIVE(params, residual_tension, "Pa",
-                          "tensile strength after the bond is lost"),
-    TL_PARAM_ANGLE(
-        params, dilation, 0,
-        "angle of dilation: slip opens the joint; at most the friction, whole and residual"),
-    TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends",
-             .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
+    TL_PARAM_NOT_NEGATIVE(params, residual_tension, "Pa", "tensile strength after the bond is lost"),
+    TL_PARAM_ANGLE(params, dilation, 0,
+                   "angle of dilation: slip opens the joint; at most the friction, whole and residual"),
+    TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends", .flags = TL_PARAM_OPTIONAL,
+             .min = 0, .max = INFINITY),
 };
 
 static const tl_state state_table[] = {
-    TL_STATE(TL_STATE_SCALAR, "bond", "", "1 while the bond holds, 0 when it is lost",
-             .initial = 1),
-    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint",
-             .transfer = TL_TRANSFER_LIFT),
+    TL_STATE(TL_STATE_SCALAR, "bond", "", "1 while the bond holds, 0 when it is lost", .initial = 1),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint", .transfer = TL_TRANSFER_LIFT),
 };
 
 /* Strength of a joint: with the bond, or without. */
@@ -76,9 +72,8 @@ static tl_status create(const void *given, void **self, tl_report *report)
     double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
     double least = residual < p->friction ? residual : p->friction;
     if (p->dilation > least)
-        return tl_refuse(
-            report, "dilation = %g deg must be <= %s = %g deg, or slip would make energy",
-            p->dilation, least < p->friction ? "residual_friction" : "friction", least);
+        return tl_refuse(report, "dilation = %g deg must be <= %s = %g deg, or slip would make energy", p->dilation,
+                         least < p->friction ? "residual_friction" : "friction", least);
     const bonded law = {
         .kn = p->kn,
         .ks = p->ks,
@@ -96,8 +91,8 @@ typedef struct gripping {
 
 /* Whether a bond holds a step: under a shear force on trial, what presses or pulls, and the force at the outermost
  * fibre. */
-TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, double before,
-                            double area, double trial, double total, double fibre)
+TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, double before, double area, double trial,
+                            double total, double fibre)
 {
     double rest = 1 - before;
     double bound = (before * peak->cohesion + rest * residual->cohesion) * area +
@@ -116,8 +111,7 @@ TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, doub
  * the sum f_n: P Q / (kn A) of points of which a part presses and another pulls, and that of a share that pulls
  * alone. */
 TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-                     double *restrict mark, double *restrict more, const int heat,
-                     const int dilates)
+                     double *restrict mark, double *restrict more, const int heat, const int dilates)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict edge = batch->closure_edge + begin;
@@ -141,16 +135,15 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         double trial = tl_v3_norm(f);
 
         double fibre = kn * c.area[i] * (edge[i] + opened) + c.f_n0[i];
-        gripping g = hold_on(&peak, &residual, before, c.area[i], trial,
-                             (pressed < 0 ? held * pressed : pressed) - pull, fibre);
+        gripping g =
+            hold_on(&peak, &residual, before, c.area[i], trial, (pressed < 0 ? held * pressed : pressed) - pull, fibre);
         double after = g.bond, tangent = g.tangent, cohesion = g.cohesion;
         double left = fibre < -residual.tension * c.area[i] ? 0 : whole;
         double holds = after * grips + (held - after * grips) * left;
         double pulls = holds * grip, total = pressed - pulls;
         if (dilates) {
             double strong = cohesion * c.area[i] + total * tangent;
-            lift = tl_law_lift_of_slip(dilation, trial, strong, total, kn * c.area[i], stiffness,
-                                       tangent, opened);
+            lift = tl_law_lift_of_slip(dilation, trial, strong, total, kn * c.area[i], stiffness, tangent, opened);
             opened = opened + lift;
             opening[i] = opened;
             pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
@@ -166,8 +159,7 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
             double pays = dilates ? 0.5 * (c.f_n[i] + total) * lift : 0;
             double work = tl_law_slip_heat(along, trial, limit, stiffness, pays);
             /* What lets go gives up its tensile spring. */
-            dissipated[i] = work + (held - holds) * tl_law_snap_work(grip + stretched,
-                                                                     kn * c.area[i], c.du_n[i]);
+            dissipated[i] = work + (held - holds) * tl_law_snap_work(grip + stretched, kn * c.area[i], c.du_n[i]);
         }
         double let_go = ((pressed > 0) & !(apart[i] > 0)) ? 0 : grips_on * (1 - holds);
         double lost = TL_POINT_FAILED + let_go * TL_POINT_APART;
@@ -176,15 +168,14 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         mark[i] += !(parted < 1) ? TL_POINT_OPEN : flag;
         c.f_n[i] = !(parted < 1) ? 0 : total;
         double alone = 0.5 * holds * (1 - holds) * (stretched * stretched + grip * grip);
-        more[i] = (pulls * (pressed < 0 ? -(holds * stretched) : pressed) + alone) /
-                  (c.area[i] > 0 ? kn * c.area[i] : 1);
+        more[i] =
+            (pulls * (pressed < 0 ? -(holds * stretched) : pressed) + alone) / (c.area[i] > 0 ? kn * c.area[i] : 1);
         TL_PUT_SHEAR(c, i, scale, f);
         bond[i] = after;
     }
 }
 
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     const bonded *law = self;
@@ -232,13 +223,12 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
         hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : bond[i] > 0 ? bond[i] * strong : strong_on;
 }
 
-static const tl_law_ops ops =
-    TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = pulls, .across_gap = across_gap);
+static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = pulls, .across_gap = across_gap);
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_LAW, ops, .name = "coulomb_tensile",
-    .doc = "Coulomb friction with a bond that breaks in tension or shear and does not heal.",
-    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "coulomb_tensile",
+            .doc = "Coulomb friction with a bond that breaks in tension or shear and does not heal.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN_SINCE(8, kind, .id = "talus.coulomb_tensile", .version = TALUS_VERSION,
                 .doc = "Coulomb joint law with a brittle bond.", .licence = "BSD-3-Clause");

@@ -28,8 +28,7 @@ static inline uint32_t now_of(uint32_t flags, double pressed, double apart)
     return flags & TL_POINT_APART ? open | partly : 0;
 }
 
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     const params *p = self;
@@ -75,10 +74,9 @@ static const tl_law_ops ops = {.size = sizeof ops,
                                .across_gap = across_gap,
                                .linear = true};
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_LAW, ops, .name = "elastic",
-            .doc = "Linear springs across the joint, without strength limits; carries tension.",
-            TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_KIND(TL_KIND_LAW, ops, .name = "elastic",
+                                    .doc = "Linear springs across the joint, without strength limits; carries tension.",
+                                    TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN_SINCE(8, kind, .id = "talus.elastic", .version = TALUS_VERSION,
-                .doc = "Elastic joint law.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(8, kind, .id = "talus.elastic", .version = TALUS_VERSION, .doc = "Elastic joint law.",
+                .licence = "BSD-3-Clause");

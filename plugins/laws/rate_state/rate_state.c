@@ -46,26 +46,22 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM(TL_PARAM_REAL, params, mu0, "", "coefficient of friction in steady slip at `velocity`",
-             .def = {0.6}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = 10),
-    TL_PARAM(TL_PARAM_REAL, params, a, "", "direct effect of the rate",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = 1),
+    TL_PARAM(TL_PARAM_REAL, params, mu0, "", "coefficient of friction in steady slip at `velocity`", .def = {0.6},
+             .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = 10),
+    TL_PARAM(TL_PARAM_REAL, params, a, "", "direct effect of the rate", .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN,
+             .min = 0, .max = 1),
     TL_PARAM(TL_PARAM_REAL, params, b, "", "effect of the state; b > a weakens with the rate",
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 1),
-    TL_PARAM_POSITIVE(params, distance, "m", "slip D_c over which the state changes",
-                      .alias = "dc"),
-    TL_PARAM(TL_PARAM_REAL, params, velocity, "m/s", "reference rate V0", .alias = "v0",
-             .def = {1e-6}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM_NOT_NEGATIVE(
-        params, damping, "Pa s/m",
-        "viscous part eta: shear modulus over twice the speed of shear waves, where blocks do "
-        "not radiate themselves"),
-    TL_PARAM_POSITIVE_OR_NONE(
-        params, theta, "s",
-        "state of a new contact; not given: distance / velocity, that of steady slip"),
-    TL_PARAM(TL_PARAM_ENUM, params, evolution, "",
-             "how the state changes: it also ages at rest, or with slip only", .def = {AGING},
-             .choices = evolutions),
+    TL_PARAM_POSITIVE(params, distance, "m", "slip D_c over which the state changes", .alias = "dc"),
+    TL_PARAM(TL_PARAM_REAL, params, velocity, "m/s", "reference rate V0", .alias = "v0", .def = {1e-6},
+             .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_NOT_NEGATIVE(params, damping, "Pa s/m",
+                          "viscous part eta: shear modulus over twice the speed of shear waves, where blocks do "
+                          "not radiate themselves"),
+    TL_PARAM_POSITIVE_OR_NONE(params, theta, "s",
+                              "state of a new contact; not given: distance / velocity, that of steady slip"),
+    TL_PARAM(TL_PARAM_ENUM, params, evolution, "", "how the state changes: it also ages at rest, or with slip only",
+             .def = {AGING}, .choices = evolutions),
 };
 
 static const tl_state state_table[] = {
@@ -89,8 +85,7 @@ TL_IN_LOOP double mean_decay(double x, double decay)
 }
 
 /* The state after `time` at a rate of slip. */
-TL_IN_LOOP double go_on(const int evolution, double distance, double theta, double rate,
-                        double time)
+TL_IN_LOOP double go_on(const int evolution, double distance, double theta, double rate, double time)
 {
     double x = rate * time / distance, decay = tl_lane_exp(-x);
     if (evolution == AGING)
@@ -101,8 +96,7 @@ TL_IN_LOOP double go_on(const int evolution, double distance, double theta, doub
 }
 
 /* d ln theta / d ln V of that, from -1 in steady slip to 0. */
-TL_IN_LOOP double answer(const int evolution, double distance, double theta, double rate,
-                         double time)
+TL_IN_LOOP double answer(const int evolution, double distance, double theta, double rate, double time)
 {
     double x = rate * time / distance, decay = tl_lane_exp(-x);
     if (evolution == AGING) {
@@ -124,8 +118,8 @@ typedef struct trial {
 
 /* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. How many lanes carry
  * shear. */
-TL_IN_LOOP double press(const params *given, const tl_law_batch *batch, uint32_t begin,
-                        uint32_t lanes, trial *restrict t)
+TL_IN_LOOP double press(const params *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                        trial *restrict t)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict state = batch->state[0] + begin;
@@ -175,8 +169,7 @@ TL_IN_LOOP double press(const params *given, const tl_law_batch *batch, uint32_t
 }
 
 /* One of Newton's passes; how many lanes have not found their root. */
-TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *restrict t,
-                       const int evolution)
+TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *restrict t, const int evolution)
 {
     const params law = *given;
     const double slows = law.ks * dt + law.damping, half = 0.5 * dt, share = law.b / law.a;
@@ -194,8 +187,7 @@ TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *re
         double arsinh = y + aged + tl_lane_log(sine + sum);
         double over = t->effect[i] * arsinh + slows * rate - t->shear[i];
         double rise = 1 + share * answer(evolution, law.distance, start, rate, half);
-        double slope =
-            t->effect[i] * 0.5 * (1 + twice) * rise / sum + slows * law.velocity * (up + down);
+        double slope = t->effect[i] * 0.5 * (1 + twice) * rise / sum + slows * law.velocity * (up + down);
         double low = over < 0 ? y : t->low[i], high = over < 0 ? t->high[i] : y;
         double next = y - over / (slope > 0 ? slope : 1);
         double inside = slope > 0 ? 1 : 0;
@@ -229,9 +221,9 @@ TL_IN_LOOP void find_rates(const params *given, double dt, uint32_t lanes, trial
 }
 
 /* Forces, states, energies and flags; `mark` is for tl_law_put_flags. */
-TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t begin,
-                       uint32_t lanes, const trial *restrict t, double *restrict mark,
-                       double *restrict stored, double *restrict dissipated, const int evolution)
+TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                       const trial *restrict t, double *restrict mark, double *restrict stored,
+                       double *restrict dissipated, const int evolution)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict state = batch->state[0] + begin, *restrict rates = batch->state[1] + begin;
@@ -262,8 +254,8 @@ TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t 
             rates[i] = t->rate[i];
 }
 
-TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint32_t begin,
-                             uint32_t lanes, const int evolution)
+TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                             const int evolution)
 {
     tl_law_scratch mark, stored, dissipated;
     trial t;
@@ -276,8 +268,7 @@ TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint3
     tl_law_put_flags(batch, begin, lanes, mark);
 }
 
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     const params *law = self;
@@ -295,10 +286,10 @@ TL_LAW_STIFFNESS(params, kn, ks);
 
 static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_none);
 
-static const tl_kind kind = TL_KIND(
-    TL_KIND_LAW, ops, .name = "rate_state",
-    .doc = "Friction that depends on the rate of slip and on a state of the surface that ages.",
-    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "rate_state",
+            .doc = "Friction that depends on the rate of slip and on a state of the surface that ages.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-TL_PLUGIN(kind, .id = "talus.rate_state", .version = TALUS_VERSION,
-          .doc = "Rate-and-state joint law.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "talus.rate_state", .version = TALUS_VERSION, .doc = "Rate-and-state joint law.",
+          .licence = "BSD-3-Clause");

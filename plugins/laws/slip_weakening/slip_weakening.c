@@ -32,8 +32,7 @@
 enum { LINEAR, EXPONENTIAL };
 enum { HEAL_NONE, HEAL_INSTANT, HEAL_TIME };
 static const char *const forms[] = {[LINEAR] = "linear", [EXPONENTIAL] = "exponential", NULL};
-static const char *const healings[] = {
-    [HEAL_NONE] = "none", [HEAL_INSTANT] = "instant", [HEAL_TIME] = "time", NULL};
+static const char *const healings[] = {[HEAL_NONE] = "none", [HEAL_INSTANT] = "instant", [HEAL_TIME] = "time", NULL};
 
 typedef struct params {
     double kn, ks, friction, cohesion, residual_friction, residual_cohesion, distance;
@@ -49,18 +48,15 @@ static const tl_param param_table[] = {
     TL_PARAM_ANGLE(params, residual_friction, TL_PARAM_OPTIONAL,
                    "angle of friction after slip, at most friction; not given: friction"),
     TL_PARAM_NOT_NEGATIVE(params, residual_cohesion, "Pa", "cohesion after slip, at most cohesion"),
-    TL_PARAM_POSITIVE(
-        params, distance, "m",
-        "slip D_c over which the strength falls: all of it, or in the exponential form all "
-        "but 1/e"),
-    TL_PARAM(TL_PARAM_ENUM, params, form, "", "how the strength falls with slip", .def = {LINEAR},
-             .choices = forms),
+    TL_PARAM_POSITIVE(params, distance, "m",
+                      "slip D_c over which the strength falls: all of it, or in the exponential form all "
+                      "but 1/e"),
+    TL_PARAM(TL_PARAM_ENUM, params, form, "", "how the strength falls with slip", .def = {LINEAR}, .choices = forms),
     TL_PARAM(TL_PARAM_ENUM, params, healing, "",
-             "whether strength comes back where slip has ended: never, at once, or in time",
-             .def = {HEAL_NONE}, .choices = healings),
-    TL_PARAM_POSITIVE_OR_NONE(
-        params, healing_time, "s",
-        "for healing = \"time\": time in which all but 1/e of the lost strength comes back"),
+             "whether strength comes back where slip has ended: never, at once, or in time", .def = {HEAL_NONE},
+             .choices = healings),
+    TL_PARAM_POSITIVE_OR_NONE(params, healing_time, "s",
+                              "for healing = \"time\": time in which all but 1/e of the lost strength comes back"),
 };
 
 static const tl_state state_table[] = {
@@ -80,16 +76,14 @@ static tl_status create(const void *given, void **self, tl_report *report)
     const params *p = given;
     double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
     if (residual > p->friction)
-        return tl_refuse(report, "residual_friction = %g deg must be <= friction = %g deg",
-                         residual, p->friction);
+        return tl_refuse(report, "residual_friction = %g deg must be <= friction = %g deg", residual, p->friction);
     if (p->residual_cohesion > p->cohesion)
-        return tl_refuse(report, "residual_cohesion = %g Pa must be <= cohesion = %g Pa",
-                         p->residual_cohesion, p->cohesion);
+        return tl_refuse(report, "residual_cohesion = %g Pa must be <= cohesion = %g Pa", p->residual_cohesion,
+                         p->cohesion);
     if (p->healing == HEAL_TIME && isnan(p->healing_time))
         return tl_refuse(report, "healing = \"time\" needs healing_time, in s");
     if (p->healing != HEAL_TIME && !isnan(p->healing_time))
-        return tl_refuse(report, "healing_time is given, but healing is \"%s\"",
-                         healings[p->healing]);
+        return tl_refuse(report, "healing_time is given, but healing is \"%s\"", healings[p->healing]);
     double tangent = tl_tan(residual * TL_DEGREE);
     const weakening law = {.kn = p->kn,
                            .ks = p->ks,
@@ -140,8 +134,8 @@ TL_IN_LOOP double exponential_start(double above, double drop)
 
 /* One of its passes; how many lanes have not found their root. They stay at one that they have found, so that it does
  * not matter which others they are with. */
-TL_IN_LOOP double exponential_pass(const double *restrict above, const double *restrict drop,
-                                   double *restrict x, double *restrict found, uint32_t lanes)
+TL_IN_LOOP double exponential_pass(const double *restrict above, const double *restrict drop, double *restrict x,
+                                   double *restrict found, uint32_t lanes)
 {
     double left = 0;
 #pragma omp simd reduction(+ : left)
@@ -172,8 +166,8 @@ TL_IN_LOOP double least_left_of(const int form, double per_distance, double slip
 }
 
 /* Forces as if nothing slipped, and the least strength; whether some lane is beyond it. */
-TL_IN_LOOP double press(const weakening *law, const tl_law_batch *batch, uint32_t begin,
-                        uint32_t lanes, trial *restrict t, const int form)
+TL_IN_LOOP double press(const weakening *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                        trial *restrict t, const int form)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict slip = batch->state[0] + begin;
@@ -219,15 +213,14 @@ TL_IN_LOOP double resist(const weakening *law, uint32_t lanes, trial *restrict t
 }
 
 /* Slip of the lanes that are beyond their strength, and the strength after it. Open points do not rub. */
-TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t lanes,
-                    trial *restrict t, const int form)
+TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t lanes, trial *restrict t,
+                    const int form)
 {
     const double distance = law->distance, per_distance = 1 / law->distance, ks = law->ks;
     tl_law_scratch above, drop, grown, found;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double spring = ks * area[i] * distance,
-               per = spring > 0 ? 1 / (spring > 0 ? spring : 1) : 0;
+        double spring = ks * area[i] * distance, per = spring > 0 ? 1 / (spring > 0 ? spring : 1) : 0;
         double left = left_of(form, per_distance, t->slip[i]), most = t->drop[i] * per;
         above[i] = (t->shear[i] - t->residual[i]) * per;
         drop[i] = most * left;
@@ -250,9 +243,8 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
 }
 
 /* Forces, heat and flags; `mark` is for tl_law_put_flags. */
-TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t begin,
-                       uint32_t lanes, const trial *restrict t, double *restrict mark,
-                       const int heat)
+TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                       const trial *restrict t, double *restrict mark, const int heat)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict slip = batch->state[0] + begin;
@@ -265,8 +257,7 @@ TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t
         tl_vec3 f = {t->x[i], t->y[i], t->z[i]};
         if (heat) {
             double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
-            double mean = 0.5 * (along / (shear > most ? shear : 1) + limit),
-                   stiffness = ks * c.area[i];
+            double mean = 0.5 * (along / (shear > most ? shear : 1) + limit), stiffness = ks * c.area[i];
             double work = mean * (shear - limit) / (stiffness > 0 ? stiffness : 1);
             work = stiffness > 0 ? work : 0;
             work = shear > most ? work : 0;
@@ -281,12 +272,11 @@ TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t
 }
 
 /* Strength that comes back in a step: slip of points that do not slip in it. */
-TL_IN_LOOP void heal(const weakening *law, const tl_law_batch *batch, uint32_t begin,
-                     uint32_t lanes, const double *restrict mark)
+TL_IN_LOOP void heal(const weakening *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                     const double *restrict mark)
 {
     double *restrict slip = batch->state[0] + begin;
-    const double factor =
-        law->healing == HEAL_TIME ? tl_lane_exp(-batch->dt / law->healing_time) : 0;
+    const double factor = law->healing == HEAL_TIME ? tl_lane_exp(-batch->dt / law->healing_time) : 0;
     const double most = law->form == LINEAR ? law->distance : INFINITY;
     const double least = HEALED * law->distance;
 #pragma omp simd
@@ -298,8 +288,8 @@ TL_IN_LOOP void heal(const weakening *law, const tl_law_batch *batch, uint32_t b
     }
 }
 
-TL_IN_LOOP void update_lanes(const weakening *law, const tl_law_batch *batch, uint32_t begin,
-                             uint32_t lanes, const int form)
+TL_IN_LOOP void update_lanes(const weakening *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                             const int form)
 {
     trial t;
     tl_law_scratch mark;
@@ -315,8 +305,7 @@ TL_IN_LOOP void update_lanes(const weakening *law, const tl_law_batch *batch, ui
     tl_law_put_flags(batch, begin, lanes, mark);
 }
 
-TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
-                                      tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
     const weakening *law = self;
@@ -335,10 +324,9 @@ TL_LAW_STIFFNESS(weakening, kn, ks);
 
 static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_none);
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_LAW, ops, .name = "slip_weakening",
-            .doc = "Friction and cohesion that fall with slip, and may heal where it ends.",
-            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind = TL_KIND(TL_KIND_LAW, ops, .name = "slip_weakening",
+                                    .doc = "Friction and cohesion that fall with slip, and may heal where it ends.",
+                                    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-TL_PLUGIN(kind, .id = "talus.slip_weakening", .version = TALUS_VERSION,
-          .doc = "Slip-weakening joint law.", .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "talus.slip_weakening", .version = TALUS_VERSION, .doc = "Slip-weakening joint law.",
+          .licence = "BSD-3-Clause");

@@ -36,9 +36,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_INT, params, port, "",
-             "port of 127.0.0.1; 0: any that is free, which the address tells", .def = {0},
-             .min = 0, .max = 65535),
+    TL_PARAM(TL_PARAM_INT, params, port, "", "port of 127.0.0.1; 0: any that is free, which the address tells",
+             .def = {0}, .min = 0, .max = 65535),
 };
 
 /* What the model's thread knows of: the server, and how to reach its thread. */
@@ -64,8 +63,7 @@ static void let_in(browser *b)
     for (;;) {
         struct sockaddr_in from;
         socklen_t length = sizeof from;
-        int socket =
-            accept4(b->listener, (struct sockaddr *)&from, &length, SOCK_CLOEXEC | SOCK_NONBLOCK);
+        int socket = accept4(b->listener, (struct sockaddr *)&from, &length, SOCK_CLOEXEC | SOCK_NONBLOCK);
         if (socket < 0)
             return;
         /* the library closes it where there are as many as may be */
@@ -93,12 +91,10 @@ static void wait_for_something(browser *b, double deadline)
     struct pollfd of[WATCHERS + MOST_WATCHERS] = {
         [LISTENER] = {.fd = s->closing ? -1 : b->listener, .events = POLLIN},
         [BELL] = {.fd = b->bell, .events = POLLIN},
-        [LIBRARY] = {.fd = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_EPOLL_FD)->epoll_fd,
-                     .events = POLLIN}};
+        [LIBRARY] = {.fd = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_EPOLL_FD)->epoll_fd, .events = POLLIN}};
     for (size_t i = 0; i < MOST_WATCHERS; i++) {
         bool waits = s->seats[i] && s->seats[i]->waits;
-        of[WATCHERS + i] =
-            (struct pollfd){.fd = waits ? s->seats[i]->socket : -1, .events = POLLRDHUP};
+        of[WATCHERS + i] = (struct pollfd){.fd = waits ? s->seats[i]->socket : -1, .events = POLLRDHUP};
     }
     MHD_UNSIGNED_LONG_LONG library;
     double wait = s->closing ? 1e3 * (deadline - now_seconds()) : 1e6;
@@ -145,9 +141,8 @@ static tl_status fail(tl_report *report, tl_status status, const char *what, int
 
 static tl_status begin_listening(browser *b, int64_t port, tl_report *report)
 {
-    struct sockaddr_in at = {.sin_family = AF_INET,
-                             .sin_port = htons((uint16_t)port),
-                             .sin_addr = {htonl(INADDR_LOOPBACK)}};
+    struct sockaddr_in at = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr = {htonl(INADDR_LOOPBACK)}};
     socklen_t length = sizeof at;
     int yes = 1;
     b->listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -159,8 +154,7 @@ static tl_status begin_listening(browser *b, int64_t port, tl_report *report)
         listen(b->listener, 2 * MOST_CONNECTIONS) != 0) {
         if (errno == EADDRINUSE && port > 0)
             snprintf(report->text, sizeof report->text,
-                     "port %d of 127.0.0.1 is in use; give another one, or 0 for any that is free",
-                     (int)port);
+                     "port %d of 127.0.0.1 is in use; give another one, or 0 for any that is free", (int)port);
         else
             snprintf(report->text, sizeof report->text,
                      "port %d of 127.0.0.1 cannot be listened to (%s); give another one, or 0 for "
@@ -170,8 +164,7 @@ static tl_status begin_listening(browser *b, int64_t port, tl_report *report)
     }
     if (getsockname(b->listener, (struct sockaddr *)&at, &length) != 0)
         return fail(report, TL_E_IO, "the system does not tell the port", errno);
-    snprintf(b->address, sizeof b->address, "http://127.0.0.1:%u/?token=%s",
-             (unsigned)ntohs(at.sin_port), b->s.token);
+    snprintf(b->address, sizeof b->address, "http://127.0.0.1:%u/?token=%s", (unsigned)ntohs(at.sin_port), b->s.token);
     return TL_OK;
 }
 
@@ -186,13 +179,12 @@ static tl_status begin_server(browser *b, const tl_screen_page *page, tl_report 
     if (!s->page || !s->mail)
         return TL_E_MEMORY;
     memcpy(s->page, page->text, page->length);
-    s->daemon = MHD_start_daemon(
-        MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_NO_LISTEN_SOCKET, 0, NULL, NULL,
-        answer_request, s, MHD_OPTION_NOTIFY_COMPLETED, request_ended, s,
-        MHD_OPTION_NOTIFY_CONNECTION, connection_changed, s, MHD_OPTION_CONNECTION_LIMIT,
-        2U * MOST_CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SILENCE,
-        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_MEMORY, MHD_OPTION_STRICT_FOR_CLIENT,
-        1, MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1, MHD_OPTION_END);
+    s->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_NO_LISTEN_SOCKET, 0, NULL, NULL,
+                                 answer_request, s, MHD_OPTION_NOTIFY_COMPLETED, request_ended, s,
+                                 MHD_OPTION_NOTIFY_CONNECTION, connection_changed, s, MHD_OPTION_CONNECTION_LIMIT,
+                                 2U * MOST_CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SILENCE,
+                                 MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_MEMORY,
+                                 MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1, MHD_OPTION_END);
     if (!s->daemon)
         return fail(report, TL_E_IO, "libmicrohttpd does not start", errno);
     return TL_OK;
@@ -220,8 +212,7 @@ static void free_browser(browser *b)
     free(b);
 }
 
-static tl_status open_browser(const tl_screen_page *page, const void *given, void **self,
-                              tl_report *report)
+static tl_status open_browser(const tl_screen_page *page, const void *given, void **self, tl_report *report)
 {
     const params *p = given;
     browser *b = calloc(1, sizeof *b);
@@ -289,13 +280,11 @@ static void close_browser(void *self)
     free_browser(b);
 }
 
-static const tl_screen_ops ops = {sizeof ops, open_browser, address,      watchers,
-                                  put,        take,         close_browser};
+static const tl_screen_ops ops = {sizeof ops, open_browser, address, watchers, put, take, close_browser};
 
 static const tl_kind kind =
-    TL_KIND(TL_KIND_SCREEN, ops, .name = "browser",
-            .doc = "Serves the page to browsers on this machine, at 127.0.0.1.",
+    TL_KIND(TL_KIND_SCREEN, ops, .name = "browser", .doc = "Serves the page to browsers on this machine, at 127.0.0.1.",
             TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN_SINCE(7, kind, .id = "talus.browser", .version = TALUS_VERSION,
-                .doc = "Screen in a browser.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(7, kind, .id = "talus.browser", .version = TALUS_VERSION, .doc = "Screen in a browser.",
+                .licence = "BSD-3-Clause");

@@ -51,8 +51,7 @@ bool host_is_local(const char *host)
 bool origin_is_own(const char *host, const char *origin, const char *fetch_site)
 {
     static const char scheme[] = "http://";
-    bool same_site =
-        !fetch_site || strcmp(fetch_site, "same-origin") == 0 || strcmp(fetch_site, "none") == 0;
+    bool same_site = !fetch_site || strcmp(fetch_site, "same-origin") == 0 || strcmp(fetch_site, "none") == 0;
     bool same_origin = !origin || (strncmp(origin, scheme, sizeof scheme - 1) == 0 &&
                                    strcasecmp(origin + sizeof scheme - 1, host) == 0);
     return same_site && same_origin;

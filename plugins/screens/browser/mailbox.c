@@ -267,8 +267,7 @@ static void wait_for_news(mailbox *m, double seconds)
 {
     const struct timespec until = time_after(seconds);
     int timed_out = 0;
-    while (atomic_load_explicit(&m->waiting, memory_order_relaxed) == 0 &&
-           m->arrived == m->arrivals_told && !timed_out)
+    while (atomic_load_explicit(&m->waiting, memory_order_relaxed) == 0 && m->arrived == m->arrivals_told && !timed_out)
         timed_out = pthread_cond_timedwait(&m->told, &m->lock, &until);
     m->arrivals_told = m->arrived;
 }

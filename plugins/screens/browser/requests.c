@@ -35,8 +35,8 @@ typedef struct request {
 /* ---------------------------------------------------------------- answers ---------------- */
 
 /* Sends a response, which is NULL without memory, and lets go of it. */
-static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned status,
-                                     struct MHD_Response *response, const char *type, bool closes)
+static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned status, struct MHD_Response *response,
+                                     const char *type, bool closes)
 {
     static const char *const headers[][2] = {{"X-Frame-Options", "DENY"},
                                              {"X-Content-Type-Options", "nosniff"},
@@ -56,11 +56,10 @@ static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned
 }
 
 /* An answer of one sentence. */
-static enum MHD_Result say(struct MHD_Connection *connection, unsigned status, const char *text,
-                           const char *allow)
+static enum MHD_Result say(struct MHD_Connection *connection, unsigned status, const char *text, const char *allow)
 {
-    struct MHD_Response *response = MHD_create_response_from_buffer(
-        strlen(text), (void *)(uintptr_t)text, MHD_RESPMEM_MUST_COPY);
+    struct MHD_Response *response =
+        MHD_create_response_from_buffer(strlen(text), (void *)(uintptr_t)text, MHD_RESPMEM_MUST_COPY);
     if (response && allow)
         MHD_add_response_header(response, "Allow", allow);
     return send_response(connection, status, response, "text/plain; charset=utf-8", true);
@@ -68,8 +67,7 @@ static enum MHD_Result say(struct MHD_Connection *connection, unsigned status, c
 
 static enum MHD_Result send_page(const server *s, struct MHD_Connection *connection)
 {
-    struct MHD_Response *response =
-        MHD_create_response_from_buffer(s->page_length, s->page, MHD_RESPMEM_PERSISTENT);
+    struct MHD_Response *response = MHD_create_response_from_buffer(s->page_length, s->page, MHD_RESPMEM_PERSISTENT);
     return send_response(connection, MHD_HTTP_OK, response, "text/html; charset=utf-8", true);
 }
 
@@ -96,8 +94,7 @@ static ssize_t read_frames(void *cls, uint64_t at, char *to, size_t room)
 /* A free place among the watchers, or NULL. */
 static seat *take_seat(server *s, struct MHD_Connection *connection)
 {
-    const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
     for (size_t i = 0; info && i < MOST_WATCHERS; i++)
         if (!s->seats[i]) {
             seat *own = calloc(1, sizeof *own);
@@ -128,8 +125,7 @@ static enum MHD_Result send_frames(server *s, struct MHD_Connection *connection,
     r->seat = take_seat(s, connection);
     if (!r->seat)
         return say(connection, MHD_HTTP_SERVICE_UNAVAILABLE,
-                   "8 pages look at the run, which is the most it serves; close another one.",
-                   NULL);
+                   "8 pages look at the run, which is the most it serves; close another one.", NULL);
     /* One who reads slowly, or has no news to read, is not silent. */
     MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     struct MHD_Response *response =
@@ -139,8 +135,7 @@ static enum MHD_Result send_frames(server *s, struct MHD_Connection *connection,
 
 /* ---------------------------------------------------------------- commands --------------- */
 
-static enum MHD_Result take_command(const server *s, struct MHD_Connection *connection,
-                                    const request *r)
+static enum MHD_Result take_command(const server *s, struct MHD_Connection *connection, const request *r)
 {
     char why[WHY] = "";
     if (r->seen >= TL_SCREEN_COMMAND)
@@ -166,8 +161,7 @@ typedef struct header {
     unsigned count;
 } header;
 
-static enum MHD_Result find_header(void *cls, enum MHD_ValueKind kind, const char *name,
-                                   const char *value)
+static enum MHD_Result find_header(void *cls, enum MHD_ValueKind kind, const char *name, const char *value)
 {
     (void)kind;
     header *wanted = cls;
@@ -203,8 +197,7 @@ static bool shows_token(const server *s, struct MHD_Connection *connection)
 
 static bool is_excess(struct MHD_Connection *connection)
 {
-    const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
     return info && info->socket_context;
 }
 
@@ -215,8 +208,7 @@ static void refuse(request *r, unsigned status, const char *text)
 }
 
 /* What can be said before the body is read. */
-static void judge(const server *s, struct MHD_Connection *connection, const char *path,
-                  const char *method, request *r)
+static void judge(const server *s, struct MHD_Connection *connection, const char *path, const char *method, request *r)
 {
     bool posts = strcmp(path, "/command") == 0;
     bool known = posts || strcmp(path, "/") == 0 || strcmp(path, "/scene") == 0;
@@ -224,15 +216,12 @@ static void judge(const server *s, struct MHD_Connection *connection, const char
         refuse(r, MHD_HTTP_SERVICE_UNAVAILABLE,
                "The run has 12 connections, which is the most it serves; close another page.");
     else if (!comes_from_here(connection))
-        refuse(r, MHD_HTTP_FORBIDDEN,
-               "The run answers only to its own page, at 127.0.0.1 or localhost.");
-    else if (strcmp(path, "/favicon.ico") ==
-             0) /* which browsers ask for by themselves, without the token */
+        refuse(r, MHD_HTTP_FORBIDDEN, "The run answers only to its own page, at 127.0.0.1 or localhost.");
+    else if (strcmp(path, "/favicon.ico") == 0) /* which browsers ask for by themselves, without the token */
         refuse(r, MHD_HTTP_NOT_FOUND, "There is no such page.");
     /* the page holds nothing of the run: loaded again it has the token still, and its address has not */
     else if (strcmp(path, "/") != 0 && !shows_token(s, connection))
-        refuse(r, MHD_HTTP_FORBIDDEN,
-               "The token is missing or wrong; open the address that the run has printed.");
+        refuse(r, MHD_HTTP_FORBIDDEN, "The token is missing or wrong; open the address that the run has printed.");
     else if (!known)
         refuse(r, MHD_HTTP_NOT_FOUND, "There is no such page.");
     else if (strcmp(method, posts ? "POST" : "GET") != 0) {
@@ -249,8 +238,7 @@ static bool is_long(struct MHD_Connection *connection)
     return length.count > 0 && (strlen(length.value) > 9 || atol(length.value) > MOST_READ);
 }
 
-static enum MHD_Result answer(server *s, struct MHD_Connection *connection, const char *path,
-                              request *r)
+static enum MHD_Result answer(server *s, struct MHD_Connection *connection, const char *path, request *r)
 {
     if (r->status)
         return say(connection, r->status, r->text, r->allow);
@@ -261,9 +249,8 @@ static enum MHD_Result answer(server *s, struct MHD_Connection *connection, cons
     return take_command(s, connection, r);
 }
 
-enum MHD_Result answer_request(void *cls, struct MHD_Connection *connection, const char *path,
-                               const char *method, const char *version, const char *data,
-                               size_t *size, void **of)
+enum MHD_Result answer_request(void *cls, struct MHD_Connection *connection, const char *path, const char *method,
+                               const char *version, const char *data, size_t *size, void **of)
 {
     (void)version;
     server *s = cls;
@@ -287,8 +274,7 @@ enum MHD_Result answer_request(void *cls, struct MHD_Connection *connection, con
     return r->seen <= MOST_READ ? MHD_YES : MHD_NO;
 }
 
-void request_ended(void *cls, struct MHD_Connection *connection, void **of,
-                   enum MHD_RequestTerminationCode how)
+void request_ended(void *cls, struct MHD_Connection *connection, void **of, enum MHD_RequestTerminationCode how)
 {
     (void)cls;
     (void)connection;

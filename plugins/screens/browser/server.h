@@ -42,11 +42,9 @@ typedef struct server {
 } server;
 
 /* requests.c: answers to requests, as libmicrohttpd calls for them. `cls` is the server. */
-enum MHD_Result answer_request(void *cls, struct MHD_Connection *connection, const char *path,
-                               const char *method, const char *version, const char *data,
-                               size_t *size, void **request);
-void request_ended(void *cls, struct MHD_Connection *connection, void **request,
-                   enum MHD_RequestTerminationCode how);
+enum MHD_Result answer_request(void *cls, struct MHD_Connection *connection, const char *path, const char *method,
+                               const char *version, const char *data, size_t *size, void **request);
+void request_ended(void *cls, struct MHD_Connection *connection, void **request, enum MHD_RequestTerminationCode how);
 void connection_changed(void *cls, struct MHD_Connection *connection, void **context,
                         enum MHD_ConnectionNotificationCode what);
 

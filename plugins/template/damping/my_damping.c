@@ -12,16 +12,15 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, drag, "1/m", "drag per mass and square of the velocity",
-             .flags = TL_PARAM_REQUIRED, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, spin_drag, "",
-             "drag per moment of inertia and square of the angular velocity", .def = {0}, .min = 0,
-             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, drag, "1/m", "drag per mass and square of the velocity", .flags = TL_PARAM_REQUIRED,
+             .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, spin_drag, "", "drag per moment of inertia and square of the angular velocity",
+             .def = {0}, .min = 0, .max = INFINITY),
 };
 
 /* -c times the size of the vector, times the vector, for all bodies of the batch. */
-static void drag(double c, const tl_damping_batch *batch, const double *inertia,
-                 const double *const motion[3], double *const out[3])
+static void drag(double c, const tl_damping_batch *batch, const double *inertia, const double *const motion[3],
+                 double *const out[3])
 {
     for (uint32_t i = 0; i < batch->count; i++) {
         double x = motion[0][i], y = motion[1][i], z = motion[2][i];
@@ -43,12 +42,10 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
 }
 
 /* The stable time step becomes no shorter. */
-static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = tl_step_factor_one};
+static const tl_damping_ops ops = {.size = sizeof ops, .update = update, .step_factor = tl_step_factor_one};
 
-static const tl_kind kind = TL_KIND(TL_KIND_DAMPING, ops, .name = "my_damping",
-                                    .doc = "Drag that grows with the square of the velocity.",
-                                    TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind =
+    TL_KIND(TL_KIND_DAMPING, ops, .name = "my_damping", .doc = "Drag that grows with the square of the velocity.",
+            TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "example.my_damping", .version = "1.0", .doc = "Quadratic drag.",
-          .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "example.my_damping", .version = "1.0", .doc = "Quadratic drag.", .licence = "BSD-3-Clause");

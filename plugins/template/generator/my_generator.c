@@ -16,14 +16,11 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "lowest corner of the first brick",
-             .def = {0, 0, 0}),
-    TL_PARAM(TL_PARAM_VEC3, params, brick, "m", "length, width and height of a brick",
-             .def = {0.4, 0.2, 0.2}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_INT, params, courses, "", "courses on top of each other", .def = {4},
-             .min = 1, .max = 1000),
-    TL_PARAM(TL_PARAM_INT, params, number, "", "bricks of a course", .def = {5}, .min = 1,
-             .max = 1000),
+    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "lowest corner of the first brick", .def = {0, 0, 0}),
+    TL_PARAM(TL_PARAM_VEC3, params, brick, "m", "length, width and height of a brick", .def = {0.4, 0.2, 0.2},
+             .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_INT, params, courses, "", "courses on top of each other", .def = {4}, .min = 1, .max = 1000),
+    TL_PARAM(TL_PARAM_INT, params, number, "", "bricks of a course", .def = {5}, .min = 1, .max = 1000),
     TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the bricks",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the bricks", .def_text = "wall"),
@@ -53,9 +50,7 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "my_generator", .doc = "Creates a wall of bricks.",
-            TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_KIND(TL_KIND_GENERATOR, ops, .name = "my_generator", .doc = "Creates a wall of bricks.",
+                                    TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "example.my_generator", .version = "1.0", .doc = "Brick walls.",
-          .licence = "BSD-3-Clause");
+TL_PLUGIN(kind, .id = "example.my_generator", .version = "1.0", .doc = "Brick walls.", .licence = "BSD-3-Clause");

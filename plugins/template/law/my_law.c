@@ -18,13 +18,12 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM(TL_PARAM_REAL, params, peak, "deg", "angle of friction before slip",
-             .alias = "friction", .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0,
-             .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, peak, "deg", "angle of friction before slip", .alias = "friction",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, residual, "deg", "angle of friction after the whole distance",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, distance, "m", "slip over which the friction falls",
-             .flags = TL_PARAM_MIN_OPEN, .def = {0.01}, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, distance, "m", "slip over which the friction falls", .flags = TL_PARAM_MIN_OPEN,
+             .def = {0.01}, .min = 0, .max = INFINITY),
 };
 
 /* What a contact point remembers; the host owns it, carries it over and writes it into files. */
@@ -75,8 +74,7 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
         for (int k = 0; k < 3; k++)
             batch->f_s[k][i] = trial > 0 ? f[k] * (f_s / trial) : 0;
         if (batch->stored)
-            batch->stored[i] =
-                area > 0 ? f_n * f_n / (2 * p->kn * area) + f_s * f_s / (2 * stiffness) : 0;
+            batch->stored[i] = area > 0 ? f_n * f_n / (2 * p->kn * area) + f_s * f_s / (2 * stiffness) : 0;
         if (batch->dissipated)
             batch->dissipated[i] = fmax(0, moved * (along + f_s) / 2);
     }
@@ -92,15 +90,11 @@ static void stiffness(const void *self, double *kn, double *ks)
 }
 
 /* No normal force across a gap. */
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .linear = 1,
-                               .pulls = tl_pulls_none};
+static const tl_law_ops ops = {
+    .size = sizeof ops, .update = update, .stiffness = stiffness, .linear = 1, .pulls = tl_pulls_none};
 
-static const tl_kind kind =
-    TL_KIND(TL_KIND_LAW, ops, .name = "my_law", .doc = "Coulomb friction that falls with slip.",
-            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
+static const tl_kind kind = TL_KIND(TL_KIND_LAW, ops, .name = "my_law", .doc = "Coulomb friction that falls with slip.",
+                                    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "example.my_law", .version = "1.0", .doc = "A slip-weakening joint law.",
           .licence = "BSD-3-Clause");

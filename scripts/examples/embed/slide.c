@@ -41,18 +41,17 @@ static tl_id build(tl_model *model)
                             TL_ARGS(TL_ARG_VECTOR("min", 1, 1, 1), TL_ARG_VECTOR("max", 5, 3, 2),
                                     tl_arg_number("density", 2500)),
                             NULL));
-    must(model,
-         tl_generate(model, "joint",
-                     TL_ARGS(tl_arg_text("joint", "middle"), tl_arg_number("dip", 90),
-                             tl_arg_number("dip_direction", 0), TL_ARG_VECTOR("origin", 2, 2, 1)),
-                     NULL));
+    must(model, tl_generate(model, "joint",
+                            TL_ARGS(tl_arg_text("joint", "middle"), tl_arg_number("dip", 90),
+                                    tl_arg_number("dip_direction", 0), TL_ARG_VECTOR("origin", 2, 2, 1)),
+                            NULL));
     must(model, tl_generate(model, "box",
                             TL_ARGS(TL_ARG_VECTOR("min", 0, 0, 0), TL_ARG_VECTOR("max", 20, 4, 1),
                                     tl_arg_number("density", 2500), tl_arg_text("group", "table")),
                             NULL));
-    must(model, tl_joint_law(model, "*", "coulomb",
-                             TL_ARGS(tl_arg_number("kn", 1e9), tl_arg_number("ks", 1e9),
-                                     tl_arg_number("friction", 40))));
+    must(model,
+         tl_joint_law(model, "*", "coulomb",
+                      TL_ARGS(tl_arg_number("kn", 1e9), tl_arg_number("ks", 1e9), tl_arg_number("friction", 40))));
 
     tl_block_filter filter = tl_block_filter_default();
     tl_id *ids;
@@ -123,8 +122,7 @@ int main(int argc, char **argv)
     solve.ratio = 1e-6;
     must(model, tl_model_damping(model, "local", NULL));
     must(model, tl_model_solve(model, &solve, &result));
-    printf("rests after %lld steps: %s\n", (long long)result.cycles,
-           tl_solve_reason_name(result.reason));
+    printf("rests after %lld steps: %s\n", (long long)result.cycles, tl_solve_reason_name(result.reason));
     must(model, tl_write_vtk(model, prefix, NULL));
 
     /* `law` NULL: a change of the law there is */
@@ -134,8 +132,7 @@ int main(int argc, char **argv)
     must(model, tl_model_cycle(model, 2000, &result));
     must(model, tl_write_vtk(model, prefix, NULL));
     print_contacts(model);
-    printf("acceleration %.3f m/s2, expected 1.798\n",
-           speed(model, above) / (tl_model_time(model) - t));
+    printf("acceleration %.3f m/s2, expected 1.798\n", speed(model, above) / (tl_model_time(model) - t));
     tl_model_destroy(model);
     return EXIT_SUCCESS;
 }
