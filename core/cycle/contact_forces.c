@@ -84,7 +84,7 @@ static tl_status apply(tl_model *m)
     return tl_laws_apply(m, &phase);
 }
 
-/* In order of the partner's id. */
+/* Block by block, the contacts of each in the order of the partner. */
 static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const tl_detect *d = m->detect;
