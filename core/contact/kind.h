@@ -27,8 +27,8 @@ typedef struct tl_kind_place {
     tl_facing_place (*place)(const tl_facet *facet, const tl_body_frames *frames);
     /* How many of its points have an area of their own: the first ones. */
     uint32_t (*areas)(uint32_t points);
-    /* For the time step: area, m2, as far as it counts, and second moment about a place in A's frame. With `quick` it
-     * is known at once, and the second moment is that of an area at distance `far`. */
+    /* For the time step: area, m2, as far as it counts, and its second moment about a place in A's frame, m4. `quick`:
+     * it is known at once. Of others the step first tries a bound, by their area alone. */
     tl_spread (*bounds)(const tl_model *m, uint32_t contact, tl_vec3 centre);
     bool quick;
     /* Where it presses in A's frame, and how far it is pressed in under a law of that stiffness. */

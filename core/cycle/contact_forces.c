@@ -103,7 +103,7 @@ static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 /* What acts on idle bodies stands as it is. */
 static void gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
 {
-    const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
+    const uint8_t *idle = tl_idle_bodies(m);
     for (uint32_t body = begin; body < end; body++)
         if (!idle || !idle[body])
             gather_body(m, body, &on[body - begin]);

@@ -305,6 +305,13 @@ typedef struct tl_row_value {
     uint32_t row;
 } tl_row_value;
 
+/* Bodies on which what acts stands, a flag each, or NULL: they and their contacts rest. Only contacts are known to
+ * rest. */
+static inline const uint8_t *tl_idle_bodies(const tl_model *m)
+{
+    return m->detect->any_idle && !m->cycle->contributor[1] ? m->detect->idle : NULL;
+}
+
 /* Whether a body counts for the rules: one that can move or, where none can, any. */
 static inline bool tl_body_counts(const tl_model *m, uint32_t body)
 {

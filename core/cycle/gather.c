@@ -72,7 +72,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     double gravity = tl_v3_norm(m->config.gravity);
     tl_sums sums = {.worst = TL_NO_ROW};
     tl_acting on[TL_BODY_CHUNK];
-    const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
+    const uint8_t *idle = tl_idle_bodies(m);
     gather_acting(m, (uint32_t)begin, (uint32_t)end, on);
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (idle && idle[body])

@@ -191,7 +191,7 @@ static bool contributors_may_fail(const tl_model *m)
     return may;
 }
 
-/* Whether laws or damping may fail in any step. */
+/* Whether contributors or damping may fail in any step. */
 static bool may_fail(const tl_model *m)
 {
     const tl_sums *last = &m->cycle->sums;

@@ -10,7 +10,7 @@ static const double K = 4e5, G = 10; /* N/m, m/s2 */
 /* One spring for each body from where it was made, that stretches along z. It keeps its force in a column, as bolts would. */
 static struct springs {
     tl_table table;
-    double *force, stored;
+    double *force, stored, wound;
     int64_t fails_at; /* steps made before the one that fails; -1: none */
 } springs;
 
@@ -32,7 +32,7 @@ static tl_status apply(tl_model *m)
 {
     springs.stored = 0;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        springs.force[body] = -K * stretch_of(m, body);
+        springs.force[body] = springs.wound - K * stretch_of(m, body);
         springs.stored += 0.5 * K * stretch_of(m, body) * stretch_of(m, body);
     }
     return m->cycles == springs.fails_at ? tl_fail(&m->error, TL_E_PLUGIN, "a spring broke") : TL_OK;
@@ -93,6 +93,7 @@ static const tl_contributor springs_act = {.name = "springs",
 static tl_model *hanging(void)
 {
     springs.fails_at = -1;
+    springs.wound = 0;
     tl_model *m = scene_model(1);
     CHECK_INT(tl_model_set_gravity(m, tl_v3(0, 0, -G)), TL_OK);
     scene_box(m, tl_v3(-0.5, -0.5, -0.5), tl_v3(0.5, 0.5, 0.5));
@@ -181,6 +182,22 @@ TEST(a_step_that_it_fails_is_undone)
     CHECK_TEXT(hash[1], hash[0]);
 }
 
+/* What acts on a body that is held, and whose contacts rest, follows a spring that is wound up. */
+TEST(a_held_body_feels_it)
+{
+    tl_model *m = hanging();
+    scene_box(m, tl_v3(-0.5, -0.5, -1.5), tl_v3(0.5, 0.5, -0.5));
+    scene_ok(m, tl_blocks_fix(m, (const tl_id[]){1, 2}, 2, TL_FIX_ALL));
+    for (int k = 0; k < 40; k++) {
+        springs.wound = 100 * k;
+        run(m, 1);
+        CHECK_NEAR(tl_reaction_on(m->cycle, 0).force.z - tl_reaction_on(m->cycle, 1).force.z, 0, 1e-9);
+        CHECK_NEAR(tl_reaction_on(m->cycle, 0).force.z, 100 * k, 1e-9);
+    }
+    CHECK(m->detect->any_idle);
+    tl_model_destroy(m);
+}
+
 /* The memory of the springs outlives the models. */
 TEST(springs_end)
 {
@@ -188,4 +205,4 @@ TEST(springs_end)
 }
 
 TEST_MAIN(RUN(a_cube_swings_on_it_and_makes_no_energy), RUN(a_cube_comes_to_rest_on_it),
-          RUN(a_step_that_it_fails_is_undone), RUN(springs_end))
+          RUN(a_step_that_it_fails_is_undone), RUN(a_held_body_feels_it), RUN(springs_end))

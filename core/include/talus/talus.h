@@ -535,8 +535,10 @@ TL_API tl_status tl_blocks_drive(tl_model *model, const tl_id *ids, size_t count
       "and laws, J")                                                                                                   \
     X(balance, "", "error of the sum over the largest change of a term so far")
 
-/* Energy of the bodies that are free to move, J, all at one time and counted from the first step: the terms of
- * TL_ENERGY, which are numbers. */
+/* Energy of the bodies that are free to move, J, all at one time and counted from the first step. Its members are
+ * numbers, the terms of TL_ENERGY. What is held: kinetic, potential (minus the work of gravity) and stored (in all
+ * contacts). What has gone: friction (heat of slip) and damping. What has come: external, work of loads, of driven
+ * bodies and of edits. The last, balance, is the error of their sum over the largest change of a term so far. */
 typedef struct tl_energy {
 #define TL_ENERGY_TERM(name, unit, doc) double name;
     TL_ENERGY(TL_ENERGY_TERM)
