@@ -3,7 +3,8 @@
  * The loops of a step follow each other within microseconds, so none may cost a system call. Threads that wait spin
  * for a while, and sleep only when nothing has come by then. Whoever has something for a sleeper wakes it.
  *
- * Each thread has its part of the chunks, the same part of every loop. So what it works on stays in its cache. When it is through it takes what others have left. A chunk is taken by counting down a ticket,
+ * Each thread has its part of the chunks, the same part of every loop. So what it works on stays in its cache. When
+ * it is through it takes what others have left. A chunk is taken by counting down a ticket,
  * which holds the number of the loop, too. A thread may come late, from a loop that is over. It finds nothing on the
  * ticket, or takes a chunk of the new loop, never one of the old. So a loop ends as soon as its chunks are done,
  * whether or not all threads have seen it. Where there are more threads than processors, nobody waits for one that

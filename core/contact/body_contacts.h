@@ -3,7 +3,7 @@
  *
  *     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
  *         area += c->area[at.contact];
- * / */
+ */
 #ifndef TL_CONTACT_BODY_CONTACTS_H
 #define TL_CONTACT_BODY_CONTACTS_H
 

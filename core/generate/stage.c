@@ -22,7 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON). And centres of balls are
+/* Tolerance: A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON). And centres
+ * of balls are
  * known to some roundings of the coordinates. */
 #define BALL_MARGIN (2 * TL_POLY_ON)
 #define BALL_ROUNDINGS (32 * DBL_EPSILON)
@@ -402,7 +403,8 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
 
 /* ---------------------------------------------------------------- new blocks -------------- */
 
-/* Tolerance: the origin is rounded to a power of two of at least this many sizes of the first block. So models near zero keep the
+/* Tolerance: the origin is rounded to a power of two of at least this many sizes of the first block. So models near
+ * zero keep the
  * origin zero, and subtracting it from coordinates is exact. */
 #define ORIGIN_SIZES 8.0
 

@@ -14,7 +14,8 @@
  * and not TL_POLY_ON times its size, is the least distance that means anything. */
 #define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
-/* Tolerance: depths below this times the thickness of a block change nothing of it. Faces may be bent, and points be left out
+/* Tolerance: depths below this times the thickness of a block change nothing of it. Faces may be bent, and points be
+ * left out
  * inside, by no more. */
 #define TL_POLY_SHALLOW 1e-2
 

@@ -15,7 +15,8 @@
 #include <talus/kit.h>
 #include <talus/vmath.h>
 
-/* Tolerance: share of the largest displacement from which a block is one of those that move. Displacement over the median size
+/* Tolerance: share of the largest displacement from which a block is one of those that move. Displacement over the
+ * median size
  * of blocks below which nothing is seen. */
 #define LEAST_SHARE 0.05
 #define LEAST_SEEN 1e-3

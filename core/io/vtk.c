@@ -61,7 +61,8 @@ typedef struct tl_vtk_index_change {
 static const char before_entry[] = ",\n";
 static const char tail[] = "\n  ]\n}\n";
 
-/* Tolerance: frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to tell them
+/* Tolerance: frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to
+ * tell them
  * apart. */
 #define STAGE 1e-9
 

@@ -27,9 +27,11 @@
  *            normal_stress, shear_stress   Pa      normal_force   N, compression positive
  *            shear_force         N, vector, on block_b
  *            shear_displacement  m, vector: of block_b against block_id since creation or the last reset
- *            slip      m, the state "slip" of the contact's law, where it keeps one, else the length of shear_displacement
+ *            slip      m, the state "slip" of the contact's law, where it keeps one, else the length of
+ *                      shear_displacement
  *            area      m2 of the contact, of the face where there is none
- *            and each state of the laws by its name, one called as an array above with law_ in front; NaN where there is none
+ *            and each state of the laws by its name, one called as an array above with law_ in front; NaN where there
+ *            is none
  * Point data displacement  m, that of block_id, as in the file of the blocks
  *
  * Without contact, stresses, forces and slip are 0. */

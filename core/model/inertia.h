@@ -13,7 +13,8 @@ static inline tl_sym3 tl_inertia_about(tl_sym3 inertia, double mass, tl_vec3 d)
                      inertia.yz - mass * d.y * d.z,        inertia.zx - mass * d.z * d.x};
 }
 
-/* The solution of a tensor with the columns x, y, z and the right side b, by Cramer's rule; not finite where it is singular. */
+/* The solution of a tensor with the columns x, y, z and the right side b, by Cramer's rule; not finite where it is
+ * singular. */
 static inline tl_vec3 tl_solve3(tl_vec3 x, tl_vec3 y, tl_vec3 z, tl_vec3 b)
 {
     double det = tl_v3_dot(x, tl_v3_cross(y, z));

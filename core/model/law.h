@@ -32,7 +32,8 @@ static inline bool tl_law_presses(const tl_law *law)
     return !tl_law_is_linear(law) && ((const tl_law_ops *)law->kind->ops)->pressed;
 }
 
-/* Whether its shear springs may hold more than f^2 / (2 ks area): it keeps an energy of its own, or a stress beside the force. */
+/* Whether its shear springs may hold more than f^2 / (2 ks area): it keeps an energy of its own, or a stress beside
+ * the force. */
 static inline bool tl_law_has_own_shear(const tl_law *law)
 {
     return law->energy != TL_NO_ROW || law->tangents;

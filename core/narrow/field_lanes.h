@@ -54,7 +54,8 @@ typedef struct tl_field_plane {
 /* Tolerance: length of n_a - n_b below which two directions are the same: such faces have no surface between them. */
 #define TL_FIELD_ALIKE 1e-7
 
-/* Tolerance: slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels in thin
+/* Tolerance: slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels
+ * in thin
  * slivers. */
 #define TL_FIELD_STEEP 0.1
 

@@ -31,14 +31,16 @@
 
 #define LANES TL_LANES
 
-/* Cost only: determinant of a corner's three equations, with normals of length 1 and their differences, below which its place is
+/* Cost only: determinant of a corner's three equations, with normals of length 1 and their differences, below which
+ * its place is
  * lost in roundings. */
 #define SHARP 1e-5
 
 /* Tolerance: roundings of the largest offset by which a corner may seem to lie outside. */
 #define SLACK (4 * TL_FIELD_ONE_PLANE)
 
-/* Tolerance: most by which that grows where planes meet at small angles: corners of a block need it, where more than three do. */
+/* Tolerance: most by which that grows where planes meet at small angles: corners of a block need it, where more than
+ * three do. */
 #define MOST_BLURRED 1e3
 
 /* ---------------------------------------------------------------- corners ---------------- */

@@ -5,7 +5,8 @@
 #include "base/inline.h"
 #include "geometry/polyhedron.h"
 
-/* Tolerance: tilt of two faces, as a sine, up to which their patch is all there is, and from which on the field is all. They are
+/* Tolerance: tilt of two faces, as a sine, up to which their patch is all there is, and from which on the field is
+ * all. They are
  * 0.05 and 0.15 degrees. Joints of a rock mass under load stay below, at some 1e-5. */
 #define TL_FLUSH_TILT 8.7266e-4
 #define TL_FIELD_TILT 2.6180e-3
@@ -19,7 +20,8 @@
 #define TL_CORNERS_FIELD_TILT 0.1736
 #define TL_CORNERS_DEPTH 0.1
 #define TL_CORNERS_FIELD_DEPTH 0.2
-/* Tolerance: of these, the tilt and the overlap up to which such a patch has points. Beyond, it counts how the corners and their
+/* Tolerance: of these, the tilt and the overlap up to which such a patch has points. Beyond, it counts how the
+ * corners and their
  * areas go in a tilt and over an edge, and all is done by the press (corner_sums.c). The points' forces are off by
  * about the tilt, and by the overlap. */
 #define TL_CORNERS_POINTS_TILT 2e-4

@@ -142,7 +142,8 @@ static void list_planes(press_planes *p, const tl_press_query *of, uint32_t a, u
  * its area. Where the patch has not nearly the energy of the field, other faces press. Beside a seam it may be a
  * sliver of next to nothing. */
 
-/* Tolerance: energy of the patch over that of the field up to which there is no patch, and from which on there is all of it.
+/* Tolerance: energy of the patch over that of the field up to which there is no patch, and from which on there is all
+ * of it.
  * Patches have nearly that of their field, or more where springs are at corners. */
 #define SLIVER 0.1
 #define WHOLE 0.5

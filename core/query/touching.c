@@ -23,7 +23,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: gap up to which blocks touch, and overlap up to which they still do, over the smaller one's size. Angle between
+/* Tolerance: gap up to which blocks touch, and overlap up to which they still do, over the smaller one's size. Angle
+ * between
  * faces that lie on each other, as a sine. Test: lua/test_keyblocks. */
 #define GAP (TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE)
 #define OVERLAP 0.1

@@ -19,8 +19,8 @@ typedef struct tl_touches {
     tl_touch *at;
     size_t *start;
     size_t count, capacity;
-    uint8_t *
-        left; /* [rows] 1: the block touched another when it was made, has moved against it by more, and no longer does */
+    /* [rows] 1: the block touched another when it was made, has moved against it by more, and no longer does */
+    uint8_t *left;
 } tl_touches;
 
 /* Tolerance: motion up to which blocks touch as they did when they were made, over its size. Test: lua/test_keyblocks,
@@ -38,7 +38,8 @@ bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t bod
 /* Outward unit normal of a touch, axes of the model: as the block lay when it was made, or as it lies now. */
 tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now);
 
-/* Tolerance: cosine within which a direction lies in a face, sine within which two faces are parallel: far above rounding of
+/* Tolerance: cosine within which a direction lies in a face, sine within which two faces are parallel: far above
+ * rounding of
  * what was cut. */
 #define TL_TOUCH_ALONG 1e-6
 

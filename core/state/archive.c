@@ -1,9 +1,10 @@
 /* archive.c - a file of named chunks, each compressed and with a checksum.
  *
- *     file    magic, format, byte order, then chunks; the last is "end", whose data is the sum of all checksums before it
+ *     file    magic, format, byte order, then chunks; the last is "end", whose data is the sum of all checksums
+ *             before it
  *     chunk   head of 48 bytes, name, data
- *     head    bytes of the name (4), 1 if the data is compressed (4), bytes of an item, items, bytes of the data as stored,
- *             XXH64 of name and stored data, XXH64 of the 40 bytes before
+ *     head    bytes of the name (4), 1 if the data is compressed (4), bytes of an item, items, bytes of the data
+ *             as stored, XXH64 of name and stored data, XXH64 of the 40 bytes before
  *
  * Numbers are as the machine has them; a file of another byte order is refused. Data is compressed with zstd where
  * that makes it shorter. A file that was cut off lacks its end. */
