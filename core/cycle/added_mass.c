@@ -38,20 +38,21 @@ static struct tl_added needed(const tl_model *m, double limit)
 {
     const tl_bodies *b = &m->bodies;
     struct tl_added out = {.factor = 1, .worst = TL_NO_ROW};
-    double all = 0, more = 0;
+    tl_addends all = {.count = 0}, more = {.count = 0};
     for (uint32_t body = 0; body < b->table.rows; body++) {
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
         double factor = factor_of(m, body, limit);
-        all += b->mass[body];
-        more += (factor - 1) * b->mass[body];
+        tl_addends_put(&all, b->mass[body]);
+        tl_addends_put(&more, (factor - 1) * b->mass[body]);
         out.bodies += factor > 1;
         if (factor > out.factor) {
             out.factor = factor;
             out.worst = body;
         }
     }
-    out.share = all > 0 ? more / all : 0;
+    const double mass = tl_addends_sum(&all);
+    out.share = mass > 0 ? tl_addends_sum(&more) / mass : 0;
     return out;
 }
 

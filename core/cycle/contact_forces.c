@@ -10,15 +10,9 @@
 #include "force/joint_laws.h"
 #include "force/laws.h"
 
-/* ---------------------------------------------------------------- forces ----------------- */
+#include <string.h>
 
-static tl_status prepare(tl_model *m)
-{
-    struct tl_cycle *c = m->cycle;
-    bool enough =
-        tl_grow(&c->group_energy, &c->group_capacity, m->detect->layout.group_capacity, sizeof *c->group_energy);
-    return enough ? TL_OK : tl_fail_memory(&m->error);
-}
+/* ---------------------------------------------------------------- forces ----------------- */
 
 /* Of the points of some SIMD groups that follow each other, and of their contacts, rows that follow each other at once:
  * what a failure puts back. */
@@ -78,10 +72,42 @@ static bool may_fail(const tl_model *m)
     return !sure;
 }
 
+/* Contacts without points store nothing, whatever their row says. */
+TL_VECTORIZED static void list_stored(const tl_contacts *c, size_t begin, size_t end, double *restrict stored)
+{
+    const double *restrict known = c->stored;
+    const uint16_t *restrict points = c->point_capacity;
+    for (size_t i = begin; i < end; i++) {
+        const double all = known[i];
+        stored[i - begin] = points[i] > 0 ? all : 0;
+    }
+}
+
+static void sum_stored(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    const tl_model *m = user;
+    double stored[TL_CONTACT_CHUNK];
+    list_stored(&m->detect->contacts, begin, end, stored);
+    tl_exact_add(&m->cycle->stored[thread], stored, end - begin);
+}
+
+/* Energies are summed at once: a split gives contacts others later in the step. Contacts that rest store what they
+ * did, and make no heat. */
 static tl_status apply(tl_model *m)
 {
-    const tl_law_phase phase = {&m->cycle->failure, m->cycle->group_energy, keep_groups};
-    return tl_laws_apply(m, &phase);
+    struct tl_cycle *c = m->cycle;
+    const unsigned threads = tl_pool_threads(m->pool);
+    const tl_law_phase phase = {&c->failure, c->heat, keep_groups};
+    memset(c->heat, 0, threads * sizeof *c->heat);
+    memset(c->stored, 0, threads * sizeof *c->stored);
+    tl_status status = tl_laws_apply(m, &phase);
+    tl_parallel_for(m->pool, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, sum_stored, m);
+    for (unsigned t = 1; t < threads; t++) {
+        tl_exact_merge(&c->stored[0], &c->stored[t]);
+        tl_exact_merge(&c->heat[0], &c->heat[t]);
+    }
+    return status;
 }
 
 /* Block by block, the contacts of each in the order of the partner. */
@@ -109,19 +135,13 @@ static void gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *o
             gather_body(m, body, &on[body - begin]);
 }
 
-/* Elastic energy and slip, in the order of the SIMD groups. */
+/* Elastic energy and slip. */
 static tl_energies energies(tl_model *m)
 {
-    const tl_layout *layout = &m->detect->layout;
-    tl_energies sum = {m->cycle->split_stored, m->detect->parted};
+    const struct tl_cycle *c = m->cycle;
+    tl_energies sum = {c->split_stored + tl_exact_value(&c->stored[0]),
+                       m->detect->parted + tl_exact_value(&c->heat[0])};
     m->detect->parted = 0;
-    for (size_t k = 0; k < layout->span_count; k++) {
-        const tl_span *span = &layout->spans[k];
-        for (size_t r = span->group_begin; r < span->group_end && span->law != TL_NO_ROW; r++) {
-            sum.stored += m->cycle->group_energy[r].stored;
-            sum.heat += m->cycle->group_energy[r].dissipated;
-        }
-    }
     return sum;
 }
 
@@ -229,7 +249,6 @@ static double approach(const tl_model *m, uint32_t body)
 }
 
 const tl_contributor tl_contacts_act = {.name = "contacts",
-                                        .prepare = prepare,
                                         .apply = apply,
                                         .gather = gather,
                                         .stiffness = stiffness,

@@ -2,6 +2,7 @@
 #ifndef TL_CYCLE_CYCLE_DATA_H
 #define TL_CYCLE_CYCLE_DATA_H
 
+#include "base/exact.h"
 #include "base/inline.h"
 #include "base/inside.h"
 #include "base/lanes.h"
@@ -20,7 +21,7 @@
 /* Bytes of the name of a term of energy, with its end. */
 #define TL_TERM_NAME 16
 
-/* Sums over the free bodies, made per chunk and added in chunk order. */
+/* Sums over the free bodies. */
 typedef struct tl_sums {
     double unbalanced;    /* sum of |unbalanced force| */
     double turning;       /* sum of |unbalanced moment| over the body's radius */
@@ -30,11 +31,19 @@ typedef struct tl_sums {
     double worst_ratio;   /* the same of |unbalanced force| and |unbalanced moment| over its radius */
     uint32_t worst;       /* the body that has it; TL_NO_ROW: none */
     size_t bodies;        /* that are free */
-    double weight;
-    double kinetic;    /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
-    double power;      /* sum of F.v + M.w, F and M unbalanced; made for the same */
-    double max_speed2; /* largest v.v */
+    double kinetic;       /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
+    double power;         /* sum of F.v + M.w, F and M unbalanced; made for the same */
+    double max_speed2;    /* largest v.v */
 } tl_sums;
+
+/* What a thread has gathered of them: exact sums, and the largest of each. */
+enum { TL_SUM_UNBALANCED, TL_SUM_TURNING, TL_SUM_CONTACT_FORCE, TL_SUM_KINETIC, TL_SUM_POWER, TL_SUM_COUNT };
+typedef struct tl_gathered {
+    _Alignas(TL_ALIGN) tl_exact sum[TL_SUM_COUNT];
+    double largest, local, worst_ratio, max_speed2;
+    uint32_t worst;
+    size_t bodies;
+} tl_gathered;
 
 /* Cached for the rules of the time step: the lightest mass of the bodies that count and, with the column face_rate of
  * the bodies, what each asks on its largest face. Valid for one `version` of the bodies. */
@@ -91,22 +100,31 @@ typedef struct tl_body_group {
     unsigned count;
 } tl_body_group;
 
-/* Energies of a chunk of bodies, summed lane by lane, lanes last. */
-typedef enum tl_work_kind { TL_WORK_GRAVITY, TL_WORK_DAMPING, TL_WORK_EXTERNAL, TL_WORK_COUNT } tl_work_kind;
+/* What the ledger books of each body. What is always booked comes first, and what only the first step books last. */
+typedef enum tl_work_kind { TL_WORK_GRAVITY, TL_WORK_EXTERNAL, TL_WORK_DAMPING, TL_WORK_COUNT } tl_work_kind;
+enum {
+    TL_BOOK_KINETIC,
+    TL_BOOK_MOTION0, /* kinetic energy before the kick, and after it */
+    TL_BOOK_MOTION2,
+    TL_BOOK_WORK, /* of each kind: until now, and in the half step that follows */
+    TL_BOOK_EXTERNAL = TL_BOOK_WORK + 2 * TL_WORK_EXTERNAL,
+    TL_BOOK_DAMPING = TL_BOOK_WORK + 2 * TL_WORK_DAMPING,
+    TL_BOOK_FIRST = TL_BOOK_WORK + 2 * TL_WORK_COUNT, /* by which the scheme's sum is less in the first step */
+    TL_BOOK_COUNT
+};
+/* Of a chunk of bodies, group by group. */
 typedef struct tl_work {
-    _Alignas(TL_ALIGN) double kinetic[TL_LANES];
-    double first[TL_LANES];                      /* by which the scheme's sum is less in the first step */
-    double motion0[TL_LANES], motion2[TL_LANES]; /* kinetic before the kick and after it */
-    double work_until[TL_WORK_COUNT][TL_LANES];  /* work of this step's forces until now */
-    double work_after[TL_WORK_COUNT][TL_LANES];  /* and in the half step that follows */
-    double until, after;                         /* half of the step before and of the one after */
+    _Alignas(TL_ALIGN) double book[TL_BOOK_COUNT][TL_BODY_CHUNK];
+    double held[2][TL_BODY_CHUNK]; /* external work on those held in every component */
+    size_t held_count;
+    bool external;       /* there may be external work on others */
+    double until, after; /* half of the step before and of the one after */
 } tl_work;
 
-/* The same of a chunk, or of all bodies. */
-typedef struct tl_work_sums {
-    double kinetic, first, motion0, motion2;
-    double until[TL_WORK_COUNT], after[TL_WORK_COUNT];
-} tl_work_sums;
+/* What a thread has booked: exact sums. */
+typedef struct tl_booked {
+    _Alignas(TL_ALIGN) tl_exact sum[TL_BOOK_COUNT];
+} tl_booked;
 
 /* What a contributor stores now, and what it has turned to heat until now, J. */
 typedef struct tl_energy_term {
@@ -151,13 +169,12 @@ struct tl_cycle {
     tl_reaction *reaction;
     size_t reaction_capacity;
     uint64_t reactions_for; /* version of the bodies; 0: none */
-    tl_sums *chunk_sums;
-    size_t chunk_capacity;
+    /* of each thread */
+    tl_gathered *gathered;
+    tl_booked *booked;
+    tl_exact *heat, *stored; /* of contacts, in this step */
+    size_t gathered_capacity, booked_capacity, heat_capacity, stored_capacity;
     tl_sums sums;
-    tl_group_energy *group_energy; /* of each SIMD group of contacts */
-    size_t group_capacity;
-    tl_work_sums *chunk_work;
-    size_t chunk_work_capacity;
     tl_ledger ledger;
     double kinetic_before;                     /* of the last step, for its rate */
     double dt;                                 /* the step in use */

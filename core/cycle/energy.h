@@ -13,10 +13,13 @@ typedef struct tl_overlap_push {
     double gave, others;
 } tl_overlap_push;
 bool tl_energy_pushed(const tl_model *m, tl_overlap_push *by);
-/* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
-void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work);
+/* The energy ledger: the move books what its bodies have and what is done to them, ... */
+void tl_energy_begin(tl_model *m);
+/* ... from number `first` of a chunk on, ... */
+void tl_energy_book(const tl_model *m, const tl_body_group *g, size_t first, tl_work *work);
 void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned, tl_work *work);
-void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work);
+/* ... adds up the first `count` numbers of the chunk, ... */
+void tl_energy_chunk(tl_model *m, unsigned thread, const tl_work *work, size_t count);
 /* ... and the step closes it. */
 void tl_energy_close(tl_model *m);
 

@@ -39,59 +39,80 @@ static void gather_body(tl_model *m, uint32_t body, const tl_acting *on)
     m->cycle->contact_force[body] = on->magnitude;
 }
 
+/* Numbers of the bodies of a chunk; zeros of those that are held or idle. */
+typedef struct addends {
+    _Alignas(TL_ALIGN) double number[TL_SUM_COUNT][TL_BODY_CHUNK];
+} addends;
+
+/* Tolerance: ratios that are rounded by less are compared whole. */
+#define NEARLY (1 - 1e-12)
+
 /* Unbalanced force and moment of a body, by themselves and over what it bears. What that is at the least is asked only
- * where the ratio may be the largest. */
-static void sum_ratios(const tl_model *m, uint32_t body, double weight, tl_sums *sums)
+ * where the ratio may be the largest. Of equal ratios that of the lowest row counts. */
+static void note_ratios(const tl_model *m, uint32_t body, size_t k, double weight, addends *of, tl_gathered *all)
 {
     const tl_bodies *b = &m->bodies;
     double unbalanced = tl_v3_norm(b->force[body]);
     double turning = tl_v3_norm(b->moment[body]) / b->radius[body];
     double contact = m->cycle->contact_force[body];
     double bears = tl_borne(m, body, weight), worse = tl_larger(unbalanced, turning);
-    sums->unbalanced += unbalanced;
-    sums->turning += turning;
-    sums->contact_force += contact;
-    sums->largest = tl_larger(sums->largest, unbalanced);
-    if (!(worse > sums->local * bears))
+    of->number[TL_SUM_UNBALANCED][k] = unbalanced;
+    of->number[TL_SUM_TURNING][k] = turning;
+    of->number[TL_SUM_CONTACT_FORCE][k] = contact;
+    all->largest = tl_larger(all->largest, unbalanced);
+    if (!(worse > NEARLY * all->local * bears))
         return;
     bears = tl_larger(bears, tl_least_borne(m, body));
     double ratio = bears > 0 ? worse / bears : 1; /* nothing holds what turns it */
-    sums->local = tl_larger(sums->local, bears > 0 ? unbalanced / bears : 0);
-    if (ratio > sums->worst_ratio) {
-        sums->worst_ratio = ratio;
-        sums->worst = body;
+    all->local = tl_larger(all->local, bears > 0 ? unbalanced / bears : 0);
+    if (ratio > all->worst_ratio || (ratio == all->worst_ratio && body < all->worst)) {
+        all->worst_ratio = ratio;
+        all->worst = body;
     }
+}
+
+/* Kinetic energy and power, for a damping that asks for totals. */
+static void note_totals(const tl_model *m, uint32_t body, size_t k, double v2, addends *of)
+{
+    const tl_bodies *b = &m->bodies;
+    of->number[TL_SUM_KINETIC][k] =
+        0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * v2 + tl_spin_energy2(m, body));
+    of->number[TL_SUM_POWER][k] = tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
 }
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    (void)thread;
+    (void)chunk;
     tl_model *m = user;
     tl_bodies *b = &m->bodies;
-    bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin;
+    tl_gathered *all = &m->cycle->gathered[thread];
+    bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin, any = false;
     double gravity = tl_v3_norm(m->config.gravity);
-    tl_sums sums = {.worst = TL_NO_ROW};
     tl_acting on[TL_BODY_CHUNK];
+    addends of;
+    const size_t sums = totals ? TL_SUM_COUNT : TL_SUM_KINETIC;
     const uint8_t *idle = tl_idle_bodies(m);
     gather_acting(m, (uint32_t)begin, (uint32_t)end, on);
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        if (idle && idle[body])
+        const size_t k = body - begin;
+        bool is_idle = idle && idle[body];
+        if (!is_idle)
+            gather_body(m, body, &on[k]);
+        if (is_idle || b->fixed[body] == TL_FIX_ALL) {
+            for (size_t i = 0; i < sums; i++)
+                of.number[i][k] = 0;
             continue;
-        gather_body(m, body, &on[body - begin]);
-        if (b->fixed[body] == TL_FIX_ALL)
-            continue;
-        double v2 = tl_v3_norm2(b->v[body]);
-        double weight = tl_weight_of(b, body, gravity);
-        sums.weight += weight;
-        sum_ratios(m, body, weight, &sums);
-        sums.bodies++;
-        if (totals) {
-            sums.kinetic += 0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * v2 + tl_spin_energy2(m, body));
-            sums.power += tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
         }
-        sums.max_speed2 = tl_larger(sums.max_speed2, v2);
+        double v2 = tl_v3_norm2(b->v[body]);
+        note_ratios(m, body, k, tl_weight_of(b, body, gravity), &of, all);
+        if (totals)
+            note_totals(m, body, k, v2, &of);
+        all->max_speed2 = tl_larger(all->max_speed2, v2);
+        all->bodies++;
+        any = true;
     }
-    m->cycle->chunk_sums[chunk] = sums;
+    if (any)
+        tl_exact_add_each(all->sum, sums, of.number[0], TL_BODY_CHUNK, end - begin);
 }
 
 bool tl_gather_prepare(tl_model *m)
@@ -109,27 +130,40 @@ bool tl_gather_prepare(tl_model *m)
     return true;
 }
 
+/* Adds what one thread has gathered to what another has. */
+static void merge(tl_gathered *to, const tl_gathered *from)
+{
+    for (size_t i = 0; i < TL_SUM_COUNT; i++)
+        tl_exact_merge(&to->sum[i], &from->sum[i]);
+    to->largest = tl_larger(to->largest, from->largest);
+    to->local = tl_larger(to->local, from->local);
+    to->max_speed2 = tl_larger(to->max_speed2, from->max_speed2);
+    to->bodies += from->bodies;
+    if (from->worst_ratio > to->worst_ratio || (from->worst_ratio == to->worst_ratio && from->worst < to->worst)) {
+        to->worst_ratio = from->worst_ratio;
+        to->worst = from->worst;
+    }
+}
+
 void tl_gather(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    size_t bodies = m->bodies.table.rows;
-    tl_parallel_for(m->pool, bodies, TL_BODY_CHUNK, gather_range, m);
-    c->sums = (tl_sums){.worst = TL_NO_ROW};
-    for (size_t chunk = 0; chunk * TL_BODY_CHUNK < bodies; chunk++) {
-        const tl_sums *s = &c->chunk_sums[chunk];
-        c->sums.unbalanced += s->unbalanced;
-        c->sums.turning += s->turning;
-        c->sums.contact_force += s->contact_force;
-        c->sums.weight += s->weight;
-        c->sums.largest = tl_larger(c->sums.largest, s->largest);
-        c->sums.local = tl_larger(c->sums.local, s->local);
-        if (s->worst_ratio > c->sums.worst_ratio) {
-            c->sums.worst_ratio = s->worst_ratio;
-            c->sums.worst = s->worst;
-        }
-        c->sums.bodies += s->bodies;
-        c->sums.kinetic += s->kinetic;
-        c->sums.power += s->power;
-        c->sums.max_speed2 = tl_larger(c->sums.max_speed2, s->max_speed2);
-    }
+    const unsigned threads = tl_pool_threads(m->pool);
+    tl_gathered *all = &c->gathered[0];
+    for (unsigned t = 0; t < threads; t++)
+        c->gathered[t] = (tl_gathered){.worst = TL_NO_ROW};
+    tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, gather_range, m);
+    for (unsigned t = 1; t < threads; t++)
+        merge(all, &c->gathered[t]);
+    c->sums = (tl_sums){.unbalanced = tl_exact_value(&all->sum[TL_SUM_UNBALANCED]),
+                        .turning = tl_exact_value(&all->sum[TL_SUM_TURNING]),
+                        .contact_force = tl_exact_value(&all->sum[TL_SUM_CONTACT_FORCE]),
+                        .kinetic = tl_exact_value(&all->sum[TL_SUM_KINETIC]),
+                        .power = tl_exact_value(&all->sum[TL_SUM_POWER]),
+                        .largest = all->largest,
+                        .local = all->local,
+                        .worst_ratio = all->worst_ratio,
+                        .worst = all->worst,
+                        .max_speed2 = all->max_speed2,
+                        .bodies = all->bodies};
 }

@@ -327,9 +327,11 @@ static void check_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     tl_speed_bounds bounds = job->bounds[thread];
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         bool held = m->bodies.fixed[body] == TL_FIX_ALL;
-        if (!held && !job->held && m->bodies.load && too_far(m, body, load_travel(m, body, &job->span) / TL_FAST))
+        if (held != job->held)
+            continue;
+        if (!held && m->bodies.load && too_far(m, body, load_travel(m, body, &job->span) / TL_FAST))
             atomic_store(&job->fast, true);
-        if (held != job->held || (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->span, &bounds)))
+        if (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->span, &bounds))
             continue;
         const velocities at = kicked(m, body, &job->span);
         const double r = m->bodies.radius[body], w2 = tl_v3_norm2(at.w);

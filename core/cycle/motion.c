@@ -353,10 +353,14 @@ static void carry_body(const move_job *job, uint32_t body, tl_work *work)
 
 static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    (void)thread;
+    (void)chunk;
     const move_job *job = user;
     tl_model *m = job->m;
-    tl_work work = {.until = 0.5 * m->dt, .after = 0.5 * job->drift};
+    tl_work work;
+    work.until = 0.5 * m->dt;
+    work.after = 0.5 * job->drift;
+    work.held_count = 0;
+    work.external = false;
     tl_body_group groups[TL_BODY_CHUNK / TL_LANES];
     size_t free = 0;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
@@ -376,14 +380,15 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     advance_lanes(groups, count, job->kick, job->drift);
     for (size_t k = 0; k < count; k++) {
         mend_lanes(&groups[k], job);
-        tl_energy_book(m, &groups[k], &work);
+        tl_energy_book(m, &groups[k], k * TL_LANES, &work);
         store_group(&groups[k], job);
     }
-    tl_energy_chunk(m, chunk, &work);
+    tl_energy_chunk(m, thread, &work, count * TL_LANES);
 }
 
 void tl_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
+    tl_energy_begin(m);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, move_range, &job);
 }

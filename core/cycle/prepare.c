@@ -17,9 +17,10 @@ static void cycle_destroy(struct tl_cycle *cycle)
     free(cycle->reaction);
     free(cycle->motion);
     free(cycle->swept);
-    free(cycle->chunk_sums);
-    free(cycle->group_energy);
-    free(cycle->chunk_work);
+    free(cycle->gathered);
+    free(cycle->booked);
+    free(cycle->heat);
+    free(cycle->stored);
     tl_undo_free(cycle->undo);
     tl_split_free(cycle);
     free(cycle);
@@ -53,11 +54,13 @@ tl_status tl_cycle_prepare(tl_model *m)
         tl_contributors_begin(m->cycle);
     }
     struct tl_cycle *c = m->cycle;
-    size_t bodies = m->bodies.table.rows, chunks = bodies / TL_BODY_CHUNK + 1;
+    size_t bodies = m->bodies.table.rows, threads = tl_pool_threads(m->pool);
     /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */
     size_t rows = (bodies + TL_LANES - 1) / TL_LANES * TL_LANES;
-    bool enough = tl_fit(&c->chunk_sums, &c->chunk_capacity, chunks, sizeof *c->chunk_sums) &&
-                  tl_fit(&c->chunk_work, &c->chunk_work_capacity, chunks, sizeof *c->chunk_work) &&
+    bool enough = tl_fit(&c->gathered, &c->gathered_capacity, threads, sizeof *c->gathered) &&
+                  tl_fit(&c->booked, &c->booked_capacity, threads, sizeof *c->booked) &&
+                  tl_fit(&c->heat, &c->heat_capacity, threads, sizeof *c->heat) &&
+                  tl_fit(&c->stored, &c->stored_capacity, threads, sizeof *c->stored) &&
                   tl_table_resize(&c->table, rows);
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }

@@ -33,10 +33,23 @@ double tl_least_borne(const tl_model *m, uint32_t body)
     return ROUNDED_OVERLAP * m->bodies.radius[body] * tl_body_stiffness(m, body);
 }
 
-/* A sum over the bodies, over that of their contact forces or, without any, their weight. */
-static double ratio_of(const tl_sums *s, double sum)
+/* Weight and loads of the bodies that can move. */
+static double weight_of_all(const tl_model *m)
 {
-    double against = s->contact_force > 0 ? s->contact_force : s->weight;
+    const tl_bodies *b = &m->bodies;
+    const double gravity = tl_v3_norm(m->config.gravity);
+    tl_addends weight = {.count = 0};
+    for (size_t body = 0; body < b->table.rows; body++)
+        if (b->fixed[body] != TL_FIX_ALL)
+            tl_addends_put(&weight, tl_weight_of(b, (uint32_t)body, gravity));
+    return tl_addends_sum(&weight);
+}
+
+/* A sum over the bodies, over that of their contact forces or, without any, their weight. */
+static double ratio_of(const tl_model *m, double sum)
+{
+    const double contact = m->cycle->sums.contact_force;
+    const double against = contact > 0 ? contact : weight_of_all(m);
     return against > 0 ? sum / against : 0;
 }
 
@@ -45,7 +58,7 @@ double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
     const tl_sums *s = &m->cycle->sums;
     if (measure == TL_RATIO_LOCAL)
         return s->local;
-    return ratio_of(s, measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced);
+    return ratio_of(m, measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced);
 }
 
 static double kinetic_energy(const tl_model *m, uint32_t body)
@@ -94,9 +107,10 @@ static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsig
  * in equilibrium. */
 static bool all_rest(tl_model *m, double ratio)
 {
-    double mass = 0;
+    tl_addends free = {.count = 0};
     for (size_t body = 0; body < m->bodies.table.rows; body++)
-        mass += m->bodies.fixed[body] == TL_FIX_ALL ? 0 : m->bodies.mass[body];
+        tl_addends_put(&free, m->bodies.fixed[body] == TL_FIX_ALL ? 0 : m->bodies.mass[body]);
+    const double mass = tl_addends_sum(&free);
     tl_energy energy;
     tl_model_energy(m, &energy);
     rest_job job = {.m = m,
@@ -116,6 +130,5 @@ bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio)
     if (measure == TL_RATIO_LOCAL)
         return m->cycle->sums.worst_ratio < ratio && all_rest(m, ratio);
     /* moments, each over its body's radius: a block that spins up is not in equilibrium */
-    const tl_sums *s = &m->cycle->sums;
-    return tl_unbalanced_ratio(m, measure) < ratio && ratio_of(s, s->turning) < ratio;
+    return tl_unbalanced_ratio(m, measure) < ratio && ratio_of(m, m->cycle->sums.turning) < ratio;
 }

@@ -82,17 +82,18 @@ typedef struct tl_watch {
 static double blocks_on_end(const tl_model *m)
 {
     tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = tl_v3_neg(low);
-    double sizes = 0, count = 0;
+    tl_addends sizes = {.count = 0};
+    double count = 0;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         if (m->bodies.fixed[body] == TL_FIX_ALL)
             continue;
         tl_vec3 x = tl_body_place(&m->bodies, body);
         low = tl_v3(fmin(low.x, x.x), fmin(low.y, x.y), fmin(low.z, x.z));
         high = tl_v3(fmax(high.x, x.x), fmax(high.y, x.y), fmax(high.z, x.z));
-        sizes += tl_body_size(m, body);
+        tl_addends_put(&sizes, tl_body_size(m, body));
         count++;
     }
-    return count > 0 ? 1 + tl_v3_norm(tl_v3_sub(high, low)) * count / sizes : 1;
+    return count > 0 ? 1 + tl_v3_norm(tl_v3_sub(high, low)) * count / tl_addends_sum(&sizes) : 1;
 }
 
 static void begin_leg(leg *l, const tl_model *m, uint32_t body)
@@ -190,17 +191,18 @@ static void sample_range(void *user, size_t begin, size_t end, size_t chunk, uns
 static double settlement(const tl_watch *w, const tl_model *m)
 {
     const tl_contacts *c = &m->detect->contacts;
-    double force = 0, force_closure = 0;
+    tl_addends forces = {.count = 0}, closures = {.count = 0};
     for (uint32_t i = 0; i < c->table.rows; i++) {
         double f = tl_v3_norm(c->force[i]);
         if (!(f > 0) || c->held[i])
             continue;
         const tl_law *law = &m->joint_laws[c->law[i]];
         double k = law->ks > 0 && law->ks < law->kn ? law->ks : law->kn;
-        force += f;
-        force_closure += k > 0 && c->area[i] > 0 ? f * f / (k * c->area[i]) : 0;
+        tl_addends_put(&forces, f);
+        tl_addends_put(&closures, k > 0 && c->area[i] > 0 ? f * f / (k * c->area[i]) : 0);
     }
-    return force > 0 ? w->on_end * force_closure / force : 0;
+    const double force = tl_addends_sum(&forces);
+    return force > 0 ? w->on_end * tl_addends_sum(&closures) / force : 0;
 }
 
 /* Ends the leg of a body, and begins the next. */

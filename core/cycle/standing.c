@@ -17,17 +17,18 @@ static bool accelerates(const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
     const double gravity = tl_v3_norm(m->config.gravity);
-    double power = 0, most = 0, unbalanced = 0, borne = 0;
+    tl_addends power = {.count = 0}, most = {.count = 0}, unbalanced = {.count = 0}, borne = {.count = 0};
     for (uint32_t body = 0; body < b->table.rows; body++) {
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
         double force = tl_v3_norm(b->force[body]);
-        power += tl_v3_dot(b->force[body], b->v[body]);
-        most += force * tl_v3_norm(b->v[body]);
-        unbalanced += force;
-        borne += tl_borne(m, body, tl_weight_of(b, body, gravity));
+        tl_addends_put(&power, tl_v3_dot(b->force[body], b->v[body]));
+        tl_addends_put(&most, force * tl_v3_norm(b->v[body]));
+        tl_addends_put(&unbalanced, force);
+        tl_addends_put(&borne, tl_borne(m, body, tl_weight_of(b, body, gravity)));
     }
-    return power > PUSHES * most && unbalanced > LEAST_UNBALANCED * borne;
+    return tl_addends_sum(&power) > PUSHES * tl_addends_sum(&most) &&
+           tl_addends_sum(&unbalanced) > LEAST_UNBALANCED * tl_addends_sum(&borne);
 }
 
 tl_standing tl_model_stands(tl_model *m)

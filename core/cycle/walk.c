@@ -37,9 +37,10 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     VALUE(CACHE, failing);
     VALUE(CACHE, rest_ratio);
     VALUE(STATE, ledger);
-    LIST(SCRATCH, chunk_sums, &c->chunk_capacity, &c->chunk_capacity, step);
+    LIST(SCRATCH, gathered, &c->gathered_capacity, &c->gathered_capacity, step);
+    LIST(SCRATCH, booked, &c->booked_capacity, &c->booked_capacity, step);
+    LIST(SCRATCH, heat, &c->heat_capacity, &c->heat_capacity, step);
+    LIST(SCRATCH, stored, &c->stored_capacity, &c->stored_capacity, step);
     LIST(SCRATCH, motion, &c->motion_capacity, &c->motion_capacity, step);
     LIST(SCRATCH, swept, &c->swept_capacity, &c->swept_capacity, step);
-    LIST(CACHE, group_energy, &c->group_capacity, &c->group_capacity, step);
-    LIST(SCRATCH, chunk_work, &c->chunk_work_capacity, &c->chunk_work_capacity, step);
 }

@@ -545,7 +545,7 @@ static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const
 
 /* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
 static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
-                      tl_part_lanes parts, const tl_arms *arms)
+                      tl_part_lanes parts, const tl_arms *arms, tl_exact *heats)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
@@ -557,20 +557,19 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         opened = add_parts(job, group, t, lane, parts, arms, &sum);
     if (m->cycles % SHEAR_EVERY == 0 && job->kind->cells)
         sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
-    tl_group_energy energy = {0, 0};
+    double heat[TL_LANES];
+    bool any_heat = false;
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
+        heat[l] = 0;
         if (c == TL_NO_ROW)
             continue; /* what its rows hold means nothing, after a step that failed not even a number */
         tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         tl_vec3 moment = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
-        double heat = sum.dissipated[l] + contacts->released[c];
+        heat[l] = sum.dissipated[l] + contacts->released[c];
         if (contacts->handed_over[c] || (opened >> l & 1))
-            heat = tl_contact_lost(m, c, force, moment, sum.stored[l]);
-        if (job->changed && heat != sum.dissipated[l]) /* heat of this step only */
-            atomic_store_explicit(job->changed, true, memory_order_relaxed);
-        energy.stored += sum.stored[l];
-        energy.dissipated += heat;
+            heat[l] = tl_contact_lost(m, c, force, moment, sum.stored[l]);
+        any_heat |= heat[l] != 0;
         contacts->stored[c] = sum.stored[l];
         contacts->handed_over[c] = false;
         contacts->released[c] = 0;
@@ -586,7 +585,11 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         law_check_shear(m, job->phase->failure, job->law, group, t, lane);
         law_check_stiffness(m, job->phase->failure, job->law, group, t, lane, begins);
     }
-    job->phase->energy[group - m->detect->layout.groups] = energy;
+    if (!any_heat)
+        return;
+    tl_exact_add(heats, heat, TL_LANES);
+    if (job->changed) /* what is passed over makes no heat */
+        atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }
 
 /* ---------------------------------------------------------------- tiles ------------------ */
@@ -599,7 +602,7 @@ static size_t tile_points(const tl_simd_group *groups, size_t count)
 /* From the places of the bodies to the forces of the contacts of some SIMD groups, which follow each other. `soon`: how
  * many come next, for which the memory is asked on the way. */
 static void force_tile(const span_job *job, const tl_simd_group *groups, size_t count, size_t soon,
-                       const tl_point_lanes *t)
+                       const tl_point_lanes *t, tl_exact *heats)
 {
     size_t first = groups->start, points = 0;
     tl_part_lanes part[GROUP_CHUNK];
@@ -628,7 +631,7 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
         law_check_states(job->m, job->phase->failure, job->law, first, points);
     for (size_t r = 0; r < count; r++) {
         size_t lane = groups[r].start - first;
-        sum_group(job, &groups[r], t, lane, part[r], &arms[r]);
+        sum_group(job, &groups[r], t, lane, part[r], &arms[r], heats);
     }
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
@@ -646,7 +649,8 @@ static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsi
         size_t count = 1, points = (size_t)groups[begin].slots * TL_LANES;
         while (begin + count < end && (points += (size_t)groups[begin + count].slots * TL_LANES) <= TL_TILE)
             count++;
-        force_tile(job, &groups[begin], count, asked > begin + count ? asked - begin - count : 0, t);
+        force_tile(job, &groups[begin], count, asked > begin + count ? asked - begin - count : 0, t,
+                   &job->phase->heat[thread]);
         begin += count;
     }
 }

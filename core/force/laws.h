@@ -2,20 +2,16 @@
 #ifndef TL_FORCE_LAWS_H
 #define TL_FORCE_LAWS_H
 
+#include "base/exact.h"
 #include "base/parallel.h"
 #include "contact/kind.h"
 #include "contact/layout.h"
 #include "model/model.h"
 
-/* Energy in the contact points of a SIMD group, and turned to heat in this step. */
-typedef struct tl_group_energy {
-    double stored, dissipated;
-} tl_group_energy;
-
 /* What the laws give the step besides forces, and what the step does before they overwrite anything. */
 typedef struct tl_law_phase {
     tl_failure *failure;
-    tl_group_energy *energy; /* of each SIMD group of the layout */
+    tl_exact *heat; /* of each thread: what contacts turn to heat in this step, J */
     /* keeps what the points of some SIMD groups and their contacts carry; on any thread */
     void (*keep)(tl_model *m, const tl_simd_group *groups, size_t count);
 } tl_law_phase;
