@@ -68,7 +68,7 @@ SCENE_UNUSED static tl_poly *scene_hull_shape(const tl_vec3 *points, size_t coun
 {
     tl_error error;
     tl_poly *p;
-    if (tl_poly_hull(points, count, &p, &error) != TL_OK) {
+    if (tl_poly_hull(points, count, TL_HULL_OF_CORNERS, &p, &error) != TL_OK) {
         printf("%s\n", error.text);
         exit(1);
     }
@@ -86,7 +86,7 @@ SCENE_UNUSED static tl_poly *scene_random_hull(uint64_t *seed, size_t count, tl_
             tl_vec3 d = scene_direction(seed);
             points[i] = tl_v3(half.x * d.x, half.y * d.y, half.z * d.z);
         }
-        if (tl_poly_hull(points, count, &p, &error) == TL_OK)
+        if (tl_poly_hull(points, count, TL_HULL_OF_CORNERS, &p, &error) == TL_OK)
             return p;
     }
 }

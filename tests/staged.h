@@ -10,7 +10,7 @@ static inline tl_status stage_begin(tl_model *m, tl_stage *stage)
 {
     tl_status status = tl_stage_begin_empty(m, stage);
     if (status == TL_OK && (status = tl_stage_open(stage)) != TL_OK)
-        tl_stage_drop(stage);
+        tl_stage_end(stage);
     return status;
 }
 

@@ -43,6 +43,16 @@ static bool copy_table(const tl_entry *to, const tl_entry *from)
     return tl_table_copy(to->at, to->at, from->at);
 }
 
+/* Makes an empty table of the same columns in the place of one. */
+static void take_columns(tl_table *to, const tl_table *from)
+{
+    free(to->memory);
+    *to = *from;
+    to->owner = to;
+    to->memory = NULL;
+    tl_table_free(to);
+}
+
 void tl_entries_take(void *user, const tl_entry *to)
 {
     tl_entries_copy *copy = user;
@@ -52,7 +62,7 @@ void tl_entries_take(void *user, const tl_entry *to)
     bool copied = true;
     if (to->keep == TL_KEEP_SCRATCH) {
         if (to->form == TL_ENTRY_TABLE)
-            tl_table_like(to->at, to->at, from->at);
+            take_columns(to->at, from->at);
         return;
     }
     if (to->form == TL_ENTRY_LIST)

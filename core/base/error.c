@@ -6,22 +6,16 @@
 #include <talus/number.h>
 #include <talus/text.h>
 
-tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_list args)
-{
-    if (error) {
-        error->status = status;
-        tl_text_vprint(error->text, sizeof error->text, format, args);
-        tl_text_clean(error->text, sizeof error->text);
-    }
-    return status;
-}
-
 tl_status tl_fail(tl_error *error, tl_status status, const char *format, ...)
 {
-    va_list args;
-    va_start(args, format);
-    tl_vfail(error, status, format, args);
-    va_end(args);
+    if (error) {
+        va_list args;
+        va_start(args, format);
+        error->status = status;
+        tl_text_vprint(error->text, sizeof error->text, format, args);
+        va_end(args);
+        tl_text_clean(error->text, sizeof error->text);
+    }
     return status;
 }
 

@@ -10,7 +10,6 @@
 /* Puts a formatted sentence into `error` (which may be NULL) and returns `status`. Line ends in names, and the like,
  * are shown escaped (talus/text.h): a sentence is one line. */
 tl_status tl_fail(tl_error *error, tl_status status, const char *format, ...) TL_PRINTF(3, 4);
-tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_list args);
 /* TL_E_MEMORY with its sentence. */
 tl_status tl_fail_memory(tl_error *error);
 /* Puts a formatted text in front of the sentence already there; returns its status. */

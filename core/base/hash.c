@@ -3,9 +3,7 @@
 
 #include "base/random.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 tl_hash tl_hash_start(void)
@@ -41,9 +39,4 @@ void tl_hash_numbers(tl_hash *hash, const double *numbers, size_t count)
         double number = isnan(numbers[i]) ? NAN : numbers[i];
         tl_hash_bytes(hash, &number, sizeof number);
     }
-}
-
-void tl_hash_text(const tl_hash *hash, char text[33])
-{
-    snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash->a, hash->b);
 }

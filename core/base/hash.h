@@ -15,7 +15,5 @@ void tl_hash_bytes(tl_hash *hash, const void *data, size_t bytes);
 void tl_hash_word(tl_hash *hash, uint64_t word);
 /* Numbers; all NaN are the same. */
 void tl_hash_numbers(tl_hash *hash, const double *numbers, size_t count);
-/* 32 hexadecimal digits and a terminating zero. */
-void tl_hash_text(const tl_hash *hash, char text[33]);
 
 #endif

@@ -19,13 +19,6 @@ static int lower(char c)
     return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
 }
 
-bool tl_name_is_valid(const char *name)
-{
-    if (!name || name[0] < 'a' || name[0] > 'z')
-        return false;
-    return name[strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789_")] == '\0';
-}
-
 static size_t min3(size_t a, size_t b, size_t c)
 {
     size_t m = a < b ? a : b;

@@ -1,13 +1,10 @@
-/* names.h - names a user types: their form, the nearest known one, and the refusal of an unknown one. The function
+/* names.h - names a user types: the nearest known one, and the refusal of an unknown one. The function
  * tl_nearest_name is declared in talus.h, for front ends. */
 #ifndef TL_BASE_NAMES_H
 #define TL_BASE_NAMES_H
 
 #include <stdbool.h>
 #include <talus/talus.h>
-
-/* True for [a-z][a-z0-9_]*, the form of every name a script uses as a key. */
-bool tl_name_is_valid(const char *name);
 
 /* Number of letters to insert, delete, replace or swap with their neighbour to make `b` of `a`, upper
  * and lower case counted as equal; SIZE_MAX when either is longer than 63 letters. */

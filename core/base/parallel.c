@@ -264,16 +264,6 @@ void tl_parallel_for(tl_pool *pool, size_t count, size_t chunk, tl_range_fn fn, 
  *
  * Of several failures in a parallel phase, the one of the lowest chunk counts, whichever thread meets it. */
 
-void tl_failure_init(tl_failure *f)
-{
-    pthread_mutex_init(&f->lock, NULL);
-}
-
-void tl_failure_destroy(tl_failure *f)
-{
-    pthread_mutex_destroy(&f->lock);
-}
-
 void tl_failure_note(tl_failure *f, size_t chunk, tl_status status, size_t point, const char *text)
 {
     pthread_mutex_lock(&f->lock);

@@ -26,13 +26,11 @@ void tl_parallel_for(tl_pool *pool, size_t count, size_t chunk, tl_range_fn fn, 
 
 /* The first failure of a parallel phase, by chunk, and the point or row it came from. */
 typedef struct tl_failure {
-    pthread_mutex_t lock;
+    pthread_mutex_t lock; /* whoever keeps the struct makes and destroys it */
     tl_error error;
     size_t chunk, point;
 } tl_failure;
 
-void tl_failure_init(tl_failure *failure);
-void tl_failure_destroy(tl_failure *failure);
 /* Notes a failure, on any thread; that of the lowest chunk counts. */
 void tl_failure_note(tl_failure *failure, size_t chunk, tl_status status, size_t point, const char *text);
 

@@ -66,30 +66,6 @@ bool tl_param_in_range(const tl_param *param, double value)
     return above && below;
 }
 
-bool tl_param_sound(const tl_param *param, const void *member)
-{
-    double number[3];
-    int32_t choice;
-    const size_t bytes = tl_param_bytes(param->type);
-    switch (param->type) {
-    case TL_PARAM_BOOL: memcpy(&choice, member, bytes); return choice == 0 || choice == 1;
-    case TL_PARAM_ENUM:
-        memcpy(&choice, member, bytes);
-        for (int32_t k = 0; param->choices[k]; k++)
-            if (k == choice)
-                return true;
-        return false;
-    case TL_PARAM_REAL:
-    case TL_PARAM_VEC3:
-        memcpy(number, member, bytes);
-        for (size_t k = 0; k < bytes / sizeof *number; k++)
-            if (!tl_param_in_range(param, number[k]) && !(param->flags & TL_PARAM_OPTIONAL && isnan(number[k])))
-                return false;
-        return true;
-    default: return true;
-    }
-}
-
 void tl_param_range(const tl_param *param, char *text, size_t size)
 {
     char low[TL_NUMBER_TEXT], high[TL_NUMBER_TEXT];

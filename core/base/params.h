@@ -25,7 +25,4 @@ bool tl_param_ranged(const tl_param *param);
 /* True when `value` is finite and inside the range, open ends left out. */
 bool tl_param_in_range(const tl_param *param, double value);
 
-/* Whether a member holds what its parameter allows. Whole numbers of 64 bits, and texts, are not looked at. */
-bool tl_param_sound(const tl_param *param, const void *member);
-
 #endif

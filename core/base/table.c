@@ -200,15 +200,6 @@ bool tl_table_copy(tl_table *table, void *owner, const tl_table *from)
     return false;
 }
 
-void tl_table_like(tl_table *table, void *owner, const tl_table *from)
-{
-    free(table->memory);
-    *table = *from;
-    table->owner = owner;
-    table->memory = NULL;
-    tl_table_free(table);
-}
-
 size_t tl_table_bytes(const tl_table *table)
 {
     size_t row = 0;

@@ -73,8 +73,6 @@ void tl_table_free(tl_table *table);
 /* Makes a table of the same columns, rows and capacity for another owner of the same type. It replaces one without
  * memory. false when out of memory (it is empty then). */
 bool tl_table_copy(tl_table *table, void *owner, const tl_table *from);
-/* Makes an empty table of the same columns for such an owner in its place. */
-void tl_table_like(tl_table *table, void *owner, const tl_table *from);
 /* Bytes its columns take, spare rows included. */
 size_t tl_table_bytes(const tl_table *table);
 

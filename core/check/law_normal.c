@@ -8,6 +8,8 @@
  *     stored >= what the normal force holds, and at the beginning no more than that. */
 #include "check/law_normal.h"
 
+#include "base/inside.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -18,6 +20,80 @@
 /* Tolerance: the same of forces and energies that are compared, which differ by roundings of closures. Test:
  * unit/test_check. */
 #define ERROR 1e-7
+
+/* ---------------------------------------------------------------- what a law tells ------- */
+
+/* States that a law does not declare, and where all of them are. */
+typedef struct beyond {
+    _Alignas(TL_ALIGN) double nobodys[TL_CHECK_POINTS];
+    double *state[2 * TL_STATE_COLUMNS];
+} beyond;
+
+/* A batch of what the functions besides update() are given. */
+static tl_law_batch batch_of(tl_check_points *p, beyond *other)
+{
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++)
+        other->nobodys[i] = tl_check_nobodys(0, false);
+    for (int k = 0; k < 2 * TL_STATE_COLUMNS; k++)
+        other->state[k] = k < TL_STATE_COLUMNS ? p->c[TL_AT_STATE + k] : other->nobodys;
+    return (tl_law_batch){.size = sizeof(tl_law_batch),
+                          .count = TL_CHECK_POINTS,
+                          .area = p->c[TL_AT_AREA],
+                          .f_n0 = p->c[TL_AT_F_N0],
+                          .state = other->state,
+                          .flags = p->flags};
+}
+
+void tl_law_gaps(const tl_check_law *law, const tl_check_points *given, tl_check_gaps *gaps)
+{
+    const tl_law_ops *ops = law->ops;
+    beyond other;
+    tl_check_points p = *given;
+    uint32_t pulls = ops->pulls ? ops->pulls(law->self) : TL_PULL_ANY;
+    const tl_law_batch batch = batch_of(&p, &other);
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        bool lost = pulls == TL_PULL_BONDED && p.flags[i] & TL_POINT_FAILED;
+        double spring = law->kn * p.c[TL_AT_AREA][i];
+        gaps->lift[i] = p.c[TL_AT_F_N0][i] / (spring > 0 ? spring : 1);
+        gaps->hold[i] = 0;
+        gaps->bond[i] = pulls == TL_PULL_NONE || lost || p.flags[i] & TL_POINT_APART ? 0 : 1;
+    }
+    if (!ops->across_gap)
+        return;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) /* the law is to write all of them */
+        gaps->lift[i] = gaps->hold[i] = NAN;
+    tl_enter(law->kind, "across_gap");
+    ops->across_gap(law->self, &batch, gaps->lift, gaps->hold);
+    tl_leave();
+    memcpy(gaps->bond, gaps->hold, sizeof gaps->bond);
+}
+
+double tl_law_edge(double closure, double apart, double lift, double below)
+{
+    /* o from -e to f in a line: the means of its parts are f^2 / (2 (e + f)) and e^2 / (2 (e + f)) */
+    double u = fmax(0, closure + lift);
+    return apart > 0 ? -lift - 2 * (apart + sqrt(u * apart)) : closure - below;
+}
+
+/* What `pressed` tells at the points' closures moved by `move`: energies, and forces or not-a-number. */
+static void pressed_at(const tl_check_law *law, const tl_check_points *given, double move,
+                       double energy[TL_CHECK_POINTS], double force[TL_CHECK_POINTS])
+{
+    beyond other;
+    tl_check_points p = *given;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        p.c[TL_AT_CLOSURE][i] += move;
+        force[i] = NAN;
+    }
+    tl_law_batch batch = batch_of(&p, &other);
+    batch.closure = p.c[TL_AT_CLOSURE];
+    batch.f_n = force;
+    tl_enter(law->kind, "pressed");
+    law->ops->pressed(law->self, &batch, energy);
+    tl_leave();
+}
+
+/* ---------------------------------------------------------------- checks ----------------- */
 
 /* A point and what is known of it. */
 typedef struct point {
@@ -161,7 +237,7 @@ void tl_law_check_normal(tl_law_trial *t, int step)
     tl_law_gaps(&t->law, &t->out, &gaps);
     memcpy(at.c[TL_AT_CLOSURE], t->in.c[TL_AT_CLOSURE], sizeof at.c[TL_AT_CLOSURE]);
     for (int k = 0; k < 3 && !ops->linear && ops->pressed; k++)
-        tl_law_pressed(&t->law, &at, (k - 1) * SMALL * t->law.closure, energy[k], force[k]);
+        pressed_at(&t->law, &at, (k - 1) * SMALL * t->law.closure, energy[k], force[k]);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         point p = point_at(t, &gaps, i, step);
         check_gap(t, &p, i);

@@ -13,6 +13,8 @@
  * A law that forgets a state between the steps, or finds the wrong slip of a step, does not keep to this. */
 #include "check/law_paths.h"
 
+#include "check/law_normal.h"
+
 #include <math.h>
 #include <string.h>
 

@@ -106,19 +106,4 @@ typedef struct tl_law_trial {
     tl_check_seen seen;            /* with this set and those before */
 } tl_law_trial;
 
-/* What points carry where their walls are apart, as the host finds it: what lifts them, m, the share of tension that
- * they hold in a part apart, and in a point that is wholly apart. */
-typedef struct tl_check_gaps {
-    double lift[TL_CHECK_POINTS], hold[TL_CHECK_POINTS], bond[TL_CHECK_POINTS];
-} tl_check_gaps;
-
-/* What the law tells of the points at their closures. */
-void tl_law_gaps(const tl_check_law *law, const tl_check_points *p, tl_check_gaps *gaps);
-/* What `pressed` tells at the points' closures moved by `move`: energies, and forces or not-a-number. */
-void tl_law_pressed(const tl_check_law *law, const tl_check_points *given, double move, double energy[TL_CHECK_POINTS],
-                    double force[TL_CHECK_POINTS]);
-/* Closure at the outermost fibre, `below` that in the middle; where a part is apart, that of a joint that opens in a
- * line. */
-double tl_law_edge(double closure, double apart, double lift, double below);
-
 #endif

@@ -12,7 +12,7 @@
 
 static void cycle_destroy(struct tl_cycle *cycle)
 {
-    tl_failure_destroy(&cycle->failure);
+    pthread_mutex_destroy(&cycle->failure.lock);
     tl_table_free(&cycle->table);
     free(cycle->reaction);
     free(cycle->motion);
@@ -49,7 +49,7 @@ tl_status tl_cycle_prepare(tl_model *m)
         if (!(m->cycle = calloc(1, sizeof *m->cycle)))
             return tl_fail_memory(&m->error);
         m->cycle_destroy = cycle_destroy;
-        tl_failure_init(&m->cycle->failure);
+        pthread_mutex_init(&m->cycle->failure.lock, NULL);
         add_columns(m->cycle);
         tl_contributors_begin(m->cycle);
     }

@@ -212,6 +212,23 @@ bool tl_field_reserve(tl_model *m, uint32_t c)
 
 /* ---------------------------------------------------------------- places ----------------- */
 
+/* The farthest that a vertex of either block has moved against the other block, since B was at a place. */
+static double way_since(const tl_pair_view *view, const tl_pair_pose *since)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < view->b->vertex_count; i++) {
+        tl_vec3 now = tl_v3_add(tl_m3_mul(&view->turn, view->b->vertex[i]), view->shift);
+        tl_vec3 then = tl_v3_add(tl_m3_mul(&since->turn, view->b->vertex[i]), since->shift);
+        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
+    }
+    for (uint32_t i = 0; i < view->a->vertex_count; i++) { /* in B's frame */
+        tl_vec3 now = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[i], view->shift));
+        tl_vec3 then = tl_m3_tmul(&since->turn, tl_v3_sub(view->a->vertex[i], since->shift));
+        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
+    }
+    return sqrt(most);
+}
+
 /* Whether the faces of a contact are listed still. By the odometers, which count the motion of both blocks together,
  * and when that has run out by their motion against each other. */
 static bool is_listed(tl_model *m, uint32_t c, const tl_press_row *row)
@@ -223,7 +240,7 @@ static bool is_listed(tl_model *m, uint32_t c, const tl_press_row *row)
     if (contacts->faces_valid_to[c] == TL_OUTDATED) /* it is to be looked at in any case */
         return false;
     tl_pair_view view = tl_contact_view(m, c);
-    double moved = tl_pair_moved(&view, &row->listed_at) + fabs(row->shift - row->listed_shift);
+    double moved = way_since(&view, &row->listed_at) + fabs(row->shift - row->listed_shift);
     double left = TL_LIST_MARGIN * view.size - moved;
     if (left > 0)
         contacts->faces_valid_to[c] = odometer + left;

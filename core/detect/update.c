@@ -381,6 +381,23 @@ static bool contact_is_patch(tl_model *m, uint32_t c)
            is_valid(m, c, &contacts->faces_valid_to[c], way_of_faces);
 }
 
+/* Brings one face of B into A's frame, and nothing else of B; false when out of memory. */
+static bool place_face(tl_pair_view *view, uint32_t face, tl_narrow_scratch *scratch)
+{
+    const tl_poly *b = view->b;
+    if (!tl_grow(&scratch->vertex_b, &scratch->vertex_capacity, b->vertex_count, sizeof(tl_vec3)) ||
+        !tl_grow(&scratch->normal_b, &scratch->normal_capacity, b->face_count, sizeof(tl_vec3)))
+        return false;
+    view->vertex_b = scratch->vertex_b;
+    view->normal_b = scratch->normal_b;
+    for (uint32_t i = b->start[face]; i < b->start[face + 1]; i++) {
+        uint32_t v = b->loop[i];
+        view->vertex_b[v] = tl_v3_add(tl_m3_mul(&view->turn, b->vertex[v]), view->shift);
+    }
+    view->normal_b[face] = tl_m3_mul(&view->turn, b->plane[face].normal);
+    return true;
+}
+
 /* The patch of a contact that is one and stays one, made anew; false when that is not all there is to it. */
 static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
 {
@@ -391,7 +408,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
         return false;
     tl_pair_view view = tl_contact_view(m, c);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c] ? INFINITY : 0);
-    scratch->manifold.failed = !tl_pair_place_face(&view, f->ib, scratch);
+    scratch->manifold.failed = !place_face(&view, f->ib, scratch);
     if (scratch->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, scratch) > 0))
         return false;
     const tl_patch_points *g = &scratch->patch;

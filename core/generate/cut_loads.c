@@ -416,11 +416,3 @@ void tl_cut_loads_give(const tl_stage *stage, const tl_id *ids, tl_cut_loads *lo
     give_faces(stage, ids, loads);
     visit(stage, ids, loads, give_before);
 }
-
-void tl_cut_loads_free(tl_cut_loads *loads)
-{
-    free(loads->of);
-    free(loads->list);
-    free(loads->faces);
-    *loads = (tl_cut_loads){.count = 0};
-}

@@ -4,6 +4,7 @@
 
 #include "generate/staging.h"
 
+/* The owner frees the three lists. */
 typedef struct tl_cut_loads {
     struct cut_load *list;
     size_t count;
@@ -12,10 +13,10 @@ typedef struct tl_cut_loads {
     uint32_t *of; /* [staged blocks] the load of the body that it comes from, or TL_NO_ROW */
 } tl_cut_loads;
 
-/* Takes the loads of the bodies that a stage has cut; false when out of memory (they are to be freed all the same). */
+/* Takes the loads of the bodies that a stage has cut; false when out of memory (the lists are to be freed all the
+ * same). */
 bool tl_cut_loads_take(const tl_stage *stage, tl_cut_loads *loads);
 /* Gives them to the parts, when these have their bodies. `ids` are those of the staged blocks. */
 void tl_cut_loads_give(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads);
-void tl_cut_loads_free(tl_cut_loads *loads);
 
 #endif

@@ -45,11 +45,12 @@ static service *service_of(const tl_host *host)
 
 static tl_status fail(const tl_host *host, tl_status status, const char *format, ...)
 {
+    char text[TL_ERROR_TEXT];
     va_list args;
     va_start(args, format);
-    tl_vfail(&service_of(host)->model->error, status, format, args);
+    tl_text_vprint(text, sizeof text, format, args);
     va_end(args);
-    return status;
+    return tl_fail(&service_of(host)->model->error, status, "%s", text);
 }
 
 static void say(const tl_host *host, const char *format, ...)
@@ -623,7 +624,7 @@ static tl_status run(service *s, const tl_kind *kind, const tl_args *args, size_
     }
     free(params);
     if (status != TL_OK) {
-        tl_stage_drop(&s->stage);
+        tl_stage_end(&s->stage);
         return status;
     }
     status = tl_stage_commit(&s->stage);

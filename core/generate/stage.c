@@ -145,16 +145,8 @@ tl_status tl_stage_open(tl_stage *stage)
     return TL_OK;
 }
 
-void tl_stage_end(tl_stage *stage)
-{
-    free_lists(stage);
-    free(stage->plane_count);
-    free(stage->refused);
-    stage->plane_count = NULL;
-    stage->refused = NULL;
-}
-
-void tl_stage_drop(tl_stage *stage)
+/* Drops the shapes, and the joints, planes and groups made since the staging set was begun. */
+static void drop(tl_stage *stage)
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++)
@@ -170,7 +162,53 @@ void tl_stage_drop(tl_stage *stage)
         m->origin_set = false;
         m->origin = tl_v3(0, 0, 0);
     }
-    tl_stage_end(stage);
+}
+
+void tl_stage_end(tl_stage *stage)
+{
+    if (!stage->committed)
+        drop(stage);
+    free_lists(stage);
+    free(stage->plane_count);
+    free(stage->refused);
+    stage->plane_count = NULL;
+    stage->refused = NULL;
+}
+
+/* ---------------------------------------------------------------- a point from a face -----
+ *
+ * How far a point of a face's plane lies from the face. So a joint of finite extent meets a section of a block.
+ *
+ * A face is a convex polygon given counter-clockwise about its normal n. A point is over it when it lies
+ * on the left of every edge, n x edge . (point - a) >= 0; otherwise the nearest point of the face is on one
+ * of the edges. Distances are measured in the plane: the part along n is left out. */
+
+/* Square of the distance of a point from the edge a + t along, 0 <= t <= 1, with the part along n left
+ * out. */
+static double edge_distance2(tl_vec3 along, tl_vec3 arm, tl_vec3 n)
+{
+    tl_vec3 flat = tl_v3_madd(arm, -tl_v3_dot(arm, n), n);
+    double length2 = tl_v3_norm2(along);
+    double t = length2 > 0 ? tl_v3_dot(flat, along) / length2 : 0;
+    t = fmin(fmax(t, 0), 1);
+    return tl_v3_norm2(tl_v3_madd(flat, -t, along));
+}
+
+/* Distance of a point from a face; 0 for a point over the face. */
+static double face_distance(const tl_poly *p, uint32_t face, tl_vec3 point)
+{
+    const uint16_t *loop = p->loop + p->start[face];
+    uint32_t count = tl_poly_face_size(p, face);
+    tl_vec3 n = p->plane[face].normal;
+    bool over = true;
+    double nearest2 = INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        tl_vec3 a = p->vertex[loop[i]], b = p->vertex[loop[(i + 1) % count]];
+        tl_vec3 along = tl_v3_sub(b, a), arm = tl_v3_sub(point, a);
+        over = over && tl_v3_dot(tl_v3_cross(n, along), arm) >= 0;
+        nearest2 = fmin(nearest2, edge_distance2(along, arm, n));
+    }
+    return over ? 0 : sqrt(nearest2);
 }
 
 /* ---------------------------------------------------------------- cutting ---------------- */
@@ -210,10 +248,9 @@ static tl_status cut_by(tl_model *m, const tl_stage_block *block, tl_vec3 normal
 static tl_status retag(tl_stage *stage, tl_stage_block *block, uint32_t face, tl_tag tag)
 {
     if (!block->owned) {
-        tl_poly *copy;
-        tl_status status = tl_poly_transformed(block->shape, NULL, tl_v3(0, 0, 0), &copy, &stage->model->error);
-        if (status != TL_OK)
-            return status;
+        tl_poly *copy = tl_poly_copy(block->shape);
+        if (!copy)
+            return tl_fail_memory(&stage->model->error);
         block->shape = copy;
         block->owned = block->retagged = true;
     }
@@ -275,9 +312,9 @@ static bool in_path(const plane_in_block *x, const tl_stage_block *block, const 
     if (isinf(x->radius))
         return true;
     if (cut->result == TL_CUT_MADE) /* the cap is the last face */
-        return tl_poly_face_distance(cut->below, cut->below->face_count - 1, x->center) < x->radius;
+        return face_distance(cut->below, cut->below->face_count - 1, x->center) < x->radius;
     /* a sliver without a face along the plane has no section to speak of: its ball decided */
-    return cut->face == UINT32_MAX || tl_poly_face_distance(block->shape, cut->face, x->center) < x->radius;
+    return cut->face == UINT32_MAX || face_distance(block->shape, cut->face, x->center) < x->radius;
 }
 
 /* Notes a cut that was refused, for the model's report; only so many are listed. */
@@ -478,7 +515,7 @@ tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t cou
     for (size_t i = 0; i < count; i++)
         local[i] = tl_v3_sub(vertices[i], m->origin);
     tl_poly *shape;
-    tl_status status = tl_poly_hull(local, count, &shape, &m->error);
+    tl_status status = tl_poly_hull(local, count, TL_HULL_OF_CORNERS, &shape, &m->error);
     free(local);
     return status == TL_OK ? add_shape(stage, shape, density, group) : status;
 }

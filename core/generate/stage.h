@@ -1,4 +1,4 @@
-/* stage.h - beginning, cutting and dropping a staging set. */
+/* stage.h - beginning, filling, cutting and ending a staging set. */
 #ifndef TL_GENERATE_STAGE_H
 #define TL_GENERATE_STAGE_H
 
@@ -22,9 +22,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
 tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above);
 /* Whether the inside of block `index` meets the common inside of half spaces. */
 tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spaces, size_t count, bool *meets);
-/* Drops the staging set, with the joints, planes and groups made since it was begun. */
-void tl_stage_drop(tl_stage *stage);
-/* Frees the lists of a staging set whose shapes have gone to the model or are freed. */
+/* Frees a staging set. One that has not been committed is dropped without a trace. */
 void tl_stage_end(tl_stage *stage);
 
 #endif

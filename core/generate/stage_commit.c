@@ -254,7 +254,9 @@ static void list_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first
 
 static void free_scratch(commit_scratch *scratch)
 {
-    tl_cut_loads_free(&scratch->loads);
+    free(scratch->loads.of);
+    free(scratch->loads.list);
+    free(scratch->loads.faces);
     free(scratch->splits);
     free(scratch->keep);
     free(scratch->slot);
@@ -440,7 +442,7 @@ tl_status tl_stage_commit(tl_stage *stage)
         status = tl_fail_memory(&m->error);
     if (status != TL_OK) {
         free_scratch(&scratch);
-        tl_stage_drop(stage);
+        tl_stage_end(stage);
         return status;
     }
     /* From here on nothing can fail but the grouping of blocks into bodies, for want of memory. */
@@ -460,10 +462,9 @@ tl_status tl_stage_commit(tl_stage *stage)
         keep_splits(stage, &scratch);
         for (size_t i = 0; i < scratch.gone_count; i++)
             tl_poly_free(scratch.gone[i]);
-        tl_stage_end(stage);
-    } else {
-        tl_stage_drop(stage);
+        stage->committed = true;
     }
     free_scratch(&scratch);
+    tl_stage_end(stage);
     return status;
 }

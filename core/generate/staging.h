@@ -57,6 +57,7 @@ typedef struct tl_stage {
     size_t visible_count;
     uint32_t next_body;
     bool opened;          /* the model's blocks are in it */
+    bool committed;       /* its shapes are the model's */
     bool lost;            /* there was no memory for that when a service asked that cannot say so */
     bool needs_reconnect; /* some block does */
     bool regroups;        /* bodies of several blocks are made or changed */

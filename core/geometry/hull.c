@@ -707,26 +707,16 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
     return status;
 }
 
-static tl_status hull_of(const tl_vec3 *points, size_t count, bool any, tl_poly **poly, tl_error *error)
+tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_hull_of of, tl_poly **poly, tl_error *error)
 {
     *poly = NULL;
     tl_status status = check_points(points, count, error);
     if (status)
         return status;
-    builder b = {.any = any};
+    builder b = {.any = of == TL_HULL_OF_ANY};
     if (!allocate(&b, points, count))
         return tl_fail_memory(error);
     status = build(&b, poly, error);
     free(b.memory);
     return status;
-}
-
-tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error)
-{
-    return hull_of(points, count, false, poly, error);
-}
-
-tl_status tl_poly_hull_around(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error)
-{
-    return hull_of(points, count, true, poly, error);
 }

@@ -32,8 +32,6 @@ static inline bool tl_bounds_meet(const tl_bounds *a, const tl_bounds *b)
 void tl_poly_find_size(tl_poly *poly);
 double tl_poly_face_area(const tl_poly *poly, uint32_t face);
 tl_vec3 tl_poly_face_centroid(const tl_poly *poly, uint32_t face);
-/* Distance of a point from a face, measured in the face's plane; 0 for a point over the face. */
-double tl_poly_face_distance(const tl_poly *poly, uint32_t face, tl_vec3 point);
 double tl_poly_shortest_edge(const tl_poly *poly);
 /* Largest distance between two vertices. */
 double tl_poly_diameter(const tl_poly *poly);

@@ -28,7 +28,7 @@ static tl_status hull_of_many(tl_vec3 *points, size_t count, tl_poly **hull)
     tl_error error;
     for (*hull = NULL;;) {
         const size_t some = count < TL_POLY_MAX_VERTICES ? count : TL_POLY_MAX_VERTICES;
-        const tl_status status = tl_poly_hull_around(points, some, hull, &error);
+        const tl_status status = tl_poly_hull(points, some, TL_HULL_OF_ANY, hull, &error);
         const size_t corners = *hull ? (*hull)->vertex_count : some;
         if (status == TL_E_MEMORY || some == count)
             return status == TL_E_MEMORY ? status : TL_OK;

@@ -76,32 +76,31 @@ typedef struct pair {
     double by_power[TL_FIELD_POWERS]; /* and int d^2 x . n dS, int d^3 x . n dS */
 } pair;
 
-/* Planes of the polygons in the lanes: the k-th of each is in row k. */
-typedef struct rows {
-    tl_field_plane *row;
-    uint32_t most;
-} rows;
-
 /* Polygons, eight at a time. */
 typedef struct work {
-    tl_field_line *line;
-    bool flat;   /* the polygons are K's own faces */
-    bool powers; /* some pair wants them */
     int filled;
     tl_field_lanes lanes;
     tl_field_parts parts;
-    rows planes, others;
+    tl_field_bounds bound;
     const pair *laid; /* whose planes are in the lanes that are left; NULL: nobody's */
     pair *of[LANES];
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
     uint32_t i[LANES], j[LANES];       /* the same as numbers of those that bound polygons */
 } work;
 
+static void free_room(tl_field_scratch *scratch)
+{
+    free(scratch->line);
+    free(scratch->plane);
+    free(scratch->number);
+    *scratch = (tl_field_scratch){0};
+}
+
 static bool make_room(tl_field_scratch *scratch, uint32_t lines, uint32_t numbers)
 {
     if (lines <= scratch->lines && numbers <= scratch->numbers)
         return true;
-    tl_field_free(scratch);
+    free_room(scratch);
     scratch->line = aligned_alloc(TL_ALIGN, 2u * lines * sizeof *scratch->line);
     scratch->plane = aligned_alloc(TL_ALIGN, 4u * lines * sizeof *scratch->plane);
     scratch->number = malloc(2u * numbers * sizeof *scratch->number);
@@ -110,14 +109,6 @@ static bool make_room(tl_field_scratch *scratch, uint32_t lines, uint32_t number
     scratch->lines = 2 * lines;
     scratch->numbers = 2 * numbers;
     return true;
-}
-
-void tl_field_free(tl_field_scratch *scratch)
-{
-    free(scratch->line);
-    free(scratch->plane);
-    free(scratch->number);
-    *scratch = (tl_field_scratch){0};
 }
 
 /* Takes the faces of a mask, or all, and the borders for the planes that bound polygons. */
@@ -461,7 +452,8 @@ TL_INLINE void fill(tl_field_plane *restrict row, int lane, const double n[3], d
 }
 
 /* Puts the first `count` of some planes into the lanes from `lane` on. */
-TL_VECTORIZED static void lay_rows(rows *r, int lane, const tl_field_faces *f, const list *from, uint32_t count)
+TL_VECTORIZED static void lay_rows(tl_field_rows *r, int lane, const tl_field_faces *f, const list *from,
+                                   uint32_t count)
 {
     const double none[3] = {0};
     uint32_t most = count > r->most ? count : r->most;
@@ -481,7 +473,7 @@ TL_VECTORIZED static void lay_rows(rows *r, int lane, const tl_field_faces *f, c
 /* How many planes bound a polygon of a pair: all but its own. */
 static uint32_t bounds(const work *w, const pair *of)
 {
-    return of->planes.count - (w->flat ? 1 : 2);
+    return of->planes.count - (w->bound.flat ? 1 : 2);
 }
 
 /* The planes that bound a polygon in whose own two are the i-th and j-th of its pair. The last of all come in their
@@ -509,7 +501,7 @@ static void take_out(work *w, int lane, const pair *of, uint32_t i, uint32_t j)
     for (int k = 0; k < (i == j ? 1 : 2); k++) {
         if (own[k] >= count)
             continue;
-        tl_field_plane *row = &w->planes.row[own[k]];
+        tl_field_plane *row = &w->bound.planes.row[own[k]];
         uint32_t plane = in_place[k];
         for (int axis = 0; axis < 3; axis++)
             row->n[axis][lane] = f->n[axis][plane];
@@ -519,8 +511,9 @@ static void take_out(work *w, int lane, const pair *of, uint32_t i, uint32_t j)
 }
 
 /* Notes the polygon in a lane for a mesh. */
-static void draw(work *w, int lane, size_t lines)
+static void draw(work *w, int lane)
 {
+    const size_t lines = w->bound.lines;
     const pair *of = w->of[lane];
     const uint32_t count = bounds(w, of), i = w->i[lane], j = w->j[lane];
     const uint16_t own[] = {(uint16_t)w->face[lane], (uint16_t)w->with[lane]};
@@ -532,7 +525,7 @@ static void draw(work *w, int lane, size_t lines)
         bound[i] = in_place[0];
     if (j < count)
         bound[j] = in_place[1];
-    draw_polygon(of->draft, own, bound, w->line, count + 1 < lines ? count + 1 : lines, (unsigned)lane);
+    draw_polygon(of->draft, own, bound, w->bound.line, count + 1 < lines ? count + 1 : lines, (unsigned)lane);
 }
 
 /* Integrates the polygons in the lanes. */
@@ -543,28 +536,23 @@ static void integrate_batch(work *w)
         return;
     for (int lane = w->filled; lane < (int)LANES; lane++)
         p->share[lane] = 0; /* what is left there is of earlier ones */
-    size_t lines = tl_field_draw(p, w->planes.row, w->planes.most, w->flat, w->line);
-    uint32_t beyond = tl_field_corners_beyond(p, w->others.row, w->others.most, w->line);
-    tl_field_sum_lines(p, w->line, lines);
-    tl_field_share(p, &w->parts);
-    if (w->powers)
-        tl_field_add_powers(p, w->line, lines, &w->parts);
+    tl_field_integrate_lanes(p, &w->bound, &w->parts);
     for (int lane = 0; lane < w->filled; lane++) {
         pair *of = w->of[lane];
-        of->beyond = of->beyond || beyond >> lane & 1;
+        of->beyond = of->beyond || w->bound.beyond >> lane & 1;
         if (!(p->area[lane] > 0))
             continue;
-        if (w->flat)
+        if (w->bound.flat)
             of->found |= UINT64_C(1) << w->face[lane];
         else
             take(w, lane);
-        if (of->draft && !w->flat)
-            draw(w, lane, lines);
+        if (of->draft && !w->bound.flat)
+            draw(w, lane);
         of->beyond = of->beyond || p->open[lane] > 0;
     }
     w->filled = 0;
     w->laid = NULL;
-    w->planes.most = w->others.most = 0;
+    w->bound.planes.most = w->bound.others.most = 0;
 }
 
 /* Puts a polygon into the lanes: in a plane, of the depth of the pair's i-th plane, bounded by neither that nor the
@@ -575,8 +563,8 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, 
     int l = w->filled++;
     uint32_t face = of->number[i];
     if (w->laid != of) {
-        lay_rows(&w->planes, l, of->faces, &of->planes, bounds(w, of));
-        lay_rows(&w->others, l, of->faces, &of->others, of->others.count);
+        lay_rows(&w->bound.planes, l, of->faces, &of->planes, bounds(w, of));
+        lay_rows(&w->bound.others, l, of->faces, &of->others, of->others.count);
         w->laid = of;
     }
     tl_vec3 m = tl_field_normal(of->faces, face);
@@ -668,12 +656,12 @@ static uint64_t find_bounding(work *w, pair *of)
 {
     const tl_field_faces *f = of->faces;
     choose(of, NULL);
-    w->flat = true;
+    w->bound.flat = true;
     of->found = 0;
     for (uint32_t i = 0; i < real_faces(f); i++)
         put(w, of, tl_field_normal(f, i), f->c[i], i, i, false, 0);
     integrate_batch(w);
-    w->flat = false;
+    w->bound.flat = false;
     return of->found;
 }
 
@@ -722,27 +710,27 @@ static void integrate_anew(work *w, pair *of, mesh_draft *draft)
 static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t count, tl_field_scratch *scratch)
 {
     uint32_t most = 0, all = 0;
-    w->flat = false;
+    w->bound.flat = false;
     w->filled = 0;
     w->laid = NULL;
-    w->planes.most = w->others.most = 0;
-    w->powers = false;
+    w->bound.planes.most = w->bound.others.most = 0;
+    w->bound.powers = false;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t planes = all_faces(faces[k]);
-        w->powers = w->powers || faces[k]->powers;
+        w->bound.powers = w->bound.powers || faces[k]->powers;
         most = planes > most ? planes : most;
         all += planes;
     }
     if (!make_room(scratch, most + 1, all))
         return false;
-    w->line = scratch->line;
-    w->planes.row = scratch->plane;
-    w->others.row = scratch->plane + scratch->lines;
+    w->bound.line = scratch->line;
+    w->bound.planes.row = scratch->plane;
+    w->bound.others.row = scratch->plane + scratch->lines;
     return true;
 }
 
-bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[], uint32_t count,
-                            tl_field_scratch *scratch)
+bool tl_field_integrate(const tl_field_faces *const faces[], tl_field_sums *const sums[], uint32_t count,
+                        tl_field_scratch *scratch)
 {
     pair pairs[TL_FIELD_PAIRS];
     mesh_draft drafts[TL_FIELD_PAIRS];
@@ -776,9 +764,4 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
         }
     }
     return true;
-}
-
-bool tl_field_integrate(const tl_field_faces *faces, tl_field_scratch *scratch, tl_field_sums *sums)
-{
-    return tl_field_integrate_all(&faces, &sums, 1, scratch);
 }

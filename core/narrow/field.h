@@ -40,11 +40,8 @@ typedef struct tl_field_scratch {
 /* Pairs that are integrated together. */
 #define TL_FIELD_PAIRS TL_LANES
 
-/* All integrals, and a new mesh. false: out of memory. */
-bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[], uint32_t count,
-                            tl_field_scratch *scratch);
-/* The same of one pair. */
-bool tl_field_integrate(const tl_field_faces *faces, tl_field_scratch *scratch, tl_field_sums *sums);
-void tl_field_free(tl_field_scratch *scratch);
+/* All integrals of up to TL_FIELD_PAIRS pairs, and new meshes. false: out of memory. */
+bool tl_field_integrate(const tl_field_faces *const faces[], tl_field_sums *const sums[], uint32_t count,
+                        tl_field_scratch *scratch);
 
 #endif

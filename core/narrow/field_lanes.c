@@ -136,7 +136,9 @@ TL_VECTORIZED static void cross_lines(tl_field_line *line, size_t count)
     }
 }
 
-size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat, tl_field_line *line)
+/* Draws the lines of some planes, the first of `line`, and finds between which places they bound the polygons; how
+ * many lines there are. */
+static size_t draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat, tl_field_line *line)
 {
     size_t lines = 0;
     place_axes(p);
@@ -165,8 +167,9 @@ TL_VECTORIZED static void count_beyond(const tl_field_lanes *restrict p, const t
     }
 }
 
-uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes, uint32_t count,
-                                 const tl_field_line *own)
+/* Lanes, a bit each, of which a corner with d = 0 lies beyond one of some planes. */
+static uint32_t corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes, uint32_t count,
+                               const tl_field_line *own)
 {
     double beyond[LANES] = {0};
     uint32_t out = 0;
@@ -255,7 +258,8 @@ TL_VECTORIZED static void add_lines(tl_field_lanes *restrict p, const tl_field_l
     }
 }
 
-void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count)
+/* Integrates the polygons that these lines bound. */
+static void sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count)
 {
     memset(p->origin_t, 0, sizeof *p - offsetof(tl_field_lanes, origin_t));
     place_origin(p, line, count);
@@ -270,7 +274,8 @@ TL_INLINE void put_vector(const tl_field_lanes *p, double to[3][LANES], unsigned
     to[2][l] = x * p->n[2][l] + y * p->t[2][l] + z * p->s[2][l];
 }
 
-TL_VECTORIZED static void share_out(const tl_field_lanes *restrict p, tl_field_parts *restrict out)
+/* What the polygons give whose lines have been summed. */
+TL_VECTORIZED static void share_polygons(const tl_field_lanes *restrict p, tl_field_parts *restrict out)
 {
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
@@ -297,11 +302,6 @@ TL_VECTORIZED static void share_out(const tl_field_lanes *restrict p, tl_field_p
         out->second[l] = (h * h + ot * ot + os * os) * area + part * (p->itt[l] + p->iss[l]) + 2 * (ot * it + os * is);
         put_vector(p, out->deepest_at, l, h, ot + p->deepest_t[l], os + p->deepest_s[l]);
     }
-}
-
-void tl_field_share(const tl_field_lanes *p, tl_field_parts *out)
-{
-    share_out(p, out);
 }
 
 /* ---------------------------------------------------------------- powers ----------------- */
@@ -356,9 +356,22 @@ TL_VECTORIZED static void share_powers(const tl_field_lanes *restrict p, tl_fiel
     }
 }
 
-void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count, tl_field_parts *out)
+/* After both: the integrals of higher powers of d. */
+static void add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count, tl_field_parts *out)
 {
     memset(p->flat, 0, offsetof(tl_field_lanes, origin_t) - offsetof(tl_field_lanes, flat));
     sum_powers(p, line, count);
     share_powers(p, out);
+}
+
+/* ---------------------------------------------------------------- all of it -------------- */
+
+void tl_field_integrate_lanes(tl_field_lanes *p, tl_field_bounds *by, tl_field_parts *out)
+{
+    by->lines = draw(p, by->planes.row, by->planes.most, by->flat, by->line);
+    by->beyond = corners_beyond(p, by->others.row, by->others.most, by->line);
+    sum_lines(p, by->line, by->lines);
+    share_polygons(p, out);
+    if (by->powers)
+        add_powers(p, by->line, by->lines, out);
 }

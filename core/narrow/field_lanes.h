@@ -51,6 +51,22 @@ typedef struct tl_field_plane {
     double face[TL_LANES]; /* 1: a face, 0: a border */
 } tl_field_plane;
 
+/* Planes of eight polygons: the k-th of each is in row k. */
+typedef struct tl_field_rows {
+    tl_field_plane *row;
+    uint32_t most;
+} tl_field_rows;
+
+/* What bounds eight polygons, and what is found of that. */
+typedef struct tl_field_bounds {
+    bool flat;                    /* the polygons are K's own faces */
+    bool powers;                  /* the integrals of higher powers of d are wanted */
+    tl_field_rows planes, others; /* planes that bound polygons; faces that are to bound none */
+    tl_field_line *line;          /* room for a line of each plane and one more */
+    size_t lines;                 /* drawn */
+    uint32_t beyond;              /* lanes, a bit each, of which a corner with d = 0 lies beyond one of the others */
+} tl_field_bounds;
+
 /* Tolerance: length of n_a - n_b below which two directions are the same: such faces have no surface between them. */
 #define TL_FIELD_ALIKE 1e-7
 
@@ -62,18 +78,9 @@ typedef struct tl_field_plane {
 /* Constant: offset of a plane that is none: it lies behind everything. */
 #define TL_FIELD_FAR 1e290
 
-/* Draws the lines of some planes, the first of `line`, and finds between which places they bound the polygons; how
- * many lines there are. Polygons between cells lie where no face is nearer than theirs, and theirs is not passed:
- * `line[0]` is that of d = 0. Others, with `flat`, lie on a face and within all other planes. */
-size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat, tl_field_line *line);
-/* Lanes, a bit each, of which a corner with d = 0 lies beyond one of some planes. */
-uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes, uint32_t count,
-                                 const tl_field_line *own);
-/* Integrates the polygons that these lines bound. */
-void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count);
-/* What the polygons give whose lines have been summed. */
-void tl_field_share(const tl_field_lanes *p, tl_field_parts *out);
-/* After both: the integrals of higher powers of d. */
-void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count, tl_field_parts *out);
+/* Draws the lines of the planes and integrates the polygons that they bound. Polygons between cells lie where no face
+ * is nearer than theirs, and theirs is not passed: line[0] is that of d = 0. Others, with `flat`, lie on a face and
+ * within all other planes. */
+void tl_field_integrate_lanes(tl_field_lanes *p, tl_field_bounds *by, tl_field_parts *out);
 
 #endif

@@ -14,7 +14,9 @@ void tl_narrow_scratch_free(tl_narrow_scratch *n)
     free(n->plane);
     free(n->press);
     free(n->face);
-    tl_field_free(&n->field);
+    free(n->field.line);
+    free(n->field.plane);
+    free(n->field.number);
     free(n->outlines.corner);
     free(n->outlines.face);
     free(n->batch);

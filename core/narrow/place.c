@@ -49,35 +49,3 @@ bool tl_pair_place(tl_pair_view *view, tl_narrow_scratch *scratch)
 {
     return tl_pairs_place(view, 1, scratch);
 }
-
-double tl_pair_moved(const tl_pair_view *view, const tl_pair_pose *since)
-{
-    double most = 0;
-    for (uint32_t i = 0; i < view->b->vertex_count; i++) {
-        tl_vec3 now = tl_v3_add(tl_m3_mul(&view->turn, view->b->vertex[i]), view->shift);
-        tl_vec3 then = tl_v3_add(tl_m3_mul(&since->turn, view->b->vertex[i]), since->shift);
-        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
-    }
-    for (uint32_t i = 0; i < view->a->vertex_count; i++) { /* in B's frame */
-        tl_vec3 now = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[i], view->shift));
-        tl_vec3 then = tl_m3_tmul(&since->turn, tl_v3_sub(view->a->vertex[i], since->shift));
-        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
-    }
-    return sqrt(most);
-}
-
-bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow_scratch *scratch)
-{
-    const tl_poly *b = view->b;
-    if (!tl_grow(&scratch->vertex_b, &scratch->vertex_capacity, b->vertex_count, sizeof(tl_vec3)) ||
-        !tl_grow(&scratch->normal_b, &scratch->normal_capacity, b->face_count, sizeof(tl_vec3)))
-        return false;
-    view->vertex_b = scratch->vertex_b;
-    view->normal_b = scratch->normal_b;
-    for (uint32_t i = b->start[face]; i < b->start[face + 1]; i++) {
-        uint32_t v = b->loop[i];
-        view->vertex_b[v] = tl_v3_add(tl_m3_mul(&view->turn, b->vertex[v]), view->shift);
-    }
-    view->normal_b[face] = tl_m3_mul(&view->turn, b->plane[face].normal);
-    return true;
-}

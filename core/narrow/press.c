@@ -317,7 +317,8 @@ static bool sum_patch(const tl_press_query *of, press_planes *p, tl_narrow_scrat
     p->faces.mesh = NULL;
     p->faces.energy_only = false;
     p->faces.powers = of->volumes;
-    return tl_field_integrate(&p->faces, &scratch->field, out);
+    const tl_field_faces *faces = &p->faces;
+    return tl_field_integrate(&faces, &out, 1, &scratch->field);
 }
 
 /* Whether planes of other parts are listed: they may be the nearest to some point and bound nothing. */
@@ -575,6 +576,60 @@ static void begin_mesh(const tl_press_query *of, press_planes *p, tl_field_sums 
     begin(of, origin, p);
 }
 
+/* The three listed faces of a block that meet in a vertex at the sharpest. false: there are no three. */
+static bool faces_at(const tl_pair_view *view, const tl_region *r, bool of_b, uint32_t vertex, uint8_t face[3])
+{
+    const tl_poly *p = of_b ? view->b : view->a;
+    uint32_t begin = of_b ? r->a : 0, end = begin + (of_b ? r->b : r->a);
+    uint32_t at[TL_FIELD_KNOWN], count = 0;
+    tl_vec3 n[TL_FIELD_KNOWN];
+    for (uint32_t k = begin; k < end; k++)
+        for (uint32_t h = p->start[r->face[k]]; h < p->start[r->face[k] + 1u]; h++)
+            if (p->loop[h] == vertex) {
+                n[count] = of_b ? view->normal_b[r->face[k]] : p->plane[r->face[k]].normal;
+                at[count++] = k;
+            }
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t j = i + 1; j < count; j++)
+            for (uint32_t k = j + 1; k < count; k++) {
+                double sharp = fabs(tl_v3_dot(tl_v3_cross(n[i], n[j]), n[k]));
+                if (sharp <= most)
+                    continue;
+                most = sharp;
+                face[0] = (uint8_t)at[i];
+                face[1] = (uint8_t)at[j];
+                face[2] = (uint8_t)at[k];
+            }
+    return most > 0;
+}
+
+/* The corners of one block that lie in the other, as far as the listed faces tell. A corner has the numbers of three
+ * of them in the list. */
+static void list_inner_corners(const tl_pair_view *view, const tl_region *r, tl_mesh_inner *out)
+{
+    out->count = 0;
+    for (int of_b = 0; of_b < 2; of_b++) {
+        const tl_poly *p = of_b ? view->b : view->a;
+        const tl_vec3 *vertex = of_b ? view->vertex_b : view->a->vertex;
+        uint32_t other = of_b ? 0 : r->a, end = of_b ? r->a : r->a + r->b;
+        for (uint32_t i = 0; i < p->vertex_count && out->count <= TL_MESH_INNER; i++) {
+            bool inside = true;
+            for (uint32_t k = other; k < end && inside; k++) {
+                tl_plane plane = tl_view_plane(view, !of_b, r->face[k]);
+                inside = tl_v3_dot(plane.normal, vertex[i]) <= plane.offset;
+            }
+            if (!inside)
+                continue;
+            if (out->count == TL_MESH_INNER || !faces_at(view, r, of_b, i, out->face[out->count])) {
+                out->count = TL_MESH_INNER + 1;
+                return;
+            }
+            out->count++;
+        }
+    }
+}
+
 /* Forgets what is no longer known, and finds what a new mesh needs. */
 static void begin_anew(const tl_press_query *of, press_planes *p, tl_mesh_inner *inner)
 {
@@ -590,7 +645,7 @@ static void begin_anew(const tl_press_query *of, press_planes *p, tl_mesh_inner 
         return;
     if (mesh->bounding && !tl_region_corners_agree(of->view, of->region))
         mesh->bounding = 0;
-    tl_region_inner_corners(of->view, of->region, inner);
+    list_inner_corners(of->view, of->region, inner);
 }
 
 static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch, tl_press press[],
@@ -615,7 +670,7 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
         to[left] = &sums[k];
         anew[left++] = k;
     }
-    if (left && !tl_field_integrate_all(faces, to, left, &scratch->field))
+    if (left && !tl_field_integrate(faces, to, left, &scratch->field))
         return false;
     for (uint32_t k = 0; k < left; k++)
         begin_mesh(&query[anew[k]], &p[anew[k]], &sums[anew[k]]);

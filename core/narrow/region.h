@@ -35,9 +35,6 @@ void tl_region_choose_flush(const tl_pair_view *view, tl_region *region);
 /* Whether the faces marked in `bounding` are all that bound the common volume. The corners of one block that lie in
  * the other tell it. The pair has moved by less than its margin. */
 bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region);
-/* The corners of one block that lie in the other, as far as the listed faces tell. A corner has the numbers of three
- * of them in the list. */
-void tl_region_inner_corners(const tl_pair_view *view, const tl_region *region, tl_mesh_inner *out);
 /* Sine of the angle between two faces, one of A and one of B. */
 double tl_region_tilt(const tl_pair_view *view, uint32_t face_a, uint32_t face_b);
 

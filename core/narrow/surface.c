@@ -24,13 +24,6 @@ static bool reserve(tl_surface *s, size_t corners)
            tl_grow(&s->size, &s->polygon_capacity, s->polygons + 1, sizeof *s->size);
 }
 
-void tl_surface_free(tl_surface *surface)
-{
-    free(surface->corner);
-    free(surface->size);
-    *surface = (tl_surface){0};
-}
-
 /* ---------------------------------------------------------------- polygons --------------- */
 
 /* A polygon that is being cut: the corners behind those of the surface. What is cut from it goes behind it. */

@@ -4,7 +4,8 @@
 
 #include "narrow/press.h"
 
-/* Polygons in A's frame, counter-clockwise seen against the normal from A to B. Zero at first. */
+/* Polygons in A's frame, counter-clockwise seen against the normal from A to B. Zero at first; the
+ * owner frees both lists. */
 typedef struct tl_surface {
     tl_vec3 *corner;
     uint32_t *size; /* [polygons] corners of each */
@@ -16,6 +17,5 @@ bool tl_surface_add_patch(const tl_pair_view *view, uint32_t face_a, uint32_t fa
 /* Adds the polygons on which the depths in both blocks are equal (field.h), where their faces press. There is one for
  * each face of A and face of B that are the nearest there. */
 bool tl_surface_add_field(const tl_press_query *query, tl_surface *surface);
-void tl_surface_free(tl_surface *surface);
 
 #endif

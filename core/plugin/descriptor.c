@@ -6,7 +6,6 @@
 #include "plugin/descriptor.h"
 
 #include "base/error.h"
-#include "base/names.h"
 #include "base/params.h"
 
 #include <math.h>
@@ -143,6 +142,14 @@ static bool names_clash(const tl_param *a, const tl_param *b)
     return same(a->name, b->name) || same(a->name, b->alias) || same(a->alias, b->name) || same(a->alias, b->alias);
 }
 
+/* True for [a-z][a-z0-9_]*, the form of every name a script uses as a key. */
+static bool name_is_valid(const char *name)
+{
+    if (!name || name[0] < 'a' || name[0] > 'z')
+        return false;
+    return name[strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789_")] == '\0';
+}
+
 static tl_status check_choices(const tl_param *p, tl_error *error)
 {
     size_t count = 0;
@@ -192,7 +199,7 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
 {
     const tl_param *p = &kind->params[index];
     size_t bytes = tl_param_bytes(p->type);
-    if (!tl_name_is_valid(p->name) || (p->alias && !tl_name_is_valid(p->alias)))
+    if (!name_is_valid(p->name) || (p->alias && !name_is_valid(p->alias)))
         return tl_fail(error, TL_E_PLUGIN, "parameter %u has a bad name or alias ('%.60s')", index + 1,
                        p->name ? p->name : "");
     if (!p->unit || !p->doc)
@@ -226,7 +233,7 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
 static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *error)
 {
     const tl_state *s = &kind->states[index];
-    if (!tl_name_is_valid(s->name))
+    if (!name_is_valid(s->name))
         return tl_fail(error, TL_E_PLUGIN, "state %u has a bad name ('%.60s')", index + 1, s->name ? s->name : "");
     if (!s->unit || !s->doc)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name, s->doc ? "unit" : "doc");
@@ -344,7 +351,7 @@ static tl_status copy_kind(const version *v, tl_kind *kind)
 static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *error)
 {
     const tl_kind *kind = &plugin->kinds[index];
-    if (!tl_name_is_valid(kind->name))
+    if (!name_is_valid(kind->name))
         return tl_fail(error, TL_E_PLUGIN, "kind %u has the bad name '%.60s': small letters, digits and _ only",
                        index + 1, kind->name ? kind->name : "");
     if (!kind->doc)
@@ -406,27 +413,12 @@ static tl_status read_kinds(const version *v, tl_plugin *plugin, tl_kind *kinds)
     return TL_OK;
 }
 
-tl_status tl_descriptor_version(const tl_plugin *given, tl_error *error)
-{
-    if (given->size < offsetof(tl_plugin, abi_minor) + sizeof given->abi_minor)
-        return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin", given->size);
-    if (given->abi_major != TL_ABI_MAJOR)
-        return tl_fail(error, TL_E_PLUGIN,
-                       "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew "
-                       "against these headers",
-                       given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
-    return TL_OK;
-}
-
 tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char note[TL_NOTE_TEXT], tl_error *error)
 {
     *plugin = NULL;
     note[0] = '\0';
-    tl_status status = tl_descriptor_version(given, error);
-    if (status != TL_OK)
-        return status;
     version v = {given->abi_minor, error};
-    status = check_size(&v, "its descriptor", given->size, FIRST_PLUGIN_SIZE, sizeof *given);
+    tl_status status = check_size(&v, "its descriptor", given->size, FIRST_PLUGIN_SIZE, sizeof *given);
     if (status != TL_OK)
         return status;
     if (!given->id || !given->id[0] || !given->version || !given->doc || !given->licence)

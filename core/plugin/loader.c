@@ -408,6 +408,19 @@ static tl_plugin_entry_fn find_entry(void *handle)
     return entry;
 }
 
+/* Fails, with both versions, where a descriptor is one of another major version, or none. */
+static tl_status check_version(const tl_plugin *given, tl_error *error)
+{
+    if (given->size < offsetof(tl_plugin, abi_minor) + sizeof given->abi_minor)
+        return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin", given->size);
+    if (given->abi_major != TL_ABI_MAJOR)
+        return tl_fail(error, TL_E_PLUGIN,
+                       "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew "
+                       "against these headers",
+                       given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
+    return TL_OK;
+}
+
 /* Why a plugin gives no descriptor: by what it gives to hosts of other versions, the one it was built with. */
 static tl_status tell_refusal(tl_plugin_entry_fn entry, tl_error *error)
 {
@@ -415,7 +428,7 @@ static tl_status tell_refusal(tl_plugin_entry_fn entry, tl_error *error)
         tl_enter(NULL, ENTRY);
         const tl_plugin *given = entry(major, UINT32_MAX);
         tl_leave();
-        tl_status status = given ? tl_descriptor_version(given, error) : TL_OK;
+        tl_status status = given ? check_version(given, error) : TL_OK;
         if (status != TL_OK)
             return status;
         if (given)
@@ -441,7 +454,9 @@ static tl_status take_in(const char *path, void *handle, tl_error *error)
         return tell_refusal(entry, error);
     tl_plugin *plugin;
     char note[TL_NOTE_TEXT];
-    tl_status status = tl_descriptor_read(given, &plugin, note, error);
+    tl_status status = check_version(given, error);
+    if (status == TL_OK)
+        status = tl_descriptor_read(given, &plugin, note, error);
     if (status != TL_OK)
         return status;
     status = tl_registry_add(path, plugin, note, error);

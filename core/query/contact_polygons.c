@@ -111,8 +111,10 @@ tl_status tl_contact_polygons_find(tl_model *m, const uint32_t *rows, size_t cou
         tl_parallel_for(m->pool, count, CHUNK, find_range, &j);
         found = join(j.parts, chunks, out);
     }
-    for (size_t k = 0; j.parts && k < chunks; k++)
-        tl_surface_free(&j.parts[k].surface);
+    for (size_t k = 0; j.parts && k < chunks; k++) {
+        free(j.parts[k].surface.corner);
+        free(j.parts[k].surface.size);
+    }
     free(j.parts);
     return found ? TL_OK : tl_fail_memory(&m->error);
 }

@@ -21,6 +21,7 @@
 #include "model/walk.h"
 #include "state/parts.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,12 +137,37 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
 /* Bits of `said`: one for each remark. */
 #define ALL_REMARKS ((2u << TL_REMARK_UNDECIDED) - 1)
 
+/* Whether a member holds what its parameter allows. Whole numbers of 64 bits, and texts, are not looked at. */
+static bool param_is_sound(const tl_param *param, const void *member)
+{
+    double number[3];
+    int32_t choice;
+    const size_t bytes = tl_param_bytes(param->type);
+    switch (param->type) {
+    case TL_PARAM_BOOL: memcpy(&choice, member, bytes); return choice == 0 || choice == 1;
+    case TL_PARAM_ENUM:
+        memcpy(&choice, member, bytes);
+        for (int32_t k = 0; param->choices[k]; k++)
+            if (k == choice)
+                return true;
+        return false;
+    case TL_PARAM_REAL:
+    case TL_PARAM_VEC3:
+        memcpy(number, member, bytes);
+        for (size_t k = 0; k < bytes / sizeof *number; k++)
+            if (!tl_param_in_range(param, number[k]) && !(param->flags & TL_PARAM_OPTIONAL && isnan(number[k])))
+                return false;
+        return true;
+    default: return true;
+    }
+}
+
 /* Settings are what the tables of parameters allow. */
 static bool struct_is_sound(const tl_model *m, tl_settings of)
 {
     for (size_t i = 0; i < of.count; i++) {
         const void *at = tl_setting_at(m, &of, i);
-        if (at && !tl_param_sound(&of.params[i], at))
+        if (at && !param_is_sound(&of.params[i], at))
             return false;
     }
     return true;

@@ -20,6 +20,8 @@
 #include "model/walk.h"
 
 #include <assert.h>
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -315,6 +317,6 @@ tl_status tl_state_hash(tl_model *m, char text[33])
         return status;
     hash_settings(&hash, m);
     hash_blocks(&hash, m);
-    tl_hash_text(&hash, text);
+    snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;
 }

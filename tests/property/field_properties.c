@@ -14,7 +14,7 @@ static tl_field_power integral_of(scene *s)
 {
     tl_field_sums sums;
     list_scene(s);
-    CHECK(tl_field_integrate(&s->planes.faces, &s->scratch, &sums));
+    CHECK(field_integrate(&s->planes.faces, &s->pair.scratch.field, &sums));
     return s->power > 1 ? sums.powers[s->power - 2] : (tl_field_power){sums.energy, sums.force, sums.moment};
 }
 
@@ -144,7 +144,7 @@ static tl_field_sums sums_of_part(scene *s, tl_vec3 n, double offset, double sid
         p->number[3][i] = side * offset;
         p->faces.border_a = p->faces.seam_a = 1;
     }
-    CHECK(tl_field_integrate(&p->faces, &s->scratch, &sums));
+    CHECK(field_integrate(&p->faces, &s->pair.scratch.field, &sums));
     return sums;
 }
 
@@ -230,7 +230,7 @@ TEST(volume_is_that_of_what_is_left_by_cuts)
         make_scene(&s, random_kind(&seed), random_kind(&seed), scene_between(&seed, 0.02, 0.4), false, &seed);
         list_scene(&s);
         tl_field_sums found;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &found));
+        CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &found));
         double volume = volume_in_common(&s);
         /* what is cut of a bent face is not what lies under its plane */
         bool flat = tl_poly_check(s.pair.view.a, TL_POLY_ON, NULL) == TL_OK &&
@@ -256,7 +256,7 @@ TEST(energy_is_that_of_a_sum)
         s.power = 2;
         list_scene(&s);
         tl_field_sums found;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &found));
+        CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &found));
         double sum = 0, square = 0, cube = 0;
         for (int i = 0; i < CELLS * CELLS * CELLS; i++) {
             tl_vec3 at = tl_v3(i % CELLS + 0.5, i / CELLS % CELLS + 0.5, i / CELLS / CELLS + 0.5);
@@ -287,11 +287,11 @@ TEST(energy_from_the_surface_is_that_from_all)
         list_scene(&s);
         tl_field_sums all, few;
         tl_field_faces *f = &s.planes.faces;
-        CHECK(tl_field_integrate(f, &s.scratch, &all));
+        CHECK(field_integrate(f, &s.pair.scratch.field, &all));
         f->mesh = &mesh;
         f->energy_only = k % 2;
         f->powers = !f->energy_only;
-        CHECK(tl_field_integrate(f, &s.scratch, &few));
+        CHECK(field_integrate(f, &s.pair.scratch.field, &few));
         if (all.deepest > 0 && mesh.bounding) {
             CHECK_REL(few.energy, all.energy, 1e-9);
             if (!f->energy_only)
@@ -324,10 +324,10 @@ TEST(a_far_origin_moves_nothing)
         tl_field_sums near, far;
         tl_vec3 by = scene_direction(&seed);
         list_scene(&s);
-        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &near));
+        CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &near));
         s.origin = tl_v3_add(s.origin, by);
         list_scene(&s);
-        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &far));
+        CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &far));
         double force = tl_v3_norm(near.force), length = cbrt(near.volume);
         if (near.volume > 0) {
             double off = FAR_ORIGIN / length;
@@ -358,7 +358,7 @@ TEST(flush_faces_have_the_force_of_springs)
         s.origin = tl_v3(0.1, 0, 0.5);
         list_scene(&s);
         tl_field_sums sums;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &sums));
+        CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &sums));
         CHECK_REL(sums.volume, o, 1e-9);
         CHECK_REL(2 * sums.energy, 0.5 * o * o, 2 * o);
         CHECK_REL(2 * sums.force.z, o, 2 * o);
@@ -379,7 +379,7 @@ TEST(blocks_that_only_touch_have_no_force)
         make_scene(&s, random_kind(&seed) % 5, random_kind(&seed) % 5, -1e-9, k % 2, &seed);
         list_scene(&s);
         tl_field_sums sums;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &sums));
+        CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &sums));
         CHECK_NEAR(tl_v3_norm(sums.force), 0, 0);
         free_scene(&s);
     }

@@ -23,6 +23,12 @@ typedef struct planes {
     tl_field_faces faces;
 } planes;
 
+/* All integrals of one pair. */
+static inline bool field_integrate(const tl_field_faces *faces, tl_field_scratch *scratch, tl_field_sums *sums)
+{
+    return tl_field_integrate(&faces, &sums, 1, scratch);
+}
+
 /* Whether a face may meet the other block: not when all its corners lie outside one face of the other. */
 static bool may_meet(const tl_pair_view *view, bool of_b, uint32_t face)
 {
@@ -72,7 +78,6 @@ typedef struct scene {
     planes planes;
     uint8_t border_a[256], border_b[256];
     bool borders, apart;
-    tl_field_scratch scratch;
     tl_vec3 origin; /* near the common volume */
     int power;      /* of d in the integral over K that is looked at: 2 or 3, else 1 */
 } scene;
@@ -159,7 +164,6 @@ static void make_scene(scene *s, int one, int other, double depth, bool flush, u
 
 static void free_scene(scene *s)
 {
-    tl_field_free(&s->scratch);
     scene_pair_free(&s->pair);
 }
 

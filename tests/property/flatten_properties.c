@@ -279,7 +279,7 @@ TEST(triangles_of_faces)
         expect_block(other, wanted, scale, moved);
         CHECK_NEAR(tl_poly_mass(other).volume / (scale * scale * scale), tl_poly_mass(p).volume,
                    surface_area(p) * (0.2 * moved + 1e-14 * (1 + away)));
-        if (CHECK_INT(tl_poly_hull(t.vertex, t.vertices, &hull, &error), TL_OK))
+        if (CHECK_INT(tl_poly_hull(t.vertex, t.vertices, TL_HULL_OF_CORNERS, &hull, &error), TL_OK))
             expect_block(hull, wanted, scale, moved);
         tl_poly_free(hull);
         tl_poly_free(p);
@@ -302,7 +302,7 @@ TEST(drums)
             x[2 * k + 1] = tl_v3(cos(angle), sin(angle), height);
         }
         tl_poly *p = NULL;
-        CHECK_INT(tl_poly_hull(x, 2 * n, &p, &error), TL_OK);
+        CHECK_INT(tl_poly_hull(x, 2 * n, TL_HULL_OF_CORNERS, &p, &error), TL_OK);
         CHECK_INT(p->face_count, n + 2);
         tl_poly_free(p);
     }
@@ -325,7 +325,7 @@ TEST(rounded_edges)
             }
         }
         tl_poly *p = NULL, *box = NULL;
-        CHECK_INT(tl_poly_hull(x, n, &p, &error), TL_OK);
+        CHECK_INT(tl_poly_hull(x, n, TL_HULL_OF_CORNERS, &p, &error), TL_OK);
         CHECK_INT(tl_poly_box(tl_v3(0, 0, 0), tl_v3(1, 1, 1), &box, &error), TL_OK);
         for (uint32_t f = 0; f < 6; f++) {
             int found = 0;

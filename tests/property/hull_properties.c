@@ -46,7 +46,7 @@ static void shuffle(tl_vec3 *points, size_t count)
 static int is_its_own_hull(const tl_poly *p)
 {
     tl_poly *q = NULL;
-    if (tl_poly_hull(p->vertex, p->vertex_count, &q, &error))
+    if (tl_poly_hull(p->vertex, p->vertex_count, TL_HULL_OF_CORNERS, &q, &error))
         return 0;
     int same = q->vertex_count == p->vertex_count && q->face_count == p->face_count && q->edge_count == p->edge_count &&
                !memcmp(p->vertex, q->vertex, p->vertex_count * sizeof *p->vertex) &&
@@ -61,7 +61,7 @@ static int is_its_own_hull(const tl_poly *p)
 static tl_poly *checked_hull(const tl_vec3 *points, size_t count, double tolerance)
 {
     tl_poly *p = NULL;
-    if (!CHECK_INT(tl_poly_hull(points, count, &p, &error), TL_OK) ||
+    if (!CHECK_INT(tl_poly_hull(points, count, TL_HULL_OF_CORNERS, &p, &error), TL_OK) ||
         !CHECK_INT(tl_poly_check(p, tolerance, &error), TL_OK)) {
         printf("    %zu points: %s\n", count, error.text);
         return p;
@@ -202,7 +202,7 @@ TEST(lattice_points)
                          floor(uniform(0, 4)) + noise * uniform(-1, 1));
         tl_poly *p = NULL;
         size_t vertex = 0;
-        while (tl_poly_hull(x, n, &p, &error)) {
+        while (tl_poly_hull(x, n, TL_HULL_OF_CORNERS, &p, &error)) {
             CHECK(p == NULL);
             const char *at = strstr(error.text, "vertex ");
             if (!at || !strstr(error.text, "inside the hull"))
@@ -261,7 +261,7 @@ TEST(noise_as_large_as_the_tolerance)
             x[k] = tl_m3_mul(&r, tl_v3_madd(tl_v3_madd(a, along, tl_v3_sub(b, a)), noise, jitter));
         }
         tl_poly *p = NULL;
-        while (tl_poly_hull(x, n, &p, &error)) {
+        while (tl_poly_hull(x, n, TL_HULL_OF_CORNERS, &p, &error)) {
             const char *at = strstr(error.text, "vertex ");
             if (!at || !strstr(error.text, "inside the hull"))
                 break;

@@ -68,7 +68,7 @@ TEST(a_mesh_with_borders_is_all_of_the_field)
         choose_borders(&s, &seed);
         list_with_seams(&s, &mesh, &inner);
         tl_field_sums made, all, found;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &made));
+        CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &made));
         cases += made.deepest > 0;
         meshes += mesh.polygons > 0;
         for (int step = 0; step < 5 && mesh.polygons > 0; step++) {
@@ -80,7 +80,7 @@ TEST(a_mesh_with_borders_is_all_of_the_field)
             list_with_seams(&s, &mesh, &inner);
             bool stands = tl_mesh_integrate(&s.planes.faces, &found);
             s.planes.faces.mesh = NULL;
-            CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &all));
+            CHECK(field_integrate(&s.planes.faces, &s.pair.scratch.field, &all));
             if (!stands)
                 continue;
             stand++;

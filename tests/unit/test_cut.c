@@ -190,8 +190,8 @@ TEST(neighbours_get_the_same_vertices)
         left[4] = tl_v3(-1, 3e3, 0);
         right[4] = tl_v3(1, 3e3, 0);
         tl_poly *p = NULL, *q = NULL;
-        CHECK_INT(tl_poly_hull(left, 5, &p, &error), TL_OK);
-        CHECK_INT(tl_poly_hull(right, 5, &q, &error), TL_OK);
+        CHECK_INT(tl_poly_hull(left, 5, TL_HULL_OF_CORNERS, &p, &error), TL_OK);
+        CHECK_INT(tl_poly_hull(right, 5, TL_HULL_OF_CORNERS, &q, &error), TL_OK);
         tl_vec3 n = tl_v3(check_random(&seed) - 0.5, check_random(&seed) - 0.5, check_random(&seed) - 0.5);
         tl_cut a = cut_by(p, n, tl_v3(0, 3e3, 0)), b = cut_by(q, n, tl_v3(0, 3e3, 0));
         if (a.result == TL_CUT_MADE && b.result == TL_CUT_MADE) {
@@ -277,7 +277,7 @@ TEST(large_polyhedron)
         points[2 * k + 1] = tl_v3(cos(angle), sin(angle), 1);
     }
     tl_poly *p = NULL;
-    CHECK_INT(tl_poly_hull(points, 2 * SIDES, &p, &error), TL_OK);
+    CHECK_INT(tl_poly_hull(points, 2 * SIDES, TL_HULL_OF_CORNERS, &p, &error), TL_OK);
     tl_cut cut = cut_by(p, tl_v3(0.1, 0.2, 1), tl_v3(0, 0, 0));
     CHECK_INT(cut.result, TL_CUT_MADE);
     expect_counts(cut.below, 2 * SIDES, 3 * SIDES, SIDES + 2);

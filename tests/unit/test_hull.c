@@ -12,7 +12,7 @@ static tl_error error;
 static tl_poly *hull_of(const tl_vec3 *points, size_t count)
 {
     tl_poly *p = NULL;
-    if (!CHECK_INT(tl_poly_hull(points, count, &p, &error), TL_OK)) {
+    if (!CHECK_INT(tl_poly_hull(points, count, TL_HULL_OF_CORNERS, &p, &error), TL_OK)) {
         printf("    %s\n", error.text);
         exit(1);
     }
@@ -23,7 +23,7 @@ static void expect_refusal(const tl_vec3 *points, size_t count, const char *sent
 {
     tl_poly *p = (tl_poly *)&error;
     error = (tl_error){0};
-    CHECK_INT(tl_poly_hull(points, count, &p, &error), TL_E_GEOMETRY);
+    CHECK_INT(tl_poly_hull(points, count, TL_HULL_OF_CORNERS, &p, &error), TL_E_GEOMETRY);
     CHECK_CONTAINS(error.text, sentence);
     CHECK(p == NULL);
 }

@@ -17,7 +17,7 @@ static tl_poly *hull_of(const tl_vec3 *points, size_t count)
 {
     tl_error error = {0};
     tl_poly *p = NULL;
-    if (!CHECK_INT(tl_poly_hull(points, count, &p, &error), TL_OK)) {
+    if (!CHECK_INT(tl_poly_hull(points, count, TL_HULL_OF_CORNERS, &p, &error), TL_OK)) {
         printf("    %s\n", error.text);
         exit(1);
     }

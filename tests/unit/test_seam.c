@@ -275,7 +275,7 @@ static bool hang_together(double gap, double lean, double unit)
         corner[1][i] = tl_m3_mul(&turn, on->vertex[i]);
     }
     for (int k = 0; k < 2; k++)
-        CHECK_INT(tl_poly_hull(corner[k], 8, &part[k], &error), TL_OK);
+        CHECK_INT(tl_poly_hull(corner[k], 8, TL_HULL_OF_CORNERS, &part[k], &error), TL_OK);
     tl_poly *const other[2] = {part[1], part[0]};
     CHECK_INT(tl_poly_connected(part, 2, NULL, NULL, label[0], &error), TL_OK);
     CHECK_INT(tl_poly_connected(other, 2, NULL, NULL, label[1], &error), TL_OK);
