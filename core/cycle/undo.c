@@ -16,6 +16,7 @@
 
 #include "cycle/cycle_data.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,7 +46,8 @@ struct tl_undo {
     double dt;        /* that the user had fixed then; NAN: none */
     tl_vec3 gravity;  /* then */
     shadow bodies, loads;
-    tl_table *table[TABLES]; /* of contributors, in their order */
+    tl_table *table[TABLES]; /* of contributors, in their order, those of the step that was kept last */
+    size_t table_count;
     shadow contributor[TABLES];
     tl_reaction *reaction;
     size_t reaction_capacity;
@@ -96,12 +98,13 @@ static void shadow_copy(const shadow *s, const tl_table *table, size_t first, si
 
 /* ---------------------------------------------------------------- what is kept ----------- */
 
-/* The shadow of a contributor's table. */
+/* The shadow of a contributor's table: one that it named when room was made in this step. */
 static shadow *shadow_of(struct tl_undo *u, const tl_table *table)
 {
     size_t k = 0;
-    while (u->table[k] != table)
+    while (k < u->table_count && u->table[k] != table)
         k++;
+    assert(u->keeps && k < u->table_count);
     return &u->contributor[k];
 }
 
@@ -137,6 +140,7 @@ static bool reserve_contributors(tl_model *m)
             enough = enough && shadow_reserve(&u->contributor[all + k], table[k]);
         all += count;
     }
+    u->table_count = all;
     return enough;
 }
 

@@ -190,11 +190,12 @@ static void free_columns(columns *c)
 static void set_numbers(const column *of, size_t row, const double *value)
 {
     unsigned char *to = of->at + row * bytes_of(of);
-    const char type = of->type[0];
-    for (size_t w = 0; w < of->width; w++)
-        to = type == 'd'   ? tl_vtk_put_double(to, value[w])
-             : type == 'f' ? tl_vtk_put_float(to, value[w])
-                           : tl_vtk_put_int(to, (int32_t)(uint32_t)value[w]);
+    const tl_vec3 vector = {value[0], of->width == 3 ? value[1] : 0, of->width == 3 ? value[2] : 0};
+    switch (of->type[0]) {
+    case 'd': of->width == 3 ? tl_vtk_put_vec3(to, vector) : tl_vtk_put_double(to, value[0]); break;
+    case 'f': of->width == 3 ? tl_vtk_put_float3(to, vector) : tl_vtk_put_float(to, value[0]); break;
+    default: tl_vtk_put_int(to, (int32_t)(uint32_t)value[0]);
+    }
 }
 
 static void set_row(const columns *c, const tl_model *m, size_t row, const tl_contact_facts *facts, uint32_t contact,

@@ -390,7 +390,7 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
     }
 }
 
-/* Texts and lists of points are the script's and may be gone. */
+/* Laws, dampings and settings have no texts and no lists of points. */
 void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params)
 {
     const char *at = (const char *)params + param->offset;

@@ -59,7 +59,7 @@ void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);
 /* The shortest text, of so many digits or more, that reads back as the same number. */
 #define TL_LUA_NUMBER 40
 const char *tl_lua_number_text(double number, int digits, char text[TL_LUA_NUMBER]);
-/* Pushes the value of a parameter; nil for a number that was left out, a text or a list of points. */
+/* Pushes the value of a parameter; nil for a number that was left out. */
 void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params);
 /* Pushes a field's value as Lua sees it. */
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);

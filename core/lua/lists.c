@@ -222,8 +222,6 @@ static void print_params(FILE *page, const tl_kind *kind, const void *params)
 {
     for (uint32_t i = 0; i < kind->param_count; i++) {
         char name[80], text[VALUE_TEXT];
-        if (kind->params[i].type == TL_PARAM_STRING || kind->params[i].type == TL_PARAM_POINTS)
-            continue; /* the script's, and may be gone */
         snprintf(name, sizeof name, "  %s", kind->params[i].name);
         value_text(&kind->params[i], params, text);
         print_row(page, name, text);

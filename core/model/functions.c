@@ -319,12 +319,3 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
     }
     return NULL;
 }
-
-const char *const *tl_function_names(void)
-{
-    static const char *const names[] = {"model",     "insitu",        "tensor",     "timestep", "mass_scaling",
-                                        "load",      "contact_area",  "cycle",      "solve",    "profile",
-                                        "write_vtk", "write_section", "write_html", "view",     "write_blocks",
-                                        "filter",    "keyblocks",     "law_test",   "law_leg",  NULL};
-    return names;
-}

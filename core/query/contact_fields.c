@@ -69,17 +69,21 @@ const tl_field *tl_contact_quantity(const char *name)
 
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3])
 {
-    const size_t width = of->kind == TL_FIELD_VEC3 ? 3 : of->kind == TL_FIELD_IDS ? 2 : 1;
     const char *from = (const char *)facts + offsets[of - fields];
     uint32_t whole[2];
-    if (of->kind == TL_FIELD_SCALAR || of->kind == TL_FIELD_VEC3) {
-        memcpy(out, from, width * sizeof *out);
-        return width;
+    switch (of->kind) { /* copies of fixed length are not called */
+    case TL_FIELD_SCALAR: memcpy(out, from, sizeof *out); return 1;
+    case TL_FIELD_VEC3: memcpy(out, from, 3 * sizeof *out); return 3;
+    case TL_FIELD_IDS:
+        memcpy(whole, from, sizeof whole);
+        out[0] = whole[0];
+        out[1] = whole[1];
+        return 2;
+    default:
+        memcpy(whole, from, sizeof *whole);
+        out[0] = whole[0];
+        return 1;
     }
-    memcpy(whole, from, width * sizeof *whole);
-    for (size_t w = 0; w < width; w++)
-        out[w] = whole[w];
-    return width;
 }
 
 size_t tl_point_count(const tl_model *m, uint32_t contact)

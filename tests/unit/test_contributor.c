@@ -134,6 +134,48 @@ TEST(a_cube_swings_on_it_and_makes_no_energy)
     tl_model_destroy(m);
 }
 
+/* A step three times as long as the stable one makes the cube nine times as heavy to move, though it has no contact: its
+ * weight stays, and it swings as far in three times the period. */
+TEST(a_cube_that_only_it_holds_gets_mass_for_a_longer_step)
+{
+    tl_model *m = hanging();
+    double stable, low = 0, when = 0;
+    scene_ok(m, tl_model_dt(m, &stable));
+    const double mass = m->bodies.mass[0], period = 3 * 2 * TL_PI * sqrt(mass / K);
+    tl_mass_scaling scaling = {sizeof scaling, 1, 3 * stable, 7.99};
+    tl_solve_result result;
+    char before[33], after[33];
+    scene_ok(m, tl_state_hash(m, before));
+    scene_ok(m, tl_model_mass_scaling(m, &scaling));
+    CHECK_INT(tl_model_cycle(m, 1, &result), TL_E_STATE);
+    CHECK_CONTAINS(tl_model_error(m)->text, "would add 8 of the mass of the bodies that can move");
+    CHECK_CONTAINS(tl_model_error(m)->text, "block 1 would get 9 times its inertia");
+    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){sizeof scaling, 0, NAN, NAN}));
+    scene_ok(m, tl_state_hash(m, after));
+    CHECK_TEXT(after, before);
+    scaling.most = 8.01;
+    scene_ok(m, tl_model_mass_scaling(m, &scaling));
+    for (int k = 0; m->time < period; k++) {
+        tl_energy energy;
+        run(m, 1);
+        scene_ok(m, tl_model_energy(m, &energy));
+        CHECK(fabs(energy.balance) < 1e-2);
+        if (stretch_of(m, 0) < low) {
+            low = stretch_of(m, 0);
+            when = m->time;
+        }
+    }
+    const tl_mass_added added = tl_model_mass_added(m);
+    CHECK_INT(added.bodies, 1);
+    CHECK_INT(added.worst, 1);
+    CHECK_NEAR(added.factor, 9, 1e-9);
+    CHECK_NEAR(added.share, 8, 1e-9);
+    CHECK_NEAR(low, -2 * mass * G / K,
+               0.07 * mass * G / K); /* a step is 0.7 rad: the lowest is within 0.35 rad of one */
+    CHECK_NEAR(when, period / 2, 3 * stable);
+    tl_model_destroy(m);
+}
+
 /* Rest is found where the spring carries the weight. */
 TEST(a_cube_comes_to_rest_on_it)
 {
@@ -204,5 +246,6 @@ TEST(springs_end)
     tl_table_free(&springs.table);
 }
 
-TEST_MAIN(RUN(a_cube_swings_on_it_and_makes_no_energy), RUN(a_cube_comes_to_rest_on_it),
-          RUN(a_step_that_it_fails_is_undone), RUN(a_held_body_feels_it), RUN(springs_end))
+TEST_MAIN(RUN(a_cube_swings_on_it_and_makes_no_energy), RUN(a_cube_that_only_it_holds_gets_mass_for_a_longer_step),
+          RUN(a_cube_comes_to_rest_on_it), RUN(a_step_that_it_fails_is_undone), RUN(a_held_body_feels_it),
+          RUN(springs_end))

@@ -128,6 +128,15 @@ TEST(broken_plugins_are_refused_with_the_reason)
     refused(bad_folder, "begun_energy", "state 'some' is an energy: it must be a scalar that begins at 0");
     refused(bad_folder, "two_energies", "states 'one' and 'two' are both energies of shear");
     refused(bad_folder, "screen_states", "a screen has no states, this one declares 1");
+    refused(
+        bad_folder, "keeps_text",
+        "law 'keeps_text': parameter 'name' is a string, which lives only as long as the call: a law cannot keep it");
+    refused(bad_folder, "keeps_points",
+            "damping 'keeps_points': parameter 'curve' is a list of points, which lives only as long as the call: a "
+            "damping cannot keep it");
+    refused(bad_folder, "text_screen",
+            "screen 'text_screen': parameter 'name' is a string, which lives only as long as the call: a screen cannot "
+            "keep it");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
 }
 

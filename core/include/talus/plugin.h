@@ -70,7 +70,7 @@ typedef enum tl_param_type {
     TL_PARAM_BOOL, /* int32_t, 0 or 1 */
     TL_PARAM_ENUM, /* int32_t, index into `choices` */
     TL_PARAM_VEC3, /* tl_vec3; NaN when optional and not given */
-    /* of generators only: they are valid during the call */
+    /* of generators only: they are valid during the call, and the host refuses them in kinds that keep parameters */
     TL_PARAM_STRING, /* const char *; NULL when optional and not given */
     TL_PARAM_POINTS  /* tl_points: a list of vectors; empty when optional and not given */
 } tl_param_type;

@@ -15,8 +15,8 @@ struct tl_model;
 struct tl_timestep;
 struct tl_contact_area;
 
-/* A plugin in use and its parameters, a struct as kind->params describes it. Texts and lists in it are the script's and
- * may be gone: only numbers, vectors, choices and truths are to be read. */
+/* A plugin in use and its parameters, a struct of the model's as kind->params describes it. It holds no texts or lists:
+ * the loader refuses a law or damping with such parameters, which live only as long as a call. */
 typedef struct tl_plugin_setting {
     const tl_kind *kind; /* NULL: none */
     const void *params;

@@ -113,8 +113,6 @@ TL_API const char *tl_nearest_name(const char *word, const char *const *names, s
 /* The parameter tables of the kernel's own functions ("model", "solve", "insitu", ...), for
  * checking and for help. NULL when there is none of that name. */
 TL_API const tl_param *tl_function_params(const char *function, size_t *count, const char **doc);
-/* The names of those functions, NULL terminated, in the order of the reference. */
-TL_API const char *const *tl_function_names(void);
 
 #ifdef __cplusplus
 }
