@@ -28,19 +28,12 @@
 /* Whole numbers of the settings, and a few more. */
 #define MOST_WORDS 64
 
-static void hash_table(tl_hash *hash, const tl_table *table)
-{
-    for (size_t i = 0; i < table->column_count; i++)
-        if (table->columns[i].flags & TL_COLUMN_STATE)
-            tl_hash_bytes(hash, tl_table_data(table, i), table->rows * table->columns[i].size);
-}
-
-static void hash_row(tl_hash *hash, const tl_table *table, size_t row)
+static void hash_rows(tl_hash *hash, const tl_table *table, size_t begin, size_t end)
 {
     for (size_t i = 0; i < table->column_count; i++) {
         size_t size = table->columns[i].size;
         if (table->columns[i].flags & TL_COLUMN_STATE)
-            tl_hash_bytes(hash, (const char *)tl_table_data(table, i) + row * size, size);
+            tl_hash_bytes(hash, (const char *)tl_table_data(table, i) + begin * size, (end - begin) * size);
     }
 }
 
@@ -61,6 +54,30 @@ static void hash_any_order(tl_hash *sum, const tl_hash *one)
     sum->b += one->b;
 }
 
+/* ---------------------------------------------------------------- slices ----------------- */
+
+/* Ids of a slice: what has one of them is digested by itself, and the digests of slices in their order. So slices can
+ * be digested apart, wherever they are. */
+#define SLICE 4096u
+
+/* Adds rows [begin, end), whose ids lie in one slice. */
+typedef void (*rows_fn)(tl_hash *hash, const tl_model *m, uint32_t begin, uint32_t end);
+
+/* Adds the digests of all slices of rows, which are in the order of their ids. */
+static void hash_slices(tl_hash *hash, const tl_model *m, const tl_id *id, uint32_t rows, rows_fn add)
+{
+    for (uint32_t begin = 0, end; begin < rows; begin = end) {
+        const uint32_t slice = id[begin] / SLICE;
+        tl_hash one = tl_hash_start();
+        for (end = begin + 1; end < rows && id[end] / SLICE == slice;)
+            end++;
+        add(&one, m, begin, end);
+        tl_hash_word(hash, slice);
+        tl_hash_word(hash, one.a);
+        tl_hash_word(hash, one.b);
+    }
+}
+
 /* ---------------------------------------------------------------- contacts --------------- */
 
 static void hash_point(tl_hash *hash, const tl_points_table *p, size_t row, uint32_t columns)
@@ -70,7 +87,7 @@ static void hash_point(tl_hash *hash, const tl_points_table *p, size_t row, uint
     late[1] = p->initial ? p->f_n0[row] : 0;
     for (uint32_t k = 0; k < columns; k++)
         late[2 + k] = k < p->state_columns ? p->state[k][row] : 0;
-    hash_row(hash, &p->table, row);
+    hash_rows(hash, &p->table, row, row + 1);
     tl_hash_numbers(hash, late, 2 + columns);
 }
 
@@ -90,12 +107,13 @@ static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
     tl_hash_word(hash, row->shift != 0 ? faces : 0);
 }
 
-/* In the order of their blocks: which row and lane a contact has depends on when it was made. */
-static void hash_contacts(tl_hash *hash, const tl_model *m)
+/* Those of some blocks with later ones, in the order of the blocks: which row and lane a contact has depends on when it
+ * was made. */
+static void hash_contacts(tl_hash *hash, const tl_model *m, uint32_t begin, uint32_t end)
 {
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
-    for (uint32_t block = 0; block < m->blocks.table.rows; block++)
+    for (uint32_t block = begin; block < end; block++)
         for (tl_body_contacts at = tl_contacts_of_block(m, block); tl_next_contact(&at);) {
             const uint32_t contact = at.contact;
             if (c->a[contact] != block)
@@ -104,7 +122,7 @@ static void hash_contacts(tl_hash *hash, const tl_model *m)
             if (law != TL_NO_ROW)
                 columns = tl_kind_state_columns(m->joint_laws[law].kind);
             tl_hash_word(hash, (uint64_t)m->blocks.id[block] << 32 | m->blocks.id[c->b[contact]]);
-            hash_row(hash, &c->table, contact);
+            hash_rows(hash, &c->table, contact, contact + 1);
             tl_contact_kind_of(d, contact)->place->hash(hash, d, contact);
             hash_press(hash, d, contact);
             for (uint32_t k = 0; k < c->point_count[contact]; k++)
@@ -159,7 +177,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     m->log = say_nothing;
     tl_status status = tl_detect_update(m);
     if (status == TL_OK) {
-        hash_contacts(hash, m);
+        hash_slices(hash, m, m->blocks.id, (uint32_t)m->blocks.table.rows, hash_contacts);
         status = hash_rates(hash, m);
     }
     m->log = log;
@@ -195,20 +213,19 @@ static void hash_drive(tl_hash *hash, const tl_drive *drive)
     tl_hash_word(hash, (uint64_t)(drive->velocity_at != NULL) << 1 | (uint64_t)(drive->angular_velocity_at != NULL));
 }
 
-static void hash_blocks(tl_hash *hash, const tl_model *m)
+static void hash_blocks(tl_hash *hash, const tl_model *m, uint32_t begin, uint32_t end)
 {
-    hash_table(hash, &m->blocks.table);
-    for (size_t row = 0; row < m->blocks.table.rows; row++) {
+    hash_rows(hash, &m->blocks.table, begin, end);
+    for (uint32_t row = begin; row < end; row++) {
         hash_text(hash, m->groups[m->blocks.group[row]]);
         hash_shape(hash, m->blocks.shape[row]);
     }
-    for (size_t i = 0; i < m->split_count; i++)
-        tl_hash_word(hash, (uint64_t)m->splits[i].block << 32 | m->splits[i].whole);
-    for (size_t i = 0; i < m->face_load_count; i++)
-        if (tl_block_row_quiet(m, m->face_loads[i].block) != TL_NO_ROW)
-            tl_hash_bytes(hash, &m->face_loads[i], sizeof m->face_loads[i]);
-    hash_table(hash, &m->bodies.table);
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+}
+
+static void hash_bodies(tl_hash *hash, const tl_model *m, uint32_t begin, uint32_t end)
+{
+    hash_rows(hash, &m->bodies.table, begin, end);
+    for (uint32_t body = begin; body < end; body++) {
         tl_body_load load = tl_load_of(&m->bodies, body);
         tl_hash_bytes(hash, &load, sizeof load);
         if (tl_load_changed(m, body))
@@ -216,6 +233,17 @@ static void hash_blocks(tl_hash *hash, const tl_model *m)
         if (m->bodies.drive[body])
             hash_drive(hash, &m->drives[m->bodies.drive[body] - 1].drive);
     }
+}
+
+static void hash_rock(tl_hash *hash, const tl_model *m)
+{
+    hash_slices(hash, m, m->blocks.id, (uint32_t)m->blocks.table.rows, hash_blocks);
+    hash_slices(hash, m, m->bodies.id, (uint32_t)m->bodies.table.rows, hash_bodies);
+    for (size_t i = 0; i < m->split_count; i++)
+        tl_hash_word(hash, (uint64_t)m->splits[i].block << 32 | m->splits[i].whole);
+    for (size_t i = 0; i < m->face_load_count; i++)
+        if (tl_block_row_quiet(m, m->face_loads[i].block) != TL_NO_ROW)
+            tl_hash_bytes(hash, &m->face_loads[i], sizeof m->face_loads[i]);
 }
 
 /* ---------------------------------------------------------------- settings --------------- */
@@ -316,7 +344,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     if (status != TL_OK)
         return status;
     hash_settings(&hash, m);
-    hash_blocks(&hash, m);
+    hash_rock(&hash, m);
     snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;
 }
