@@ -548,7 +548,7 @@ static const struct {
 
 typedef struct contacts {
     tl_model *model;
-    uint32_t *rows;          /* of contacts with points, in order of id */
+    uint32_t *rows;          /* of contacts with points, in the order of their blocks */
     tl_contact_facts *facts; /* of each */
     size_t listed;
     uint32_t *picked; /* of these, the contacts of the frame */

@@ -258,7 +258,7 @@ const tl_lua_kind tl_lua_contact_kind = {
 };
 
 static const tl_lua_key contact_methods[] = {
-    {"#sel, sel[i], ipairs(sel)", "", "number of contacts, the i-th one, all in order of id"},
+    {"#sel, sel[i], ipairs(sel)", "", "number of contacts, the i-th one, all in the order of their blocks"},
     {"sel:sum(field)", "", "sum of a field of numbers, or of a state of a law by its name; of a vector a vector"},
     {"sel:max(field), sel:min(field)", "",
      "largest and smallest value of a field of numbers, or of a state, where the law has it"},

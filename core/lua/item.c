@@ -1,8 +1,9 @@
 /* item.c - blocks and contacts as Lua objects: one of them, and a list.
  *
  * An item is no pointer into the kernel but a number that is looked up at every access. So one that was deleted
- * raises and never crashes. A selection is a snapshot: ids in ascending order, taken when it was made. Sums run in
- * that order, so they are the same bits every time. */
+ * raises and never crashes. A selection is a snapshot, taken when it was made: blocks in ascending order of id,
+ * contacts in that of their blocks. Sums run in that order, so they are the same bits every time, whenever contacts
+ * began. */
 #include "lua/item.h"
 
 #include "lua/convert.h"

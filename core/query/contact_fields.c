@@ -222,32 +222,6 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
 
 /* ---------------------------------------------------------------- lists ------------------ */
 
-static int compare_id(const void *a, const void *b)
-{
-    tl_id x = *(const tl_id *)a, y = *(const tl_id *)b;
-    return (x > y) - (x < y);
-}
-
-/* Sorts rows by the contacts' ids, byte by byte from the last: ids are many, and no two are equal. */
-static void sort_by_id(const tl_id *id, uint32_t **rows, uint32_t **spare, size_t count)
-{
-    for (unsigned shift = 0; shift < 32; shift += 8) {
-        size_t place[256] = {0}, next = 0;
-        for (size_t i = 0; i < count; i++)
-            place[id[(*rows)[i]] >> shift & 255]++;
-        for (size_t digit = 0; digit < 256; digit++) {
-            size_t here = place[digit];
-            place[digit] = next;
-            next += here;
-        }
-        for (size_t i = 0; i < count; i++)
-            (*spare)[place[id[(*rows)[i]] >> shift & 255]++] = (*rows)[i];
-        uint32_t *sorted = *spare;
-        *spare = *rows;
-        *rows = sorted;
-    }
-}
-
 tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count)
 {
     *rows = NULL;
@@ -257,22 +231,13 @@ tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count)
         return status;
     const tl_contacts *c = &m->detect->contacts;
     uint32_t *list = malloc((c->table.rows + 1) * sizeof *list);
-    uint32_t *spare = malloc((c->table.rows + 1) * sizeof *spare);
-    size_t n = 0;
-    for (uint32_t row = 0; list && spare && row < c->table.rows; row++)
-        if (c->point_count[row])
-            list[n++] = row;
-    if (list && spare)
-        sort_by_id(c->id, &list, &spare, n);
-    else
-        status = tl_fail_memory(&m->error);
-    free(spare);
-    if (status != TL_OK) {
-        free(list);
-        return status;
-    }
+    if (!list)
+        return tl_fail_memory(&m->error);
+    for (uint32_t block = 0; block < m->blocks.table.rows; block++)
+        for (tl_body_contacts at = tl_contacts_of_block(m, block); tl_next_contact(&at);)
+            if (c->a[at.contact] == block && c->point_count[at.contact])
+                list[(*count)++] = at.contact;
     *rows = list;
-    *count = n;
     return TL_OK;
 }
 
@@ -307,9 +272,11 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id 
     tl_tag joint = {0, 0};
     tl_contact_filter read;
     const tl_contact_filter *filter = &read;
+    uint32_t *rows = NULL; /* then ids, in their place */
+    size_t all = 0;
     tl_status status = TL_OPTIONS_READ(tl_contact_filter, given, &read, &m->error);
     if (status == TL_OK)
-        status = tl_detect_refresh(m);
+        status = tl_contacts_listed(m, &rows, &all);
     if (status == TL_OK && filter->joint)
         status = tl_joint_parse(m, filter->joint, &joint);
     unsigned char *ma = NULL, *mb = NULL;
@@ -317,20 +284,19 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id 
         ma = mark(m, filter->between_a, filter->count_a, &status);
     if (status == TL_OK && filter->between_b)
         mb = mark(m, filter->between_b, filter->count_b, &status);
-    const tl_contacts *c = m->detect ? &m->detect->contacts : NULL;
-    tl_id *list = NULL;
-    if (status == TL_OK && !(list = malloc((c->table.rows + 1) * sizeof *list)))
-        status = tl_fail_memory(&m->error);
-    size_t n = 0;
-    for (uint32_t row = 0; status == TL_OK && row < c->table.rows; row++)
-        if (c->point_count[row] && tl_tag_matches(joint, c->tag[row]) && is_between(ma, mb, c->a[row], c->b[row]))
-            list[n++] = c->id[row];
-    if (n > 1)
-        qsort(list, n, sizeof *list, compare_id);
+    for (size_t i = 0; status == TL_OK && i < all; i++) {
+        const tl_contacts *c = &m->detect->contacts;
+        uint32_t row = rows[i];
+        if (tl_tag_matches(joint, c->tag[row]) && is_between(ma, mb, c->a[row], c->b[row]))
+            rows[(*count)++] = c->id[row];
+    }
     free(ma);
     free(mb);
-    *ids = list;
-    *count = n;
+    if (status != TL_OK) {
+        free(rows);
+        rows = NULL;
+    }
+    *ids = rows;
     return status;
 }
 

@@ -45,7 +45,8 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact);
 tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x);
 /* Brings the contacts up to date and finds the row of one; TL_E_STALE with a sentence when it is gone. */
 tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row);
-/* Brings the contacts up to date and gives the rows of those with points, in order of id; the caller frees the list. */
+/* Brings the contacts up to date and gives the rows of those with points, in the order of their blocks; the caller
+ * frees the list. */
 tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count);
 
 #endif

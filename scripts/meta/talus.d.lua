@@ -363,7 +363,7 @@ function Blocks:reset_displacement() end
 ---@field states table<string, number|string|boolean|talus.Vector> the states of its law: the mean of the points, weighted by their areas; the sum of a state that goes with the area
 local Contact = {}
 
---- A selection of contacts: a snapshot, in ascending order of id.
+--- A selection of contacts: a snapshot, in ascending order of their blocks.
 ---@class (exact) talus.Contacts
 ---@field [integer] talus.Contact
 ---@operator len: integer

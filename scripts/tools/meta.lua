@@ -484,7 +484,8 @@ local function put_items(topic_name, item, items, functions)
         put("---@field %s %s %s%s", row.name, to_type(kind), limits_of(kind), meaning)
     end
     put("local %s = {}", item)
-    put("\n--- A selection of %s: a snapshot, in ascending order of id.", topic_name)
+    put("\n--- A selection of %s: a snapshot, in ascending order of %s.", topic_name,
+        topic_name == "contacts" and "their blocks" or "id")
     put("---@class (exact) talus.%s", items)
     put("---@field [integer] talus.%s", item)
     put("---@operator len: integer")

@@ -68,3 +68,24 @@ check.refused(model, function() floor:hide() end, "a selection of contacts has n
 high:delete()
 model:cycle(1)
 check.raises(function() return contact.area end, "contact")
+
+-- A contact that begins later lies where its blocks are in the order, whatever its id.
+local row = talus.model {}
+for _, x in ipairs { 0, 1.01, 2.01 } do
+    row:generate("box", { min = { x, 0, 0 }, max = { x + 1, 1, 1 }, density = 2000 })
+end
+row:joint("*", "elastic", { kn = 1e8, ks = 1e8 })
+row:blocks { id = 2 }:fix()
+row:blocks { id = 3 }:fix()
+check.equal(#row:contacts(), 1)
+local first = row:contacts()[1]
+row:blocks { id = 1 }:drive { velocity = { 1, 0, 0 } }
+while #row:contacts() < 2 do
+    row:cycle(10)
+end
+local order = {}
+for _, each in ipairs(row:contacts()) do
+    order[#order + 1] = each.blocks[1].id .. "-" .. each.blocks[2].id
+end
+check.equal(table.concat(order, " "), "1-2 2-3")
+check.holds(row:contacts()[2] == first, "what was there stays the same contact")

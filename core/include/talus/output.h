@@ -19,7 +19,7 @@ TL_API tl_status tl_write_section(struct tl_model *model, const char *prefix, co
 /* A number of each block or of each contact, beside their fields. */
 typedef struct tl_extra_field {
     const char *name, *unit; /* unit: NULL or "" for none */
-    const double *values;    /* of all blocks or contacts, in ascending order of id; NaN: none */
+    const double *values;    /* in the order of tl_blocks_select or tl_contacts_select, of all; NaN: none */
     size_t count;
 } tl_extra_field;
 

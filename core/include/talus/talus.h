@@ -557,8 +557,8 @@ typedef struct tl_contact_filter {
     size_t count_a, count_b;
 } tl_contact_filter;
 
-/* Ids of the contacts that pass, ascending; freed with free(). Detects contacts when the model has
- * changed since the last step. */
+/* Ids of the contacts that pass, in the order of their blocks: by the first, then by the second; freed with free().
+ * Detects contacts when the model has changed since the last step. */
 TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *filter, tl_id **ids, size_t *count);
 /* The fields a contact has, in the order of the reference; `*count` of them. */
 TL_API const tl_field *tl_contact_fields(size_t *count);
