@@ -6,6 +6,7 @@ import {named} from "./glyphs.js";
 import {saveImage} from "./image.js";
 import {add, planeNormal, scale, trendPlunge} from "./math.js";
 import {tightBox} from "./poses.js";
+import {pairOf} from "./scene.js";
 
 /** The page's state with what can be done to it. */
 export class Page extends App {
@@ -35,7 +36,7 @@ export class Page extends App {
     pickContact(id) {
         this.pick(-1);
         this.view.contact = id;
-        say(`Contact ${id}`);
+        say(`Contact of blocks ${pairOf(id)}`);
     }
 
     /** @param {number} id */

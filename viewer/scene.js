@@ -19,7 +19,7 @@
  *   unbalanced: Float32Array, flags: Uint8Array}} Poses
  */
 /**
- * @typedef {{n: number, id: Uint32Array, a: Uint32Array, b: Uint32Array, joint: Uint32Array, plane: Uint32Array,
+ * @typedef {{n: number, id: Float64Array, a: Uint32Array, b: Uint32Array, joint: Uint32Array, plane: Uint32Array,
  *   point: Float32Array, normal: Float32Array, force: Float32Array, area: Float32Array, gap: Float32Array,
  *   slip: Float32Array, used: Float32Array, state: Uint8Array, contact: Uint32Array, corners: Uint32Array, corner:
  * Float32Array}} Contacts
@@ -145,7 +145,7 @@ function names(value, name) {
 /** @param {Columns} c @returns {Head} */
 function readHead(c) {
     const h = c.json();
-    if (h.format !== 1) throw new Error(`The scene has format ${String(h.format)}; this page reads format 1.`);
+    if (h.format !== 2) throw new Error(`The scene has format ${String(h.format)}; this page reads format 2.`);
     const triple = (/** @type {any} */ v) => Array.isArray(v) && v.length === 3 && v.every(Number.isFinite);
     if (!triple(h.origin) || !triple(h.gravity)) throw c.bad("origin and gravity must be lists of three numbers");
     if (!(Number.isFinite(h.size) && h.size > 0)) throw c.bad("the size must be a positive number");
@@ -153,7 +153,7 @@ function readHead(c) {
     const friction =
         (Array.isArray(h.friction) ? h.friction : []).map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN));
     return {
-        format: 1,
+        format: 2,
         program: String(h.program),
         title: String(h.title ?? ""),
         origin: h.origin,
@@ -227,14 +227,23 @@ function readPoses(c) {
     };
 }
 
+/** A contact's number is that of its older block times this, plus the other's: exact up to block 2097151. */
+const PAIR = 2 ** 32;
+
+/** The blocks of a contact, in words. @param {number} id */
+export function pairOf(id) {
+    return `${Math.floor(id / PAIR)} and ${id % PAIR}`;
+}
+
 /** @param {Columns} c @param {Head} head @returns {Contacts} */
 function readContacts(c, head) {
     const [n, P, C] = c.u32(3, "counts");
+    const a = c.u32(n, "a"), b = c.u32(n, "b");
     const k = {
         n,
-        id: c.u32(n, "id"),
-        a: c.u32(n, "a"),
-        b: c.u32(n, "b"),
+        id: Float64Array.from(a, (block, i) => block * PAIR + b[i]),
+        a,
+        b,
         joint: c.u32(n, "joint"),
         plane: c.u32(n, "plane"),
         point: c.f32(3 * n, "point"),

@@ -3,6 +3,7 @@
 import {STATES, plain} from "./colours.js";
 import {button, byId, element} from "./dom.js";
 import {dot, figure, norm, scale, sub, trendPlunge, triple} from "./math.js";
+import {pairOf} from "./scene.js";
 import {slimness} from "./slimness.js";
 
 const LISTED = 12; // ids of several blocks that are listed
@@ -161,7 +162,7 @@ export function makeTable(app) {
                 : ids.length > 1      ? togetherRows(app.model, frame, ids)
                                       : blockRows(app.model, frame, ids[0]);
             const known = rows ?? [];
-            title.textContent = contact >= 0 ? `Contact ${contact}`
+            title.textContent = contact >= 0 ? `Contact of blocks ${pairOf(contact)}`
                 : ids.length > 1 ? `${ids.length} blocks`
                                  : `Block ${ids[0]}`;
             none.textContent = `There is no such ${contact >= 0 ? "contact" : "block"} in this frame.`;

@@ -72,7 +72,7 @@ export function readView(view, text) {
         motion: [0, 10000],
         moved: [0, Infinity],
         picked: [-1, 4294967295],
-        contact: [-1, 4294967295],
+        contact: [-1, 2 ** 64],
         frame: [-1, Infinity]
     });
     for (const part of text.replace(/^#/, "").split("&")) {

@@ -1,14 +1,13 @@
 /* exact.c - sums that do not depend on the order of what is added.
  *
- * A number x is rounded to a multiple of a unit u by x + M, with M = 1.5 2^52 u: doubles of that size are multiples of
- * u. Their bits, as integers, differ by one per unit. So the sum of the bits of x + M, less those of M each time, is the
- * sum of the multiples. What is left, x - ((x + M) - M), is exact, and less than a unit. It is rounded to multiples of
- * the next unit likewise.
+ * A number x is rounded to a multiple of a unit u by x + M, with M = 1.5 2^52 u: doubles of that size are multiples
+ * of u. Their bits, as integers, differ by one per unit. So the sum of the bits of x + M, less those of M each time, is
+ * the sum of the multiples. What is left, x - ((x + M) - M), is exact, and less than a unit. It is rounded to multiples
+ * of the next unit likewise.
  *
- * Windows are pairs of units. The coarse unit of each is the fine one of the next. A number belongs to a window when x +
- * M stays between 2^52 and 2^53 units, so that x is at most half of the next coarse unit. In higher windows it is then
- * rounded to 0 first, and goes on unchanged. So what it adds to each unit is the same in every window that has the
- * unit. */
+ * Windows are pairs of units. The coarse unit of each is the fine one of the next. A number x belongs to a window when
+ * x + M stays between 2^52 and 2^53 units: x is then at most half of the next coarse unit. In higher windows it is
+ * rounded to 0 first, and goes on unchanged. So what it adds to a unit is the same in all windows that have it. */
 #include "base/exact.h"
 
 #include "base/inline.h"
@@ -103,8 +102,8 @@ static void raise_window(tl_exact *sum, int window)
     sum->window = window;
 }
 
-/* The lowest window to which a number may belong, by its exponent as it is stored; beyond the last: none may. It is less
- * than 2^(exponent - 1022), and less than 2^51 coarse units belong to a window. */
+/* The lowest window to which a number may belong, by its exponent as it is stored; beyond the last: none may. It is
+ * less than 2^(exponent - 1022), and less than 2^51 coarse units belong to a window. */
 TL_INLINE int window_from(int32_t exponent)
 {
     const int above = exponent - 1022 - (fine_of(0) + 2 * SPACING - 1);

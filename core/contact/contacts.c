@@ -435,8 +435,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, 
     if (!tl_table_resize(&c->table, row + 1u))
         return false;
     tl_pair *p = &d->pairs[pair];
-    c->id[row] = ++d->next_contact;
-    d->by_id_fresh = false;
+    c->born[row] = m->cycles;
     c->a[row] = p->a;
     c->b[row] = p->b;
     c->pair[row] = pair;
@@ -664,7 +663,7 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
     c->table.rows = last;
 }
 
-void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size)
+void tl_contact_describe(tl_model *m, uint32_t contact, char *text, size_t size)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const char *joint = tl_tag_name(m, contacts->tag[contact]);

@@ -33,7 +33,7 @@ static inline const tl_kind *tl_law_kind(const tl_model *m, uint32_t law)
     return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
 }
 /* "contact of blocks 3 and 7, joint J1:2" */
-void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size);
+void tl_contact_describe(tl_model *m, uint32_t contact, char *text, size_t size);
 /* Moment of a contact's forces on A, or on B, about that block's body's centroid. */
 static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, bool on_b)
 {

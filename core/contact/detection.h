@@ -55,16 +55,13 @@ typedef struct tl_detect {
     uint32_t *by_block, *by_block_start; /* contacts of each block: index.c */
     size_t by_block_capacity, by_start_capacity;
     uint32_t indexed; /* rows of contacts that are listed; TL_NO_ROW: the lists are out of date */
-    uint32_t *by_id;  /* contact rows by ascending id; made when asked for */
-    size_t by_id_capacity;
-    bool by_id_fresh;
     /* that have ended because a block was cut, until those of the parts are made: cut_contacts.c */
     tl_cut_contact *cut_contacts;
     tl_old_point *cut_points;
     size_t cut_count, cut_capacity, cut_point_count, cut_point_capacity;
-    tl_id next_contact, stepped_contact; /* the last that was born; when the last step was made */
-    tl_narrow_scratch *narrow;           /* [threads] */
-    tl_point_lanes *lanes;               /* [threads]: a tile, or the largest SIMD group */
+    bool stepped;              /* a step has used contacts */
+    tl_narrow_scratch *narrow; /* [threads] */
+    tl_point_lanes *lanes;     /* [threads]: a tile, or the largest SIMD group */
     size_t lane_capacity;
     unsigned threads;
 } tl_detect;

@@ -1,4 +1,4 @@
-/* index.c - the contacts of each block, and contacts by id.
+/* index.c - the contacts of each block, and contacts by their blocks.
  *
  * The contacts of block X are by_block[by_block_start[X] .. by_block_start[X + 1]), ascending by partner, which is the
  * order in which a body adds their forces. Where rows have changed or contacts have gone, all are listed anew; those
@@ -86,7 +86,6 @@ static bool list_new(tl_detect *d, size_t blocks)
 void tl_contacts_unlist(tl_detect *d)
 {
     d->indexed = TL_NO_ROW;
-    d->by_id_fresh = false;
 }
 
 bool tl_contacts_index(tl_model *m)
@@ -108,44 +107,22 @@ bool tl_contacts_index(tl_model *m)
     return true;
 }
 
-/* ---------------------------------------------------------------- by id ------------------ */
+/* ---------------------------------------------------------------- by name ---------------- */
 
-static int compare_id(const void *x, const void *y)
+uint32_t tl_contact_row(const tl_model *m, tl_id a, tl_id b)
 {
-    const uint32_t *a = x, *b = y; /* id, row */
-    return (a[0] > b[0]) - (a[0] < b[0]);
-}
-
-/* Makes the list of rows by id: pairs of (id, row). */
-static bool index_by_id(tl_detect *d)
-{
-    size_t count = d->contacts.table.rows;
-    if (!tl_grow(&d->by_id, &d->by_id_capacity, 2 * count + 2, sizeof *d->by_id))
-        return false;
-    for (uint32_t row = 0; row < count; row++) {
-        d->by_id[2 * row] = d->contacts.id[row];
-        d->by_id[2 * row + 1] = row;
-    }
-    if (count > 1)
-        qsort(d->by_id, count, 2 * sizeof *d->by_id, compare_id);
-    d->by_id_fresh = true;
-    return true;
-}
-
-uint32_t tl_contact_row(tl_detect *d, tl_id id)
-{
-    size_t low = 0, high = d->contacts.table.rows;
-    if (!d->by_id_fresh && !index_by_id(d)) { /* without the memory for a list: one by one */
-        while (low < high && d->contacts.id[low] != id)
-            low++;
-        return low < high ? (uint32_t)low : TL_NO_ROW;
-    }
+    const tl_detect *d = m->detect;
+    const uint32_t block = tl_block_row_quiet(m, a), partner = tl_block_row_quiet(m, b);
+    if (block == TL_NO_ROW || partner == TL_NO_ROW)
+        return TL_NO_ROW;
+    size_t low = d->by_block_start[block], end = d->by_block_start[block + 1], high = end;
     while (low < high) {
         size_t middle = (low + high) / 2;
-        if (d->by_id[2 * middle] < id)
+        if (tl_contact_partner(&d->contacts, d->by_block[middle], block) < partner)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < d->contacts.table.rows && d->by_id[2 * low] == id ? d->by_id[2 * low + 1] : TL_NO_ROW;
+    const bool found = low < end && tl_contact_partner(&d->contacts, d->by_block[low], block) == partner;
+    return found ? d->by_block[low] : TL_NO_ROW;
 }

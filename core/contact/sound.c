@@ -197,7 +197,7 @@ static bool facet_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
 static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
 {
     const tl_contacts *c = &d->contacts;
-    return c->id[row] != 0 && c->id[row] <= d->next_contact && c->a[row] < c->b[row] &&
+    return c->born[row] >= 0 && c->born[row] <= m->cycles && c->a[row] < c->b[row] &&
            c->b[row] < d->known_block_count && c->pair[row] < d->pair_count && d->pairs[c->pair[row]].contact == row &&
            (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) && c->tag[row].joint <= m->joint_count &&
            c->kind[row] < d->kind_count && c->held[row] <= 1 && c->holds_over_gap[row] <= 1 &&
@@ -284,8 +284,8 @@ const char *tl_detect_unsound(const tl_model *m, const tl_detect *d, unsigned ch
             return "a contact does not fit its blocks";
     if (!pairs_are_sound(m, d))
         return "pairs do not fit the blocks";
-    if (!cut_contacts_are_sound(m, d) || (m->asked_count && d->next_contact > m->next_contact))
-        return "what was left or asked for does not fit the contacts";
+    if (!cut_contacts_are_sound(m, d))
+        return "what was left does not fit the contacts";
     if (!presses_are_sound(m, d, used))
         return "what field contacts keep does not fit them";
     if (d->laid_at < 0 || d->laid_at > m->cycles || !layout_is_sound(m, d))

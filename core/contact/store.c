@@ -15,7 +15,7 @@ static void init_contacts(tl_contacts *c, tl_points_table *p)
 {
     tl_table *t = &c->table;
     tl_table_init(t, c);
-    TL_COLUMN(t, c, id, 0);
+    TL_COLUMN(t, c, born, 0);
     TL_COLUMN(t, c, a, 0);
     TL_COLUMN(t, c, b, 0);
     TL_COLUMN(t, c, pair, 0);
@@ -134,7 +134,6 @@ void tl_detect_destroy(tl_detect *d)
     free(d->idle);
     free(d->by_block);
     free(d->by_block_start);
-    free(d->by_id);
     tl_cut_contacts_end(d);
     free(d);
 }

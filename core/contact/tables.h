@@ -12,7 +12,7 @@
 
 typedef struct tl_contacts {
     tl_table table;
-    tl_id *id;
+    int64_t *born;   /* steps made when it began */
     uint32_t *a, *b; /* block rows */
     uint32_t *pair;  /* index of its pair */
     tl_tag *tag;

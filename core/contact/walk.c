@@ -29,8 +29,7 @@ static void walk_pairs(tl_detect *d, const tl_walk *walk)
 
 static void walk_contacts(tl_detect *d, const tl_walk *walk)
 {
-    VALUE(STATE, next_contact);
-    VALUE(STATE, stepped_contact);
+    FLAG(STATE, stepped);
     FLAG(CACHE, rows_changed);
     FLAG(CACHE, any_without_rows);
     TABLE(STATE, contacts, contacts);
@@ -51,8 +50,6 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     LIST(DERIVED, by_block, by_block_capacity, by_block_capacity, index);
     LIST(DERIVED, by_block_start, by_start_capacity, by_start_capacity, index);
     VALUE(DERIVED, indexed);
-    LIST(DERIVED, by_id, by_id_capacity, by_id_capacity, index);
-    FLAG(DERIVED, by_id_fresh);
 }
 
 void tl_detect_walk(tl_detect *d, const tl_walk *walk)

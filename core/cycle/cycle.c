@@ -123,7 +123,7 @@ tl_status tl_step(tl_model *m)
     tl_undo_end(m);
     tl_split_end(m);
     tl_loads_stepped(m);
-    m->detect->stepped_contact = m->detect->next_contact;
+    m->detect->stepped = m->detect->stepped || m->detect->contacts.table.rows > 0;
     /* velocities are half a step behind the places, but not when all is held and still: as before the first step */
     m->dt = tl_model_moves(m) ? dt : 0;
     m->time += dt;

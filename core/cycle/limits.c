@@ -425,7 +425,7 @@ static tl_status report(tl_model *m, uint32_t body, const step_span *k)
         snprintf(by, sizeof by, "no contact presses on it");
     } else {
         char name[320];
-        tl_contact_name(m, contact, name, sizeof name);
+        tl_contact_describe(m, contact, name, sizeof name);
         tl_text_print(by, sizeof by, "most of all presses the %s, with %.3g N", name, force);
     }
     if (isfinite(travel))

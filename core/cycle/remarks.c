@@ -142,7 +142,7 @@ void tl_remark_closure(tl_model *m)
             !(closed.overlap >= CLOSED * closed.thickness) || !tl_model_says(m, TL_REMARK_CLOSURE))
             continue;
         char name[320];
-        tl_contact_name(m, row, name, sizeof name);
+        tl_contact_describe(m, row, name, sizeof name);
         const tl_law *law = &m->joint_laws[c->law[row]];
         tl_model_say(m,
                      "joint '%s': kn = %.3g is soft for what presses: the %s has closed by %.3g m, "

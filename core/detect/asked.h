@@ -12,11 +12,5 @@ void tl_asked_end(tl_model *m);
 /* After a step that failed: contacts of a model that has not begun, which it has found, are those of somebody who
  * asked. Else the next edit would go on from them, and answers would depend on earlier ones. */
 void tl_asked_step_failed(tl_model *m);
-/* Notes the ids by which contacts were asked for, before they are found once more, or copied, or saved; false when out
- * of memory: then only the ids above them are known. */
-bool tl_asked_note(tl_model *m);
-/* After contacts have been found: those that were queried get the ids they had then. false: out of memory, try
- * again. */
-bool tl_asked_name(tl_model *m);
 
 #endif

@@ -62,7 +62,6 @@ static tl_status ensure(tl_model *m)
             tl_detect_destroy(d);
         return tl_fail_memory(&m->error);
     }
-    d->next_contact = m->next_contact;
     m->detect = d;
     m->detect_destroy = tl_detect_destroy;
     return TL_OK;
@@ -531,12 +530,6 @@ static tl_status settle(tl_model *m)
     return status;
 }
 
-static tl_status settle_named(tl_model *m)
-{
-    tl_status status = settle(m);
-    return status == TL_OK && !tl_asked_name(m) ? tl_fail_memory(&m->error) : status;
-}
-
 /* Pairs and contacts after edits of the model, and new contacts; those that stand are not touched. */
 static tl_status find_contacts(tl_model *m)
 {
@@ -587,7 +580,7 @@ tl_status tl_detect_refresh(tl_model *m)
     tl_status status = tl_asked_begin(m);
     if (status == TL_OK)
         status = find_contacts(m);
-    return status == TL_OK ? settle_named(m) : status;
+    return status == TL_OK ? settle(m) : status;
 }
 
 tl_status tl_detect_update(tl_model *m)
@@ -598,7 +591,7 @@ tl_status tl_detect_update(tl_model *m)
     if (status != TL_OK)
         return status;
     update_contacts(m);
-    status = settle_named(m);
+    status = settle(m);
     if (status == TL_OK)
         m->cut_part_count = 0; /* contacts know them now */
     return status;

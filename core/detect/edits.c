@@ -296,12 +296,13 @@ static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t conta
 
 /* Whether a contact is no more than an answer to somebody who has asked: it has been in no step, and bears no initial
  * stress. Where a block of it changes it is found as if nobody had. */
-static bool is_fresh(const tl_detect *d, uint32_t contact)
+static bool is_fresh(const tl_model *m, uint32_t contact)
 {
+    const tl_detect *d = m->detect;
     bool stressed = false;
     for (size_t k = 0; d->points.initial && k < d->contacts.point_count[contact]; k++)
         stressed = stressed || d->points.f_n0[tl_point_row(&d->contacts, contact, k)] != 0;
-    return d->contacts.id[contact] > d->stepped_contact && !stressed;
+    return d->contacts.born[contact] == m->cycles && !stressed;
 }
 
 /* Pairs, in their order, with their present rows: ids ascend with rows before and after. */
@@ -318,7 +319,7 @@ static void keep_pairs(tl_model *m, const rows_scratch *scratch)
         if (tl_pair_is_apart(&p)) {
             if (parted || changed)
                 continue; /* the broad phase lists it anew */
-        } else if (parted || (changed && is_fresh(d, p.contact))) {
+        } else if (parted || (changed && is_fresh(m, p.contact))) {
             end_contact(m, scratch, p.contact, a, b);
             continue;
         } else {

@@ -125,7 +125,7 @@ static tl_status report(tl_model *m, uint32_t contact)
     if (!find_region(m, a, b, &view, &region))
         return tl_fail_memory(&m->error);
     char name[320];
-    tl_contact_name(m, contact, name, sizeof name);
+    tl_contact_describe(m, contact, name, sizeof name);
     bool born = c->deep[contact] == TL_DEEP_BORN;
     if (born && tl_overlap_is_whole(&view, &region))
         return tl_fail(&m->error, TL_E_NUMERIC,

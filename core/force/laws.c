@@ -695,7 +695,7 @@ static tl_status report_failure(tl_model *m, tl_failure *failure)
     const tl_kind *kind = at.law->kind;
     const tl_plugin *plugin = tl_plugin_of(kind, NULL);
     if (at.contact != TL_NO_ROW)
-        tl_contact_name(m, at.contact, name, sizeof name);
+        tl_contact_describe(m, at.contact, name, sizeof name);
     tl_fail(&m->error, failure->error.status, "cycle %lld, law '%s' of plugin '%s', %s: %s", (long long)m->cycles + 1,
             kind->name, plugin ? plugin->id : "?", name, failure->error.text);
     failure->error.status = TL_OK;
@@ -733,7 +733,7 @@ tl_status tl_laws_check(tl_model *m)
         if (c->law[i] != TL_NO_ROW || c->point_count[i] == 0 || c->held[i])
             continue;
         char name[320];
-        tl_contact_name(m, i, name, sizeof name);
+        tl_contact_describe(m, i, name, sizeof name);
         return tl_fail(&m->error, TL_E_STATE, "%s has no law: set one with %s or for that joint", name,
                        tl_words(m, "model:joint(\"*\", ...)", "tl_joint_law() for \"*\""));
     }

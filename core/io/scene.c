@@ -166,7 +166,7 @@ static void scene_head(const tl_model *m, const tl_html *options, const tl_scene
     const size_t block_fields = options->block_field_count;
     text->length = 0;
     tl_json_print(text,
-                  "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION
+                  "{\"format\": 2, \"program\": \"Talus " TALUS_VERSION
                   "\", \"title\": %s, \"origin\": %v, \"gravity\": %v, \"size\": %g",
                   options->title ? options->title : "", m->origin, m->config.gravity, scene->next.median);
     if (options->safety_limit > 0)
@@ -537,14 +537,14 @@ static tl_status put_run(tl_model *m, const tl_html *options, tl_piece *out)
 #define FEW 20000
 
 /* The columns of CONT: quantities of contacts, and their bytes; of those without a name put_range knows more. */
-enum { FORCE = 7, USED = 11, COLUMNS = 13 };
+enum { FORCE = 6, USED = 10, COLUMNS = 12 };
 
 static const struct {
     const char *quantity;
     size_t bytes;
-} columns[COLUMNS] = {{"id", 4},     {"block_a", 4},     {"block_b", 4},       {"joint", 4}, {"plane", 4},
-                      {"point", 12}, {"normal", 12},     [FORCE] = {NULL, 12}, {"area", 4},  {"gap", 4},
-                      {"slip", 4},   [USED] = {NULL, 4}, {"state", 1}};
+} columns[COLUMNS] = {{"block_a", 4}, {"block_b", 4}, {"joint", 4},         {"plane", 4},
+                      {"point", 12},  {"normal", 12}, [FORCE] = {NULL, 12}, {"area", 4},
+                      {"gap", 4},     {"slip", 4},    [USED] = {NULL, 4},   {"state", 1}};
 
 typedef struct contacts {
     tl_model *model;
@@ -620,7 +620,7 @@ static void put_polygons(const tl_contact_polygons *p, unsigned char *to)
 static tl_status put_columns(contacts *c, const tl_contact_polygons *p, tl_piece *out)
 {
     size_t n = c->count;
-    size_t bytes = 12 + 72 * n + tl_scene_column_bytes(n, 1) + 8 * p->polygons + 12 * p->corners;
+    size_t bytes = 12 + 68 * n + tl_scene_column_bytes(n, 1) + 8 * p->polygons + 12 * p->corners;
     unsigned char *to = tl_scene_chunk(out, "CONT", bytes, &c->model->error);
     if (!to)
         return c->model->error.status;

@@ -46,15 +46,15 @@ typedef struct means {
 
 /* Where two bodies meet with faces that look the same way: one contact, or one for each part of a face. */
 typedef struct meeting {
-    uint32_t a, b;  /* bodies, a < b */
-    tl_vec3 normal; /* from a to b */
-    double area;    /* m2 */
-    means by_force; /* where normal forces act */
-    means mean;     /* by area, and in the end by force where there is one */
-    tl_vec3 slip;   /* of b against a, across the normal, m */
-    double opening; /* m */
-    double sprung;  /* how far the springs have let them move, m */
-    tl_id contact;  /* the first */
+    uint32_t a, b;           /* bodies, a < b */
+    tl_vec3 normal;          /* from a to b */
+    double area;             /* m2 */
+    means by_force;          /* where normal forces act */
+    means mean;              /* by area, and in the end by force where there is one */
+    tl_vec3 slip;            /* of b against a, across the normal, m */
+    double opening;          /* m */
+    double sprung;           /* how far the springs have let them move, m */
+    tl_contact_name contact; /* the first */
 } meeting;
 
 /* Tolerance: faces of a meeting look the same way up to this sine: more than those of a face that rocks and has but
@@ -276,7 +276,7 @@ static void add_contact(const tl_model *m, motion_list *list, size_t first, cons
         i++;
     meeting *to = &list->meetings[i];
     if (i == list->count) {
-        *to = (meeting){.a = by->a, .b = by->b, .normal = normal, .contact = facts->id};
+        *to = (meeting){.a = by->a, .b = by->b, .normal = normal, .contact = {facts->a, facts->b, facts->born}};
         list->count++;
     }
     to->area += facts->area;
@@ -348,7 +348,7 @@ tl_status tl_verdict_of(tl_model *m, double median, const uint32_t *rows, const 
                         tl_verdict *out)
 {
     motion_list list = {.seen = LEAST_SEEN * median};
-    *out = (tl_verdict){.farthest = TL_NO_ID, .slipped = TL_NO_ID, .opened = TL_NO_ID};
+    *out = (tl_verdict){.farthest = TL_NO_ID};
     out->standing = tl_model_stands(m);
     out->ratio = tl_model_balance(m).ratio_local;
     out->closed = list.seen;

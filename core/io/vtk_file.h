@@ -13,6 +13,7 @@
 #define TL_VTK_DOUBLE "double"
 #define TL_VTK_FLOAT "float"
 #define TL_VTK_INT "int"
+#define TL_VTK_LONG "vtktypeint64"
 #define TL_VTK_STRING "string"
 
 /* Type number of a cell whose faces are given as polygons. */
@@ -59,13 +60,19 @@ static inline unsigned char *tl_vtk_put_float3(unsigned char *to, tl_vec3 value)
     return tl_vtk_put_float(to, value.z);
 }
 
-static inline unsigned char *tl_vtk_put_double(unsigned char *to, double value)
+static inline unsigned char *tl_vtk_put_long(unsigned char *to, int64_t value)
 {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
+    uint64_t bits = (uint64_t)value;
     for (int i = 0; i < 8; i++)
         to[i] = (unsigned char)(bits >> (56 - 8 * i));
     return to + 8;
+}
+
+static inline unsigned char *tl_vtk_put_double(unsigned char *to, double value)
+{
+    int64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return tl_vtk_put_long(to, bits);
 }
 
 static inline unsigned char *tl_vtk_put_vec3(unsigned char *to, tl_vec3 value)

@@ -17,7 +17,7 @@ void tl_lua_set_block(lua_State *L, const char *name, tl_id id)
 {
     if (id == TL_NO_ID)
         return;
-    tl_lua_item_push(L, &tl_lua_block_kind, 1, id);
+    tl_lua_item_push_id(L, &tl_lua_block_kind, 1, id);
     lua_setfield(L, -2, name);
 }
 
@@ -63,13 +63,14 @@ static void push_neighbours(lua_State *L, tl_model *model, tl_id id)
     tl_lua_ok(L, model, tl_block_neighbours(model, id, &found->ids, &found->count));
     lua_createtable(L, (int)found->count, 0);
     for (size_t i = 0; i < found->count; i++) {
-        tl_lua_item_push(L, &tl_lua_block_kind, 3, found->ids[i]);
+        tl_lua_item_push_id(L, &tl_lua_block_kind, 3, found->ids[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
 
-static bool block_extra(lua_State *L, tl_model *model, tl_id id, const char *name)
+static bool block_extra(lua_State *L, tl_model *model, const tl_lua_item *item, const char *name)
 {
+    const tl_id id = item->id;
     bool vertices = strcmp(name, "vertices") == 0;
     if (strcmp(name, "neighbours") == 0) {
         push_neighbours(L, model, id);
@@ -580,6 +581,16 @@ static const tl_lua_verb block_verbs[] = {
     {.name = NULL},
 };
 
+static tl_status block_field(tl_model *model, const tl_lua_item *item, size_t index, tl_field_value *value)
+{
+    return tl_block_field(model, item->id, index, value);
+}
+
+static tl_status block_values(tl_model *model, const tl_lua_selection *of, const char *name, double *out, size_t *width)
+{
+    return tl_blocks_values(model, of ? of->ids : NULL, of ? of->count : 0, name, out, width);
+}
+
 static const tl_lua_key block_extra_keys[] = {
     {"vertices", "list of {x, y, z}", "vertices in their present place"},
     {"faces", "list of {vertices =, normal =, joint =}",
@@ -594,8 +605,8 @@ const tl_lua_kind tl_lua_block_kind = {
     .item_type = TL_LUA_BLOCK,
     .selection_type = TL_LUA_BLOCKS,
     .fields = tl_block_fields,
-    .field = tl_block_field,
-    .values = tl_blocks_values,
+    .field = block_field,
+    .values = block_values,
     .extra = block_extra,
     .extra_keys = block_extra_keys,
     .verbs = block_verbs,

@@ -70,7 +70,7 @@ static int free_states(lua_State *L)
 }
 
 /* Pushes the list of the states of a contact's law. */
-static const holder *push_states(lua_State *L, tl_model *model, tl_id contact)
+static const holder *push_states(lua_State *L, tl_model *model, const tl_contact_name *contact)
 {
     holder *h = tl_lua_hold(L, sizeof *h, "talus.holder", free_states);
     tl_lua_ok(L, model, tl_states_list(model, contact, &h->list, &h->count));
@@ -86,14 +86,14 @@ static void push_value(lua_State *L, const double *value, size_t width)
         tl_lua_push_numbers(L, value, width);
 }
 
-static void push_contact_states(lua_State *L, tl_model *model, tl_id contact)
+static void push_contact_states(lua_State *L, tl_model *model, const tl_contact_name *contact)
 {
     const holder *states = push_states(L, model, contact);
     lua_createtable(L, 0, (int)states->count);
     for (size_t i = 0; i < states->count; i++) {
         double value[3];
         size_t width;
-        tl_lua_ok(L, model, tl_contacts_values(model, &contact, 1, states->list[i].name, value, &width));
+        tl_lua_ok(L, model, tl_contacts_values(model, contact, 1, states->list[i].name, value, &width));
         push_value(L, value, width);
         lua_setfield(L, -2, states->list[i].name);
     }
@@ -103,10 +103,11 @@ static void push_contact_states(lua_State *L, tl_model *model, tl_id contact)
 /* ---------------------------------------------------------------- points ----------------- */
 
 /* Sets one value in each of the `count` tables of the list at the top of the stack. */
-static void set_value(lua_State *L, tl_model *model, tl_id contact, size_t count, const char *name, double *values)
+static void set_value(lua_State *L, tl_model *model, const tl_contact_name *contact, size_t count, const char *name,
+                      double *values)
 {
     size_t width;
-    tl_lua_ok(L, model, tl_points_values(model, &contact, 1, name, values, &width));
+    tl_lua_ok(L, model, tl_points_values(model, contact, 1, name, values, &width));
     for (size_t k = 0; k < count; k++) {
         lua_rawgeti(L, -1, (lua_Integer)k + 1);
         lua_pushstring(L, name);
@@ -120,12 +121,12 @@ static void set_value(lua_State *L, tl_model *model, tl_id contact, size_t count
 }
 
 /* Push the points of a contact, a list of tables, and the states of its law, a table. */
-static void push_contact_points(lua_State *L, tl_model *model, tl_id contact)
+static void push_contact_points(lua_State *L, tl_model *model, const tl_contact_name *contact)
 {
     const holder *states = push_states(L, model, contact);
     size_t start[2], fields;
     const tl_field *field = tl_point_fields(&fields);
-    tl_lua_ok(L, model, tl_points_start(model, &contact, 1, start));
+    tl_lua_ok(L, model, tl_points_start(model, contact, 1, start));
     double *values = lua_newuserdatauv(L, 3 * (start[1] + 1) * sizeof *values, 0);
     lua_createtable(L, (int)start[1], 0);
     for (size_t k = 0; k < start[1]; k++) {
@@ -201,34 +202,51 @@ static int model_contacts(lua_State *L, tl_model *model)
     read_between(L, &filter);
     int where = tl_lua_read_where(L, &tl_lua_contact_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_contact_kind, 1);
-    tl_lua_ok(L, model, tl_contacts_select(model, &filter, &found->ids, &found->count));
+    tl_lua_ok(L, model, tl_contacts_select(model, &filter, &found->contacts, &found->count));
     if (where)
         tl_lua_selection_filter(L, lua_gettop(L), where);
     return 1;
 }
 
-/* `blocks`: the pair of blocks, as blocks and not as numbers; `points` and `states`. */
-static bool contact_extra(lua_State *L, tl_model *model, tl_id id, const char *name)
+static tl_status contact_field(tl_model *model, const tl_lua_item *item, size_t index, tl_field_value *value)
 {
+    return tl_contact_field(model, item->contact, index, value);
+}
+
+static tl_status contact_values(tl_model *model, const tl_lua_selection *of, const char *name, double *out,
+                                size_t *width)
+{
+    return tl_contacts_values(model, of ? of->contacts : NULL, of ? of->count : 0, name, out, width);
+}
+
+/* `id`, exact; `blocks`: the pair of blocks, as blocks and not as numbers; `points` and `states`. */
+static bool contact_extra(lua_State *L, tl_model *model, const tl_lua_item *item, const char *name)
+{
+    const tl_contact_name contact = item->contact;
     if (strcmp(name, "points") == 0) {
-        push_contact_points(L, model, id);
+        push_contact_points(L, model, &contact);
         return true;
     }
     if (strcmp(name, "states") == 0) {
-        push_contact_states(L, model, id);
+        push_contact_states(L, model, &contact);
         return true;
     }
-    if (strcmp(name, "blocks") != 0)
+    const bool blocks = strcmp(name, "blocks") == 0;
+    if (!blocks && strcmp(name, "id") != 0)
         return false;
     size_t index;
-    tl_lua_field_named(&tl_lua_contact_kind, name, &index);
     tl_field_value value;
-    tl_lua_ok(L, model, tl_contact_field(model, id, index, &value));
-    lua_createtable(L, 2, 0);
-    for (int side = 0; side < 2; side++) {
-        tl_lua_item_push(L, &tl_lua_block_kind, 3, (tl_id)value.number[side]);
-        lua_rawseti(L, -2, side + 1);
+    tl_lua_field_named(&tl_lua_contact_kind, name, &index);
+    tl_lua_ok(L, model, tl_contact_field(model, contact, index, &value));
+    if (!blocks) {
+        lua_pushinteger(L, tl_lua_item_number(item));
+        return true;
     }
+    lua_createtable(L, 2, 0);
+    tl_lua_item_push_id(L, &tl_lua_block_kind, 3, contact.a);
+    lua_rawseti(L, -2, 1);
+    tl_lua_item_push_id(L, &tl_lua_block_kind, 3, contact.b);
+    lua_rawseti(L, -2, 2);
     return true;
 }
 
@@ -250,8 +268,8 @@ const tl_lua_kind tl_lua_contact_kind = {
     .item_type = TL_LUA_CONTACT,
     .selection_type = TL_LUA_CONTACTS,
     .fields = tl_contact_fields,
-    .field = tl_contact_field,
-    .values = tl_contacts_values,
+    .field = contact_field,
+    .values = contact_values,
     .extra = contact_extra,
     .extra_keys = contact_extra_keys,
     .verbs = contact_verbs,

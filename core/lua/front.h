@@ -81,6 +81,7 @@ typedef struct tl_lua_running {
     bool failed; /* a function has; the run is to end */
 } tl_lua_running;
 
+struct tl_lua_item;
 struct tl_lua_selection;
 
 /* A method of selections of blocks: of `plain`, `act` and `ask` the one that is there. */
@@ -102,12 +103,13 @@ typedef struct tl_lua_kind {
     const char *item, *items;               /* "block", "blocks": words in messages */
     const char *item_type, *selection_type; /* names of the metatables */
     const tl_field *(*fields)(size_t *count);
-    tl_status (*field)(tl_model *model, tl_id id, size_t index, tl_field_value *value);
-    /* Fields of many by name: tl_blocks_values, tl_contacts_values. */
-    tl_status (*values)(tl_model *model, const tl_id *ids, size_t count, const char *name, double *out, size_t *width);
+    tl_status (*field)(tl_model *model, const struct tl_lua_item *item, size_t index, tl_field_value *value);
+    /* A field of a selection by its name: tl_blocks_values, tl_contacts_values. NULL: only its width is asked for. */
+    tl_status (*values)(tl_model *model, const struct tl_lua_selection *of, const char *name, double *out,
+                        size_t *width);
     /* Pushes a field that `fields` cannot express; false when it has none of that name. The item is
      * at index 1 and its model's userdata at index 3. */
-    bool (*extra)(lua_State *L, tl_model *model, tl_id id, const char *name);
+    bool (*extra)(lua_State *L, tl_model *model, const struct tl_lua_item *item, const char *name);
     const tl_lua_key *extra_keys;
     const tl_lua_verb *verbs; /* methods of selections beyond those both types have */
 } tl_lua_kind;
@@ -121,13 +123,16 @@ typedef struct tl_lua_kind {
 typedef struct tl_lua_item {
     const tl_lua_kind *kind;
     tl_lua_model *owner;
-    tl_id id;
+    tl_id id;                /* of a block, or TL_NO_ID */
+    tl_contact_name contact; /* or of blocks TL_NO_ID */
 } tl_lua_item;
 
 typedef struct tl_lua_selection {
     const tl_lua_kind *kind;
     tl_lua_model *owner;
-    tl_id *ids; /* from malloc */
+    /* from malloc; one of them is NULL */
+    tl_id *ids; /* of blocks */
+    tl_contact_name *contacts;
     size_t count;
 } tl_lua_selection;
 

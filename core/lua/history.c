@@ -235,10 +235,13 @@ static void ask_items(lua_State *L, tl_model *model, tl_history *h, latest *now)
     now->list = vector;
     for (size_t i = 0; i < h->id_count; i++) {
         tl_field_value value;
-        tl_status status = kind->field(model, h->ids[i], index, &value);
+        const tl_lua_item item = {.kind = kind,
+                                  .id = h->ids ? h->ids[i] : TL_NO_ID,
+                                  .contact = h->contacts ? h->contacts[i] : (tl_contact_name){.a = TL_NO_ID}};
+        tl_status status = kind->field(model, &item, index, &value);
         if (status == TL_E_STALE && h->count) { /* not at the first sample */
             gone++;
-            lost = h->ids[i];
+            lost = item.id;
             continue;
         }
         tl_lua_ok(L, model, status);
@@ -370,7 +373,8 @@ static void read_items(lua_State *L, tl_history *h, const history_args *args)
         h->source = sources[i];
         h->selection = selection != NULL;
         owner = item ? item->owner : selection->owner;
-        h->ids = item ? &item->id : selection->ids;
+        h->ids = i > 0 ? NULL : item ? &item->id : selection->ids;
+        h->contacts = i == 0 ? NULL : item ? &item->contact : selection->contacts;
         h->id_count = item ? 1 : selection->count;
     }
     if (!owner)

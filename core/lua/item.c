@@ -42,14 +42,40 @@ const tl_field *tl_lua_field_named(const tl_lua_kind *kind, const char *name, si
     return NULL;
 }
 
-void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id)
+tl_lua_item tl_lua_item_at(const tl_lua_selection *selection, size_t i)
+{
+    tl_lua_item item = {.kind = selection->kind, .owner = selection->owner};
+    if (selection->contacts)
+        item.contact = selection->contacts[i];
+    else
+        item.id = selection->ids[i];
+    return item;
+}
+
+lua_Integer tl_lua_item_number(const tl_lua_item *item)
+{
+    return item->id != TL_NO_ID ? (lua_Integer)item->id : tl_contact_number(item->contact);
+}
+
+static void push(lua_State *L, int model_index, tl_lua_item item)
 {
     model_index = lua_absindex(L, model_index);
-    tl_lua_item *item = lua_newuserdatauv(L, sizeof *item, 1);
-    *item = (tl_lua_item){kind, lua_touserdata(L, model_index), id};
-    luaL_setmetatable(L, kind->item_type);
+    tl_lua_item *pushed = lua_newuserdatauv(L, sizeof *pushed, 1);
+    *pushed = item;
+    pushed->owner = lua_touserdata(L, model_index);
+    luaL_setmetatable(L, item.kind->item_type);
     lua_pushvalue(L, model_index);
     lua_setiuservalue(L, -2, 1);
+}
+
+void tl_lua_item_push(lua_State *L, int model_index, const tl_lua_selection *selection, size_t i)
+{
+    push(L, model_index, tl_lua_item_at(selection, i));
+}
+
+void tl_lua_item_push_id(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id)
+{
+    push(L, model_index, (tl_lua_item){.kind = kind, .id = id});
 }
 
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id)
@@ -84,14 +110,14 @@ static int item_index(lua_State *L)
     const char *name = lua_tostring(L, 2);
     tl_model *model = tl_lua_living(L, item->owner);
     lua_getiuservalue(L, 1, 1);
-    if (item->kind->extra(L, model, item->id, name))
+    if (item->kind->extra(L, model, item, name))
         return 1;
     size_t index;
     const tl_field *field = tl_lua_field_named(item->kind, name, &index);
     if (!field)
         return unknown_field(L, item->kind, name);
     tl_field_value value;
-    tl_lua_ok(L, model, item->kind->field(model, item->id, index, &value));
+    tl_lua_ok(L, model, item->kind->field(model, item, index, &value));
     tl_lua_push_field(L, field->kind, &value);
     return 1;
 }
@@ -113,14 +139,15 @@ static int item_equal(lua_State *L)
     const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
     tl_lua_item *a = luaL_testudata(L, 1, kind->item_type);
     tl_lua_item *b = luaL_testudata(L, 2, kind->item_type);
-    lua_pushboolean(L, a && b && a->owner == b->owner && a->id == b->id);
+    lua_pushboolean(L, a && b && a->owner == b->owner && a->id == b->id && a->contact.a == b->contact.a &&
+                           a->contact.b == b->contact.b && a->contact.born == b->contact.born);
     return 1;
 }
 
 static int item_text(lua_State *L)
 {
     tl_lua_item *item = self_item(L);
-    lua_pushfstring(L, "%s %I", item->kind->item, (lua_Integer)item->id);
+    lua_pushfstring(L, "%s %I", item->kind->item, tl_lua_item_number(item));
     return 1;
 }
 
@@ -144,7 +171,7 @@ tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, i
 {
     model_index = lua_absindex(L, model_index);
     tl_lua_selection *selection = lua_newuserdatauv(L, sizeof *selection, 1);
-    *selection = (tl_lua_selection){kind, lua_touserdata(L, model_index), NULL, 0};
+    *selection = (tl_lua_selection){.kind = kind, .owner = lua_touserdata(L, model_index)};
     lua_pushvalue(L, model_index);
     lua_setiuservalue(L, -2, 1);
     luaL_setmetatable(L, kind->selection_type);
@@ -166,7 +193,9 @@ static int selection_collect(lua_State *L)
 {
     tl_lua_selection *selection = self(L, "collect");
     free(selection->ids);
+    free(selection->contacts);
     selection->ids = NULL;
+    selection->contacts = NULL;
     selection->count = 0;
     return 0;
 }
@@ -209,8 +238,19 @@ static void push_items(lua_State *L, const tl_lua_selection *selection, const tl
     for (size_t i = 0; i < selection->count; i++) {
         tl_model *model = tl_lua_living(L, selection->owner);
         tl_field_value value;
-        tl_lua_ok(L, model, selection->kind->field(model, selection->ids[i], index, &value));
+        const tl_lua_item item = tl_lua_item_at(selection, i);
+        tl_lua_ok(L, model, selection->kind->field(model, &item, index, &value));
         tl_lua_push_field(L, field->kind, &value);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* The numbers of contacts: exact, as single items give them. */
+static void push_ids(lua_State *L, const tl_lua_selection *contacts)
+{
+    lua_createtable(L, (int)contacts->count, 0);
+    for (size_t i = 0; i < contacts->count; i++) {
+        lua_pushinteger(L, tl_contact_number(contacts->contacts[i]));
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
@@ -243,10 +283,12 @@ static int selection_values(lua_State *L)
     }
     tl_model *model = tl_lua_living(L, selection->owner);
     size_t width, count = selection->count;
-    tl_lua_ok(L, model, selection->kind->values(model, NULL, 0, name, NULL, &width));
+    tl_lua_ok(L, model, selection->kind->values(model, NULL, name, NULL, &width));
     double *values = lua_newuserdatauv(L, (count * width + 1) * sizeof *values, 0);
-    tl_lua_ok(L, model, selection->kind->values(model, selection->ids, count, name, values, &width));
-    if (flat || width == 1)
+    tl_lua_ok(L, model, selection->kind->values(model, selection, name, values, &width));
+    if (selection->contacts && strcmp(name, "id") == 0)
+        push_ids(L, selection);
+    else if (flat || width == 1)
         push_flat(L, values, count * width, kind == TL_FIELD_COUNT || kind == TL_FIELD_IDS);
     else if (kind == TL_FIELD_IDS)
         push_items(L, selection, field, index);
@@ -275,7 +317,7 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
     const tl_field *field = tl_lua_field_named(kind, name, &index);
     if (field && field->kind > TL_FIELD_VEC3)
         tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
-    if (kind->values(model, NULL, 0, name, NULL, &width) == TL_E_NOT_FOUND) {
+    if (kind->values(model, NULL, name, NULL, &width) == TL_E_NOT_FOUND) {
         tl_lua_names names = {0};
         size_t count;
         const tl_field *fields = kind->fields(&count);
@@ -284,7 +326,7 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
         tl_lua_unknown(L, lua_tostring(L, -1), name, &names);
     }
     double *values = lua_newuserdatauv(L, (selection->count * width + 1) * sizeof *values, 0);
-    tl_lua_ok(L, model, kind->values(model, selection->ids, selection->count, name, values, &width));
+    tl_lua_ok(L, model, kind->values(model, selection, name, values, &width));
     return (column){field, values, width};
 }
 
@@ -397,6 +439,15 @@ static int call_verb(lua_State *L)
 
 /* ---------------------------------------------------------------- filter ----------------- */
 
+/* Puts item i in the place of item `to` of the same selection. */
+static void move(tl_lua_selection *selection, size_t to, size_t i)
+{
+    if (selection->contacts)
+        selection->contacts[to] = selection->contacts[i];
+    else
+        selection->ids[to] = selection->ids[i];
+}
+
 void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index)
 {
     tl_lua_selection *selection = lua_touserdata(L, selection_index);
@@ -404,12 +455,11 @@ void tl_lua_selection_filter(lua_State *L, int selection_index, int function_ind
     int model_index = lua_gettop(L);
     size_t kept = 0;
     for (size_t i = 0; i < selection->count; i++) {
-        tl_id id = selection->ids[i];
         lua_pushvalue(L, function_index);
-        tl_lua_item_push(L, selection->kind, model_index, id);
+        tl_lua_item_push(L, model_index, selection, i);
         lua_call(L, 1, 1);
         if (lua_toboolean(L, -1))
-            selection->ids[kept++] = id;
+            move(selection, kept++, i);
         lua_pop(L, 1);
     }
     selection->count = kept;
@@ -433,10 +483,17 @@ static int selection_where(lua_State *L)
         tl_lua_fail(L, "where: a function(%s) is expected, not %s", selection->kind->item, tl_lua_describe(L, 2));
     lua_getiuservalue(L, 1, 1);
     tl_lua_selection *copy = tl_lua_selection_push(L, selection->kind, 3);
-    copy->ids = malloc((selection->count + 1) * sizeof *copy->ids);
-    if (!copy->ids)
+    const size_t each = selection->contacts ? sizeof *selection->contacts : sizeof *selection->ids;
+    const void *from = selection->contacts ? (const void *)selection->contacts : selection->ids;
+    void *list = malloc((selection->count + 1) * each);
+    if (!list)
         return tl_lua_fail(L, "where: out of memory");
-    memcpy(copy->ids, selection->ids, selection->count * sizeof *copy->ids);
+    if (selection->count)
+        memcpy(list, from, selection->count * each);
+    if (selection->contacts)
+        copy->contacts = list;
+    else
+        copy->ids = list;
     copy->count = selection->count;
     tl_lua_selection_filter(L, 4, 2);
     return 1;
@@ -468,7 +525,7 @@ static int selection_index(lua_State *L)
         if (i < 1 || (lua_Unsigned)i > selection->count)
             return 0;
         lua_getiuservalue(L, 1, 1);
-        tl_lua_item_push(L, selection->kind, 3, selection->ids[i - 1]);
+        tl_lua_item_push(L, 3, selection, (size_t)i - 1);
         return 1;
     }
     lua_pushvalue(L, 2);

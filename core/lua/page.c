@@ -102,11 +102,11 @@ static void ask_field(lua_State *L, const request *r, tl_extra_field *field, con
 {
     tl_model *model = tl_lua_living(L, r->items->owner);
     size_t width;
-    tl_lua_ok(L, model, r->kind->values(model, NULL, 0, source, NULL, &width));
+    tl_lua_ok(L, model, r->kind->values(model, NULL, source, NULL, &width));
     if (width != 1)
         tl_lua_fail(L, "%s: %s: the field '%s' of a %s has %d numbers; give a function(%s) that returns one",
                     r->context, r->key, source, r->kind->item, (int)width, r->kind->item);
-    tl_lua_ok(L, model, r->kind->values(model, r->items->ids, r->items->count, source, values, &width));
+    tl_lua_ok(L, model, r->kind->values(model, r->items, source, values, &width));
     size_t index;
     const tl_field *known = tl_lua_field_named(r->kind, source, &index);
     field->unit = known ? known->unit : "";
@@ -122,13 +122,14 @@ static int ask(lua_State *L)
     tl_extra_field *field = lua_touserdata(L, AT_FIELD);
     double *values = (double *)(uintptr_t)field->values;
     for (size_t i = 0; i < r->items->count; i++) {
-        tl_lua_item_push(L, r->kind, AT_OWNER, r->items->ids[i]);
+        const tl_lua_item item = tl_lua_item_at(r->items, i);
+        tl_lua_item_push(L, AT_OWNER, r->items, i);
         lua_pushvalue(L, AT_FUNCTION);
         lua_pushvalue(L, AT_ITEM);
         lua_call(L, 1, 1);
         if (lua_type(L, -1) != LUA_TNUMBER && !lua_isnil(L, -1))
-            return luaL_error(L, "it must give a number or nil, not %s for %s %d", tl_lua_describe(L, -1),
-                              r->kind->item, (int)r->items->ids[i]);
+            return luaL_error(L, "it must give a number or nil, not %s for %s %I", tl_lua_describe(L, -1),
+                              r->kind->item, tl_lua_item_number(&item));
         values[i] = lua_isnil(L, -1) ? NAN : lua_tonumber(L, -1);
         lua_settop(L, AT_OWNER);
     }
@@ -178,7 +179,7 @@ static const tl_lua_selection *push_all(lua_State *L, const tl_lua_kind *kind)
     tl_model *model = ((const tl_lua_model *)lua_touserdata(L, 1))->model;
     tl_lua_selection *all = tl_lua_selection_push(L, kind, 1);
     if (kind == &tl_lua_contact_kind) {
-        tl_lua_ok(L, model, tl_contacts_select(model, NULL, &all->ids, &all->count));
+        tl_lua_ok(L, model, tl_contacts_select(model, NULL, &all->contacts, &all->count));
         return all;
     }
     tl_block_filter any = tl_block_filter_default();

@@ -356,8 +356,12 @@ static int model_verdict(lua_State *L, tl_model *model)
     tl_lua_set_vec3(L, "direction", v.direction);
     TL_LUA_SET_NUMBERS(L, {"ratio", v.ratio}, {"closed", v.closed}, {"volume", v.volume},
                        {"displacement", v.displacement}, {"slip", v.slip}, {"opening", v.opening});
-    TL_LUA_SET_COUNTS(L, {"moved", v.moved}, {"farthest", v.farthest}, {"slipped", v.slipped}, {"opened", v.opened},
-                      {"contacts", v.contacts}, {"slipping", v.slipping});
+    TL_LUA_SET_COUNTS(L, {"moved", v.moved}, {"farthest", v.farthest}, {"contacts", v.contacts},
+                      {"slipping", v.slipping});
+    lua_pushinteger(L, tl_contact_number(v.slipped));
+    lua_setfield(L, -2, "slipped");
+    lua_pushinteger(L, tl_contact_number(v.opened));
+    lua_setfield(L, -2, "opened");
     return 1;
 }
 

@@ -253,7 +253,7 @@ static void push_empty_result(lua_State *L, int model_index, int32_t measure)
     set_numbers(L, &none);
     tl_lua_set_text(L, "measure", tl_ratio_measure_name((tl_ratio_measure)measure));
     for (size_t i = 0; i < sizeof result_blocks / sizeof result_blocks[0]; i++) {
-        tl_lua_item_push(L, &tl_lua_block_kind, model_index, TL_NO_ID);
+        tl_lua_item_push_id(L, &tl_lua_block_kind, model_index, TL_NO_ID);
         lua_setfield(L, -2, result_blocks[i]);
     }
 }

@@ -33,7 +33,10 @@ const char *tl_history_unsound(const tl_model *m, const tl_history *h)
 tl_history_list tl_history_list_at(const tl_history *h, unsigned k)
 {
     switch (k) {
-    case 0: return (tl_history_list){"ids", h->ids, sizeof *h->ids, h->id_count};
+    case 0:
+        return h->source == TL_FROM_CONTACTS
+                   ? (tl_history_list){"contacts", h->contacts, sizeof *h->contacts, h->id_count}
+                   : (tl_history_list){"ids", h->ids, sizeof *h->ids, h->id_count};
     case 1: return (tl_history_list){"cycles", h->cycles, sizeof *h->cycles, h->count};
     case 2: return (tl_history_list){"times", h->times, sizeof *h->times, h->count};
     default: return (tl_history_list){"values", h->values, sizeof *h->values, h->count * h->width};
@@ -45,6 +48,7 @@ void tl_history_free(tl_history *h)
     if (!h)
         return;
     free(h->ids);
+    free(h->contacts);
     free(h->cycles);
     free(h->times);
     free(h->values);
@@ -72,11 +76,13 @@ tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples)
     if (!h)
         return NULL;
     *h = *what;
-    h->ids = h->id_count ? malloc(h->id_count * sizeof *h->ids) : NULL;
+    const bool contacts = h->source == TL_FROM_CONTACTS;
+    h->ids = h->id_count && !contacts ? malloc(h->id_count * sizeof *h->ids) : NULL;
+    h->contacts = h->id_count && contacts ? malloc(h->id_count * sizeof *h->contacts) : NULL;
     h->cycles = NULL;
     h->times = h->values = NULL;
     h->capacity = 0;
-    if ((h->id_count && !h->ids) || (samples && !hold_samples(h, samples))) {
+    if ((h->id_count && !h->ids && !h->contacts) || (samples && !hold_samples(h, samples))) {
         tl_history_free(h);
         return NULL;
     }
@@ -100,6 +106,8 @@ tl_status tl_history_add(tl_model *m, const tl_history *what, tl_history **wante
         return tl_fail_memory(&m->error);
     if (h->ids)
         memcpy(h->ids, what->ids, h->id_count * sizeof *h->ids);
+    if (h->contacts)
+        memcpy(h->contacts, what->contacts, h->id_count * sizeof *h->contacts);
     *made = h;
     return TL_OK;
 }
@@ -138,6 +146,6 @@ tl_status tl_history_sample(tl_model *m, tl_history *h, const double *values, si
 
 size_t tl_history_bytes(const tl_history *h)
 {
-    return sizeof *h + h->id_count * sizeof *h->ids +
+    return sizeof *h + h->id_count * (h->contacts ? sizeof *h->contacts : sizeof *h->ids) +
            h->capacity * (sizeof *h->cycles + sizeof *h->times + h->width * sizeof *h->values);
 }

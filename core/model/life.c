@@ -125,7 +125,6 @@ void tl_model_destroy(tl_model *m)
     free(m->joint_laws);
     free(m->joint_min_areas);
     free(m->members);
-    free(m->asked_ids);
     tl_pool_destroy(m->pool);
     free(m);
 }

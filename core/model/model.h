@@ -160,11 +160,6 @@ typedef enum tl_found_for {
     TL_FOR_QUERIES_IN_COPY /* the next step goes on from `stepped` */
 } tl_found_for;
 
-/* A contact that somebody has asked for, by the ids of its blocks. */
-typedef struct tl_asked_id {
-    tl_id a, b, contact;
-} tl_asked_id;
-
 struct tl_model {
     tl_model_config config;
     tl_error error;
@@ -242,9 +237,6 @@ struct tl_model {
     struct tl_detect *detect;  /* of the module contact */
     struct tl_detect *stepped; /* of the last step; NULL but for TL_FOR_QUERIES_IN_COPY */
     tl_found_for found_for;
-    tl_asked_id *asked_ids; /* of contacts that were asked for and are to be found again: asked.c */
-    size_t asked_count;
-    tl_id next_contact; /* the last that was given to one of them */
     void (*detect_destroy)(struct tl_detect *);
     struct tl_cycle *cycle; /* of the module cycle */
     void (*cycle_destroy)(struct tl_cycle *);

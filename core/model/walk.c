@@ -84,8 +84,6 @@ void tl_model_walk(tl_model *m, const tl_walk *walk)
     VALUE(STATE, record.created);
     VALUE(STATE, record.deleted);
     LIST(STATE, record.list, record.listed, record.listed);
-    VALUE(STATE, next_contact);
-    LIST(STATE, asked_ids, asked_count, asked_count);
     LIST(STATE, cut_parts, cut_part_count, cut_part_capacity);
     LIST(STATE, splits, split_count, split_capacity);
     LIST(STATE, face_loads, face_load_count, face_load_capacity);

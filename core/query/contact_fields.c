@@ -18,7 +18,8 @@
 
 /* The fields: name, kind, unit, what tl_contact_facts has them by (of several numbers the first), and what they are. */
 #define CONTACT_FIELDS(FIELD)                                                                                          \
-    FIELD(id, COUNT, "", id, "number of the contact, never used again")                                                \
+    FIELD(id, COUNT, "", number, "number of the pair of its blocks: that of the older times 2^32, plus the other's")   \
+    FIELD(born, COUNT, "", born, "steps made when it began: by this and its blocks a contact is known")                \
     FIELD(blocks, IDS, "", a, "its two blocks, the older first")                                                       \
     FIELD(joint, TEXT, "", tag.joint, "joint and plane (\"J1:3\"), or empty")                                          \
     FIELD(area, SCALAR, "m2", area, "of the common polygon of two faces, or of the surface of pressure")               \
@@ -38,7 +39,7 @@
 /* What else files show. */
 #define CONTACT_ARRAYS(FIELD)                                                                                          \
     FIELD(plane, COUNT, "", tag.plane, "")                                                                             \
-    FIELD(contact_id, COUNT, "", id, "")                                                                               \
+    FIELD(contact_id, COUNT, "", number, "")                                                                           \
     FIELD(block_id, COUNT, "", a, "")                                                                                  \
     FIELD(block_a, COUNT, "", a, "")                                                                                   \
     FIELD(block_b, COUNT, "", b, "")                                                                                   \
@@ -67,6 +68,17 @@ const tl_field *tl_contact_quantity(const char *name)
     return of;
 }
 
+bool tl_contact_is_long(const tl_field *of)
+{
+    const size_t at = offsets[of - fields];
+    return at == offsetof(tl_contact_facts, number) || at == offsetof(tl_contact_facts, born);
+}
+
+int64_t tl_contact_long(const tl_contact_facts *facts, const tl_field *of)
+{
+    return offsets[of - fields] == offsetof(tl_contact_facts, born) ? facts->born : facts->number;
+}
+
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3])
 {
     const char *from = (const char *)facts + offsets[of - fields];
@@ -81,7 +93,7 @@ size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, dou
         return 2;
     default:
         memcpy(whole, from, sizeof *whole);
-        out[0] = whole[0];
+        out[0] = tl_contact_is_long(of) ? (double)tl_contact_long(facts, of) : whole[0];
         return 1;
     }
 }
@@ -167,12 +179,25 @@ tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x)
     return tl_v3_sub(displacement_at(m, c->b[contact], x), displacement_at(m, c->a[contact], x));
 }
 
+int64_t tl_contact_number(tl_contact_name name)
+{
+    return (int64_t)((uint64_t)name.a << 32 | name.b);
+}
+
+static tl_contact_name name_of(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    return (tl_contact_name){m->blocks.id[c->a[contact]], m->blocks.id[c->b[contact]], c->born[contact]};
+}
+
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
-    tl_contact_facts out = {.id = c->id[contact],
-                            .a = m->blocks.id[c->a[contact]],
-                            .b = m->blocks.id[c->b[contact]],
+    const tl_contact_name name = name_of(m, contact);
+    tl_contact_facts out = {.number = tl_contact_number(name),
+                            .born = name.born,
+                            .a = name.a,
+                            .b = name.b,
                             .tag = c->tag[contact],
                             .law = c->law[contact],
                             .area = c->area[contact],
@@ -189,18 +214,25 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     return out;
 }
 
-tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row)
+tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row)
 {
     tl_status status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
-    *row = tl_contact_row(m->detect, contact);
+    *row = tl_contact_row(m, contact.a, contact.b);
     if (*row == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted", contact);
+        return tl_fail(&m->error, TL_E_STALE, "contact of blocks %u and %u no longer exists: its blocks have parted",
+                       contact.a, contact.b);
+    const int64_t born = m->detect->contacts.born[*row];
+    if (born != contact.born)
+        return tl_fail(&m->error, TL_E_STALE,
+                       "contact of blocks %u and %u no longer exists: its blocks have parted, and have met again after "
+                       "cycle %lld",
+                       contact.a, contact.b, (long long)born);
     return TL_OK;
 }
 
-tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_value *value)
+tl_status tl_contact_field(tl_model *m, tl_contact_name contact, size_t index, tl_field_value *value)
 {
     assert(index < F_COUNT);
     uint32_t row;
@@ -265,15 +297,16 @@ static bool is_between(const unsigned char *ma, const unsigned char *mb, uint32_
     return !ma || !mb || (ma[a] && mb[b]) || (ma[b] && mb[a]);
 }
 
-tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id **ids, size_t *count)
+tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_contact_name **names, size_t *count)
 {
-    *ids = NULL;
+    *names = NULL;
     *count = 0;
     tl_tag joint = {0, 0};
     tl_contact_filter read;
     const tl_contact_filter *filter = &read;
-    uint32_t *rows = NULL; /* then ids, in their place */
+    uint32_t *rows = NULL;
     size_t all = 0;
+    tl_contact_name *list = NULL;
     tl_status status = TL_OPTIONS_READ(tl_contact_filter, given, &read, &m->error);
     if (status == TL_OK)
         status = tl_contacts_listed(m, &rows, &all);
@@ -284,19 +317,18 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id 
         ma = mark(m, filter->between_a, filter->count_a, &status);
     if (status == TL_OK && filter->between_b)
         mb = mark(m, filter->between_b, filter->count_b, &status);
+    if (status == TL_OK && !(list = malloc((all + 1) * sizeof *list)))
+        status = tl_fail_memory(&m->error);
     for (size_t i = 0; status == TL_OK && i < all; i++) {
         const tl_contacts *c = &m->detect->contacts;
         uint32_t row = rows[i];
         if (tl_tag_matches(joint, c->tag[row]) && is_between(ma, mb, c->a[row], c->b[row]))
-            rows[(*count)++] = c->id[row];
+            list[(*count)++] = name_of(m, row);
     }
+    free(rows);
     free(ma);
     free(mb);
-    if (status != TL_OK) {
-        free(rows);
-        rows = NULL;
-    }
-    *ids = rows;
+    *names = list;
     return status;
 }
 

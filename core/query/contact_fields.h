@@ -14,7 +14,8 @@ typedef enum tl_contact_state {
 
 /* As of the last step's forces. */
 typedef struct tl_contact_facts {
-    tl_id id, a, b; /* of the contact, of its older block and its younger */
+    int64_t number, born; /* tl_contact_number; steps made when it began */
+    tl_id a, b;           /* its older block and its younger */
     tl_tag tag;
     uint32_t law; /* its number, or TL_NO_ROW */
     tl_contact_state state;
@@ -30,6 +31,10 @@ typedef struct tl_contact_facts {
 
 /* A field of contacts, or what else files show of them, by a name that there is. */
 const tl_field *tl_contact_quantity(const char *name);
+/* Whether it is a whole number of 64 bits. */
+bool tl_contact_is_long(const tl_field *of);
+/* That number. */
+int64_t tl_contact_long(const tl_contact_facts *facts, const tl_field *of);
 /* Puts its numbers; of a text the number that stands for it. Returns how many. */
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3]);
 
@@ -44,7 +49,7 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact);
  * point of both that is now at x, relative to the model's origin. */
 tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x);
 /* Brings the contacts up to date and finds the row of one; TL_E_STALE with a sentence when it is gone. */
-tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row);
+tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row);
 /* Brings the contacts up to date and gives the rows of those with points, in the order of their blocks; the caller
  * frees the list. */
 tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count);

@@ -269,7 +269,7 @@ tl_status tl_blocks_values(tl_model *m, const tl_id *ids, size_t count, const ch
 }
 
 /* One value of a contact. */
-static tl_status contact_value(tl_model *m, const tl_law_states *states, const tl_value_of *of, tl_id contact,
+static tl_status contact_value(tl_model *m, const tl_law_states *states, const tl_value_of *of, tl_contact_name contact,
                                double *out)
 {
     uint32_t row;
@@ -286,7 +286,8 @@ static tl_status contact_value(tl_model *m, const tl_law_states *states, const t
     return TL_OK;
 }
 
-tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const char *name, double *out, size_t *width)
+tl_status tl_contacts_values(tl_model *m, const tl_contact_name *contacts, size_t count, const char *name, double *out,
+                             size_t *width)
 {
     size_t all;
     const tl_field *fields = tl_contact_fields(&all);
@@ -296,26 +297,26 @@ tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const 
     if (status == TL_OK) {
         *width = of.width;
         for (size_t i = 0; i < count && out && status == TL_OK; i++)
-            status = contact_value(m, &states, &of, ids[i], out + i * of.width);
+            status = contact_value(m, &states, &of, contacts[i], out + i * of.width);
     }
     tl_law_states_free(&states);
     return status;
 }
 
-tl_status tl_states_list(tl_model *m, tl_id contact, tl_law_state **list, size_t *count)
+tl_status tl_states_list(tl_model *m, const tl_contact_name *contact, tl_law_state **list, size_t *count)
 {
     *list = NULL;
     *count = 0;
     tl_law_states states = {0};
     uint32_t row = TL_NO_ROW;
-    tl_status status = contact == TL_NO_ID ? TL_OK : tl_contact_find(m, contact, &row);
+    tl_status status = contact ? tl_contact_find(m, *contact, &row) : TL_OK;
     if (status == TL_OK)
         status = tl_law_states_list(m, &states);
     if (status != TL_OK)
         return status;
     *list = malloc((states.count + 1) * sizeof **list);
     for (size_t i = 0; i < states.count && *list; i++)
-        if (contact == TL_NO_ID || law_states_has(m, &states, &states.at[i], row))
+        if (!contact || law_states_has(m, &states, &states.at[i], row))
             (*list)[(*count)++] = states.at[i];
     tl_law_states_free(&states);
     return *list ? TL_OK : tl_fail_memory(&m->error);
@@ -354,7 +355,7 @@ const tl_field *tl_point_fields(size_t *count)
     return fields;
 }
 
-tl_status tl_points_start(tl_model *m, const tl_id *contacts, size_t count, size_t *start)
+tl_status tl_points_start(tl_model *m, const tl_contact_name *contacts, size_t count, size_t *start)
 {
     tl_status status = tl_detect_refresh(m);
     start[0] = 0;
@@ -404,10 +405,10 @@ static void write_point(writer *w, uint32_t contact, size_t k)
     w->out += w->of.width;
 }
 
-static tl_status write_contact(tl_model *m, writer *w, tl_id id)
+static tl_status write_contact(tl_model *m, writer *w, tl_contact_name name)
 {
     uint32_t row;
-    tl_status status = tl_contact_find(m, id, &row);
+    tl_status status = tl_contact_find(m, name, &row);
     if (status != TL_OK)
         return status;
     if (w->of.field == F_position || w->of.field == F_gap || w->of.field == F_closure) {
@@ -420,7 +421,7 @@ static tl_status write_contact(tl_model *m, writer *w, tl_id id)
     return TL_OK;
 }
 
-tl_status tl_points_values(tl_model *m, const tl_id *contacts, size_t count, const char *name, double *out,
+tl_status tl_points_values(tl_model *m, const tl_contact_name *contacts, size_t count, const char *name, double *out,
                            size_t *width)
 {
     tl_law_states states;

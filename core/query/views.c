@@ -61,8 +61,7 @@ tl_status tl_view_contacts(tl_model *m, tl_contact_views *views)
         return status;
     const tl_contacts *c = &m->detect->contacts;
     size_t n = c->table.rows;
-    *views = (tl_contact_views){.id = indices(c->id, n),
-                                .a = indices(c->a, n),
+    *views = (tl_contact_views){.a = indices(c->a, n),
                                 .b = indices(c->b, n),
                                 .force = view(c->force, sizeof *c->force, n, 3),
                                 .area = view(c->area, sizeof *c->area, n, 1)};

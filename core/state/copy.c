@@ -6,7 +6,6 @@
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
 #include "cycle/walk.h"
-#include "detect/asked.h"
 #include "model/joints.h"
 #include "model/rows.h"
 #include "model/walk.h"
@@ -90,8 +89,6 @@ tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_mod
                        "copy: cycle %lld failed and could not be taken back: make the model anew",
                        (long long)m->cycles + 1);
     tl_rows_tidy(m);
-    if (!tl_asked_note(m))
-        return tl_fail_memory(&m->error);
     tl_model *to;
     status = tl_model_create(&m->config, &to, &m->error);
     if (status != TL_OK)

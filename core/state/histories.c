@@ -1,7 +1,8 @@
 /* histories.c - the histories of a model in an archive, and in a copy.
  *
  *     histories             what each samples, and how many samples it has; without histories it is not there
- *     histories.K.ids       of its blocks or contacts
+ *     histories.K.ids       of its blocks
+ *     histories.K.contacts  names of its contacts
  *     histories.K.cycles    of its samples
  *     histories.K.times     s
  *     histories.K.values    width numbers for each sample

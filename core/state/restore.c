@@ -131,9 +131,6 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
 /* Cycles that a model may have run; further ones do not overflow. */
 #define MOST_CYCLES (INT64_MAX / 8)
 
-/* Contacts that a model may have had. */
-#define MOST_CONTACTS (UINT32_MAX / 2)
-
 /* Bits of `said`: one for each remark. */
 #define ALL_REMARKS ((2u << TL_REMARK_UNDECIDED) - 1)
 
@@ -218,7 +215,7 @@ static bool matrix_is_sound(const tl_mat3 *r)
     return sum < MOST_MATRIX;
 }
 
-/* What blocks that were cut have left, what parts of faces are to get, and the ids by which contacts were asked for. */
+/* What blocks that were cut have left, and what parts of faces are to get. */
 static bool edits_are_sound(const tl_model *m)
 {
     for (size_t i = 0; i < m->cut_part_count; i++) {
@@ -237,14 +234,6 @@ static bool edits_are_sound(const tl_model *m)
         const tl_face_load *f = &m->face_loads[i];
         if (f->block == TL_NO_ID || f->block >= m->next_id || !tl_v3_finite(f->force) || !tl_v3_finite(f->moment) ||
             (i && f->block < f[-1].block))
-            return false;
-    }
-    if (m->next_contact > MOST_CONTACTS)
-        return false;
-    for (size_t i = 0; i < m->asked_count; i++) {
-        const tl_asked_id *q = &m->asked_ids[i];
-        if (q->contact == 0 || q->contact > m->next_contact || q->a >= q->b ||
-            (i && (q->a < q[-1].a || (q->a == q[-1].a && q->b <= q[-1].b))))
             return false;
     }
     return true;

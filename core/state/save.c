@@ -7,7 +7,6 @@
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
 #include "cycle/walk.h"
-#include "detect/asked.h"
 #include "model/rows.h"
 #include "model/walk.h"
 #include "state/parts.h"
@@ -117,8 +116,6 @@ static tl_status save_under(tl_model *m, const char *path)
 static tl_status prepare(tl_model *m)
 {
     tl_rows_tidy(m);
-    if (!tl_asked_note(m))
-        return tl_fail_memory(&m->error);
     if (!m->cycle)
         return TL_OK;
     if (tl_undo_lost(m->cycle))

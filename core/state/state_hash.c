@@ -4,10 +4,10 @@
  * Contacts are taken as the next step will find them, in a copy of the detection. They may have been brought up to
  * the present places already, by a step that failed after that or by a question. That makes no difference. The rates
  * of the bodies are found likewise, where motion follows from rates that were kept. Left out is what is only told:
- * energies, displacements' zero, record of cuts. So is what asking may change: contact ids, order of contacts. So is
- * what only saves work: cached axes, the broad phase. The results do not depend on it beyond the caches' margins. A
- * column that few models need counts as zeros where there is none. What follows from the rest and lies in a row with
- * it (a pose's matrix) does no harm. */
+ * energies, displacements' zero, record of cuts, when contacts began. So is the order of contacts. So is what only
+ * saves work: cached axes, the broad phase. The results do not depend on it beyond the caches' margins. A column that
+ * few models need counts as zeros where there is none. What follows from the rest and lies in a row with it (a pose's
+ * matrix) does no harm. */
 #include "base/hash.h"
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
@@ -163,17 +163,13 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     const struct tl_detect *lasting = tl_detect_lasting(m);
     struct tl_detect *copy = lasting ? tl_detect_copy(lasting) : NULL;
     tl_found_for found_for = m->found_for;
-    tl_asked_id *asked_ids = m->asked_ids;
-    size_t asked_count = m->asked_count, cut_part_count = m->cut_part_count;
-    tl_id next_contact = m->next_contact;
+    size_t cut_part_count = m->cut_part_count;
     tl_log_fn log = m->log;
     if (lasting && !copy)
         return tl_fail_memory(&m->error);
     m->detect = copy;
     m->stepped = NULL;
     m->found_for = TL_FOR_STEPS;
-    m->asked_ids = NULL;
-    m->asked_count = 0;
     m->log = say_nothing;
     tl_status status = tl_detect_update(m);
     if (status == TL_OK) {
@@ -186,11 +182,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     m->detect = own;
     m->stepped = stepped;
     m->found_for = found_for;
-    free(m->asked_ids); /* of a detection that failed */
-    m->asked_ids = asked_ids;
-    m->asked_count = asked_count;
     m->cut_part_count = cut_part_count;
-    m->next_contact = next_contact;
     return status;
 }
 

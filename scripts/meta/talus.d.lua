@@ -345,7 +345,8 @@ function Blocks:reaction() end
 function Blocks:reset_displacement() end
 
 ---@class (exact) talus.Contact
----@field id integer number of the contact, never used again
+---@field id integer number of the pair of its blocks: that of the older times 2^32, plus the other's
+---@field born integer steps made when it began: by this and its blocks a contact is known
 ---@field blocks talus.Block[] its two blocks, the older first
 ---@field joint string joint and plane ("J1:3"), or empty
 ---@field area number m2: of the common polygon of two faces, or of the surface of pressure

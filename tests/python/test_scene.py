@@ -225,7 +225,8 @@ def read_blocks(payload):
 def read_contacts(payload):
     c = Columns(payload)
     n, polygons, corners = c.take("I", 3)
-    columns = {name: c.take("I", n) for name in ("id", "a", "b", "joint", "plane")}
+    columns = {name: c.take("I", n) for name in ("a", "b", "joint", "plane")}
+    columns["id"] = [a << 32 | b for a, b in zip(columns["a"], columns["b"])]
     columns.update({name: c.vectors(n) for name in ("point", "normal", "force")})
     columns.update({name: c.take("f", n) for name in ("area", "gap", "slip", "used")})
     columns["state"] = c.take("B", n)

@@ -127,13 +127,13 @@ static tl_model *column(void)
 }
 
 /* The contacts of a joint, as a list that the caller frees. */
-static tl_id *contacts_of(tl_model *m, const char *joint, size_t *count)
+static tl_contact_name *contacts_of(tl_model *m, const char *joint, size_t *count)
 {
-    tl_id *ids = NULL;
+    tl_contact_name *names = NULL;
     tl_contact_filter filter = tl_contact_filter_default();
     filter.joint = joint;
-    CHECK_INT(tl_contacts_select(m, &filter, &ids, count), TL_OK);
-    return ids;
+    CHECK_INT(tl_contacts_select(m, &filter, &names, count), TL_OK);
+    return names;
 }
 
 /* ---------------------------------------------------------------- tests ------------------ */
@@ -143,7 +143,7 @@ TEST(clashing_names_stay_apart)
     tl_model *m = column();
     tl_law_state *list = NULL;
     size_t count = 0, contacts;
-    CHECK_INT(tl_states_list(m, TL_NO_ID, &list, &count), TL_OK);
+    CHECK_INT(tl_states_list(m, NULL, &list, &count), TL_OK);
     static const char *const names[] = {"law_area", "worn", "way", "second_worn"};
     static const size_t widths[] = {1, 1, 3, 3};
     CHECK_INT(count, 4);
@@ -152,13 +152,13 @@ TEST(clashing_names_stay_apart)
         CHECK_INT(list[i].width, widths[i]);
     }
     free(list);
-    tl_id *high = contacts_of(m, "high", &contacts);
-    CHECK_INT(tl_states_list(m, high[0], &list, &count), TL_OK);
+    tl_contact_name *high = contacts_of(m, "high", &contacts);
+    CHECK_INT(tl_states_list(m, high, &list, &count), TL_OK);
     CHECK_INT(count, 2);
     CHECK_TEXT(list[0].name, "way");
     CHECK_TEXT(list[1].name, "second_worn");
     free(list);
-    CHECK_INT(tl_states_list(m, 999, &list, &count), TL_E_STALE);
+    CHECK_INT(tl_states_list(m, &(tl_contact_name){1, 999, 0}, &list, &count), TL_E_STALE);
     CHECK(list == NULL && count == 0);
     free(high);
     tl_model_destroy(m);
@@ -169,7 +169,7 @@ TEST(states_of_contacts)
 {
     tl_model *m = column();
     size_t count, width;
-    tl_id *all = contacts_of(m, NULL, &count);
+    tl_contact_name *all = contacts_of(m, NULL, &count);
     CHECK_INT(count, 2);
     double value[6], area[2];
     CHECK_INT(tl_contacts_values(m, all, 2, "area", area, &width), TL_OK);
@@ -201,7 +201,7 @@ TEST(points_add_up)
 {
     tl_model *m = column();
     size_t count, width, start[3];
-    tl_id *all = contacts_of(m, NULL, &count);
+    tl_contact_name *all = contacts_of(m, NULL, &count);
     CHECK_INT(tl_points_start(m, all, 2, start), TL_OK);
     CHECK(start[0] == 0 && start[1] >= 4 && start[2] > start[1]);
     double *value = malloc(3 * start[2] * sizeof *value), *area = malloc(start[2] * sizeof *area);
@@ -232,7 +232,7 @@ TEST(points_add_up)
     CHECK_NEAR(centre, 1, 1e-6);
     CHECK_INT(tl_points_values(m, all, 2, "aera", value, &width), TL_E_NOT_FOUND);
     CHECK_CONTAINS(tl_model_error(m)->text, "did you mean 'area'?");
-    const tl_id stale = 999;
+    const tl_contact_name stale = {1, 999, 0};
     CHECK_INT(tl_points_values(m, &stale, 1, "area", value, &width), TL_E_STALE);
     free(value);
     free(area);

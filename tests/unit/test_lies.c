@@ -34,27 +34,24 @@ static void add_settings(tl_model *m)
     }
 }
 
-/* As if block 2 had been cut out of block 1, and their contact had been asked for. */
+/* As if block 2 had been cut out of block 1. */
 static void add_edits(tl_model *m)
 {
     tl_detect *d = m->detect;
     m->cut_parts = calloc(1, sizeof *m->cut_parts);
     m->splits = calloc(1, sizeof *m->splits);
-    m->asked_ids = calloc(1, sizeof *m->asked_ids);
     d->cut_contacts = calloc(1, sizeof *d->cut_contacts);
     d->cut_points = calloc(1, sizeof *d->cut_points);
     m->face_loads = calloc(1, sizeof *m->face_loads);
-    if (!CHECK(m->cut_parts && m->splits && m->asked_ids && d->cut_contacts && d->cut_points && m->face_loads))
+    if (!CHECK(m->cut_parts && m->splits && d->cut_contacts && d->cut_points && m->face_loads))
         exit(1);
     m->cut_parts[0] = (tl_cut_part){.id = 2, .root = 1, .r = tl_m3_identity()};
     m->splits[0] = (tl_split){.block = 2, .whole = 1};
-    m->asked_ids[0] = (tl_asked_id){1, 2, 1};
     d->cut_contacts[0] = (tl_cut_contact){.a = 1, .b = 2, .law = TL_NO_ROW, .count = 1};
     m->face_loads[0] = (tl_face_load){.block = 2};
     m->face_load_count = m->face_load_capacity = 1;
-    m->cut_part_count = m->cut_part_capacity = m->split_count = m->split_capacity = m->asked_count = 1;
+    m->cut_part_count = m->cut_part_capacity = m->split_count = m->split_capacity = 1;
     d->cut_count = d->cut_capacity = d->cut_point_count = d->cut_point_capacity = 1;
-    m->next_contact = d->next_contact;
 }
 
 /* Two boxes on each other, the lower one held, one that stands on its edge, and one that is driven, after some steps. */
@@ -147,6 +144,7 @@ static const uint32_t far_row = 1000000, all_bits = UINT32_MAX;
 static const uint16_t far_vertex = 60000, no_vertex = 0;
 static const uint64_t odd = 1;
 static const uint8_t zero = 0, one = 1, two = 2, four = 4, many = 255, most_planes = 250;
+static const int64_t before_all = -1, far_cycle = (int64_t)1 << 40;
 static const uint32_t row_0 = 0, row_1 = 1, two_row = 2;
 static const char no_end[64] = {"a name of sixty-four characters, none of which is the end of one"};
 static_assert(sizeof no_end == TL_STAGE_NAME + 1 && sizeof no_end == TL_HISTORY_NAME + 1,
@@ -301,8 +299,8 @@ static const lie lies[] = {
     PRESS(mesh.sides[0], many),
     PRESS(mesh.loop[0], many),
     /* contacts */
-    LIE("detect.contacts.id", 0, row_0),
-    LIE("detect.contacts.id", 0, far_row),
+    LIE("detect.contacts.born", 0, before_all),
+    LIE("detect.contacts.born", 0, far_cycle),
     LIE("detect.contacts.held", 0, two),
     LIE("detect.contacts.handed_over", 0, two),
     LIE("detect.contacts.holds_over_gap", 0, two),
@@ -350,16 +348,12 @@ static const lie lies[] = {
     /* edits */
     LIE("model.cut_parts", offsetof(tl_cut_part, id), far_row),
     LIE("model.cut_parts", offsetof(tl_cut_part, root), all_bits),
-    LIE("model.asked_ids", offsetof(tl_asked_id, a), far_row),
     LIE("model.cut_parts", offsetof(tl_cut_part, r), huge),
-    LIE("model.next_contact", 0, all_bits),
     LIE("model.cut_parts", offsetof(tl_cut_part, place), infinite),
     LIE("model.splits", offsetof(tl_split, block), far_row),
     LIE("model.splits", offsetof(tl_split, whole), far_row),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, first), most),
-    LIE("detect.next_contact", 0, far_row),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, count), far_row),
-    LIE("model.asked_ids", offsetof(tl_asked_id, contact), far_row),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, law), far_row),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, field), two),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, holds_over_gap), two),
@@ -371,8 +365,6 @@ static const lie lies[] = {
     LIE("model.face_loads", offsetof(tl_face_load, block), far_row),
     LIE("model.face_loads", offsetof(tl_face_load, force), infinite),
     LIE("model.face_loads", offsetof(tl_face_load, moment), infinite),
-    LIE("model.asked_ids", offsetof(tl_asked_id, contact), row_0),
-    LIE("model.asked_ids", offsetof(tl_asked_id, b), row_1),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, count), two_row),
     LIE("detect.cut_contacts", offsetof(tl_cut_contact, pressed), two),
     /* histories */

@@ -115,12 +115,13 @@ TEST(a_wrong_size_is_refused)
     static const uint64_t zeros[64];
     tl_id *ids;
     size_t count;
+    tl_contact_name *names;
     tl_filter_result filtered;
     tl_keyblocks keyblocks;
     tl_solve_result solved;
     const void *const bad = zeros;
     REFUSES(tl_blocks_select(m, bad, &ids, &count), "tl_block_filter");
-    REFUSES(tl_contacts_select(m, bad, &ids, &count), "tl_contact_filter");
+    REFUSES(tl_contacts_select(m, bad, &names, &count), "tl_contact_filter");
     REFUSES(tl_blocks_set(m, NULL, 0, bad), "tl_block_set");
     REFUSES(tl_blocks_load(m, NULL, 0, bad), "tl_load");
     REFUSES(tl_blocks_drive(m, NULL, 0, bad), "tl_drive");

@@ -146,7 +146,7 @@ TEST(what_is_sent_once)
     /* two boxes: 8 vertices, 6 faces, 24 corners each */
     CHECK_INT(length_of(&f, "SHAP"), 16 + 2 * 40 + 16 * 12 + 12 * 10 + 48 * 2);
     CHECK_INT(length_of(&f, "FRAM"), 20 + 2 * 84 + 4);
-    CHECK_INT(length_of(&f, "CONT"), 12 + 72 + 4 + 8 + 4 * 12); /* one polygon of four corners */
+    CHECK_INT(length_of(&f, "CONT"), 12 + 68 + 4 + 8 + 4 * 12); /* one polygon of four corners */
     CHECK_INT(length_of(&f, "LINE"), 64 + 4);
 
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK); /* the one before was not sent */

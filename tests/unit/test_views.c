@@ -103,10 +103,10 @@ TEST(contact_forces_balance)
     CHECK_INT(tl_model_cycle(m, 40, &result), TL_OK);
     tl_contact_views c;
     CHECK_INT(tl_view_contacts(m, &c), TL_OK);
-    CHECK_INT(c.id.count, 2);
+    CHECK_INT(c.a.count, 2);
     tl_body_views bodies = tl_view_bodies(m);
     double sum[3][3] = {{0}};
-    for (size_t i = 0; i < c.id.count; i++) {
+    for (size_t i = 0; i < c.a.count; i++) {
         CHECK(c.a.data[i] < c.b.data[i]);
         CHECK(c.area.data[c.area.stride * i] > 0.4);
         for (size_t k = 0; k < 3; k++) {
@@ -192,7 +192,7 @@ TEST(an_empty_model_has_empty_views)
     CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
     tl_contact_views contacts;
     CHECK_INT(tl_view_contacts(m, &contacts), TL_OK);
-    CHECK_INT(contacts.id.count, 0);
+    CHECK_INT(contacts.a.count, 0);
     CHECK_INT(tl_view_blocks(m).id.count, 0);
     CHECK_INT(tl_view_bodies(m).displacement.count, 0);
     tl_model_destroy(m);

@@ -122,10 +122,10 @@ static int files_with(const char *part, int delete)
 static void note_expected(tl_model *m)
 {
     FILE *file = fopen(FOLDER "/expected.txt", "w");
-    tl_id *ids = NULL;
+    tl_contact_name *names = NULL;
     size_t contacts = 0;
-    CHECK_INT(tl_contacts_select(m, NULL, &ids, &contacts), TL_OK);
-    free(ids);
+    CHECK_INT(tl_contacts_select(m, NULL, &names, &contacts), TL_OK);
+    free(names);
     if (CHECK(file != NULL)) {
         fprintf(file, "blocks %zu\ncontacts %zu\nvolume 24\ngroup %s\n", tl_block_count(m), contacts, LONG_GROUP);
         fclose(file);

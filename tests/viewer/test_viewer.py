@@ -103,7 +103,7 @@ def test_contact(chrome, folder):
     chrome.run("talus.app.pick(2), talus.app.drawn()")
     check(chrome.run("[...document.querySelectorAll('#picked details button')].map(b => b.textContent)") == ["1: slipping, 100 %"], "the contacts of a block are not listed")
     chrome.run("document.querySelector('#picked details button').click(), talus.app.drawn()")
-    check(chrome.run("document.querySelector('#picked h2').textContent") == "Contact 1", "the contact is not picked")
+    check(chrome.run("document.querySelector('#picked h2').textContent") == "Contact of blocks 1 and 2", "the contact is not picked")
     table = dict(chrome.run("[...document.querySelectorAll('#picked tr')].map(r => [...r.cells].map(c => c.textContent))"))
     check(table["state"] == "slipping" and table["blocks"] == "1 and 2" and table["strength used"] == "100 %", f"the contact is told as {table}")
     check(abs(float(table["normal force"].split()[0]) / 8e4 - 1) < 0.02 and abs(float(table["shear stress"].split()[0]) / (2e4 * math.tan(math.radians(25))) - 1) < 0.02, f"the contact carries {table}")

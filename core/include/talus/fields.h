@@ -23,8 +23,8 @@ TL_API tl_status tl_blocks_values(tl_model *model, const tl_id *ids, size_t coun
 /* The same of contacts. `name` is a field, or a state of a law (NaN where the contact's law has no such state): the
  * mean of the contact's points, weighted by their areas, or the sum of a state that goes with the area
  * (TL_TRANSFER_SPLIT, TL_TRANSFER_ENERGY). `state` is a number here: 0 elastic, 1 slipping, 2 open, 3 failed. */
-TL_API tl_status tl_contacts_values(tl_model *model, const tl_id *ids, size_t count, const char *name, double *out,
-                                    size_t *width);
+TL_API tl_status tl_contacts_values(tl_model *model, const tl_contact_name *contacts, size_t count, const char *name,
+                                    double *out, size_t *width);
 
 /* ---------------------------------------------------------------- contact points --------- */
 
@@ -33,10 +33,10 @@ TL_API tl_status tl_contacts_values(tl_model *model, const tl_id *ids, size_t co
 TL_API const tl_field *tl_point_fields(size_t *count);
 /* Counts the points of contacts: those of contacts[i] have the places start[i] to start[i + 1] - 1 in what
  * tl_points_values writes. `start` has count + 1 entries. */
-TL_API tl_status tl_points_start(tl_model *model, const tl_id *contacts, size_t count, size_t *start);
+TL_API tl_status tl_points_start(tl_model *model, const tl_contact_name *contacts, size_t count, size_t *start);
 /* Writes a field, or a state, of the points of contacts, contact after contact; as tl_contacts_values. */
-TL_API tl_status tl_points_values(tl_model *model, const tl_id *contacts, size_t count, const char *name, double *out,
-                                  size_t *width);
+TL_API tl_status tl_points_values(tl_model *model, const tl_contact_name *contacts, size_t count, const char *name,
+                                  double *out, size_t *width);
 
 /* ---------------------------------------------------------------- states of laws --------- */
 
@@ -53,9 +53,9 @@ typedef struct tl_law_state {
     const tl_state *state; /* as the first law declares it that has it */
 } tl_law_state;
 
-/* Lists the states of the laws that the model's joints have or, with `contact` not TL_NO_ID, those of that contact's
- * law. The list is the caller's, to be freed with free(). */
-TL_API tl_status tl_states_list(tl_model *model, tl_id contact, tl_law_state **list, size_t *count);
+/* Lists the states of the laws that the model's joints have or, with `contact` not NULL, those of that contact's law.
+ * The list is the caller's, to be freed with free(). */
+TL_API tl_status tl_states_list(tl_model *model, const tl_contact_name *contact, tl_law_state **list, size_t *count);
 
 /* ---------------------------------------------------------------- what there is ---------- */
 

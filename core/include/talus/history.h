@@ -38,19 +38,20 @@ typedef struct tl_history {
     int64_t every, first;            /* steps between two samples; the cycle of the first one */
     tl_history_source source;
     tl_history_take take;
-    bool selection; /* the ids are of a selection, not of one block or contact */
+    bool selection; /* they are of a selection, not of one block or contact */
     bool lost;      /* it was told that a block no longer exists */
     bool list;      /* a sample is a list, even of one number */
     size_t id_count;
-    tl_id *ids;                    /* of the blocks or contacts */
+    tl_id *ids;                    /* of the blocks; NULL of contacts */
+    tl_contact_name *contacts;     /* NULL of blocks */
     size_t width, count, capacity; /* numbers of a sample; samples; room for them */
     int64_t *cycles;               /* of each sample, ascending */
     double *times, *values;        /* s; width numbers for each sample */
 } tl_history;
 
 /* Makes a history without samples at the end of the model's list: `what` gives its name, asked, every, source, take,
- * selection and ids, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a name that is
- * empty, not of one line, or that of another history; every < 1; no ids. `made` may be NULL. */
+ * selection and ids or contacts, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a
+ * name that is empty, not of one line, or that of another history; every < 1; no ids. `made` may be NULL. */
 TL_API tl_status tl_history_add(struct tl_model *model, const tl_history *what, tl_history **made);
 /* Ends history i, with its samples. */
 TL_API void tl_history_end(struct tl_model *model, size_t i);

@@ -557,14 +557,17 @@ typedef struct tl_contact_filter {
     size_t count_a, count_b;
 } tl_contact_filter;
 
-/* Ids of the contacts that pass, in the order of their blocks: by the first, then by the second; freed with free().
- * Detects contacts when the model has changed since the last step. */
-TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *filter, tl_id **ids, size_t *count);
+/* Names of the contacts that pass, in ascending order of their blocks; freed with free(). Detects contacts when the
+ * model has changed since the last step. */
+TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *filter, tl_contact_name **names,
+                                    size_t *count);
+/* A number for a pair of blocks, a 2^32 + b: no two contacts that there are have the same. */
+TL_API int64_t tl_contact_number(tl_contact_name name);
 /* The fields a contact has, in the order of the reference; `*count` of them. */
 TL_API const tl_field *tl_contact_fields(size_t *count);
 /* The value of field `index` (of tl_contact_fields) of a contact, as of the last step. TL_E_STALE for a contact that is
  * no more. */
-TL_API tl_status tl_contact_field(tl_model *model, tl_id contact, size_t index, tl_field_value *value);
+TL_API tl_status tl_contact_field(tl_model *model, tl_contact_name contact, size_t index, tl_field_value *value);
 
 /* ---------------------------------------------------------------- state ------------------ */
 

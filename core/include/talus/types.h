@@ -29,10 +29,16 @@
 typedef enum tl_status { TL_STATUS_LIST(TL_STATUS_ENUM) TL_STATUS_COUNT } tl_status;
 #undef TL_STATUS_ENUM
 
-/* Identity of a block, a body or a contact: a whole number from 1 that is never used twice in a
- * model's life, so an old id can be told from a living one. 0 is "none". */
+/* Identity of a block or a body: a whole number from 1 that is never used twice in a model; 0 means none. */
 typedef uint32_t tl_id;
 #define TL_NO_ID ((tl_id)0)
+
+/* Identity of a contact: its blocks, the older one first, and how many steps had been made when it began. Two blocks
+ * have one contact at a time. */
+typedef struct tl_contact_name {
+    tl_id a, b;
+    int64_t born;
+} tl_contact_name;
 
 typedef struct tl_vec3 {
     double x, y, z;

@@ -45,7 +45,7 @@ typedef struct tl_verdict {
     /* The largest since the stage began, m: how far two bodies have moved along each other and apart. It is measured
      * where faces that look the same way meet, as the mean of their contacts by area. */
     double slip, opening;
-    tl_id slipped, opened; /* contacts of these; TL_NO_ID: none */
+    tl_contact_name slipped, opened; /* contacts of these; of blocks TL_NO_ID: none */
     size_t contacts, slipping;
     char stage[TL_STAGE_NAME + 1]; /* "": none */
 } tl_verdict;

@@ -66,9 +66,8 @@ static inline tl_vec3 tl_view_place(const tl_body_views *bodies, size_t row)
     return place;
 }
 
-/* Rows of contacts come and go in any step and are in no order: their ids tell which they are. */
+/* Rows of contacts come and go in any step and are in no order: their blocks tell which they are. */
 typedef struct tl_contact_views {
-    tl_index_view id;
     tl_index_view a, b; /* rows of its blocks in tl_block_views, the older block first */
     tl_view force;      /* of the contact on block b in the last step, N */
     tl_view area;       /* m2 */

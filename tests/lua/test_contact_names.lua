@@ -1,13 +1,16 @@
--- The ids by which contacts were asked for stay theirs: after edits, from the first step on, in copies and in what is restored.
+-- A contact is known by its blocks and by when it began: whoever has asked for it, after edits, from the first step on, in copies and in what
+-- is restored. Once it has ended its handle raises, also when its blocks have met again.
 local check = require "check"
 local talus = require "talus"
 
-local path = os.getenv "TALUS_TEST_TMP" .. "/asked_ids.talus"
+local path = os.getenv "TALUS_TEST_TMP" .. "/contact_names.talus"
 
 local function ids(model)
     local out = {}
     for _, contact in ipairs(model:contacts()) do
-        out[#out + 1] = ("%d-%d %d"):format(contact.blocks[1].id, contact.blocks[2].id, contact.id)
+        local a, b = contact.blocks[1].id, contact.blocks[2].id
+        check.equal(contact.id, a << 32 | b)
+        out[#out + 1] = ("%d-%d %d"):format(a, b, contact.born)
     end
     table.sort(out)
     return table.concat(out, " ")
@@ -57,7 +60,7 @@ for _, steps in ipairs { 0, 1, 40 } do
     check.equal(go_on(restored, 4, 3), told)
 end
 
--- A contact that is asked for twice between two steps has one id, whatever has been cut elsewhere in between.
+-- A contact that is asked for twice between two steps has one name, whatever has been cut elsewhere in between.
 do
     local model = talus.model { gravity = { 0, 0, -10 } }
     for k = 0, 2 do
@@ -70,10 +73,10 @@ do
     model:generate("box", { min = { 6, 0, 1 }, max = { 7, 1, 2 }, density = 2500 })
     local first = ids(model)
     model:generate("box", { min = { 0, 0, 2 }, max = { 1, 1, 3 }, density = 2500 })
-    check.holds(ids(model):find(first:match "5%-7 %d+", 1, true), "the id that was told is still the contact's")
+    check.holds(ids(model):find(first:match "5%-7 %d+", 1, true), "the name that was told is still the contact's")
 end
 
--- Before the first step, too: what is joined elsewhere leaves a contact its id and its history, whoever has asked in between.
+-- Before the first step, too: what is joined elsewhere leaves a contact its name and its history, whoever has asked in between.
 do
     local function told(look)
         local model = talus.model {}
@@ -125,4 +128,44 @@ do
     ids(copy)
     check.equal(count(copy, "after"), before)
     check.equal(count(model, "after"), before)
+end
+
+-- A handle ends with its contact; a selection keeps to the contacts it has found.
+do
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
+    model:generate("box", { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2500 })
+    model:generate("box", { min = { 1, 0, 0 }, max = { 2, 1, 1 }, density = 2500 })
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    model:cycle(3)
+    local all = model:contacts { between = { model:blocks { id = 1 }, model:blocks { id = 2 } } }
+    local old = all[1]
+    check.equal(old.born, 0)
+    check.equal(tostring(old), "contact " .. (1 << 32 | 2))
+    check.equal(all:values("id")[1], 1 << 32 | 2)
+    check.equal(math.type(all:values("id")[1]), "integer")
+    local upper = model:blocks { id = 2 }
+    upper:set { velocity = { 0, 0, 10 } }
+    model:cycle(400)
+    check.equal(#model:contacts { between = { model:blocks { id = 1 }, upper } }, 0)
+    check.raises(function() return old.area end, "contact of blocks 1 and 2 no longer exists: its blocks have parted")
+    upper:set { velocity = { 0, 0, -10 } }
+    for _ = 1, 5000 do
+        model:cycle(1)
+        if #model:contacts { between = { model:blocks { id = 1 }, upper } } > 0 then
+            break
+        end
+    end
+    local new = model:contacts { between = { model:blocks { id = 1 }, upper } }[1]
+    check.equal(new.id, 1 << 32 | 2)
+    check.holds(new ~= old and new.born > 400, "another contact of the same blocks")
+    check.raises(function() return old.area end, "parted, and have met again after cycle " .. new.born)
+    check.raises(function() return all:values("area") end, "no longer exists")
+    check.raises(function() return all:sum("area") end, "no longer exists")
+    model:save(path)
+    for _, other in ipairs { model:copy(), talus.restore(path, { threads = 1 }) } do
+        check.equal(other:contacts { between = { other:blocks { id = 1 }, other:blocks { id = 2 } } }[1].born, new.born)
+    end
+    model:blocks { id = 2 }:delete()
+    check.raises(function() return new.area end, "no longer exists")
 end
