@@ -559,12 +559,9 @@ static tl_status settle(tl_model *m)
         d->rows_changed = status != TL_OK; /* contacts are not what they seem until all is settled */
     }
     if (status == TL_OK) {
-        tl_cut_contacts_balance(m);
-        d->rows_changed = !tl_cut_parts_correct(m);
+        d->rows_changed = !tl_cut_parts_settle(m);
         if (d->rows_changed)
             return tl_fail_memory(&m->error);
-        tl_cut_contacts_sum(m);
-        tl_cut_contacts_end(d);
     }
     return status;
 }
