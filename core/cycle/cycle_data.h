@@ -7,7 +7,6 @@
 #include "base/inside.h"
 #include "base/lanes.h"
 #include "base/parallel.h"
-#include "detect/passing.h"
 #include "force/laws.h"
 #include "model/contributor.h"
 #include "model/loads.h"
@@ -126,6 +125,18 @@ typedef struct tl_ledger {
 typedef struct tl_reaction {
     tl_vec3 force, moment;
 } tl_reaction;
+
+/* What a step does to a body: displacement, m, and turn about the centroid, rad, in the model's axes. */
+typedef struct tl_step_motion {
+    tl_vec3 shift, turn;
+} tl_step_motion;
+
+/* Bounds of a block over a step. */
+typedef struct tl_swept {
+    tl_bounds box;
+    uint32_t row;
+    bool moves; /* far enough to be one of a pair that passes */
+} tl_swept;
 
 struct tl_cycle {
     tl_table table;
