@@ -97,19 +97,12 @@ static const tl_law *law_of(const tl_model *m, uint32_t c)
     return row == TL_NO_ROW ? NULL : &m->joint_laws[row];
 }
 
-/* Whether nothing can lift the points of a contact, nor hold them. */
-static bool is_plain(const tl_detect *d, const tl_law *law)
-{
-    const tl_law_ops *ops = law->kind->ops;
-    return law->pulls == TL_PULL_NONE && !d->points.f_n0 && (!ops->across_gap || law->columns == 0);
-}
-
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
 {
     const tl_detect *d = m->detect;
     const tl_law *law = law_of(m, c);
     tl_contact_across out = {.most = 0};
-    if (!law || d->contacts.point_count[c] == 0 || is_plain(d, law))
+    if (!tl_contact_is_lifted(m, c))
         return out;
     out.whole = true;
     for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
@@ -122,12 +115,6 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
         }
     }
     return out;
-}
-
-bool tl_contact_is_lifted(const tl_model *m, uint32_t c)
-{
-    const tl_law *law = law_of(m, c);
-    return law && m->detect->contacts.point_count[c] > 0 && !is_plain(m->detect, law);
 }
 
 /* The lifts of TL_LANES points from `first`, with those of initial forces or without. They are 0 without a law
@@ -147,11 +134,6 @@ static void find_lifts(const tl_model *m, const tl_law *law, uint32_t c, size_t 
 void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t c, size_t first, double opening[TL_LANES])
 {
     find_lifts(m, law, c, first, false, opening);
-}
-
-void tl_contact_point_openings(const tl_model *m, uint32_t c, size_t first, double opening[TL_LANES])
-{
-    find_lifts(m, tl_contact_opens(m, c) ? law_of(m, c) : NULL, c, first, false, opening);
 }
 
 void tl_contact_point_lifts(const tl_model *m, uint32_t c, size_t first, double lift[TL_LANES])

@@ -19,7 +19,6 @@
 
 #include "base/inline.h"
 #include "contact/triangle_parts.h"
-#include "narrow/frame2.h"
 
 #include <math.h>
 
@@ -63,17 +62,6 @@ bool tl_cell_patch_is_whole(const tl_cell_patch *of)
     return all;
 }
 
-/* From the centroid to a point. */
-static tl_vec3 place_of(const tl_cell_patch *of, size_t k)
-{
-    return tl_v3_sub(tl_cell_arm(of, k), tl_cell_arm(of, 2 * of->corners));
-}
-
-tl_vec3 tl_cell_corner(const tl_cell_patch *of, size_t k)
-{
-    return tl_v3_scale(1 / tl_point_rule_of(false).reach, place_of(of, of->corners + k));
-}
-
 /* ---------------------------------------------------------------- lifts ------------------ */
 
 /* Finds the centres of all cells. In a triangle of the fan a cell is r ((1 - q) e + q f), r and q between two bounds
@@ -100,14 +88,20 @@ static void find_centres(const tl_cell_patch *of)
     }
 }
 
-tl_cell_inertia tl_cell_inertia_of(const tl_cell_patch *of)
+/* Second moments of the area about the centroid, along two axes of the plane. */
+typedef struct inertia {
+    tl_vec3 axis[2];
+    double xx, xy, yy;
+} inertia;
+
+static inertia inertia_of(const tl_cell_patch *of)
 {
-    tl_cell_inertia out = {.xx = 0};
+    inertia out = {.xx = 0};
     out.axis[0] = tl_v3_perpendicular(tl_columns_get(of->lanes->normal, of->lane));
     out.axis[1] = tl_v3_cross(tl_columns_get(of->lanes->normal, of->lane), out.axis[0]);
     for (size_t k = 0; k < 2 * of->corners; k++) {
-        double x = tl_v3_dot(place_of(of, k), out.axis[0]);
-        double y = tl_v3_dot(place_of(of, k), out.axis[1]);
+        double x = tl_v3_dot(tl_cell_place(of, k), out.axis[0]);
+        double y = tl_v3_dot(tl_cell_place(of, k), out.axis[1]);
         out.xx += tl_cell_area(of, k) * x * x;
         out.xy += tl_cell_area(of, k) * x * y;
         out.yy += tl_cell_area(of, k) * y * y;
@@ -115,7 +109,8 @@ tl_cell_inertia tl_cell_inertia_of(const tl_cell_patch *of)
     return out;
 }
 
-tl_vec3 tl_cell_slope(const tl_cell_inertia *by, tl_vec3 moment)
+/* The slope g of a plane whose first moment int (g x) x dA is given; of points on a line none. */
+static tl_vec3 slope_of(const inertia *by, tl_vec3 moment)
 {
     double x = tl_v3_dot(moment, by->axis[0]), y = tl_v3_dot(moment, by->axis[1]);
     double det = by->xx * by->yy - by->xy * by->xy, sum = by->xx + by->yy;
@@ -135,17 +130,17 @@ static bool lifts_differ(const tl_cell_patch *of)
 }
 
 /* The plane that fits the lifts: its height at the centroid, and its slope. */
-static double fit_plane(const tl_cell_patch *of, const tl_cell_inertia *by, tl_vec3 *slope)
+static double fit_plane(const tl_cell_patch *of, const inertia *by, tl_vec3 *slope)
 {
     double sum = 0, area = 0;
     tl_vec3 moment = {0, 0, 0};
     for (size_t k = 0; k <= 2 * of->corners; k++) {
         double part = tl_cell_area(of, k), weight = part * of->lanes->cell[tl_cell_lane(of, k)].lift;
-        moment = tl_v3_madd(moment, weight, place_of(of, k));
+        moment = tl_v3_madd(moment, weight, tl_cell_place(of, k));
         sum += weight;
         area += part;
     }
-    *slope = tl_cell_slope(by, moment);
+    *slope = slope_of(by, moment);
     return sum / area;
 }
 
@@ -160,16 +155,16 @@ static tl_vec3 lay_lifts(const tl_cell_patch *of)
     if (!lifts_differ(of))
         return plane;
     find_centres(of);
-    const tl_cell_inertia by = tl_cell_inertia_of(of);
+    const inertia by = inertia_of(of);
     const double mean = fit_plane(of, &by, &plane);
     for (size_t k = 0; k <= 2 * of->corners; k++) {
         size_t i = tl_cell_lane(of, k);
-        double off = cell[i].lift - mean - tl_v3_dot(plane, place_of(of, k));
+        double off = cell[i].lift - mean - tl_v3_dot(plane, tl_cell_place(of, k));
         cell[i].level = off;
         square += tl_cell_area(of, k) * off * off;
         moment = tl_v3_madd(moment, -off, cell[i].centre);
     }
-    const tl_vec3 back = tl_cell_slope(&by, moment);
+    const tl_vec3 back = slope_of(&by, moment);
     const double lost = tl_v3_dot(back, moment);
     const double larger = square > lost ? sqrt(square / (square - lost)) : 1;
     for (size_t k = 0; k <= 2 * of->corners; k++)
@@ -271,4 +266,16 @@ void tl_cells_find(const tl_cell_patch *of, bool curved)
         e = f;
         here = there;
     }
+}
+
+tl_vec3 tl_cells_overlap_slope(const tl_cell_patch *of)
+{
+    const inertia by = inertia_of(of);
+    const double centre = of->lanes->cell[tl_cell_lane(of, 2 * of->corners)].closure;
+    tl_vec3 moment = {0, 0, 0};
+    for (size_t k = 0; k <= 2 * of->corners; k++) {
+        double closure = of->lanes->cell[tl_cell_lane(of, k)].closure;
+        moment = tl_v3_madd(moment, tl_cell_area(of, k) * (closure - centre), tl_cell_place(of, k));
+    }
+    return slope_of(&by, moment);
 }

@@ -5,6 +5,7 @@
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "model/model.h"
+#include "narrow/frame2.h"
 
 /* Constant: of the drawn-in triangle of the centroid over that of an edge, and where on the edge a corner's cell
  * ends. */
@@ -36,6 +37,18 @@ static inline double tl_cell_area(const tl_cell_patch *of, size_t k)
     return of->p->area[of->row + k * TL_LANES];
 }
 
+/* From the centroid to a point ... */
+static inline tl_vec3 tl_cell_place(const tl_cell_patch *of, size_t k)
+{
+    return tl_v3_sub(tl_cell_arm(of, k), tl_cell_arm(of, 2 * of->corners));
+}
+
+/* ... and to a corner of the patch. */
+static inline tl_vec3 tl_cell_corner(const tl_cell_patch *of, size_t k)
+{
+    return tl_v3_scale(1 / tl_point_rule_of(false).reach, tl_cell_place(of, of->corners + k));
+}
+
 /* The patch of a contact whose points are in the lanes given. false: it is none. */
 bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes, size_t lane, size_t stride,
                       tl_cell_patch *out);
@@ -43,20 +56,11 @@ bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes 
  * no area. */
 bool tl_cell_patch_is_whole(const tl_cell_patch *of);
 
-/* Where its corner k lies, from the centroid. */
-tl_vec3 tl_cell_corner(const tl_cell_patch *of, size_t k);
 /* Integrals of all cells, of which the overlaps of the faces and the lifts from these are known. Moments are about the
  * centroid. `curved`: of higher powers, too. */
 void tl_cells_find(const tl_cell_patch *of, bool curved);
 
-/* Second moments of the area about the centroid, along two axes of the plane. */
-typedef struct tl_cell_inertia {
-    tl_vec3 axis[2];
-    double xx, xy, yy;
-} tl_cell_inertia;
-
-tl_cell_inertia tl_cell_inertia_of(const tl_cell_patch *of);
-/* The slope g of a plane whose first moment int (g x) x dA is given; of points on a line none. */
-tl_vec3 tl_cell_slope(const tl_cell_inertia *by, tl_vec3 moment);
+/* The slope of the overlap of the faces, from the closures of its points; of points on a line none. */
+tl_vec3 tl_cells_overlap_slope(const tl_cell_patch *of);
 
 #endif

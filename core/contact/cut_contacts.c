@@ -9,11 +9,9 @@
 #include "base/columns.h"
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
-#include "contact/places.h"
 #include "contact/shear.h"
 #include "narrow/flush.h"
 
-#include <float.h>
 #include <stdlib.h>
 
 /* Tolerance: normals of a part's face and of the whole's are off each other by rounding. */
@@ -161,128 +159,4 @@ tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, 
     if (tl_cut_contact_sign(m, cut, c) < 0)
         turn_round(tl_law_kind(m, cut->law), &out);
     return out;
-}
-
-/* ---------------------------------------------------------------- all parts -------------- */
-
-/* What a contact has taken over from; not a field contact from a patch. */
-static tl_cut_contact *source_of(const tl_model *m, uint32_t c)
-{
-    tl_cut_contact *cut = tl_cut_contact_on(m, c, &m->detect->contacts.facet[c]);
-    return cut && (cut->field || !tl_facet_is_field(&m->detect->contacts.facet[c])) ? cut : NULL;
-}
-
-tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t c)
-{
-    tl_cut_contact *cut = source_of(m, c);
-    return cut && !cut->field ? cut : NULL;
-}
-
-/* Adds what the patches of the parts carry; of parts of a field contact, the areas with which they have taken
- * over. */
-static void sum_taken(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    for (size_t i = 0; i < d->cut_count; i++)
-        d->cut_contacts[i].taken = (tl_shear){.area = 0};
-    for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
-        tl_cut_contact *cut = source_of(m, c);
-        double sign = cut ? tl_cut_contact_sign(m, cut, c) : 0;
-        if (cut && cut->field)
-            cut->taken.area += fmin(tl_contact_area_of_points(d, c), cut->whole.area);
-        for (size_t k = 0; cut && !cut->field && k < d->contacts.point_count[c]; k++) {
-            size_t i = tl_point_row(&d->contacts, c, k);
-            tl_vec3 force = tl_v3_scale(sign, tl_columns_get(d->points.f_s, i));
-            tl_shear_add(&cut->taken, d->points.area[i], tl_v3(0, 0, 0), force);
-        }
-    }
-}
-
-/* Parts that touch on a larger area than the whole have each taken over what was on all of it. They share it. */
-static void share_out(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
-{
-    const tl_detect *d = m->detect;
-    const tl_points_table *p = &d->points;
-    if (!(cut->taken.area > cut->whole.area))
-        return;
-    double by = cut->whole.area / cut->taken.area;
-    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
-        size_t i = tl_point_row(&d->contacts, c, k);
-        p->f_n[i] *= by;
-        if (p->f_n0)
-            p->f_n0[i] *= by;
-        tl_columns_put(p->f_s, i, tl_v3_scale(by, tl_columns_get(p->f_s, i)));
-    }
-}
-
-/* Shear forces of a patch become `keep` times what they are, and a force over an area more. */
-static void add_traction(const tl_detect *d, uint32_t c, double keep, tl_vec3 force, double over)
-{
-    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
-        size_t i = tl_point_row(&d->contacts, c, k);
-        tl_vec3 now = tl_v3_scale(keep, tl_columns_get(d->points.f_s, i));
-        tl_columns_put(d->points.f_s, i, tl_v3_madd(now, d->points.area[i] / over, force));
-    }
-}
-
-/* Adds a uniform traction to a patch, of which its share, in its plane, makes up for what the parts lack. */
-static void add_lacking(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
-{
-    const tl_shear *whole = &cut->whole, *taken = &cut->taken;
-    tl_vec3 lacks = tl_v3_sub(tl_v3_scale(tl_cut_contact_share(cut, taken->area), whole->force), taken->force);
-    tl_vec3 n = m->detect->contacts.facet[c].last;
-    lacks = tl_v3_scale(tl_cut_contact_sign(m, cut, c), lacks);
-    lacks = tl_v3_madd(lacks, -tl_v3_dot(lacks, n), n);
-    if (taken->area > 0)
-        add_traction(m->detect, c, 1, lacks, taken->area);
-}
-
-/* Where the parts' springs have more energy than the whole's had, brings their stresses nearer to the mean. Of
- * one force a uniform stress has the least. */
-static void limit_energy(const tl_model *m, uint32_t c, const tl_cut_contact *cut)
-{
-    const tl_shear *taken = &cut->taken;
-    double most = cut->whole.energy * tl_cut_contact_share(cut, taken->area);
-    if (!(taken->energy > most))
-        return;
-    double least = tl_v3_norm2(taken->force) / taken->area;
-    double keep = sqrt(fmax(0, most - least) / fmax(taken->energy - least, DBL_MIN));
-    double sign = tl_cut_contact_sign(m, cut, c);
-    add_traction(m->detect, c, keep, tl_v3_scale(sign * (1 - keep) / taken->area, taken->force), 1);
-}
-
-void tl_cut_contacts_balance(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    for (int step = 0; step < 2 && d->cut_count > 0; step++) {
-        sum_taken(m);
-        for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
-            const tl_cut_contact *cut = source_of(m, c);
-            if (cut && step == 0)
-                (cut->field ? share_out : add_lacking)(m, c, cut);
-            else if (cut && !cut->field)
-                limit_energy(m, c, cut);
-        }
-    }
-}
-
-void tl_cut_contacts_sum(tl_model *m)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
-    const tl_point_lanes *lanes = &m->detect->lanes[0];
-    for (uint32_t c = 0; m->detect->cut_count > 0 && c < contacts->table.rows; c++) {
-        if (!tl_cut_contact_of(m, contacts->a[c], contacts->b[c]))
-            continue;
-        tl_contact_places(m, c, lanes);
-        tl_shear sum = {.area = 0};
-        for (size_t k = 0; k < contacts->point_count[c]; k++) {
-            size_t i = tl_point_row(contacts, c, k);
-            tl_vec3 n = tl_columns_get(lanes->normal, k);
-            tl_shear_add(&sum, p->area[i], tl_columns_get(lanes->arm, k),
-                         tl_v3_madd(tl_columns_get(p->f_s, i), p->f_n[i], n));
-        }
-        contacts->force[c] = sum.force;
-        contacts->moment[c] = sum.moment;
-    }
 }

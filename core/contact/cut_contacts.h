@@ -40,11 +40,5 @@ static inline double tl_cut_contact_share(const tl_cut_contact *cut, double area
 }
 /* What a contact that has its points takes over of the energy of shear beyond springs, J: by its share of the area. */
 double tl_cut_contact_kept(const tl_model *m, const tl_cut_contact *cut, uint32_t contact);
-/* The patch that a patch has taken a share of, or NULL. */
-tl_cut_contact *tl_cut_contact_taken(const tl_model *m, uint32_t contact);
-/* After all parts have taken over their shares: together they carry what the whole did, and no more energy. */
-void tl_cut_contacts_balance(tl_model *m);
-/* Sums what new contacts carry from the beginning, until the laws say it. */
-void tl_cut_contacts_sum(tl_model *m);
 
 #endif

@@ -124,11 +124,6 @@ double tl_contact_lost(const tl_model *m, uint32_t c, tl_vec3 force, tl_vec3 mom
     return isnan(contacts->stored[c]) ? 0 : contacts->stored[c] - stored - work;
 }
 
-double tl_contact_ends(const tl_model *m, uint32_t c)
-{
-    return tl_contact_lost(m, c, tl_v3(0, 0, 0), tl_v3(0, 0, 0), 0);
-}
-
 /* Notes the heat of a contact that is left without points. Its faces stay moved out by `lift`, m: what slip has opened
  * is forgotten, and of a patch all. */
 static void let_go(tl_model *m, uint32_t c, double lift)

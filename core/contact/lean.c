@@ -250,19 +250,16 @@ static bool find_cells(const tl_model *m, uint32_t c, const tl_point_lanes *lane
 static linear sum_pressed(const tl_cell_patch *of, const axes *plane, linear *overlap)
 {
     linear out = {0, 0, 0};
-    const tl_cell_inertia by = tl_cell_inertia_of(of);
-    tl_vec3 moment = {0, 0, 0}, of_overlap = {0, 0, 0};
-    const double centre = of->lanes->cell[tl_cell_lane(of, 2 * of->corners)].closure;
+    tl_vec3 moment = {0, 0, 0};
     for (size_t k = 0; k <= 2 * of->corners; k++) {
         const tl_cell *cell = &of->lanes->cell[tl_cell_lane(of, k)];
-        tl_vec3 arm = tl_v3_sub(tl_cell_arm(of, k), tl_cell_arm(of, 2 * of->corners));
         out.one += cell->pressed_volume;
         moment = tl_v3_add(moment, cell->pressed);
-        of_overlap = tl_v3_madd(of_overlap, tl_cell_area(of, k) * (cell->closure - centre), arm);
     }
     out.x = tl_v3_dot(moment, plane->t1);
     out.y = tl_v3_dot(moment, plane->t2);
-    const tl_vec3 slope = tl_cell_slope(&by, of_overlap);
+    const tl_vec3 slope = tl_cells_overlap_slope(of);
+    const double centre = of->lanes->cell[tl_cell_lane(of, 2 * of->corners)].closure;
     *overlap = (linear){centre, tl_v3_dot(slope, plane->t1), tl_v3_dot(slope, plane->t2)};
     return out;
 }

@@ -1,16 +1,56 @@
-/* prefetch.h - prefetches what SIMD groups will need. */
+/* prefetch.h - prefetches what a SIMD group will need, some SIMD groups before: its contacts' bodies, facets and
+ * shapes, and its points, a little of each of some twenty columns. The processor's own prefetchers do not foresee these
+ * addresses: without this a step out of cache would wait for memory most of the time. */
 #ifndef TL_CONTACT_PREFETCH_H
 #define TL_CONTACT_PREFETCH_H
 
+#include "base/inline.h"
 #include "contact/detection.h"
 #include "model/model.h"
 
+#include <stdint.h>
+
+/* Bytes of points that no longer fit the nearer caches: within them a prefetch gains nothing and costs some percent. */
+#define TL_FAR (4u << 20)
+/* Bytes that memory hands over at a time. */
+#define TL_CACHE_LINE 64
+
 /* Whether there are so many points that prefetching pays. */
-bool tl_points_are_far(const tl_detect *d);
-/* Prefetches what a SIMD group that comes soon will need to be followed, or to be brought up to date. */
-void tl_simd_group_prefetch(const tl_model *m, const tl_simd_group *group);
-void tl_simd_group_prefetch_shapes(const tl_model *m, const tl_simd_group *group);
-/* Prefetches the contacts' rows, which tell where all that is: for a SIMD group that comes a little later. */
-void tl_simd_group_prefetch_contacts(const tl_detect *d, const tl_simd_group *group);
+static inline bool tl_points_are_far(const tl_detect *d)
+{
+    return tl_table_bytes(&d->points.table) > TL_FAR;
+}
+
+/* The empty asm keeps the compiler from removing a function that only prefetches. */
+TL_INLINE void tl_prefetch(const void *from, size_t bytes)
+{
+    const char *begin = from, *end = begin + bytes;
+    for (const char *line = begin - (uintptr_t)from % TL_CACHE_LINE; line < end; line += TL_CACHE_LINE)
+        __builtin_prefetch(line);
+    __asm__ volatile("");
+}
+
+/* Some rows of points. */
+static inline void tl_prefetch_points(const tl_points_table *p, size_t first, size_t count)
+{
+    const double *column[] = {p->p[0],   p->p[1],   p->p[2],   p->area,      p->f_n,
+                              p->f_s[0], p->f_s[1], p->f_s[2], p->reference, p->f_n0};
+    for (size_t k = 0; k < sizeof column / sizeof *column; k++)
+        if (column[k])
+            tl_prefetch(column[k] + first, count * sizeof(double));
+}
+
+/* What a contact needs in any case; false for one of a block that is gone. */
+static inline bool tl_prefetch_bodies(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t a = contacts->a[contact], b = contacts->b[contact];
+    if (a >= m->blocks.table.rows || b >= m->blocks.table.rows)
+        return false;
+    tl_prefetch(&m->bodies.pose[m->blocks.body[a]], sizeof *m->bodies.pose);
+    tl_prefetch(&m->bodies.pose[m->blocks.body[b]], sizeof *m->bodies.pose);
+    tl_prefetch(&contacts->facet[contact], sizeof *contacts->facet);
+    return true;
+}
 
 #endif

@@ -73,12 +73,6 @@ void tl_shear_resized(tl_model *m, uint32_t c, const tl_shear *before, const tl_
     tl_shear_release(m, c, before, &now);
 }
 
-uint32_t tl_shear_kept_column(const tl_model *m, uint32_t law)
-{
-    uint32_t column = law == TL_NO_ROW ? TL_NO_ROW : m->joint_laws[law].energy;
-    return column < m->detect->points.state_columns ? column : TL_NO_ROW;
-}
-
 double tl_shear_kept(const tl_model *m, uint32_t c)
 {
     const tl_detect *d = m->detect;

@@ -39,7 +39,11 @@ void tl_shear_resized(tl_model *m, uint32_t contact, const tl_shear *before, con
 void tl_shear_release(tl_model *m, uint32_t contact, const tl_shear *before, const tl_shear *now);
 
 /* Column of the energy that shear holds beyond its springs, J, under a law; none: TL_NO_ROW. */
-uint32_t tl_shear_kept_column(const tl_model *m, uint32_t law);
+static inline uint32_t tl_shear_kept_column(const tl_model *m, uint32_t law)
+{
+    uint32_t column = law == TL_NO_ROW ? TL_NO_ROW : m->joint_laws[law].energy;
+    return column < m->detect->points.state_columns ? column : TL_NO_ROW;
+}
 /* The sum of it over the points of a contact. */
 double tl_shear_kept(const tl_model *m, uint32_t contact);
 /* Gives new points, whose state is 0, that sum: those of a patch by their areas, in a field contact the point

@@ -7,7 +7,6 @@
 #include "base/inside.h"
 #include "base/lanes.h"
 #include "base/parallel.h"
-#include "detect/passing.h"
 #include "force/laws.h"
 #include "model/contributor.h"
 #include "model/loads.h"
@@ -78,28 +77,6 @@ typedef struct tl_speed_bounds {
     double speed2, turn2;
 } tl_speed_bounds;
 
-/* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
- * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
- * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
-typedef struct tl_body_group {
-    _Alignas(TL_ALIGN) tl_lanes4 q, axes;
-    tl_lanes3 moments, per; /* per: 1 / moments */
-    double mass[TL_LANES], alpha[TL_LANES];
-    /* by mass scaling: of mass and moments that forces meet, and of that which energies count */
-    double scale[TL_LANES], turn_scale[TL_LANES], energy_scale[TL_LANES];
-    tl_lanes3 force, moment, damping_force, damping_moment;
-    tl_lanes3 moved;                               /* velocity of the last step's motion */
-    tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
-    tl_lanes3 v1, w1, spin1, momentum1;            /* after it */
-    tl_lanes4 made, q2;                            /* the drift's turn, and after it */
-    tl_lanes3 momentum2, w2, turned;               /* angular velocity, and that of the motion */
-    double turning0[TL_LANES], turning2[TL_LANES]; /* w.I w, before the kick and after the drift */
-    double radius[TL_LANES], speed[TL_LANES];      /* |v| + |w| radius: no vertex moves faster */
-    double reach[TL_LANES];                        /* of the turn: see turn.h */
-    uint32_t body[TL_LANES];
-    unsigned count;
-} tl_body_group;
-
 /* What the ledger books of each body. What is always booked comes first, and what only the first step books last. */
 typedef enum tl_work_kind { TL_WORK_GRAVITY, TL_WORK_EXTERNAL, TL_WORK_DAMPING, TL_WORK_COUNT } tl_work_kind;
 enum {
@@ -112,14 +89,9 @@ enum {
     TL_BOOK_FIRST = TL_BOOK_WORK + 2 * TL_WORK_COUNT, /* by which the scheme's sum is less in the first step */
     TL_BOOK_COUNT
 };
-/* Of a chunk of bodies, group by group. */
-typedef struct tl_work {
-    _Alignas(TL_ALIGN) double book[TL_BOOK_COUNT][TL_BODY_CHUNK];
-    double held[2][TL_BODY_CHUNK]; /* external work on those held in every component */
-    size_t held_count;
-    bool external;       /* there may be external work on others */
-    double until, after; /* half of the step before and of the one after */
-} tl_work;
+/* Until now and after it, of a kind of work. */
+#define TL_BOOK_UNTIL(kind) (TL_BOOK_WORK + 2 * (kind))
+#define TL_BOOK_AFTER(kind) (TL_BOOK_UNTIL(kind) + 1)
 
 /* What a thread has booked: exact sums. */
 typedef struct tl_booked {
@@ -153,6 +125,18 @@ typedef struct tl_ledger {
 typedef struct tl_reaction {
     tl_vec3 force, moment;
 } tl_reaction;
+
+/* What a step does to a body: displacement, m, and turn about the centroid, rad, in the model's axes. */
+typedef struct tl_step_motion {
+    tl_vec3 shift, turn;
+} tl_step_motion;
+
+/* Bounds of a block over a step. */
+typedef struct tl_swept {
+    tl_bounds box;
+    uint32_t row;
+    bool moves; /* far enough to be one of a pair that passes */
+} tl_swept;
 
 struct tl_cycle {
     tl_table table;

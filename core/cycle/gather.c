@@ -6,6 +6,7 @@
 #include "base/extremes.h"
 #include "base/parallel.h"
 #include "contact/detection.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 #include "cycle/rest.h"
@@ -62,7 +63,7 @@ static void note_ratios(const tl_model *m, uint32_t body, size_t k, double weigh
     all->largest = tl_larger(all->largest, unbalanced);
     if (!(worse > NEARLY * all->local * bears))
         return;
-    bears = tl_larger(bears, tl_least_borne(m, body));
+    bears = tl_larger(bears, tl_least_borne(b, body, tl_body_stiffness(m, body)));
     double ratio = bears > 0 ? worse / bears : 1; /* nothing holds what turns it */
     all->local = tl_larger(all->local, bears > 0 ? unbalanced / bears : 0);
     if (ratio > all->worst_ratio || (ratio == all->worst_ratio && body < all->worst)) {

@@ -1,5 +1,6 @@
 /* joint_law.c - setting the law of a joint, and what becomes of the contacts that come under it. */
 #include "base/columns.h"
+#include "base/inside.h"
 #include "base/params.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
@@ -235,6 +236,41 @@ static bool takes_over(const tl_model *m, const tl_law *law, uint32_t c)
     return has_forces(m->detect, c);
 }
 
+/* Energies of points of 1 m2 without history that are pressed in by up to 1 m. */
+static void find_curve(const tl_law *law, double energy[TL_LANES])
+{
+    static _Alignas(TL_ALIGN) const double zeros[TL_LANES];
+    _Alignas(TL_ALIGN) uint32_t none[TL_LANES] = {0};
+    _Alignas(TL_ALIGN) double area[TL_LANES], closure[TL_LANES], force[TL_LANES];
+    double *state[TL_STATE_COLUMNS];
+    for (size_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = (double *)(uintptr_t)zeros;
+    for (size_t k = 0; k < TL_LANES; k++) {
+        area[k] = 1;
+        closure[k] = k > 0 ? 0.05 * closure[k - 1] : 1;
+    }
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = TL_LANES,
+                                .area = area,
+                                .closure = closure,
+                                .f_n0 = zeros,
+                                .f_n = force,
+                                .state = state,
+                                .flags = none};
+    tl_enter(law->kind, "pressed");
+    ((const tl_law_ops *)law->kind->ops)->pressed(law->self, &batch, energy);
+    tl_leave();
+}
+
+/* Whether two laws of a kind that tells of energies have the same at any closure of a point without history. */
+static bool same_curve(const tl_law *one, const tl_law *other)
+{
+    _Alignas(TL_ALIGN) double a[TL_LANES], b[TL_LANES];
+    find_curve(one, a);
+    find_curve(other, b);
+    return memcmp(a, b, sizeof a) == 0;
+}
+
 /* Whether a law presses as the one before it does, at any closure and opening. */
 static bool presses_alike(const tl_law *before, const tl_law *law)
 {
@@ -242,7 +278,7 @@ static bool presses_alike(const tl_law *before, const tl_law *law)
         return false;
     if (tl_law_opens(before) && !tl_law_opens(law))
         return false;
-    return tl_law_is_linear(law) || (tl_law_presses(law) && tl_law_same_curve(before, law));
+    return tl_law_is_linear(law) || (tl_law_presses(law) && same_curve(before, law));
 }
 
 /* Whether a contact comes under another stiffness, curve or plugin by a law, and has forces that are to stay. */

@@ -14,13 +14,16 @@
 #include "base/parallel.h"
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
+#include "contact/pair_view.h"
 #include "cycle/cycle_data.h"
 #include "cycle/kick.h"
 #include "cycle/undo.h"
+#include "geometry/measure.h"
 #include "model/loads.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <talus/number.h>
 
 /* ---------------------------------------------------------------- velocities ------------- */
@@ -84,13 +87,219 @@ static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
     return out;
 }
 
+/* ---------------------------------------------------------------- passing -----------------
+ *
+ * Contacts are looked for at the end of a step only. So a block that travels far in one step may end on the far side of
+ * another. Or it ends so deep in it that the nearest way out is not the one it came. Where a step may do that is told
+ * before the step:
+ *
+ *   1. A body that travels by less than half of what the thinnest block allows is none of those that pass.
+ *   2. The bounds of blocks are swept from where they are to where the step takes them, and sorted along x. Pairs
+ *      whose swept bounds meet are looked at: the others cannot touch in this step.
+ *   3. A pair may close along a face that parts it now, or along which it overlaps the least. Along the normal of any
+ *      other face its overlap is large already. The gap along a fixed normal is a concave function of time, as no
+ *      corner moves on a curve. So the straight line between the gaps before and after the step is below it.
+ *
+ * Two blocks that are both held may overlap as they like, and blocks of one body do not move against each other. Turns
+ * are taken as small. All is serial and in the order of rows, and nothing is done while all blocks are slow. */
+
+/* How far a corner of a body moves in the step, at the most, m. */
+static double step_travel(const tl_model *m, const tl_step_motion *motion, uint32_t body)
+{
+    return tl_v3_norm(motion[body].shift) + tl_v3_norm(motion[body].turn) * m->bodies.radius[body];
+}
+
+/* The pair of blocks that a step carries into each other by most of what is allowed. */
+typedef struct passing {
+    double part;    /* of the step, at which they overlap by what is allowed; INFINITY: none do */
+    uint32_t a, b;  /* rows of the blocks, a < b */
+    double deeper;  /* by how much they overlap more after the whole step, m */
+    double allowed; /* by how much they may, m */
+} passing;
+
+typedef struct sweep {
+    const tl_model *m;
+    const tl_step_motion *motion;
+    double share;
+    tl_swept *list;
+    size_t count;
+} sweep;
+
+static void include(tl_bounds *box, tl_vec3 x)
+{
+    box->min = tl_v3_min(box->min, x);
+    box->max = tl_v3_max(box->max, x);
+}
+
+static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
+{
+    const tl_poly *shape = s->m->blocks.shape[row];
+    uint32_t body = s->m->blocks.body[row];
+    const tl_mat3 *r = &s->m->bodies.pose[body].r;
+    const tl_step_motion *by = &s->motion[body];
+    tl_vec3 place = tl_body_place(&s->m->bodies, body);
+    tl_bounds box = {place, place};
+    for (uint32_t i = 0; i < shape->vertex_count; i++) {
+        tl_vec3 arm = tl_m3_mul(r, shape->vertex[i]), x = tl_v3_add(place, arm);
+        if (i == 0)
+            box.min = box.max = x;
+        include(&box, x);
+        include(&box, tl_v3_add(x, tl_v3_add(by->shift, tl_v3_cross(by->turn, arm))));
+    }
+    return (tl_swept){box, row, moves};
+}
+
+static int compare_swept(const void *a, const void *b)
+{
+    const tl_swept *x = a, *y = b;
+    int along = (x->box.min.x > y->box.min.x) - (x->box.min.x < y->box.min.x);
+    return along ? along : (x->row > y->row) - (x->row < y->row);
+}
+
+/* Lists the blocks that move far, and then those that they may meet. */
+static void list_swept(sweep *s, double far)
+{
+    const tl_model *m = s->m;
+    tl_bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        if (!(step_travel(m, s->motion, m->blocks.body[row]) > far))
+            continue;
+        tl_swept swept = s->list[s->count++] = sweep_block(s, row, true);
+        include(&all, swept.box.min);
+        include(&all, swept.box.max);
+    }
+    for (uint32_t row = 0; s->count > 0 && row < m->blocks.table.rows; row++) {
+        uint32_t body = m->blocks.body[row];
+        if (step_travel(m, s->motion, body) > far)
+            continue;
+        double reach = m->bodies.radius[body] + far;
+        tl_vec3 grow = {reach, reach, reach}, place = tl_body_place(&m->bodies, body);
+        tl_bounds ball = {tl_v3_sub(place, grow), tl_v3_add(place, grow)};
+        if (tl_bounds_meet(&ball, &all))
+            s->list[s->count++] = sweep_block(s, row, false);
+    }
+    if (s->count > 0)
+        qsort(s->list, s->count, sizeof *s->list, compare_swept);
+}
+
+/* A block of a pair in the frame of A's body: its corners and faces, and how the step moves it there. */
+typedef struct side {
+    const tl_poly *shape;
+    tl_mat3 turn; /* from the block's frame to A's body's */
+    tl_vec3 centre;
+    tl_step_motion by;
+} side;
+
+/* How the step moves a body, in the frame of another one. */
+static tl_step_motion motion_in(const sweep *s, uint32_t frame, uint32_t body)
+{
+    const tl_mat3 *r = &s->m->bodies.pose[frame].r;
+    const tl_step_motion *by = &s->motion[body];
+    return (tl_step_motion){tl_m3_tmul(r, by->shift), tl_m3_tmul(r, by->turn)};
+}
+
+/* Farthest reach of a block along a direction, before the step and after it. */
+typedef struct reach {
+    double before, after;
+} reach;
+
+static reach reach_along(const side *s, tl_vec3 n)
+{
+    reach out = {-INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < s->shape->vertex_count; i++) {
+        tl_vec3 arm = tl_m3_mul(&s->turn, s->shape->vertex[i]);
+        tl_vec3 moved = tl_v3_add(s->by.shift, tl_v3_cross(s->by.turn, arm));
+        double x = tl_v3_dot(n, tl_v3_add(s->centre, arm));
+        out.before = fmax(out.before, x);
+        out.after = fmax(out.after, x + tl_v3_dot(n, moved));
+    }
+    return out;
+}
+
+/* Gap of a pair along the outward normal of a face, before the step and after it. B's faces come after those of A. */
+static reach gap_along(const side *a, const side *b, uint32_t face)
+{
+    const bool of_b = face >= a->shape->face_count;
+    const side *owner = of_b ? b : a, *other = of_b ? a : b;
+    face -= of_b ? a->shape->face_count : 0;
+    tl_vec3 n = tl_m3_mul(&owner->turn, owner->shape->plane[face].normal);
+    reach own = reach_along(owner, n), its = reach_along(other, tl_v3_neg(n));
+    return (reach){-its.before - own.before, -its.after - own.after};
+}
+
+/* The part of the step after which a pair has closed by what is allowed: INFINITY when it does not in this step. */
+static double part_of_step(const side *a, const side *b, double allowed, double *deeper)
+{
+    const uint32_t faces = a->shape->face_count + b->shape->face_count;
+    double widest = -INFINITY, part = 0;
+    for (uint32_t f = 0; f < faces; f++)
+        widest = fmax(widest, gap_along(a, b, f).before);
+    double deepest = fmax(-widest, 0) + allowed; /* that the overlap may become */
+    for (uint32_t f = 0; f < faces; f++) {
+        reach gap = gap_along(a, b, f);
+        if (gap.before < -deepest)
+            continue;
+        if (gap.after >= -deepest)
+            return INFINITY;
+        double along = (gap.before + deepest) / (gap.before - gap.after);
+        if (along > part) {
+            part = along;
+            *deeper = -gap.after - fmax(-widest, 0);
+        }
+    }
+    return part;
+}
+
+static bool may_pass(const sweep *s, const tl_swept *a, const tl_swept *b)
+{
+    const tl_model *m = s->m;
+    uint32_t body_a = m->blocks.body[a->row], body_b = m->blocks.body[b->row];
+    return body_a != body_b && (a->moves || b->moves) && tl_bounds_meet(&a->box, &b->box) &&
+           !tl_blocks_fixed(m, a->row, b->row) &&
+           step_travel(m, s->motion, body_a) + step_travel(m, s->motion, body_b) >
+               s->share * fmin(tl_least_thickness(m, a->row), tl_least_thickness(m, b->row));
+}
+
+/* Notes a pair that passes earlier in the step than any before. */
+static void look_at(const sweep *s, uint32_t a, uint32_t b, passing *out)
+{
+    const tl_model *m = s->m;
+    const tl_pair_view view = tl_pair_view_of(m, a, b);
+    uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
+    const tl_vec3 zero = {0, 0, 0};
+    side side_a = {view.a, tl_m3_identity(), zero, motion_in(s, body_a, body_a)};
+    side side_b = {view.b, view.turn, view.shift, motion_in(s, body_a, body_b)};
+    double thickness = fmin(tl_poly_thickness(view.a), tl_poly_thickness(view.b)), deeper = 0;
+    double part = part_of_step(&side_a, &side_b, s->share * thickness, &deeper);
+    bool lower = a < out->a || (a == out->a && b < out->b);
+    if (part < out->part || (part == out->part && isfinite(part) && lower))
+        *out = (passing){part, a, b, deeper, s->share * thickness};
+}
+
+/* Finds the pair whose overlap would first grow by more than `share` of the thinner block's thickness. `motion`: of
+ * each body; `thinnest`: the least thickness of all blocks, m; `list`: a place for each block, overwritten. */
+static passing find_passing(const tl_model *m, const tl_step_motion *motion, double share, double thinnest,
+                            tl_swept *list)
+{
+    sweep s = {.m = m, .motion = motion, .share = share, .list = list};
+    passing out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0, 0};
+    list_swept(&s, 0.5 * share * thinnest);
+    for (size_t i = 0; i < s.count; i++)
+        for (size_t j = i + 1; j < s.count && s.list[j].box.min.x <= s.list[i].box.max.x; j++)
+            if (may_pass(&s, &s.list[i], &s.list[j])) {
+                uint32_t a = s.list[i].row, b = s.list[j].row;
+                look_at(&s, a < b ? a : b, a < b ? b : a, &out);
+            }
+    return out;
+}
+
 /* ---------------------------------------------------------------- travel ------------------
  *
  * A step heeds what moves: v dt and w dt.
  *
  * Stiffness bounds the step of blocks in contact. Between contacts a block travels by v dt whatever that is. Two things
  * go wrong when it is far. The block passes another, or goes in so deep that no contact can tell which way it came
- * (passing.c). And after a turn by an angle t central differences of what turns with the block are wrong by a share of
+ * (see above). And after a turn by an angle t central differences of what turns with the block are wrong by a share of
  * t^2 / 6.
  *
  * A step that the program chooses is made as short as both ask, and no block is slowed down in empty space: only what a
@@ -170,7 +379,7 @@ static uint32_t widest_turn(const tl_model *m, const tl_step_motion *motion, dou
 static uint32_t faster_of(const tl_model *m, const tl_step_motion *motion, uint32_t a, uint32_t b)
 {
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
-    return tl_step_travel(m, motion, body_b) > tl_step_travel(m, motion, body_a) ? body_b : body_a;
+    return step_travel(m, motion, body_b) > step_travel(m, motion, body_a) ? body_b : body_a;
 }
 
 tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
@@ -191,10 +400,10 @@ tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
         *dt *= part;
         *body = turns;
     }
-    const tl_passing passing = tl_passing_find(m, motion, CLOSING_AIM, thinnest_of(m), m->cycle->swept);
-    if (passing.part < 1) {
-        *dt *= passing.part;
-        *body = faster_of(m, motion, passing.a, passing.b);
+    const passing by = find_passing(m, motion, CLOSING_AIM, thinnest_of(m), m->cycle->swept);
+    if (by.part < 1) {
+        *dt *= by.part;
+        *body = faster_of(m, motion, by.a, by.b);
     }
     *dt = fmax(*dt, least);
     return TL_OK;
@@ -222,7 +431,7 @@ static tl_status report_turn(tl_model *m, uint32_t body, double turn, double dt)
                    way_out(m, dt * TURN_AIM / turn, text, sizeof text));
 }
 
-static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const tl_passing *p, double dt)
+static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const passing *p, double dt)
 {
     uint32_t fast = faster_of(m, motion, p->a, p->b);
     uint32_t mover = m->blocks.body[p->a] == fast ? p->a : p->b;
@@ -247,8 +456,8 @@ static tl_status travel_check(tl_model *m, const step_span *span)
     uint32_t turns = widest_turn(m, motion, &turn);
     if (turn > TURN_MOST)
         return report_turn(m, turns, turn, span->dt);
-    const tl_passing passing = tl_passing_find(m, motion, CLOSING_MOST, thinnest_of(m), m->cycle->swept);
-    return passing.part < 1 ? report_passing(m, motion, &passing, span->dt) : TL_OK;
+    const passing by = find_passing(m, motion, CLOSING_MOST, thinnest_of(m), m->cycle->swept);
+    return by.part < 1 ? report_passing(m, motion, &by, span->dt) : TL_OK;
 }
 
 /* ---------------------------------------------------------------- motion ------------------ */

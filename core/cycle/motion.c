@@ -12,17 +12,38 @@
  *
  * Free bodies go through a step in groups of TL_LANES, those of a chunk together. Their columns are copied into lanes,
  * by whole vectors where the bodies of a group are side by side, and their poses one by one. Loops over the lanes kick
- * and turn all of them, stage by stage. The energy ledger books what happened, and the lanes are copied back. Bodies
- * held in some components, and all with the paper's rotation, get their rotation one by one. Those held in every
+ * and turn all of them, stage by stage. What happened is booked for the energy ledger, and the lanes are copied back.
+ * Bodies held in some components, and all with the paper's rotation, get their rotation one by one. Those held in every
  * component are in no group and cost nothing as long as they stand. */
 #include "cycle/motion.h"
 
 #include "base/columns.h"
 #include "base/parallel.h"
 #include "cycle/cycle_data.h"
-#include "cycle/energy.h"
 #include "cycle/kick.h"
 #include "cycle/turn.h"
+
+/* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
+ * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
+ * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
+typedef struct body_group {
+    _Alignas(TL_ALIGN) tl_lanes4 q, axes;
+    tl_lanes3 moments, per; /* per: 1 / moments */
+    double mass[TL_LANES], alpha[TL_LANES];
+    /* by mass scaling: of mass and moments that forces meet, and of that which energies count */
+    double scale[TL_LANES], turn_scale[TL_LANES], energy_scale[TL_LANES];
+    tl_lanes3 force, moment, damping_force, damping_moment;
+    tl_lanes3 moved;                               /* velocity of the last step's motion */
+    tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
+    tl_lanes3 v1, w1, spin1, momentum1;            /* after it */
+    tl_lanes4 made, q2;                            /* the drift's turn, and after it */
+    tl_lanes3 momentum2, w2, turned;               /* angular velocity, and that of the motion */
+    double turning0[TL_LANES], turning2[TL_LANES]; /* w.I w, before the kick and after the drift */
+    double radius[TL_LANES], speed[TL_LANES];      /* |v| + |w| radius: no vertex moves faster */
+    double reach[TL_LANES];                        /* of the turn: see turn.h */
+    uint32_t body[TL_LANES];
+    unsigned count;
+} body_group;
 
 typedef struct move_job {
     tl_model *m;
@@ -41,7 +62,7 @@ TL_INLINE tl_mat3 attitude_of(tl_quat q, tl_quat axes)
 }
 
 /* The velocity by (23). */
-TL_INLINE void kick_lane(tl_body_group *g, size_t i, double kick)
+TL_INLINE void kick_lane(body_group *g, size_t i, double kick)
 {
     /* mass scaling: less motion for the same force */
     double per_mass = kick / (g->mass[i] * g->scale[i]);
@@ -50,13 +71,13 @@ TL_INLINE void kick_lane(tl_body_group *g, size_t i, double kick)
     tl_lanes3_put(&g->v1, i, tl_kick(v0, force, per_mass, g->alpha[i], kick));
 }
 
-TL_INLINE double speed_of(const tl_body_group *g, size_t i)
+TL_INLINE double speed_of(const body_group *g, size_t i)
 {
     return tl_v3_norm(tl_lanes3_get(&g->v1, i)) + tl_v3_norm(tl_lanes3_get(&g->w2, i)) * g->radius[i];
 }
 
 /* Exact rotation: the kick of the angular momentum, in principal axes. */
-TL_INLINE void kick_spin(tl_body_group *g, size_t i, double kick)
+TL_INLINE void kick_spin(body_group *g, size_t i, double kick)
 {
     tl_vec3 moments = tl_lanes3_get(&g->moments, i);
     tl_vec3 moment = tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
@@ -76,7 +97,7 @@ TL_INLINE void kick_spin(tl_body_group *g, size_t i, double kick)
 }
 
 /* The drift. */
-TL_INLINE void turn_freely(tl_body_group *g, size_t i, double drift, bool series)
+TL_INLINE void turn_freely(body_group *g, size_t i, double drift, bool series)
 {
     tl_free_turn free = tl_turn_freely(tl_lanes3_get(&g->momentum1, i), tl_lanes3_get(&g->per, i), drift, series);
     tl_lanes4_put(&g->made, i, free.made);
@@ -85,7 +106,7 @@ TL_INLINE void turn_freely(tl_body_group *g, size_t i, double drift, bool series
 }
 
 /* The same turn in the body's frame, exactly none when nothing turned, and what spins in the new attitude. */
-TL_INLINE void put_attitude(tl_body_group *g, size_t i, double drift, bool series)
+TL_INLINE void put_attitude(body_group *g, size_t i, double drift, bool series)
 {
     tl_quat axes = tl_lanes4_get(&g->axes, i), made = tl_lanes4_get(&g->made, i);
     tl_vec3 moments = tl_lanes3_get(&g->moments, i), l2 = tl_lanes3_get(&g->momentum2, i);
@@ -104,7 +125,7 @@ TL_INLINE void put_attitude(tl_body_group *g, size_t i, double drift, bool serie
 }
 
 /* Kicks and turns groups of bodies by the exact rule. Stage by stage, so that groups overlap in the processor. */
-TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, double kick, double drift)
+TL_VECTORIZED static void advance_lanes(body_group *groups, size_t count, double kick, double drift)
 {
     for (size_t k = 0; k < count; k++)
         for (size_t i = 0; i < TL_LANES; i++) {
@@ -121,7 +142,7 @@ TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, dou
 
 /* What the ledger needs of a body's spin before the kick and after it, in the attitude before, and after the drift. The
  * paper's rotation has one moment of inertia in all directions. */
-static void put_spins(tl_body_group *g, size_t i, bool paper)
+static void put_spins(body_group *g, size_t i, bool paper)
 {
     tl_vec3 moments = tl_lanes3_get(&g->moments, i),
             spin[3] = {tl_lanes3_get(&g->w0, i), tl_lanes3_get(&g->w1, i), tl_lanes3_get(&g->w2, i)};
@@ -142,7 +163,7 @@ static void put_spins(tl_body_group *g, size_t i, bool paper)
 }
 
 /* A body that turns about its angular velocity: by the paper's rule or, when its rotation is held, as it did. */
-static void turn_about(tl_body_group *g, size_t i, const move_job *job, bool paper, bool held)
+static void turn_about(body_group *g, size_t i, const move_job *job, bool paper, bool held)
 {
     tl_vec3 w = tl_lanes3_get(&g->w0, i);
     if (!held) {
@@ -160,7 +181,7 @@ static void turn_about(tl_body_group *g, size_t i, const move_job *job, bool pap
 }
 
 /* The bodies of a group that the loop over its lanes does not do justice to. */
-static void mend_lanes(tl_body_group *g, const move_job *job)
+static void mend_lanes(body_group *g, const move_job *job)
 {
     const tl_model *m = job->m;
     const double limit = TL_SERIES_HALF_ANGLE * TL_SERIES_HALF_ANGLE;
@@ -181,7 +202,7 @@ static void mend_lanes(tl_body_group *g, const move_job *job)
     }
 }
 
-TL_INLINE void put_damping(tl_body_group *restrict g, size_t i, const struct tl_cycle *restrict c, bool damped,
+TL_INLINE void put_damping(body_group *restrict g, size_t i, const struct tl_cycle *restrict c, bool damped,
                            size_t body)
 {
     const tl_vec3 none = {0, 0, 0};
@@ -190,7 +211,7 @@ TL_INLINE void put_damping(tl_body_group *restrict g, size_t i, const struct tl_
     g->alpha[i] = damped ? c->alpha[body] : 0;
 }
 
-static void load_lane(tl_body_group *g, size_t i, const tl_model *m)
+static void load_lane(body_group *g, size_t i, const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
     const struct tl_cycle *c = m->cycle;
@@ -212,7 +233,7 @@ static void load_lane(tl_body_group *g, size_t i, const tl_model *m)
 }
 
 /* The same of bodies that are side by side from `first` on, without mass scaling. */
-TL_VECTORIZED static void load_row(tl_body_group *restrict g, const tl_model *m, size_t first)
+TL_VECTORIZED static void load_row(body_group *restrict g, const tl_model *m, size_t first)
 {
     const tl_bodies *b = &m->bodies;
     bool damped = m->damping, paper = m->config.rotation == TL_ROTATION_PAPER;
@@ -238,7 +259,7 @@ TL_VECTORIZED static void load_row(tl_body_group *restrict g, const tl_model *m,
 }
 
 /* A lane without a body: one that rests, and to which nothing happens. */
-static void rest_lane(tl_body_group *g, size_t i)
+static void rest_lane(body_group *g, size_t i)
 {
     const tl_vec3 none = {0, 0, 0};
     tl_lanes4_put(&g->q, i, tl_q_identity());
@@ -252,8 +273,7 @@ static void rest_lane(tl_body_group *g, size_t i)
     g->alpha[i] = 0;
 }
 
-TL_INLINE void store_pose(const tl_body_group *restrict g, size_t i, const tl_mat3 *r, double dt,
-                          tl_pose *restrict pose)
+TL_INLINE void store_pose(const body_group *restrict g, size_t i, const tl_mat3 *r, double dt, tl_pose *restrict pose)
 {
     pose->r = *r;
     pose->v_moved = tl_lanes3_get(&g->v1, i);
@@ -261,7 +281,7 @@ TL_INLINE void store_pose(const tl_body_group *restrict g, size_t i, const tl_ma
     pose->u = tl_v3_madd(pose->u, dt, pose->v_moved);
 }
 
-static void store_lane(const tl_body_group *g, size_t i, tl_bodies *b, double dt)
+static void store_lane(const body_group *g, size_t i, tl_bodies *b, double dt)
 {
     uint32_t body = g->body[i];
     b->v[body] = tl_lanes3_get(&g->v1, i);
@@ -273,7 +293,7 @@ static void store_lane(const tl_body_group *g, size_t i, tl_bodies *b, double dt
 }
 
 /* The same of bodies that are side by side. */
-TL_VECTORIZED static void store_row(const tl_body_group *restrict g, const tl_bodies *b, size_t first, double dt)
+TL_VECTORIZED static void store_row(const body_group *restrict g, const tl_bodies *b, size_t first, double dt)
 {
     double *restrict odometer = b->odometer + first;
     tl_lanes9 r;
@@ -291,12 +311,12 @@ TL_VECTORIZED static void store_row(const tl_body_group *restrict g, const tl_bo
     }
 }
 
-static bool side_by_side(const tl_body_group *g)
+static bool side_by_side(const body_group *g)
 {
     return g->count == TL_LANES && g->body[TL_LANES - 1] - g->body[0] == TL_LANES - 1;
 }
 
-static void load_group(tl_body_group *g, const tl_model *m)
+static void load_group(body_group *g, const tl_model *m)
 {
     if (side_by_side(g) && !tl_inertia_scaled(m->cycle)) {
         load_row(g, m, g->body[0]);
@@ -309,7 +329,7 @@ static void load_group(tl_body_group *g, const tl_model *m)
 }
 
 /* What has been set since the last step does not act in its half. */
-static void take_lag(tl_body_group *g, const tl_model *m)
+static void take_lag(body_group *g, const tl_model *m)
 {
     for (size_t i = 0; i < g->count; i++) {
         tl_wrench lag = tl_load_lag(m, g->body[i]);
@@ -318,7 +338,7 @@ static void take_lag(tl_body_group *g, const tl_model *m)
     }
 }
 
-static void store_group(const tl_body_group *g, const move_job *job)
+static void store_group(const body_group *g, const move_job *job)
 {
     if (side_by_side(g)) {
         store_row(g, &job->m->bodies, g->body[0], job->drift);
@@ -328,8 +348,188 @@ static void store_group(const tl_body_group *g, const move_job *job)
         store_lane(g, i, &job->m->bodies, job->drift);
 }
 
+/* ---------------------------------------------------------------- work --------------------
+ *
+ * What the bodies have and what is done to them, for the energy ledger (energy.c). */
+
+/* What is booked of a chunk of bodies, group by group. */
+typedef struct chunk_work {
+    _Alignas(TL_ALIGN) double book[TL_BOOK_COUNT][TL_BODY_CHUNK];
+    double held[2][TL_BODY_CHUNK]; /* external work on those held in every component */
+    size_t held_count;
+    bool external;       /* there may be external work on others */
+    double until, after; /* half of the step before and of the one after */
+} chunk_work;
+
+/* What a force and a moment on a body do, each in the half step before and the one after. Lane i of a group, and number
+ * `at` of the chunk. */
+TL_INLINE double work_until(const chunk_work *work, size_t i, const body_group *g, tl_vec3 force, tl_vec3 moment)
+{
+    return work->until * (tl_v3_dot(force, tl_lanes3_get(&g->moved, i)) + tl_v3_dot(moment, tl_lanes3_get(&g->w0, i)));
+}
+
+TL_INLINE double work_after(const chunk_work *work, size_t i, const body_group *g, tl_vec3 force, tl_vec3 moment)
+{
+    return work->after * (tl_v3_dot(force, tl_lanes3_get(&g->v1, i)) + tl_v3_dot(moment, tl_lanes3_get(&g->w1, i)));
+}
+
+/* Kinetic energies. With v- and v+ the mean at the forces' time is v- + s (v+ - v-). s is the share of the step before
+ * in both half steps. What two unequal halves spread about it is taken out. */
+TL_INLINE void book_kinetic(chunk_work *work, size_t at, size_t i, const body_group *g, double share)
+{
+    double scale = g->energy_scale[i], mass = scale * g->mass[i], spread = share * (1 - share);
+    tl_vec3 v0 = tl_lanes3_get(&g->v0, i), v1 = tl_lanes3_get(&g->v1, i), dv = tl_v3_sub(v1, v0);
+    tl_vec3 w0 = tl_lanes3_get(&g->spin0, i), dw = tl_v3_sub(tl_lanes3_get(&g->spin1, i), w0);
+    tl_vec3 l0 = tl_lanes3_get(&g->momentum0, i);
+    tl_vec3 dl = tl_v3_sub(tl_lanes3_get(&g->momentum1, i), l0);
+    tl_vec3 v = tl_v3_madd(v0, share, dv), w = tl_v3_madd(w0, share, dw);
+    tl_vec3 l = tl_v3_madd(l0, share, dl);
+    double dv2 = mass * tl_v3_norm2(dv), dw2 = scale * tl_v3_dot(dw, dl);
+    work->book[TL_BOOK_KINETIC][at] = 0.5 * (mass * tl_v3_norm2(v) + scale * tl_v3_dot(w, l) - spread * (dv2 + dw2));
+    /* The first kick from rest is half of one: what the whole one would have spread is missing from
+     * the sum ever after. */
+    work->book[TL_BOOK_FIRST][at] = 0.5 * (dv2 + dw2);
+    work->book[TL_BOOK_MOTION0][at] = 0.5 * (mass * tl_v3_norm2(v0) + scale * g->turning0[i]);
+    work->book[TL_BOOK_MOTION2][at] = 0.5 * (mass * tl_v3_norm2(v1) + scale * g->turning2[i]);
+    /* a velocity set since the last step meets this kick, too */
+    tl_vec3 set = tl_v3_sub(v0, tl_lanes3_get(&g->moved, i));
+    work->book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][at] = share * mass * tl_v3_dot(set, dv);
+    work->book[TL_BOOK_AFTER(TL_WORK_EXTERNAL)][at] = 0;
+}
+
+/* A kick may have two unequal halves, s and 1 - s of it. Then the works of all that changes a velocity by dv miss
+ * m (2 s - 1) dv^2 / 2 of what the kinetic energy becomes. For forces, which hardly change in a step, that is next to
+ * nothing. A damping that stops bodies takes what it makes more of it, dv^2 - dF^2 with dv = dF + dD. */
+TL_INLINE void book_uneven(chunk_work *work, size_t at, size_t i, const body_group *g)
+{
+    tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
+    tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
+    double span = work->until + work->after, share = work->until / span;
+    double by = -0.5 * g->alpha[i] * span;
+    tl_vec3 dv = tl_v3_sub(tl_lanes3_get(&g->v1, i), tl_lanes3_get(&g->v0, i));
+    tl_vec3 dw = tl_v3_sub(tl_lanes3_get(&g->spin1, i), tl_lanes3_get(&g->spin0, i));
+    tl_vec3 turned = tl_v3_add(tl_lanes3_get(&g->spin1, i), tl_lanes3_get(&g->spin0, i));
+    double moved = by * (2 * tl_v3_dot(dv, slowed) - by * tl_v3_norm2(slowed));
+    double spun = by * (2 * tl_v3_dot(dw, braked) - by * tl_v3_dot(turned, braked));
+    double more = fmax(g->scale[i] * g->mass[i] * moved, 0) + fmax(g->turn_scale[i] * spun, 0);
+    double missed = (share - 0.5) * more;
+    work->book[TL_BOOK_UNTIL(TL_WORK_DAMPING)][at] += share * missed;
+    work->book[TL_BOOK_AFTER(TL_WORK_DAMPING)][at] += (1 - share) * missed;
+}
+
+/* (23) takes out alpha m (v- + v+) / 2 over the kick, m as mass scaling makes it, besides what the damping's force
+ * does. */
+TL_INLINE void book_damping(chunk_work *work, size_t at, size_t i, const body_group *g)
+{
+    double alpha = 0.5 * g->alpha[i] * g->scale[i], turning = 0.5 * g->alpha[i] * g->turn_scale[i];
+    tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
+    tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
+    tl_vec3 force = tl_v3_madd(tl_lanes3_get(&g->damping_force, i), -alpha * g->mass[i], slowed);
+    tl_vec3 moment = tl_lanes3_get(&g->damping_moment, i);
+    work->book[TL_BOOK_UNTIL(TL_WORK_DAMPING)][at] =
+        work_until(work, i, g, force, moment) - work->until * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin0, i));
+    work->book[TL_BOOK_AFTER(TL_WORK_DAMPING)][at] =
+        work_after(work, i, g, force, moment) - work->after * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
+}
+
+/* The work of loads, and of what holds some components of a body's motion at a velocity. */
+static void book_load(chunk_work *work, size_t at, size_t i, const body_group *g, const tl_model *m)
+{
+    const tl_bodies *b = &m->bodies;
+    uint32_t body = g->body[i];
+    unsigned fixed = b->fixed[body];
+    if (fixed == 0 && !m->loads_changed && !tl_body_loaded(b, body))
+        return;
+    work->external = true;
+    tl_wrench load = tl_acting_load(m, body);
+    tl_vec3 force = load.force, moment = load.moment;
+    double *until = &work->book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][at],
+           *after = &work->book[TL_BOOK_AFTER(TL_WORK_EXTERNAL)][at];
+    *until += work_until(work, i, g, force, moment);
+    *after += work_after(work, i, g, force, moment);
+    if (fixed == 0)
+        return;
+    tl_reaction by = tl_reaction_on(m->cycle, body);
+    force = tl_v3_add(tl_v3_madd(by.force, b->mass[body], m->cycle->gravity), force);
+    moment = tl_v3_add(by.moment, moment);
+    force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0, fixed & TL_FIX_Z ? -force.z : 0);
+    moment = fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0);
+    *until += work_until(work, i, g, force, moment);
+    *after += work_after(work, i, g, force, moment);
+}
+
+TL_VECTORIZED static void book_lanes(chunk_work *restrict work, size_t first, const body_group *restrict g,
+                                     tl_vec3 gravity, bool damped)
+{
+    const tl_vec3 none = {0, 0, 0};
+    double share = work->until / (work->until + work->after);
+    for (size_t i = 0; i < TL_LANES; i++) {
+        tl_vec3 weight = tl_v3_scale(g->mass[i], gravity);
+        book_kinetic(work, first + i, i, g, share);
+        work->book[TL_BOOK_UNTIL(TL_WORK_GRAVITY)][first + i] = work_until(work, i, g, weight, none);
+        work->book[TL_BOOK_AFTER(TL_WORK_GRAVITY)][first + i] = work_after(work, i, g, weight, none);
+    }
+    for (size_t i = 0; damped && i < TL_LANES; i++)
+        book_damping(work, first + i, i, g);
+    for (size_t i = 0; damped && work->until != work->after && i < TL_LANES; i++)
+        book_uneven(work, first + i, i, g);
+}
+
+/* Books a group, from number `first` of the chunk on. */
+static void book_group(const tl_model *m, const body_group *g, size_t first, chunk_work *work)
+{
+    book_lanes(work, first, g, m->cycle->gravity, m->damping != NULL);
+    for (size_t i = 0; i < g->count; i++)
+        book_load(work, first + i, i, g, m);
+}
+
+/* Books a body that is held in every component, by the motion it made in the last step. */
+static void book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned, chunk_work *work)
+{
+    const tl_bodies *b = &m->bodies;
+    /* what moves the body works against the contacts' reaction */
+    tl_reaction by = tl_reaction_on(m->cycle, body);
+    const size_t k = work->held_count++;
+    work->held[0][k] = -work->until * (tl_v3_dot(by.force, moved) + tl_v3_dot(by.moment, turned));
+    work->held[1][k] = -work->after * (tl_v3_dot(by.force, b->v[body]) + tl_v3_dot(by.moment, b->w[body]));
+}
+
+static bool any_of(const double *number, size_t count)
+{
+    bool some = false;
+    for (size_t i = 0; i < count; i++)
+        some |= number[i] != 0;
+    return some;
+}
+
+/* Adds the first `count` numbers of a chunk to what the thread has booked. */
+static void sum_chunk(tl_model *m, unsigned thread, const chunk_work *work, size_t count)
+{
+    tl_exact *sum = m->cycle->booked[thread].sum;
+    if (work->held_count > 0)
+        tl_exact_add_each(sum + TL_BOOK_EXTERNAL, 2, work->held[0], TL_BODY_CHUNK, work->held_count);
+    if (count == 0)
+        return;
+    tl_exact_add_each(sum, TL_BOOK_EXTERNAL, work->book[0], TL_BODY_CHUNK, count);
+    if (work->external || any_of(work->book[TL_BOOK_EXTERNAL], count))
+        tl_exact_add_each(sum + TL_BOOK_EXTERNAL, 2, work->book[TL_BOOK_EXTERNAL], TL_BODY_CHUNK, count);
+    if (m->damping)
+        tl_exact_add_each(sum + TL_BOOK_DAMPING, 2, work->book[TL_BOOK_DAMPING], TL_BODY_CHUNK, count);
+    if (!(work->until > 0))
+        tl_exact_add(&sum[TL_BOOK_FIRST], work->book[TL_BOOK_FIRST], count);
+}
+
+/* Nothing is booked yet. */
+static void begin_books(tl_model *m)
+{
+    for (unsigned t = 0; t < tl_pool_threads(m->pool); t++)
+        m->cycle->booked[t] = (tl_booked){{{.window = 0}}};
+}
+
+/* ---------------------------------------------------------------- the move --------------- */
+
 /* A body held in every component goes on with the velocity it was given: none, or that of its drive. */
-static void carry_body(const move_job *job, uint32_t body, tl_work *work)
+static void carry_body(const move_job *job, uint32_t body, chunk_work *work)
 {
     tl_bodies *b = &job->m->bodies;
     double dt = job->drift;
@@ -342,7 +542,7 @@ static void carry_body(const move_job *job, uint32_t body, tl_work *work)
     tl_vec3 moved = pose->v_moved, turned = pose->w_moved;
     if (tl_v3_is_zero(b->v[body]) && tl_v3_is_zero(b->w[body]) && tl_v3_is_zero(moved) && tl_v3_is_zero(turned))
         return;
-    tl_energy_book_held(job->m, body, moved, turned, work);
+    book_held(job->m, body, moved, turned, work);
     pose->u = tl_v3_madd(pose->u, dt, b->v[body]);
     pose->v_moved = b->v[body];
     pose->w_moved = b->w[body];
@@ -356,19 +556,19 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     (void)chunk;
     const move_job *job = user;
     tl_model *m = job->m;
-    tl_work work;
+    chunk_work work;
     work.until = 0.5 * m->dt;
     work.after = 0.5 * job->drift;
     work.held_count = 0;
     work.external = false;
-    tl_body_group groups[TL_BODY_CHUNK / TL_LANES];
+    body_group groups[TL_BODY_CHUNK / TL_LANES];
     size_t free = 0;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (m->bodies.fixed[body] == TL_FIX_ALL) {
             carry_body(job, body, &work);
             continue;
         }
-        tl_body_group *g = &groups[free / TL_LANES];
+        body_group *g = &groups[free / TL_LANES];
         g->body[free % TL_LANES] = body;
         g->count = 1 + (unsigned)(free++ % TL_LANES);
     }
@@ -380,15 +580,15 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     advance_lanes(groups, count, job->kick, job->drift);
     for (size_t k = 0; k < count; k++) {
         mend_lanes(&groups[k], job);
-        tl_energy_book(m, &groups[k], k * TL_LANES, &work);
+        book_group(m, &groups[k], k * TL_LANES, &work);
         store_group(&groups[k], job);
     }
-    tl_energy_chunk(m, thread, &work, count * TL_LANES);
+    sum_chunk(m, thread, &work, count * TL_LANES);
 }
 
 void tl_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
-    tl_energy_begin(m);
+    begin_books(m);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, move_range, &job);
 }

@@ -7,8 +7,8 @@
 
 #include "contact/contacts.h"
 #include "cycle/cycle_data.h"
+#include "cycle/limits.h"
 #include "detect/overlap.h"
-#include "detect/passing.h"
 #include "model/joints.h"
 
 #include <string.h>

@@ -20,18 +20,9 @@
 
 #include <stdatomic.h>
 
-/* Tolerance: overlap, relative to the body's radius, of which contacts cannot tell a ratio of 1e-5. Places and so
- * overlaps are rounded at some 1e-16 of the radius. */
-#define ROUNDED_OVERLAP 1e-10
-
 /* Tolerance: how much softer than the contacts of one body the whole may swing, as a column of 30 blocks does. So much
  * more energy goes with the same force. Test: lua/test_rest. */
 #define SOFTER 1e3
-
-double tl_least_borne(const tl_model *m, uint32_t body)
-{
-    return ROUNDED_OVERLAP * m->bodies.radius[body] * tl_body_stiffness(m, body);
-}
 
 /* Weight and loads of the bodies that can move. */
 static double weight_of_all(const tl_model *m)
@@ -86,7 +77,7 @@ static bool moves(const rest_job *job, uint32_t body)
         return false;
     double stiffness = tl_body_stiffness(m, body);
     double bears = tl_borne(m, body, tl_weight_of(b, body, job->gravity));
-    bears = fmax(bears, ROUNDED_OVERLAP * b->radius[body] * stiffness);
+    bears = fmax(bears, tl_least_borne(b, body, stiffness));
     double stored = stiffness > 0 ? 0.5 * bears * bears / stiffness : b->mass[body] * job->stored;
     return !(kinetic < job->ratio * fmin(1, SOFTER * job->ratio) * stored);
 }

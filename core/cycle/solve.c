@@ -4,7 +4,6 @@
 #include "contact/detection.h"
 #include "cycle/cycle.h"
 #include "cycle/cycle_data.h"
-#include "cycle/energy.h"
 #include "cycle/remarks.h"
 #include "cycle/rest.h"
 #include "model/body_shape.h"
@@ -321,6 +320,22 @@ static bool at_rest(tl_model *m, const progress *p)
     return rests;
 }
 
+/* What blocks that were made overlapping have pushed with: those that did the most, the energy that is no longer
+ * stored, and what gravity and all else have done, J. */
+typedef struct overlap_push {
+    tl_id a, b;
+    double gave, others;
+} overlap_push;
+
+/* Whether they have given off more than all else has. */
+static bool overlaps_push(const tl_model *m, overlap_push *by)
+{
+    const tl_ledger *l = &m->cycle->ledger;
+    const tl_energy *e = &l->energy;
+    *by = (overlap_push){l->overlap_a, l->overlap_b, l->overlaps - e->stored, fmax(0, e->external - e->potential)};
+    return by->gave > by->others;
+}
+
 /* True when the run is over; sets the reason. */
 static bool ended(tl_model *m, const progress *p, tl_status *status)
 {
@@ -336,7 +351,7 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
     else if (done > 1 && p->result->max_velocity < s->velocity) /* from rest the first is zero */
         *reason = TL_SOLVE_VELOCITY;
     else if (s->stop_at_failure && p->result->failing)
-        *reason = tl_energy_pushed(m, &(tl_overlap_push){0}) ? TL_SOLVE_OVERLAP : TL_SOLVE_FAILURE;
+        *reason = overlaps_push(m, &(overlap_push){0}) ? TL_SOLVE_OVERLAP : TL_SOLVE_FAILURE;
     else if (done >= s->max_cycles)
         *reason = TL_SOLVE_CYCLES;
     else if (m->time - p->time_0 >= s->max_time)
@@ -366,8 +381,8 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
 {
     uint32_t row = tl_block_row_quiet(m, r->failing);
     double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(m->bodies.v[m->blocks.body[row]]);
-    tl_overlap_push push;
-    if (tl_energy_pushed(m, &push)) {
+    overlap_push push;
+    if (overlaps_push(m, &push)) {
         tl_model_say(m,
                      "solve: an overlap pushes the model apart: blocks that were made overlapping "
                      "have given off %.3g J, most of it blocks %u and %u, and gravity and loads "

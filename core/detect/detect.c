@@ -46,6 +46,8 @@
  * for. */
 #define AHEAD 2
 #define FAR_AHEAD 6
+/* Bytes of most shapes: one of eight corners and six faces. */
+#define SHAPE 704
 
 static tl_status ensure(tl_model *m)
 {
@@ -279,6 +281,42 @@ static void test_pairs(tl_model *m)
 
 /* ---------------------------------------------------------------- phases ----------------- */
 
+/* Prefetches the rows of a SIMD group's contacts, which tell where all else is: for one that comes a little later. */
+static void prefetch_contacts(const tl_detect *d, const tl_simd_group *group)
+{
+    const tl_contacts *c = &d->contacts;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t i = group->contact[l];
+        if (i == TL_NO_ROW)
+            continue;
+        tl_prefetch(&c->a[i], sizeof *c->a);
+        tl_prefetch(&c->b[i], sizeof *c->b);
+        tl_prefetch(&c->tag[i], sizeof *c->tag);
+        tl_prefetch(&c->law[i], sizeof *c->law);
+        tl_prefetch(&c->faces_valid_to[i], sizeof *c->faces_valid_to);
+        tl_prefetch(&c->points_valid_to[i], sizeof *c->points_valid_to);
+        tl_prefetch(&c->facet[i], sizeof *c->facet);
+        tl_prefetch(&c->point_count[i], sizeof *c->point_count);
+    }
+}
+
+/* Prefetches what a SIMD group that comes soon will need to be brought up to date. */
+static void prefetch_shapes(const tl_model *m, const tl_simd_group *group)
+{
+    const tl_points_table *p = &m->detect->points;
+    const tl_contacts *contacts = &m->detect->contacts;
+    size_t count = (size_t)group->slots * TL_LANES;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t contact = group->contact[l];
+        if (contact == TL_NO_ROW || !tl_prefetch_bodies(m, contact))
+            continue;
+        tl_prefetch(m->blocks.shape[contacts->a[contact]], SHAPE);
+        tl_prefetch(m->blocks.shape[contacts->b[contact]], SHAPE);
+    }
+    tl_prefetch_points(p, group->start, count);
+    tl_prefetch(p->key + group->start, count * sizeof *p->key);
+}
+
 /* SIMD groups of a span. */
 typedef struct update_job {
     tl_model *m;
@@ -294,9 +332,9 @@ static void update_groups(void *user, size_t begin, size_t end, size_t chunk, un
     for (size_t r = begin; r < end; r++) {
         bool alike = far && moved; /* as SIMD groups side by side are */
         if (alike && r + FAR_AHEAD < job->count)
-            tl_simd_group_prefetch_contacts(job->m->detect, &job->groups[r + FAR_AHEAD]);
+            prefetch_contacts(job->m->detect, &job->groups[r + FAR_AHEAD]);
         if (alike && r + AHEAD < job->count)
-            tl_simd_group_prefetch_shapes(job->m, &job->groups[r + AHEAD]);
+            prefetch_shapes(job->m, &job->groups[r + AHEAD]);
         moved = tl_simd_group_update(job->m, &job->groups[r], thread);
     }
 }
@@ -520,12 +558,9 @@ static tl_status settle(tl_model *m)
         d->rows_changed = status != TL_OK; /* contacts are not what they seem until all is settled */
     }
     if (status == TL_OK) {
-        tl_cut_contacts_balance(m);
-        d->rows_changed = !tl_cut_parts_correct(m);
+        d->rows_changed = !tl_cut_parts_settle(m);
         if (d->rows_changed)
             return tl_fail_memory(&m->error);
-        tl_cut_contacts_sum(m);
-        tl_cut_contacts_end(d);
     }
     return status;
 }

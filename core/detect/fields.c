@@ -12,7 +12,6 @@
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/presses.h"
-#include "contact/store.h"
 #include "narrow/flush.h"
 #include "narrow/place.h"
 #include "narrow/press.h"
@@ -179,35 +178,6 @@ static tl_region kept_region(tl_press_row *row)
                        .flush = row->flush,
                        .blunt_a = row->blunt_a,
                        .blunt_b = row->blunt_b};
-}
-
-/* Whether a field contact is to become a patch, and its faces are moved apart by more than slip has opened its point of
- * shear: points need a reference then. */
-static bool lacks_reference(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_press_row *row = tl_press_row_of(m, c);
-    return row && tl_facet_is_field(&contacts->facet[c]) && contacts->kind[c] != TL_FACET_FIELD &&
-           (row->leans || row->shift != row->opening[TL_FIELD_SHEAR]) && !m->detect->points.initial;
-}
-
-bool tl_field_reserve(tl_model *m, uint32_t c)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    if (lacks_reference(m, c) && !tl_detect_hold_initial(m->detect))
-        return false;
-    if (contacts->kind[c] != TL_FACET_FIELD || contacts->press[c] != TL_NO_ROW)
-        return true;
-    contacts->press[c] = tl_press_take(m->detect);
-    if (contacts->press[c] == TL_NO_ROW)
-        return false;
-    tl_face_pair faces;
-    double shift = tl_cut_contact_shift(m, contacts->a[c], contacts->b[c], &faces);
-    if (shift != 0) {
-        tl_press_shift_faces(m, c, faces);
-        tl_press_row_of(m, c)->shift = shift;
-    }
-    return true;
 }
 
 /* ---------------------------------------------------------------- places ----------------- */

@@ -20,10 +20,6 @@ void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region 
  * it. */
 tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *region);
 
-/* Before a contact gets points of another kind: gives a patch that was a field contact the reference that its points
- * need, and a field contact its row. The faces of one that takes over from another are moved out as those were. false:
- * out of memory. */
-bool tl_field_reserve(tl_model *m, uint32_t contact);
 /* Finds the press of a field contact where its blocks are now, with its shift, and forgets what is known of others.
  * false: out of memory. */
 bool tl_field_press_anew(tl_model *m, uint32_t contact, tl_narrow_scratch *scratch);

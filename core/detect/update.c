@@ -8,6 +8,7 @@
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
+#include "contact/cut_contacts.h"
 #include "contact/detection.h"
 #include "contact/facing.h"
 #include "contact/handover.h"
@@ -15,6 +16,7 @@
 #include "contact/pair_view.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
+#include "contact/store.h"
 #include "detect/fields.h"
 #include "detect/grazing.h"
 #include "detect/overlap.h"
@@ -551,11 +553,43 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
     scratch->reframed = false;
 }
 
+/* Whether a field contact is to become a patch, and its faces are moved apart by more than slip has opened its point of
+ * shear: points need a reference then. */
+static bool lacks_reference(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_press_row *row = tl_press_row_of(m, c);
+    return row && tl_facet_is_field(&contacts->facet[c]) && contacts->kind[c] != TL_FACET_FIELD &&
+           (row->leans || row->shift != row->opening[TL_FIELD_SHEAR]) && !m->detect->points.initial;
+}
+
+/* Before a contact gets points of another kind: gives a patch that was a field contact the reference that its points
+ * need, and a field contact its row. The faces of one that takes over from another are moved out as those were. false:
+ * out of memory. */
+static bool reserve_field(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    if (lacks_reference(m, c) && !tl_detect_hold_initial(m->detect))
+        return false;
+    if (contacts->kind[c] != TL_FACET_FIELD || contacts->press[c] != TL_NO_ROW)
+        return true;
+    contacts->press[c] = tl_press_take(m->detect);
+    if (contacts->press[c] == TL_NO_ROW)
+        return false;
+    tl_face_pair faces;
+    double shift = tl_cut_contact_shift(m, contacts->a[c], contacts->b[c], &faces);
+    if (shift != 0) {
+        tl_press_shift_faces(m, c, faces);
+        tl_press_row_of(m, c)->shift = shift;
+    }
+    return true;
+}
+
 bool tl_contact_fill(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
     tl_contacts *contacts = &d->contacts;
-    if (!tl_field_reserve(m, c))
+    if (!reserve_field(m, c))
         return false;
     uint8_t pending = contacts->pending[c];
     contacts->pending[c] = TL_PENDING_NONE;

@@ -150,38 +150,6 @@ void tl_law_press_alone(const tl_law *law, double area, const double state[TL_ST
     }
 }
 
-/* Energies of points of 1 m2 without history that are pressed in by up to 1 m. */
-static void find_curve(const tl_law *law, double energy[TL_LANES])
-{
-    static _Alignas(TL_ALIGN) const double zeros[TL_LANES];
-    _Alignas(TL_ALIGN) uint32_t none[TL_LANES] = {0};
-    _Alignas(TL_ALIGN) double area[TL_LANES], closure[TL_LANES], force[TL_LANES];
-    double *state[TL_STATE_COLUMNS];
-    for (size_t k = 0; k < TL_STATE_COLUMNS; k++)
-        state[k] = (double *)(uintptr_t)zeros;
-    for (size_t k = 0; k < TL_LANES; k++) {
-        area[k] = 1;
-        closure[k] = k > 0 ? 0.05 * closure[k - 1] : 1;
-    }
-    const tl_law_batch batch = {.size = sizeof batch,
-                                .count = TL_LANES,
-                                .area = area,
-                                .closure = closure,
-                                .f_n0 = zeros,
-                                .f_n = force,
-                                .state = state,
-                                .flags = none};
-    ask(law, &batch, energy);
-}
-
-bool tl_law_same_curve(const tl_law *one, const tl_law *other)
-{
-    _Alignas(TL_ALIGN) double a[TL_LANES], b[TL_LANES];
-    find_curve(one, a);
-    find_curve(other, b);
-    return memcmp(a, b, sizeof a) == 0;
-}
-
 /* ---------------------------------------------------------------- presses ----------------- */
 
 /* What slip pays for moving two faces apart as in the last step: as if all of the law's force were on them. */

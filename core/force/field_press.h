@@ -24,7 +24,4 @@ void tl_law_press(const tl_model *m, const tl_law *law, size_t first, size_t cou
 void tl_law_press_alone(const tl_law *law, double area, const double state[TL_STATE_COLUMNS], const double u[],
                         size_t count, double energy[], double stress[]);
 
-/* Whether two laws of a kind that tells of energies have the same at any closure of a point without history. */
-bool tl_law_same_curve(const tl_law *one, const tl_law *other);
-
 #endif

@@ -599,6 +599,18 @@ static size_t tile_points(const tl_simd_group *groups, size_t count)
     return groups[count - 1].start + (size_t)groups[count - 1].slots * TL_LANES - groups->start;
 }
 
+/* Prefetches what a SIMD group that comes soon will need to be followed. */
+static void prefetch_group(const tl_model *m, const tl_simd_group *group)
+{
+    const tl_points_table *p = &m->detect->points;
+    size_t count = (size_t)group->slots * TL_LANES;
+    for (size_t l = 0; l < TL_LANES; l++)
+        if (group->contact[l] != TL_NO_ROW)
+            tl_prefetch_bodies(m, group->contact[l]);
+    tl_prefetch_points(p, group->start, count);
+    tl_prefetch(p->flags + group->start, count * sizeof *p->flags);
+}
+
 /* From the places of the bodies to the forces of the contacts of some SIMD groups, which follow each other. `soon`: how
  * many come next, for which the memory is asked on the way. */
 static void force_tile(const span_job *job, const tl_simd_group *groups, size_t count, size_t soon,
@@ -613,7 +625,7 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
         note_points(&job->m->detect->points, first, tile_points(groups, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
-            tl_simd_group_prefetch(job->m, &groups[count + r]);
+            prefetch_group(job->m, &groups[count + r]);
         job->kind->follow(job->m, &groups[r], t, points, job->law->tangents, &arms[r]);
         if (has_edges(job))
             tl_simd_group_edges(job->m, &groups[r], t, points);
