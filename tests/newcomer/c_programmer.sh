@@ -82,14 +82,15 @@ int main(void)
     const tl_field *of = tl_contact_fields(&fields);
     size_t force = field(of, fields, "normal_force");
     double sum = 0;
-    must(tl_contacts_select(m, NULL, &ids, &count));
+    tl_contact_name *contacts;
+    must(tl_contacts_select(m, NULL, &contacts, &count));
     for (size_t i = 0; i < count; i++) {
         tl_field_value value;
-        must(tl_contact_field(m, ids[i], force, &value));
+        must(tl_contact_field(m, contacts[i], force, &value));
         printf("%.3f kN\n", value.number[0] / 1000);
         sum += value.number[0];
     }
-    free(ids);
+    free(contacts);
     double weight = 2000 * 10, expected = (1 + 2 + 3 + 4 + 5) * weight;
     printf("sum %.3f kN, expected %.3f\n", sum / 1000, expected / 1000);
 

@@ -98,14 +98,15 @@ static void print_contacts(tl_model *model)
     size_t field_count, count;
     const tl_field *fields = tl_contact_fields(&field_count);
     size_t force = field_index(fields, field_count, "normal_force");
-    tl_id *ids;
-    must(model, tl_contacts_select(model, NULL, &ids, &count));
+    tl_contact_name *contacts;
+    must(model, tl_contacts_select(model, NULL, &contacts, &count));
     for (size_t i = 0; i < count; i++) {
         tl_field_value value;
-        must(model, tl_contact_field(model, ids[i], force, &value));
-        printf("contact %u: normal force %.0f kN\n", (unsigned)ids[i], value.number[0] / 1000);
+        must(model, tl_contact_field(model, contacts[i], force, &value));
+        printf("contact of blocks %u and %u: normal force %.0f kN\n", (unsigned)contacts[i].a, (unsigned)contacts[i].b,
+               value.number[0] / 1000);
     }
-    free(ids);
+    free(contacts);
 }
 
 int main(int argc, char **argv)
