@@ -1,5 +1,6 @@
 /* main.c - the program `talus`: options, sub-commands, and a Lua state to run scripts in. */
 #include "commands.h"
+#include "lua/fail.h"
 #include "lua/front.h"
 #include "lua/help.h"
 #include "lua/library.h"
@@ -145,6 +146,70 @@ static bool read_option(int argc, char **argv, options *o)
     return true;
 }
 
+/* ---------------------------------------------------------------- misspelt globals --------
+ *
+ * Reading a global variable that was never assigned raises, with the nearest known name:
+ * a typing error would otherwise be a silent nil. Assigning declares, even nil. */
+
+/* Names a typing error may have meant: the caller's local variables, then the globals. */
+static void known_names(lua_State *L, tl_lua_names *names)
+{
+    lua_Debug caller;
+    if (lua_getstack(L, 1, &caller)) {
+        const char *name;
+        for (int i = 1; (name = lua_getlocal(L, &caller, i)) != NULL; i++) {
+            if (name[0] != '(')
+                tl_lua_names_add(names, name);
+            lua_pop(L, 1);
+        }
+    }
+    lua_pushglobaltable(L);
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING)
+            tl_lua_names_add(names, lua_tostring(L, -2));
+    lua_pop(L, 1);
+}
+
+/* Upvalue 1 is the set of names that were assigned. */
+static int global_read(lua_State *L)
+{
+    lua_settop(L, 2);
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return 0;
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL)
+        return 0;
+    const char *word = lua_tostring(L, 2);
+    tl_lua_names names = {0};
+    known_names(L, &names);
+    const char *nearest = tl_nearest_name(word, names.at, names.count);
+    if (nearest)
+        return tl_lua_fail(L, "the variable '%s' is not declared; did you mean '%s'?", word, nearest);
+    return tl_lua_fail(L, "the variable '%s' is not declared", word);
+}
+
+static int global_write(lua_State *L)
+{
+    lua_settop(L, 3);
+    lua_pushvalue(L, 2);
+    lua_pushboolean(L, 1);
+    lua_rawset(L, lua_upvalueindex(1));
+    lua_rawset(L, 1);
+    return 0;
+}
+
+/* From now on reading a global that was never assigned raises. */
+static void strict(lua_State *L)
+{
+    lua_pushglobaltable(L);
+    lua_createtable(L, 0, 2);
+    lua_newtable(L);
+    const luaL_Reg meta[] = {{"__index", global_read}, {"__newindex", global_write}, {NULL, NULL}};
+    luaL_setfuncs(L, meta, 1);
+    lua_setmetatable(L, -2);
+    lua_pop(L, 1);
+}
+
 /* ---------------------------------------------------------------- running ---------------- */
 
 /* The global `arg`: the script at 0, its arguments from 1, the program and options below 0. */
@@ -195,7 +260,7 @@ static int prepare(lua_State *L)
     tl_lua_library_open(L);
     *tl_lua_options_of(L) = o->lua;
     set_arguments(L, argc, argv, o->next < argc ? o->next : 0);
-    tl_lua_strict(L);
+    strict(L);
     return 0;
 }
 
@@ -261,6 +326,17 @@ static bool read_options(int argc, char **argv, options *o, int *status)
     return true;
 }
 
+/* The file of a script's saves, from malloc; NULL when out of memory. */
+static char *autosave_path(const char *script)
+{
+    static const char ending[] = ".autosave.talus";
+    size_t capacity = strlen(script) + sizeof ending;
+    char *path = malloc(capacity);
+    if (path)
+        snprintf(path, capacity, "%s%s", script, ending);
+    return path;
+}
+
 /* `talus run`: saves belong to a script in a file. */
 static bool prepare_saves(int argc, char **argv, options *o, bool runs)
 {
@@ -269,7 +345,7 @@ static bool prepare_saves(int argc, char **argv, options *o, bool runs)
         return tl_command_fail("%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
     if (!script && (o->lua.autosave > 0 || o->lua.resume))
         return tl_command_fail("%s", "--autosave and --resume are for a script in a file, beside which it saves");
-    if (script && !(o->lua.save_path = tl_lua_autosave_path(argv[o->next])))
+    if (script && !(o->lua.save_path = autosave_path(argv[o->next])))
         return tl_command_fail("%s", "not enough memory");
     return true;
 }

@@ -9,16 +9,9 @@
 #include <string.h>
 #include <talus/text.h>
 
-void tl_json_bytes(tl_piece *to, const char *text, size_t length)
-{
-    unsigned char *at = tl_piece_add(to, length);
-    if (at)
-        memcpy(at, text, length);
-}
-
 void tl_json_put(tl_piece *to, const char *text)
 {
-    tl_json_bytes(to, text, strlen(text));
+    tl_piece_put(to, text, strlen(text));
 }
 
 static void put_number(tl_piece *to, double value)
@@ -35,7 +28,7 @@ static void put_whole(tl_piece *to, uint32_t value)
     do
         digits[--at] = (char)('0' + value % 10);
     while ((value /= 10) > 0);
-    tl_json_bytes(to, digits + at, sizeof digits - at);
+    tl_piece_put(to, digits + at, sizeof digits - at);
 }
 
 /* A byte of a text, escaped where JSON wants it. */
@@ -55,7 +48,7 @@ static void put_text(tl_piece *to, const char *text)
     while (*text) {
         size_t bytes = tl_utf8_next(text);
         if (bytes > 1) {
-            tl_json_bytes(to, text, bytes);
+            tl_piece_put(to, text, bytes);
         } else if (bytes == 0) {
             tl_json_put(to, "\\ufffd");
             bytes = 1;
@@ -72,7 +65,7 @@ void tl_json_print(tl_piece *to, const char *format, ...)
     va_list args;
     va_start(args, format);
     for (const char *next; (next = strchr(format, '%')) != NULL; format = next + 2) {
-        tl_json_bytes(to, format, (size_t)(next - format));
+        tl_piece_put(to, format, (size_t)(next - format));
         switch (next[1]) {
         case 's': put_text(to, va_arg(args, const char *)); break;
         case 'g': put_number(to, va_arg(args, double)); break;

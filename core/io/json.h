@@ -5,7 +5,6 @@
 #include "io/pieces.h"
 
 /* As it is. */
-void tl_json_bytes(tl_piece *to, const char *text, size_t length);
 void tl_json_put(tl_piece *to, const char *text);
 /* The format as it is, but for %s, %g, %u, %v and %r. A text by %s is in quotes and escaped, and what is no UTF-8 in
  * it becomes the replacement character. A double by %g has the digits that give back the same one. A uint32_t goes by

@@ -164,7 +164,7 @@ void tl_page_beginning(tl_piece *to, const char *title, bool live)
         if (*title == '&' || *title == '<' || *title == '>')
             tl_json_put(to, *title == '&' ? "&amp;" : *title == '<' ? "&lt;" : "&gt;");
         else if (bytes > 0)
-            tl_json_bytes(to, title, bytes);
+            tl_piece_put(to, title, bytes);
         else
             tl_json_put(to, "\xef\xbf\xbd"); /* the replacement character */
     }

@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Bytes of a piece, about. */
 #define PIECE_BYTES 65536
@@ -45,6 +46,13 @@ unsigned char *tl_piece_add(tl_piece *piece, size_t bytes)
     unsigned char *to = tl_piece_reserve(piece, bytes);
     piece->length += to ? bytes : 0;
     return to;
+}
+
+void tl_piece_put(tl_piece *piece, const void *from, size_t bytes)
+{
+    unsigned char *to = tl_piece_add(piece, bytes);
+    if (to)
+        memcpy(to, from, bytes);
 }
 
 static void write_out(tl_piece *pieces, tl_output *output)

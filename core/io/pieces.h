@@ -30,6 +30,9 @@ unsigned char *tl_piece_reserve(tl_piece *piece, size_t bytes);
 /* The same, of bytes that are part of the piece at once. */
 unsigned char *tl_piece_add(tl_piece *piece, size_t bytes);
 
+/* Puts bytes that there are at the end of the piece. */
+void tl_piece_put(tl_piece *piece, const void *from, size_t bytes);
+
 /* Puts what rows [begin, end) are in the file at the end of the piece; on any thread. */
 typedef void (*tl_piece_fn)(const void *user, size_t begin, size_t end, tl_piece *piece);
 

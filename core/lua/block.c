@@ -377,7 +377,8 @@ const tl_lua_key tl_lua_drive_keys[] = {
  * The functions are called in a step, on the thread and in the frame of the run, in protected calls. An error ends
  * the run and is then raised as it was. */
 
-tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index)
+/* Pushes a new anchor and hangs it on the model at `model_index`; it counts as ended until the kernel has taken it. */
+static tl_lua_anchor *push_anchor(lua_State *L, int model_index)
 {
     tl_lua_anchor *a = lua_newuserdatauv(L, sizeof *a, TL_LUA_MOTIONS);
     a->ended = true;
@@ -478,11 +479,13 @@ static bool angular_velocity_at(void *user, double t, tl_vec3 *velocity)
     return evaluate(user, TL_LUA_ANGULAR_VELOCITY, t, velocity);
 }
 
-void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive)
+void tl_lua_anchor_push(lua_State *L, int model_index, tl_drive *drive)
 {
-    bool moves = lua_getiuservalue(L, -1, TL_LUA_VELOCITY) == LUA_TFUNCTION;
-    bool turns = lua_getiuservalue(L, -2, TL_LUA_ANGULAR_VELOCITY) == LUA_TFUNCTION;
-    lua_pop(L, 2);
+    bool moves = lua_isfunction(L, -2), turns = lua_isfunction(L, -1);
+    tl_lua_anchor *a = push_anchor(L, model_index);
+    lua_insert(L, -3);
+    lua_setiuservalue(L, -3, TL_LUA_ANGULAR_VELOCITY);
+    lua_setiuservalue(L, -2, TL_LUA_VELOCITY);
     *drive = tl_drive_default();
     drive->velocity_at = moves ? velocity_at : NULL;
     drive->angular_velocity_at = turns ? angular_velocity_at : NULL;
@@ -536,7 +539,7 @@ static tl_status drive(lua_State *L, const tl_lua_selection *b)
     tl_lua_read(L, 2, &spec, false, NULL);
     lua_settop(L, 2);
     lua_getiuservalue(L, 1, 1);
-    tl_lua_anchor *a = tl_lua_anchor_push(L, 3);
+    tl_lua_anchor *a = push_anchor(L, 3);
     tl_drive given = tl_drive_default();
     given.user = a;
     given.release = on_release;

@@ -11,10 +11,9 @@ extern const tl_lua_kind tl_lua_block_kind;
 extern const tl_lua_key tl_lua_drive_keys[];
 /* The method reaction of selections: pushes a vector. */
 int tl_lua_blocks_reaction(lua_State *L, const tl_lua_selection *blocks);
-/* Pushes a new anchor and hangs it on the model at `model_index`; it counts as ended until the kernel has taken it. */
-tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index);
-/* The functions of a drive for the anchor `a`, which is at the top of the stack: those that it has. */
-void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive);
+/* Pops a velocity and an angular velocity, functions or nil. Pushes a new anchor with them, hung on the model at
+ * `model_index`. It counts as ended until the kernel has taken it. Fills the drive that it is for. */
+void tl_lua_anchor_push(lua_State *L, int model_index, tl_drive *drive);
 
 extern const tl_lua_topic tl_lua_block_topics[];
 

@@ -77,7 +77,6 @@ enum { TL_LUA_AT_MODEL = 1, TL_LUA_AT_ERROR = 6 };
 /* A run of some model: they nest, as a function that one calls may begin a run of another model. */
 typedef struct tl_lua_running {
     lua_State *L;
-    struct tl_lua_running *outer;
     bool failed; /* a function has; the run is to end */
 } tl_lua_running;
 

@@ -7,9 +7,6 @@
 /* Lets `require` find them; once a state. */
 void tl_lua_library_open(lua_State *L);
 
-/* From now on reading a global that was never assigned raises. */
-void tl_lua_strict(lua_State *L);
-
 extern const tl_lua_topic tl_lua_library_topics[];
 
 #endif

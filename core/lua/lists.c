@@ -1,4 +1,4 @@
-/* lists.c - what there is: model:joints(), laws(), groups(), parameters(); talus.laws(), dampings(), generators(). */
+/* lists.c - what there is: model:joints(), laws(), groups(), parameters(). */
 #include "lua/lists.h"
 
 #include "lua/convert.h"
@@ -93,60 +93,6 @@ static int model_groups(lua_State *L, tl_model *model)
         lua_rawseti(L, -2, (lua_Integer)++listed);
     }
     return 1;
-}
-
-/* ---------------------------------------------------------------- of the program --------- */
-
-static void push_kind(lua_State *L, const tl_kind *kind)
-{
-    lua_createtable(L, 0, 5);
-    tl_lua_set_text(L, "name", kind->name);
-    tl_lua_set_text(L, "doc", kind->doc ? kind->doc : "");
-    const tl_plugin *plugin = tl_plugin_of(kind, NULL);
-    tl_lua_set_text(L, "plugin", plugin ? plugin->id : NULL);
-    lua_createtable(L, (int)kind->param_count, 0);
-    for (uint32_t i = 0; i < kind->param_count; i++) {
-        lua_pushstring(L, kind->params[i].name);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-    lua_setfield(L, -2, "parameters");
-    lua_createtable(L, (int)kind->state_count, 0);
-    for (uint32_t i = 0; i < kind->state_count; i++) {
-        lua_pushstring(L, kind->states[i].name);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-    lua_setfield(L, -2, "states");
-}
-
-/* The kinds of a type. Upvalue 1 is the type, upvalue 2 the function's name. */
-static int module_kinds(lua_State *L)
-{
-    tl_lua_arity(L, 0, lua_tostring(L, lua_upvalueindex(2)));
-    tl_kind_type type = (tl_kind_type)lua_tointeger(L, lua_upvalueindex(1));
-    lua_newtable(L);
-    const tl_kind *kind;
-    for (size_t i = 0; (kind = tl_plugin_kind(type, i)) != NULL; i++) {
-        push_kind(L, kind);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-    return 1;
-}
-
-void tl_lua_lists_open(lua_State *L)
-{
-    static const struct {
-        const char *name;
-        tl_kind_type type;
-    } lists[] = {{"laws", TL_KIND_LAW},
-                 {"dampings", TL_KIND_DAMPING},
-                 {"generators", TL_KIND_GENERATOR},
-                 {"screens", TL_KIND_SCREEN}};
-    for (size_t i = 0; i < TL_LUA_COUNT(lists); i++) {
-        lua_pushinteger(L, lists[i].type);
-        lua_pushfstring(L, "talus.%s", lists[i].name);
-        lua_pushcclosure(L, module_kinds, 2);
-        lua_setfield(L, -2, lists[i].name);
-    }
 }
 
 /* ---------------------------------------------------------------- parameters in force -----

@@ -117,15 +117,11 @@ int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments)
 
 static tl_lua_running *current;
 
-void tl_lua_running_begin(tl_lua_running *run, lua_State *L)
+tl_lua_running *tl_lua_running_set(tl_lua_running *run)
 {
-    *run = (tl_lua_running){.L = L, .outer = current};
+    tl_lua_running *before = current;
     current = run;
-}
-
-void tl_lua_running_end(const tl_lua_running *run)
-{
-    current = run->outer;
+    return before;
 }
 
 lua_State *tl_lua_run_state(void)

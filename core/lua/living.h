@@ -25,8 +25,8 @@ void tl_lua_ok(lua_State *L, tl_model *model, tl_status status);
 /* lua_pcall of a function of the script, without results, while the model may only be read. */
 int tl_lua_call_reading(lua_State *L, tl_lua_model *owner, int arguments);
 
-void tl_lua_running_begin(tl_lua_running *run, lua_State *L);
-void tl_lua_running_end(const tl_lua_running *run);
+/* Makes a run the one whose step is being made, NULL: none; gives the one that was. */
+tl_lua_running *tl_lua_running_set(tl_lua_running *run);
 /* The Lua state of the run whose step is being made. */
 lua_State *tl_lua_run_state(void);
 /* Pops the error on the top of its stack, to be raised again when the run has ended. */

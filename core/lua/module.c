@@ -6,7 +6,6 @@
 #include "lua/help.h"
 #include "lua/item.h"
 #include "lua/library.h"
-#include "lua/lists.h"
 #include "lua/living.h"
 #include "lua/model.h"
 #include "lua/topics.h"
@@ -48,6 +47,61 @@ static void put_functions(lua_State *L)
             lua_pushcfunction(L, topic->call);
             lua_setfield(L, -3, topic->name);
         }
+    }
+}
+
+/* ---------------------------------------------------------------- what is loaded ---------- */
+
+static void push_kind(lua_State *L, const tl_kind *kind)
+{
+    lua_createtable(L, 0, 5);
+    tl_lua_set_text(L, "name", kind->name);
+    tl_lua_set_text(L, "doc", kind->doc ? kind->doc : "");
+    const tl_plugin *plugin = tl_plugin_of(kind, NULL);
+    tl_lua_set_text(L, "plugin", plugin ? plugin->id : NULL);
+    lua_createtable(L, (int)kind->param_count, 0);
+    for (uint32_t i = 0; i < kind->param_count; i++) {
+        lua_pushstring(L, kind->params[i].name);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, "parameters");
+    lua_createtable(L, (int)kind->state_count, 0);
+    for (uint32_t i = 0; i < kind->state_count; i++) {
+        lua_pushstring(L, kind->states[i].name);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, "states");
+}
+
+/* The kinds of a type. Upvalue 1 is the type, upvalue 2 the function's name. */
+static int module_kinds(lua_State *L)
+{
+    tl_lua_arity(L, 0, lua_tostring(L, lua_upvalueindex(2)));
+    tl_kind_type type = (tl_kind_type)lua_tointeger(L, lua_upvalueindex(1));
+    lua_newtable(L);
+    const tl_kind *kind;
+    for (size_t i = 0; (kind = tl_plugin_kind(type, i)) != NULL; i++) {
+        push_kind(L, kind);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    return 1;
+}
+
+/* Puts talus.laws, talus.dampings, talus.generators and talus.screens into the module at the top of the stack. */
+static void put_kinds(lua_State *L)
+{
+    static const struct {
+        const char *name;
+        tl_kind_type type;
+    } lists[] = {{"laws", TL_KIND_LAW},
+                 {"dampings", TL_KIND_DAMPING},
+                 {"generators", TL_KIND_GENERATOR},
+                 {"screens", TL_KIND_SCREEN}};
+    for (size_t i = 0; i < TL_LUA_COUNT(lists); i++) {
+        lua_pushinteger(L, lists[i].type);
+        lua_pushfstring(L, "talus.%s", lists[i].name);
+        lua_pushcclosure(L, module_kinds, 2);
+        lua_setfield(L, -2, lists[i].name);
     }
 }
 
@@ -97,7 +151,7 @@ int luaopen_talus(lua_State *L)
     put_functions(L);
     tl_lua_model_open(L);
     lua_setfield(L, -2, "model");
-    tl_lua_lists_open(L);
+    put_kinds(L);
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);

@@ -359,9 +359,9 @@ static line_end read_chunk(lua_State *L, int *status)
     bool more;
     while (*status = load_chunk(L, 1, &more), more) {
         lua_settop(L, 1);
-        tl_repl_complete_after(lua_tostring(L, 1));
+        tl_repl_complete(L, lua_tostring(L, 1));
         end = read_line(L, ">> ");
-        tl_repl_complete_after(NULL);
+        tl_repl_complete(L, NULL);
         if (end != LINE_READ)
             return end;
         lua_pushliteral(L, "\n");
@@ -430,7 +430,7 @@ void tl_repl_run(lua_State *L, bool verbose)
     /* So that letters beyond ASCII can be typed; numbers stay as they are. */
     setlocale(LC_CTYPE, "");
     repl_history_open(tl_lua_options_of(L)->quiet);
-    tl_repl_complete_with(L);
+    tl_repl_complete(L, NULL);
     while ((end = read_chunk(L, &status)) != LINE_END_OF_INPUT) {
         if (end == LINE_STOPPED)
             continue;

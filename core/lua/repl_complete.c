@@ -588,18 +588,14 @@ static char **on_tabulator(const char *word, int start, int end)
     return completion.count ? rl_completion_matches(word, next_match) : NULL;
 }
 
-void tl_repl_complete_with(lua_State *L)
+void tl_repl_complete(lua_State *L, const char *above)
 {
     /* whatever no name is made of */
     static char breaks[] = " \t\n\"'`\\@$><=;|&{}()[],.:+-*/%^#~!?";
     completion.L = L;
+    completion.above = above;
     rl_attempted_completion_function = on_tabulator;
     rl_basic_word_break_characters = breaks;
     rl_completer_word_break_characters = breaks;
     rl_completion_append_character = '\0';
-}
-
-void tl_repl_complete_after(const char *text)
-{
-    completion.above = text;
 }

@@ -104,17 +104,6 @@ static void progress_clear(progress *p)
  * After `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the clock. That is no
  * harm: saving does not change a run. */
 
-#define ENDING ".autosave.talus"
-
-char *tl_lua_autosave_path(const char *script)
-{
-    size_t capacity = strlen(script) + sizeof ENDING;
-    char *path = malloc(capacity);
-    if (path)
-        snprintf(path, capacity, "%s%s", script, ENDING);
-    return path;
-}
-
 static void autosave(tl_lua_options *options, tl_model *model)
 {
     if (!(options->autosave > 0) || !options->save_path)
@@ -525,12 +514,13 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     tl_lua_histories_due(L, AT_MODEL);
     progress_begin(L, &r.line, model);
     r.watch = tl_lua_watch_begin(L);
-    tl_lua_running_begin(&r.running, L);
+    r.running.L = L;
+    tl_lua_running *outer = tl_lua_running_set(&r.running);
     tl_status status = steps ? tl_model_cycle_calling(model, solve->max_cycles, solve, &r.result)
                              : tl_model_solve(model, solve, &r.result);
     if (r.owner->view && !r.running.failed && !tl_lua_view_step(L, r.result.wall))
         tl_lua_run_keep_error();
-    tl_lua_running_end(&r.running);
+    tl_lua_running_set(outer);
     progress_clear(&r.line);
     tl_lua_watch_end_run(L, &r.watch, what);
     if (r.running.failed) {

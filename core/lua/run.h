@@ -7,9 +7,6 @@
 /* model:generate("GENERATOR", {...}) */
 int tl_lua_model_generate(lua_State *L, tl_model *model);
 
-/* The file of a script's saves, SCRIPT.autosave.talus, from malloc; NULL when out of memory. */
-char *tl_lua_autosave_path(const char *script);
-
 extern const tl_lua_topic tl_lua_run_topics[];
 
 #endif

@@ -79,13 +79,10 @@ static drive_bindings *push_twins(lua_State *L, int from, int to)
     for (lua_pushnil(L); lua_next(L, anchors);) {
         int old = lua_gettop(L);
         drive_binding *g = &all->list[all->count];
-        tl_lua_anchor *twin = tl_lua_anchor_push(L, to);
-        for (int k = 1; k <= TL_LUA_MOTIONS; k++) {
-            lua_getiuservalue(L, old, k);
-            lua_setiuservalue(L, -2, k);
-        }
         *g = (drive_binding){.anchor = lua_touserdata(L, old), .block = TL_NO_ID};
-        tl_lua_anchor_drive(L, twin, &g->drive);
+        lua_getiuservalue(L, old, TL_LUA_VELOCITY);
+        lua_getiuservalue(L, old, TL_LUA_ANGULAR_VELOCITY);
+        tl_lua_anchor_push(L, to, &g->drive);
         all->count++;
         lua_settop(L, old - 1);
     }
@@ -121,29 +118,29 @@ static int model_save(lua_State *L, tl_model *model)
     return 0;
 }
 
-/* Sets function `key` of the anchor at `anchor` from the value at the top of the stack, which it pops. */
-static void take_function(lua_State *L, int anchor, int key, const char *what)
+/* Refuses what is neither a function nor nil at the top of the stack. */
+static void check_function(lua_State *L, const char *what)
 {
     if (!lua_isnil(L, -1) && !lua_isfunction(L, -1))
         tl_lua_fail(L, "talus.restore: %s of a drive must be a function(t), not %s", what, tl_lua_describe(L, -1));
-    lua_setiuservalue(L, anchor, key);
 }
 
-/* Fills an anchor, at the top of the stack, from the value of `drives` at `value`. */
-static void take_functions(lua_State *L, int value)
+/* Pushes velocity and angular velocity, functions or nil, of the value of `drives` at `value`. */
+static void push_functions(lua_State *L, int value)
 {
-    int anchor = lua_gettop(L);
+    int top = lua_gettop(L);
     if (lua_istable(L, value)) {
         const tl_lua_spec spec = {"talus.restore: drives", NULL, 0, tl_lua_drive_keys};
         tl_lua_read(L, value, &spec, false, NULL);
-        lua_settop(L, anchor);
+        lua_settop(L, top);
         lua_getfield(L, value, "velocity");
-        take_function(L, anchor, TL_LUA_VELOCITY, "velocity");
+        check_function(L, "velocity");
         lua_getfield(L, value, "angular_velocity");
-        take_function(L, anchor, TL_LUA_ANGULAR_VELOCITY, "angular_velocity");
+        check_function(L, "angular_velocity");
     } else {
         lua_pushvalue(L, value);
-        take_function(L, anchor, TL_LUA_VELOCITY, "velocity");
+        check_function(L, "velocity");
+        lua_pushnil(L);
     }
 }
 
@@ -163,10 +160,9 @@ static drive_bindings *push_block_bindings(lua_State *L, int to)
             tl_lua_fail(L, "talus.restore: drives has the key %s, which is the number of no block",
                         tl_lua_describe(L, value - 1));
         drive_binding *g = &all->list[all->count];
-        tl_lua_anchor *anchor = tl_lua_anchor_push(L, to);
-        take_functions(L, value);
         *g = (drive_binding){.block = (tl_id)lua_tointeger(L, value - 1)};
-        tl_lua_anchor_drive(L, anchor, &g->drive);
+        push_functions(L, value);
+        tl_lua_anchor_push(L, to, &g->drive);
         all->count++;
         lua_settop(L, value - 1);
     }

@@ -112,7 +112,10 @@ void tl_model_destroy(tl_model *m)
     for (size_t i = 0; i < m->joint_law_count; i++)
         tl_law_clear(&m->joint_laws[i]);
     tl_damping_clear(m);
-    tl_drives_clear(m);
+    for (size_t i = 0; i < m->drive_count; i++)
+        if (m->drives[i].bodies && m->drives[i].drive.release)
+            m->drives[i].drive.release(m->drives[i].drive.user);
+    free(m->drives);
     for (size_t i = 0; i < m->history_count; i++)
         tl_history_free(m->histories[i]);
     free(m->histories);

@@ -1,4 +1,4 @@
-/* loads.c - what acts on bodies from outside: loads, and prescribed motion (drives). */
+/* loads.c - what acts on bodies from outside: loads, prescribed motion (drives), and what holds them. */
 #include "model/loads.h"
 
 #include "model/inertia.h"
@@ -152,10 +152,28 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     return TL_OK;
 }
 
-void tl_loads_stepped(tl_model *m)
+/* ---------------------------------------------------------------- motions that users set --- */
+
+static bool is_motion(tl_vec3 v)
 {
-    m->gravity_before = tl_v3(0, 0, 0);
-    m->gravity_changed = m->loads_changed = false;
+    return fabs(v.x) <= TL_FASTEST && fabs(v.y) <= TL_FASTEST && fabs(v.z) <= TL_FASTEST;
+}
+
+static tl_status bad_motion(tl_error *error, const char *verb, const char *name, tl_vec3 v, const char *unit)
+{
+    return tl_fail(error, TL_E_ARGUMENT,
+                   "%s: %s = {%g, %g, %g} %s must be three finite numbers of at most %g: no model "
+                   "can run with more",
+                   verb, name, v.x, v.y, v.z, unit, TL_FASTEST);
+}
+
+tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity, tl_vec3 angular_velocity)
+{
+    if (!is_motion(velocity))
+        return bad_motion(error, verb, "velocity", velocity, "m/s");
+    if (!is_motion(angular_velocity))
+        return bad_motion(error, verb, "angular_velocity", angular_velocity, "rad/s");
+    return TL_OK;
 }
 
 /* ---------------------------------------------------------------- drives ----------------- */
@@ -188,14 +206,13 @@ void tl_drives_recount(tl_model *m)
             m->drives[m->bodies.drive[body] - 1].bodies++;
 }
 
-void tl_drives_hold(tl_model *m)
+void tl_drives_hold(tl_model *m, bool hold)
 {
-    for (size_t i = 0; i < m->drive_count; i++)
-        m->drives[i].held = m->drives[i].bodies > 0;
-}
-
-void tl_drives_settle(tl_model *m)
-{
+    if (hold) {
+        for (size_t i = 0; i < m->drive_count; i++)
+            m->drives[i].held = m->drives[i].bodies > 0;
+        return;
+    }
     tl_drives_recount(m);
     for (size_t i = 0; i < m->drive_count; i++) {
         bool held = m->drives[i].held;
@@ -203,16 +220,6 @@ void tl_drives_settle(tl_model *m)
         if (held && m->drives[i].bodies == 0)
             release(&m->drives[i]);
     }
-}
-
-void tl_drives_clear(tl_model *m)
-{
-    for (size_t i = 0; i < m->drive_count; i++)
-        if (m->drives[i].bodies)
-            release(&m->drives[i]);
-    free(m->drives);
-    m->drives = NULL;
-    m->drive_count = 0;
 }
 
 /* An unused record, or a new one; NULL when out of memory. */
@@ -287,26 +294,71 @@ bool tl_drives_evaluate(tl_model *m, double t)
     return known;
 }
 
-/* ---------------------------------------------------------------- motions that users set --- */
+/* ---------------------------------------------------------------- what is held ----------- */
 
-static bool is_motion(tl_vec3 v)
+/* In what way a body is held, and the motion that holding it may end. */
+typedef struct constraint {
+    uint8_t fixed;
+    uint32_t drive;
+    tl_vec3 v, w;
+} constraint;
+
+static constraint constraint_of(const tl_model *m, uint32_t body)
 {
-    return fabs(v.x) <= TL_FASTEST && fabs(v.y) <= TL_FASTEST && fabs(v.z) <= TL_FASTEST;
+    const tl_bodies *b = &m->bodies;
+    return (constraint){b->fixed[body], b->drive[body], b->v[body], b->w[body]};
 }
 
-static tl_status bad_motion(tl_error *error, const char *verb, const char *name, tl_vec3 v, const char *unit)
+static bool has_constraint(const tl_model *m, uint32_t body, constraint before)
 {
-    return tl_fail(error, TL_E_ARGUMENT,
-                   "%s: %s = {%g, %g, %g} %s must be three finite numbers of at most %g: no model "
-                   "can run with more",
-                   verb, name, v.x, v.y, v.z, unit, TL_FASTEST);
+    constraint now = constraint_of(m, body);
+    double faster = tl_v3_norm2(tl_v3_sub(now.v, before.v)) + tl_v3_norm2(tl_v3_sub(now.w, before.w));
+    return now.fixed == before.fixed && now.drive == before.drive && faster == 0;
 }
 
-tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity, tl_vec3 angular_velocity)
+static void fix_body(tl_model *m, uint32_t body, unsigned what)
 {
-    if (!is_motion(velocity))
-        return bad_motion(error, verb, "velocity", velocity, "m/s");
-    if (!is_motion(angular_velocity))
-        return bad_motion(error, verb, "angular_velocity", angular_velocity, "rad/s");
-    return TL_OK;
+    tl_vec3 *v = &m->bodies.v[body];
+    m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
+    v->x = what & TL_FIX_X ? 0 : v->x;
+    v->y = what & TL_FIX_Y ? 0 : v->y;
+    v->z = what & TL_FIX_Z ? 0 : v->z;
+    if (what & TL_FIX_ROTATION)
+        m->bodies.w[body] = tl_v3(0, 0, 0);
+}
+
+static void free_body(tl_model *m, uint32_t body, unsigned what)
+{
+    if (m->bodies.fixed[body] & what)
+        tl_load_begins_anew(m, body);
+    m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] & ~what);
+}
+
+/* Lets the bodies of blocks go from their drives, and changes in what way they are held. */
+static tl_status change_fixing(tl_model *m, const tl_id *ids, size_t count, const char *verb,
+                               void (*change)(tl_model *, uint32_t, unsigned), unsigned what)
+{
+    tl_status status = tl_model_may_set(m, verb);
+    if (status == TL_OK)
+        status = tl_blocks_check(m, ids, count);
+    bool changed = false;
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        constraint before = constraint_of(m, body);
+        tl_drive_leave(m, body);
+        change(m, body, what);
+        changed = changed || !has_constraint(m, body, before);
+    }
+    m->constraints += changed;
+    return status;
+}
+
+tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
+{
+    return change_fixing(m, ids, count, "fix blocks", fix_body, what);
+}
+
+tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
+{
+    return change_fixing(m, ids, count, "free blocks", free_body, TL_FIX_ALL);
 }

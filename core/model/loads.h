@@ -21,6 +21,13 @@ static inline bool tl_load_changed(const tl_model *m, uint32_t body)
     return !tl_v3_is_zero(tl_v3_sub(now.force, before.force)) || !tl_v3_is_zero(tl_v3_sub(now.moment, before.moment));
 }
 
+/* A step has been made: what gravity and loads are now is what they were in it. */
+static inline void tl_loads_stepped(tl_model *m)
+{
+    m->gravity_before = tl_v3(0, 0, 0);
+    m->gravity_changed = m->loads_changed = false;
+}
+
 /* Evaluates all drives at time t; false when a user's function ends the run. */
 bool tl_drives_evaluate(tl_model *m, double t);
 /* Lets a body go from its drive. */
@@ -29,14 +36,10 @@ void tl_drive_leave(tl_model *m, uint32_t body);
 void tl_load_begins_anew(tl_model *m, uint32_t body);
 /* Holds the columns of loads. A model that has loads has what they were before, too. false: out of memory. */
 bool tl_bodies_hold_loads(tl_bodies *b);
-/* A step has been made: what gravity and loads are now is what they were in it. */
-void tl_loads_stepped(tl_model *m);
-void tl_drives_clear(tl_model *m);
 /* Counts the bodies of each drive again, after a driven body has fallen into several. */
 void tl_drives_recount(tl_model *m);
-/* Keeps the drives in use though no body follows them, or ends those that none follows any more. */
-void tl_drives_hold(tl_model *m);
-void tl_drives_settle(tl_model *m);
+/* Keeps the drives in use though no body follows them; or no longer, and ends those that none follows any more. */
+void tl_drives_hold(tl_model *m, bool hold);
 
 /* Limit: faster motion, m/s or rad/s, is not set, driven or parted. Momentum and angular momentum stay finite, and no
  * step is so short that a model could run with it. */

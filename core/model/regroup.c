@@ -1,4 +1,6 @@
-/* regroup.c - which blocks move as one: bodies made from parts and parted again.
+/* regroup.c - changes of blocks and of the bodies they make: which of them move as one, which go, and what is set.
+ *
+ * A stale id or a bad value fails the whole call before anything is changed.
  *
  * A new body has the mass, momentum and angular momentum of its parts. Relative motion of the parts is lost, as in a
  * perfectly plastic meeting. Its frame has the attitude of its lowest block's old body, so parting and joining without
@@ -8,12 +10,16 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
+#include "model/joints.h"
 #include "model/loads.h"
 #include "model/model.h"
+#include "model/options.h"
 #include "model/rows.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
+#include <talus/text.h>
 
 /* Tolerance: relative difference of mass from which a body has lost a block: far above rounding, far below any block
  * that tolerances let exist. */
@@ -405,17 +411,58 @@ static tl_status split_groups(tl_model *m, const unsigned char *chosen, uint32_t
     return status;
 }
 
-tl_status tl_bodies_fall_apart(tl_model *m, const tl_id *ids, size_t count)
+/* Makes the given blocks bodies by themselves. What is left of their bodies, and of others that lost blocks since they
+ * were measured, falls into groups that hang together over faces. */
+static tl_status fall_apart(tl_model *m, const tl_id *ids, size_t count)
 {
     return regroup_by(m, ids, count, split_groups);
 }
 
-tl_status tl_bodies_mend(tl_model *m)
+/* Makes bodies anew whose blocks were cut off or changed their mass. */
+static tl_status mend_bodies(tl_model *m)
 {
     bool whole = true;
     for (uint32_t body = 0; body < m->bodies.table.rows && whole; body++)
         whole = is_whole(m, body);
-    return whole ? TL_OK : tl_bodies_fall_apart(m, NULL, 0);
+    return whole ? TL_OK : fall_apart(m, NULL, 0);
+}
+
+/* Whether some of the blocks are parts of bodies of several. */
+static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (m->bodies.member_count[m->blocks.body[tl_block_row_quiet(m, ids[i])]] > 1)
+            return true;
+    return false;
+}
+
+/* Deletes a block that has no part in a body of several. Its row goes with others. */
+static void delete_block(tl_model *m, tl_id id)
+{
+    uint32_t row = tl_block_row_quiet(m, id);
+    if (row == TL_NO_ROW) /* named twice */
+        return;
+    m->record.deleted += m->blocks.volume[row];
+    tl_extremes_drop(m, row);
+    tl_drive_leave(m, m->blocks.body[row]);
+    tl_poly_free(m->blocks.shape[row]);
+    m->blocks.shape[row] = NULL;
+    m->blocks.stays[row] = false;
+    m->gone++;
+}
+
+tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = tl_model_may_change(m, "delete blocks");
+    if (status == TL_OK)
+        status = tl_blocks_check(m, ids, count);
+    if (status == TL_OK && some_joined(m, ids, count)) {
+        tl_rows_tidy(m);
+        status = fall_apart(m, ids, count);
+    }
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        delete_block(m, ids[i]);
+    return status;
 }
 
 /* ---------------------------------------------------------------- verbs ------------------ */
@@ -524,7 +571,7 @@ bool tl_rows_set_aside(tl_model *m, tl_aside *aside)
     aside->next_id = m->next_id;
     aside->structure = m->structure;
     aside->constraints = m->constraints;
-    tl_drives_hold(m);
+    tl_drives_hold(m, true);
     return true;
 }
 
@@ -551,5 +598,149 @@ void tl_rows_settle(tl_model *m, tl_aside *aside, bool changed)
     } else {
         take_back(m, aside);
     }
-    tl_drives_settle(m);
+    tl_drives_hold(m, false);
+}
+
+/* ---------------------------------------------------------------- what is seen ----------- */
+
+tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidden)
+{
+    tl_status status = tl_blocks_check(m, ids, count);
+    if (status != TL_OK)
+        return status;
+    for (size_t i = 0; i < count; i++)
+        m->blocks.hidden[tl_block_row_quiet(m, ids[i])] = hidden;
+    return TL_OK;
+}
+
+static void displacement_from_now(tl_model *m, uint32_t row)
+{
+    uint32_t body = m->blocks.body[row];
+    m->blocks.base[row] = (tl_base){m->bodies.pose[body].u, m->bodies.q[body]};
+}
+
+tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = tl_blocks_check(m, ids, count);
+    if (status != TL_OK)
+        return status;
+    if (count && !tl_blocks_hold_base(m))
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count; i++)
+        displacement_from_now(m, tl_block_row_quiet(m, ids[i]));
+    return TL_OK;
+}
+
+tl_status tl_model_stage(tl_model *m, const char *name)
+{
+    tl_rows_tidy(m);
+    if (strlen(name) > TL_STAGE_NAME || !tl_text_is_clean(name))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "stage: the name '%s' must be one line of UTF-8 of at most %d bytes",
+                       tl_text_is_utf8(name) ? name : "...", TL_STAGE_NAME);
+    const size_t rows = m->blocks.table.rows;
+    if (rows && !tl_blocks_hold_base(m))
+        return tl_fail_memory(&m->error);
+    for (uint32_t row = 0; row < rows; row++)
+        displacement_from_now(m, row);
+    tl_text_print(m->stage, sizeof m->stage, "%s", name);
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- what is set ------------ */
+
+static bool given(tl_vec3 v)
+{
+    return !(isnan(v.x) && isnan(v.y) && isnan(v.z));
+}
+
+static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
+{
+    if (!isnan(set->density) && !(set->density > 0 && isfinite(set->density)))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: density = %g kg/m3 must be > 0", set->density);
+    for (size_t i = 0; i < count && !isnan(set->density); i++) {
+        tl_status status = tl_check_measures(&m->error, m->blocks.shape[tl_block_row_quiet(m, ids[i])], set->density);
+        if (status != TL_OK)
+            return tl_error_prefix(&m->error, "set: density = %g kg/m3, block %u: ", set->density, ids[i]);
+    }
+    if (set->group && !tl_text_is_utf8(set->group))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: group = '%s' is not a text in UTF-8", set->group);
+    const tl_vec3 none = {0, 0, 0};
+    return tl_check_motion(&m->error, "set", given(set->velocity) ? set->velocity : none,
+                           given(set->angular_velocity) ? set->angular_velocity : none);
+}
+
+/* Blocks of one body that are given a velocity: their mass, and its first moment about the body's centroid. */
+typedef struct moved_parts {
+    double mass;
+    tl_vec3 moment;
+} moved_parts;
+
+/* Gives the bodies of the blocks their motion. What gets the velocity is the common centroid of those of its blocks
+ * that are listed: of one block its own. `moved`: [bodies], zeros, or NULL when all bodies are of one block. */
+static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set, moved_parts *moved)
+{
+    tl_bodies *b = &m->bodies;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        if (given(set->velocity) && moved) {
+            double mass = m->blocks.density[row] * m->blocks.volume[row];
+            tl_vec3 arm = tl_m3_mul(&b->pose[body].r, tl_block_local(m, row));
+            moved[body].mass += mass;
+            moved[body].moment = tl_v3_madd(moved[body].moment, mass, arm);
+        }
+        if (given(set->angular_velocity))
+            b->w[body] = set->angular_velocity;
+        if (given(set->velocity) || given(set->angular_velocity))
+            tl_load_begins_anew(m, body);
+    }
+    for (size_t i = 0; i < count && given(set->velocity); i++) {
+        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        b->v[body] = set->velocity;
+        if (moved && b->member_count[body] > 1)
+            b->v[body] = tl_v3_sub(set->velocity,
+                                   tl_v3_cross(b->w[body], tl_v3_scale(1 / moved[body].mass, moved[body].moment)));
+    }
+}
+
+tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
+{
+    tl_block_set read;
+    const tl_block_set *set = &read;
+    tl_status status = TL_OPTIONS_READ(tl_block_set, values, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "set properties of blocks");
+    if (status == TL_OK)
+        status = tl_blocks_check(m, ids, count);
+    if (status == TL_OK)
+        status = check_set(m, ids, count, set);
+    if (status != TL_OK)
+        return status;
+    uint32_t group = 0;
+    if (set->group && (group = tl_group_intern(m, set->group)) == UINT32_MAX)
+        return tl_fail_memory(&m->error);
+    tl_aside aside;
+    bool joined = some_joined(m, ids, count), mends = !isnan(set->density) && joined;
+    moved_parts *moved = joined ? calloc(m->bodies.table.rows, sizeof *moved) : NULL;
+    if ((joined && !moved) || (mends && !tl_rows_set_aside(m, &aside))) {
+        free(moved);
+        return tl_fail_memory(&m->error);
+    }
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        if (set->group)
+            m->blocks.group[row] = group;
+        if (!isnan(set->density)) {
+            m->blocks.density[row] = set->density;
+            if (m->bodies.member_count[body] == 1)
+                tl_body_measure(m, body);
+        }
+    }
+    set_motion(m, ids, count, set, moved);
+    free(moved);
+    m->constraints++;
+    if (!mends)
+        return TL_OK;
+    status = mend_bodies(m); /* a body of several blocks has another centroid now */
+    tl_rows_settle(m, &aside, status == TL_OK);
+    return status;
 }

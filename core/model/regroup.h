@@ -22,11 +22,6 @@ void tl_rows_settle(tl_model *m, tl_aside *aside, bool changed);
  * body. Bodies that stay as they are are not touched; others get the mass, momentum and angular
  * momentum of their parts. TL_E_MEMORY leaves the model as it was. */
 tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group);
-/* Makes the given blocks bodies by themselves. What is left of their bodies, and of others that lost blocks since they
- * were measured, falls into groups that hang together over faces. */
-tl_status tl_bodies_fall_apart(tl_model *m, const tl_id *ids, size_t count);
-/* Makes bodies anew whose blocks were cut off or changed their mass. */
-tl_status tl_bodies_mend(tl_model *m);
 /* group[row] of the bodies as they are. */
 void tl_bodies_groups(const tl_model *m, uint32_t *group);
 /* A block's inertia about its centroid, in the axes of the model. */

@@ -46,25 +46,8 @@ void tl_rows_refresh(tl_model *m)
     m->structure++;
 }
 
-void tl_rows_added(tl_model *m, uint32_t first)
-{
-    for (uint32_t row = first; row < m->blocks.table.rows; row++) {
-        uint32_t body = m->blocks.body[row];
-        m->bodies.member_start[body] = row; /* every block before is a member of one body */
-        m->bodies.member_count[body] = 1;
-        m->members[row] = row;
-    }
-    m->structure++;
-}
-
-void tl_rows_tidy(tl_model *m)
-{
-    if (m->gone)
-        tl_rows_keep(m, m->blocks.stays); /* what is read of it has not moved yet */
-    m->gone = 0;
-}
-
-void tl_rows_keep(tl_model *m, const unsigned char *keep)
+/* Removes the blocks with keep[row] == 0, and bodies left without blocks. Their shapes are the caller's. */
+static void rows_keep(tl_model *m, const unsigned char *keep)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
@@ -95,7 +78,15 @@ void tl_rows_keep(tl_model *m, const unsigned char *keep)
         bodies->id[body] = blocks->id[m->members[bodies->member_start[body]]];
 }
 
-void tl_block_measure(tl_model *m, uint32_t row, double volume)
+void tl_rows_tidy(tl_model *m)
+{
+    if (m->gone)
+        rows_keep(m, m->blocks.stays); /* what is read of it has not moved yet */
+    m->gone = 0;
+}
+
+/* Derives a block's size and mean face from its shape, whose volume is given. */
+static void measure_block(tl_model *m, uint32_t row, double volume)
 {
     tl_blocks *b = &m->blocks;
     const tl_poly *shape = b->shape[row];
@@ -171,12 +162,13 @@ tl_status tl_check_measures(tl_error *error, const tl_poly *shape, double densit
     return status;
 }
 
-void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass mass)
+void tl_single_measure(tl_model *m, uint32_t row, tl_mass mass)
 {
     body_sum sum = {0};
+    measure_block(m, row, mass.volume);
     mass.centroid = tl_v3(0, 0, 0);
     add_block(&sum, m->blocks.shape[row], m->blocks.density[row], &mass);
-    write_measures(&m->bodies, body, &sum);
+    write_measures(&m->bodies, m->blocks.body[row], &sum);
 }
 
 /* ---------------------------------------------------------------- the smallest of all -----
@@ -200,7 +192,8 @@ static measures measure(const tl_model *m, uint32_t row)
     return out;
 }
 
-void tl_extremes_add(tl_model *m, uint32_t row)
+/* A block has come. */
+static void extremes_add(tl_model *m, uint32_t row)
 {
     tl_extremes *x = &m->extremes;
     if (!x->known)
@@ -229,7 +222,19 @@ tl_extremes tl_extremes_of(tl_model *m)
         *x = (tl_extremes){true, 0, INFINITY, INFINITY, INFINITY};
         for (uint32_t row = 0; row < m->blocks.table.rows; row++)
             if (m->blocks.stays[row])
-                tl_extremes_add(m, row);
+                extremes_add(m, row);
     }
     return *x;
+}
+
+void tl_rows_added(tl_model *m, uint32_t first)
+{
+    for (uint32_t row = first; row < m->blocks.table.rows; row++) {
+        uint32_t body = m->blocks.body[row];
+        m->bodies.member_start[body] = row; /* every block before is a member of one body */
+        m->bodies.member_count[body] = 1;
+        m->members[row] = row;
+        extremes_add(m, row);
+    }
+    m->structure++;
 }

@@ -10,21 +10,18 @@ bool tl_rows_reserve(tl_model *m, size_t count);
 /* Derives the members of all bodies after rows have changed; the memory must have been reserved. Counts a change of
  * structure. */
 void tl_rows_refresh(tl_model *m);
-/* The same where single blocks, bodies of their own, have been added from row `first` on. */
+/* The same where single blocks, bodies of their own, have been measured and added from row `first` on. */
 void tl_rows_added(tl_model *m, uint32_t first);
-/* Takes out the rows of blocks that have been deleted. Who goes through rows, and not from ids, calls this before. */
+/* Takes out the rows of blocks that have been deleted, and bodies left without blocks; the shapes are the caller's. Who
+ * goes through rows, and not from ids, calls this before. */
 void tl_rows_tidy(tl_model *m);
-/* Derives a block's size and mean face from its shape, whose volume is given. */
-void tl_block_measure(tl_model *m, uint32_t row, double volume);
 /* Derives a body's mass, inertia and radius from its blocks. */
 void tl_body_measure(tl_model *m, uint32_t body);
-/* The same for a body of one block, whose mass properties at density 1 are known. */
-void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass mass);
-/* Removes the blocks with keep[row] == 0, and bodies left without blocks. Their shapes are the caller's. */
-void tl_rows_keep(tl_model *m, const unsigned char *keep);
+/* The same for a block that is a body of its own and whose mass properties at density 1 are known; and the block's size
+ * and mean face. */
+void tl_single_measure(tl_model *m, uint32_t row, tl_mass mass);
 
-/* A block has come, goes; all that is known of them. */
-void tl_extremes_add(tl_model *m, uint32_t row);
+/* A block goes; all that is known of the smallest blocks. */
 void tl_extremes_drop(tl_model *m, uint32_t row);
 tl_extremes tl_extremes_of(tl_model *m);
 

@@ -54,7 +54,7 @@ def check_example(program, folder, what, **variables):
     text = run([program, out], **variables).stdout
     match = re.search(r"acceleration (\S+) m/s2, expected (\S+)", text)
     expect(match and abs(float(match[1]) - float(match[2])) < 0.01, f"{what}: {text}")
-    expect(re.search(r"contact \d+: normal force [1-9]\d+ kN", text), f"{what}: no contact in {text}")
+    expect(re.search(r"contact of blocks \d+ and \d+: normal force [1-9]\d+ kN", text), f"{what}: no contact in {text}")
     expect((out / "slide_blocks_000002.vtk").exists() or len(list(out.glob("slide_blocks_*.vtk"))) == 2,
            f"{what}: files {sorted(p.name for p in out.glob('*'))}")
 
