@@ -148,8 +148,7 @@ TL_INLINE void add_beyond(tl_exact *sum, const double *number, size_t count)
     sum->endless = true;
 }
 
-TL_VECTORIZED void tl_exact_add_each(tl_exact *sums, size_t sum_count, const double *number, size_t stride,
-                                     size_t count)
+TL_VECTORIZED static void add_each(tl_exact *sums, size_t sum_count, const double *number, size_t stride, size_t count)
 {
     for (size_t k = 0; k < sum_count; k++)
         for (size_t begin = 0; begin < count; begin += MOST_AT_ONCE) {
@@ -168,9 +167,14 @@ TL_VECTORIZED void tl_exact_add_each(tl_exact *sums, size_t sum_count, const dou
         }
 }
 
+void tl_exact_add_each(tl_exact *sums, size_t sum_count, const double *number, size_t stride, size_t count)
+{
+    add_each(sums, sum_count, number, stride, count);
+}
+
 void tl_exact_add(tl_exact *sum, const double *number, size_t count)
 {
-    tl_exact_add_each(sum, 1, number, 0, count);
+    add_each(sum, 1, number, 0, count);
 }
 
 void tl_exact_merge(tl_exact *sum, const tl_exact *other)

@@ -51,7 +51,7 @@ NUMBERS = [
     ("core/cycle/sliver.c", "ENOUGH", 0.5, "gains at least half of the most"),
     ("core/model/functions.h", "TL_MOST_ADDED", 0.05, "`most`, 0.05 when left out"),
     ("core/cycle/rest.c", "SOFTER", 1e3, "min(ρ, 10³ ρ²) B² / (2 K)"),
-    ("core/cycle/rest.c", "ROUNDED_OVERLAP", 1e-10, "1e-10 r K"),
+    ("core/cycle/rest.h", "TL_ROUNDED_OVERLAP", 1e-10, "1e-10 r K"),
     ("core/cycle/solve.c", "LEGS", 5, "it has gone five legs in one direction"),
     ("core/cycle/solve.c", "FAILED_SHARE", 0.05, "after 5 % of its size"),
     ("core/cycle/solve.c", "LANDED_SHARE", 1, "in legs of a fifth of its size"),
