@@ -231,9 +231,7 @@ function readPoses(c) {
 const PAIR = 2 ** 32;
 
 /** The blocks of a contact, in words. @param {number} id */
-export function pairOf(id) {
-    return `${Math.floor(id / PAIR)} and ${id % PAIR}`;
-}
+export function pairOf(id) { return `${Math.floor(id / PAIR)} and ${id % PAIR}`; }
 
 /** @param {Columns} c @param {Head} head @returns {Contacts} */
 function readContacts(c, head) {
