@@ -17,7 +17,7 @@
  * The functions of drives are a user's, and the step has been chosen for the model as it is: what a step depends on
  * cannot be changed in them (tl_model_may_set).
  *
- * Everything computed in parallel is either a pure function of one contact or one body, or a sum made in fixed chunks.
+ * Everything computed in parallel is either a pure function of one contact or one body, or an exact sum (base/exact.h).
  * So the bits do not depend on the number of threads. */
 #include "cycle/cycle.h"
 

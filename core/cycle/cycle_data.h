@@ -38,7 +38,7 @@ typedef struct tl_sums {
 /* What a thread has gathered of them: exact sums, and the largest of each. */
 enum { TL_SUM_UNBALANCED, TL_SUM_TURNING, TL_SUM_CONTACT_FORCE, TL_SUM_KINETIC, TL_SUM_POWER, TL_SUM_COUNT };
 typedef struct tl_gathered {
-    _Alignas(TL_ALIGN) tl_exact sum[TL_SUM_COUNT];
+    tl_exact sum[TL_SUM_COUNT];
     double largest, local, worst_ratio, max_speed2;
     uint32_t worst;
     size_t bodies;
@@ -95,7 +95,7 @@ enum {
 
 /* What a thread has booked: exact sums. */
 typedef struct tl_booked {
-    _Alignas(TL_ALIGN) tl_exact sum[TL_BOOK_COUNT];
+    tl_exact sum[TL_BOOK_COUNT];
 } tl_booked;
 
 /* What a contributor stores now, and what it has turned to heat until now, J. */
