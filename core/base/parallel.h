@@ -1,8 +1,8 @@
 /* parallel.h - a parallel for over ranges on a fixed pool of threads.
  *
  * The range is divided into chunks of a fixed size that does not depend on the number of threads. So what a chunk
- * computes is the same for any number of them. Sums over a range are made per chunk and added in chunk order by the
- * caller. */
+ * computes is the same for any number of them. Sums over a range are exact (exact.h), or made per chunk and added in
+ * chunk order by the caller. */
 #ifndef TL_BASE_PARALLEL_H
 #define TL_BASE_PARALLEL_H
 

@@ -72,14 +72,15 @@ static bool may_fail(const tl_model *m)
     return !sure;
 }
 
-/* Contacts without points store nothing, whatever their row says. */
+/* Contacts without points, or between held bodies without a law, store nothing, whatever their row says. */
 TL_VECTORIZED static void list_stored(const tl_contacts *c, size_t begin, size_t end, double *restrict stored)
 {
     const double *restrict known = c->stored;
     const uint16_t *restrict points = c->point_capacity;
+    const uint32_t *restrict law = c->law;
     for (size_t i = begin; i < end; i++) {
         const double all = known[i];
-        stored[i - begin] = points[i] > 0 ? all : 0;
+        stored[i - begin] = (points[i] > 0) & (law[i] != TL_NO_ROW) ? all : 0;
     }
 }
 
