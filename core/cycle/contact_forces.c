@@ -80,7 +80,7 @@ TL_VECTORIZED static void list_stored(const tl_contacts *c, size_t begin, size_t
     const uint32_t *restrict law = c->law;
     for (size_t i = begin; i < end; i++) {
         const double all = known[i];
-        stored[i - begin] = (points[i] > 0) & (law[i] != TL_NO_ROW) ? all : 0;
+        stored[i - begin] = ((points[i] > 0) & (law[i] != TL_NO_ROW)) ? all : 0;
     }
 }
 
