@@ -673,19 +673,10 @@ static size_t list(const tl_model *m, part *out, size_t *points)
     return count;
 }
 
-/* Brings all parts to where they carry the same as the whole. false: out of memory. */
-static bool correct_wholes(tl_model *m)
+/* Brings all parts to where they carry the same as the whole. `points`: memory for as many as list() told. */
+static void correct_wholes(tl_model *m, const part *all, size_t count, given *points)
 {
-    if (m->detect->cut_count == 0)
-        return true;
-    forget_mixed(m);
-    size_t most = 0, count = 0;
-    part *all = malloc((m->detect->contacts.table.rows + 1) * sizeof *all);
-    if (all)
-        count = list(m, all, &most);
-    given *points = malloc((most + 1) * sizeof *points);
-    bool there = all && points;
-    for (size_t first = 0, end = 0; there && first < count; first = end) {
+    for (size_t first = 0, end = 0; first < count; first = end) {
         while (end < count && all[end].cut == all[first].cut)
             end++;
         correct(&(parts){.m = m,
@@ -696,9 +687,6 @@ static bool correct_wholes(tl_model *m)
                          .keep = 1,
                          .sought = TL_NEXT_SUMS});
     }
-    free(all);
-    free(points);
-    return there;
 }
 
 /* ---------------------------------------------------------------- all parts -------------- */
@@ -780,7 +768,7 @@ static void limit_energy(const tl_model *m, uint32_t c, const tl_cut_contact *cu
 static void balance(tl_model *m)
 {
     tl_detect *d = m->detect;
-    for (int step = 0; step < 2 && d->cut_count > 0; step++) {
+    for (int step = 0; step < 2; step++) {
         sum_taken(m);
         for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
             const tl_cut_contact *cut = source_of(m, c);
@@ -798,7 +786,7 @@ static void sum_forces(tl_model *m)
     tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     const tl_point_lanes *lanes = &m->detect->lanes[0];
-    for (uint32_t c = 0; m->detect->cut_count > 0 && c < contacts->table.rows; c++) {
+    for (uint32_t c = 0; c < contacts->table.rows; c++) {
         if (!tl_cut_contact_of(m, contacts->a[c], contacts->b[c]))
             continue;
         tl_contact_places(m, c, lanes);
@@ -816,10 +804,22 @@ static void sum_forces(tl_model *m)
 
 bool tl_cut_parts_settle(tl_model *m)
 {
-    balance(m);
-    if (!correct_wholes(m))
-        return false;
-    sum_forces(m);
-    tl_cut_contacts_end(m->detect);
-    return true;
+    if (m->detect->cut_count == 0)
+        return true;
+    forget_mixed(m);
+    size_t most = 0, count = 0;
+    part *all = malloc((m->detect->contacts.table.rows + 1) * sizeof *all);
+    if (all)
+        count = list(m, all, &most);
+    given *points = malloc((most + 1) * sizeof *points);
+    bool there = all && points; /* nothing has changed yet: made again, it gives the same */
+    if (there) {
+        balance(m);
+        correct_wholes(m, all, count, points);
+        sum_forces(m);
+        tl_cut_contacts_end(m->detect);
+    }
+    free(all);
+    free(points);
+    return there;
 }
