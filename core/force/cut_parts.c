@@ -802,24 +802,30 @@ static void sum_forces(tl_model *m)
     }
 }
 
-bool tl_cut_parts_settle(tl_model *m)
+/* false: out of memory, and nothing has changed. */
+static bool settle_parts(tl_model *m)
 {
-    if (m->detect->cut_count == 0)
-        return true;
     forget_mixed(m);
     size_t most = 0, count = 0;
     part *all = malloc((m->detect->contacts.table.rows + 1) * sizeof *all);
     if (all)
         count = list(m, all, &most);
     given *points = malloc((most + 1) * sizeof *points);
-    bool there = all && points; /* nothing has changed yet: made again, it gives the same */
+    bool there = all && points;
     if (there) {
         balance(m);
         correct_wholes(m, all, count, points);
         sum_forces(m);
-        tl_cut_contacts_end(m->detect);
     }
     free(all);
     free(points);
     return there;
+}
+
+bool tl_cut_parts_settle(tl_model *m)
+{
+    if (m->detect->cut_count > 0 && !settle_parts(m))
+        return false;
+    tl_cut_contacts_end(m->detect);
+    return true;
 }
