@@ -73,8 +73,8 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
 /* Limit: how many times stiffer than its word a law may be. Up to this a step that is unstable is the fraction's
  * fault, not the law's. A law that gives a mean for a bound passes. Test: lua/test_law_check. */
 #define FAR_STIFFER 10
-/* Tolerance: motion of the trial, of the closure and last motion of the point: small against what the force came about
- * by. */
+/* Tolerance: motion of the trial, of what the force came about by: closure, last motion, and how far a spring gives under
+ * the initial force and the shear force. An initial stress leaves no closure but rounding. */
 #define TRIAL (1. / 16)
 
 /* Copies of what a law gets and gives, of the points of a SIMD group side by side. */
@@ -193,6 +193,14 @@ static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group 
     }
 }
 
+/* How far springs of a law give under the forces that a point has without closure: initial and shear, m. */
+static double given_way(const tl_points_table *p, size_t row, const tl_law *law)
+{
+    double normal = p->f_n0 && law->kn > 0 ? fabs(p->f_n0[row]) / law->kn : 0;
+    double shear = law->ks > 0 ? tl_v3_norm(tl_columns_get(p->f_s, row)) / law->ks : 0;
+    return p->area[row] > 0 ? (normal + shear) / p->area[row] : 0;
+}
+
 /* Of the points of a SIMD group, whose first is in lane `lane`: whether they are stiffer than the law says, those in
  * the lanes of the mask `begins`, and whether shear forces leave the common plane. */
 static void law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_law *law, const tl_simd_group *group,
@@ -208,7 +216,8 @@ static void law_check_stiffness(const tl_model *m, tl_failure *failure, const tl
             tl_vec3 du_s = tl_columns_get(lanes->du_s, i);
             double length = tl_v3_norm(du_s);
             slide[l] = length > 0 ? tl_v3_unit(du_s) : tl_v3_perpendicular(tl_columns_get(lanes->normal, i));
-            move[l] = begins >> l & 1 ? TRIAL * (fabs(lanes->closure[i]) + fabs(lanes->du_n[i]) + length) : 0;
+            double way = fabs(lanes->closure[i]) + fabs(lanes->du_n[i]) + length;
+            move[l] = begins >> l & 1 ? TRIAL * (way + given_way(&m->detect->points, at.row + l, law)) : 0;
         }
         if (measure(&at, move, slide, &found))
             compare(failure, law, group, at.row, &found);

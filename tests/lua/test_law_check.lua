@@ -96,6 +96,7 @@ if not arg[1] then
     end
     refused("tumble weak 1e4", "law 'liar' of plugin 'bad.liar', contact of blocks ", "force rises by ")
     passes("in_situ none")
+    passes("weights none")
 
     -- A law that fails says in which point, and need not be right: in a lane of padding, or beyond them all. The contact is
     -- one of its own, and the law is named.
@@ -174,6 +175,32 @@ function scenes.in_situ()
     model:joint("*", "liar", { lie = lie, kn = 1e8 })
     model:insitu { stress = { xx = -1e6, yy = -1e6, zz = -1e6 } }
     model:cycle(1)
+end
+
+-- The stress of the weight of cut rocks between plates. On some of their points the closure is far less than rounding of
+-- the force.
+function scenes.weights()
+    for seed = 1, 50 do
+        local model = talus.model { seed = seed, gravity = { 0, 0, -10 } }
+        math.randomseed(seed)
+        local wide = 2 + 8 * math.random()
+        local thick = wide / 20
+        model:generate("box", { min = { 0, 0, 0 }, max = { wide, wide, wide }, density = 2600, group = "rock" })
+        for i, dip in ipairs { 2, 88, 86 } do
+            model:generate("jointset", { joint = "J" .. i, dip = dip, dip_direction = 90 * i, dip_dev = 0.5,
+                dip_direction_dev = 0.5, spacing = wide / 4, spacing_dev = wide / 20, number = 3,
+                origin = { wide / 2, wide / 2, wide / 2 } })
+        end
+        for _, corners in ipairs { { { -thick, -thick, -thick }, { wide + thick, wide + thick, 0 } },
+            { { -thick, 0, 0 }, { 0, wide, wide } }, { { wide, 0, 0 }, { wide + thick, wide, wide } },
+            { { 0, -thick, 0 }, { wide, 0, wide } }, { { 0, wide, 0 }, { wide, wide + thick, wide } } } do
+            model:generate("box", { min = corners[1], max = corners[2], density = 2600, group = "plate" })
+        end
+        model:blocks { group = "plate" }:fix()
+        model:joint("*", "liar", { lie = lie, kn = 1e9 })
+        model:insitu { at = { 0, 0, wide }, gradient = { zz = 26000, xx = 13000, yy = 13000 } }
+        model:cycle(1)
+    end
 end
 
 scenes[arg[1]]()
