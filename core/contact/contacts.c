@@ -513,7 +513,7 @@ static void leave_lane(tl_detect *d, tl_contacts *c, uint32_t row)
     c->force[row] = c->moment[row] = tl_v3(0, 0, 0);
     c->holds_over_gap[row] = false;
     c->stored[row] = 0;
-    d->parted += c->released[row];
+    tl_addends_put(&d->parting, c->released[row]);
     c->released[row] = 0;
 }
 

@@ -2,6 +2,7 @@
 #ifndef TL_CONTACT_DETECTION_H
 #define TL_CONTACT_DETECTION_H
 
+#include "base/exact.h"
 #include "contact/layout.h"
 #include "contact/old_point.h"
 #include "contact/pair.h"
@@ -49,6 +50,7 @@ typedef struct tl_detect {
     uint32_t press_free; /* the first free row; valid when there are rows */
     tl_points_table points, spare_points;
     double parted;      /* shear energy of contacts that ended since the ledger was closed, J: heat */
+    tl_addends parting; /* of those that end while contacts are settled */
     int64_t laid_at;    /* steps made when contacts were laid out */
     size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
     tl_layout layout;

@@ -18,6 +18,7 @@
 #include "cycle/split.h"
 
 #include "base/columns.h"
+#include "base/exact.h"
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
@@ -735,15 +736,17 @@ static bool is_stressed(const tl_detect *d)
 static bool hold_all(tl_model *m, struct tl_split_work *w, double dt)
 {
     bool stressed = is_stressed(m->detect);
+    tl_addends stored = {.count = 0};
     for (size_t part = 0, contact = 0, point = 0; part < w->part_count;) {
         tl_split_system s = system_of(m, w, part, contact, point);
         if (!hold(m, &s, stressed, dt))
             return false;
-        m->cycle->split_stored += s.stored;
+        tl_addends_put(&stored, s.stored);
         part += s.part_count;
         contact += s.contact_count;
         point += s.point_count;
     }
+    m->cycle->split_stored = tl_addends_sum(&stored);
     return true;
 }
 

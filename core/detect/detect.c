@@ -7,7 +7,6 @@
  * anything can have moved. */
 #include "detect/detect.h"
 
-#include "base/exact.h"
 #include "base/inline.h"
 #include "base/parallel.h"
 #include "contact/contacts.h"
@@ -471,7 +470,6 @@ static bool settle_rows(tl_model *m)
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
     bool enough = true;
-    tl_addends parted = {.count = 0};
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
         if (c->pending[row] == TL_PENDING_NONE)
             continue;
@@ -479,7 +477,7 @@ static bool settle_rows(tl_model *m)
         if (!tl_pending_waits(c->pending[row])) /* others are noted when they have got their points */
             touch(m, row);
         if (c->pending[row] == TL_PENDING_DIE) {
-            tl_addends_put(&parted, tl_contact_sheared(m, row) + c->released[row]);
+            tl_addends_put(&d->parting, tl_contact_sheared(m, row) + c->released[row]);
             tl_contact_remove(d, row);
             note_parted(d, pair);
             continue;
@@ -491,7 +489,6 @@ static bool settle_rows(tl_model *m)
             change_law(m, row);
         enough = enough && tl_contact_place(d, row);
     }
-    d->parted += tl_addends_sum(&parted);
     return enough;
 }
 
@@ -558,6 +555,8 @@ static tl_status settle(tl_model *m)
             status = tl_fail_memory(&m->error);
         if (status == TL_OK)
             status = fill_contacts(m, &more);
+        d->parted += tl_addends_sum(&d->parting);
+        d->parting = (tl_addends){.count = 0};
         d->rows_changed = status != TL_OK; /* contacts are not what they seem until all is settled */
     }
     if (status == TL_OK) {
