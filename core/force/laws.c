@@ -73,8 +73,8 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
 /* Limit: how many times stiffer than its word a law may be. Up to this a step that is unstable is the fraction's
  * fault, not the law's. A law that gives a mean for a bound passes. Test: lua/test_law_check. */
 #define FAR_STIFFER 10
-/* Tolerance: motion of the trial, of what the force came about by: closure, last motion, and how far a spring gives under
- * the initial force and the shear force. An initial stress leaves no closure but rounding. */
+/* Tolerance: motion of the trial, of what the force came about by: closure, last motion, and how far a spring gives
+ * under the initial force and the shear force. An initial stress leaves no closure but rounding. */
 #define TRIAL (1. / 16)
 
 /* Copies of what a law gets and gives, of the points of a SIMD group side by side. */

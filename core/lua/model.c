@@ -191,20 +191,42 @@ static int model_state_hash(lua_State *L, tl_model *model)
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
-/* Why a field cannot be set; NULL: it can. */
+static tl_status set_gravity(tl_model *m, const tl_model_config *to)
+{
+    return tl_model_set_gravity(m, to->gravity);
+}
+
+static tl_status set_rotation(tl_model *m, const tl_model_config *to)
+{
+    return tl_model_set_rotation(m, (tl_rotation_rule)to->rotation);
+}
+
+static tl_status set_contact_points(tl_model *m, const tl_model_config *to)
+{
+    return tl_model_set_contact_points(m, (tl_contact_points)to->contact_points);
+}
+
+static tl_status set_reuse_geometry(tl_model *m, const tl_model_config *to)
+{
+    return tl_model_set_reuse_geometry(m, to->reuse_geometry);
+}
+
+/* How a field is set, or why it cannot be. */
 static const struct {
-    const char *name, *refusal;
+    const char *name;
+    tl_status (*set)(tl_model *m, const tl_model_config *to);
+    const char *refusal;
 } model_fields[] = {
-    {"gravity", NULL},
-    {"rotation", NULL},
-    {"reuse_geometry", NULL},
-    {"contact_points", NULL},
-    {"mass_scaled", "can only be read; set it with model:mass_scaling(true)"},
-    {"time", "can only be read"},
-    {"cycles", "can only be read"},
-    {"dt", "can only be read; set it with model:timestep{dt = ...}"},
-    {"threads", "is chosen when the model is made: talus.model{threads = ...}"},
-    {"seed", "is chosen when the model is made: talus.model{seed = ...}"},
+    {"gravity", set_gravity, NULL},
+    {"rotation", set_rotation, NULL},
+    {"reuse_geometry", set_reuse_geometry, NULL},
+    {"contact_points", set_contact_points, NULL},
+    {"mass_scaled", NULL, "can only be read; set it with model:mass_scaling(true)"},
+    {"time", NULL, "can only be read"},
+    {"cycles", NULL, "can only be read"},
+    {"dt", NULL, "can only be read; set it with model:timestep{dt = ...}"},
+    {"threads", NULL, "is chosen when the model is made: talus.model{threads = ...}"},
+    {"seed", NULL, "is chosen when the model is made: talus.model{seed = ...}"},
 };
 
 enum { FIELDS = sizeof model_fields / sizeof *model_fields };
@@ -249,17 +271,6 @@ static int model_index(lua_State *L)
     return 1;
 }
 
-static tl_status set_field(tl_model *model, const char *name, const tl_model_config *config)
-{
-    if (strcmp(name, "gravity") == 0)
-        return tl_model_set_gravity(model, config->gravity);
-    if (strcmp(name, "rotation") == 0)
-        return tl_model_set_rotation(model, (tl_rotation_rule)config->rotation);
-    if (strcmp(name, "contact_points") == 0)
-        return tl_model_set_contact_points(model, (tl_contact_points)config->contact_points);
-    return tl_model_set_reuse_geometry(model, config->reuse_geometry);
-}
-
 static int model_assign(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "assignment");
@@ -271,12 +282,12 @@ static int model_assign(lua_State *L)
         i++;
     if (i == FIELDS)
         return unknown_field(L, "a model has no field to set", name);
-    if (model_fields[i].refusal)
+    if (!model_fields[i].set)
         return tl_lua_fail(L, "model.%s %s", name, model_fields[i].refusal);
     tl_lua_spec spec = tl_lua_spec_of("model", NULL);
     tl_model_config config;
     tl_lua_read_one(L, 3, &spec, name, &config);
-    tl_lua_ok(L, model, set_field(model, name, &config));
+    tl_lua_ok(L, model, model_fields[i].set(model, &config));
     return 0;
 }
 
