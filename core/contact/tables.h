@@ -42,6 +42,13 @@ typedef struct tl_contacts {
 /* Faces that a field contact remembers; of one with more the faces are listed in every step. */
 #define TL_PRESS_FACES 48
 
+/* A body's frame as one of its blocks sees it: where the block's centroid lies in it, and how the frame was turned when
+ * the block was made. A body that is made anew of other blocks has another frame; its blocks have not moved. */
+typedef struct tl_block_frame {
+    tl_vec3 centroid;
+    tl_quat turn;
+} tl_block_frame;
+
 /* What a field contact keeps beside its points. Lengths and forces of the press in A's frame. */
 typedef struct tl_press_row {
     tl_press press;
@@ -54,6 +61,7 @@ typedef struct tl_press_row {
     tl_face_pair shifted;
     /* they, of A and of B, in the frames of their bodies; and as they lean, before they are moved out, if they do */
     tl_plane shifted_at[2], lean[2];
+    tl_block_frame frame[2]; /* those frames */
     uint32_t next_free;
     double spare[2]; /* energy of shear and of torsion beyond uniform stress, times 2 ks */
     uint16_t count[4], face[TL_PRESS_FACES], blunt_a, blunt_b; /* of its tl_region */

@@ -245,7 +245,8 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; i < c->table.rows; i++)
         load_contact(m, &insitu, i);
-    m->laws++; /* contacts hold another energy */
+    m->split_count = 0; /* new faces carry what the stress says, and no longer what holds parts as the whole went on */
+    m->laws++;          /* contacts hold another energy */
     tl_undo_by_hand(m);
     tl_held_wake(m);
     say_outer(m, &outer);

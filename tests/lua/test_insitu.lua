@@ -144,3 +144,26 @@ for _, dilation in ipairs { 0, 5 } do
         check.near(model:energy().balance, 0, 1e-3)
     end
 end
+
+-- The stress is put on the faces of a late cut, too, whether a step has been made since or not.
+for _, steps in ipairs { 0, 1 } do
+    local model = talus.model {}
+    model:generate("box", { min = { 0, 0, -1 }, max = { 4, 4, 0 }, density = 2500, group = "base" })
+    model:blocks():fix()
+    model:generate("box", { min = { 1, 1, 0 }, max = { 3, 3, 2 }, density = 2500 })
+    model:joint("*", "elastic", { kn = 1e8, ks = 5e7 })
+    model:timestep { dt = 1e-6 }
+    model:cycle(1)
+    model:blocks { group = "base" }:hide()
+    model:generate("joint", { joint = "late", dip = 0, dip_direction = 0, origin = { 2, 2, 1 } })
+    model:blocks { hidden = true }:show()
+    model:cycle(steps)
+    model:insitu { stress = { xx = -1e5, yy = -1e5, zz = -5e4 } }
+    for _ = 1, 3 do
+        model:cycle(1)
+        for _, contact in ipairs(model:contacts()) do
+            check.near(contact.normal_stress, 5e4, 1)
+        end
+        check.near(model:energy().balance, 0, 1e-6)
+    end
+end
