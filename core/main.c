@@ -226,9 +226,10 @@ static void set_arguments(lua_State *L, int argc, char **argv, int script)
 /* Calls the chunk on the top of the stack with argv[first ...]; gives the exit status. */
 static int run_chunk(lua_State *L, int load_status, int argc, char **argv, int first, const options *o)
 {
-    if (load_status != LUA_OK) {
-        tl_repl_report(L);
-        return EXIT_FAILURE;
+    if (load_status != LUA_OK) { /* the message is raised where errors are told */
+        lua_pushcfunction(L, lua_error);
+        lua_insert(L, -2);
+        return tl_repl_call(L, 1, 0, false);
     }
     int count = first < argc ? argc - first : 0;
     luaL_checkstack(L, count, "too many arguments");

@@ -7,7 +7,7 @@
 #include "check.h"
 #include "contact/detection.h"
 #include "contact/places.h"
-#include "cycle/contributors.h"
+#include "cycle/contact_forces.h"
 #include "cycle/cycle_data.h"
 #include "cycle/gather.h"
 #include "cycle/prepare.h"
@@ -264,9 +264,7 @@ SCENE_UNUSED static void scene_forces(tl_model *m)
     if (status == TL_OK)
         status = tl_laws_check(m);
     if (status == TL_OK)
-        status = tl_contributors_prepare(m);
-    if (status == TL_OK)
-        status = tl_contributors_apply(m);
+        status = tl_contacts_act.apply(m);
     if (scene_ok(m, status) && CHECK(tl_gather_prepare(m)))
         tl_gather(m);
 }

@@ -14,24 +14,6 @@ void tl_contributors_begin(struct tl_cycle *cycle)
         cycle->contributor[k] = known[k];
 }
 
-tl_status tl_contributors_prepare(tl_model *m)
-{
-    tl_status status = TL_OK;
-    for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++)
-        if ((*with)->prepare)
-            status = (*with)->prepare(m);
-    return status;
-}
-
-tl_status tl_contributors_apply(tl_model *m)
-{
-    tl_status status = TL_OK;
-    for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++)
-        if ((*with)->apply)
-            status = (*with)->apply(m);
-    return status;
-}
-
 double tl_body_stiffness(const tl_model *m, uint32_t body)
 {
     double sum = 0;

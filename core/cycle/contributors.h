@@ -6,9 +6,7 @@
 
 /* Gives a new cycle the contributors that every model has. */
 void tl_contributors_begin(struct tl_cycle *cycle);
-/* All of them are asked: see model/contributor.h. */
-tl_status tl_contributors_prepare(tl_model *m);
-tl_status tl_contributors_apply(tl_model *m);
+/* The stiffness with which all of them hold a body where it is, N/m. */
 double tl_body_stiffness(const tl_model *m, uint32_t body);
 
 #endif

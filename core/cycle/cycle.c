@@ -23,7 +23,6 @@
 
 #include "contact/contacts.h"
 #include "contact/detection.h"
-#include "cycle/contributors.h"
 #include "cycle/damping.h"
 #include "cycle/energy.h"
 #include "cycle/gather.h"
@@ -40,6 +39,16 @@
 #include "detect/overlap.h"
 #include "force/laws.h"
 #include "model/loads.h"
+
+/* What acts on bodies makes room for the step. */
+static tl_status prepare_contributors(tl_model *m)
+{
+    tl_status status = TL_OK;
+    for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++)
+        if ((*with)->prepare)
+            status = (*with)->prepare(m);
+    return status;
+}
 
 /* The step to take, before anything is changed by it. */
 static tl_status prepare(tl_model *m, double *dt, bool *driven)
@@ -60,12 +69,12 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     if (status == TL_OK && !(tl_gather_prepare(m) && tl_split_prepare(m)))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
-        status = tl_contributors_prepare(m);
+        status = prepare_contributors(m);
     /* false when a user's function ends the run: bodies then go on as they were driven before */
     *driven = status != TL_OK || tl_drives_evaluate(m, m->time + 0.5 * *dt);
     if (status == TL_OK)
         status = tl_motion_check(m, *dt, true);
-    return status == TL_OK ? tl_undo_reserve(m, tl_travel_may_matter(m, *dt)) : status;
+    return status == TL_OK ? tl_undo_reserve(m) : status;
 }
 
 /* What gravity and loads do in a step of dt: the mean over its kick. */
@@ -78,10 +87,20 @@ static void begin_loads(tl_model *m, double dt)
     c->gravity = changed ? tl_acting_mean(c, now, m->gravity_before) : now;
 }
 
+/* Finds what acts on bodies at the present places. */
+static tl_status apply_contributors(tl_model *m)
+{
+    tl_status status = TL_OK;
+    for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++)
+        if ((*with)->apply)
+            status = (*with)->apply(m);
+    return status;
+}
+
 /* Forces on the bodies: undone when a law or the damping fails, or a body would move too far. */
 static tl_status apply_forces(tl_model *m, double dt)
 {
-    tl_status status = tl_contributors_apply(m);
+    tl_status status = apply_contributors(m);
     tl_phase_ends(m, TL_PHASE_LAWS);
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);
@@ -121,7 +140,8 @@ tl_status tl_step(tl_model *m)
     tl_energy_close(m);
     tl_phase_ends(m, TL_PHASE_ENERGY);
     tl_undo_end(m);
-    tl_split_end(m);
+    tl_split_free(m->cycle);
+    m->split_count = 0; /* the parts go on by themselves */
     tl_loads_stepped(m);
     m->detect->stepped = m->detect->stepped || m->detect->contacts.table.rows > 0;
     /* velocities are half a step behind the places, but not when all is held and still: as before the first step */

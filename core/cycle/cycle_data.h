@@ -179,6 +179,7 @@ struct tl_cycle {
     struct tl_split_work *split;               /* of this step: split.c */
     double split_stored;                       /* energy that new faces have been given in this step, J */
     bool long_step;                            /* the given one is far above what is stable */
+    bool may_pass;                             /* a block may pass another in this step: limits.c */
     tl_speed_bounds speeds;                    /* of all bodies in the last step: limits.c */
     tl_speed_bounds given;                     /* of those whose motion is given, in this one */
     double thinnest;                           /* least thickness that a block can have, m: limits.c */

@@ -335,7 +335,8 @@ static double thinnest_of(const tl_model *m)
     return c->thinnest;
 }
 
-bool tl_travel_may_matter(const tl_model *m, double dt)
+/* Whether a step so long may carry some body too far: false is sure. Takes a constant time but after an edit. */
+static bool travel_may_matter(const tl_model *m, double dt)
 {
     const tl_speed_bounds *b = &m->cycle->speeds;
     /* two bodies meet with the sum of their speeds */
@@ -385,7 +386,7 @@ static uint32_t faster_of(const tl_model *m, const tl_step_motion *motion, uint3
 tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
 {
     *body = TL_NO_ROW;
-    if (!tl_travel_may_matter(m, *dt))
+    if (!travel_may_matter(m, *dt))
         return TL_OK;
     const double least = SHORTEST * *dt;
     tl_step_motion *motion = motions_of(m, &(step_span){*dt, 0});
@@ -681,6 +682,8 @@ tl_status tl_motion_check(tl_model *m, double dt, bool held)
         c->failure.error.status = TL_OK;
         return report(m, (uint32_t)c->failure.point, &job.span);
     }
+    if (held)
+        c->may_pass = travel_may_matter(m, dt);
     /* a step that is not kept is one in which nothing can have become fast at once */
-    return !held && tl_undo_keeps(m) && tl_travel_may_matter(m, dt) ? travel_check(m, &job.span) : TL_OK;
+    return !held && tl_undo_keeps(m) && travel_may_matter(m, dt) ? travel_check(m, &job.span) : TL_OK;
 }

@@ -15,8 +15,6 @@ static inline double tl_least_thickness(const tl_model *m, uint32_t row)
  * not: those that forces move or, with `held`, after the drives have been evaluated, those whose motion is given. */
 tl_status tl_motion_check(tl_model *m, double dt, bool held);
 
-/* Whether a step so long may carry some body too far: false is sure. Takes a constant time but after an edit. */
-bool tl_travel_may_matter(const tl_model *m, double dt);
 /* Shortens `dt`, s, so that no block is carried or turned far. *body: the row of a body that sets it, or TL_NO_ROW. */
 tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body);
 

@@ -808,12 +808,6 @@ void tl_split_turn(tl_model *m)
     }
 }
 
-void tl_split_end(tl_model *m)
-{
-    tl_split_free(m->cycle);
-    m->split_count = 0;
-}
-
 void tl_split_free(struct tl_cycle *c)
 {
     struct tl_split_work *w = c->split;

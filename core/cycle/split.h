@@ -13,8 +13,7 @@ bool tl_split_prepare(tl_model *m);
 tl_status tl_split_hold(tl_model *m, double dt);
 /* Before the move: corrects the velocities of the parts for arms that turn. */
 void tl_split_turn(tl_model *m);
-/* The step is done. */
-void tl_split_end(tl_model *m);
+/* Forgets the parts: the step is done. */
 void tl_split_free(struct tl_cycle *c);
 
 #endif

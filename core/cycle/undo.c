@@ -232,11 +232,11 @@ tl_status tl_undo_begin(tl_model *m)
     return TL_OK;
 }
 
-tl_status tl_undo_reserve(tl_model *m, bool may_pass)
+tl_status tl_undo_reserve(tl_model *m)
 {
     struct tl_undo *u = m->cycle->undo;
     u->once = !may_fail(m);
-    if (u->once && !m->cycle->fast && !m->cycle->long_step && !may_pass && !tl_set_by_hand(m))
+    if (u->once && !m->cycle->fast && !m->cycle->long_step && !m->cycle->may_pass && !tl_set_by_hand(m))
         return TL_OK;
     u->keeps = reserve_contributors(m) && shadow_reserve(&u->bodies, &m->bodies.table) &&
                shadow_reserve(&u->loads, &m->cycle->table) &&

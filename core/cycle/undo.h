@@ -11,7 +11,7 @@
 /* What a step may have to undo. It begins with each step, ... */
 tl_status tl_undo_begin(tl_model *m);
 /* ... gets room, before laws change anything, where something may fail, as where a block may pass another, ... */
-tl_status tl_undo_reserve(tl_model *m, bool may_pass);
+tl_status tl_undo_reserve(tl_model *m);
 /* ... keeps what contributors and gather overwrite (rows of a contributor's table, on any thread, or with `back` back;
  * the bodies), ... */
 void tl_undo_rows(tl_model *m, const tl_table *table, size_t first, size_t count, bool back);

@@ -373,7 +373,8 @@ static tl_status find(tl_model *m, struct tl_broad *g, bool whole, size_t *count
     return status == TL_OK ? list_pairs(m, g, whole, count) : status;
 }
 
-tl_status tl_broad_add(tl_model *m)
+/* Adds the pairs of blocks that have come or changed. */
+static tl_status add_pairs(tl_model *m)
 {
     struct tl_broad g = {0};
     size_t fresh;
@@ -402,7 +403,7 @@ static tl_status restart_paths(tl_model *m)
     return TL_OK;
 }
 
-tl_status tl_broad_update(tl_model *m)
+static tl_status list_anew(tl_model *m)
 {
     struct tl_broad g = {0};
     size_t fresh;
@@ -416,4 +417,12 @@ tl_status tl_broad_update(tl_model *m)
     m->detect->reach = reach;
     m->detect->listed = true;
     return restart_paths(m);
+}
+
+tl_status tl_broad_update(tl_model *m, bool edits)
+{
+    const tl_detect *d = m->detect;
+    if (!d->listed || (double)d->longest_path > d->reach)
+        return list_anew(m);
+    return edits ? add_pairs(m) : TL_OK;
 }

@@ -4,9 +4,8 @@
 
 #include "model/model.h"
 
-/* Lists all pairs anew: what is known of those that stay is kept. */
-tl_status tl_broad_update(tl_model *m);
-/* Adds the pairs of blocks that have come or changed since the detection looked. */
-tl_status tl_broad_add(tl_model *m);
+/* Lists all pairs anew where something may have left its skin: what is known of those that stay is kept. Else, after
+ * `edits`, adds the pairs of blocks that have come or changed since the detection looked. */
+tl_status tl_broad_update(tl_model *m, bool edits);
 
 #endif

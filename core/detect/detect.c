@@ -583,17 +583,12 @@ static tl_status find_contacts(tl_model *m)
             return status;
     }
     measure_all_paths(m);
-    tl_edits_find_laws(m);
-    if (rows)
-        tl_edits_reframe(m);
+    tl_edits_follow(m, rows);
     if (rows && lacked_memory(d))
         return tl_fail_memory(&m->error);
     if (rows || d->laws != m->laws || d->constraints != m->constraints)
         tl_held_sort(m);
-    if (!d->listed || (double)d->longest_path > d->reach)
-        status = tl_broad_update(m);
-    else if (rows)
-        status = tl_broad_add(m);
+    status = tl_broad_update(m, rows);
     if (status != TL_OK)
         return status;
     d->structure = m->structure;

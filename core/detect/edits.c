@@ -464,15 +464,6 @@ static void find_rules(tl_model *m)
     }
 }
 
-void tl_edits_find_laws(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    if (d->rules != m->rules) /* before contacts note the room they want in the place of faces */
-        find_rules(m);
-    if (d->laws != m->laws)
-        find_laws(m);
-}
-
 /* ---------------------------------------------------------------- frames ----------------- */
 
 static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -485,7 +476,13 @@ static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, un
             tl_contact_reframe(m, row, thread);
 }
 
-void tl_edits_reframe(tl_model *m)
+void tl_edits_follow(tl_model *m, bool rows)
 {
-    tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
+    tl_detect *d = m->detect;
+    if (d->rules != m->rules) /* before contacts note the room they want in the place of faces */
+        find_rules(m);
+    if (d->laws != m->laws)
+        find_laws(m);
+    if (rows)
+        tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
 }

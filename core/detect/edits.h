@@ -8,9 +8,8 @@
  * come, gone or changed: their pairs without a contact, and contacts of which a block has gone. TL_E_MEMORY: nothing
  * has changed. */
 tl_status tl_edits_find_rows(tl_model *m);
-/* Marks the contacts that come under another joint law, and those whose facets follow other rules than they did. */
-void tl_edits_find_laws(tl_model *m);
-/* Makes anew what contacts keep in the frames of bodies that have changed, before anything is computed from it. */
-void tl_edits_reframe(tl_model *m);
+/* Marks the contacts that come under another joint law, and those whose facets follow other rules than they did. After
+ * changes of `rows` makes anew what contacts keep in the frames of bodies, before anything is computed from it. */
+void tl_edits_follow(tl_model *m, bool rows);
 
 #endif

@@ -511,7 +511,7 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
     blocks->hidden[row] = block->hidden || block->hide_on_commit;
     blocks->stays[row] = true;
     tl_block_changes(m, row);
-    tl_single_measure(m, row, mass);
+    tl_block_came(m, row, mass);
     if (!from) {
         pose->x_ref = c;
         pose->r = tl_m3_identity();
@@ -791,7 +791,6 @@ static void add_made(tl_stage *stage, size_t made, commit_scratch *scratch)
 {
     tl_model *m = stage->model;
     uint32_t row = (uint32_t)m->blocks.table.rows, body = (uint32_t)m->bodies.table.rows;
-    uint32_t first = row;
     tl_table_resize(&m->blocks.table, row + made);
     tl_table_resize(&m->bodies.table, body + made);
     for (size_t i = 0; i < stage->count; i++) {
@@ -807,7 +806,7 @@ static void add_made(tl_stage *stage, size_t made, commit_scratch *scratch)
     for (size_t i = 0; i < scratch->source_count; i++)
         if (scratch->sources[i].drive)
             m->drives[scratch->sources[i].drive - 1].bodies--;
-    tl_rows_added(m, first);
+    m->structure++;
 }
 
 /* Whether a body is driven to turn. */

@@ -9,6 +9,7 @@
 #include "cycle/rest.h"
 #include "force/joint_laws.h"
 #include "model/body_shape.h"
+#include "model/rows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,27 +79,6 @@ typedef struct motion_list {
     body_facts *body;
     uint32_t *of; /* groups.h */
 } motion_list;
-
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-bool tl_median_size(const tl_model *m, double *median)
-{
-    size_t n = 0;
-    double *sizes = malloc((m->bodies.table.rows + 1) * sizeof *sizes);
-    if (!sizes)
-        return false;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (m->bodies.fixed[body] != TL_FIX_ALL)
-            sizes[n++] = tl_body_size(m, body);
-    qsort(sizes, n, sizeof *sizes, compare);
-    *median = n ? sizes[n / 2] : 0;
-    free(sizes);
-    return true;
-}
 
 /* How far a body has moved since displacements began to count, m: the mean of its parts by their volumes. */
 static tl_vec3 way_of(const tl_model *m, uint32_t body, double volume)

@@ -112,11 +112,12 @@ static size_t bytes_of(const column *of)
 
 static column column_of(const tl_field *of, const char *real_type)
 {
+    static const tl_contact_facts any;
     const bool whole = of->kind != TL_FIELD_SCALAR && of->kind != TL_FIELD_VEC3;
     return (column){.name = of->name,
-                    .type = tl_contact_is_long(of) ? TL_VTK_LONG
-                            : whole                ? TL_VTK_INT
-                                                   : real_type,
+                    .type = tl_contact_long(&any, of) ? TL_VTK_LONG
+                            : whole                   ? TL_VTK_INT
+                                                      : real_type,
                     .width = of->kind == TL_FIELD_VEC3 ? 3 : 1,
                     .quantity = of};
 }
@@ -207,8 +208,9 @@ static void set_row(const columns *c, const tl_model *m, size_t row, const tl_co
     const column *of = c->list;
     for (size_t k = 0; k < c->given; k++, of++) {
         double value[3];
-        if (tl_contact_is_long(of->quantity)) {
-            tl_vtk_put_long(of->at + row * bytes_of(of), tl_contact_long(facts, of->quantity));
+        const int64_t *whole = tl_contact_long(facts, of->quantity);
+        if (whole) {
+            tl_vtk_put_long(of->at + row * bytes_of(of), *whole);
             continue;
         }
         tl_contact_numbers(facts, of->quantity, value);

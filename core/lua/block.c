@@ -558,12 +558,12 @@ static tl_status drive(lua_State *L, const tl_lua_selection *b)
     return status;
 }
 
-int tl_lua_blocks_reaction(lua_State *L, const tl_lua_selection *blocks)
+static int reaction(lua_State *L, const tl_lua_selection *blocks)
 {
     tl_model *model = tl_lua_living(L, blocks->owner);
     tl_vec3 force;
     tl_lua_ok(L, model, tl_blocks_reaction(model, blocks->ids, blocks->count, &force));
-    tl_lua_push_vec3(L, force);
+    tl_lua_push_numbers(L, &force.x, 3);
     return 1;
 }
 
@@ -579,7 +579,7 @@ static const tl_lua_verb block_verbs[] = {
     {.name = "set", .arguments = 1, .act = set, .done = "changed"},
     {.name = "load", .arguments = 1, .act = load, .done = "loaded"},
     {.name = "drive", .arguments = 1, .act = drive, .done = "driven"},
-    {.name = "reaction", .ask = tl_lua_blocks_reaction},
+    {.name = "reaction", .ask = reaction},
     {.name = "bounds", .ask = bounds},
     {.name = NULL},
 };

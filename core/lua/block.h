@@ -9,8 +9,6 @@ void tl_lua_set_block(lua_State *L, const char *name, tl_id id);
 extern const tl_lua_kind tl_lua_block_kind;
 
 extern const tl_lua_key tl_lua_drive_keys[];
-/* The method reaction of selections: pushes a vector. */
-int tl_lua_blocks_reaction(lua_State *L, const tl_lua_selection *blocks);
 /* Pops a velocity and an angular velocity, functions or nil. Pushes a new anchor with them, hung on the model at
  * `model_index`. It counts as ended until the kernel has taken it. Fills the drive that it is for. */
 void tl_lua_anchor_push(lua_State *L, int model_index, tl_drive *drive);

@@ -113,7 +113,11 @@ static int result_index(lua_State *L)
     }
     lua_pushliteral(L, "blocks");
     lua_rawget(L, 1);
-    return tl_lua_blocks_reaction(L, luaL_checkudata(L, -1, TL_LUA_BLOCKS));
+    luaL_checkudata(L, -1, TL_LUA_BLOCKS);
+    lua_getfield(L, -1, "reaction");
+    lua_insert(L, -2);
+    lua_call(L, 1, 1);
+    return 1;
 }
 
 static void push_face(lua_State *L, const tl_boundary_face *face)

@@ -361,35 +361,6 @@ const char *tl_lua_number_text(double number, int digits, char text[TL_LUA_NUMBE
     return text;
 }
 
-void tl_lua_push_vec3(lua_State *L, tl_vec3 v)
-{
-    tl_lua_push_numbers(L, &v.x, 3);
-}
-
-void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value)
-{
-    const double *n = value->number;
-    switch (kind) {
-    case TL_FIELD_SCALAR: lua_pushnumber(L, value->number[0]); break;
-    case TL_FIELD_COUNT: lua_pushinteger(L, (lua_Integer)value->number[0]); break;
-    case TL_FIELD_BOOL: lua_pushboolean(L, value->number[0] != 0.0); break;
-    case TL_FIELD_VEC3: tl_lua_push_numbers(L, value->number, 3); break;
-    case TL_FIELD_QUAT: tl_lua_push_numbers(L, value->number, 4); break;
-    case TL_FIELD_SYM3:
-        lua_createtable(L, 0, 6);
-        TL_LUA_SET_NUMBERS(L, {"xx", n[0]}, {"yy", n[1]}, {"zz", n[2]}, {"xy", n[3]}, {"yz", n[4]}, {"zx", n[5]});
-        break;
-    case TL_FIELD_TEXT: lua_pushstring(L, value->text); break;
-    case TL_FIELD_IDS:
-        lua_createtable(L, 2, 0);
-        for (int i = 0; i < 2; i++) {
-            lua_pushinteger(L, (lua_Integer)value->number[i]);
-            lua_rawseti(L, -2, i + 1);
-        }
-        break;
-    }
-}
-
 /* Laws, dampings and settings have no texts and no lists of points. */
 void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params)
 {
@@ -459,7 +430,7 @@ void tl_lua_set_text(lua_State *L, const char *name, const char *text)
 
 void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v)
 {
-    tl_lua_push_vec3(L, v);
+    tl_lua_push_numbers(L, &v.x, 3);
     lua_setfield(L, -2, name);
 }
 

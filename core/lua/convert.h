@@ -45,7 +45,6 @@ const char *tl_lua_describe(lua_State *L, int index);
 void tl_lua_push_numbers(lua_State *L, const double *numbers, size_t count);
 /* Pushes a list of every `step`th number; with a width, of lists of so many numbers that begin there. */
 void tl_lua_push_rows(lua_State *L, const double *first, size_t count, size_t step, size_t width);
-void tl_lua_push_vec3(lua_State *L, tl_vec3 v);
 /* Set a field of the table at the top of the stack. */
 void tl_lua_set_number(lua_State *L, const char *name, double number);
 void tl_lua_set_count(lua_State *L, const char *name, size_t count);
@@ -61,8 +60,6 @@ void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);
 const char *tl_lua_number_text(double number, int digits, char text[TL_LUA_NUMBER]);
 /* Pushes the value of a parameter; nil for a number that was left out. */
 void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params);
-/* Pushes a field's value as Lua sees it. */
-void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);
 
 /* The tl_side of a name; raises, beginning with `context`, when there is none. */
 int32_t tl_lua_side(lua_State *L, const char *context, const char *name);

@@ -120,7 +120,7 @@ static const char *topic_doc(const tl_lua_topic *topic)
     return doc;
 }
 
-/* What a field is as Lua sees it: tl_lua_push_field. */
+/* What a field is as Lua sees it: push_field of item.c. */
 static const char *const field_types[] = {[TL_FIELD_SCALAR] = "number",
                                           [TL_FIELD_COUNT] = "whole number",
                                           [TL_FIELD_BOOL] = "true or false",

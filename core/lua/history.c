@@ -314,7 +314,6 @@ static int remove_history(lua_State *L, tl_model *model, const char *name)
     lua_pushnil(L);
     history_set_function(L, 1, name);
     tl_history_end(model, at);
-    tl_lua_histories_due(L, 1);
     return 0;
 }
 
@@ -416,7 +415,7 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
 
 static int model_history(lua_State *L, tl_model *model)
 {
-    const tl_lua_model *owner = lua_touserdata(L, 1);
+    tl_lua_model *owner = lua_touserdata(L, 1);
     history_args args = {0};
     tl_lua_read(L, 2, &history_spec, false, &args);
     check_name(L, args.name);
@@ -442,7 +441,7 @@ static int model_history(lua_State *L, tl_model *model)
         history_set_function(L, 1, what.name);
         return lua_error(L);
     }
-    tl_lua_histories_due(L, 1);
+    owner->next_sample = tl_model_cycles(model) + 1; /* the next step finds it */
     return 0;
 }
 
@@ -458,27 +457,19 @@ static int64_t next_sample(const tl_history *h, int64_t cycle)
     return wait <= INT64_MAX - cycle ? cycle + wait : INT64_MAX;
 }
 
-void tl_lua_histories_due(lua_State *L, int model_index)
-{
-    tl_lua_model *owner = lua_touserdata(L, model_index);
-    int64_t cycle = tl_model_cycles(owner->model);
-    const tl_history *h;
-    owner->next_sample = INT64_MAX;
-    for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++) {
-        int64_t next = next_sample(h, cycle);
-        owner->next_sample = next < owner->next_sample ? next : owner->next_sample;
-    }
-}
-
 bool tl_lua_histories_sample(lua_State *L, int model_index)
 {
-    const tl_lua_model *owner = lua_touserdata(L, model_index);
+    tl_lua_model *owner = lua_touserdata(L, model_index);
     int64_t cycle = tl_model_cycles(owner->model);
     tl_history *h;
     for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++)
         if (cycle >= h->first && (cycle - h->first) % h->every == 0 && history_take(L, model_index, h) != LUA_OK)
             return false;
-    tl_lua_histories_due(L, model_index);
+    owner->next_sample = INT64_MAX;
+    for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++) {
+        int64_t next = next_sample(h, cycle);
+        owner->next_sample = next < owner->next_sample ? next : owner->next_sample;
+    }
     return true;
 }
 

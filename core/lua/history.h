@@ -7,9 +7,8 @@
 
 #include "lua/front.h"
 
-/* Finds when the next sample of the model at `model_index` is due. */
-void tl_lua_histories_due(lua_State *L, int model_index);
-/* Takes the samples that are due; false, with the error on the top of the stack, when one fails. */
+/* Takes the samples that are due, and finds when the next one is; false, with the error on the top of the stack, when
+ * one fails. */
 bool tl_lua_histories_sample(lua_State *L, int model_index);
 
 /* The functions that histories of the model at `from` sample are those of its copy at `to` as well. */

@@ -20,6 +20,31 @@ static void add_fields(tl_lua_names *names, const tl_field *fields, size_t count
         tl_lua_names_add(names, fields[i].name);
 }
 
+/* Pushes a field's value as Lua sees it. */
+static void push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value)
+{
+    const double *n = value->number;
+    switch (kind) {
+    case TL_FIELD_SCALAR: lua_pushnumber(L, value->number[0]); break;
+    case TL_FIELD_COUNT: lua_pushinteger(L, (lua_Integer)value->number[0]); break;
+    case TL_FIELD_BOOL: lua_pushboolean(L, value->number[0] != 0.0); break;
+    case TL_FIELD_VEC3: tl_lua_push_numbers(L, value->number, 3); break;
+    case TL_FIELD_QUAT: tl_lua_push_numbers(L, value->number, 4); break;
+    case TL_FIELD_SYM3:
+        lua_createtable(L, 0, 6);
+        TL_LUA_SET_NUMBERS(L, {"xx", n[0]}, {"yy", n[1]}, {"zz", n[2]}, {"xy", n[3]}, {"yz", n[4]}, {"zx", n[5]});
+        break;
+    case TL_FIELD_TEXT: lua_pushstring(L, value->text); break;
+    case TL_FIELD_IDS:
+        lua_createtable(L, 2, 0);
+        for (int i = 0; i < 2; i++) {
+            lua_pushinteger(L, (lua_Integer)value->number[i]);
+            lua_rawseti(L, -2, i + 1);
+        }
+        break;
+    }
+}
+
 /* ---------------------------------------------------------------- one item --------------- */
 
 /* The item at index 1 of a metamethod, whose upvalue 1 is the kind. */
@@ -42,7 +67,7 @@ const tl_field *tl_lua_field_named(const tl_lua_kind *kind, const char *name, si
     return NULL;
 }
 
-tl_lua_item tl_lua_item_at(const tl_lua_selection *selection, size_t i)
+static tl_lua_item item_at(const tl_lua_selection *selection, size_t i)
 {
     tl_lua_item item = {.kind = selection->kind, .owner = selection->owner};
     if (selection->contacts)
@@ -68,9 +93,11 @@ static void push(lua_State *L, int model_index, tl_lua_item item)
     lua_setiuservalue(L, -2, 1);
 }
 
-void tl_lua_item_push(lua_State *L, int model_index, const tl_lua_selection *selection, size_t i)
+tl_lua_item tl_lua_item_push(lua_State *L, int model_index, const tl_lua_selection *selection, size_t i)
 {
-    push(L, model_index, tl_lua_item_at(selection, i));
+    const tl_lua_item item = item_at(selection, i);
+    push(L, model_index, item);
+    return item;
 }
 
 void tl_lua_item_push_id(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id)
@@ -118,7 +145,7 @@ static int item_index(lua_State *L)
         return unknown_field(L, item->kind, name);
     tl_field_value value;
     tl_lua_ok(L, model, item->kind->field(model, item, index, &value));
-    tl_lua_push_field(L, field->kind, &value);
+    push_field(L, field->kind, &value);
     return 1;
 }
 
@@ -238,9 +265,9 @@ static void push_items(lua_State *L, const tl_lua_selection *selection, const tl
     for (size_t i = 0; i < selection->count; i++) {
         tl_model *model = tl_lua_living(L, selection->owner);
         tl_field_value value;
-        const tl_lua_item item = tl_lua_item_at(selection, i);
+        const tl_lua_item item = item_at(selection, i);
         tl_lua_ok(L, model, selection->kind->field(model, &item, index, &value));
-        tl_lua_push_field(L, field->kind, &value);
+        push_field(L, field->kind, &value);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
@@ -334,7 +361,7 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
 static int push_of_column(lua_State *L, const column *c, const tl_field_value *value)
 {
     tl_field_kind kind = c->field ? c->field->kind : c->width > 1 ? TL_FIELD_VEC3 : TL_FIELD_SCALAR;
-    tl_lua_push_field(L, kind == TL_FIELD_BOOL ? TL_FIELD_COUNT : kind, value);
+    push_field(L, kind == TL_FIELD_BOOL ? TL_FIELD_COUNT : kind, value);
     return 1;
 }
 

@@ -10,9 +10,8 @@ void tl_lua_kind_open(lua_State *L, const tl_lua_kind *kind);
 const tl_field *tl_lua_field_named(const tl_lua_kind *kind, const char *name, size_t *index);
 /* Pushes the item of an id, of blocks; `model_index` is where the model's userdata is. */
 void tl_lua_item_push_id(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id);
-/* Item i of a selection, from 0; and pushes it. */
-tl_lua_item tl_lua_item_at(const tl_lua_selection *selection, size_t i);
-void tl_lua_item_push(lua_State *L, int model_index, const tl_lua_selection *selection, size_t i);
+/* Pushes item i of a selection, from 0. */
+tl_lua_item tl_lua_item_push(lua_State *L, int model_index, const tl_lua_selection *selection, size_t i);
 /* The number by which a script knows it. */
 lua_Integer tl_lua_item_number(const tl_lua_item *item);
 /* Makes the block in the field `name` of the table at the top of the stack the one of that id, without needing memory.

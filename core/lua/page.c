@@ -122,8 +122,7 @@ static int ask(lua_State *L)
     tl_extra_field *field = lua_touserdata(L, AT_FIELD);
     double *values = (double *)(uintptr_t)field->values;
     for (size_t i = 0; i < r->items->count; i++) {
-        const tl_lua_item item = tl_lua_item_at(r->items, i);
-        tl_lua_item_push(L, AT_OWNER, r->items, i);
+        const tl_lua_item item = tl_lua_item_push(L, AT_OWNER, r->items, i);
         lua_pushvalue(L, AT_FUNCTION);
         lua_pushvalue(L, AT_ITEM);
         lua_call(L, 1, 1);

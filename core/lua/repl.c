@@ -41,7 +41,8 @@ static int error_traceback(lua_State *L)
     return 1;
 }
 
-void tl_repl_report(lua_State *L)
+/* Prints the message on the top of the stack, and pops it. */
+static void report(lua_State *L)
 {
     const char *message = lua_tostring(L, -1);
     fflush(stdout);
@@ -59,7 +60,7 @@ static int call(lua_State *L, int arguments, int results, bool verbose, bool at_
     if (status == LUA_OK)
         return EXIT_SUCCESS;
     bool interrupted = tl_lua_interrupted(lua_tostring(L, -1));
-    tl_repl_report(L);
+    report(L);
     return interrupted ? TL_EXIT_INTERRUPTED : EXIT_FAILURE;
 }
 
@@ -436,7 +437,7 @@ void tl_repl_run(lua_State *L, bool verbose)
             continue;
         lua_remove(L, 1);
         if (status != LUA_OK)
-            tl_repl_report(L);
+            report(L);
         else if (call(L, 0, LUA_MULTRET, verbose, true) == EXIT_SUCCESS && lua_gettop(L) > 0) {
             lua_pushcfunction(L, print_all);
             lua_insert(L, 1);

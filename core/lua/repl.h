@@ -13,8 +13,6 @@
  * error prints "talus: " and the message on standard error, with `verbose` also the calls that led
  * there. */
 int tl_repl_call(lua_State *L, int arguments, int results, bool verbose);
-/* Prints the message on the top of the stack as tl_repl_call does, and pops it. */
-void tl_repl_report(lua_State *L);
 /* Reads lines from the terminal, runs them and prints what they give, until the end of input. */
 void tl_repl_run(lua_State *L, bool verbose);
 

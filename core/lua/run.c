@@ -211,7 +211,7 @@ enum {
 typedef struct run {
     tl_lua_running running;
     lua_State *L;
-    const tl_lua_model *owner;
+    tl_lua_model *owner;
     tl_lua_options *options;
     tl_lua_watch watch;
     tl_solve limits; /* what is run */
@@ -511,7 +511,7 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     solve->user = &r;
     r.limits = *solve;
     r.options = tl_lua_options_of(L);
-    tl_lua_histories_due(L, AT_MODEL);
+    r.owner->next_sample = 0; /* the first step finds it */
     progress_begin(L, &r.line, model);
     r.watch = tl_lua_watch_begin(L);
     r.running.L = L;

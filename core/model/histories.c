@@ -30,23 +30,8 @@ const char *tl_history_unsound(const tl_model *m, const tl_history *h)
     return m->history_count < TL_MOST_HISTORIES ? NULL : "it has too many histories";
 }
 
-tl_history_list tl_history_list_at(const tl_history *h, unsigned k)
+static void history_free(tl_history *h)
 {
-    switch (k) {
-    case 0:
-        return h->source == TL_FROM_CONTACTS
-                   ? (tl_history_list){"contacts", h->contacts, sizeof *h->contacts, h->id_count}
-                   : (tl_history_list){"ids", h->ids, sizeof *h->ids, h->id_count};
-    case 1: return (tl_history_list){"cycles", h->cycles, sizeof *h->cycles, h->count};
-    case 2: return (tl_history_list){"times", h->times, sizeof *h->times, h->count};
-    default: return (tl_history_list){"values", h->values, sizeof *h->values, h->count * h->width};
-    }
-}
-
-void tl_history_free(tl_history *h)
-{
-    if (!h)
-        return;
     free(h->ids);
     free(h->contacts);
     free(h->cycles);
@@ -83,7 +68,7 @@ tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples)
     h->times = h->values = NULL;
     h->capacity = 0;
     if ((h->id_count && !h->ids && !h->contacts) || (samples && !hold_samples(h, samples))) {
-        tl_history_free(h);
+        history_free(h);
         return NULL;
     }
     m->histories[m->history_count++] = h;
@@ -116,7 +101,7 @@ void tl_history_end(tl_model *m, size_t i)
 {
     if (i >= m->history_count)
         return;
-    tl_history_free(m->histories[i]);
+    history_free(m->histories[i]);
     m->history_count--;
     memmove(m->histories + i, m->histories + i + 1, (m->history_count - i) * sizeof *m->histories);
 }
@@ -142,10 +127,4 @@ tl_status tl_history_sample(tl_model *m, tl_history *h, const double *values, si
     memcpy(h->values + h->count * width, values, width * sizeof *values);
     h->count++;
     return TL_OK;
-}
-
-size_t tl_history_bytes(const tl_history *h)
-{
-    return sizeof *h + h->id_count * (h->contacts ? sizeof *h->contacts : sizeof *h->ids) +
-           h->capacity * (sizeof *h->cycles + sizeof *h->times + h->width * sizeof *h->values);
 }

@@ -8,18 +8,5 @@
 const char *tl_history_unsound(const tl_model *m, const tl_history *h);
 /* Adds a history that is sound, with room for its ids and for so many samples of its width; NULL: out of memory. */
 tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples);
-/* A list of a history, by its name in a file: "ids" of its blocks or contacts, and of its samples "cycles", "times"
- * and "values". */
-typedef struct tl_history_list {
-    const char *name;
-    void *at;
-    size_t size, items;
-} tl_history_list;
-
-enum { TL_HISTORY_LISTS = 4 };
-
-tl_history_list tl_history_list_at(const tl_history *h, unsigned k);
-void tl_history_free(tl_history *h);
-size_t tl_history_bytes(const tl_history *h);
 
 #endif

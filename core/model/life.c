@@ -1,7 +1,6 @@
 /* life.c - a model is made and destroyed. */
 #include "base/parallel.h"
 #include "geometry/make.h"
-#include "model/histories.h"
 #include "model/joints.h"
 #include "model/loads.h"
 #include "model/model.h"
@@ -116,8 +115,8 @@ void tl_model_destroy(tl_model *m)
         if (m->drives[i].bodies && m->drives[i].drive.release)
             m->drives[i].drive.release(m->drives[i].drive.user);
     free(m->drives);
-    for (size_t i = 0; i < m->history_count; i++)
-        tl_history_free(m->histories[i]);
+    while (m->history_count > 0)
+        tl_history_end(m, m->history_count - 1);
     free(m->histories);
     free(m->record.list);
     free(m->cut_parts);

@@ -6,6 +6,7 @@
 
 #include "geometry/measure.h"
 #include "geometry/principal.h"
+#include "model/body_shape.h"
 #include "model/inertia.h"
 #include "model/loads.h"
 #include "model/model.h"
@@ -162,15 +163,6 @@ tl_status tl_check_measures(tl_error *error, const tl_poly *shape, double densit
     return status;
 }
 
-void tl_single_measure(tl_model *m, uint32_t row, tl_mass mass)
-{
-    body_sum sum = {0};
-    measure_block(m, row, mass.volume);
-    mass.centroid = tl_v3(0, 0, 0);
-    add_block(&sum, m->blocks.shape[row], m->blocks.density[row], &mass);
-    write_measures(&m->bodies, m->blocks.body[row], &sum);
-}
-
 /* ---------------------------------------------------------------- the smallest of all -----
  *
  * The volume of all blocks, and the smallest volume, edge and face, kept while blocks come and go. A report on each
@@ -227,14 +219,37 @@ tl_extremes tl_extremes_of(tl_model *m)
     return *x;
 }
 
-void tl_rows_added(tl_model *m, uint32_t first)
+void tl_block_came(tl_model *m, uint32_t row, tl_mass mass)
 {
-    for (uint32_t row = first; row < m->blocks.table.rows; row++) {
-        uint32_t body = m->blocks.body[row];
-        m->bodies.member_start[body] = row; /* every block before is a member of one body */
-        m->bodies.member_count[body] = 1;
-        m->members[row] = row;
-        extremes_add(m, row);
-    }
-    m->structure++;
+    const uint32_t body = m->blocks.body[row];
+    body_sum sum = {0};
+    measure_block(m, row, mass.volume);
+    mass.centroid = tl_v3(0, 0, 0);
+    add_block(&sum, m->blocks.shape[row], m->blocks.density[row], &mass);
+    write_measures(&m->bodies, body, &sum);
+    m->bodies.member_start[body] = row; /* every block before is a member of one body */
+    m->bodies.member_count[body] = 1;
+    m->members[row] = row;
+    extremes_add(m, row);
+}
+
+static int compare_sizes(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bool tl_median_size(const tl_model *m, double *median)
+{
+    size_t n = 0;
+    double *sizes = malloc((m->bodies.table.rows + 1) * sizeof *sizes);
+    if (!sizes)
+        return false;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        if (m->bodies.fixed[body] != TL_FIX_ALL)
+            sizes[n++] = tl_body_size(m, body);
+    qsort(sizes, n, sizeof *sizes, compare_sizes);
+    *median = n ? sizes[n / 2] : 0;
+    free(sizes);
+    return true;
 }

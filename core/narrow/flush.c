@@ -23,3 +23,10 @@ bool tl_at_corners(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
 {
     return !has_blunt_edge(a, fa) && !has_blunt_edge(b, fb);
 }
+
+tl_tag tl_flush_tag(tl_tag a, tl_tag b)
+{
+    if (a.joint == 0 || b.joint == 0)
+        return a.joint == 0 ? b : a;
+    return a.joint < b.joint || (a.joint == b.joint && a.plane <= b.plane) ? a : b;
+}

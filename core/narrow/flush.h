@@ -45,5 +45,7 @@ TL_INLINE tl_flush_limits tl_flush_limits_of(bool corners)
  * other face meets either of them so flat that it would touch next, within the tilt of springs at corners. On a blunt
  * edge, or a round outline, the corners of one face would give way to those of the next at once. */
 bool tl_at_corners(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb);
+/* The joint of two faces that lie flush: that which both have, or one of them. */
+tl_tag tl_flush_tag(tl_tag a, tl_tag b);
 
 #endif

@@ -200,13 +200,6 @@ tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n)
     return touching_faces(view, n, &ca, &cb);
 }
 
-tl_tag tl_flush_tag(tl_tag a, tl_tag b)
-{
-    if (a.joint == 0 || b.joint == 0)
-        return a.joint == 0 ? b : a;
-    return a.joint < b.joint || (a.joint == b.joint && a.plane <= b.plane) ? a : b;
-}
-
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n)
 {
     if (!has_joint(view->a) && !has_joint(view->b))

@@ -36,8 +36,6 @@ bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, tl_fa
                        tl_narrow_scratch *scratch);
 /* The faces that touch along a direction from A to B, and the joint of these. */
 tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n);
-/* The joint of two faces that lie flush: that which both have, or one of them. */
-tl_tag tl_flush_tag(tl_tag a, tl_tag b);
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 
 #endif

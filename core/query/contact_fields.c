@@ -68,20 +68,19 @@ const tl_field *tl_contact_quantity(const char *name)
     return of;
 }
 
-bool tl_contact_is_long(const tl_field *of)
+const int64_t *tl_contact_long(const tl_contact_facts *facts, const tl_field *of)
 {
-    const size_t at = offsets[of - fields];
-    return at == offsetof(tl_contact_facts, number) || at == offsetof(tl_contact_facts, born);
-}
-
-int64_t tl_contact_long(const tl_contact_facts *facts, const tl_field *of)
-{
-    return offsets[of - fields] == offsetof(tl_contact_facts, born) ? facts->born : facts->number;
+    switch (offsets[of - fields]) {
+    case offsetof(tl_contact_facts, number): return &facts->number;
+    case offsetof(tl_contact_facts, born): return &facts->born;
+    default: return NULL;
+    }
 }
 
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3])
 {
     const char *from = (const char *)facts + offsets[of - fields];
+    const int64_t *number;
     uint32_t whole[2];
     switch (of->kind) { /* copies of fixed length are not called */
     case TL_FIELD_SCALAR: memcpy(out, from, sizeof *out); return 1;
@@ -93,7 +92,8 @@ size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, dou
         return 2;
     default:
         memcpy(whole, from, sizeof *whole);
-        out[0] = tl_contact_is_long(of) ? (double)tl_contact_long(facts, of) : whole[0];
+        number = tl_contact_long(facts, of);
+        out[0] = number ? (double)*number : whole[0];
         return 1;
     }
 }

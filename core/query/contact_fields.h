@@ -31,10 +31,8 @@ typedef struct tl_contact_facts {
 
 /* A field of contacts, or what else files show of them, by a name that there is. */
 const tl_field *tl_contact_quantity(const char *name);
-/* Whether it is a whole number of 64 bits. */
-bool tl_contact_is_long(const tl_field *of);
-/* That number. */
-int64_t tl_contact_long(const tl_contact_facts *facts, const tl_field *of);
+/* Its whole number of 64 bits; NULL: it is none. */
+const int64_t *tl_contact_long(const tl_contact_facts *facts, const tl_field *of);
 /* Puts its numbers; of a text the number that stands for it. Returns how many. */
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3]);
 

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "geometry/measure.h"
 #include "model/body_shape.h"
+#include "narrow/flush.h"
 #include "narrow/manifold.h"
 #include "narrow/narrow.h"
 #include "narrow/patch.h"

@@ -23,6 +23,28 @@ typedef struct history_kept {
     uint8_t source, take, selection, lost, list, spare[3];
 } history_kept;
 
+/* A list of a history, by its name in a file: "ids" of its blocks or contacts, and of its samples "cycles", "times"
+ * and "values". */
+typedef struct history_list {
+    const char *name;
+    void *at;
+    size_t size, items;
+} history_list;
+
+enum { HISTORY_LISTS = 4 };
+
+static history_list history_list_at(const tl_history *h, unsigned k)
+{
+    switch (k) {
+    case 0:
+        return h->source == TL_FROM_CONTACTS ? (history_list){"contacts", h->contacts, sizeof *h->contacts, h->id_count}
+                                             : (history_list){"ids", h->ids, sizeof *h->ids, h->id_count};
+    case 1: return (history_list){"cycles", h->cycles, sizeof *h->cycles, h->count};
+    case 2: return (history_list){"times", h->times, sizeof *h->times, h->count};
+    default: return (history_list){"values", h->values, sizeof *h->values, h->count * h->width};
+    }
+}
+
 /* ---------------------------------------------------------------- saving ----------------- */
 
 static void keep(const tl_history *h, history_kept *kept)
@@ -52,9 +74,9 @@ static void save_histories(const tl_model *m, tl_archive_writer *w)
     }
     for (size_t k = 0; k < m->history_count; k++) {
         keep(m->histories[k], &kept[k]);
-        for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
+        for (unsigned i = 0; i < HISTORY_LISTS; i++) {
             char name[TL_CHUNK_NAME];
-            const tl_history_list list = tl_history_list_at(m->histories[k], i);
+            const history_list list = history_list_at(m->histories[k], i);
             tl_chunk_name(name, "histories.%zu.%s", k, list.name);
             tl_archive_put(w, name, list.at, list.size, list.items);
         }
@@ -93,9 +115,9 @@ static tl_history history_of(const history_kept *kept)
 /* Whether an archive has the lists, of so many items: before there is memory for them. */
 static bool has_lists(const tl_archive *a, size_t k, const tl_history *h)
 {
-    for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
+    for (unsigned i = 0; i < HISTORY_LISTS; i++) {
         char name[TL_CHUNK_NAME];
-        const tl_history_list list = tl_history_list_at(h, i);
+        const history_list list = history_list_at(h, i);
         tl_chunk_name(name, "histories.%zu.%s", k, list.name);
         const tl_chunk *chunk = tl_archive_find(a, name);
         if (!chunk || chunk->size != list.size || chunk->items != list.items)
@@ -115,9 +137,9 @@ static bool samples_are_sound(const tl_model *m, const tl_history *h)
 
 static bool read_lists(const tl_model *m, const tl_archive *a, size_t k, tl_history *h)
 {
-    for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
+    for (unsigned i = 0; i < HISTORY_LISTS; i++) {
         char name[TL_CHUNK_NAME];
-        const tl_history_list list = tl_history_list_at(h, i);
+        const history_list list = history_list_at(h, i);
         tl_chunk_name(name, "histories.%zu.%s", k, list.name);
         if (!tl_archive_get(a, name, list.at, list.size, list.items))
             return false;
@@ -171,10 +193,10 @@ static tl_status copy_histories(tl_model *to, const tl_model *from, const tl_dri
         tl_history *copy = tl_history_hold(to, h, h->count);
         if (!copy)
             return tl_fail_memory(&to->error);
-        for (unsigned i = 0; i < TL_HISTORY_LISTS; i++) {
-            const tl_history_list list = tl_history_list_at(h, i);
+        for (unsigned i = 0; i < HISTORY_LISTS; i++) {
+            const history_list list = history_list_at(h, i);
             if (list.items)
-                memcpy(tl_history_list_at(copy, i).at, list.at, list.items * list.size);
+                memcpy(history_list_at(copy, i).at, list.at, list.items * list.size);
         }
     }
     return TL_OK;

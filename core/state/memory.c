@@ -5,7 +5,6 @@
 #include "cycle/undo.h"
 #include "cycle/walk.h"
 #include "geometry/make.h"
-#include "model/histories.h"
 #include "model/walk.h"
 #include "narrow/field_lanes.h"
 
@@ -50,6 +49,12 @@ static void add_detection(tl_detect *d, const tl_walk *walk, tl_memory *memory)
     memory->other += sizeof *d + thread_bytes(d);
 }
 
+static size_t history_bytes(const tl_history *h)
+{
+    return sizeof *h + h->id_count * (h->contacts ? sizeof *h->contacts : sizeof *h->ids) +
+           h->capacity * (sizeof *h->cycles + sizeof *h->times + h->width * sizeof *h->values);
+}
+
 tl_memory tl_model_memory(const tl_model *m)
 {
     tl_memory memory = {0};
@@ -58,7 +63,7 @@ tl_memory tl_model_memory(const tl_model *m)
     memory.other += sizeof *m + m->joint_count * sizeof *m->joints + m->joint_law_count * sizeof *m->joint_laws +
                     m->drive_count * sizeof *m->drives;
     for (size_t i = 0; i < m->history_count; i++)
-        memory.other += tl_history_bytes(m->histories[i]);
+        memory.other += history_bytes(m->histories[i]);
     for (size_t row = 0; row < m->blocks.table.rows; row++)
         memory.shapes += m->blocks.stays[row] ? tl_poly_bytes(m->blocks.shape[row]) : 0;
     if (m->cycle) {
