@@ -252,8 +252,11 @@ TL_VECTORIZED static void load_row(body_group *restrict g, const tl_model *m, si
         g->radius[i] = b->radius[first + i];
         g->scale[i] = g->turn_scale[i] = g->energy_scale[i] = 1;
     }
-    for (size_t i = 0; damped && i < TL_LANES; i++)
-        put_damping(g, i, m->cycle, true, first + i);
+    if (damped) {
+        tl_lanes3_load_columns(&g->damping_force, m->cycle->damping_force, first);
+        tl_lanes3_load_columns(&g->damping_moment, m->cycle->damping_moment, first);
+        tl_lanes_load(g->alpha, m->cycle->alpha + first);
+    }
     for (size_t i = 0; !damped && i < TL_LANES; i++)
         put_damping(g, i, m->cycle, false, first + i);
 }
