@@ -188,11 +188,12 @@ static void mend_lanes(body_group *g, const move_job *job)
     bool paper = m->config.rotation == TL_ROTATION_PAPER;
     for (size_t i = 0; i < g->count; i++) {
         unsigned fixed = m->bodies.fixed[g->body[i]];
-        g->v1.x[i] = fixed & TL_FIX_X ? g->v0.x[i] : g->v1.x[i];
-        g->v1.y[i] = fixed & TL_FIX_Y ? g->v0.y[i] : g->v1.y[i];
-        g->v1.z[i] = fixed & TL_FIX_Z ? g->v0.z[i] : g->v1.z[i];
-        if (fixed)
+        if (fixed) {
+            g->v1.x[i] = fixed & TL_FIX_X ? g->v0.x[i] : g->v1.x[i];
+            g->v1.y[i] = fixed & TL_FIX_Y ? g->v0.y[i] : g->v1.y[i];
+            g->v1.z[i] = fixed & TL_FIX_Z ? g->v0.z[i] : g->v1.z[i];
             g->speed[i] = speed_of(g, i);
+        }
         if (paper || fixed & TL_FIX_ROTATION)
             turn_about(g, i, job, paper, fixed & TL_FIX_ROTATION);
         else if (!(g->reach[i] < limit)) {
