@@ -498,9 +498,9 @@ static void book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 t
     work->held[1][k] = -work->after * (tl_v3_dot(by.force, b->v[body]) + tl_v3_dot(by.moment, b->w[body]));
 }
 
-static bool any_of(const double *number, size_t count)
+TL_VECTORIZED static bool any_of(const double *number, size_t count)
 {
-    bool some = false;
+    uint64_t some = 0; /* as wide as the numbers */
     for (size_t i = 0; i < count; i++)
         some |= number[i] != 0;
     return some;
