@@ -71,6 +71,20 @@ TL_INLINE void tl_lanes4_store(const tl_lanes4 *restrict from, tl_quat *restrict
         to[i] = tl_lanes4_get(from, i);
 }
 
+/* From rows that follow each other of a column, and of a vector's three. */
+TL_INLINE void tl_lanes_load(double *restrict to, const double *restrict from)
+{
+    for (size_t i = 0; i < TL_LANES; i++)
+        to[i] = from[i];
+}
+
+TL_INLINE void tl_lanes3_load_columns(tl_lanes3 *restrict to, double *const column[3], size_t first)
+{
+    tl_lanes_load(to->x, column[0] + first);
+    tl_lanes_load(to->y, column[1] + first);
+    tl_lanes_load(to->z, column[2] + first);
+}
+
 /* Matrices element by element, not in loops: a loop over lanes with loops in it does not become SIMD code. */
 TL_INLINE tl_mat3 tl_lanes9_get(const tl_lanes9 *from, size_t lane)
 {

@@ -31,16 +31,24 @@ static inline tl_body_contacts tl_contacts_of_block(const tl_model *m, uint32_t 
                               .end = d->by_block + d->by_block_start[block + 1]};
 }
 
-/* Goes on to the next contact; false: there is none. */
-static inline bool tl_next_contact(tl_body_contacts *at)
+/* Goes on to the next block that has a contact; false: there is none. */
+static inline bool tl_next_block(tl_body_contacts *at)
 {
-    while (at->next == at->end) {
-        if (at->next_block == at->blocks_end)
-            return false;
+    while (at->next_block != at->blocks_end) {
         at->block = *at->next_block++;
         at->next = at->d->by_block + at->d->by_block_start[at->block];
         at->end = at->d->by_block + at->d->by_block_start[at->block + 1];
+        if (at->next != at->end)
+            return true;
     }
+    return false;
+}
+
+/* Goes on to the next contact; false: there is none. */
+static inline bool tl_next_contact(tl_body_contacts *at)
+{
+    if (at->next == at->end && !tl_next_block(at))
+        return false;
     at->contact = *at->next++;
     return true;
 }

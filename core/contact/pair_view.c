@@ -10,13 +10,13 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
     const tl_blocks *blocks = &m->blocks;
     const tl_bodies *bodies = &m->bodies;
     uint32_t body_a = blocks->body[a], body_b = blocks->body[b];
-    tl_pair_view view = {.a = blocks->shape[a], .b = blocks->shape[b]};
     const tl_mat3 *ra = &bodies->pose[body_a].r, *rb = &bodies->pose[body_b].r;
-    view.turn = tl_m3_tproduct(ra, rb);
-    view.shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b));
-    view.size = fmin(blocks->size[a], blocks->size[b]);
-    view.mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b]);
-    return view;
+    return (tl_pair_view){.a = blocks->shape[a],
+                          .b = blocks->shape[b],
+                          .turn = tl_m3_tproduct(ra, rb),
+                          .shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b)),
+                          .size = fmin(blocks->size[a], blocks->size[b]),
+                          .mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b])};
 }
 
 tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, double over)

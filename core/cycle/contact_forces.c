@@ -115,14 +115,15 @@ static tl_status apply(tl_model *m)
 static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
+    const tl_vec3 *force = d->contacts.force;
+    const uint32_t *b = d->contacts.b;
     tl_acting sum = *on;
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
         uint32_t i = at.contact;
-        bool is_b = c->b[i] == at.block;
-        sum.force = tl_v3_madd(sum.force, is_b ? 1 : -1, c->force[i]);
+        bool is_b = b[i] == at.block;
+        sum.force = tl_v3_madd(sum.force, is_b ? 1 : -1, force[i]);
         sum.moment = tl_v3_add(sum.moment, tl_contact_moment(m, i, is_b));
-        sum.magnitude += tl_v3_norm(c->force[i]);
+        sum.magnitude += tl_v3_norm(force[i]);
     }
     *on = sum;
 }

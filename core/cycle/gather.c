@@ -40,9 +40,10 @@ static void gather_body(tl_model *m, uint32_t body, const tl_acting *on)
     m->cycle->contact_force[body] = on->magnitude;
 }
 
-/* Numbers of the bodies of a chunk; zeros of those that are held or idle. */
+/* Numbers of the bodies of a chunk that are neither held nor idle. */
 typedef struct addends {
     _Alignas(TL_ALIGN) double number[TL_SUM_COUNT][TL_BODY_CHUNK];
+    size_t count;
 } addends;
 
 /* Tolerance: ratios that are rounded by less are compared whole. */
@@ -50,16 +51,16 @@ typedef struct addends {
 
 /* Unbalanced force and moment of a body, by themselves and over what it bears. What that is at the least is asked only
  * where the ratio may be the largest. Of equal ratios that of the lowest row counts. */
-static void note_ratios(const tl_model *m, uint32_t body, size_t k, double weight, addends *of, tl_gathered *all)
+static void note_ratios(const tl_model *m, uint32_t body, double weight, addends *of, tl_gathered *all)
 {
     const tl_bodies *b = &m->bodies;
     double unbalanced = tl_v3_norm(b->force[body]);
     double turning = tl_v3_norm(b->moment[body]) / b->radius[body];
     double contact = m->cycle->contact_force[body];
     double bears = tl_borne(m, body, weight), worse = tl_larger(unbalanced, turning);
-    of->number[TL_SUM_UNBALANCED][k] = unbalanced;
-    of->number[TL_SUM_TURNING][k] = turning;
-    of->number[TL_SUM_CONTACT_FORCE][k] = contact;
+    of->number[TL_SUM_UNBALANCED][of->count] = unbalanced;
+    of->number[TL_SUM_TURNING][of->count] = turning;
+    of->number[TL_SUM_CONTACT_FORCE][of->count] = contact;
     all->largest = tl_larger(all->largest, unbalanced);
     if (!(worse > NEARLY * all->local * bears))
         return;
@@ -73,12 +74,13 @@ static void note_ratios(const tl_model *m, uint32_t body, size_t k, double weigh
 }
 
 /* Kinetic energy and power, for a damping that asks for totals. */
-static void note_totals(const tl_model *m, uint32_t body, size_t k, double v2, addends *of)
+static void note_totals(const tl_model *m, uint32_t body, double v2, addends *of)
 {
     const tl_bodies *b = &m->bodies;
-    of->number[TL_SUM_KINETIC][k] =
+    of->number[TL_SUM_KINETIC][of->count] =
         0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * v2 + tl_spin_energy2(m, body));
-    of->number[TL_SUM_POWER][k] = tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
+    of->number[TL_SUM_POWER][of->count] =
+        tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
 }
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -87,33 +89,29 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     tl_model *m = user;
     tl_bodies *b = &m->bodies;
     tl_gathered *all = &m->cycle->gathered[thread];
-    bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin, any = false;
+    bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin;
     double gravity = tl_v3_norm(m->config.gravity);
     tl_acting on[TL_BODY_CHUNK];
     addends of;
+    of.count = 0;
     const size_t sums = totals ? TL_SUM_COUNT : TL_SUM_KINETIC;
     const uint8_t *idle = tl_idle_bodies(m);
     gather_acting(m, (uint32_t)begin, (uint32_t)end, on);
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        const size_t k = body - begin;
-        bool is_idle = idle && idle[body];
-        if (!is_idle)
-            gather_body(m, body, &on[k]);
-        if (is_idle || b->fixed[body] == TL_FIX_ALL) {
-            for (size_t i = 0; i < sums; i++)
-                of.number[i][k] = 0;
+        if (idle && idle[body])
             continue;
-        }
+        gather_body(m, body, &on[body - begin]);
+        if (b->fixed[body] == TL_FIX_ALL)
+            continue;
         double v2 = tl_v3_norm2(b->v[body]);
-        note_ratios(m, body, k, tl_weight_of(b, body, gravity), &of, all);
+        note_ratios(m, body, tl_weight_of(b, body, gravity), &of, all);
         if (totals)
-            note_totals(m, body, k, v2, &of);
+            note_totals(m, body, v2, &of);
         all->max_speed2 = tl_larger(all->max_speed2, v2);
-        all->bodies++;
-        any = true;
+        of.count++;
     }
-    if (any)
-        tl_exact_add_each(all->sum, sums, of.number[0], TL_BODY_CHUNK, end - begin);
+    all->bodies += of.count;
+    tl_exact_add_each(all->sum, sums, of.number[0], TL_BODY_CHUNK, of.count);
 }
 
 bool tl_gather_prepare(tl_model *m)

@@ -188,11 +188,12 @@ static void mend_lanes(body_group *g, const move_job *job)
     bool paper = m->config.rotation == TL_ROTATION_PAPER;
     for (size_t i = 0; i < g->count; i++) {
         unsigned fixed = m->bodies.fixed[g->body[i]];
-        g->v1.x[i] = fixed & TL_FIX_X ? g->v0.x[i] : g->v1.x[i];
-        g->v1.y[i] = fixed & TL_FIX_Y ? g->v0.y[i] : g->v1.y[i];
-        g->v1.z[i] = fixed & TL_FIX_Z ? g->v0.z[i] : g->v1.z[i];
-        if (fixed)
+        if (fixed) {
+            g->v1.x[i] = fixed & TL_FIX_X ? g->v0.x[i] : g->v1.x[i];
+            g->v1.y[i] = fixed & TL_FIX_Y ? g->v0.y[i] : g->v1.y[i];
+            g->v1.z[i] = fixed & TL_FIX_Z ? g->v0.z[i] : g->v1.z[i];
             g->speed[i] = speed_of(g, i);
+        }
         if (paper || fixed & TL_FIX_ROTATION)
             turn_about(g, i, job, paper, fixed & TL_FIX_ROTATION);
         else if (!(g->reach[i] < limit)) {
@@ -252,8 +253,11 @@ TL_VECTORIZED static void load_row(body_group *restrict g, const tl_model *m, si
         g->radius[i] = b->radius[first + i];
         g->scale[i] = g->turn_scale[i] = g->energy_scale[i] = 1;
     }
-    for (size_t i = 0; damped && i < TL_LANES; i++)
-        put_damping(g, i, m->cycle, true, first + i);
+    if (damped) {
+        tl_lanes3_load_columns(&g->damping_force, m->cycle->damping_force, first);
+        tl_lanes3_load_columns(&g->damping_moment, m->cycle->damping_moment, first);
+        tl_lanes_load(g->alpha, m->cycle->alpha + first);
+    }
     for (size_t i = 0; !damped && i < TL_LANES; i++)
         put_damping(g, i, m->cycle, false, first + i);
 }
@@ -494,9 +498,9 @@ static void book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 t
     work->held[1][k] = -work->after * (tl_v3_dot(by.force, b->v[body]) + tl_v3_dot(by.moment, b->w[body]));
 }
 
-static bool any_of(const double *number, size_t count)
+TL_VECTORIZED static bool any_of(const double *number, size_t count)
 {
-    bool some = false;
+    uint64_t some = 0; /* as wide as the numbers */
     for (size_t i = 0; i < count; i++)
         some |= number[i] != 0;
     return some;

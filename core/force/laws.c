@@ -552,9 +552,10 @@ static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const
     return found.opened;
 }
 
-/* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
-static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
-                      tl_part_lanes parts, const tl_arms *arms, tl_exact *heats)
+/* Forces of the contacts of a SIMD group, whose first point is in lane `lane`, and the heat of each. Whether any of
+ * that is not 0. */
+static bool sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                      tl_part_lanes parts, const tl_arms *arms, double heat[TL_LANES])
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
@@ -566,7 +567,6 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         opened = add_parts(job, group, t, lane, parts, arms, &sum);
     if (m->cycles % SHEAR_EVERY == 0 && job->kind->cells)
         sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
-    double heat[TL_LANES];
     bool any_heat = false;
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
@@ -594,11 +594,7 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         law_check_shear(m, job->phase->failure, job->law, group, t, lane);
         law_check_stiffness(m, job->phase->failure, job->law, group, t, lane, begins);
     }
-    if (!any_heat)
-        return;
-    tl_exact_add(heats, heat, TL_LANES);
-    if (job->changed) /* what is passed over makes no heat */
-        atomic_store_explicit(job->changed, true, memory_order_relaxed);
+    return any_heat;
 }
 
 /* ---------------------------------------------------------------- tiles ------------------ */
@@ -650,11 +646,16 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
         return;
     if (odd_states(&job->m->detect->points, job->law->columns, first, points) != 0)
         law_check_states(job->m, job->phase->failure, job->law, first, points);
+    double heat[GROUP_CHUNK][TL_LANES];
+    bool any_heat = false;
     for (size_t r = 0; r < count; r++) {
         size_t lane = groups[r].start - first;
-        sum_group(job, &groups[r], t, lane, part[r], &arms[r], heats);
+        any_heat |= sum_group(job, &groups[r], t, lane, part[r], &arms[r], heat[r]);
     }
-    if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
+    if (any_heat)
+        tl_exact_add(heats, heat[0], count * TL_LANES);
+    /* what is passed over makes no heat */
+    if (job->changed && (any_heat || !as_noted(&job->m->detect->points, first, points, t)))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }
 
