@@ -7,7 +7,6 @@
 #include "contact/across_gap.h"
 
 #include "base/inside.h"
-#include "contact/detection.h"
 
 #include <math.h>
 #include <string.h>

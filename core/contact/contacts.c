@@ -6,13 +6,12 @@
 #include "contact/contacts.h"
 
 #include "base/columns.h"
-#include "contact/detection.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
+#include "contact/spot.h"
 #include "contact/store.h"
 #include "model/joints.h"
-#include "model/model.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -335,8 +334,8 @@ static void find_idle(tl_model *m)
     for (uint32_t i = 0; i < c->table.rows; i++) {
         if (c->held[i])
             continue;
-        d->idle[m->blocks.body[c->a[i]]] = false;
-        d->idle[m->blocks.body[c->b[i]]] = false;
+        const tl_sides on = tl_contact_bodies(m, i);
+        d->idle[on.a] = d->idle[on.b] = false;
     }
 }
 
@@ -444,9 +443,9 @@ bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, 
     c->facet[row] = (tl_facet){.kind = kind};
     c->kind[row] = (uint8_t)kind;
     c->press[row] = TL_NO_ROW;
-    c->points_valid_to[row] = tl_pair_odometer(m, p->a, p->b);
+    c->points_valid_to[row] = tl_contact_odometer(m, row);
     c->faces_valid_to[row] = c->points_valid_to[row] + valid;
-    c->spot[row] = tl_spot_of(m, p->a, p->b, valid);
+    c->spot[row] = tl_spot_of(m, tl_contact_sides(m, row), valid);
     c->pending[row] = TL_PENDING_GROW;
     c->deep[row] = TL_DEEP_NOT;
     c->held[row] = blocks_held_still(m, p->a, p->b);

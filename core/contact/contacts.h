@@ -6,6 +6,7 @@
 #include "contact/law_states.h"
 #include "contact/layout.h"
 #include "contact/old_point.h"
+#include "contact/sides.h"
 #include "contact/tables.h"
 #include "model/model.h"
 
@@ -34,15 +35,6 @@ static inline const tl_kind *tl_law_kind(const tl_model *m, uint32_t law)
 }
 /* "contact of blocks 3 and 7, joint J1:2" */
 void tl_contact_describe(tl_model *m, uint32_t contact, char *text, size_t size);
-/* Moment of a contact's forces on A, or on B, about that block's body's centroid. */
-static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, bool on_b)
-{
-    const tl_contacts *c = &m->detect->contacts;
-    if (!on_b)
-        return tl_v3_neg(c->moment[contact]);
-    tl_vec3 apart = tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
-    return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
-}
 
 /* A point without force, area or place: an inert lane. */
 void tl_point_clear(tl_points_table *p, size_t point);

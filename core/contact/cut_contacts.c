@@ -62,7 +62,7 @@ double tl_cut_contact_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b
 static uint32_t face_of(const tl_model *m, uint32_t block, tl_vec3 normal)
 {
     const tl_poly *shape = m->blocks.shape[block];
-    tl_vec3 n = tl_m3_tmul(&m->bodies.pose[m->blocks.body[block]].r, normal);
+    tl_vec3 n = tl_m3_tmul(tl_side_rotation(m, tl_block_side(m, block)), normal);
     for (uint32_t f = 0; f < shape->face_count; f++)
         if (tl_v3_norm2(tl_v3_sub(shape->plane[f].normal, n)) < SAME_FACE * SAME_FACE)
             return f;
@@ -73,9 +73,7 @@ static uint32_t face_of(const tl_model *m, uint32_t block, tl_vec3 normal)
 static double beyond(const tl_model *m, uint32_t block, uint32_t face, tl_vec3 place)
 {
     const tl_plane *plane = &m->blocks.shape[block]->plane[face];
-    uint32_t body = m->blocks.body[block];
-    tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, body));
-    return plane->offset - tl_v3_dot(plane->normal, tl_m3_tmul(&m->bodies.pose[body].r, arm));
+    return plane->offset - tl_v3_dot(plane->normal, tl_side_local(m, tl_block_side(m, block), place));
 }
 
 /* Faces parallel to those of the whole are parts of them, but for one that a cut has made inside the whole.
@@ -155,7 +153,7 @@ tl_old_point tl_cut_contact_point(const tl_model *m, const tl_cut_contact *cut, 
     tl_old_point out = d->cut_points[cut->first + k];
     if (cut->field && out.reference != 0 && !is_on(m, c, &d->contacts.facet[c]))
         out.reference = 0;
-    out.arm = tl_v3_sub(out.arm, tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[c]]));
+    out.arm = tl_v3_sub(out.arm, tl_side_place(m, tl_contact_sides(m, c).a));
     if (tl_cut_contact_sign(m, cut, c) < 0)
         turn_round(tl_law_kind(m, cut->law), &out);
     return out;

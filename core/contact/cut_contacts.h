@@ -5,12 +5,12 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* A block of a contact as detection knew it, with the frame of its body. */
+/* A block of a contact as detection knew it, with the frame of its side. */
 typedef struct tl_cut_side {
     tl_id id;
     const tl_mat3 *r;
     tl_vec3 place;
-    uint32_t body; /* that has its motion: its own, or that of a part */
+    uint32_t side; /* that has its motion: its own, or that of a part */
     bool reframed; /* that is another frame than the contact's */
 } tl_cut_side;
 

@@ -15,7 +15,6 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/cut_contacts.h"
-#include "contact/kind.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
@@ -29,7 +28,7 @@
  * another one for B. */
 static tl_vec3 arm_before(const tl_model *m, uint32_t c, tl_vec3 arm)
 {
-    tl_vec3 turned = m->bodies.pose[m->blocks.body[m->detect->contacts.a[c]]].w_moved;
+    tl_vec3 turned = tl_side_pose(m, tl_contact_sides(m, c).a)->w_moved;
     return tl_v3_sub(arm, tl_v3_scale(m->dt, tl_v3_cross(turned, arm)));
 }
 
@@ -435,10 +434,9 @@ static tl_vec3 half_way(const tl_model *m, const tl_press_row *row)
 /* The work in the last step of a force and a moment that acted at the centre of pressure before it, J. */
 static double work_on(tl_model *m, uint32_t c, const tl_manifold *g, tl_vec3 force, tl_vec3 twist)
 {
-    const tl_press_row *row = tl_press_row_of(m, c);
     const tl_contact_motion by = tl_contact_moved(m, c);
-    tl_vec3 before = tl_v3_madd(g->points[0].p, -2, half_way(m, row));
-    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[m->detect->contacts.a[c]]].r, before);
+    tl_vec3 before = tl_v3_madd(g->points[0].p, -2, half_way(m, tl_press_row_of(m, c)));
+    tl_vec3 arm = tl_side_arm(m, tl_contact_sides(m, c).a, before);
     tl_vec3 du = tl_v3_add(by.way, tl_v3_cross(by.turn, arm));
     return tl_v3_dot(force, du) + tl_v3_dot(twist, by.turn);
 }
@@ -482,13 +480,12 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
  * that goes by slopes has stayed where it is. */
 static void note_way(tl_model *m, uint32_t c, tl_vec3 centre)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
     if (row->moved_at == m->cycles || row->by_slope)
         return;
     const tl_contact_motion by = tl_contact_moved(m, c);
-    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
-    tl_vec3 old = tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, TL_FIELD_SHEAR));
+    const tl_mat3 *turn = tl_side_rotation(m, tl_contact_sides(m, c).a);
+    tl_vec3 old = tl_columns_get(m->detect->points.p, tl_point_row(&m->detect->contacts, c, TL_FIELD_SHEAR));
     tl_vec3 passed = tl_v3_add(by.way, tl_v3_cross(by.turn, tl_m3_mul(turn, old)));
     old = tl_v3_madd(old, 0.5, tl_m3_tmul(turn, passed));
     row->half = tl_v3_scale(0.5, tl_v3_sub(centre, old));

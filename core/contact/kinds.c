@@ -43,11 +43,10 @@ static tl_spread patch_bounds(const tl_model *m, uint32_t c, tl_vec3 centre)
 static double patch_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
     uint32_t count = contacts->point_count[c];
     *at = tl_v3(0, 0, 0);
     for (uint32_t k = 0; k < count; k++)
-        *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(p->p, tl_point_row(contacts, c, k)));
+        *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)));
     double size = tl_contact_size(m, c);
     return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
 }

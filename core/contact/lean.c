@@ -9,7 +9,6 @@
 
 #include "contact/across_gap.h"
 #include "contact/cells.h"
-#include "contact/detection.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "narrow/corner.h"
@@ -298,7 +297,7 @@ tl_lean tl_contact_lean(const tl_model *m, uint32_t c, const tl_point_lanes *lan
     out.mean = out.leans ? by.mean : tl_contact_mean_lift(m, c);
     if (!out.leans)
         return out;
-    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+    const tl_mat3 *turn = tl_side_rotation(m, tl_contact_sides(m, c).a);
     tl_pair_pose b = pose_of(m, c);
     tl_vec3 g = tl_v3_madd(tl_v3_scale(by.slope[0], plane.t1), by.slope[1], plane.t2);
     tl_vec3 x = tl_m3_tmul(turn, by.about);

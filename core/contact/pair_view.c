@@ -5,16 +5,14 @@
 #include "model/joints.h"
 #include "narrow/flush.h"
 
-tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
+tl_pair_view tl_pair_view_at(const tl_model *m, uint32_t a, uint32_t b, tl_sides sides)
 {
     const tl_blocks *blocks = &m->blocks;
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t body_a = blocks->body[a], body_b = blocks->body[b];
-    const tl_mat3 *ra = &bodies->pose[body_a].r, *rb = &bodies->pose[body_b].r;
+    const tl_mat3 *ra = tl_side_rotation(m, sides.a), *rb = tl_side_rotation(m, sides.b);
     return (tl_pair_view){.a = blocks->shape[a],
                           .b = blocks->shape[b],
                           .turn = tl_m3_tproduct(ra, rb),
-                          .shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b)),
+                          .shift = tl_m3_tmul(ra, tl_sides_apart(m, sides)),
                           .size = fmin(blocks->size[a], blocks->size[b]),
                           .mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b])};
 }

@@ -2,26 +2,22 @@
 #ifndef TL_CONTACT_PAIR_VIEW_H
 #define TL_CONTACT_PAIR_VIEW_H
 
-#include "contact/detection.h"
-#include "model/model.h"
+#include "contact/sides.h"
 #include "narrow/narrow.h"
 #include "narrow/view.h"
 
-/* View of two blocks, and the odometers of their bodies, summed. */
-tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b);
-static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
+/* View of two blocks as they have these sides, of two by themselves, and of those of a contact. */
+tl_pair_view tl_pair_view_at(const tl_model *m, uint32_t a, uint32_t b, tl_sides sides);
+static inline tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
 {
-    return m->bodies.odometer[m->blocks.body[a]] + m->bodies.odometer[m->blocks.body[b]];
+    return tl_pair_view_at(m, a, b, tl_pair_sides(m, a, b));
 }
-/* The same of the blocks of a contact, and the size of the smaller one. */
 static inline tl_pair_view tl_contact_view(const tl_model *m, uint32_t contact)
 {
-    return tl_pair_view_of(m, m->detect->contacts.a[contact], m->detect->contacts.b[contact]);
+    const tl_contacts *c = &m->detect->contacts;
+    return tl_pair_view_at(m, c->a[contact], c->b[contact], tl_contact_sides(m, contact));
 }
-static inline double tl_contact_odometer(const tl_model *m, uint32_t contact)
-{
-    return tl_pair_odometer(m, m->detect->contacts.a[contact], m->detect->contacts.b[contact]);
-}
+/* Size of the smaller block of a contact. */
 static inline double tl_contact_size(const tl_model *m, uint32_t contact)
 {
     const tl_contacts *contacts = &m->detect->contacts;

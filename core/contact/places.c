@@ -4,17 +4,14 @@
 
 #include "base/columns.h"
 #include "base/extremes.h"
-#include "contact/detection.h"
-#include "contact/facing.h"
 #include "contact/kind.h"
+#include "contact/sides.h"
 #include "narrow/frame2.h"
 
 static tl_body_frames body_frames_of(const tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    return (tl_body_frames){
-        .ra = &m->bodies.pose[a].r, .rb = &m->bodies.pose[b].r, .d = tl_body_apart(&m->bodies, a, b)};
+    const tl_sides s = tl_contact_sides(m, c);
+    return (tl_body_frames){.ra = tl_side_rotation(m, s.a), .rb = tl_side_rotation(m, s.b), .d = tl_sides_apart(m, s)};
 }
 
 static tl_facing_place place_of(const tl_model *m, uint32_t c, const tl_body_frames *frames)
@@ -51,20 +48,17 @@ tl_vec3 tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_la
 
 tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t body_a = m->blocks.body[contacts->a[c]], body_b = m->blocks.body[contacts->b[c]];
-    const tl_pose *a = &m->bodies.pose[body_a], *b = &m->bodies.pose[body_b];
-    tl_vec3 apart = tl_body_apart(&m->bodies, body_a, body_b);
-    tl_vec3 way = tl_v3_sub(tl_v3_sub(b->v_moved, tl_v3_cross(b->w_moved, apart)), a->v_moved);
+    const tl_sides s = tl_contact_sides(m, c);
+    const tl_pose *a = tl_side_pose(m, s.a), *b = tl_side_pose(m, s.b);
+    tl_vec3 way = tl_v3_sub(tl_v3_sub(b->v_moved, tl_v3_cross(b->w_moved, tl_sides_apart(m, s))), a->v_moved);
     return (tl_contact_motion){tl_v3_scale(m->dt, way), tl_v3_scale(m->dt, tl_v3_sub(b->w_moved, a->w_moved))};
 }
 
 tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
     tl_body_frames frames = body_frames_of(m, contact);
     tl_facing_place place = place_of(m, contact, &frames);
-    return placed(&place, tl_columns_get(m->detect->points.p, tl_point_row(contacts, contact, k)));
+    return placed(&place, tl_columns_get(m->detect->points.p, tl_point_row(&m->detect->contacts, contact, k)));
 }
 
 void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap)
@@ -73,7 +67,7 @@ void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place
     tl_body_frames frames = body_frames_of(m, contact);
     tl_facing to = facing_of(m, contact, &frames);
     tl_facing_place at = place_of(m, contact, &frames);
-    tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[contacts->a[contact]]);
+    tl_vec3 from = tl_side_place(m, tl_contact_sides(m, contact).a);
     for (size_t k = 0; k < contacts->point_count[contact]; k++) {
         size_t row = tl_point_row(contacts, contact, k);
         tl_vec3 x = placed(&at, tl_columns_get(m->detect->points.p, row));
@@ -107,7 +101,6 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     const tl_facet *f = &contacts->facet[contact];
-    uint32_t body = m->blocks.body[contacts->a[contact]];
     tl_body_frames frames = body_frames_of(m, contact);
     tl_facing to = facing_of(m, contact, &frames);
     tl_facing_place place = place_of(m, contact, &frames);
@@ -126,5 +119,5 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
     if (tl_facet_is_field(f) && contacts->point_count[contact] > 0)
         *gap = -m->detect->press[contacts->press[contact]].press.deepest;
     *normal = f->last;
-    *point = tl_v3_madd(tl_body_place(&m->bodies, body), area > 0 ? 1 / area : 0, x);
+    *point = tl_v3_madd(tl_side_place(m, tl_contact_sides(m, contact).a), area > 0 ? 1 / area : 0, x);
 }

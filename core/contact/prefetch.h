@@ -5,8 +5,7 @@
 #define TL_CONTACT_PREFETCH_H
 
 #include "base/inline.h"
-#include "contact/detection.h"
-#include "model/model.h"
+#include "contact/sides.h"
 
 #include <stdint.h>
 
@@ -47,8 +46,9 @@ static inline bool tl_prefetch_bodies(const tl_model *m, uint32_t contact)
     uint32_t a = contacts->a[contact], b = contacts->b[contact];
     if (a >= m->blocks.table.rows || b >= m->blocks.table.rows)
         return false;
-    tl_prefetch(&m->bodies.pose[m->blocks.body[a]], sizeof *m->bodies.pose);
-    tl_prefetch(&m->bodies.pose[m->blocks.body[b]], sizeof *m->bodies.pose);
+    const tl_sides sides = tl_contact_sides(m, contact);
+    tl_prefetch(tl_side_pose(m, sides.a), sizeof(tl_pose));
+    tl_prefetch(tl_side_pose(m, sides.b), sizeof(tl_pose));
     tl_prefetch(&contacts->facet[contact], sizeof *contacts->facet);
     return true;
 }

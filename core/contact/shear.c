@@ -5,6 +5,7 @@
 #include "contact/kind.h"
 #include "contact/places.h"
 #include "contact/presses.h"
+#include "contact/sides.h"
 
 double tl_contact_area_of_points(const tl_detect *d, uint32_t c)
 {
@@ -18,7 +19,7 @@ tl_shear tl_shear_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+    const tl_mat3 *turn = tl_side_rotation(m, tl_contact_sides(m, c).a);
     tl_shear sum = {0};
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);

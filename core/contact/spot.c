@@ -1,8 +1,6 @@
-/* spot.c - where the blocks of a pair were against each other. Odometers count the motion of both together, as of
+/* spot.c - where the sides of a contact were against each other. Odometers count the motion of both together, as of
  * blocks that ride side by side on others; against each other these may not have moved at all. */
 #include "contact/spot.h"
-
-#include "model/model.h"
 
 #include <float.h>
 #include <talus/vmath.h>
@@ -15,17 +13,15 @@ typedef struct tl_relative {
     tl_quat turn;
 } tl_relative;
 
-static tl_relative relative(const tl_model *m, uint32_t block_a, uint32_t block_b)
+static tl_relative relative(const tl_model *m, tl_sides sides)
 {
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t a = m->blocks.body[block_a], b = m->blocks.body[block_b];
-    return (tl_relative){tl_m3_tmul(&bodies->pose[a].r, tl_body_apart(bodies, a, b)),
-                         tl_q_mul(tl_q_conj(bodies->q[a]), bodies->q[b])};
+    return (tl_relative){tl_m3_tmul(tl_side_rotation(m, sides.a), tl_sides_apart(m, sides)),
+                         tl_q_mul(tl_q_conj(tl_side_quaternion(m, sides.a)), tl_side_quaternion(m, sides.b))};
 }
 
-tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b, double remaining)
+tl_spot tl_spot_of(const tl_model *m, tl_sides sides, double remaining)
 {
-    tl_relative s = relative(m, block_a, block_b);
+    tl_relative s = relative(m, sides);
     return (tl_spot){{(float)s.centroid.x, (float)s.centroid.y, (float)s.centroid.z},
                      {(float)s.turn.w, (float)s.turn.x, (float)s.turn.y, (float)s.turn.z},
                      (float)remaining};
@@ -33,9 +29,9 @@ tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b, double
 
 /* The difference of two unit quaternions is 2 sin of a quarter of the angle between them. A quaternion and its negative
  * are the same rotation. */
-double tl_spot_moved(const tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b, double radius)
+double tl_spot_moved(const tl_model *m, const tl_spot *then, tl_sides sides, double radius)
 {
-    tl_relative now = relative(m, block_a, block_b);
+    tl_relative now = relative(m, sides);
     tl_vec3 centroid = {then->centroid[0], then->centroid[1], then->centroid[2]};
     tl_quat p = {then->turn[0], then->turn[1], then->turn[2], then->turn[3]}, q = now.turn;
     double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;

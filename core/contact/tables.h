@@ -3,12 +3,18 @@
 #define TL_CONTACT_TABLES_H
 
 #include "base/table.h"
-#include "contact/spot.h"
 #include "narrow/press.h"
 #include "narrow/press_slope.h"
 
 /* For a path length up to which something of a contact holds: it is found anew in any case. */
 #define TL_OUTDATED (-INFINITY)
+
+/* Where the sides of a contact were against each other: B in the frame of A, its centroid and its rotation, each to
+ * seven digits. */
+typedef struct tl_spot {
+    float centroid[3], turn[4];
+    float remaining; /* its blocks may move so far against each other, m, before its faces are to be chosen anew */
+} tl_spot;
 
 typedef struct tl_contacts {
     tl_table table;

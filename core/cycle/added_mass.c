@@ -13,7 +13,6 @@
 #include "cycle/added_mass.h"
 
 #include "cycle/contributors.h"
-#include "cycle/cycle_data.h"
 #include "model/options.h"
 
 #include <float.h>

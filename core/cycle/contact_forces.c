@@ -3,7 +3,6 @@
 
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
-#include "contact/detection.h"
 #include "contact/kind.h"
 #include "cycle/cycle_data.h"
 #include "cycle/undo.h"
@@ -114,13 +113,12 @@ static tl_status apply(tl_model *m)
 /* Block by block, the contacts of each in the order of the partner. */
 static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
-    const tl_detect *d = m->detect;
-    const tl_vec3 *force = d->contacts.force;
-    const uint32_t *b = d->contacts.b;
+    const tl_contacts *c = &m->detect->contacts;
+    const tl_vec3 *force = c->force;
     tl_acting sum = *on;
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
         uint32_t i = at.contact;
-        bool is_b = b[i] == at.block;
+        bool is_b = tl_contact_is_b(c, i, at.block);
         sum.force = tl_v3_madd(sum.force, is_b ? 1 : -1, force[i]);
         sum.moment = tl_v3_add(sum.moment, tl_contact_moment(m, i, is_b));
         sum.magnitude += tl_v3_norm(force[i]);
@@ -152,8 +150,7 @@ static tl_energies energies(tl_model *m)
 /* Sum of k A over the contacts of a body. */
 static double stiffness(const tl_model *m, uint32_t body)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
+    const tl_contacts *c = &m->detect->contacts;
     double sum = 0;
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
         uint32_t i = at.contact;
@@ -164,22 +161,20 @@ static double stiffness(const tl_model *m, uint32_t body)
     return sum;
 }
 
-/* The area of a contact for the time step, about the centroid of B's or of A's body. */
-static tl_spread bounds_of(const tl_model *m, uint32_t c, bool of_b)
+/* The area of a contact for the time step, about the centroid of the side that a block is on. */
+static tl_spread bounds_of(const tl_model *m, uint32_t c, uint32_t block)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    const tl_sides s = tl_contact_sides(m, c);
     tl_vec3 centre = {0, 0, 0};
-    if (of_b)
-        centre = tl_m3_tmul(&m->bodies.pose[a].r, tl_body_apart(&m->bodies, a, b));
+    if (tl_contact_is_b(&m->detect->contacts, c, block))
+        centre = tl_m3_tmul(tl_side_rotation(m, s.a), tl_sides_apart(m, s));
     return tl_contact_kind_of(m->detect, c)->place->bounds(m, c, centre);
 }
 
 /* Contacts without area have a law, too. */
 static void hold(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
+    const tl_contacts *c = &m->detect->contacts;
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
         uint32_t i = at.contact;
         if (c->law[i] == TL_NO_ROW)
@@ -187,7 +182,7 @@ static void hold(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
         double law = tl_law_stiffness(&m->joint_laws[c->law[i]]);
         sum->law = fmax(sum->law, law);
         if (points && c->point_count[i] > 0) {
-            tl_spread next = bounds_of(m, i, c->b[i] == at.block);
+            tl_spread next = bounds_of(m, i, at.block);
             sum->presses = true;
             sum->stiffness.sum += law * next.sum;
             sum->stiffness.r2 += law * next.r2;
@@ -211,7 +206,7 @@ static void hold_most(const tl_model *m, uint32_t body, tl_holding *sum)
             continue;
         tl_spread on = {c->area[i], c->area[i] * radius * radius};
         if (tl_contact_kind_of(d, i)->place->quick)
-            on = bounds_of(m, i, c->b[i] == at.block);
+            on = bounds_of(m, i, at.block);
         double k = tl_law_stiffness(&m->joint_laws[c->law[i]]);
         sum->law = fmax(sum->law, k);
         sum->stiffness.sum += k * on.sum;
@@ -219,27 +214,22 @@ static void hold_most(const tl_model *m, uint32_t body, tl_holding *sum)
     }
 }
 
-/* Speed at which the blocks of a contact come together there, over their overlap. */
+/* Speed at which the sides of a contact come together there, over their overlap. */
 static double approach_of(const tl_model *m, uint32_t c, double law)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    const tl_sides s = tl_contact_sides(m, c);
     tl_vec3 point;
     double overlap = tl_contact_kind_of(m->detect, c)->place->pressed(m, c, law, &point);
-    tl_vec3 arm = tl_m3_mul(&bodies->pose[a].r, point);
-    tl_vec3 arm_b = tl_v3_sub(arm, tl_body_apart(bodies, a, b));
-    tl_vec3 v_a = tl_v3_add(bodies->v[a], tl_v3_cross(bodies->w[a], arm));
-    tl_vec3 v_b = tl_v3_add(bodies->v[b], tl_v3_cross(bodies->w[b], arm_b));
-    double closing = tl_v3_dot(tl_v3_sub(v_a, v_b), contacts->facet[c].last);
+    tl_vec3 arm = tl_side_arm(m, s.a, point), arm_b = tl_v3_sub(arm, tl_sides_apart(m, s));
+    tl_vec3 away = tl_v3_sub(tl_side_velocity(m, s.a, arm), tl_side_velocity(m, s.b, arm_b));
+    double closing = tl_v3_dot(away, m->detect->contacts.facet[c].last);
     return overlap > 0 ? fabs(closing) / overlap : INFINITY;
 }
 
 /* Highest speed at which a contact of a body goes on, over its overlap, 1/s. */
 static double approach(const tl_model *m, uint32_t body)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
+    const tl_contacts *c = &m->detect->contacts;
     double out = 0;
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
         uint32_t i = at.contact;

@@ -6,7 +6,6 @@
 
 #include "base/parallel.h"
 #include "contact/contacts.h"
-#include "cycle/cycle_data.h"
 #include "cycle/undo.h"
 #include "plugin/loader.h"
 

@@ -17,7 +17,6 @@
 #include "cycle/energy.h"
 
 #include "contact/detection.h"
-#include "cycle/cycle_data.h"
 
 #include <stdio.h>
 #include <string.h>

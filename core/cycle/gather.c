@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "contact/detection.h"
 #include "cycle/contributors.h"
-#include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 #include "cycle/rest.h"
 #include "model/loads.h"

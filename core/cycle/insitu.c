@@ -8,7 +8,6 @@
 #include "contact/across_gap.h"
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
-#include "contact/detection.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/store.h"
@@ -72,7 +71,7 @@ static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_point_lanes *lanes = &m->detect->lanes[0];
-    double centroid_z = m->origin.z + tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]).z;
+    double centroid_z = m->origin.z + tl_side_place(m, tl_contact_sides(m, c).a).z;
     tl_contact_places(m, c, lanes);
     m->detect->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
     if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
@@ -242,8 +241,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
         return status;
     if (!tl_detect_hold_initial(m->detect))
         return tl_fail_memory(&m->error);
-    const tl_contacts *c = &m->detect->contacts;
-    for (uint32_t i = 0; i < c->table.rows; i++)
+    for (uint32_t i = 0; i < m->detect->contacts.table.rows; i++)
         load_contact(m, &insitu, i);
     m->split_count = 0; /* new faces carry what the stress says, and no longer what holds parts as the whole went on */
     m->laws++;          /* contacts hold another energy */

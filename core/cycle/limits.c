@@ -15,7 +15,6 @@
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
-#include "cycle/cycle_data.h"
 #include "cycle/kick.h"
 #include "cycle/undo.h"
 #include "geometry/measure.h"

@@ -19,7 +19,6 @@
 
 #include "base/columns.h"
 #include "base/parallel.h"
-#include "cycle/cycle_data.h"
 #include "cycle/kick.h"
 #include "cycle/turn.h"
 

@@ -3,7 +3,6 @@
 
 #include "base/parallel.h"
 #include "cycle/contributors.h"
-#include "cycle/cycle_data.h"
 #include "cycle/split.h"
 #include "cycle/undo.h"
 #include "model/rows.h"

@@ -4,7 +4,6 @@
 
 #include "base/clock.h"
 #include "contact/detection.h"
-#include "cycle/cycle_data.h"
 
 #include <string.h>
 

@@ -6,7 +6,6 @@
 #include "cycle/remarks.h"
 
 #include "contact/contacts.h"
-#include "cycle/cycle_data.h"
 #include "cycle/limits.h"
 #include "detect/overlap.h"
 #include "model/joints.h"

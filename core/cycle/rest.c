@@ -15,7 +15,6 @@
 #include "cycle/rest.h"
 
 #include "cycle/contributors.h"
-#include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 
 #include <stdatomic.h>

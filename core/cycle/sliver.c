@@ -8,8 +8,7 @@
 #include "cycle/sliver.h"
 
 #include "base/groups.h"
-#include "contact/detection.h"
-#include "cycle/cycle_data.h"
+#include "contact/sides.h"
 #include "model/body_shape.h"
 
 #include <stdio.h>
@@ -84,9 +83,9 @@ static void find_largest(const tl_model *m, const double *volume, uint32_t *of, 
     for (uint32_t body = 0; body < bodies; body++)
         of[body] = largest[body] = body;
     for (uint32_t i = 0; i < c->table.rows; i++) {
-        const uint32_t a = m->blocks.body[c->a[i]], b = m->blocks.body[c->b[i]];
-        if (c->point_count[i] && c->kind[i] == TL_FACET_PATCH && tl_bodies_may_join(&m->bodies, a, b))
-            tl_put_together(of, a, b);
+        const tl_sides on = tl_contact_bodies(m, i);
+        if (c->point_count[i] && c->kind[i] == TL_FACET_PATCH && tl_bodies_may_join(&m->bodies, on.a, on.b))
+            tl_put_together(of, on.a, on.b);
     }
     for (uint32_t body = 0; body < bodies; body++) {
         uint32_t *best = &largest[tl_first_of(of, body)];

@@ -21,11 +21,9 @@
 #include "base/exact.h"
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
-#include "contact/detection.h"
 #include "contact/kind.h"
 #include "contact/places.h"
 #include "contact/store.h"
-#include "cycle/cycle_data.h"
 #include "cycle/gather.h"
 #include "model/inertia.h"
 
@@ -407,11 +405,11 @@ static uint32_t first_of(const struct tl_split_work *w, uint32_t part)
 static bool is_inner(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
     if (tl_facet_is_field(&contacts->facet[c]) || contacts->point_count[c] == 0 || contacts->law[c] == TL_NO_ROW)
         return false;
-    tl_id whole = whole_of(m, a);
-    return whole != TL_NO_ID && whole == whole_of(m, b);
+    const tl_sides on = tl_contact_bodies(m, c);
+    tl_id whole = whole_of(m, on.a);
+    return whole != TL_NO_ID && whole == whole_of(m, on.b);
 }
 
 /* Lists the contacts on new faces, in the order of their blocks, and joins the parts that they hold together. */
@@ -425,7 +423,7 @@ static bool list_contacts(const tl_model *m, struct tl_split_work *w)
             if (contacts->a[c] != at.block || !is_inner(m, c))
                 continue;
             tl_split_contact found = {
-                .row = c, .a = (uint32_t)i, .b = part_of(w, m->blocks.body[contacts->b[c]]), .first = w->contact_count};
+                .row = c, .a = (uint32_t)i, .b = part_of(w, tl_contact_bodies(m, c).b), .first = w->contact_count};
             if (!tl_grow(&w->contacts, &capacity, w->contact_count + 1, sizeof *w->contacts))
                 return false;
             w->contacts[w->contact_count++] = found;
@@ -580,9 +578,9 @@ static void add_stress(const tl_model *m, uint32_t body, tl_vec3 centre, tl_sym3
         if (is_inner(m, c))
             continue;
         tl_contact_places(m, c, lanes);
-        tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[c]]);
+        tl_vec3 from = tl_side_place(m, tl_contact_sides(m, c).a);
         size_t count = tl_contact_areas(d, c);
-        double sign = d->contacts.b[c] == at.block ? 1 : -1;
+        double sign = tl_contact_sign(&d->contacts, c, at.block);
         for (size_t k = 0; k < count; k++) {
             size_t i = tl_point_row(&d->contacts, c, k);
             tl_vec3 f =

@@ -10,10 +10,8 @@
 #include "cycle/timestep.h"
 
 #include "base/columns.h"
-#include "base/parallel.h"
-#include "contact/detection.h"
+#include "contact/sides.h"
 #include "cycle/added_mass.h"
-#include "cycle/cycle_data.h"
 #include "cycle/limits.h"
 #include "cycle/prepare.h"
 #include "cycle/remarks.h"
@@ -329,8 +327,8 @@ static bool touch_new_points(tl_model *m, uint8_t least)
     for (size_t i = 0; i < c->table.rows; i++) {
         if (c->new_points[i] < least)
             continue;
-        d->touched[m->blocks.body[c->a[i]]] = true;
-        d->touched[m->blocks.body[c->b[i]]] = true;
+        const tl_sides on = tl_contact_bodies(m, (uint32_t)i);
+        d->touched[on.a] = d->touched[on.b] = true;
         any = true;
         if (c->point_count[i] == 0) /* the laws will not see it */
             c->new_points[i] = TL_POINTS_STAY;
@@ -428,7 +426,7 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
         double k = tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
         /* most are not stiffer: what is dearer to know is asked last */
         if (k > found.value &&
-            (tl_body_counts(m, m->blocks.body[c->a[i]]) || tl_body_counts(m, m->blocks.body[c->b[i]])))
+            (tl_body_counts(m, tl_contact_bodies(m, i).a) || tl_body_counts(m, tl_contact_bodies(m, i).b)))
             found = (tl_row_value){k, i};
     }
     keep_extreme(&s->found[thread], found);
@@ -669,7 +667,7 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
     if (by.contact != TL_NO_ROW) {
         /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
         const tl_contacts *contacts = &m->detect->contacts;
-        bool a_free = tl_body_counts(m, m->blocks.body[contacts->a[by.contact]]);
+        bool a_free = tl_body_counts(m, tl_contact_bodies(m, by.contact).a);
         report->partner = m->blocks.id[a_free ? contacts->a[by.contact] : contacts->b[by.contact]];
     }
     return TL_OK;

@@ -14,8 +14,6 @@
  * need no undoing, for made again in the same places they change nothing. The move cannot fail. */
 #include "cycle/undo.h"
 
-#include "cycle/cycle_data.h"
-
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,6 @@
 /* walk.c - the entries of what the phases of a step keep. What a step may undo is no entry: no call ends within it. */
 #include "cycle/walk.h"
 
-#include "cycle/cycle_data.h"
-
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "cycle.", c, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "cycle.", c, member)
 #define LIST(keep, member, count, capacity, bytes)                                                                     \

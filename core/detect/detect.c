@@ -459,8 +459,8 @@ static void touch(tl_model *m, uint32_t row)
     if (d->rows_changed && d->contacts.pending[row] == TL_PENDING_DIE)
         return;
     d->any_touched = true;
-    d->touched[m->blocks.body[d->contacts.a[row]]] = true;
-    d->touched[m->blocks.body[d->contacts.b[row]]] = true;
+    const tl_sides on = tl_contact_bodies(m, row);
+    d->touched[on.a] = d->touched[on.b] = true;
 }
 
 /* Takes out the dead and finds room for those that are new or have grown; false when there is none. Backward,
@@ -539,13 +539,12 @@ static bool lacked_memory(tl_detect *d)
 static tl_status settle(tl_model *m)
 {
     tl_detect *d = m->detect;
-    tl_contacts *c = &d->contacts;
     size_t born = 0;
     tl_contacts_free_spare(d, m->cycles);
     tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
-    if (born == 0 && !d->rows_changed && !some_pending(c))
+    if (born == 0 && !d->rows_changed && !some_pending(&d->contacts))
         return TL_OK;
     d->any_without_rows = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {

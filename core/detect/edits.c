@@ -240,17 +240,13 @@ static tl_cut_side side_of(const tl_model *m, const rows_scratch *scratch, uint3
 {
     tl_id id = m->detect->known_blocks[seen].id;
     uint32_t row = scratch->row[seen];
-    if (row == TL_NO_ROW) {
-        const tl_cut_part *part = &m->cut_parts[scratch->part[seen]];
-        uint32_t body = m->blocks.body[tl_block_row_quiet(m, part->id)];
-        return (tl_cut_side){.id = id, .r = &part->r, .place = part->place, .body = body};
-    }
-    uint32_t body = m->blocks.body[row];
+    const tl_cut_part *part = row == TL_NO_ROW ? &m->cut_parts[scratch->part[seen]] : NULL;
+    uint32_t side = tl_block_side(m, part ? tl_block_row_quiet(m, part->id) : row);
     return (tl_cut_side){.id = id,
-                         .r = &m->bodies.pose[body].r,
-                         .place = tl_body_place(&m->bodies, body),
-                         .body = body,
-                         .reframed = tl_block_is_new(m, row)};
+                         .r = part ? &part->r : tl_side_rotation(m, side),
+                         .place = part ? part->place : tl_side_place(m, side),
+                         .side = side,
+                         .reframed = !part && tl_block_is_new(m, row)};
 }
 
 /* Keeps what contacts of blocks that were cut leave; false when out of memory (nothing changed). */

@@ -30,11 +30,9 @@
 static bool is_calm(const tl_model *m, uint32_t c)
 {
     const tl_press_row *row = tl_press_row_of(m, c);
-    const tl_contacts *contacts = &m->detect->contacts;
     double size = tl_contact_size(m, c);
-    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
     tl_contact_motion by = tl_contact_moved(m, c);
-    tl_vec3 there = tl_v3_cross(by.turn, tl_m3_mul(turn, row->press.point));
+    tl_vec3 there = tl_v3_cross(by.turn, tl_side_arm(m, tl_contact_sides(m, c).a, row->press.point));
     return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
 }
 
@@ -49,12 +47,11 @@ static double bonded_tilt(const tl_model *m, uint32_t c)
 /* How far apart the blocks may be while faces press that are moved so. */
 static double reach_of(const tl_model *m, uint32_t c, const tl_manifold_before *before)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
     double size = tl_contact_size(m, c);
     const tl_plane *face = before->leans ? before->lean : NULL;
     tl_vec3 n = {0, 0, 0};
     if (face)
-        n = m->blocks.shape[contacts->a[c]]->plane[before->shifted.a].normal;
+        n = m->blocks.shape[m->detect->contacts.a[c]]->plane[before->shifted.a].normal;
     return tl_lean_reach(before->shift, face, n, size);
 }
 

@@ -95,34 +95,33 @@ void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
 }
 
 /* The region of a contact's blocks; false: out of memory. */
-static bool find_region(tl_model *m, uint32_t a, uint32_t b, tl_pair_view *view, tl_region *region)
+static bool find_region(tl_model *m, uint32_t contact, tl_pair_view *view, tl_region *region)
 {
     tl_narrow_scratch *scratch = &m->detect->narrow[0];
-    *view = tl_pair_view_of(m, a, b);
+    *view = tl_contact_view(m, contact);
     return tl_pair_place(view, scratch) && tl_region_find(view, 0, scratch, region);
 }
 
 bool tl_overlap_measure(tl_model *m, uint32_t contact, tl_overlap_share *out)
 {
     const tl_contacts *c = &m->detect->contacts;
-    uint32_t a = c->a[contact], b = c->b[contact];
     tl_pair_view view;
     tl_region region;
-    if (!find_region(m, a, b, &view, &region))
+    if (!find_region(m, contact, &view, &region))
         return false;
-    double of_a = width_along(m, m->blocks.body[a], region.n);
-    double of_b = width_along(m, m->blocks.body[b], tl_m3_tmul(&view.turn, region.n));
-    *out = (tl_overlap_share){-region.gap, fmin(of_a, of_b), of_a < of_b ? a : b};
+    const tl_sides bodies = tl_contact_bodies(m, contact);
+    double of_a = width_along(m, bodies.a, region.n);
+    double of_b = width_along(m, bodies.b, tl_m3_tmul(&view.turn, region.n));
+    *out = (tl_overlap_share){-region.gap, fmin(of_a, of_b), of_a < of_b ? c->a[contact] : c->b[contact]};
     return true;
 }
 
 static tl_status report(tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
-    uint32_t a = c->a[contact], b = c->b[contact];
     tl_pair_view view;
     tl_region region;
-    if (!find_region(m, a, b, &view, &region))
+    if (!find_region(m, contact, &view, &region))
         return tl_fail_memory(&m->error);
     char name[320];
     tl_contact_describe(m, contact, name, sizeof name);
@@ -137,7 +136,8 @@ static tl_status report(tl_model *m, uint32_t contact)
                    "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a "
                    "contact can tell how to part them: were they placed into each other, is a "
                    "stiffness too low for what presses, or the time step too large?",
-                   (long long)m->cycles + 1, name, -region.gap, deepest(m, &view, region.n, a, b, born));
+                   (long long)m->cycles + 1, name, -region.gap,
+                   deepest(m, &view, region.n, c->a[contact], c->b[contact], born));
 }
 
 tl_status tl_overlaps_check(tl_model *m)

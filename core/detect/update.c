@@ -9,13 +9,12 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/cut_contacts.h"
-#include "contact/detection.h"
 #include "contact/facing.h"
 #include "contact/handover.h"
 #include "contact/lean.h"
-#include "contact/pair_view.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
+#include "contact/spot.h"
 #include "contact/store.h"
 #include "detect/fields.h"
 #include "detect/grazing.h"
@@ -129,7 +128,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     if (!tl_kind_find(m, contacts->a[c], contacts->b[c], &view, &region, &rule, &before, scratch))
         return false;
     contacts->faces_valid_to[c] = scratch->reframed ? TL_OUTDATED : odometer + g->valid;
-    contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);
+    contacts->spot[c] = tl_spot_of(m, tl_contact_sides(m, c), g->valid);
     const double over = row ? TL_PARTED * before.reach : before.holds ? 0 : before.over;
     if (g->point_count == 0 && !is_near(&view, region.gap, over, &way)) {
         part(m, c, way);
@@ -248,9 +247,9 @@ static double points_moved(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[c];
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    const tl_mat3 *ra = &m->bodies.pose[a].r, *rb = &m->bodies.pose[b].r;
-    tl_facing_place by_b = tl_facing_ride(ra, rb, tl_body_apart(&m->bodies, a, b), &f->laid.turn, f->laid.shift, 1);
+    const tl_sides s = tl_contact_sides(m, c);
+    const tl_mat3 *ra = tl_side_rotation(m, s.a), *rb = tl_side_rotation(m, s.b);
+    tl_facing_place by_b = tl_facing_ride(ra, rb, tl_sides_apart(m, s), &f->laid.turn, f->laid.shift, 1);
     double most = 0;
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         tl_vec3 p = tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k));
@@ -260,19 +259,16 @@ static double points_moved(const tl_model *m, uint32_t c)
     return sqrt(most);
 }
 
-/* How far from the centroid of B's body the points of either block may lie. */
-static double reach_of(const tl_model *m, uint32_t c)
+/* How far from the centroid of B the points of either side may lie. */
+static double reach_of(const tl_model *m, tl_sides s)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    double away = tl_v3_norm(tl_body_apart(&m->bodies, a, b));
-    return fmax(m->bodies.radius[b], away + m->bodies.radius[a]);
+    return fmax(tl_side_radius(m, s.b), tl_v3_norm(tl_sides_apart(m, s)) + tl_side_radius(m, s.a));
 }
 
 static double faces_moved(const tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    return tl_spot_moved(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
+    const tl_sides s = tl_contact_sides(m, c);
+    return tl_spot_moved(m, &m->detect->contacts.spot[c], s, reach_of(m, s));
 }
 
 /* Way left to go before the faces of a patch are to be chosen anew. */
@@ -299,7 +295,7 @@ static void contact_allow_reuse(tl_model *m, uint32_t c)
         contacts->points_valid_to[c] = tl_contact_odometer(m, c) + most;
     if (!patch)
         return;
-    contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], way_of_faces(m, c));
+    contacts->spot[c] = tl_spot_of(m, tl_contact_sides(m, c), way_of_faces(m, c));
 }
 
 /* Closure of a patch, or stretch of its bond, where that is least: normal stress over kn, initial stress included. */
@@ -329,11 +325,10 @@ static double way_of_points(const tl_model *m, uint32_t c)
 /* Whether the odometers have not run out, or the blocks of a patch have some way left to go against each other. */
 static bool is_valid(const tl_model *m, uint32_t c, double *valid_to, double way_left(const tl_model *m, uint32_t c))
 {
-    const tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_contact_odometer(m, c);
     if (odometer <= *valid_to)
         return true;
-    if (*valid_to == TL_OUTDATED || !is_patch(contacts, c))
+    if (*valid_to == TL_OUTDATED || !is_patch(&m->detect->contacts, c))
         return false;
     double left = way_left(m, c);
     if (left > 0)
@@ -543,9 +538,8 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 
 void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
 {
-    tl_contacts *contacts = &m->detect->contacts;
     tl_narrow_scratch *scratch = &m->detect->narrow[thread];
-    if (contacts->pending[c] == TL_PENDING_DIE)
+    if (m->detect->contacts.pending[c] == TL_PENDING_DIE)
         return;
     tl_press_reframe(m, c);
     scratch->reframed = true;
@@ -629,9 +623,8 @@ static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, bool corners, t
     double size = m->blocks.size[a] < m->blocks.size[b] ? m->blocks.size[a] : m->blocks.size[b];
     tl_batch_add(batch, lane, m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib, size,
                  contacts->holds_over_gap[c] ? INFINITY : TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
-    uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
-    tl_batch_between(batch, lane, &m->bodies.pose[body_a].r, &m->bodies.pose[body_b].r,
-                     tl_body_apart(&m->bodies, body_a, body_b));
+    const tl_sides s = tl_contact_sides(m, c);
+    tl_batch_between(batch, lane, tl_side_rotation(m, s.a), tl_side_rotation(m, s.b), tl_sides_apart(m, s));
     return true;
 }
 

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "contact/body_contacts.h"
-#include "contact/detection.h"
+#include "contact/sides.h"
 #include "detect/detect.h"
 #include "geometry/point2.h"
 #include "geometry/seam.h"
@@ -569,7 +569,7 @@ static tl_vec3 acting_on(const tl_model *m, uint32_t body)
     tl_body_load load = tl_load_of(&m->bodies, body);
     tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
-        force = tl_v3_madd(force, c->b[at.contact] == at.block ? 1 : -1, c->force[at.contact]);
+        force = tl_v3_madd(force, tl_contact_sign(c, at.contact, at.block), c->force[at.contact]);
     return force;
 }
 

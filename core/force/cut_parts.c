@@ -20,9 +20,9 @@
 #include "force/cut_parts.h"
 
 #include "base/columns.h"
-#include "contact/detection.h"
 #include "contact/places.h"
 #include "contact/shear.h"
+#include "contact/sides.h"
 #include "contact/store.h"
 #include "force/joint_laws.h"
 #include "force/partly_open.h"
@@ -186,11 +186,11 @@ static void put_motion(const tl_point_lanes *lanes, size_t k, tl_vec3 du)
     tl_columns_put(lanes->du_s, k, tl_v3_madd(du, -lanes->du_n[k], n));
 }
 
-/* How far a body has carried a place in the last step. */
-static tl_vec3 carried_by(const tl_model *m, uint32_t body, tl_vec3 place)
+/* How far a side has carried a place in the last step. */
+static tl_vec3 carried_by(const tl_model *m, uint32_t side, tl_vec3 place)
 {
-    const tl_pose *pose = &m->bodies.pose[body];
-    tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, body));
+    const tl_pose *pose = tl_side_pose(m, side);
+    tl_vec3 arm = tl_v3_sub(place, tl_side_place(m, side));
     return tl_v3_scale(m->dt, tl_v3_add(pose->v_moved, tl_v3_cross(pose->w_moved, arm)));
 }
 
@@ -212,7 +212,7 @@ void tl_cut_contact_foresee(tl_model *m, uint32_t c, tl_cut_contact *cut, const 
         tl_columns_put(lanes->normal, k, n);
         tl_columns_put(&lanes->before[1], k, tl_v3_scale(points[k].area, points[k].shear));
         lanes->closure[k] = points[k].closure;
-        put_motion(lanes, k, tl_v3_sub(carried_by(m, b->body, place), carried_by(m, a->body, place)));
+        put_motion(lanes, k, tl_v3_sub(carried_by(m, b->side, place), carried_by(m, a->side, place)));
     }
     pressing press;
     if (!ask_patch(m, c, lanes, &press))
@@ -270,7 +270,7 @@ static size_t point_count(const parts *of, size_t i)
 static tl_vec3 find_places(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 {
     tl_contact_places(m, c, lanes);
-    return tl_body_place(&m->bodies, m->blocks.body[m->detect->contacts.a[c]]);
+    return tl_side_place(m, tl_contact_sides(m, c).a);
 }
 
 /* Gives the points of a part closure and shear beside what they have taken over. */

@@ -21,8 +21,8 @@
 #include "base/columns.h"
 #include "base/inside.h"
 #include "contact/across_gap.h"
-#include "contact/detection.h"
 #include "contact/presses.h"
+#include "contact/sides.h"
 #include "force/closures.h"
 #include "force/follow.h"
 
@@ -364,7 +364,7 @@ static void sum_fields(const tl_model *m, const tl_law *law, const tl_simd_group
             continue;
         const tl_press_row *row = &d->press[contacts->press[c]];
         const tl_press *press = &row->press;
-        const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+        const tl_mat3 *turn = tl_side_rotation(m, tl_contact_sides(m, c).a);
         double f_n = p->f_n[i], same = p->f_n[i + torsion];
         tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
         tl_vec3 shear = tl_columns_get(p->f_s, i);

@@ -20,8 +20,8 @@
 
 #include "base/columns.h"
 #include "base/series.h"
-#include "contact/detection.h"
 #include "contact/facing.h"
+#include "contact/sides.h"
 #include "force/turning.h"
 
 #include <assert.h>
@@ -397,17 +397,16 @@ static void turn_states(tl_model *m, uint32_t contact, tl_vec3 before, tl_vec3 n
 /* The bodies and facets of the contacts of a SIMD group; lanes without one do as another. false when there are none. */
 static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows *rows)
 {
-    const tl_contacts *c = &m->detect->contacts;
-    const tl_pose *pose = m->bodies.pose;
     size_t some = 0;
     while (some < TL_LANES && group->contact[some] == TL_NO_ROW)
         some++;
     rows->dt = m->dt;
     for (size_t l = 0; l < TL_LANES && some < TL_LANES; l++) {
         uint32_t contact = group->contact[group->contact[l] == TL_NO_ROW ? some : l];
-        rows->a[l] = &pose[m->blocks.body[c->a[contact]]].r.m[0][0];
-        rows->b[l] = &pose[m->blocks.body[c->b[contact]]].r.m[0][0];
-        rows->facet[l] = &c->facet[contact].na.x;
+        const tl_sides s = tl_contact_sides(m, contact);
+        rows->a[l] = &tl_side_rotation(m, s.a)->m[0][0];
+        rows->b[l] = &tl_side_rotation(m, s.b)->m[0][0];
+        rows->facet[l] = &m->detect->contacts.facet[contact].na.x;
     }
     return some < TL_LANES;
 }
@@ -415,20 +414,17 @@ static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows
 /* The same of what field contacts keep. */
 static void look_up_fields(const tl_model *m, const tl_simd_group *group, field_rows *fields)
 {
-    const tl_contacts *c = &m->detect->contacts;
     memset(fields, 0, sizeof *fields);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t contact = group->contact[l];
-        uint32_t press = contact == TL_NO_ROW ? TL_NO_ROW : c->press[contact];
+        uint32_t press = contact == TL_NO_ROW ? TL_NO_ROW : m->detect->contacts.press[contact];
         if (press == TL_NO_ROW)
             continue;
         const tl_press_row *row = &m->detect->press[press];
         fields->radius[l] = row->press.radius;
         fields->opened[l] = row->opening[TL_FIELD_TORSION] - row->opening[TL_FIELD_SHEAR];
-        if (row->moved_at == m->cycles) {
-            const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[c->a[contact]]].r;
-            tl_lanes3_put(&fields->half, l, tl_m3_mul(turn, row->half));
-        }
+        if (row->moved_at == m->cycles)
+            tl_lanes3_put(&fields->half, l, tl_side_arm(m, tl_contact_sides(m, contact).a, row->half));
     }
 }
 

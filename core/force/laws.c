@@ -5,7 +5,6 @@
 #include "force/laws.h"
 
 #include "base/columns.h"
-#include "base/parallel.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/handover.h"

@@ -2,7 +2,6 @@
 #include "io/json.h"
 
 #include "base/number.h"
-#include "io/pieces.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -13,10 +13,8 @@
 #include "io/extra_fields.h"
 #include "io/json.h"
 #include "io/page_asset.h"
-#include "io/pieces.h"
 #include "io/scene.h"
 #include "model/options.h"
-#include "state/outputs.h"
 
 #include <errno.h>
 #include <fcntl.h>

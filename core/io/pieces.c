@@ -5,7 +5,6 @@
 #include "io/pieces.h"
 
 #include "base/error.h"
-#include "base/output_file.h"
 #include "base/parallel.h"
 
 #include <errno.h>

@@ -11,7 +11,6 @@
 #include "force/bear.h"
 #include "io/extra_fields.h"
 #include "io/json.h"
-#include "io/pieces.h"
 #include "io/scene_put.h"
 #include "io/verdict.h"
 #include "model/joints.h"

@@ -3,8 +3,8 @@
 #include "io/verdict.h"
 
 #include "base/groups.h"
-#include "contact/detection.h"
 #include "contact/places.h"
+#include "contact/sides.h"
 #include "cycle/cycle_data.h"
 #include "cycle/rest.h"
 #include "force/joint_laws.h"
@@ -240,7 +240,7 @@ static void add_point(means *to, double weight, tl_vec3 point, tl_vec3 passed)
 static void add_forces(const tl_model *m, uint32_t contact, double sign, means *to)
 {
     const tl_detect *d = m->detect;
-    const tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[contact]]);
+    const tl_vec3 from = tl_side_place(m, tl_contact_sides(m, contact).a);
     means own = {0};
     for (size_t k = 0; k < tl_point_count(m, contact); k++) {
         const double force = fabs(d->points.f_n[tl_point_row(&d->contacts, contact, k)]);
@@ -299,10 +299,9 @@ static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_cont
         return false;
     }
     for (size_t i = 0; i < count; i++) {
-        const uint32_t a = m->blocks.body[m->detect->contacts.a[rows[i]]];
-        const uint32_t b = m->blocks.body[m->detect->contacts.b[rows[i]]];
+        const tl_sides on = tl_contact_bodies(m, rows[i]);
         if (facts[i].area > 0)
-            list_of[many++] = a < b ? (between){a, b, i, false} : (between){b, a, i, true};
+            list_of[many++] = on.a < on.b ? (between){on.a, on.b, i, false} : (between){on.b, on.a, i, true};
     }
     qsort(list_of, many, sizeof *list_of, compare_between);
     for (size_t i = 0; i < many; i++) {

@@ -41,10 +41,9 @@
 #include "base/output_file.h"
 #include "base/pages.h"
 #include "base/parallel.h"
-#include "contact/detection.h"
+#include "contact/sides.h"
 #include "geometry/measure.h"
 #include "io/extra_fields.h"
-#include "io/pieces.h"
 #include "io/vtk_file.h"
 #include "query/contact_fields.h"
 #include "query/contact_polygons.h"
@@ -445,11 +444,9 @@ static unsigned char *put_displacement(const tl_model *m, uint32_t block, tl_vec
 static unsigned char *put_contact(const joints *j, size_t i, corner_fn of, unsigned char *to)
 {
     const tl_model *m = j->model;
-    uint32_t block = m->detect->contacts.a[j->rows[j->contact[i]]], body = m->blocks.body[block];
-    for (uint32_t k = j->of.start[i]; k < j->of.start[i + 1]; k++) {
-        tl_vec3 arm = tl_v3_sub(j->of.corner[k], tl_body_place(&m->bodies, body));
-        to = of(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm), to);
-    }
+    uint32_t contact = j->rows[j->contact[i]], side = tl_contact_sides(m, contact).a;
+    for (uint32_t k = j->of.start[i]; k < j->of.start[i + 1]; k++)
+        to = of(m, m->detect->contacts.a[contact], tl_side_local(m, side, j->of.corner[k]), to);
     return to;
 }
 

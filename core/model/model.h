@@ -280,17 +280,11 @@ static inline tl_vec3 tl_body_local(const tl_bodies *b, uint32_t body, tl_vec3 p
     return tl_m3_tmul(&b->pose[body].r, tl_v3_sub(place, tl_body_place(b, body)));
 }
 
-/* From body a's centroid to body b's. The references are subtracted first, so that a small relative
+/* From a centroid a to b. The references are subtracted first, so that a small relative
  * displacement keeps its digits. */
 static inline tl_vec3 tl_apart(tl_vec3 x_ref_a, tl_vec3 u_a, tl_vec3 x_ref_b, tl_vec3 u_b)
 {
     return tl_v3_add(tl_v3_sub(x_ref_b, x_ref_a), tl_v3_sub(u_b, u_a));
-}
-
-static inline tl_vec3 tl_body_apart(const tl_bodies *bodies, uint32_t a, uint32_t b)
-{
-    const tl_pose *p = &bodies->pose[a], *q = &bodies->pose[b];
-    return tl_apart(p->x_ref, p->u, q->x_ref, q->u);
 }
 
 /* Present place of a point of a shape, in the user's coordinates. */

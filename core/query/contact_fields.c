@@ -5,6 +5,7 @@
 #include "contact/body_contacts.h"
 #include "contact/index.h"
 #include "contact/places.h"
+#include "contact/sides.h"
 #include "contact/store.h"
 #include "detect/detect.h"
 #include "model/joints.h"
@@ -165,18 +166,12 @@ tl_contact_counts tl_model_contact_counts(const tl_model *m)
     return counts;
 }
 
-/* Displacement of a block's point that is now at x, relative to the model's origin. */
-static tl_vec3 displacement_at(const tl_model *m, uint32_t block, tl_vec3 x)
-{
-    uint32_t body = m->blocks.body[block];
-    tl_vec3 arm = tl_v3_sub(x, tl_body_place(&m->bodies, body));
-    return tl_block_point_displacement(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm));
-}
-
 tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x)
 {
     const tl_contacts *c = &m->detect->contacts;
-    return tl_v3_sub(displacement_at(m, c->b[contact], x), displacement_at(m, c->a[contact], x));
+    const tl_sides s = tl_contact_sides(m, contact);
+    tl_vec3 moved_a = tl_block_point_displacement(m, c->a[contact], tl_side_local(m, s.a, x));
+    return tl_v3_sub(tl_block_point_displacement(m, c->b[contact], tl_side_local(m, s.b, x)), moved_a);
 }
 
 int64_t tl_contact_number(tl_contact_name name)

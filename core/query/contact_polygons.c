@@ -2,7 +2,6 @@
 #include "query/contact_polygons.h"
 
 #include "base/parallel.h"
-#include "contact/detection.h"
 #include "contact/kind.h"
 #include "contact/pair_view.h"
 #include "narrow/place.h"
@@ -35,24 +34,26 @@ static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl
            tl_contact_kind_of(m->detect, c)->place->show(m, c, &view, scratch, surface);
 }
 
-/* From the frame of a block's body to places relative to the model's origin. */
-static void place(const tl_model *m, uint32_t block, tl_vec3 *x, size_t count)
+/* From the frame of a side to places relative to the model's origin, rounded as the user's coordinates are. */
+static void place(const tl_model *m, uint32_t side, tl_vec3 *x, size_t count)
 {
-    for (size_t i = 0; i < count; i++)
-        x[i] = tl_v3_sub(tl_model_point(m, m->blocks.body[block], x[i]), m->origin);
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 at = tl_v3_add(tl_side_place(m, side), tl_side_arm(m, side, x[i]));
+        x[i] = tl_v3_sub(tl_v3_add(m->origin, at), m->origin);
+    }
 }
 
 static void find_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     const job *j = user;
-    tl_detect *d = j->model->detect;
     part *p = &j->parts[chunk];
     for (size_t i = begin; i < end && !p->failed; i++) {
         size_t polygons = p->surface.polygons, corners = p->surface.corners;
-        p->failed = !add_polygons(j->model, j->rows[i], &d->narrow[thread], &p->surface);
+        p->failed = !add_polygons(j->model, j->rows[i], &j->model->detect->narrow[thread], &p->surface);
         if (p->failed)
             break;
-        place(j->model, d->contacts.a[j->rows[i]], p->surface.corner + corners, p->surface.corners - corners);
+        place(j->model, tl_contact_sides(j->model, j->rows[i]).a, p->surface.corner + corners,
+              p->surface.corners - corners);
         j->out->first[i] = (uint32_t)(p->surface.polygons - polygons);
     }
 }

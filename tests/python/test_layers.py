@@ -79,6 +79,12 @@ WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic", "box"}
 MAX_FILE_LINES = 900
 MAX_FUNCTION_LINES = 70
 MAX_HEADER_LINES = 400
+# The one place that finds the poses of a contact's sides, the modules that go through it, and their files that read poses
+# of bodies as such: who moves and shows them, how far they go, and where the bounds and outer faces of blocks are.
+SIDES = "core/contact/sides.h"
+SIDE_MODULES = {"contact", "force", "detect", "cycle", "query", "io"}
+POSES_OF_BODIES = {f"core/{file}.c" for file in (
+    "cycle/insitu cycle/limits cycle/motion cycle/solve detect/broad io/scene io/vtk query/touching query/views").split()}
 # First folders of paths that exist on one machine only.
 MACHINE_FOLDERS = "data|home|media|mnt|opt|root|scratch|srv|tmp|var|work|Users"
 TEXT_SUFFIXES = {".c", ".h", ".lua", ".py", ".md", ".txt", ".json", ".sh", ".cmake", ""}
@@ -101,6 +107,10 @@ LOCALE_ALWAYS = re.compile(r"(?<![\w.>])(?:strtod|strtof|strtold|atof|v[fs]?scan
 LOCALE_FLOATING = re.compile(r"(?<![\w.>])(?:[fs]?scanf|(?:s|sn|f|as|d)?printf|lua_pushfstring|luaL_error)\s*\(")
 FLOATING = re.compile(r"%[-+ #0-9.*]*[lL]?[aAeEfFgG]")
 LETTER = re.compile(r"'(?:\\.|[^'\\])'")
+# A row of poses, and the body of the block of a contact: looked up at once, or by a name that the block is given before.
+POSE = re.compile(r"(?:\.|->)pose\b")
+BODY_OF_SIDE = re.compile(r"blocks(?:\.|->)body\[[^][;]*(?:\.|->)[ab]\[")
+NAMED_SIDE = re.compile(r"\b(\w+) = [^,;=]*(?:\.|->)[ab]\[[^,;]*(?=[,;])")
 UNFINISHED = re.compile(r"\b(?:TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")
 
 
@@ -191,6 +201,17 @@ def check_functions(text):
     for number, line in enumerate(code.splitlines(), 1):
         for match in INEXACT.finditer(line):
             yield f"line {number}: {match.group(0)}...) has other bits on other machines: use talus/elementary.h"
+
+
+def check_sides(name, text):
+    """Where the sides of a contact are is asked of one header."""
+    plain = STRING.sub('""', without_comments(text))
+    if POSE.search(plain) and name not in POSES_OF_BODIES:
+        yield f"reads a row of poses: {SIDES} finds those of a contact's sides"
+    for function in re.split(r"^}", plain, flags=re.M):
+        blocks = "|".join(map(re.escape, NAMED_SIDE.findall(function)))
+        if BODY_OF_SIDE.search(function) or blocks and re.search(rf"blocks(?:\.|->)body\[(?:{blocks})\]", function):
+            yield f"looks up the body of a contact's block: {SIDES} knows its sides and bodies"
 
 
 def check_lengths(path, text):
@@ -361,6 +382,8 @@ def check_tree(root):
             found += [*check_core_includes(path, parts, text), *check_kind_names(text, kinds)]
             if path.suffix == ".h" and parts[1] != "include" and len(parts) > 2:
                 found += check_module_header(path, text)
+            if module_of(parts) in SIDE_MODULES and "/".join(parts) != SIDES:
+                found += check_sides("/".join(parts), text)
         if is_c and parts[0] in ("core", "plugins"):
             found += [*check_functions(text), *check_numbers_as_text(path, text)]
         if is_c and parts[0] == "plugins" and len(parts) > 2 and parts[1] in KIND_FOLDERS:
@@ -404,6 +427,9 @@ BAD = [
     ("core/cycle/f.c", "double x = sin(y);\n", "has other bits"),
     ("plugins/laws/springy/f.c", "double x = 1 + atan2(y, z);\n", "has other bits"),
     ("core/base/f.h", "float x = powf(y, z);\n", "has other bits"),
+    ("core/force/p.c", "tl_vec3 u = m->bodies.pose[side].u;\n", "reads a row of poses"),
+    ("core/cycle/p.c", "uint32_t body = m->blocks.body[m->detect->contacts.a[c]];\n", "looks up the body"),
+    ("core/detect/p.c", "uint32_t a = c->a[i], b = c->b[i];\nd->touched[m->blocks.body[b]] = true;\n", "looks up the body"),
     ("core/io/n.c", "double x = strtod(text, &end);\n", "hangs on the locale"),
     ("core/n.c", 'int n = sscanf(text, "%lf", &x);\n', "as the locale has them"),
     ("plugins/laws/springy/n.c", "x = atof (text);\n", "hangs on the locale"),
@@ -442,6 +468,8 @@ GOOD = [
     ("plugins/laws/springy/springy.c", "#include <math.h>\n#include <talus/plugin.h>\n"),
     ("plugins/generators/joint/joint.c", "#include <talus/plugin.h>\n"),
     ("plugins/screens/glass/glass.c", "#include <pthread.h>\n#include <talus/plugin.h>\n"),
+    ("core/detect/broad.c", "uint32_t body = m->blocks.body[pair->a];\ntl_vec3 u = m->bodies.pose[body].u;\n"),
+    ("core/contact/sides.h", "#define TL_BODY m->bodies.pose[m->blocks.body[c->a[i]]]\n"),
     ("core/model/f.c", 'double x = tl_sin(y) + sqrt(y) + m->log(fma(y, y, y)); /* sin(y) */ char *s = "sin(y)";\n'),
     ("core/model/n.c", 'snprintf(text, size, "100 %% of %s, %zu", "f", n); /* sscanf(a, "%g") */ tl_text_print(t, 9, "%g", x);\n'),
     ("core/include/talus/number.h", '#include <talus/plugin.h>\ndouble x = strtod(text, NULL); /* vsnprintf( */\n'),

@@ -105,7 +105,7 @@ TEST(bodies_moved_together_keep_their_forces)
     uint64_t random = 6;
     for (uint64_t seed = 1; seed <= 100; seed++) {
         tl_model *m = random_pair(seed, false, none, tl_v3(0, 0, 0));
-        tl_vec3 f = scene_force(m, 0, 1), apart = tl_body_apart(&m->bodies, 0, 1);
+        tl_vec3 f = scene_force(m, 0, 1), apart = tl_sides_apart(m, (tl_sides){0, 1});
         for (int i = 0; i < 5; i++) {
             tl_quat q = scene_any_turn(&random);
             tl_vec3 u = tl_v3_scale(3, scene_direction(&random));
@@ -411,7 +411,7 @@ static void check_shear_turns(tl_vec3 axis, uint32_t pairs, int steps)
         scene_move(m, 2 * p + 1, upper->v_moved, tl_v3(0, 0, 0));
     }
     scene_forces(m);
-    tl_vec3 before = scene_force(m, 0, 1), apart = tl_body_apart(&m->bodies, 0, 1), place = apart;
+    tl_vec3 before = scene_force(m, 0, 1), apart = tl_sides_apart(m, (tl_sides){0, 1}), place = apart;
     CHECK_REL(before.x, -KN * 1e-6, 1e-3);
     double angle = TL_PI / 2 / steps;
     tl_vec3 w = tl_v3_scale(angle, axis);

@@ -245,7 +245,7 @@ static void check_stiffness(tl_poly *a, tl_poly *b, double twist, double x, doub
         }
         /* turn B about an axis through the polygon's centroid, which therefore stays */
         double angle = 1e-6;
-        tl_vec3 apart = tl_body_apart(&m->bodies, 0, 1), arm = tl_v3_sub(apart, c);
+        tl_vec3 apart = tl_sides_apart(m, (tl_sides){0, 1}), arm = tl_v3_sub(apart, c);
         tl_quat turn = scene_turn(axis, angle), q = m->bodies.q[1];
         tl_vec3 u = m->bodies.pose[1].u;
         tl_vec3 before = d->contacts.force[0], about = tl_contact_moment(m, 0, false);

@@ -1,0 +1,106 @@
+/* sides.h - the two sides of a contact: where they are, how they move and on which bodies their forces act.
+ *
+ * A side is a row of the table of poses (tl_pose), in which the bodies come first. A block is rigid, so its side is its
+ * body. No other source looks up the pose of a side. */
+#ifndef TL_CONTACT_SIDES_H
+#define TL_CONTACT_SIDES_H
+
+#include "contact/detection.h"
+#include "model/model.h"
+
+typedef struct tl_sides {
+    uint32_t a, b; /* rows of poses */
+} tl_sides;
+
+/* The side of a block, and those of two blocks and of a contact. */
+static inline uint32_t tl_block_side(const tl_model *m, uint32_t block)
+{
+    return m->blocks.body[block];
+}
+static inline tl_sides tl_pair_sides(const tl_model *m, uint32_t block_a, uint32_t block_b)
+{
+    return (tl_sides){tl_block_side(m, block_a), tl_block_side(m, block_b)};
+}
+static inline tl_sides tl_contact_sides(const tl_model *m, uint32_t contact)
+{
+    return tl_pair_sides(m, m->detect->contacts.a[contact], m->detect->contacts.b[contact]);
+}
+/* The bodies to whose sums the forces on the two sides are added. */
+static inline tl_sides tl_contact_bodies(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    return (tl_sides){m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]};
+}
+
+static inline const tl_pose *tl_side_pose(const tl_model *m, uint32_t side)
+{
+    return &m->bodies.pose[side];
+}
+/* The rotation of a side as a matrix and as a quaternion. */
+static inline const tl_mat3 *tl_side_rotation(const tl_model *m, uint32_t side)
+{
+    return &tl_side_pose(m, side)->r;
+}
+static inline tl_quat tl_side_quaternion(const tl_model *m, uint32_t side)
+{
+    return m->bodies.q[side];
+}
+/* Present place of a side's centroid, relative to the origin: arms of a contact begin at that of A. */
+static inline tl_vec3 tl_side_place(const tl_model *m, uint32_t side)
+{
+    return tl_body_place(&m->bodies, side);
+}
+/* A place relative to the origin in a side's frame. */
+static inline tl_vec3 tl_side_local(const tl_model *m, uint32_t side, tl_vec3 place)
+{
+    return tl_body_local(&m->bodies, side, place);
+}
+/* The arm of a point of a side's frame: from the centroid, in the model's axes. */
+static inline tl_vec3 tl_side_arm(const tl_model *m, uint32_t side, tl_vec3 local)
+{
+    return tl_m3_mul(tl_side_rotation(m, side), local);
+}
+/* From A's centroid to B's. */
+static inline tl_vec3 tl_sides_apart(const tl_model *m, tl_sides sides)
+{
+    const tl_pose *a = tl_side_pose(m, sides.a), *b = tl_side_pose(m, sides.b);
+    return tl_apart(a->x_ref, a->u, b->x_ref, b->u);
+}
+
+/* Velocity of a side at an arm. */
+static inline tl_vec3 tl_side_velocity(const tl_model *m, uint32_t side, tl_vec3 arm)
+{
+    return tl_v3_add(m->bodies.v[side], tl_v3_cross(m->bodies.w[side], arm));
+}
+/* No point of a side is farther from its centroid. */
+static inline double tl_side_radius(const tl_model *m, uint32_t side)
+{
+    return m->bodies.radius[side];
+}
+/* The odometers of both sides, summed. */
+static inline double tl_contact_odometer(const tl_model *m, uint32_t contact)
+{
+    const tl_sides s = tl_contact_sides(m, contact);
+    return m->bodies.odometer[s.a] + m->bodies.odometer[s.b];
+}
+
+/* Whether a block is on side B of its contact: a contact's force acts on B as it is, on A reversed. */
+static inline bool tl_contact_is_b(const tl_contacts *c, uint32_t contact, uint32_t block)
+{
+    return c->b[contact] == block;
+}
+static inline double tl_contact_sign(const tl_contacts *c, uint32_t contact, uint32_t block)
+{
+    return tl_contact_is_b(c, contact, block) ? 1 : -1;
+}
+/* Moment of a contact's forces on A, or on B, about the centroid of that side. */
+static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, bool on_b)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (!on_b)
+        return tl_v3_neg(c->moment[contact]);
+    tl_vec3 apart = tl_sides_apart(m, tl_contact_sides(m, contact));
+    return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
+}
+
+#endif
