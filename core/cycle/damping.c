@@ -212,7 +212,7 @@ tl_status tl_damping_apply(tl_model *m, double dt)
                                 .dt = dt,
                                 .kinetic = kinetic,
                                 .kinetic_rate = dt > 0 ? (kinetic - c->kinetic_before) / dt : 0,
-                                .power_unit = 2 * kinetic,
+                                .power_unit = 2 * c->sums.damped,
                                 .power = c->sums.power};
     if (!m->damping || !(dt > 0)) /* a step of 0: nothing moves */
         return TL_OK;

@@ -266,7 +266,7 @@ typedef struct tl_damping_totals {
     double dt;           /* s */
     double kinetic;      /* sum of (m v.v + I w.w) / 2, J */
     double kinetic_rate; /* change of `kinetic` over the last step / dt, W */
-    double power_unit;   /* sum of (m v.v + I w.w), W per unit of alpha */
+    double power_unit;   /* sum of (m v.v + I w.w) of what is not held, W per unit of alpha */
     /* since minor 5: sum of (F.v + M.w), W: the power of the unbalanced forces, on velocities of half a step ago */
     double power;
 } tl_damping_totals;
