@@ -82,7 +82,7 @@ do
     local m = talus.model { gravity = { 0, 0, 0 } }
     m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
     m:joint("*", "coulomb", { kn = 1e8, ks = 5e7, friction = 30 })
-    m:damping("viscous", { alpha = 2000 })
+    m:damping("viscous", { alpha = 4000 })
     m:timestep { dt = 1e-3 }
     m:blocks():fix { x = true }
     m:blocks():set { velocity = { 1e5, 0, 0 } }
