@@ -5,6 +5,7 @@
 #include "cycle/damping.h"
 
 #include "base/parallel.h"
+#include "base/params.h"
 #include "contact/contacts.h"
 #include "cycle/cycle_data.h"
 #include "cycle/undo.h"
@@ -45,6 +46,8 @@ tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args,
     tl_report report = {.size = sizeof report};
     tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, from != NULL, params,
                                     context, &m->error);
+    if (status == TL_OK)
+        status = tl_args_proportion(kind->params, kind->param_count, kind->param_stride, args, context, &m->error);
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");
         status = ops->create(params, &self, &report);
