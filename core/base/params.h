@@ -30,8 +30,8 @@ bool tl_param_in_range(const tl_param *param, double value);
 #define TL_LEAST_PROPERTY 1e-50
 #define TL_MOST_PROPERTY 1e50
 
-/* Fails with a sentence when a number given for a property of a law or a damping, which the table has taken, is out of
- * all proportion. */
+/* Checks the numbers given for properties of a law or a damping, which the table has taken. Fails with a sentence when
+ * one is out of all proportion. */
 tl_status tl_args_proportion(const tl_param *params, size_t count, size_t stride, const tl_args *args,
                              const char *context, tl_error *error);
 

@@ -268,7 +268,7 @@ static void push_flat(lua_State *L, const double *values, size_t count, bool who
     }
 }
 
-/* Raises an error where `name` is what an item has besides its fields: a list or a table, of which there is no column. */
+/* Raises an error where `name` is a list or a table that items have besides their fields: there is no column of it. */
 static void refuse_extra(lua_State *L, const tl_lua_kind *kind, const char *name, const char *method)
 {
     for (const tl_lua_key *key = kind->extra_keys; key->name; key++)

@@ -93,7 +93,8 @@ enum {
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
- * is. min = max = 0 means no range. NaN and infinity are always refused. */
+ * is. min = max = 0 means no range. NaN and infinity are always refused. So are reals of laws and dampings that are not
+ * 0 and whose size is outside [1e-50, 1e50]. */
 typedef struct tl_param {
     uint32_t size; /* sizeof(tl_param) */
     uint32_t type; /* tl_param_type */
