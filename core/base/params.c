@@ -356,3 +356,30 @@ tl_status tl_args_read(const tl_param *params, size_t count, size_t stride, cons
     }
     return TL_OK;
 }
+
+/* Whether the table has a number of the argument that is neither 0 nor of a size that a property may have. */
+static bool is_disproportionate(const tl_param *param, const tl_value *value)
+{
+    const double size = fabs(value->number);
+    return param->type == TL_PARAM_REAL && size != 0 && !(size >= TL_LEAST_PROPERTY && size <= TL_MOST_PROPERTY);
+}
+
+tl_status tl_args_proportion(const tl_param *params, size_t count, size_t stride, const tl_args *args,
+                             const char *context, tl_error *error)
+{
+    for (size_t i = 0; args && i < args->count; i++) {
+        const tl_value *value = &args->values[i];
+        const size_t at = find_param(params, count, stride, value->key);
+        const tl_param row = at < count ? tl_param_row(params, at, stride) : (tl_param){.type = TL_PARAM_BOOL};
+        if (!is_disproportionate(&row, value))
+            continue;
+        char number[TL_NUMBER_TEXT];
+        tl_number_text(value->number, number);
+        const char *unit = row.unit ? row.unit : "", *space = unit[0] ? " " : "";
+        return tl_fail(error, TL_E_ARGUMENT,
+                       "%s: %s = %s%s%s is out of all proportion: give %sa size from %g to %g, or check the units",
+                       context, row.name, number, space, unit, tl_param_in_range(&row, 0) ? "0 or " : "",
+                       TL_LEAST_PROPERTY, TL_MOST_PROPERTY);
+    }
+    return TL_OK;
+}

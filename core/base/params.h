@@ -25,4 +25,14 @@ bool tl_param_ranged(const tl_param *param);
 /* True when `value` is finite and inside the range, open ends left out. */
 bool tl_param_in_range(const tl_param *param, double value);
 
+/* Limit: least and largest size of a property of a law or a damping that is not 0, in any units: forces, energies and
+ * what laws make of several properties stay finite. Test: lua/test_proportion. */
+#define TL_LEAST_PROPERTY 1e-50
+#define TL_MOST_PROPERTY 1e50
+
+/* Checks the numbers given for properties of a law or a damping, which the table has taken. Fails with a sentence when
+ * one is out of all proportion. */
+tl_status tl_args_proportion(const tl_param *params, size_t count, size_t stride, const tl_args *args,
+                             const char *context, tl_error *error);
+
 #endif

@@ -31,12 +31,21 @@ typedef struct tl_sums {
     uint32_t worst;       /* the body that has it; TL_NO_ROW: none */
     size_t bodies;        /* that are free */
     double kinetic;       /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
+    double damped;        /* the same of components that are not held: a damping acts on no others */
     double power;         /* sum of F.v + M.w, F and M unbalanced; made for the same */
     double max_speed2;    /* largest v.v */
 } tl_sums;
 
 /* What a thread has gathered of them: exact sums, and the largest of each. */
-enum { TL_SUM_UNBALANCED, TL_SUM_TURNING, TL_SUM_CONTACT_FORCE, TL_SUM_KINETIC, TL_SUM_POWER, TL_SUM_COUNT };
+enum {
+    TL_SUM_UNBALANCED,
+    TL_SUM_TURNING,
+    TL_SUM_CONTACT_FORCE,
+    TL_SUM_KINETIC,
+    TL_SUM_DAMPED,
+    TL_SUM_POWER,
+    TL_SUM_COUNT
+};
 typedef struct tl_gathered {
     tl_exact sum[TL_SUM_COUNT];
     double largest, local, worst_ratio, max_speed2;

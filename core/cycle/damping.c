@@ -5,6 +5,7 @@
 #include "cycle/damping.h"
 
 #include "base/parallel.h"
+#include "base/params.h"
 #include "contact/contacts.h"
 #include "cycle/undo.h"
 #include "plugin/loader.h"
@@ -44,6 +45,8 @@ tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args,
     tl_report report = {.size = sizeof report};
     tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, from != NULL, params,
                                     context, &m->error);
+    if (status == TL_OK)
+        status = tl_args_proportion(kind->params, kind->param_count, kind->param_stride, args, context, &m->error);
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");
         status = ops->create(params, &self, &report);
@@ -211,7 +214,7 @@ tl_status tl_damping_apply(tl_model *m, double dt)
                                 .dt = dt,
                                 .kinetic = kinetic,
                                 .kinetic_rate = dt > 0 ? (kinetic - c->kinetic_before) / dt : 0,
-                                .power_unit = 2 * kinetic,
+                                .power_unit = 2 * c->sums.damped,
                                 .power = c->sums.power};
     if (!m->damping || !(dt > 0)) /* a step of 0: nothing moves */
         return TL_OK;

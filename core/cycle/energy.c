@@ -151,6 +151,15 @@ tl_status tl_model_energy(tl_model *m, tl_energy *energy)
     return TL_OK;
 }
 
+double tl_free_energy(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    const unsigned fixed = b->fixed[body];
+    const double spin = fixed & TL_FIX_ROTATION ? 0 : tl_spin_energy2(m, body);
+    return 0.5 * tl_energy_scale(m->cycle, body) *
+           (b->mass[body] * tl_v3_norm2(tl_free_part(b->v[body], fixed)) + spin);
+}
+
 double tl_spin_energy2(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;

@@ -78,6 +78,8 @@ static void note_totals(const tl_model *m, uint32_t body, double v2, addends *of
     const tl_bodies *b = &m->bodies;
     of->number[TL_SUM_KINETIC][of->count] =
         0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * v2 + tl_spin_energy2(m, body));
+    of->number[TL_SUM_DAMPED][of->count] =
+        b->fixed[body] ? tl_free_energy(m, body) : of->number[TL_SUM_KINETIC][of->count];
     of->number[TL_SUM_POWER][of->count] =
         tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
 }
@@ -157,6 +159,7 @@ void tl_gather(tl_model *m)
                         .turning = tl_exact_value(&all->sum[TL_SUM_TURNING]),
                         .contact_force = tl_exact_value(&all->sum[TL_SUM_CONTACT_FORCE]),
                         .kinetic = tl_exact_value(&all->sum[TL_SUM_KINETIC]),
+                        .damped = tl_exact_value(&all->sum[TL_SUM_DAMPED]),
                         .power = tl_exact_value(&all->sum[TL_SUM_POWER]),
                         .largest = all->largest,
                         .local = all->local,

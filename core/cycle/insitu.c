@@ -219,6 +219,28 @@ static bool is_bearable(tl_sym3 t)
            fabs(t.xy) <= MOST_STRESS && fabs(t.yz) <= MOST_STRESS && fabs(t.zx) <= MOST_STRESS;
 }
 
+static double largest(tl_sym3 t)
+{
+    return fmax(fmax(fabs(t.xx), fmax(fabs(t.yy), fabs(t.zz))), fmax(fabs(t.xy), fmax(fabs(t.yz), fabs(t.zx))));
+}
+
+/* Fails when the gradient alone makes more of a stress in some block than is taken. */
+static tl_status check_gradient(tl_model *m, const tl_insitu *s)
+{
+    const double steepest = largest(s->gradient);
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        const uint32_t body = m->blocks.body[row];
+        const double z = m->origin.z + tl_body_place(&m->bodies, body).z;
+        const double height = fabs(z - s->at.z) + m->bodies.radius[body];
+        if (!(steepest * height <= MOST_STRESS))
+            return tl_fail(&m->error, TL_E_ARGUMENT,
+                           "insitu: the gradient, %g Pa/m, over the height of %g m between at and block %u makes more "
+                           "than the %g Pa that are taken: give an at near the blocks, or a smaller gradient",
+                           steepest, height, m->blocks.id[row], MOST_STRESS);
+    }
+    return TL_OK;
+}
+
 tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
 {
     tl_insitu insitu;
@@ -232,6 +254,9 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
                        "insitu: stress, Pa, gradient, Pa/m, and at must be finite numbers, the "
                        "first two of at most %g",
                        MOST_STRESS);
+    status = check_gradient(m, &insitu);
+    if (status != TL_OK)
+        return status;
     /* in the present places, where a step that failed has left the contacts already */
     status = tl_detect_update(m);
     outer_blocks outer;

@@ -76,7 +76,8 @@ static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
     if (!(k->span > 0))
         return out;
     push p = push_of(m, body);
-    out.v = tl_kick(out.v, p.force, k->span / (p.mass * p.scale), p.alpha, k->span);
+    tl_vec3 v = tl_kick(out.v, p.force, k->span / (p.mass * p.scale), p.alpha, k->span);
+    out.v = tl_v3_add(tl_v3_sub(out.v, tl_free_part(out.v, b->fixed[body])), tl_free_part(v, b->fixed[body]));
     if (b->fixed[body] & TL_FIX_ROTATION)
         return out;
     tl_quat axes = tl_q_mul(b->q[body], b->axes[body]);

@@ -32,6 +32,9 @@ typedef struct body_group {
     /* by mass scaling: of mass and moments that forces meet, and of that which energies count */
     double scale[TL_LANES], turn_scale[TL_LANES], energy_scale[TL_LANES];
     tl_lanes3 force, moment, damping_force, damping_moment;
+    /* 1 where the damping acts, 0 in held components and, of the rotation, where that is held */
+    tl_lanes3 damped;
+    double damped_turn[TL_LANES];
     tl_lanes3 moved;                               /* velocity of the last step's motion */
     tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
     tl_lanes3 v1, w1, spin1, momentum1;            /* after it */
@@ -202,13 +205,28 @@ static void mend_lanes(body_group *g, const move_job *job)
     }
 }
 
-TL_INLINE void put_damping(body_group *restrict g, size_t i, const struct tl_cycle *restrict c, bool damped,
-                           size_t body)
+/* Nothing damps a lane. */
+TL_INLINE void put_undamped(body_group *g, size_t i)
 {
     const tl_vec3 none = {0, 0, 0};
-    tl_lanes3_put(&g->damping_force, i, damped ? tl_columns_get(c->damping_force, body) : none);
-    tl_lanes3_put(&g->damping_moment, i, damped ? tl_columns_get(c->damping_moment, body) : none);
-    g->alpha[i] = damped ? c->alpha[body] : 0;
+    tl_lanes3_put(&g->damping_force, i, none);
+    tl_lanes3_put(&g->damping_moment, i, none);
+    tl_lanes3_put(&g->damped, i, none);
+    g->alpha[i] = g->damped_turn[i] = 0;
+}
+
+/* What the damping gives a body. It does nothing in components that are held: their velocity stays. */
+TL_INLINE void put_damping(body_group *restrict g, size_t i, const tl_model *restrict m, size_t body)
+{
+    const struct tl_cycle *c = m->cycle;
+    const unsigned fixed = m->bodies.fixed[body];
+    const tl_vec3 none = {0, 0, 0};
+    const bool turns = !(fixed & TL_FIX_ROTATION);
+    tl_lanes3_put(&g->damping_force, i, tl_free_part(tl_columns_get(c->damping_force, body), fixed));
+    tl_lanes3_put(&g->damping_moment, i, turns ? tl_columns_get(c->damping_moment, body) : none);
+    tl_lanes3_put(&g->damped, i, tl_free_part(tl_v3(1, 1, 1), fixed));
+    g->damped_turn[i] = turns;
+    g->alpha[i] = c->alpha[body];
 }
 
 static void load_lane(body_group *g, size_t i, const tl_model *m)
@@ -229,7 +247,10 @@ static void load_lane(body_group *g, size_t i, const tl_model *m)
     g->scale[i] = tl_inertia_scale(c, body);
     g->energy_scale[i] = tl_energy_scale(c, body);
     g->turn_scale[i] = tl_turn_scale(c, body);
-    put_damping(g, i, c, m->damping, body);
+    if (m->damping)
+        put_damping(g, i, m, body);
+    else
+        put_undamped(g, i);
 }
 
 /* The same of bodies that are side by side from `first` on, without mass scaling. */
@@ -256,9 +277,14 @@ TL_VECTORIZED static void load_row(body_group *restrict g, const tl_model *m, si
         tl_lanes3_load_columns(&g->damping_force, m->cycle->damping_force, first);
         tl_lanes3_load_columns(&g->damping_moment, m->cycle->damping_moment, first);
         tl_lanes_load(g->alpha, m->cycle->alpha + first);
+        for (size_t i = 0; i < TL_LANES; i++)
+            g->damped.x[i] = g->damped.y[i] = g->damped.z[i] = g->damped_turn[i] = 1;
     }
+    for (size_t i = 0; damped && i < TL_LANES; i++)
+        if (b->fixed[first + i])
+            put_damping(g, i, m, first + i);
     for (size_t i = 0; !damped && i < TL_LANES; i++)
-        put_damping(g, i, m->cycle, false, first + i);
+        put_undamped(g, i);
 }
 
 /* A lane without a body: one that rests, and to which nothing happens. */
@@ -268,12 +294,11 @@ static void rest_lane(body_group *g, size_t i)
     tl_lanes4_put(&g->q, i, tl_q_identity());
     tl_lanes4_put(&g->axes, i, tl_q_identity());
     tl_lanes3_put(&g->moments, i, tl_v3(1, 1, 1));
-    tl_lanes3 *const still[] = {&g->force, &g->moment, &g->damping_force, &g->damping_moment, &g->moved,
-                                &g->v0,    &g->w0};
+    tl_lanes3 *const still[] = {&g->force, &g->moment, &g->moved, &g->v0, &g->w0};
     for (size_t k = 0; k < sizeof still / sizeof *still; k++)
         tl_lanes3_put(still[k], i, none);
     g->mass[i] = g->scale[i] = g->turn_scale[i] = g->energy_scale[i] = g->radius[i] = 1;
-    g->alpha[i] = 0;
+    put_undamped(g, i);
 }
 
 TL_INLINE void store_pose(const body_group *restrict g, size_t i, const tl_mat3 *r, double dt, tl_pose *restrict pose)
@@ -400,20 +425,31 @@ TL_INLINE void book_kinetic(chunk_work *work, size_t at, size_t i, const body_gr
     work->book[TL_BOOK_AFTER(TL_WORK_EXTERNAL)][at] = 0;
 }
 
+/* v- + v+, and L- + L+ in principal axes, of what the damping acts on. */
+typedef struct slowing {
+    tl_vec3 moved, turned;
+} slowing;
+
+TL_INLINE slowing slowing_of(const body_group *g, size_t i)
+{
+    tl_vec3 moved = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
+    tl_vec3 turned = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
+    return (slowing){times(tl_lanes3_get(&g->damped, i), moved), tl_v3_scale(g->damped_turn[i], turned)};
+}
+
 /* A kick may have two unequal halves, s and 1 - s of it. Then the works of all that changes a velocity by dv miss
  * m (2 s - 1) dv^2 / 2 of what the kinetic energy becomes. For forces, which hardly change in a step, that is next to
  * nothing. A damping that stops bodies takes what it makes more of it, dv^2 - dF^2 with dv = dF + dD. */
 TL_INLINE void book_uneven(chunk_work *work, size_t at, size_t i, const body_group *g)
 {
-    tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
-    tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
+    slowing by_alpha = slowing_of(g, i);
     double span = work->until + work->after, share = work->until / span;
     double by = -0.5 * g->alpha[i] * span;
     tl_vec3 dv = tl_v3_sub(tl_lanes3_get(&g->v1, i), tl_lanes3_get(&g->v0, i));
     tl_vec3 dw = tl_v3_sub(tl_lanes3_get(&g->spin1, i), tl_lanes3_get(&g->spin0, i));
     tl_vec3 turned = tl_v3_add(tl_lanes3_get(&g->spin1, i), tl_lanes3_get(&g->spin0, i));
-    double moved = by * (2 * tl_v3_dot(dv, slowed) - by * tl_v3_norm2(slowed));
-    double spun = by * (2 * tl_v3_dot(dw, braked) - by * tl_v3_dot(turned, braked));
+    double moved = by * (2 * tl_v3_dot(dv, by_alpha.moved) - by * tl_v3_norm2(by_alpha.moved));
+    double spun = by * (2 * tl_v3_dot(dw, by_alpha.turned) - by * tl_v3_dot(turned, by_alpha.turned));
     double more = fmax(g->scale[i] * g->mass[i] * moved, 0) + fmax(g->turn_scale[i] * spun, 0);
     double missed = (share - 0.5) * more;
     work->book[TL_BOOK_UNTIL(TL_WORK_DAMPING)][at] += share * missed;
@@ -421,18 +457,19 @@ TL_INLINE void book_uneven(chunk_work *work, size_t at, size_t i, const body_gro
 }
 
 /* (23) takes out alpha m (v- + v+) / 2 over the kick, m as mass scaling makes it, besides what the damping's force
- * does. */
+ * does. Neither does anything in components that are held. */
 TL_INLINE void book_damping(chunk_work *work, size_t at, size_t i, const body_group *g)
 {
     double alpha = 0.5 * g->alpha[i] * g->scale[i], turning = 0.5 * g->alpha[i] * g->turn_scale[i];
-    tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
-    tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
-    tl_vec3 force = tl_v3_madd(tl_lanes3_get(&g->damping_force, i), -alpha * g->mass[i], slowed);
+    slowing by_alpha = slowing_of(g, i);
+    tl_vec3 force = tl_v3_madd(tl_lanes3_get(&g->damping_force, i), -alpha * g->mass[i], by_alpha.moved);
     tl_vec3 moment = tl_lanes3_get(&g->damping_moment, i);
     work->book[TL_BOOK_UNTIL(TL_WORK_DAMPING)][at] =
-        work_until(work, i, g, force, moment) - work->until * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin0, i));
+        work_until(work, i, g, force, moment) -
+        work->until * turning * tl_v3_dot(by_alpha.turned, tl_lanes3_get(&g->spin0, i));
     work->book[TL_BOOK_AFTER(TL_WORK_DAMPING)][at] =
-        work_after(work, i, g, force, moment) - work->after * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
+        work_after(work, i, g, force, moment) -
+        work->after * turning * tl_v3_dot(by_alpha.turned, tl_lanes3_get(&g->spin1, i));
 }
 
 /* The work of loads, and of what holds some components of a body's motion at a velocity. */

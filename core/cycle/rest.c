@@ -51,15 +51,6 @@ double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
     return ratio_of(m, measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced);
 }
 
-static double kinetic_energy(const tl_model *m, uint32_t body)
-{
-    const tl_bodies *b = &m->bodies;
-    unsigned fixed = b->fixed[body];
-    tl_vec3 v = tl_free_part(b->v[body], fixed);
-    double spin = fixed & TL_FIX_ROTATION ? 0 : tl_spin_energy2(m, body);
-    return 0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * tl_v3_norm2(v) + spin);
-}
-
 typedef struct rest_job {
     const tl_model *m;
     double ratio, gravity;
@@ -71,7 +62,7 @@ static bool moves(const rest_job *job, uint32_t body)
 {
     const tl_model *m = job->m;
     const tl_bodies *b = &m->bodies;
-    double kinetic = kinetic_energy(m, body);
+    double kinetic = tl_free_energy(m, body);
     if (kinetic == 0)
         return false;
     double stiffness = tl_body_stiffness(m, body);

@@ -2,6 +2,7 @@
 #include "force/joint_laws.h"
 
 #include "base/inside.h"
+#include "base/params.h"
 #include "contact/contacts.h"
 #include "model/joints.h"
 #include "plugin/loader.h"
@@ -24,6 +25,8 @@ static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *c
     tl_report report = {.size = sizeof report};
     tl_status status =
         tl_args_read(kind->params, kind->param_count, kind->param_stride, args, keep, out->params, context, error);
+    if (status == TL_OK)
+        status = tl_args_proportion(kind->params, kind->param_count, kind->param_stride, args, context, error);
     out->self = out->params;
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");

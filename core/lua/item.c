@@ -295,6 +295,16 @@ static void push_flat(lua_State *L, const double *values, size_t count, bool who
     }
 }
 
+/* Raises an error where `name` is a list or a table that items have besides their fields: there is no column of it. */
+static void refuse_extra(lua_State *L, const tl_lua_kind *kind, const char *name, const char *method)
+{
+    for (const tl_lua_key *key = kind->extra_keys; key->name; key++)
+        if (strcmp(key->name, name) == 0)
+            tl_lua_fail(L, "%s: '%s' of a %s is a %s and has no column of numbers; ask each %s for it: selection[1].%s",
+                        method, name, kind->item, strncmp(key->type, "list", 4) == 0 ? "list" : "table", kind->item,
+                        name);
+}
+
 static int selection_values(lua_State *L)
 {
     const tl_lua_selection *selection = self(L, "values");
@@ -310,7 +320,10 @@ static int selection_values(lua_State *L)
     }
     tl_model *model = tl_lua_living(L, selection->owner);
     size_t width, count = selection->count;
-    tl_lua_ok(L, model, selection->kind->values(model, NULL, name, NULL, &width));
+    tl_status status = selection->kind->values(model, NULL, name, NULL, &width);
+    if (status == TL_E_NOT_FOUND)
+        refuse_extra(L, selection->kind, name, "values");
+    tl_lua_ok(L, model, status);
     double *values = lua_newuserdatauv(L, (count * width + 1) * sizeof *values, 0);
     tl_lua_ok(L, model, selection->kind->values(model, selection, name, values, &width));
     if (selection->contacts && strcmp(name, "id") == 0)
@@ -345,6 +358,7 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
     if (field && field->kind > TL_FIELD_VEC3)
         tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
     if (kind->values(model, NULL, name, NULL, &width) == TL_E_NOT_FOUND) {
+        refuse_extra(L, kind, name, method);
         tl_lua_names names = {0};
         size_t count;
         const tl_field *fields = kind->fields(&count);

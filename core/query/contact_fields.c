@@ -13,6 +13,7 @@
 #include "model/rows.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/fields.h>
@@ -209,6 +210,21 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     return out;
 }
 
+/* Fails with the sentence that says why a contact is no more. */
+static tl_status fail_ended(tl_model *m, tl_contact_name contact)
+{
+    const uint32_t a = tl_block_row_quiet(m, contact.a), b = tl_block_row_quiet(m, contact.b);
+    char why[80] = "its blocks have parted";
+    if (a == TL_NO_ROW && b == TL_NO_ROW)
+        snprintf(why, sizeof why, "its blocks were cut or deleted");
+    else if (a == TL_NO_ROW || b == TL_NO_ROW)
+        snprintf(why, sizeof why, "block %u was cut or deleted", a == TL_NO_ROW ? contact.a : contact.b);
+    else if (m->blocks.body[a] == m->blocks.body[b])
+        snprintf(why, sizeof why, "its blocks were joined into one body");
+    return tl_fail(&m->error, TL_E_STALE, "contact of blocks %u and %u no longer exists: %s", contact.a, contact.b,
+                   why);
+}
+
 tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row)
 {
     tl_status status = tl_detect_refresh(m);
@@ -216,13 +232,12 @@ tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row)
         return status;
     *row = tl_contact_row(m, contact.a, contact.b);
     if (*row == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_STALE, "contact of blocks %u and %u no longer exists: its blocks have parted",
-                       contact.a, contact.b);
+        return fail_ended(m, contact);
     const int64_t born = m->detect->contacts.born[*row];
     if (born != contact.born)
         return tl_fail(&m->error, TL_E_STALE,
-                       "contact of blocks %u and %u no longer exists: its blocks have parted, and have met again after "
-                       "cycle %lld",
+                       "contact of blocks %u and %u no longer exists: its blocks have parted, or were one body, and "
+                       "have met again after cycle %lld",
                        contact.a, contact.b, (long long)born);
     return TL_OK;
 }

@@ -159,13 +159,18 @@ do
     local new = model:contacts { between = { model:blocks { id = 1 }, upper } }[1]
     check.equal(new.id, 1 << 32 | 2)
     check.holds(new ~= old and new.born > 400, "another contact of the same blocks")
-    check.raises(function() return old.area end, "parted, and have met again after cycle " .. new.born)
+    check.raises(function() return old.area end,
+        "its blocks have parted, or were one body, and have met again after cycle " .. new.born)
     check.raises(function() return all:values("area") end, "no longer exists")
     check.raises(function() return all:sum("area") end, "no longer exists")
     model:save(path)
     for _, other in ipairs { model:copy(), talus.restore(path, { threads = 1 }) } do
         check.equal(other:contacts { between = { other:blocks { id = 1 }, other:blocks { id = 2 } } }[1].born, new.born)
     end
+    model:blocks { id = { 1, 2 } }:join()
+    check.raises(function() return new.area end, "contact of blocks 1 and 2 no longer exists: its blocks were joined into one body")
     model:blocks { id = 2 }:delete()
-    check.raises(function() return new.area end, "no longer exists")
+    check.raises(function() return new.area end, "contact of blocks 1 and 2 no longer exists: block 2 was cut or deleted")
+    model:blocks { id = 1 }:delete()
+    check.raises(function() return new.area end, "contact of blocks 1 and 2 no longer exists: its blocks were cut or deleted")
 end

@@ -104,6 +104,10 @@ check.equal(#model:blocks { group = "none" }:values("displacement", "flat"), 0)
 
 check.refused(model, function() blocks:values("displacment") end, "did you mean 'displacement'?")
 check.refused(model, function() blocks:values("opening") end, "a block has no field 'opening'")
+check.refused(model, function() blocks:values("neighbours") end,
+    "values: 'neighbours' of a block is a list and has no column of numbers; ask each block for it: selection[1].neighbours")
+check.refused(model, function() blocks:sum("vertices") end, "sum: 'vertices' of a block is a list")
+check.refused(model, function() contacts:values("states") end, "'states' of a contact is a table")
 check.refused(model, function() contacts:values("openin") end, "did you mean 'opening'?")
 check.refused(model, function() blocks:values("mass", "long") end, "\"flat\" or \"nested\"")
 check.refused(model, function() blocks:values("mass", "flat", 3) end, "1 argument too many")

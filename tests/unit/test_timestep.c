@@ -204,7 +204,8 @@ TEST(the_reason_for_no_step_is_the_true_one)
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1e-5, 1e-5, 1e-5));
     CHECK_INT(tl_model_dt(m, &dt), TL_E_STATE);
     CHECK_CONTAINS(tl_model_error(m)->text, "no law says how stiff a contact is");
-    scene_law(m, "elastic", 1e308, 1, -1);
+    scene_law(m, "elastic", 1e50, 1, -1);
+    m->joint_laws[0].kn = 1e308;
     CHECK_INT(ten_steps(m), TL_E_STATE);
     CHECK(m->cycles == 0 && m->time == 0);
     CHECK(!strstr(tl_model_error(m)->text, "no law"));

@@ -93,7 +93,8 @@ enum {
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
- * is. min = max = 0 means no range. NaN and infinity are always refused. */
+ * is. min = max = 0 means no range. NaN and infinity are always refused. So are reals of laws and dampings that are not
+ * 0 and whose size is outside [1e-50, 1e50]. */
 typedef struct tl_param {
     uint32_t size; /* sizeof(tl_param) */
     uint32_t type; /* tl_param_type */
@@ -266,7 +267,7 @@ typedef struct tl_damping_totals {
     double dt;           /* s */
     double kinetic;      /* sum of (m v.v + I w.w) / 2, J */
     double kinetic_rate; /* change of `kinetic` over the last step / dt, W */
-    double power_unit;   /* sum of (m v.v + I w.w), W per unit of alpha */
+    double power_unit;   /* sum of (m v.v + I w.w) of what is not held, W per unit of alpha */
     /* since minor 5: sum of (F.v + M.w), W: the power of the unbalanced forces, on velocities of half a step ago */
     double power;
 } tl_damping_totals;

@@ -35,6 +35,8 @@
 #define STEEPEST 70
 /* Normal stress, Pa, whose logarithm is taken for those below. */
 #define FAINT 1e-200
+/* Largest stiffness, Pa/m, with which forces and energies stay finite. */
+#define STIFFEST 1e50
 /* Closure over vm up to which the stored energy is summed as a series: its closed form is a difference of like
  * numbers. */
 #define SERIES 0.03125
@@ -94,11 +96,11 @@ static tl_status create(const void *given, void **self, tl_report *report)
     double linear = isnan(p->linear_from) ? jcs : p->linear_from, unit = p->kni * p->vm;
     double k = p->kni * (1 + linear / unit) * (1 + linear / unit);
     double peak = length / 500 * power(jrc / length, 0.33);
-    if (!isfinite(k))
+    if (!(k <= STIFFEST))
         return tl_refuse(report,
                          "linear_from = %g Pa is too much for kni vm = %g Pa: the stiffness there, kni (1 + "
-                         "linear_from / (kni vm))^2, is no number",
-                         linear, unit);
+                         "linear_from / (kni vm))^2, must be at most %g Pa/m",
+                         linear, unit, STIFFEST);
     const rough law = {.kni = p->kni,
                        .vm = p->vm,
                        .ks = p->ks,

@@ -83,7 +83,7 @@ end
 refused("phi_r = 70 deg is outside [0, 70)", { phi_r = 70 })
 refused("jrc = 31 is outside [0, 30]", { jrc = 31 })
 refused("jcs = 0 Pa must be > 0", { jcs = 0 })
-refused("linear_from = 1e+300 Pa is too much for kni vm = 1e+06 Pa", { linear_from = 1e300 })
+refused("linear_from = 1e+50 Pa is too much for kni vm = 1e+06 Pa", { linear_from = 1e50 })
 
 -- In a model: a block comes to rest on a rough joint at the closure of its weight, also from an in situ stress, and the energy
 -- balances.
