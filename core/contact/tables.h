@@ -18,7 +18,7 @@ typedef struct tl_spot {
 
 typedef struct tl_contacts {
     tl_table table;
-    int64_t *born;   /* steps made when it began */
+    int64_t *born;   /* steps made when it got points last after having none: by this it is known */
     uint32_t *a, *b; /* block rows */
     uint32_t *pair;  /* index of its pair */
     tl_tag *tag;

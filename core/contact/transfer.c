@@ -88,6 +88,8 @@ void tl_contact_place_points(tl_model *m, uint32_t c, const tl_manifold *g, cons
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
     contacts->facet[c] = g->facet;
+    if (contacts->point_count[c] == 0) /* its blocks meet, or meet again */
+        contacts->born[c] = m->cycles;
     contacts->point_count[c] = (uint16_t)g->point_count;
     for (size_t k = 0; k < contacts->point_capacity[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));

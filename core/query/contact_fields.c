@@ -210,6 +210,12 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     return out;
 }
 
+/* A contact without points is kept for those that it may get again, but to whoever asks it has ended. */
+static bool is_listed(const tl_contacts *c, uint32_t contact)
+{
+    return c->point_count[contact] > 0;
+}
+
 /* Fails with the sentence that says why a contact is no more. */
 static tl_status fail_ended(tl_model *m, tl_contact_name contact)
 {
@@ -231,7 +237,7 @@ tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row)
     if (status != TL_OK)
         return status;
     *row = tl_contact_row(m, contact.a, contact.b);
-    if (*row == TL_NO_ROW)
+    if (*row == TL_NO_ROW || !is_listed(&m->detect->contacts, *row))
         return fail_ended(m, contact);
     const int64_t born = m->detect->contacts.born[*row];
     if (born != contact.born)
@@ -277,7 +283,7 @@ tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count)
         return tl_fail_memory(&m->error);
     for (uint32_t block = 0; block < m->blocks.table.rows; block++)
         for (tl_body_contacts at = tl_contacts_of_block(m, block); tl_next_contact(&at);)
-            if (c->a[at.contact] == block && c->point_count[at.contact])
+            if (c->a[at.contact] == block && is_listed(c, at.contact))
                 list[(*count)++] = at.contact;
     *rows = list;
     return TL_OK;
@@ -359,7 +365,7 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
     if (!list)
         return tl_fail_memory(&m->error);
     while (tl_next_contact(&at))
-        if (c->point_count[at.contact])
+        if (is_listed(c, at.contact))
             list[(*count)++] = m->blocks.id[tl_contact_partner(c, at.contact, row)];
     *ids = list;
     return TL_OK;

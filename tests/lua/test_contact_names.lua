@@ -174,3 +174,48 @@ do
     model:blocks { id = 1 }:delete()
     check.raises(function() return new.area end, "contact of blocks 1 and 2 no longer exists: its blocks were cut or deleted")
 end
+
+-- Blocks that slide off each other and stay at that: their contact has ended for all who ask, and begins anew when they meet again.
+do
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { min = { 0, 0, -1 }, max = { 2, 2, 0 }, density = 2500 })
+    model:blocks():fix()
+    model:generate("box", { min = { 0.5, 0.5, 0 }, max = { 1.5, 1.5, 1 }, density = 2500 })
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    model:timestep { dt = 1e-4 }
+    model:cycle(1)
+    local all, mover = model:contacts(), model:blocks { id = 2 }
+    local old = all[1]
+    model:history { name = "gap", of = old, field = "gap", every = 1 }
+    mover:drive { velocity = { 80, 0, 0 } }
+    for _ = 1, 300 do
+        model:cycle(1)
+        if #model:contacts() == 0 then
+            break
+        end
+        check.equal(old.born, 0)
+    end
+    mover:drive { velocity = { 0, 0, 0 } }
+    model:cycle(20)
+    check.equal(#model:contacts(), 0)
+    local parted = "contact of blocks 1 and 2 no longer exists: its blocks have parted"
+    check.raises(function() return old.gap end, parted)
+    check.raises(function() return #old.points end, parted)
+    check.raises(function() return all:max "gap" end, parted)
+    for _, gap in ipairs(model:histories().gap.value) do
+        check.holds(gap < math.huge, "no gap without end is written")
+    end
+    mover:drive { velocity = { -80, 0, 0 } }
+    local met
+    for _ = 1, 300 do
+        local before = model.cycles
+        model:cycle(1)
+        if #model:contacts() > 0 then
+            met = before
+            break
+        end
+    end
+    check.equal(model:contacts()[1].born, met)
+    check.raises(function() return old.gap end, "parted, and have met again after cycle " .. met)
+    check.equal(model:copy():contacts()[1].born, met)
+end
