@@ -177,6 +177,8 @@ static block_ids read_ids(lua_State *L)
     int given = lua_gettop(L);
     bool many = lua_istable(L, given);
     ids.count = many ? lua_rawlen(L, given) : 1;
+    if (many)
+        tl_lua_check_list(L, given, "blocks: the list of ids", ids.count);
     ids.list = lua_newuserdatauv(L, (ids.count + 1) * sizeof *ids.list, 0);
     for (size_t i = 0; i < ids.count; i++) {
         if (many)
@@ -439,6 +441,9 @@ static int call_function(lua_State *L)
     if (given == 1 && lua_istable(L, 3)) {
         if (lua_rawlen(L, 3) != 3)
             bad_velocity(L, c, lua_pushfstring(L, "a list of %I", (lua_Integer)lua_rawlen(L, 3)));
+        const char *key = tl_lua_stray_key(L, 3, 3);
+        if (key)
+            bad_velocity(L, c, lua_pushfstring(L, "a list with the key %s", key));
         for (int k = 1; k <= 3; k++)
             lua_rawgeti(L, 3, k);
         c->velocity = read_velocity(L, c, 4);

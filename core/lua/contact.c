@@ -187,6 +187,7 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
                                        : tl_lua_describe(L, -1));
     const tl_lua_model *owner = lua_touserdata(L, 1);
     int pair = lua_gettop(L);
+    tl_lua_check_list(L, pair, "contacts, between: the list of two selections", 2);
     lua_rawgeti(L, pair, 1);
     filter->between_a = read_side(L, owner, 1, &filter->count_a);
     lua_rawgeti(L, pair, 2);

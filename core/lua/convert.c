@@ -38,6 +38,57 @@ static double number_at(lua_State *L, int index)
     return isnan(number) ? NAN : number;
 }
 
+/* Numbers before texts, and these before all else. */
+static int key_rank(int type)
+{
+    return type == LUA_TNUMBER ? 0 : type == LUA_TSTRING ? 1 : 2;
+}
+
+/* Whether the key at index x comes before that at y. */
+static bool key_before(lua_State *L, int x, int y)
+{
+    int rank = key_rank(lua_type(L, x)), other = key_rank(lua_type(L, y));
+    if (rank != other)
+        return rank < other;
+    if (rank == 0)
+        return lua_compare(L, x, y, LUA_OPLT);
+    return rank == 1 && strcmp(lua_tostring(L, x), lua_tostring(L, y)) < 0;
+}
+
+static bool is_place(lua_State *L, int index, size_t count)
+{
+    return lua_isinteger(L, index) && lua_tointeger(L, index) >= 1 && lua_tointeger(L, index) <= (lua_Integer)count;
+}
+
+const char *tl_lua_stray_key(lua_State *L, int index, size_t count)
+{
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 8, "too many values");
+    lua_pushnil(L);
+    const int first = lua_gettop(L);
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1))
+        if (!is_place(L, -2, count) && (lua_isnil(L, first) || key_before(L, first + 1, first))) {
+            lua_pushvalue(L, -2);
+            lua_replace(L, first);
+        }
+    switch (lua_type(L, first)) {
+    case LUA_TNIL: lua_pop(L, 1); return NULL;
+    case LUA_TNUMBER: tl_lua_push_number_text(L, first); break;
+    case LUA_TSTRING: lua_pushfstring(L, "'%s'", lua_tostring(L, first)); break;
+    default: lua_pushstring(L, tl_lua_describe(L, first));
+    }
+    lua_replace(L, first);
+    lua_settop(L, first);
+    return lua_tostring(L, first);
+}
+
+void tl_lua_check_list(lua_State *L, int index, const char *what, size_t count)
+{
+    const char *key = tl_lua_stray_key(L, index, count);
+    if (key)
+        tl_lua_fail(L, "%s has the key %s: " TL_LUA_LIST_KEYS, what, key);
+}
+
 /* Reads row `row` of the list at `index`: so many numbers. false, with what it is instead in `value`. */
 static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, int width, double *out, tl_value *value)
 {
@@ -48,6 +99,9 @@ static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, in
     else if (lua_rawlen(L, -1) != (size_t)width)
         fault =
             lua_pushfstring(L, "list whose row %I has %I numbers, not %d", row, (lua_Integer)lua_rawlen(L, -1), width);
+    const char *key = fault ? NULL : tl_lua_stray_key(L, -1, (size_t)width);
+    if (key)
+        fault = lua_pushfstring(L, "list whose row %I has the key %s: " TL_LUA_LIST_KEYS, row, key);
     for (int i = 0; i < width && !fault; i++) {
         if (lua_rawgeti(L, -1, i + 1) != LUA_TNUMBER)
             fault = lua_pushfstring(L, "list whose row %I has %s in place %d", row, tl_lua_describe(L, -1), i + 1);
@@ -83,11 +137,10 @@ static const char *type_name(lua_State *L, int index)
 
 static void convert_list(lua_State *L, int index, int anchor, tl_value *value)
 {
-    size_t length = (size_t)lua_rawlen(L, index), pairs = 0;
-    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1))
-        pairs++;
-    if (pairs != length) {
-        convert_other(L, anchor, value, "table with names or gaps");
+    size_t length = (size_t)lua_rawlen(L, index);
+    const char *key = tl_lua_stray_key(L, index, length);
+    if (key) {
+        convert_other(L, anchor, value, lua_pushfstring(L, "table with the key %s: " TL_LUA_LIST_KEYS, key));
         return;
     }
     bool rows = lua_rawgeti(L, index, 1) == LUA_TTABLE;

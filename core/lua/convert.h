@@ -39,6 +39,13 @@ const char *tl_lua_text(lua_State *L, int index, const char *function, const cha
 void tl_lua_arity(lua_State *L, int most, const char *function);
 /* Pushes the text of the number at `index`, as Lua writes it where there is a decimal point. */
 void tl_lua_push_number_text(lua_State *L, int index);
+/* The key of the table at `index` that is none of 1 ... count, "0" or "'x'", pushed: of several always the same one.
+ * NULL, and nothing is pushed, when there is none. */
+const char *tl_lua_stray_key(lua_State *L, int index, size_t count);
+/* What a list's keys must be. */
+#define TL_LUA_LIST_KEYS "the keys of a list are 1, 2, 3 and so on, without gaps"
+/* Raises when a list of so many items at `index`, called `what` in the sentence, has other keys as well. */
+void tl_lua_check_list(lua_State *L, int index, const char *what, size_t count);
 /* "a number", "nil", "a selection of blocks": what the value at `index` is; may push a string. */
 const char *tl_lua_describe(lua_State *L, int index);
 /* Pushes a list of numbers. */

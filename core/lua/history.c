@@ -161,6 +161,11 @@ static void ask_function(lua_State *L, const tl_history *h, latest *now)
                        count  ? lua_pushfstring(L, "%d of them", (int)count)
                        : list ? "an empty list"
                               : "nothing");
+    const char *key = list ? tl_lua_stray_key(L, AT_VALUES, count) : NULL;
+    if (key)
+        tl_lua_fail_in(L, AT_FUNCTION,
+                       "history '%s': the list that the function gives has the key %s: " TL_LUA_LIST_KEYS, h->name,
+                       key);
     for (size_t i = 0; i < count; i++) {
         if (list)
             lua_rawgeti(L, AT_VALUES, (lua_Integer)i + 1);

@@ -592,11 +592,13 @@ static size_t entry_count(lua_State *L, const char *generator)
 {
     if (!lua_istable(L, 3) || lua_rawgeti(L, 3, 1) != LUA_TTABLE)
         return 0;
+    size_t count = lua_rawlen(L, 3);
     for (lua_pushnil(L); lua_next(L, 3); lua_pop(L, 1))
-        if (!lua_isinteger(L, -2))
+        if (lua_type(L, -2) == LUA_TSTRING)
             tl_lua_fail(L, "generate '%s': give a list of parameter tables, or parameters by name, not both",
                         generator);
-    return lua_rawlen(L, 3);
+    tl_lua_check_list(L, 3, lua_pushfstring(L, "generate '%s': the list of parameter tables", generator), count);
+    return count;
 }
 
 /* Reads the list of parameter tables at index 3; what they point to hangs on a table that is pushed. */

@@ -421,7 +421,7 @@ function talus.model(options) end
 ---@field smallest_face number of the model after, m3, m and m2
 ---@field volume_error number relative change of the volume that is not accounted for
 
---- Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, {...}}, in the place of one: once for each, in their order and in one go.
+--- Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, {...}}, in the place of one: once for each, in their order and in one go. What an earlier entry makes and a later one cuts gets no ids, so ids are not those of a call for each entry.
 ---
 ---     summary = model:generate("GENERATOR", {...})
 ---@param generator string

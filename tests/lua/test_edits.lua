@@ -226,5 +226,16 @@ do
     bad({ good, 7 }, "entry 2: the parameters must be a table, not the number 7")
     bad({ good, { 1, 2 } }, "entry 2: parameters are given by name")
     bad({ good, min = { 0, 0, 0 } }, "not both")
+    -- nothing of a list is passed over in silence
+    local keys = ": the keys of a list are 1, 2, 3 and so on, without gaps"
+    bad({ [0] = good, good }, "the list of parameter tables has the key 0" .. keys)
+    bad({ good, [1.5] = good, [true] = good }, "the list of parameter tables has the key 1.5" .. keys)
+    bad({ good, [3] = good }, "the list of parameter tables has the key 3" .. keys)
+    bad({ min = { 0, 0, 0, [0] = 1 }, max = { 1, 1, 1 }, density = 2000 }, "min must be a list of 3 numbers {x, y, z}, not a table with the key 0")
+    bad({ min = { x = 0, y = 0, z = 0 }, max = { 1, 1, 1 }, density = 2000 }, "a table with the key 'x'" .. keys)
+    check.refused(all, function()
+        all:generate("polyhedron", { vertices = { { 0, 0, 0 }, { 1, 0, 0, [0] = 3 }, { 0, 1, 0 }, { 0, 0, 1 } }, density = 2000 })
+    end, "a list whose row 2 has the key 0" .. keys)
+    check.refused(all, function() all:blocks { id = { [0] = 1, 2 } } end, "the list of ids has the key 0" .. keys)
     check.equal(#all:blocks { group = "good" }, 0)
 end

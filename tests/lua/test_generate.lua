@@ -76,7 +76,7 @@ check.refused(model, function()
     model:generate("polyhedron", hull { { 0, 0, 0 }, { 1, 0, 0 / 0 }, { 0, 1, 0 }, { 0, 0, 1 } })
 end, "vertices, row 2, z = nan")
 check.refused(model, function() model:generate("polyhedron", hull {}) end, "generator 'polyhedron'")
-check.refused(model, function() model:generate("polyhedron", hull { a = 1 }) end, "names or gaps")
+check.refused(model, function() model:generate("polyhedron", hull { a = 1 }) end, "table with the key 'a': the keys of a list are 1, 2, 3 and so on, without gaps")
 
 check.refused(model, function()
     model:generate("joint", { joint = "J1", dip = 95, dip_direction = 0 })
