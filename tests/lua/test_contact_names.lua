@@ -180,14 +180,14 @@ do
     local model = talus.model { gravity = { 0, 0, 0 } }
     model:generate("box", { min = { 0, 0, -1 }, max = { 2, 2, 0 }, density = 2500 })
     model:blocks():fix()
-    model:generate("box", { min = { 0.5, 0.5, 0 }, max = { 1.5, 1.5, 1 }, density = 2500 })
+    model:generate("box", { min = { 1.9, 0.5, 0 }, max = { 2.9, 1.5, 1 }, density = 2500 })
     model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
     model:timestep { dt = 1e-4 }
     model:cycle(1)
     local all, mover = model:contacts(), model:blocks { id = 2 }
     local old = all[1]
     model:history { name = "gap", of = old, field = "gap", every = 1 }
-    mover:drive { velocity = { 80, 0, 0 } }
+    mover:drive { velocity = { 8, 0, 0 } }
     for _ = 1, 300 do
         model:cycle(1)
         if #model:contacts() == 0 then
@@ -203,9 +203,9 @@ do
     check.raises(function() return #old.points end, parted)
     check.raises(function() return all:max "gap" end, parted)
     for _, gap in ipairs(model:histories().gap.value) do
-        check.holds(gap < math.huge, "no gap without end is written")
+        check.holds(gap ~= math.huge, "no gap without end is written")
     end
-    mover:drive { velocity = { -80, 0, 0 } }
+    mover:drive { velocity = { -8, 0, 0 } }
     local met
     for _ = 1, 300 do
         local before = model.cycles
