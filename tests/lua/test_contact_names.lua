@@ -216,6 +216,6 @@ do
         end
     end
     check.equal(model:contacts()[1].born, met)
-    check.raises(function() return old.gap end, "parted, and have met again after cycle " .. met)
+    check.raises(function() return old.gap end, "have met again after cycle " .. met)
     check.equal(model:copy():contacts()[1].born, met)
 end
