@@ -204,8 +204,7 @@ tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result 
     tl_rows_tidy(m);
     if (!is_given(limits->volume) && !is_given(limits->edge) && !is_given(limits->aspect))
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "filter: give a limit: the smallest volume, the shortest edge or the worst "
-                       "aspect");
+                       "filter: give a limit: the smallest volume, the shortest edge or the worst aspect");
     if (limits->action != TL_FILTER_REPORT)
         status = tl_model_may_change(m, "filter blocks");
     if (status != TL_OK)

@@ -331,9 +331,8 @@ static tl_status check_length(tl_model *m, const tl_page *page, const char *path
     if (length <= most)
         return TL_OK;
     return tl_fail(&m->error, TL_E_ARGUMENT,
-                   "write_html: with frame %llu '%s' would have %.1f MB, and a page has %.0f MB at "
-                   "the most; write frames less often, leave out contacts, or go on under another "
-                   "name",
+                   "write_html: with frame %llu '%s' would have %.1f MB, and a page has %.0f MB at the most; write "
+                   "frames less often, leave out contacts, or go on under another name",
                    (unsigned long long)page->end.frames, path, (double)length / 1e6, (double)most / 1e6);
 }
 

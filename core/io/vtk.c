@@ -791,8 +791,7 @@ static tl_status check_prefix(const char *function, const char *prefix, tl_error
     const char *slash = strrchr(prefix, '/');
     if (!tl_text_is_utf8(slash ? slash + 1 : prefix))
         return tl_fail(error, TL_E_ARGUMENT,
-                       "%s: prefix = '%s' must end in a name in UTF-8, as the list of the frames "
-                       "has it, which is JSON",
+                       "%s: prefix = '%s' must end in a name in UTF-8, as the list of the frames has it, which is JSON",
                        function, prefix);
     return TL_OK;
 }

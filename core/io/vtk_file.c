@@ -76,8 +76,7 @@ tl_status tl_vtk_countable(size_t count, const char *content, tl_error *error)
 {
     if (count > INT32_MAX)
         return tl_fail(error, TL_E_IO,
-                       "cannot write the %s: %zu numbers are more than the %d a legacy VTK file can "
-                       "count",
-                       content, count, INT32_MAX);
+                       "cannot write the %s: %zu numbers are more than the %d a legacy VTK file can count", content,
+                       count, INT32_MAX);
     return TL_OK;
 }

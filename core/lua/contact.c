@@ -252,9 +252,8 @@ static bool contact_extra(lua_State *L, tl_model *model, const tl_lua_item *item
 
 static const tl_lua_key contact_extra_keys[] = {
     {"points", "list of {position =, area =, normal_force =, ...}",
-     "its points as they are now, each a table of the fields of a contact point and of the states "
-     "of the law by name. The forces of the points add up to those of the contact; edges, vertices "
-     "and tilted faces have one point"},
+     "its points as they are now, each a table of the fields of a contact point and of the states of the law by name. "
+     "The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point"},
     {"states", "{NAME = value}",
      "the states of its law: the mean of the points, weighted by their areas; the sum of a state "
      "that goes with the area"},
@@ -281,9 +280,8 @@ static const tl_lua_key contact_methods[] = {
     {"sel:max(field), sel:min(field)", "",
      "largest and smallest value of a field of numbers, or of a state, where the law has it"},
     {"sel:values(field)", "",
-     "list of the field's values, in the order of the selection; likewise a state of a law, by its "
-     "name, NaN where the contact's law has no such state. With \"flat\" after it vectors are not "
-     "lists of their own"},
+     "list of the field's values, in the order of the selection; likewise a state of a law, by its name, NaN where the "
+     "contact's law has no such state. With \"flat\" after it vectors are not lists of their own"},
     {"sel:where(function(contact) ... end)", "", "those for which the function answers true"},
     {NULL, NULL, NULL},
 };

@@ -649,18 +649,15 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
 
 static const tl_lua_key run_results[] = {
     {"reason", "",
-     "why it ended: \"ratio\", \"velocity\", \"failure\", \"overlap\" (blocks that were made "
-     "overlapping push it apart), \"cycles\", \"time\", \"stop\" or \"interrupt\" (Ctrl-C at the "
-     "prompt; in a script it raises an error)"},
+     "why it ended: \"ratio\", \"velocity\", \"failure\", \"overlap\" (blocks that were made overlapping push it "
+     "apart), \"cycles\", \"time\", \"stop\" or \"interrupt\" (Ctrl-C at the prompt; in a script it raises an error)"},
     {"ratio", "", "mean unbalanced force over mean contact force"},
     {"ratio_maximum", "", "largest unbalanced force over mean contact force"},
     {"ratio_local", "",
-     "largest unbalanced force of a block over its own contact forces, or its weight and load "
-     "where these are more"},
+     "largest unbalanced force of a block over its own contact forces, or its weight and load where these are more"},
     {"measure", "", "the measure that may end the run"},
     {"worst", "",
-     "the block farthest from rest by the measure \"local\": nil when there is none that can move, "
-     "or no force on any"},
+     "the block farthest from rest by the measure \"local\": nil when there is none that can move, or no force on any"},
     {"failing", "",
      "a block that fails steadily: it moves on in one direction without slowing down, and the "
      "force that pushes it stays; nil when none does"},

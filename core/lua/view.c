@@ -249,9 +249,7 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
     snprintf(cycle, sizeof cycle, "_%09lld.talus", (long long)tl_model_cycles(model));
     switch (command->op) {
     case TL_VIEW_CUT:
-        lua_pushfstring(L,
-                        "model:generate(\"joint\", { joint = %s, dip = %s, dip_direction = %s, "
-                        "origin = %s })",
+        lua_pushfstring(L, "model:generate(\"joint\", { joint = %s, dip = %s, dip_direction = %s, origin = %s })",
                         quoted(L, command->joint), number(L, command->dip), number(L, command->dip_direction),
                         list(L, origin, 3));
         break;

@@ -363,8 +363,7 @@ tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name)
         count++;
     if (count == 0)
         return tl_fail(error, TL_E_NOT_FOUND,
-                       "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
-                       "the plugins",
+                       "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of the plugins",
                        what, name, what);
     const char **names = malloc(count * sizeof *names);
     if (!names)
@@ -415,8 +414,7 @@ static tl_status check_version(const tl_plugin *given, tl_error *error)
         return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin", given->size);
     if (given->abi_major != TL_ABI_MAJOR)
         return tl_fail(error, TL_E_PLUGIN,
-                       "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew "
-                       "against these headers",
+                       "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew against these headers",
                        given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
     return TL_OK;
 }
@@ -433,8 +431,7 @@ static tl_status tell_refusal(tl_plugin_entry_fn entry, tl_error *error)
             return status;
         if (given)
             return tl_fail(error, TL_E_PLUGIN,
-                           "it was built for plugin ABI %u.%u and cannot do without it, this Talus has "
-                           "%u.%u",
+                           "it was built for plugin ABI %u.%u and cannot do without it, this Talus has %u.%u",
                            given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
     }
     return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR, TL_ABI_MINOR);
@@ -571,10 +568,7 @@ static void load_folder(search *s, const char *folder, const char *program)
         return;
     if (!path_is_trusted(folder, program ? program : folder, why, sizeof why)) {
         snprintf(text, sizeof text,
-                 program ? UNTRUSTED
-                         : "%s: plugins are loaded from it because TALUS_PLUGIN_PATH "
-                           "names it",
-                 why);
+                 program ? UNTRUSTED : "%s: plugins are loaded from it because TALUS_PLUGIN_PATH names it", why);
         if (!s->again || !registry_has(folder))
             s->short_of_memory |= !keep(folder, program ? text : NULL, program ? NULL : text);
         if (program)
