@@ -30,32 +30,9 @@
 /* Tolerance: share of the motion by which points are moved for the stiffness. */
 #define SMALL (1. / 16)
 
-static const tl_check_rule rules[] = {
-    [TL_LAW_RUNS] = {"runs", "update() returns TL_OK, always when never_fails is set"},
-    [TL_LAW_REPEATS] = {"repeats", "the same call gives the same bits"},
-    [TL_LAW_ALONE] = {"one by one", "a point alone gets the bits that it gets in a batch"},
-    [TL_LAW_SPLIT] = {"split", "batches of other sizes and orders give the same bits"},
-    [TL_LAW_ENERGIES] = {"energies", "forces do not depend on whether energies are asked for"},
-    [TL_LAW_WRITES] = {"writes", "nothing is written but forces, flags, energies and declared states"},
-    [TL_LAW_READS] = {"reads", "nothing depends on states that are not declared, nor on what is to be written"},
-    [TL_LAW_PADDING] = {"padding", "lanes of no area carry nothing"},
-    [TL_LAW_FINITE] = {"finite", "forces, states and energies are finite numbers"},
-    [TL_LAW_PLANE] = {"plane", "the shear force lies in the common plane"},
-    [TL_LAW_STILL] = {"no motion", "without motion and time the forces stay as they are"},
-    [TL_LAW_TURNED] = {"turned", "a turned point gets the turned forces, the same energies and states"},
-    [TL_LAW_AREA] = {"area", "twice the area carries twice the force and the energy"},
-    [TL_LAW_STIFFNESS] = {"stiffness", "no point is stiffer than stiffness() says"},
-    [TL_LAW_CYCLE] = {"closed cycle", "a closed path of motion gives no energy"},
-    [TL_LAW_BALANCE] = {"balance", "the work on a path is stored or turned to heat"},
-    [TL_LAW_HEAT] = {"heat", "dissipated is not negative, and 0 without motion"},
-    [TL_LAW_STEPS] = {"steps", "shear in a few steps leads to the forces that it does in many"},
-    [TL_LAW_STATES] = {"states", "each declared state is written and read, and none written while stateless() says so"},
-    [TL_LAW_PARAMETERS] = {"parameters", "each parameter has an effect"},
-    [TL_LAW_FLAGS] = {"flags", "points that are open carry nothing, those that have failed stay so"},
-    [TL_LAW_PULLS] = {"pulls", "no normal force across a gap where pulls() and across_gap() say so"},
-    [TL_LAW_PRESSES] = {"presses", "the normal force and what it stores are those that linear or pressed() tells"},
-    {NULL, NULL},
-};
+#define RULE(number, name, doc) [number] = {name, doc},
+static const tl_check_rule rules[] = {TL_LAW_RULES(RULE){NULL, NULL}};
+#undef RULE
 
 /* ---------------------------------------------------------------- a law to try ----------- */
 

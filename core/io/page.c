@@ -54,13 +54,6 @@ static tl_page *page_of(tl_model *m, const char *prefix)
     return page;
 }
 
-/* The name at the end of a prefix. */
-static const char *name_of(const char *prefix)
-{
-    const char *slash = strrchr(prefix, '/');
-    return slash ? slash + 1 : prefix;
-}
-
 /* ---------------------------------------------------------------- the file ----------------
  *
  * How frames come to the end of a page.
@@ -336,16 +329,10 @@ static tl_status check_length(tl_model *m, const tl_page *page, const char *path
                    (unsigned long long)page->end.frames, path, (double)length / 1e6, (double)most / 1e6);
 }
 
-/* Whether the page goes on; else it begins anew. */
-static bool goes_on(const tl_page *page, tl_page_stand stand)
-{
-    return page->end.frames && (stand == TL_PAGE_WHOLE || (stand == TL_PAGE_LONGER && page->restored));
-}
-
 static tl_status add_frame(tl_model *m, tl_page *page, const char *path, const tl_html *options, uint64_t most)
 {
     tl_page_stand stand = page->end.frames ? page_look(path, &page->end) : TL_PAGE_GONE;
-    if (!goes_on(page, stand)) {
+    if (stand == TL_PAGE_GONE || (stand == TL_PAGE_LONGER && !page->restored)) { /* it begins anew */
         tl_scene_free(page->scene);
         page->end = (tl_page_end){0};
     }
@@ -400,7 +387,8 @@ tl_status tl_page_write(tl_model *m, const char *prefix, const tl_html *given, u
     if (page && (path = malloc(strlen(own) + sizeof ".html"))) {
         strcpy(path, own);
         strcat(path, ".html");
-        options.title = options.title ? options.title : name_of(own);
+        const char *slash = strrchr(own, '/');
+        options.title = options.title ? options.title : slash ? slash + 1 : own;
         sigset_t before;
         tl_signals_hold(&before, false);
         atomic_store(&m->interrupted, false);

@@ -357,11 +357,8 @@ static int model_verdict(lua_State *L, tl_model *model)
     TL_LUA_SET_NUMBERS(L, {"ratio", v.ratio}, {"closed", v.closed}, {"volume", v.volume},
                        {"displacement", v.displacement}, {"slip", v.slip}, {"opening", v.opening});
     TL_LUA_SET_COUNTS(L, {"moved", v.moved}, {"farthest", v.farthest}, {"contacts", v.contacts},
-                      {"slipping", v.slipping});
-    lua_pushinteger(L, tl_contact_number(v.slipped));
-    lua_setfield(L, -2, "slipped");
-    lua_pushinteger(L, tl_contact_number(v.opened));
-    lua_setfield(L, -2, "opened");
+                      {"slipping", v.slipping}, {"slipped", (size_t)tl_contact_number(v.slipped)},
+                      {"opened", (size_t)tl_contact_number(v.opened)});
     return 1;
 }
 

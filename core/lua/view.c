@@ -487,8 +487,7 @@ static void open_view(lua_State *L, tl_lua_model *owner, const tl_view_options *
 /* Runs protected, with the model, the table and the options: opens the view, and shows the first frame. */
 static int begin(lua_State *L)
 {
-    tl_lua_model *owner = lua_touserdata(L, TL_LUA_AT_MODEL);
-    open_view(L, owner, lua_touserdata(L, 3));
+    open_view(L, lua_touserdata(L, TL_LUA_AT_MODEL), lua_touserdata(L, 3));
     return show(L);
 }
 

@@ -70,11 +70,6 @@ static bool own_file(char file[PATH_MAX])
     return named || realpath("/proc/self/exe", file);
 }
 
-static bool is_trusted(uid_t owner, uid_t program)
-{
-    return owner == 0 || owner == geteuid() || owner == program;
-}
-
 /* Whether the group is of the user's name and has no other member, as many systems make one for each user. */
 static bool is_private(gid_t gid, uid_t uid)
 {
@@ -110,7 +105,7 @@ static bool find_fault(const char *path, bool above, uid_t program, char *why, s
     struct stat s;
     if (stat(path, &s) != 0)
         snprintf(why, size, "%s cannot be looked at", path);
-    else if (!is_trusted(s.st_uid, program))
+    else if (s.st_uid != 0 && s.st_uid != geteuid() && s.st_uid != program)
         snprintf(why, size, "%s belongs to user %lu, who is neither root nor you", path, (unsigned long)s.st_uid);
     else if (above ? others_may_rename_in(&s) : others_may_write(&s))
         snprintf(why, size, "users other than its owner may write %s (mode %04o)", path, (unsigned)(s.st_mode & 07777));

@@ -211,11 +211,6 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     return status;
 }
 
-static bool tag_is_sound(const tl_model *m, tl_tag tag)
-{
-    return tag.joint <= m->joint_count && (tag.joint > 0 || tag.plane == 0);
-}
-
 static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
     (void)again;
@@ -229,7 +224,8 @@ static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_
         char prefix[PREFIX], name[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", m->joint_law_count);
         tl_tag tag;
-        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) || !tag_is_sound(m, tag))
+        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) ||
+            tag.joint > m->joint_count || (tag.joint == 0 && tag.plane > 0))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
         tl_status status = restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count]);
         if (status != TL_OK)
