@@ -161,23 +161,17 @@ static const char *name_of(int32_t side)
     return tl_side_names()[side - TL_SIDE_XMIN];
 }
 
-typedef struct plane_args {
-    tl_vec3 normal, at;
-} plane_args;
-
 static void read_plane(lua_State *L, int index, tl_boundary_where *where)
 {
     static const tl_param params[] = {
-        TL_PARAM(TL_PARAM_VEC3, plane_args, normal, "", "outward normal, of any length", .flags = TL_PARAM_REQUIRED),
-        TL_PARAM(TL_PARAM_VEC3, plane_args, at, "m", "a point of the plane", .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, tl_boundary_where, normal, "", "outward normal, of any length",
+                 .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, tl_boundary_where, at, "m", "a point of the plane", .flags = TL_PARAM_REQUIRED),
     };
     if (lua_getfield(L, index, "plane") == LUA_TNIL)
         return;
-    plane_args plane;
     tl_lua_spec spec = {"boundary, plane", params, TL_LUA_COUNT(params), NULL};
-    tl_lua_read(L, -1, &spec, false, &plane);
-    where->normal = plane.normal;
-    where->at = plane.at;
+    tl_lua_read(L, -1, &spec, false, where);
 }
 
 /* What is to be done, of the table at `index` and the parameters read of it. */

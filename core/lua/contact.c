@@ -142,12 +142,9 @@ static void push_contact_points(lua_State *L, tl_model *model, const tl_contact_
 
 /* ---------------------------------------------------------------- contacts ---------------- */
 
-typedef struct contact_args {
-    const char *joint;
-} contact_args;
-
 static const tl_param contact_params[] = {
-    TL_PARAM(TL_PARAM_STRING, contact_args, joint, "", "contacts on this joint or plane", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, tl_contact_filter, joint, "", "contacts on this joint or plane",
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_key contact_keys[] = {
@@ -195,10 +192,8 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
 
 static int model_contacts(lua_State *L, tl_model *model)
 {
-    contact_args args;
-    tl_lua_read(L, 2, &contacts_spec, false, &args);
     tl_contact_filter filter = tl_contact_filter_default();
-    filter.joint = args.joint;
+    tl_lua_read(L, 2, &contacts_spec, false, &filter);
     read_between(L, &filter);
     int where = tl_lua_read_where(L, &tl_lua_contact_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_contact_kind, 1);

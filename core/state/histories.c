@@ -161,9 +161,8 @@ static tl_status restore_one(tl_model *m, const tl_archive *a, size_t k, const h
                                   : tl_archive_bad(a, &m->error, "the samples of history '%s' do not fit", h->name);
 }
 
-static tl_status restore_histories(tl_model *m, const tl_archive *a, const tl_drives_again *again)
+static tl_status restore_histories(tl_model *m, const tl_archive *a)
 {
-    (void)again;
     const tl_chunk *chunk = tl_archive_find(a, "histories");
     if (!chunk)
         return TL_OK;
@@ -182,9 +181,8 @@ static tl_status restore_histories(tl_model *m, const tl_archive *a, const tl_dr
 
 /* ---------------------------------------------------------------- copying ---------------- */
 
-static tl_status copy_histories(tl_model *to, const tl_model *from, const tl_drives_again *again)
+static tl_status copy_histories(tl_model *to, const tl_model *from)
 {
-    (void)again;
     for (size_t k = 0; k < from->history_count; k++) {
         const tl_history *h = from->histories[k];
         tl_history *copy = tl_history_hold(to, h, h->count);

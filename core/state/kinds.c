@@ -211,9 +211,8 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     return status;
 }
 
-static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_again *again)
+static tl_status restore_laws(tl_model *m, const tl_archive *a)
 {
-    (void)again;
     uint64_t count;
     if (!tl_archive_get(a, "laws", &count, sizeof count, 1) || count > a->chunk_count)
         return tl_archive_bad(a, &m->error, "'laws' is missing");
@@ -235,9 +234,8 @@ static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_
     return TL_OK;
 }
 
-static tl_status restore_damping(tl_model *m, const tl_archive *a, const tl_drives_again *again)
+static tl_status restore_damping(tl_model *m, const tl_archive *a)
 {
-    (void)again;
     if (!tl_archive_find(a, "damping.kind"))
         return TL_OK;
     tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL);
@@ -250,9 +248,8 @@ static tl_status restore_damping(tl_model *m, const tl_archive *a, const tl_driv
 
 /* ---------------------------------------------------------------- copying ---------------- */
 
-static tl_status copy_laws(tl_model *to, const tl_model *from, const tl_drives_again *again)
+static tl_status copy_laws(tl_model *to, const tl_model *from)
 {
-    (void)again;
     if (from->joint_law_count == 0)
         return TL_OK;
     to->joint_laws = calloc(from->joint_law_count, sizeof *to->joint_laws);
@@ -270,9 +267,8 @@ static tl_status copy_laws(tl_model *to, const tl_model *from, const tl_drives_a
     return TL_OK;
 }
 
-static tl_status copy_damping(tl_model *to, const tl_model *from, const tl_drives_again *again)
+static tl_status copy_damping(tl_model *to, const tl_model *from)
 {
-    (void)again;
     if (!from->damping)
         return TL_OK;
     tl_status status = tl_damping_make(to, from->damping, &(tl_args){NULL, 0}, from->damping_params);

@@ -19,6 +19,7 @@
 #include "model/loads.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "state/drives.h"
 #include "state/parts.h"
 
 #include <math.h>
@@ -550,7 +551,9 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
 {
     tl_status status = read_rows(m, a);
     for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
-        status = (*part)->restore(m, a, again);
+        status = (*part)->restore(m, a);
+    if (status == TL_OK)
+        status = tl_drives_restore(m, a, again);
     if (status == TL_OK)
         status = derive_rows(m);
     if (status == TL_OK)
