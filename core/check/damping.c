@@ -32,8 +32,7 @@ static const tl_check_rule rules[] = {
     [ALONE] = {"one by one", "a body alone gets the bits that it gets in a batch"},
     [SPLIT] = {"split", "batches of other sizes and orders give the same bits"},
     [WRITES] = {"writes", "nothing is written but damping forces, moments and alpha; states in begin()"},
-    [READS] = {"reads", "nothing depends on states that are not declared or on what lies behind the "
-                        "batch"},
+    [READS] = {"reads", "nothing depends on states that are not declared or on what lies behind the batch"},
     [FINITE] = {"finite", "forces, moments, alpha and states are finite numbers"},
     [BRAKES] = {"brakes", "alpha is not negative, and no body is given power"},
     [RESTS] = {"rests", "a body without velocity is given no force"},
@@ -469,9 +468,8 @@ static void tell_unseen(const trial *t)
     for (uint32_t k = 0; k < c->kind->param_count && k < TL_CHECK_PARAMS; k++)
         if (!t->matters[k] && tl_check_asked(c, k))
             tl_check_note(c, PARAMETERS,
-                          "parameter '%s' has no effect: another value gives the same forces, "
-                          "alpha and states with all "
-                          "of %d sets of parameters",
+                          "parameter '%s' has no effect: another value gives the same forces, alpha and states with "
+                          "all of %d sets of parameters",
                           c->kind->params[k].name, TL_CHECK_SETS);
 }
 

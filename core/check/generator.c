@@ -46,38 +46,39 @@ static tl_status count(void)
     return TL_OK;
 }
 
-/* Defines watched_SERVICE with these parameters, in brackets: it counts the call and hands the arguments on to the
- * host. */
-#define WATCHED(service, parameters, ...)                                                                              \
+/* The services that can fail: name, parameters in brackets, and what is handed on. */
+#define SERVICES(DO)                                                                                                   \
+    DO(create_hull, (const tl_host *h, const tl_vec3 *vertices, size_t n, double density, const char *group), h,       \
+       vertices, n, density, group)                                                                                    \
+    DO(create_box, (const tl_host *h, tl_vec3 min, tl_vec3 max, double density, const char *group), h, min, max,       \
+       density, group)                                                                                                 \
+    DO(create_block, (const tl_host *h, const tl_block_shape *shape), h, shape)                                        \
+    DO(joint, (const tl_host *h, const char *name, uint32_t *number), h, name, number)                                 \
+    DO(cut, (const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence), h, normal, point, tag,  \
+       persistence)                                                                                                    \
+    DO(cut_disc,                                                                                                       \
+       (const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag, double persistence, size_t *met),  \
+       h, normal, point, radius, tag, persistence, met)                                                                \
+    DO(progress, (const tl_host *h, double fraction), h, fraction)                                                     \
+    DO(meets, (const tl_host *h, size_t index, const tl_half_space *spaces, size_t n, bool *answer), h, index, spaces, \
+       n, answer)                                                                                                      \
+    DO(cut_block, (const tl_host *h, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above), h, index, normal,    \
+       point, above)                                                                                                   \
+    DO(set_group, (const tl_host *h, size_t index, const char *group), h, index, group)                                \
+    DO(part, (const tl_host *h, const size_t *indices, size_t n), h, indices, n)                                       \
+    DO(join, (const tl_host *h, const size_t *indices, size_t n), h, indices, n)                                       \
+    DO(remove, (const tl_host *h, size_t index), h, index)                                                             \
+    DO(hide, (const tl_host *h, size_t index), h, index)                                                               \
+    DO(show, (const tl_host *h), h)
+
+/* Counts the call and hands it on to the host. */
+#define WATCH(service, parameters, ...)                                                                                \
     static tl_status watched_##service parameters                                                                      \
     {                                                                                                                  \
         tl_status status = count();                                                                                    \
         return status != TL_OK ? status : current->host->service(__VA_ARGS__);                                         \
-    }                                                                                                                  \
-    _Static_assert(sizeof(watch) > 0, "a struct")
-
-WATCHED(create_hull, (const tl_host *h, const tl_vec3 *vertices, size_t n, double density, const char *group), h,
-        vertices, n, density, group);
-WATCHED(create_box, (const tl_host *h, tl_vec3 min, tl_vec3 max, double density, const char *group), h, min, max,
-        density, group);
-WATCHED(create_block, (const tl_host *h, const tl_block_shape *shape), h, shape);
-WATCHED(joint, (const tl_host *h, const char *name, uint32_t *number), h, name, number);
-WATCHED(cut, (const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence), h, normal, point, tag,
-        persistence);
-WATCHED(cut_disc,
-        (const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag, double persistence, size_t *met),
-        h, normal, point, radius, tag, persistence, met);
-WATCHED(progress, (const tl_host *h, double fraction), h, fraction);
-WATCHED(meets, (const tl_host *h, size_t index, const tl_half_space *spaces, size_t n, bool *answer), h, index, spaces,
-        n, answer);
-WATCHED(cut_block, (const tl_host *h, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above), h, index, normal,
-        point, above);
-WATCHED(set_group, (const tl_host *h, size_t index, const char *group), h, index, group);
-WATCHED(part, (const tl_host *h, const size_t *indices, size_t n), h, indices, n);
-WATCHED(join, (const tl_host *h, const size_t *indices, size_t n), h, indices, n);
-WATCHED(remove, (const tl_host *h, size_t index), h, index);
-WATCHED(hide, (const tl_host *h, size_t index), h, index);
-WATCHED(show, (const tl_host *h), h);
+    }
+SERVICES(WATCH)
 
 static void say(const tl_host *h, const char *format, ...)
 {
@@ -90,21 +91,9 @@ static tl_status generate_watched(const tl_host *host, const void *params)
 {
     watch *w = current;
     tl_host own = *host;
-    own.create_hull = watched_create_hull;
-    own.create_box = watched_create_box;
-    own.create_block = watched_create_block;
-    own.joint = watched_joint;
-    own.cut = watched_cut;
-    own.cut_disc = watched_cut_disc;
-    own.progress = watched_progress;
-    own.meets = watched_meets;
-    own.cut_block = watched_cut_block;
-    own.set_group = watched_set_group;
-    own.part = watched_part;
-    own.join = watched_join;
-    own.remove = watched_remove;
-    own.hide = watched_hide;
-    own.show = watched_show;
+#define HAND_OUT(service, ...) own.service = watched_##service;
+    SERVICES(HAND_OUT)
+#undef HAND_OUT
     own.log = say;
     w->host = host;
     if (w->prepare)

@@ -30,33 +30,9 @@
 /* Tolerance: share of the motion by which points are moved for the stiffness. */
 #define SMALL (1. / 16)
 
-static const tl_check_rule rules[] = {
-    [TL_LAW_RUNS] = {"runs", "update() returns TL_OK, always when never_fails is set"},
-    [TL_LAW_REPEATS] = {"repeats", "the same call gives the same bits"},
-    [TL_LAW_ALONE] = {"one by one", "a point alone gets the bits that it gets in a batch"},
-    [TL_LAW_SPLIT] = {"split", "batches of other sizes and orders give the same bits"},
-    [TL_LAW_ENERGIES] = {"energies", "forces do not depend on whether energies are asked for"},
-    [TL_LAW_WRITES] = {"writes", "nothing is written but forces, flags, energies and declared states"},
-    [TL_LAW_READS] = {"reads", "nothing depends on states that are not declared, nor on what is to be written"},
-    [TL_LAW_PADDING] = {"padding", "lanes of no area carry nothing"},
-    [TL_LAW_FINITE] = {"finite", "forces, states and energies are finite numbers"},
-    [TL_LAW_PLANE] = {"plane", "the shear force lies in the common plane"},
-    [TL_LAW_STILL] = {"no motion", "without motion and time the forces stay as they are"},
-    [TL_LAW_TURNED] = {"turned", "a turned point gets the turned forces, the same energies and states"},
-    [TL_LAW_AREA] = {"area", "twice the area carries twice the force and the energy"},
-    [TL_LAW_STIFFNESS] = {"stiffness", "no point is stiffer than stiffness() says"},
-    [TL_LAW_CYCLE] = {"closed cycle", "a closed path of motion gives no energy"},
-    [TL_LAW_BALANCE] = {"balance", "the work on a path is stored or turned to heat"},
-    [TL_LAW_HEAT] = {"heat", "dissipated is not negative, and 0 without motion"},
-    [TL_LAW_STEPS] = {"steps", "shear in a few steps leads to the forces that it does in many"},
-    [TL_LAW_STATES] = {"states", "each declared state is written and read, and none written while stateless() says "
-                                 "so"},
-    [TL_LAW_PARAMETERS] = {"parameters", "each parameter has an effect"},
-    [TL_LAW_FLAGS] = {"flags", "points that are open carry nothing, those that have failed stay so"},
-    [TL_LAW_PULLS] = {"pulls", "no normal force across a gap where pulls() and across_gap() say so"},
-    [TL_LAW_PRESSES] = {"presses", "the normal force and what it stores are those that linear or pressed() tells"},
-    {NULL, NULL},
-};
+#define RULE(number, name, doc) [number] = {name, doc},
+static const tl_check_rule rules[] = {TL_LAW_RULES(RULE){NULL, NULL}};
+#undef RULE
 
 /* ---------------------------------------------------------------- a law to try ----------- */
 
@@ -154,8 +130,7 @@ static void compare_bits(trial *t, int check, const tl_check_points *other, bool
         if (!same(&t->out, other, i, energies)) {
             tl_vec3 a = tl_check_vec(t->out.c[TL_AT_F_S], i), b = tl_check_vec(other->c[TL_AT_F_S], i);
             tl_check_note(t->c, check,
-                          "f_n = %.17g N, |f_s| = %.17g N, flags %u in a batch of 64 points; %.17g, "
-                          "%.17g, %u %s",
+                          "f_n = %.17g N, |f_s| = %.17g N, flags %u in a batch of 64 points; %.17g, %.17g, %u %s",
                           t->out.c[TL_AT_F_N][i], tl_v3_norm(a), t->out.flags[i], other->c[TL_AT_F_N][i], tl_v3_norm(b),
                           other->flags[i], how);
             return;
@@ -362,9 +337,7 @@ static void check_settled(trial *t, const tl_check_points *rested)
         if (heat != 0)
             tl_check_note(t->c, TL_LAW_HEAT, "dissipated = %g J in a step without motion and time", heat);
         if (out.flags[i] & TL_POINT_SLIPPING)
-            tl_check_note(t->c, TL_LAW_FLAGS,
-                          "a point is flagged as slipping in a step without motion "
-                          "and time");
+            tl_check_note(t->c, TL_LAW_FLAGS, "a point is flagged as slipping in a step without motion and time");
     }
 }
 
@@ -493,8 +466,7 @@ static void check_reads(trial *t)
         const char *text;
     } places[] = {{TL_OTHER_STATES, "a state that it does not declare"},
                   {TL_OTHER_BEHIND, "what lies behind the batch"},
-                  {TL_OTHER_ENERGIES, "what the columns of energies held before, which are to be "
-                                      "written"}};
+                  {TL_OTHER_ENERGIES, "what the columns of energies held before, which are to be written"}};
     if (tl_check_failed(t->c, TL_LAW_READS))
         return;
     for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
@@ -581,13 +553,11 @@ static void tell_unseen(tl_checker *c, const tl_check_seen *seen)
         uint32_t width = width_of(kind, i), bits = (1u << width) - 1;
         if (!(seen->written >> column & bits))
             tl_check_note(c, TL_LAW_STATES,
-                          "state '%s' is declared and was never written, with any of %d sets of "
-                          "parameters",
+                          "state '%s' is declared and was never written, with any of %d sets of parameters",
                           state->name, TL_CHECK_SETS);
         else if (!(seen->kept >> column & bits) && state->transfer != TL_TRANSFER_RESET)
             tl_check_note(c, TL_LAW_STATES,
-                          "state '%s' is written and never read: nothing depends on what it was. "
-                          "Where that is meant, "
+                          "state '%s' is written and never read: nothing depends on what it was. Where that is meant, "
                           "declare it as TL_TRANSFER_RESET",
                           state->name);
         else if (!(seen->read >> column & bits) && state->transfer != TL_TRANSFER_RESET)
@@ -600,8 +570,7 @@ static void tell_unseen(tl_checker *c, const tl_check_seen *seen)
     for (uint32_t k = 0; k < kind->param_count && k < TL_CHECK_PARAMS; k++)
         if (!seen->matters[k] && tl_check_asked(c, k))
             tl_check_note(c, TL_LAW_PARAMETERS,
-                          "parameter '%s' has no effect: another value gives the same forces, "
-                          "energies, states and "
+                          "parameter '%s' has no effect: another value gives the same forces, energies, states and "
                           "stiffness with all of %d sets of parameters",
                           kind->params[k].name, TL_CHECK_SETS);
     if (seen->heats && !seen->slips)

@@ -158,8 +158,7 @@ static void check_pressed(tl_law_trial *t, const point *p, const double energy[3
                       p->f_n, p->u, slope);
     if (!(isnan(told) || fabs(slope - told) <= error))
         tl_check_note(t->c, TL_LAW_PRESSES,
-                      "pressed() tells the force %g N at a closure with lift of %g m, where its energy "
-                      "rises by %g N",
+                      "pressed() tells the force %g N at a closure with lift of %g m, where its energy rises by %g N",
                       told, p->u, slope);
     if (p->kept < energy[1] - holds)
         tl_check_note(t->c, TL_LAW_PRESSES, "stored = %g J is less than what presses holds by pressed(), %g J", p->kept,

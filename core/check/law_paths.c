@@ -182,14 +182,12 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
             tl_check_note(t->c, TL_LAW_HEAT, "dissipated = %.3g J in a step, which must not be negative", s->least);
         if (s->without_heat > most)
             tl_check_note(t->c, TL_LAW_BALANCE,
-                          "%.3g J of the work are %s in steps without heat: stored does not change "
-                          "by the work "
-                          "of the forces (work %.3g J, stored %.3g J at the end)",
+                          "%.3g J of the work are %s in steps without heat: stored does not change by the work of the "
+                          "forces (work %.3g J, stored %.3g J at the end)",
                           s->without_heat, left > 0 ? "lost" : "made", s->work, s->stored);
         if (s->with_heat > HEAT_ERROR * all)
             tl_check_note(t->c, TL_LAW_BALANCE,
-                          "%.3g J of the work are %s in steps with heat: dissipated is not the "
-                          "work less what is "
+                          "%.3g J of the work are %s in steps with heat: dissipated is not the work less what is "
                           "stored (work %.3g J, stored %.3g J at the end, heat %.3g J)",
                           s->with_heat, left > 0 ? "lost" : "made", s->work, s->stored, s->heat);
     }
@@ -292,9 +290,8 @@ static void check_steps(tl_law_trial *t)
     }
     if (differ >= SOME && 2 * differ > slip)
         tl_check_note(t->c, TL_LAW_STEPS,
-                      "the same shear, made in %d steps, leads to |f_s| = %.5g N, f_n = %.5g N, "
-                      "and in %d steps "
-                      "to %.5g N, %.5g N",
+                      "the same shear, made in %d steps, leads to |f_s| = %.5g N, f_n = %.5g N, and in %d steps to "
+                      "%.5g N, %.5g N",
                       COARSE, tl_v3_norm(tl_check_vec(coarse.c[TL_AT_F_S], worst)), coarse.c[TL_AT_F_N][worst], FINE,
                       tl_v3_norm(tl_check_vec(fine.c[TL_AT_F_S], worst)), fine.c[TL_AT_F_N][worst]);
 }

@@ -6,31 +6,34 @@
 #include "base/law_columns.h"
 #include "check/checker.h"
 
-enum {
-    TL_LAW_RUNS,
-    TL_LAW_REPEATS,
-    TL_LAW_ALONE,
-    TL_LAW_SPLIT,
-    TL_LAW_ENERGIES,
-    TL_LAW_WRITES,
-    TL_LAW_READS,
-    TL_LAW_PADDING,
-    TL_LAW_FINITE,
-    TL_LAW_PLANE,
-    TL_LAW_STILL,
-    TL_LAW_TURNED,
-    TL_LAW_AREA,
-    TL_LAW_STIFFNESS,
-    TL_LAW_CYCLE,
-    TL_LAW_BALANCE,
-    TL_LAW_HEAT,
-    TL_LAW_STEPS,
-    TL_LAW_STATES,
-    TL_LAW_PARAMETERS,
-    TL_LAW_FLAGS,
-    TL_LAW_PULLS,
-    TL_LAW_PRESSES
-};
+/* The checks: number, name, and what each asks. */
+#define TL_LAW_RULES(RULE)                                                                                             \
+    RULE(TL_LAW_RUNS, "runs", "update() returns TL_OK, always when never_fails is set")                                \
+    RULE(TL_LAW_REPEATS, "repeats", "the same call gives the same bits")                                               \
+    RULE(TL_LAW_ALONE, "one by one", "a point alone gets the bits that it gets in a batch")                            \
+    RULE(TL_LAW_SPLIT, "split", "batches of other sizes and orders give the same bits")                                \
+    RULE(TL_LAW_ENERGIES, "energies", "forces do not depend on whether energies are asked for")                        \
+    RULE(TL_LAW_WRITES, "writes", "nothing is written but forces, flags, energies and declared states")                \
+    RULE(TL_LAW_READS, "reads", "nothing depends on states that are not declared, nor on what is to be written")       \
+    RULE(TL_LAW_PADDING, "padding", "lanes of no area carry nothing")                                                  \
+    RULE(TL_LAW_FINITE, "finite", "forces, states and energies are finite numbers")                                    \
+    RULE(TL_LAW_PLANE, "plane", "the shear force lies in the common plane")                                            \
+    RULE(TL_LAW_STILL, "no motion", "without motion and time the forces stay as they are")                             \
+    RULE(TL_LAW_TURNED, "turned", "a turned point gets the turned forces, the same energies and states")               \
+    RULE(TL_LAW_AREA, "area", "twice the area carries twice the force and the energy")                                 \
+    RULE(TL_LAW_STIFFNESS, "stiffness", "no point is stiffer than stiffness() says")                                   \
+    RULE(TL_LAW_CYCLE, "closed cycle", "a closed path of motion gives no energy")                                      \
+    RULE(TL_LAW_BALANCE, "balance", "the work on a path is stored or turned to heat")                                  \
+    RULE(TL_LAW_HEAT, "heat", "dissipated is not negative, and 0 without motion")                                      \
+    RULE(TL_LAW_STEPS, "steps", "shear in a few steps leads to the forces that it does in many")                       \
+    RULE(TL_LAW_STATES, "states",                                                                                      \
+         "each declared state is written and read, and none written while stateless() says so")                        \
+    RULE(TL_LAW_PARAMETERS, "parameters", "each parameter has an effect")                                              \
+    RULE(TL_LAW_FLAGS, "flags", "points that are open carry nothing, those that have failed stay so")                  \
+    RULE(TL_LAW_PULLS, "pulls", "no normal force across a gap where pulls() and across_gap() say so")                  \
+    RULE(TL_LAW_PRESSES, "presses", "the normal force and what it stores are those that linear or pressed() tells")
+#define TL_LAW_NUMBER(number, name, doc) number,
+enum { TL_LAW_RULES(TL_LAW_NUMBER) };
 
 /* Constant: s, of a step. */
 #define TL_CHECK_DT 1e-4

@@ -379,9 +379,8 @@ static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const oute
         what = roller_of(f->normal);
         if (!what)
             return tl_fail(&m->error, TL_E_ARGUMENT,
-                           "boundary: a roller is held along x, y or z, but face %u of block %u "
-                           "looks along {%.3g, %.3g, %.3g}; use fixed, or a box or side whose faces "
-                           "look along an axis",
+                           "boundary: a roller is held along x, y or z, but face %u of block %u looks along {%.3g, "
+                           "%.3g, %.3g}; use fixed, or a box or side whose faces look along an axis",
                            f->face + 1, m->blocks.id[f->row], f->normal.x, f->normal.y, f->normal.z);
         what |= a->rotation ? TL_FIX_ROTATION : 0;
     }

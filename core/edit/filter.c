@@ -28,11 +28,6 @@ typedef struct filter {
     tl_touches touches;
 } filter;
 
-static bool is_given(double limit)
-{
-    return !isnan(limit);
-}
-
 /* What is wrong with a body; false when out of memory. */
 static bool measure(const filter *f, uint32_t body, tl_sliver *out)
 {
@@ -44,9 +39,9 @@ static bool measure(const filter *f, uint32_t body, tl_sliver *out)
                        .volume = tl_body_volume(f->model, body),
                        .edge = shape.edge,
                        .aspect = shape.aspect};
-    out->small = is_given(limits->volume) && out->volume < limits->volume;
-    out->short_edge = is_given(limits->edge) && out->edge < limits->edge;
-    out->thin = is_given(limits->aspect) && out->aspect > limits->aspect;
+    out->small = !isnan(limits->volume) && out->volume < limits->volume;
+    out->short_edge = !isnan(limits->edge) && out->edge < limits->edge;
+    out->thin = !isnan(limits->aspect) && out->aspect > limits->aspect;
     return true;
 }
 
@@ -202,10 +197,9 @@ tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result 
     if (status != TL_OK)
         return status;
     tl_rows_tidy(m);
-    if (!is_given(limits->volume) && !is_given(limits->edge) && !is_given(limits->aspect))
+    if (isnan(limits->volume) && isnan(limits->edge) && isnan(limits->aspect))
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "filter: give a limit: the smallest volume, the shortest edge or the worst "
-                       "aspect");
+                       "filter: give a limit: the smallest volume, the shortest edge or the worst aspect");
     if (limits->action != TL_FILTER_REPORT)
         status = tl_model_may_change(m, "filter blocks");
     if (status != TL_OK)

@@ -29,13 +29,12 @@ static void put_faces(tl_piece *to, const tl_model *m, const tl_poly *shape)
 static void put_fixed(tl_piece *to, unsigned fixed)
 {
     static const char *const names[] = {"x", "y", "z", "rotation"};
-    bool first = true;
-    for (unsigned i = 0; i < 4; i++) {
-        if (!(fixed & 1u << i))
-            continue;
-        tl_json_print(to, first ? "%s" : ", %s", names[i]);
-        first = false;
-    }
+    const char *between = "";
+    for (unsigned i = 0; i < 4; i++)
+        if (fixed & 1u << i) {
+            tl_json_print(to, "%r%s", between, names[i]);
+            between = ", ";
+        }
 }
 
 static void put_block(tl_piece *to, const tl_model *m, uint32_t row)

@@ -54,13 +54,6 @@ static tl_page *page_of(tl_model *m, const char *prefix)
     return page;
 }
 
-/* The name at the end of a prefix. */
-static const char *name_of(const char *prefix)
-{
-    const char *slash = strrchr(prefix, '/');
-    return slash ? slash + 1 : prefix;
-}
-
 /* ---------------------------------------------------------------- the file ----------------
  *
  * How frames come to the end of a page.
@@ -331,22 +324,15 @@ static tl_status check_length(tl_model *m, const tl_page *page, const char *path
     if (length <= most)
         return TL_OK;
     return tl_fail(&m->error, TL_E_ARGUMENT,
-                   "write_html: with frame %llu '%s' would have %.1f MB, and a page has %.0f MB at "
-                   "the most; write frames less often, leave out contacts, or go on under another "
-                   "name",
+                   "write_html: with frame %llu '%s' would have %.1f MB, and a page has %.0f MB at the most; write "
+                   "frames less often, leave out contacts, or go on under another name",
                    (unsigned long long)page->end.frames, path, (double)length / 1e6, (double)most / 1e6);
-}
-
-/* Whether the page goes on; else it begins anew. */
-static bool goes_on(const tl_page *page, tl_page_stand stand)
-{
-    return page->end.frames && (stand == TL_PAGE_WHOLE || (stand == TL_PAGE_LONGER && page->restored));
 }
 
 static tl_status add_frame(tl_model *m, tl_page *page, const char *path, const tl_html *options, uint64_t most)
 {
     tl_page_stand stand = page->end.frames ? page_look(path, &page->end) : TL_PAGE_GONE;
-    if (!goes_on(page, stand)) {
+    if (stand == TL_PAGE_GONE || (stand == TL_PAGE_LONGER && !page->restored)) { /* it begins anew */
         tl_scene_free(page->scene);
         page->end = (tl_page_end){0};
     }
@@ -401,7 +387,8 @@ tl_status tl_page_write(tl_model *m, const char *prefix, const tl_html *given, u
     if (page && (path = malloc(strlen(own) + sizeof ".html"))) {
         strcpy(path, own);
         strcat(path, ".html");
-        options.title = options.title ? options.title : name_of(own);
+        const char *slash = strrchr(own, '/');
+        options.title = options.title ? options.title : slash ? slash + 1 : own;
         sigset_t before;
         tl_signals_hold(&before, false);
         atomic_store(&m->interrupted, false);

@@ -174,12 +174,6 @@ bool tl_view_due(tl_view *v, double worth)
     return v->cost < v->share * worth || v->begun - v->shown >= fmax(1 / RATE, v->cost * (1 / v->share - 1));
 }
 
-/* Whether all news should be told anew, in the place of what has piled up. */
-static bool has_grown(const tl_view *v)
-{
-    return v->since > v->first + GROWN;
-}
-
 /* Gives the screen the frame that was made, of which the first bytes are news. */
 static tl_status put(tl_view *v, size_t news, bool first)
 {
@@ -219,7 +213,8 @@ tl_status tl_view_show(tl_view *v, const tl_html *given)
     if (status != TL_OK)
         return status;
     html.title = v->title;
-    bool first = v->scene.sent.frames == 0 || has_grown(v);
+    /* where news has piled up all of it is told anew */
+    bool first = v->scene.sent.frames == 0 || v->since > v->first + GROWN;
     if (first)
         tl_scene_forget(&v->scene);
     v->frame.length = 0;

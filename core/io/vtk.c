@@ -68,24 +68,22 @@ static const char tail[] = "\n  ]\n}\n";
  * apart. */
 #define STAGE 1e-9
 
-/* Name of a file of the series: PREFIX_CONTENT_NNNNNN.vtk. The text is the caller's; NULL when out of memory. */
-static char *vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame)
+/* PREFIX_CONTENT and an ending. The text is the caller's; NULL when out of memory. */
+static char *name_of(const tl_vtk_series *series, const char *content, const char *ending)
 {
-    size_t capacity = strlen(series->prefix) + strlen(content) + 32;
+    size_t capacity = strlen(series->prefix) + strlen(content) + strlen(ending) + 2;
     char *name = malloc(capacity);
     if (name)
-        snprintf(name, capacity, "%s_%s_%06zu.vtk", series->prefix, content, frame);
+        snprintf(name, capacity, "%s_%s%s", series->prefix, content, ending);
     return name;
 }
 
-/* Name of its index: PREFIX_CONTENT.vtk.series. */
-static char *index_name(const tl_vtk_series *series, const char *content)
+/* Name of a file of the series; likewise. */
+static char *vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame)
 {
-    size_t capacity = strlen(series->prefix) + strlen(content) + 32;
-    char *name = malloc(capacity);
-    if (name)
-        snprintf(name, capacity, "%s_%s.vtk.series", series->prefix, content);
-    return name;
+    char ending[32];
+    snprintf(ending, sizeof ending, "_%06zu.vtk", frame);
+    return name_of(series, content, ending);
 }
 
 /* The time under which the next frame is listed: that of the model, or a little more than that of the frame before.
@@ -180,7 +178,7 @@ static tl_status vtk_index_open(tl_vtk_index_change *change, tl_vtk_series *seri
                                 double time, tl_error *error)
 {
     *change = (tl_vtk_index_change){.index = &series->index[part]};
-    change->path = index_name(series, content);
+    change->path = name_of(series, content, ".vtk.series");
     tl_json_put(&change->entry, before_entry);
     if (!change->path || !put_entry(series, content, series->count, time, &change->entry))
         return tl_fail_memory(error);
@@ -538,16 +536,11 @@ typedef struct corner {
 typedef struct section {
     tl_vec3 normal;
     corner *corners;
-    uint32_t *row, *end; /* [polygons] block row; end of its corners */
-    size_t points, point_capacity, polygons, row_capacity, end_capacity;
+    struct polygon {
+        uint32_t row, end; /* of its block; of its corners */
+    } * of;
+    size_t points, point_capacity, polygons, polygon_capacity;
 } section;
-
-static bool reserve_corners(section *s, size_t corners)
-{
-    return tl_grow(&s->corners, &s->point_capacity, s->points + corners, sizeof *s->corners) &&
-           tl_grow(&s->row, &s->row_capacity, s->polygons + 1, sizeof *s->row) &&
-           tl_grow(&s->end, &s->end_capacity, s->polygons + 1, sizeof *s->end);
-}
 
 static int by_angle(const void *a, const void *b)
 {
@@ -603,15 +596,15 @@ static bool cut_blocks(const tl_model *m, tl_plane plane, section *s)
         const tl_poly *shape = b->shape[row];
         tl_plane local = {tl_m3_tmul(&m->bodies.pose[body].r, plane.normal),
                           plane.offset - tl_v3_dot(plane.normal, tl_body_place(&m->bodies, body))};
-        if (!reserve_corners(s, shape->edge_count))
+        if (!tl_grow(&s->corners, &s->point_capacity, s->points + shape->edge_count, sizeof *s->corners) ||
+            !tl_grow(&s->of, &s->polygon_capacity, s->polygons + 1, sizeof *s->of))
             return false;
         corner *list = s->corners + s->points;
         size_t count = find_corners(shape, local, list);
         if (count < 3 || (count = order_corners(local.normal, TL_POLY_ON * shape->size, list, count)) < 3)
             continue;
         s->points += count;
-        s->row[s->polygons] = row;
-        s->end[s->polygons++] = (uint32_t)s->points;
+        s->of[s->polygons++] = (struct polygon){row, (uint32_t)s->points};
     }
     return true;
 }
@@ -635,13 +628,13 @@ static void put_polygons(const tl_model *m, const section *s, FILE *file)
     fprintf(file, "POINTS %zu double\n", s->points);
     size_t at = 0;
     for (size_t i = 0; i < s->polygons; i++)
-        for (; at < s->end[i]; at++)
-            write_vec3(file, tl_model_point(m, m->blocks.body[s->row[i]], s->corners[at].at));
+        for (; at < s->of[i].end; at++)
+            write_vec3(file, tl_model_point(m, m->blocks.body[s->of[i].row], s->corners[at].at));
     fprintf(file, "\nPOLYGONS %zu %zu\n", s->polygons, s->polygons + s->points);
     int32_t next = 0;
     for (size_t i = 0; i < s->polygons; i++) {
-        write_int(file, (int32_t)s->end[i] - next);
-        while (next < (int32_t)s->end[i])
+        write_int(file, (int32_t)s->of[i].end - next);
+        while (next < (int32_t)s->of[i].end)
             write_int(file, next++);
     }
     tl_vtk_line(file);
@@ -654,12 +647,12 @@ static tl_vec3 in_plane(tl_vec3 normal, tl_vec3 v)
 
 static tl_vec3 middle_displacement(const tl_model *m, const section *s, size_t polygon)
 {
-    size_t begin = polygon ? s->end[polygon - 1] : 0, end = s->end[polygon];
+    size_t begin = polygon ? s->of[polygon - 1].end : 0, end = s->of[polygon].end;
     tl_vec3 sum = {0, 0, 0};
     for (size_t at = begin; at < end; at++)
         sum = tl_v3_add(sum, tl_v3_sub(s->corners[at].at, s->corners[begin].at));
     tl_vec3 middle = tl_v3_madd(s->corners[begin].at, 1.0 / (double)(end - begin), sum);
-    return tl_block_point_displacement(m, s->row[polygon], middle);
+    return tl_block_point_displacement(m, s->of[polygon].row, middle);
 }
 
 /* A quantity of the blocks that is a whole number. */
@@ -667,7 +660,7 @@ static void put_whole(const tl_model *m, const section *s, const char *name, FIL
 {
     for (size_t i = 0; i < s->polygons; i++) {
         double value[6];
-        tl_block_numbers(m, s->row[i], tl_block_quantity(name), value);
+        tl_block_numbers(m, s->of[i].row, tl_block_quantity(name), value);
         write_int(file, (int32_t)(uint32_t)value[0]);
     }
     tl_vtk_line(file);
@@ -697,8 +690,8 @@ static void put_section_cells(const tl_model *m, const section *s, FILE *file)
 static void put_displacements(const tl_model *m, const section *s, bool all, FILE *file)
 {
     for (size_t i = 0, at = 0; i < s->polygons; i++)
-        for (; at < s->end[i]; at++) {
-            tl_vec3 moved = tl_block_point_displacement(m, s->row[i], s->corners[at].at);
+        for (; at < s->of[i].end; at++) {
+            tl_vec3 moved = tl_block_point_displacement(m, s->of[i].row, s->corners[at].at);
             write_vec3(file, all ? moved : in_plane(s->normal, moved));
         }
     tl_vtk_line(file);
@@ -728,8 +721,7 @@ static tl_status put_section(tl_model *m, tl_plane plane, tl_pieces *out)
         put_point_data(m, &s, file);
     }
     free(s.corners);
-    free(s.row);
-    free(s.end);
+    free(s.of);
     return status;
 }
 
@@ -791,8 +783,7 @@ static tl_status check_prefix(const char *function, const char *prefix, tl_error
     const char *slash = strrchr(prefix, '/');
     if (!tl_text_is_utf8(slash ? slash + 1 : prefix))
         return tl_fail(error, TL_E_ARGUMENT,
-                       "%s: prefix = '%s' must end in a name in UTF-8, as the list of the frames "
-                       "has it, which is JSON",
+                       "%s: prefix = '%s' must end in a name in UTF-8, as the list of the frames has it, which is JSON",
                        function, prefix);
     return TL_OK;
 }

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-void tl_vtk_double(FILE *file, double value)
+static void put_double(FILE *file, double value)
 {
     unsigned char bytes[sizeof value];
     tl_vtk_put_double(bytes, value);
@@ -13,7 +13,7 @@ void tl_vtk_double(FILE *file, double value)
 }
 
 /* A text goes after its length, whose two highest bits tell how many bytes the length takes. */
-void tl_vtk_string(FILE *file, const char *text)
+static void put_string(FILE *file, const char *text)
 {
     size_t length = strlen(text);
     const unsigned bytes = length < (size_t)1 << 6 ? 1 : length < (size_t)1 << 14 ? 2 : 4;
@@ -53,21 +53,21 @@ void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const cha
 
     tl_vtk_field(file, "FieldData", m->group_count > 0 ? 4 : 3);
     tl_vtk_array(file, "TIME", 1, 1, TL_VTK_DOUBLE);
-    tl_vtk_double(file, m->time);
+    put_double(file, m->time);
     tl_vtk_line(file);
     /* As a double: a long run counts past 32 bits. */
     tl_vtk_array(file, "CYCLE", 1, 1, TL_VTK_DOUBLE);
-    tl_vtk_double(file, (double)m->cycles);
+    put_double(file, (double)m->cycles);
     tl_vtk_line(file);
     tl_vtk_array(file, "joint_names", 1, m->joint_count + 1, TL_VTK_STRING);
-    tl_vtk_string(file, ""); /* joint 0 is none */
+    put_string(file, ""); /* joint 0 is none */
     for (size_t i = 0; i < m->joint_count; i++)
-        tl_vtk_string(file, m->joints[i].name);
+        put_string(file, m->joints[i].name);
     tl_vtk_line(file);
     if (m->group_count > 0) {
         tl_vtk_array(file, "group_names", 1, m->group_count, TL_VTK_STRING);
         for (size_t i = 0; i < m->group_count; i++)
-            tl_vtk_string(file, m->groups[i]);
+            put_string(file, m->groups[i]);
         tl_vtk_line(file);
     }
 }
@@ -76,8 +76,7 @@ tl_status tl_vtk_countable(size_t count, const char *content, tl_error *error)
 {
     if (count > INT32_MAX)
         return tl_fail(error, TL_E_IO,
-                       "cannot write the %s: %zu numbers are more than the %d a legacy VTK file can "
-                       "count",
-                       content, count, INT32_MAX);
+                       "cannot write the %s: %zu numbers are more than the %d a legacy VTK file can count", content,
+                       count, INT32_MAX);
     return TL_OK;
 }

@@ -31,11 +31,7 @@ void tl_vtk_line(FILE *file);
 /* A list that is made of rows, `bytes` in all, as tl_pieces_write does it, and its line. */
 tl_status tl_vtk_list(tl_pieces *out, size_t rows, size_t bytes, tl_piece_fn fn, const void *user);
 
-/* One number, vector or text of the array at hand. */
-void tl_vtk_double(FILE *file, double value);
-void tl_vtk_string(FILE *file, const char *text);
-
-/* The same of long arrays: put at `to`, they give where the next goes. */
+/* Numbers and vectors of an array: put at `to`, they give where the next goes. */
 static inline unsigned char *tl_vtk_put_int(unsigned char *to, int32_t value)
 {
     uint32_t bits = (uint32_t)value;
@@ -62,10 +58,8 @@ static inline unsigned char *tl_vtk_put_float3(unsigned char *to, tl_vec3 value)
 
 static inline unsigned char *tl_vtk_put_long(unsigned char *to, int64_t value)
 {
-    uint64_t bits = (uint64_t)value;
-    for (int i = 0; i < 8; i++)
-        to[i] = (unsigned char)(bits >> (56 - 8 * i));
-    return to + 8;
+    to = tl_vtk_put_int(to, (int32_t)(value >> 32));
+    return tl_vtk_put_int(to, (int32_t)(uint32_t)value);
 }
 
 static inline unsigned char *tl_vtk_put_double(unsigned char *to, double value)

@@ -25,9 +25,7 @@ void tl_lua_set_block(lua_State *L, const char *name, tl_id id)
 
 static int free_mesh(lua_State *L)
 {
-    tl_block_mesh *mesh = lua_touserdata(L, 1);
-    tl_block_mesh_free(mesh);
-    *mesh = (tl_block_mesh){0};
+    tl_block_mesh_free(lua_touserdata(L, 1));
     return 0;
 }
 
@@ -85,7 +83,6 @@ static bool block_extra(lua_State *L, tl_model *model, const tl_lua_item *item, 
     else
         push_faces(L, model, mesh);
     tl_block_mesh_free(mesh);
-    *mesh = (tl_block_mesh){0};
     return true;
 }
 
@@ -348,7 +345,6 @@ static int bounds(lua_State *L, const tl_lua_selection *b)
             high = (tl_vec3){fmax(high.x, v.x), fmax(high.y, v.y), fmax(high.z, v.z)};
         }
         tl_block_mesh_free(mesh);
-        *mesh = (tl_block_mesh){0};
     }
     lua_createtable(L, 0, 2);
     tl_lua_set_vec3(L, "min", low);
@@ -400,7 +396,6 @@ static void on_release(void *user)
 /* ---------------------------------------------------------------- in a step -------------- */
 
 typedef struct call {
-    tl_lua_anchor *anchor;
     int key;
     double t;
     tl_vec3 velocity;
@@ -458,7 +453,7 @@ static int call_function(lua_State *L)
 static bool evaluate(tl_lua_anchor *a, int key, double t, tl_vec3 *velocity)
 {
     lua_State *L = tl_lua_run_state();
-    call c = {.anchor = a, .key = key, .t = t};
+    call c = {.key = key, .t = t};
     lua_pushcfunction(L, call_function);
     lua_pushlightuserdata(L, &c);
     lua_getiuservalue(L, TL_LUA_AT_MODEL, 1);

@@ -33,8 +33,7 @@ static const tl_param boundary_params[] = {
              "faces that look so: their normal is within an angle of this vector", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_REAL, boundary_args, within, "deg", "this angle", .def = {45.0}, .min = 0.0, .max = 180.0),
     TL_PARAM(TL_PARAM_REAL, boundary_args, tolerance, "m",
-             "how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size "
-             "when left out",
+             "how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size when left out",
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_BOOL, boundary_args, fixed, "", "holds the bodies in all components", .def = {0.0}),
     TL_PARAM(TL_PARAM_BOOL, boundary_args, roller, "",
@@ -162,23 +161,17 @@ static const char *name_of(int32_t side)
     return tl_side_names()[side - TL_SIDE_XMIN];
 }
 
-typedef struct plane_args {
-    tl_vec3 normal, at;
-} plane_args;
-
 static void read_plane(lua_State *L, int index, tl_boundary_where *where)
 {
     static const tl_param params[] = {
-        TL_PARAM(TL_PARAM_VEC3, plane_args, normal, "", "outward normal, of any length", .flags = TL_PARAM_REQUIRED),
-        TL_PARAM(TL_PARAM_VEC3, plane_args, at, "m", "a point of the plane", .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, tl_boundary_where, normal, "", "outward normal, of any length",
+                 .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, tl_boundary_where, at, "m", "a point of the plane", .flags = TL_PARAM_REQUIRED),
     };
     if (lua_getfield(L, index, "plane") == LUA_TNIL)
         return;
-    plane_args plane;
     tl_lua_spec spec = {"boundary, plane", params, TL_LUA_COUNT(params), NULL};
-    tl_lua_read(L, -1, &spec, false, &plane);
-    where->normal = plane.normal;
-    where->at = plane.at;
+    tl_lua_read(L, -1, &spec, false, where);
 }
 
 /* What is to be done, of the table at `index` and the parameters read of it. */
@@ -355,11 +348,10 @@ const tl_lua_topic tl_lua_boundary_topics[] = {
     {.name = "boundary",
      .usage = "result = model:boundary{side = \"xmax\", stress = {xx = -1e6}}  or  "
               "model:boundary{xmin = \"roller\", zmin = \"fixed\", zmax = {pressure = 1e5}}",
-     .doc = "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
-            "Holds their bodies, or puts a traction on them as a load: its force and moment about "
-            "each body's centroid take the place of the load the body had, keep their direction "
-            "and go with the body. What one call puts on a body adds up. When a face is cut, each "
-            "part of it gets its share.",
+     .doc = "Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, "
+            "or puts a traction on them as a load: its force and moment about each body's centroid take the place of "
+            "the load the body had, keep their direction and go with the body. What one call puts on a body adds up. "
+            "When a face is cut, each part of it gets its share.",
      .spec = &boundary_spec,
      .title = "Fields of the result",
      .verbs = boundary_results,

@@ -142,12 +142,9 @@ static void push_contact_points(lua_State *L, tl_model *model, const tl_contact_
 
 /* ---------------------------------------------------------------- contacts ---------------- */
 
-typedef struct contact_args {
-    const char *joint;
-} contact_args;
-
 static const tl_param contact_params[] = {
-    TL_PARAM(TL_PARAM_STRING, contact_args, joint, "", "contacts on this joint or plane", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, tl_contact_filter, joint, "", "contacts on this joint or plane",
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_key contact_keys[] = {
@@ -196,10 +193,8 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
 
 static int model_contacts(lua_State *L, tl_model *model)
 {
-    contact_args args;
-    tl_lua_read(L, 2, &contacts_spec, false, &args);
     tl_contact_filter filter = tl_contact_filter_default();
-    filter.joint = args.joint;
+    tl_lua_read(L, 2, &contacts_spec, false, &filter);
     read_between(L, &filter);
     int where = tl_lua_read_where(L, &tl_lua_contact_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_contact_kind, 1);
@@ -253,9 +248,8 @@ static bool contact_extra(lua_State *L, tl_model *model, const tl_lua_item *item
 
 static const tl_lua_key contact_extra_keys[] = {
     {"points", "list of {position =, area =, normal_force =, ...}",
-     "its points as they are now, each a table of the fields of a contact point and of the states "
-     "of the law by name. The forces of the points add up to those of the contact; edges, vertices "
-     "and tilted faces have one point"},
+     "its points as they are now, each a table of the fields of a contact point and of the states of the law by name. "
+     "The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point"},
     {"states", "{NAME = value}",
      "the states of its law: the mean of the points, weighted by their areas; the sum of a state "
      "that goes with the area"},
@@ -282,9 +276,8 @@ static const tl_lua_key contact_methods[] = {
     {"sel:max(field), sel:min(field)", "",
      "largest and smallest value of a field of numbers, or of a state, where the law has it"},
     {"sel:values(field)", "",
-     "list of the field's values, in the order of the selection; likewise a state of a law, by its "
-     "name, NaN where the contact's law has no such state. With \"flat\" after it vectors are not "
-     "lists of their own"},
+     "list of the field's values, in the order of the selection; likewise a state of a law, by its name, NaN where the "
+     "contact's law has no such state. With \"flat\" after it vectors are not lists of their own"},
     {"sel:where(function(contact) ... end)", "", "those for which the function answers true"},
     {NULL, NULL, NULL},
 };

@@ -42,11 +42,10 @@ static const tl_param history_params[] = {
 
 static const tl_lua_key history_keys[] = {
     {"value", "function(model) or text",
-     "gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may "
-     "read the model, but not change it. Or one of \"kinetic\", \"potential\", \"stored\", "
-     "\"friction\", \"damping\", \"external\" (J), \"balance\", \"ratio\", \"ratio_maximum\", "
-     "\"ratio_local\", \"max_velocity\" (m/s), \"contacts\", \"slipping\", \"open\" (numbers of "
-     "contacts in the last step)"},
+     "gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but "
+     "not change it. Or one of \"kinetic\", \"potential\", \"stored\", \"friction\", \"damping\", \"external\" (J), "
+     "\"balance\", \"ratio\", \"ratio_maximum\", \"ratio_local\", \"max_velocity\" (m/s), \"contacts\", \"slipping\", "
+     "\"open\" (numbers of contacts in the last step)"},
     {"of", "block, contact or selection",
      "what the field is sampled of, in the place of `value`. Blocks and contacts that no longer "
      "exist are left out; where none is left the value is nan"},
@@ -176,8 +175,7 @@ static void ask_function(lua_State *L, const tl_history *h, latest *now)
     now->list = list || given > 1;
     if (h->count && (count != h->width || now->list != h->list))
         tl_lua_fail_in(L, AT_FUNCTION,
-                       "history '%s': the function gives %d numbers, before it gave %d: it must "
-                       "give as many each time",
+                       "history '%s': the function gives %d numbers, before it gave %d: it must give as many each time",
                        h->name, (int)count, (int)h->width);
 }
 
@@ -403,9 +401,7 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
         tl_lua_fail(L, "history '%s': take is for a history of blocks or contacts, with of", h->name);
     bool value = lua_getfield(L, 2, "value") != LUA_TNIL;
     if (value == of)
-        tl_lua_fail(L,
-                    "history '%s': give either value = function(model) ... end or of = a selection "
-                    "with field",
+        tl_lua_fail(L, "history '%s': give either value = function(model) ... end or of = a selection with field",
                     h->name);
     if (value && args->field)
         tl_lua_fail(L, "history '%s': field = '%s' is the field of what `of` gives, and there is no of", h->name,
@@ -431,8 +427,7 @@ static int model_history(lua_State *L, tl_model *model)
     size_t at = history_find(model, args.name);
     if (tl_history_at(model, at))
         return tl_lua_fail(L,
-                           "history '%s': there is one of that name; model:history{name = '%s', "
-                           "remove = true} ends it",
+                           "history '%s': there is one of that name; model:history{name = '%s', remove = true} ends it",
                            args.name, args.name);
     tl_history what = {.every = args.every}, *h;
     strcpy(what.name, args.name);
@@ -709,9 +704,8 @@ static int model_write_histories(lua_State *L, tl_model *model)
 
 const tl_lua_topic tl_lua_history_topics[] = {
     {.name = "history",
-     .usage = "model:history{name = \"gap\", every = 10, value = function(m) return "
-              "m:contacts():max(\"gap\") end}  or  model:history{name = \"wedge\", of = selection, "
-              "field = \"displacement\"}",
+     .usage = "model:history{name = \"gap\", every = 10, value = function(m) return m:contacts():max(\"gap\") end}  or "
+              " model:history{name = \"wedge\", of = selection, field = \"displacement\"}",
      .doc = "Samples a value at once and then every so many steps of all runs, until it is removed.",
      .spec = &history_spec,
      .arguments = 1,
@@ -724,10 +718,9 @@ const tl_lua_topic tl_lua_history_topics[] = {
      .method = model_histories},
     {.name = "write_histories",
      .usage = "model:write_histories(\"out/run.csv\")",
-     .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one "
-            "for each history, in the order in which they were made, or name.x, name.y and name.z. "
-            "A cell is empty where a history has no sample of that cycle. Folders are made; the "
-            "file is written whole or not at all.",
+     .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one for each history, in "
+            "the order in which they were made, or name.x, name.y and name.z. A cell is empty where a history has no "
+            "sample of that cycle. Folders are made; the file is written whole or not at all.",
      .arguments = 1,
      .method = model_write_histories},
     {.name = NULL},

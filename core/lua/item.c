@@ -14,10 +14,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void add_fields(tl_lua_names *names, const tl_field *fields, size_t count)
+static void add_fields(tl_lua_names *names, const tl_lua_kind *kind)
 {
+    size_t count;
+    const tl_field *fields = kind->fields(&count);
     for (size_t i = 0; i < count; i++)
         tl_lua_names_add(names, fields[i].name);
+}
+
+/* Pushes a list of numbers, or of whole ones. */
+static void push_flat(lua_State *L, const double *values, size_t count, bool whole)
+{
+    if (!whole) {
+        tl_lua_push_numbers(L, values, count);
+        return;
+    }
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        lua_pushinteger(L, (lua_Integer)values[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
 }
 
 /* Pushes a field's value as Lua sees it. */
@@ -35,13 +51,7 @@ static void push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
         TL_LUA_SET_NUMBERS(L, {"xx", n[0]}, {"yy", n[1]}, {"zz", n[2]}, {"xy", n[3]}, {"yz", n[4]}, {"zx", n[5]});
         break;
     case TL_FIELD_TEXT: lua_pushstring(L, value->text); break;
-    case TL_FIELD_IDS:
-        lua_createtable(L, 2, 0);
-        for (int i = 0; i < 2; i++) {
-            lua_pushinteger(L, (lua_Integer)value->number[i]);
-            lua_rawseti(L, -2, i + 1);
-        }
-        break;
+    case TL_FIELD_IDS: push_flat(L, value->number, 2, true); break;
     }
 }
 
@@ -120,9 +130,7 @@ void tl_lua_item_rename(lua_State *L, const char *name, tl_id id)
 static int unknown_field(lua_State *L, const tl_lua_kind *kind, const char *name)
 {
     tl_lua_names names = {0};
-    size_t count;
-    const tl_field *fields = kind->fields(&count);
-    add_fields(&names, fields, count);
+    add_fields(&names, kind);
     for (const tl_lua_key *key = kind->extra_keys; key->name; key++)
         tl_lua_names_add(&names, key->name);
     return tl_lua_unknown(L, lua_pushfstring(L, "a %s has no field", kind->item), name, &names);
@@ -282,19 +290,6 @@ static void push_ids(lua_State *L, const tl_lua_selection *contacts)
     }
 }
 
-/* Numbers, one by one. */
-static void push_flat(lua_State *L, const double *values, size_t count, bool whole)
-{
-    lua_createtable(L, (int)count, 0);
-    for (size_t i = 0; i < count; i++) {
-        if (whole)
-            lua_pushinteger(L, (lua_Integer)values[i]);
-        else
-            lua_pushnumber(L, values[i]);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-}
-
 /* Raises an error where `name` is a list or a table that items have besides their fields: there is no column of it. */
 static void refuse_extra(lua_State *L, const tl_lua_kind *kind, const char *name, const char *method)
 {
@@ -360,9 +355,7 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
     if (kind->values(model, NULL, name, NULL, &width) == TL_E_NOT_FOUND) {
         refuse_extra(L, kind, name, method);
         tl_lua_names names = {0};
-        size_t count;
-        const tl_field *fields = kind->fields(&count);
-        add_fields(&names, fields, count);
+        add_fields(&names, kind);
         lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item);
         tl_lua_unknown(L, lua_tostring(L, -1), name, &names);
     }

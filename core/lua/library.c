@@ -150,14 +150,12 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
      .keys = plot_keys},
     {.name = "stereonet",
-     .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = "
-              "model:keyblocks{friction = 30}}",
+     .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = model:keyblocks{friction = 30}}",
      .doc = "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",
      .keys = stereonet_keys},
     {.name = "write_file",
      .usage = "talus.write_file(\"out/table.csv\", text)",
-     .doc = "Writes a text into a file, whole or not at all. Folders are made; only a regular file "
-            "is replaced.",
+     .doc = "Writes a text into a file, whole or not at all. Folders are made; only a regular file is replaced.",
      .call = module_write_file},
     {.name = NULL},
 };

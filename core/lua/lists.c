@@ -31,70 +31,6 @@ static const tl_lua_key kinds_results[] = {
     {NULL, NULL, NULL},
 };
 
-/* ---------------------------------------------------------------- parameters ------------- */
-
-/* Sets `parameters` of the table at the top of the stack: those of a plugin in use, by name. */
-static void set_params(lua_State *L, const tl_kind *kind, const void *params)
-{
-    lua_createtable(L, 0, (int)kind->param_count);
-    for (uint32_t i = 0; i < kind->param_count; i++) {
-        tl_lua_push_param(L, &kind->params[i], params);
-        lua_setfield(L, -2, kind->params[i].name);
-    }
-    lua_setfield(L, -2, "parameters");
-}
-
-/* ---------------------------------------------------------------- of a model ------------- */
-
-static int model_joints(lua_State *L, tl_model *model)
-{
-    size_t count = tl_joint_count(model);
-    lua_createtable(L, (int)count, 0);
-    for (size_t i = 0; i < count; i++) {
-        tl_joint_info joint = tl_joint_at(model, i);
-        lua_createtable(L, 0, 3);
-        tl_lua_set_text(L, "name", joint.name);
-        tl_lua_set_count(L, "planes", joint.planes);
-        tl_lua_set_text(L, "law", joint.law ? joint.law->name : NULL);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-    return 1;
-}
-
-static int model_laws(lua_State *L, tl_model *model)
-{
-    const char *joint;
-    tl_plugin_setting law;
-    lua_newtable(L);
-    for (size_t i = 0; tl_model_law_at(model, i, &joint, &law); i++) {
-        lua_createtable(L, 0, 3);
-        tl_lua_set_text(L, "joint", joint);
-        tl_lua_set_text(L, "law", law.kind->name);
-        set_params(L, law.kind, law.params);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-    return 1;
-}
-
-static int model_groups(lua_State *L, tl_model *model)
-{
-    size_t count = tl_group_count(model), listed = 0;
-    size_t *blocks = lua_newuserdatauv(L, (count + 1) * sizeof *blocks, 0);
-    double *volumes = lua_newuserdatauv(L, (count + 1) * sizeof *volumes, 0);
-    tl_groups_tally(model, blocks, volumes);
-    lua_createtable(L, (int)count, 0);
-    for (size_t i = 0; i < count; i++) {
-        if (blocks[i] == 0)
-            continue;
-        lua_createtable(L, 0, 3);
-        tl_lua_set_text(L, "name", tl_group_name(model, i));
-        tl_lua_set_count(L, "blocks", blocks[i]);
-        tl_lua_set_number(L, "volume", volumes[i]);
-        lua_rawseti(L, -2, (lua_Integer)++listed);
-    }
-    return 1;
-}
-
 /* ---------------------------------------------------------------- parameters in force -----
  *
  * model:parameters(): all parameters that a model has now, with those the script has left out. */
@@ -164,14 +100,78 @@ static void print_row(FILE *page, const char *name, const char *text)
         fprintf(page, "%-*s%s\n", NAME_COLUMNS, name, text);
 }
 
-static void print_params(FILE *page, const tl_kind *kind, const void *params)
+/* Puts parameters into the table at the top of the stack, by name, and prints them. */
+static void add_params(lua_State *L, FILE *page, const char *indent, const tl_param *list, size_t count,
+                       const void *params)
 {
-    for (uint32_t i = 0; i < kind->param_count; i++) {
+    for (size_t i = 0; i < count; i++) {
         char name[80], text[VALUE_TEXT];
-        snprintf(name, sizeof name, "  %s", kind->params[i].name);
-        value_text(&kind->params[i], params, text);
+        tl_lua_push_param(L, &list[i], params);
+        lua_setfield(L, -2, list[i].name);
+        snprintf(name, sizeof name, "%s%s", indent, list[i].name);
+        value_text(&list[i], params, text);
         print_row(page, name, text);
     }
+}
+
+/* Sets `parameters` of the table at the top of the stack: those of a plugin in use; NULL: it has none. */
+static void set_params(lua_State *L, FILE *page, const tl_kind *kind, const void *params)
+{
+    lua_newtable(L);
+    if (kind)
+        add_params(L, page, "  ", kind->params, kind->param_count, params);
+    lua_setfield(L, -2, "parameters");
+}
+
+/* ---------------------------------------------------------------- of a model ------------- */
+
+static int model_joints(lua_State *L, tl_model *model)
+{
+    size_t count = tl_joint_count(model);
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        tl_joint_info joint = tl_joint_at(model, i);
+        lua_createtable(L, 0, 3);
+        tl_lua_set_text(L, "name", joint.name);
+        tl_lua_set_count(L, "planes", joint.planes);
+        tl_lua_set_text(L, "law", joint.law ? joint.law->name : NULL);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    return 1;
+}
+
+static int model_laws(lua_State *L, tl_model *model)
+{
+    const char *joint;
+    tl_plugin_setting law;
+    lua_newtable(L);
+    for (size_t i = 0; tl_model_law_at(model, i, &joint, &law); i++) {
+        lua_createtable(L, 0, 3);
+        tl_lua_set_text(L, "joint", joint);
+        tl_lua_set_text(L, "law", law.kind->name);
+        set_params(L, NULL, law.kind, law.params);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    return 1;
+}
+
+static int model_groups(lua_State *L, tl_model *model)
+{
+    size_t count = tl_group_count(model), listed = 0;
+    size_t *blocks = lua_newuserdatauv(L, (count + 1) * sizeof *blocks, 0);
+    double *volumes = lua_newuserdatauv(L, (count + 1) * sizeof *volumes, 0);
+    tl_groups_tally(model, blocks, volumes);
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        if (blocks[i] == 0)
+            continue;
+        lua_createtable(L, 0, 3);
+        tl_lua_set_text(L, "name", tl_group_name(model, i));
+        tl_lua_set_count(L, "blocks", blocks[i]);
+        tl_lua_set_number(L, "volume", volumes[i]);
+        lua_rawseti(L, -2, (lua_Integer)++listed);
+    }
+    return 1;
 }
 
 /* ---------------------------------------------------------------- parts ------------------ */
@@ -182,13 +182,7 @@ static void add_config(lua_State *L, tl_model *model, FILE *page)
     tl_model_config config = tl_model_settings(model);
     size_t count;
     const tl_param *params = tl_function_params("model", &count, NULL);
-    for (size_t i = 0; i < count; i++) {
-        tl_lua_push_param(L, &params[i], &config);
-        lua_setfield(L, -2, params[i].name);
-        char text[VALUE_TEXT];
-        value_text(&params[i], &config, text);
-        print_row(page, params[i].name, text);
-    }
+    add_params(L, page, "", params, count, &config);
 }
 
 static void add_timestep(lua_State *L, tl_model *model, FILE *page)
@@ -243,18 +237,11 @@ static void add_mass_scaling(lua_State *L, const tl_model *model, FILE *page)
 static void add_damping(lua_State *L, const tl_model *model, FILE *page)
 {
     tl_plugin_setting damping = tl_model_damping_now(model);
-    lua_createtable(L, 0, 2);
-    if (damping.kind) {
-        tl_lua_set_text(L, "name", damping.kind->name);
-        set_params(L, damping.kind, damping.params);
-    } else {
-        lua_newtable(L);
-        lua_setfield(L, -2, "parameters");
-    }
-    lua_setfield(L, -2, "damping");
     print_row(page, "damping", damping.kind ? damping.kind->name : "none (default)");
-    if (damping.kind)
-        print_params(page, damping.kind, damping.params);
+    lua_createtable(L, 0, 2);
+    tl_lua_set_text(L, "name", damping.kind ? damping.kind->name : NULL);
+    set_params(L, page, damping.kind, damping.params);
+    lua_setfield(L, -2, "damping");
 }
 
 /* The joint sets, each with the joint whose law it has. */
@@ -279,14 +266,13 @@ static void add_laws(lua_State *L, tl_model *model, FILE *page)
     tl_plugin_setting law;
     lua_newtable(L);
     for (size_t i = 0; tl_model_law_at(model, i, &joint, &law); i++) {
-        lua_createtable(L, 0, 2);
-        tl_lua_set_text(L, "law", law.kind->name);
-        set_params(L, law.kind, law.params);
-        lua_setfield(L, -2, joint);
         char name[100];
         snprintf(name, sizeof name, "joint %s", joint);
         print_row(page, name, law.kind->name);
-        print_params(page, law.kind, law.params);
+        lua_createtable(L, 0, 2);
+        tl_lua_set_text(L, "law", law.kind->name);
+        set_params(L, page, law.kind, law.params);
+        lua_setfield(L, -2, joint);
     }
     lua_setfield(L, -2, "laws");
     add_joints(L, model, page);

@@ -309,8 +309,7 @@ static const tl_lua_key model_members[] = {
     {"model.gravity", "", "acceleration of gravity {x, y, z}, m/s2; may be assigned"},
     {"model.rotation", "", "\"exact\" or \"paper\"; may be assigned"},
     {"model.contact_points", "",
-     "\"consistent\" or \"corners\" (not of faces that meet another at less than 20 degrees); may "
-     "be assigned"},
+     "\"consistent\" or \"corners\" (not of faces that meet another at less than 20 degrees); may be assigned"},
     {"model.reuse_geometry", "", "true or false; may be assigned"},
     {"model.time, model.cycles", "", "simulated time, s, and steps so far"},
     {"model.mass_scaled", "", "whether mass scaling is on"},
@@ -362,10 +361,9 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .verbs = model_members},
     {.name = "generate",
      .usage = "summary = model:generate(\"GENERATOR\", {...})",
-     .doc = "Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of "
-            "tables, {{...}, {...}}, in the place of one: once for each, in their order and in one "
-            "go. What an earlier entry makes and a later one cuts gets no ids, so ids are not those of "
-            "a call for each entry.",
+     .doc = "Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, "
+            "{...}}, in the place of one: once for each, in their order and in one go. What an earlier entry makes and a "
+            "later one cuts gets no ids, so ids are not those of a call for each entry.",
      .has_type = true,
      .type = TL_KIND_GENERATOR,
      .title = "Fields of the summary",
@@ -401,8 +399,7 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .arguments = 1,
      .method = model_timestep},
     {.name = "mass_scaling",
-     .usage = "model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  added = "
-              "model:mass_scaling()",
+     .usage = "model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  added = model:mass_scaling()",
      .function = "mass_scaling",
      .title = "Fields of what it tells",
      .verbs = mass_scaling_results,

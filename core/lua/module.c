@@ -90,18 +90,15 @@ static int module_kinds(lua_State *L)
 /* Puts talus.laws, talus.dampings, talus.generators and talus.screens into the module at the top of the stack. */
 static void put_kinds(lua_State *L)
 {
-    static const struct {
-        const char *name;
-        tl_kind_type type;
-    } lists[] = {{"laws", TL_KIND_LAW},
-                 {"dampings", TL_KIND_DAMPING},
-                 {"generators", TL_KIND_GENERATOR},
-                 {"screens", TL_KIND_SCREEN}};
-    for (size_t i = 0; i < TL_LUA_COUNT(lists); i++) {
-        lua_pushinteger(L, lists[i].type);
-        lua_pushfstring(L, "talus.%s", lists[i].name);
+    static const char *const lists[] = {[TL_KIND_LAW] = "laws",
+                                        [TL_KIND_DAMPING] = "dampings",
+                                        [TL_KIND_GENERATOR] = "generators",
+                                        [TL_KIND_SCREEN] = "screens"};
+    for (size_t type = 0; type < TL_LUA_COUNT(lists); type++) {
+        lua_pushinteger(L, (lua_Integer)type);
+        lua_pushfstring(L, "talus.%s", lists[type]);
         lua_pushcclosure(L, module_kinds, 2);
-        lua_setfield(L, -2, lists[i].name);
+        lua_setfield(L, -2, lists[type]);
     }
 }
 

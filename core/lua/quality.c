@@ -357,11 +357,8 @@ static int model_verdict(lua_State *L, tl_model *model)
     TL_LUA_SET_NUMBERS(L, {"ratio", v.ratio}, {"closed", v.closed}, {"volume", v.volume},
                        {"displacement", v.displacement}, {"slip", v.slip}, {"opening", v.opening});
     TL_LUA_SET_COUNTS(L, {"moved", v.moved}, {"farthest", v.farthest}, {"contacts", v.contacts},
-                      {"slipping", v.slipping});
-    lua_pushinteger(L, tl_contact_number(v.slipped));
-    lua_setfield(L, -2, "slipped");
-    lua_pushinteger(L, tl_contact_number(v.opened));
-    lua_setfield(L, -2, "opened");
+                      {"slipping", v.slipping}, {"slipped", (size_t)tl_contact_number(v.slipped)},
+                      {"opened", (size_t)tl_contact_number(v.opened)});
     return 1;
 }
 
@@ -455,8 +452,7 @@ static const tl_lua_key report_results[] = {
      "largest aspect of a block: its diameter (largest distance between two vertices) over its "
      "thickness (smallest extent along the normal of a face); 1.73 for a cube"},
     {"cuts, refused, coincident", "",
-     "cuts made, refused because a side would be too thin, and fallen on existing faces, since the "
-     "model was made"},
+     "cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made"},
     {"refused_cuts", "",
      "the first 1000 refused cuts, each a table: joint, normal and point of the plane, block (its "
      "number), thickness and limit of the thinner side, and the reason as a sentence"},
@@ -491,8 +487,7 @@ static const tl_lua_key keyblock_results[] = {
 const tl_lua_topic tl_lua_quality_topics[] = {
     {.name = "report",
      .usage = "table = talus.report(model)",
-     .doc = "Tells how good the blocks are that cutting made, and prints it on a page (not with "
-            "--quiet).",
+     .doc = "Tells how good the blocks are that cutting made, and prints it on a page (not with --quiet).",
      .title = "Fields of the report",
      .verbs = report_results,
      .call = module_report},

@@ -210,10 +210,8 @@ enum {
 
 typedef struct run {
     tl_lua_running running;
-    lua_State *L;
     tl_lua_model *owner;
     tl_lua_options *options;
-    tl_lua_watch watch;
     tl_solve limits; /* what is run */
     progress line;
     tl_solve_result result;
@@ -426,11 +424,11 @@ static tl_status on_each(void *user, tl_model *model)
     if (r->running.failed) /* a drive's function */
         return TL_E_CANCELLED;
     progress_run(&r->line, model, &r->limits, &r->result);
-    if (tl_model_cycles(model) >= r->owner->next_sample && !tl_lua_histories_sample(r->L, AT_MODEL))
+    if (tl_model_cycles(model) >= r->owner->next_sample && !tl_lua_histories_sample(r->running.L, AT_MODEL))
         return status_of(false);
     if (!r->owner->probe)
         autosave(r->options, model);
-    return status_of(!r->owner->view || tl_lua_view_step(r->L, 0));
+    return status_of(!r->owner->view || tl_lua_view_step(r->running.L, 0));
 }
 
 /* Before every step: those who look at the model, if it is seen, may want something. */
@@ -440,14 +438,14 @@ static tl_status on_between(void *user, tl_model *model)
     run *r = user;
     if (r->running.failed)
         return TL_E_CANCELLED;
-    return status_of(tl_lua_view_between(r->L));
+    return status_of(tl_lua_view_between(r->running.L));
 }
 
 static tl_status on_progress(void *user, tl_model *model)
 {
     (void)model;
     run *r = user;
-    lua_State *L = r->L;
+    lua_State *L = r->running.L;
     if (r->running.failed)
         return TL_E_CANCELLED;
     progress_clear(&r->line); /* the function may print */
@@ -462,7 +460,7 @@ static bool on_stop(void *user, tl_model *model)
 {
     (void)model;
     run *r = user;
-    lua_State *L = r->L;
+    lua_State *L = r->running.L;
     if (r->running.failed)
         return true;
     lua_pushvalue(L, AT_STOP);
@@ -478,11 +476,7 @@ static bool on_stop(void *user, tl_model *model)
 
 /* ---------------------------------------------------------------- solve and cycle -------- */
 
-static const tl_lua_key cycle_keys[] = {
-    {"on_progress", "function(model, result)", "called every `every` steps"},
-    {NULL, NULL, NULL},
-};
-
+/* Those of cycle are the same but for the first. */
 static const tl_lua_key solve_keys[] = {
     {"stop", "function(model)", "called every `every` steps; ends the run when it answers true"},
     {"on_progress", "function(model, result)", "called every `every` steps"},
@@ -501,7 +495,7 @@ static bool push_callback(lua_State *L, const char *what, const char *key)
 /* Makes a run, or with `steps` its steps only, and pushes its result. The table of arguments is at AT_ARGS. */
 static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, bool steps)
 {
-    run r = {.L = L, .owner = lua_touserdata(L, AT_MODEL)};
+    run r = {.running = {.L = L}, .owner = lua_touserdata(L, AT_MODEL), .options = tl_lua_options_of(L)};
     lua_settop(L, AT_ANCHOR);
     solve->stop = push_callback(L, what, "stop") ? on_stop : NULL;
     solve->progress = push_callback(L, what, "on_progress") ? on_progress : NULL;
@@ -510,11 +504,9 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     solve->between = on_between;
     solve->user = &r;
     r.limits = *solve;
-    r.options = tl_lua_options_of(L);
     r.owner->next_sample = 0; /* the first step finds it */
     progress_begin(L, &r.line, model);
-    r.watch = tl_lua_watch_begin(L);
-    r.running.L = L;
+    tl_lua_watch watch = tl_lua_watch_begin(L);
     tl_lua_running *outer = tl_lua_running_set(&r.running);
     tl_status status = steps ? tl_model_cycle_calling(model, solve->max_cycles, solve, &r.result)
                              : tl_model_solve(model, solve, &r.result);
@@ -522,7 +514,7 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
         tl_lua_run_keep_error();
     tl_lua_running_set(outer);
     progress_clear(&r.line);
-    tl_lua_watch_end_run(L, &r.watch, what);
+    tl_lua_watch_end_run(L, &watch, what);
     if (r.running.failed) {
         lua_settop(L, AT_ERROR);
         return lua_error(L);
@@ -546,7 +538,7 @@ static int model_solve(lua_State *L, tl_model *model)
 static int model_cycle(lua_State *L, tl_model *model)
 {
     tl_cycle_args args;
-    tl_lua_spec spec = tl_lua_spec_of("cycle", cycle_keys);
+    tl_lua_spec spec = tl_lua_spec_of("cycle", solve_keys + 1);
     tl_lua_read_one(L, 2, &spec, "cycles", &args);
     lua_settop(L, 3);
     lua_remove(L, 2); /* as in solve the table of arguments is at index 2 */
@@ -651,18 +643,15 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
 
 static const tl_lua_key run_results[] = {
     {"reason", "",
-     "why it ended: \"ratio\", \"velocity\", \"failure\", \"overlap\" (blocks that were made "
-     "overlapping push it apart), \"cycles\", \"time\", \"stop\" or \"interrupt\" (Ctrl-C at the "
-     "prompt; in a script it raises an error)"},
+     "why it ended: \"ratio\", \"velocity\", \"failure\", \"overlap\" (blocks that were made overlapping push it "
+     "apart), \"cycles\", \"time\", \"stop\" or \"interrupt\" (Ctrl-C at the prompt; in a script it raises an error)"},
     {"ratio", "", "mean unbalanced force over mean contact force"},
     {"ratio_maximum", "", "largest unbalanced force over mean contact force"},
     {"ratio_local", "",
-     "largest unbalanced force of a block over its own contact forces, or its weight and load "
-     "where these are more"},
+     "largest unbalanced force of a block over its own contact forces, or its weight and load where these are more"},
     {"measure", "", "the measure that may end the run"},
     {"worst", "",
-     "the block farthest from rest by the measure \"local\": nil when there is none that can move, "
-     "or no force on any"},
+     "the block farthest from rest by the measure \"local\": nil when there is none that can move, or no force on any"},
     {"failing", "",
      "a block that fails steadily: it moves on in one direction without slowing down, and the "
      "force that pushes it stays; nil when none does"},
@@ -677,7 +666,7 @@ const tl_lua_topic tl_lua_run_topics[] = {
     {.name = "cycle",
      .usage = "result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})",
      .function = "cycle",
-     .keys = cycle_keys,
+     .keys = solve_keys + 1,
      .title = "Fields of the result",
      .verbs = run_results,
      .arguments = 2,

@@ -246,11 +246,10 @@ const tl_lua_topic tl_lua_state_topics[] = {
      .method = model_copy},
     {.name = "save",
      .usage = "model:save(\"out/run.talus\")",
-     .doc = "Saves all that the next steps depend on, to the bit, compressed and with checksums. "
-            "The file appears whole or not at all, in the place of an older one, and outlives a "
-            "crash of the machine; folders are made. The model goes on as if it had not been "
-            "saved. Histories are saved with all their samples; functions of drives and histories "
-            "are not. Frames of files go on with the next number.",
+     .doc = "Saves all that the next steps depend on, to the bit, compressed and with checksums. The file appears "
+            "whole or not at all, in the place of an older one, and outlives a crash of the machine; folders are made. "
+            "The model goes on as if it had not been saved. Histories are saved with all their samples; functions of "
+            "drives and histories are not. Frames of files go on with the next number.",
      .arguments = 1,
      .method = model_save},
     {.name = "restore",

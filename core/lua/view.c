@@ -249,9 +249,7 @@ static void push_line(lua_State *L, tl_model *model, const tl_view_command *comm
     snprintf(cycle, sizeof cycle, "_%09lld.talus", (long long)tl_model_cycles(model));
     switch (command->op) {
     case TL_VIEW_CUT:
-        lua_pushfstring(L,
-                        "model:generate(\"joint\", { joint = %s, dip = %s, dip_direction = %s, "
-                        "origin = %s })",
+        lua_pushfstring(L, "model:generate(\"joint\", { joint = %s, dip = %s, dip_direction = %s, origin = %s })",
                         quoted(L, command->joint), number(L, command->dip), number(L, command->dip_direction),
                         list(L, origin, 3));
         break;
@@ -489,8 +487,7 @@ static void open_view(lua_State *L, tl_lua_model *owner, const tl_view_options *
 /* Runs protected, with the model, the table and the options: opens the view, and shows the first frame. */
 static int begin(lua_State *L)
 {
-    tl_lua_model *owner = lua_touserdata(L, TL_LUA_AT_MODEL);
-    open_view(L, owner, lua_touserdata(L, 3));
+    open_view(L, lua_touserdata(L, TL_LUA_AT_MODEL), lua_touserdata(L, 3));
     return show(L);
 }
 

@@ -211,10 +211,8 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the unknown type %u", p->name, p->type);
     if (kind->type != TL_KIND_GENERATOR && (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
         return tl_fail(error, TL_E_PLUGIN,
-                       "parameter '%s' is a %s, which lives only as long as the call: a %s cannot keep "
-                       "it",
-                       p->name, p->type == TL_PARAM_STRING ? "string" : "list of points",
-                       tl_kind_type_name(kind->type));
+                       "parameter '%s' is a %s, which lives only as long as the call: a %s cannot keep it", p->name,
+                       p->type == TL_PARAM_STRING ? "string" : "list of points", tl_kind_type_name(kind->type));
     if (p->offset > kind->params_size || bytes > kind->params_size - p->offset)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' lies at bytes %zu to %zu, outside its struct of %zu",
                        p->name, p->offset, p->offset + bytes, kind->params_size);

@@ -70,11 +70,6 @@ static bool own_file(char file[PATH_MAX])
     return named || realpath("/proc/self/exe", file);
 }
 
-static bool is_trusted(uid_t owner, uid_t program)
-{
-    return owner == 0 || owner == geteuid() || owner == program;
-}
-
 /* Whether the group is of the user's name and has no other member, as many systems make one for each user. */
 static bool is_private(gid_t gid, uid_t uid)
 {
@@ -110,7 +105,7 @@ static bool find_fault(const char *path, bool above, uid_t program, char *why, s
     struct stat s;
     if (stat(path, &s) != 0)
         snprintf(why, size, "%s cannot be looked at", path);
-    else if (!is_trusted(s.st_uid, program))
+    else if (s.st_uid != 0 && s.st_uid != geteuid() && s.st_uid != program)
         snprintf(why, size, "%s belongs to user %lu, who is neither root nor you", path, (unsigned long)s.st_uid);
     else if (above ? others_may_rename_in(&s) : others_may_write(&s))
         snprintf(why, size, "users other than its owner may write %s (mode %04o)", path, (unsigned)(s.st_mode & 07777));
@@ -363,8 +358,7 @@ tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name)
         count++;
     if (count == 0)
         return tl_fail(error, TL_E_NOT_FOUND,
-                       "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
-                       "the plugins",
+                       "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of the plugins",
                        what, name, what);
     const char **names = malloc(count * sizeof *names);
     if (!names)
@@ -415,8 +409,7 @@ static tl_status check_version(const tl_plugin *given, tl_error *error)
         return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin", given->size);
     if (given->abi_major != TL_ABI_MAJOR)
         return tl_fail(error, TL_E_PLUGIN,
-                       "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew "
-                       "against these headers",
+                       "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew against these headers",
                        given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
     return TL_OK;
 }
@@ -433,8 +426,7 @@ static tl_status tell_refusal(tl_plugin_entry_fn entry, tl_error *error)
             return status;
         if (given)
             return tl_fail(error, TL_E_PLUGIN,
-                           "it was built for plugin ABI %u.%u and cannot do without it, this Talus has "
-                           "%u.%u",
+                           "it was built for plugin ABI %u.%u and cannot do without it, this Talus has %u.%u",
                            given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
     }
     return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR, TL_ABI_MINOR);
@@ -571,10 +563,7 @@ static void load_folder(search *s, const char *folder, const char *program)
         return;
     if (!path_is_trusted(folder, program ? program : folder, why, sizeof why)) {
         snprintf(text, sizeof text,
-                 program ? UNTRUSTED
-                         : "%s: plugins are loaded from it because TALUS_PLUGIN_PATH "
-                           "names it",
-                 why);
+                 program ? UNTRUSTED : "%s: plugins are loaded from it because TALUS_PLUGIN_PATH names it", why);
         if (!s->again || !registry_has(folder))
             s->short_of_memory |= !keep(folder, program ? text : NULL, program ? NULL : text);
         if (program)

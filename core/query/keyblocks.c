@@ -95,8 +95,7 @@ static tl_status strength_of(work *w, tl_tag tag, double *friction, double *cohe
     }
     if (friction_by == 0)
         return tl_fail(&w->model->error, TL_E_ARGUMENT,
-                       "keyblocks: no friction is given for the faces of joint '%s'; give it, or "
-                       "one for '*'",
+                       "keyblocks: no friction is given for the faces of joint '%s'; give it, or one for '*'",
                        tl_tag_name(w->model, tag));
     return TL_OK;
 }

@@ -67,12 +67,7 @@ static place place_of(const tl_model *m, uint32_t row, bool now)
     return (place){tl_q_matrix(made.turn), tl_v3_add(pose->x_ref, made.shift)};
 }
 
-static tl_vec3 point_at(const place *p, tl_vec3 local)
-{
-    return tl_v3_add(p->x, tl_m3_mul(&p->r, local));
-}
-
-/* The same in another block's frame. */
+/* A point of a block in another block's frame. */
 static tl_vec3 point_in(const place *frame, const place *p, tl_vec3 local)
 {
     tl_vec3 apart = tl_v3_sub(p->x, frame->x);
@@ -139,14 +134,6 @@ static tl_pair_view view_of(const tl_model *m, uint32_t a, uint32_t b, bool now)
                           .mean_face = fmin(m->blocks.mean_face[a], m->blocks.mean_face[b])};
 }
 
-static bool add(tl_touches *out, tl_touch touch)
-{
-    if (!tl_grow(&out->at, &out->capacity, out->count + 1, sizeof *out->at))
-        return false;
-    out->at[out->count++] = touch;
-    return true;
-}
-
 /* Two faces, of A and of B, on each other. */
 typedef struct common {
     bool looked;
@@ -177,13 +164,6 @@ static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint
     return !scratch->failed;
 }
 
-/* Least area of faces that lie on each other now only, of a block that has hardly moved. A strip of another block's
- * face, on which it has moved sideways, is none of its joints. */
-static double least_area(const tl_model *m, uint32_t row, uint32_t face)
-{
-    return 2 * TL_TOUCH_KEPT * tl_poly_face_area(m->blocks.shape[row], face);
-}
-
 /* Notes that the block in `row`, of a pair that does not touch now, has left what it lay on, if it did. */
 static bool note_left(const search *s, worker *w, uint32_t row, common *before, const uint32_t pair[2])
 {
@@ -199,10 +179,7 @@ static bool note_left(const search *s, worker *w, uint32_t row, common *before, 
 
 static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
 {
-    const tl_bounds *p = &s->bounds[a], *q = &s->bounds[b];
-    bool apart = p->min.x > q->max.x || q->min.x > p->max.x || p->min.y > q->max.y || q->min.y > p->max.y ||
-                 p->min.z > q->max.z || q->min.z > p->max.z;
-    if (apart || s->m->blocks.body[a] == s->m->blocks.body[b])
+    if (!tl_bounds_meet(&s->bounds[a], &s->bounds[b]) || s->m->blocks.body[a] == s->m->blocks.body[b])
         return true;
     const uint32_t row[] = {a, b};
     const double moved = moved_of(s->m, a, b);
@@ -215,10 +192,15 @@ static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
         if (!(kept && before.area > 0) && !look(s->m, &w->scratch, a, b, true, &now))
             return false;
         const common *it = kept && before.area > 0 ? &before : &now;
-        double least = kept && it == &now ? least_area(s->m, row[side], it->face[side]) : 0;
+        /* of a block that has hardly moved a strip of another one's face, on which it has slid, is no joint */
+        const tl_poly *shape = s->m->blocks.shape[row[side]];
+        double least = kept && it == &now ? 2 * TL_TOUCH_KEPT * tl_poly_face_area(shape, it->face[side]) : 0;
         const tl_touch touch = {row[side], it->face[side], row[1 - side], it->area, it->joint, share};
-        if (it->area > least && !add(&w->found, touch))
-            return false;
+        if (it->area > least) {
+            if (!tl_grow(&w->found.at, &w->found.capacity, w->found.count + 1, sizeof touch))
+                return false;
+            w->found.at[w->found.count++] = touch;
+        }
         if (!kept && !(now.area > 0) && !note_left(s, w, row[side], &before, row))
             return false;
     }
@@ -239,7 +221,7 @@ static tl_bounds bounds_of(const tl_model *m, uint32_t row)
     const place at[] = {place_of(m, row, false), place_of(m, row, true)};
     tl_bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t i = 0; i < 2 * shape->vertex_count; i++) {
-        tl_vec3 x = point_at(&at[i % 2], shape->vertex[i / 2]);
+        tl_vec3 x = tl_v3_add(at[i % 2].x, tl_m3_mul(&at[i % 2].r, shape->vertex[i / 2]));
         b.min = tl_v3_min(b.min, x);
         b.max = tl_v3_max(b.max, x);
     }

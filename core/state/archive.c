@@ -12,6 +12,7 @@
 
 #include "base/output_file.h"
 #include "base/regular.h"
+#include "base/table.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -35,6 +36,8 @@ static const char magic[8] = TL_ARCHIVE_MAGIC;
 /* Bytes of a file by which it is told what it is; room for a version. */
 #define FIRST_BYTES 256
 #define WRITER 32
+/* Bytes that there is memory for when a file is read; more is had as it turns out to be longer. */
+#define READ_AT_FIRST ((size_t)1 << 20)
 /* Bytes of a frame that is skipped beside what is in it; it holds less than 4 GiB, so data has less than 128 GiB. */
 #define SKIPPED 8
 
@@ -241,13 +244,8 @@ static tl_status list_chunks(tl_archive *a, tl_error *error)
         if (!read_chunk(a, &at, &chunk, &sum))
             return tl_archive_bad(a, error, "chunk %zu of it is not whole, or its checksum is wrong",
                                   a->chunk_count + 1);
-        if (a->chunk_count == capacity) {
-            capacity = capacity ? 2 * capacity : 256;
-            tl_chunk *chunks = realloc(a->chunks, capacity * sizeof *chunks);
-            if (!chunks)
-                return tl_fail_memory(error);
-            a->chunks = chunks;
-        }
+        if (!tl_grow(&a->chunks, &capacity, a->chunk_count + 1, sizeof *a->chunks))
+            return tl_fail_memory(error);
         a->chunks[a->chunk_count++] = chunk;
     } while (!is_named(&chunk, "end"));
     uint64_t told;
@@ -276,19 +274,14 @@ static tl_status cannot_read(tl_error *error, const char *path, const char *why)
 /* The bytes of a file behind its head; NULL with an errno. */
 static unsigned char *read_all(FILE *file, const unsigned char *head, size_t *length)
 {
-    unsigned char *bytes = NULL;
-    size_t capacity = 0;
+    unsigned char *bytes = malloc(READ_AT_FIRST);
+    size_t capacity = READ_AT_FIRST;
+    if (bytes)
+        memcpy(bytes, head, *length);
     do {
-        if (*length >= capacity) {
-            capacity = capacity ? 2 * capacity : 1 << 20;
-            unsigned char *more = realloc(bytes, capacity);
-            if (!more) {
-                free(bytes);
-                return NULL;
-            }
-            if (!bytes)
-                memcpy(more, head, *length);
-            bytes = more;
+        if (!bytes || !tl_grow(&bytes, &capacity, *length + 1, 1)) {
+            free(bytes);
+            return NULL;
         }
         *length += fread(bytes + *length, 1, capacity - *length, file);
     } while (!feof(file) && !ferror(file));
@@ -344,11 +337,17 @@ size_t tl_archive_items(const tl_archive *a, const char *name)
     return chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
 }
 
-bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size, size_t items)
+bool tl_archive_has(const tl_archive *a, const char *name, size_t size, size_t items)
 {
     const tl_chunk *chunk = tl_archive_find(a, name);
-    if (!chunk || chunk->size != size || chunk->items != items)
+    return chunk && chunk->size == size && chunk->items == items;
+}
+
+bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size, size_t items)
+{
+    if (!tl_archive_has(a, name, size, items))
         return false;
+    const tl_chunk *chunk = tl_archive_find(a, name);
     size_t bytes = size * items;
     if (!chunk->packed) {
         if (chunk->stored != bytes)

@@ -67,6 +67,8 @@ void tl_archive_close(tl_archive *archive);
 const tl_chunk *tl_archive_find(const tl_archive *archive, const char *name);
 /* Items of a chunk; 0 of one that is not there, or has 2^32 - 1 or more. */
 size_t tl_archive_items(const tl_archive *archive, const char *name);
+/* Whether there is a chunk of so many items of that size. */
+bool tl_archive_has(const tl_archive *archive, const char *name, size_t size, size_t items);
 /* Puts the items of a chunk into `to`, which has room for them. false: it is not there, has items of another size or
  * number, or does not unpack to them. */
 bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size, size_t items);

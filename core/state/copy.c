@@ -9,6 +9,7 @@
 #include "model/joints.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "state/drives.h"
 #include "state/parts.h"
 
 #include <stdlib.h>
@@ -72,7 +73,9 @@ static tl_status fill(tl_model *to, tl_model *from, const tl_drives_again *again
     tl_status status = TL_OK;
     for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
         if ((*part)->copy)
-            status = (*part)->copy(to, from, again);
+            status = (*part)->copy(to, from);
+    if (status == TL_OK)
+        status = tl_drives_copy(to, from, again);
     if (status == TL_OK)
         status = copy_detection(to, from);
     return status == TL_OK ? copy_cycle(to, from) : status;

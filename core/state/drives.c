@@ -87,7 +87,7 @@ static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count, cons
     return TL_OK;
 }
 
-static void save_drives(const tl_model *m, tl_archive_writer *w)
+void tl_drives_save(const tl_model *m, tl_archive_writer *w)
 {
     tl_drive_kept *kept = keep_all(m);
     if (kept)
@@ -96,7 +96,7 @@ static void save_drives(const tl_model *m, tl_archive_writer *w)
     free(kept);
 }
 
-static tl_status restore_drives(tl_model *m, const tl_archive *a, const tl_drives_again *again)
+tl_status tl_drives_restore(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
     const size_t count = tl_archive_items(a, "drives");
     tl_drive_kept *kept = malloc((count + 1) * sizeof *kept);
@@ -114,7 +114,7 @@ static tl_status restore_drives(tl_model *m, const tl_archive *a, const tl_drive
     return status;
 }
 
-static tl_status copy_drives(tl_model *to, const tl_model *from, const tl_drives_again *again)
+tl_status tl_drives_copy(tl_model *to, const tl_model *from, const tl_drives_again *again)
 {
     tl_drive_kept *kept = keep_all(from);
     if (!kept)
@@ -123,5 +123,3 @@ static tl_status copy_drives(tl_model *to, const tl_model *from, const tl_drives
     free(kept);
     return status;
 }
-
-const tl_state_part tl_drives_part = {save_drives, restore_drives, copy_drives};

@@ -2,7 +2,8 @@
 #ifndef TL_STATE_DRIVES_H
 #define TL_STATE_DRIVES_H
 
-#include "state/part.h"
+#include "model/model.h"
+#include "state/archive.h"
 
 /* A drive without its functions, as a file keeps it: the chunk "drives". */
 typedef struct tl_drive_kept {
@@ -11,7 +12,15 @@ typedef struct tl_drive_kept {
     uint8_t velocity_asked, angular_velocity_asked; /* 1: a function gave it */
 } tl_drive_kept;
 
-/* The bodies have the numbers of their drives already. */
-extern const tl_state_part tl_drives_part;
+/* Who gives the functions of drives again. */
+typedef struct tl_drives_again {
+    tl_drive_again_fn fn; /* NULL: nobody */
+    void *user;
+} tl_drives_again;
+
+/* As of a part (part.h). The bodies have the numbers of their drives already. */
+void tl_drives_save(const tl_model *m, tl_archive_writer *w);
+tl_status tl_drives_restore(tl_model *m, const tl_archive *a, const tl_drives_again *again);
+tl_status tl_drives_copy(tl_model *to, const tl_model *from, const tl_drives_again *again);
 
 #endif

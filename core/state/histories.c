@@ -68,11 +68,8 @@ static void save_histories(const tl_model *m, tl_archive_writer *w)
     if (m->history_count == 0)
         return;
     history_kept *kept = calloc(m->history_count, sizeof *kept);
-    if (!kept) {
-        w->lost = true;
-        return;
-    }
-    for (size_t k = 0; k < m->history_count; k++) {
+    w->lost = w->lost || !kept;
+    for (size_t k = 0; kept && k < m->history_count; k++) {
         keep(m->histories[k], &kept[k]);
         for (unsigned i = 0; i < HISTORY_LISTS; i++) {
             char name[TL_CHUNK_NAME];
@@ -81,7 +78,8 @@ static void save_histories(const tl_model *m, tl_archive_writer *w)
             tl_archive_put(w, name, list.at, list.size, list.items);
         }
     }
-    tl_archive_put(w, "histories", kept, sizeof *kept, m->history_count);
+    if (kept)
+        tl_archive_put(w, "histories", kept, sizeof *kept, m->history_count);
     free(kept);
 }
 
@@ -119,8 +117,7 @@ static bool has_lists(const tl_archive *a, size_t k, const tl_history *h)
         char name[TL_CHUNK_NAME];
         const history_list list = history_list_at(h, i);
         tl_chunk_name(name, "histories.%zu.%s", k, list.name);
-        const tl_chunk *chunk = tl_archive_find(a, name);
-        if (!chunk || chunk->size != list.size || chunk->items != list.items)
+        if (!tl_archive_has(a, name, list.size, list.items))
             return false;
     }
     return true;
@@ -164,9 +161,8 @@ static tl_status restore_one(tl_model *m, const tl_archive *a, size_t k, const h
                                   : tl_archive_bad(a, &m->error, "the samples of history '%s' do not fit", h->name);
 }
 
-static tl_status restore_histories(tl_model *m, const tl_archive *a, const tl_drives_again *again)
+static tl_status restore_histories(tl_model *m, const tl_archive *a)
 {
-    (void)again;
     const tl_chunk *chunk = tl_archive_find(a, "histories");
     if (!chunk)
         return TL_OK;
@@ -185,9 +181,8 @@ static tl_status restore_histories(tl_model *m, const tl_archive *a, const tl_dr
 
 /* ---------------------------------------------------------------- copying ---------------- */
 
-static tl_status copy_histories(tl_model *to, const tl_model *from, const tl_drives_again *again)
+static tl_status copy_histories(tl_model *to, const tl_model *from)
 {
-    (void)again;
     for (size_t k = 0; k < from->history_count; k++) {
         const tl_history *h = from->histories[k];
         tl_history *copy = tl_history_hold(to, h, h->count);

@@ -211,14 +211,8 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     return status;
 }
 
-static bool tag_is_sound(const tl_model *m, tl_tag tag)
+static tl_status restore_laws(tl_model *m, const tl_archive *a)
 {
-    return tag.joint <= m->joint_count && (tag.joint > 0 || tag.plane == 0);
-}
-
-static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_again *again)
-{
-    (void)again;
     uint64_t count;
     if (!tl_archive_get(a, "laws", &count, sizeof count, 1) || count > a->chunk_count)
         return tl_archive_bad(a, &m->error, "'laws' is missing");
@@ -229,7 +223,8 @@ static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_
         char prefix[PREFIX], name[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", m->joint_law_count);
         tl_tag tag;
-        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) || !tag_is_sound(m, tag))
+        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) ||
+            tag.joint > m->joint_count || (tag.joint == 0 && tag.plane > 0))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
         tl_status status = restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count]);
         if (status != TL_OK)
@@ -239,9 +234,8 @@ static tl_status restore_laws(tl_model *m, const tl_archive *a, const tl_drives_
     return TL_OK;
 }
 
-static tl_status restore_damping(tl_model *m, const tl_archive *a, const tl_drives_again *again)
+static tl_status restore_damping(tl_model *m, const tl_archive *a)
 {
-    (void)again;
     if (!tl_archive_find(a, "damping.kind"))
         return TL_OK;
     tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL);
@@ -254,9 +248,8 @@ static tl_status restore_damping(tl_model *m, const tl_archive *a, const tl_driv
 
 /* ---------------------------------------------------------------- copying ---------------- */
 
-static tl_status copy_laws(tl_model *to, const tl_model *from, const tl_drives_again *again)
+static tl_status copy_laws(tl_model *to, const tl_model *from)
 {
-    (void)again;
     if (from->joint_law_count == 0)
         return TL_OK;
     to->joint_laws = calloc(from->joint_law_count, sizeof *to->joint_laws);
@@ -274,9 +267,8 @@ static tl_status copy_laws(tl_model *to, const tl_model *from, const tl_drives_a
     return TL_OK;
 }
 
-static tl_status copy_damping(tl_model *to, const tl_model *from, const tl_drives_again *again)
+static tl_status copy_damping(tl_model *to, const tl_model *from)
 {
-    (void)again;
     if (!from->damping)
         return TL_OK;
     tl_status status = tl_damping_make(to, from->damping, &(tl_args){NULL, 0}, from->damping_params);

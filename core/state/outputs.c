@@ -251,9 +251,8 @@ static void save_outputs(const tl_model *m, tl_archive_writer *w)
     save_frames(m, w);
 }
 
-static tl_status restore_outputs(tl_model *m, const tl_archive *a, const tl_drives_again *again)
+static tl_status restore_outputs(tl_model *m, const tl_archive *a)
 {
-    (void)again;
     tl_status status = restore_frames(m, a);
     return status == TL_OK ? restore_pages(m, a) : status;
 }

@@ -5,19 +5,13 @@
 #include "model/model.h"
 #include "state/archive.h"
 
-/* Who gives the functions of drives again. */
-typedef struct tl_drives_again {
-    tl_drive_again_fn fn; /* NULL: nobody */
-    void *user;
-} tl_drives_again;
-
 /* A part is made anew when the rows of the model are there, and the parts before it in the list (parts.h). */
 typedef struct tl_state_part {
     /* Adds it to an archive, which notes that there was no memory. */
     void (*save)(const tl_model *m, tl_archive_writer *w);
-    tl_status (*restore)(tl_model *m, const tl_archive *archive, const tl_drives_again *again);
+    tl_status (*restore)(tl_model *m, const tl_archive *archive);
     /* NULL: a copy begins without it. */
-    tl_status (*copy)(tl_model *to, const tl_model *from, const tl_drives_again *again);
+    tl_status (*copy)(tl_model *to, const tl_model *from);
 } tl_state_part;
 
 #endif

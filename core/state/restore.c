@@ -19,6 +19,7 @@
 #include "model/loads.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "state/drives.h"
 #include "state/parts.h"
 
 #include <math.h>
@@ -59,9 +60,8 @@ static bool has_columns(const reader *r, const tl_table *table, uint64_t rows)
     for (size_t k = 0; k < table->column_count; k++) {
         char full[TL_CHUNK_NAME];
         tl_column_chunk(r->name, table, k, full);
-        const tl_chunk *chunk = tl_archive_find(r->archive, full);
         if (!(table->columns[k].flags & TL_COLUMN_OWNED) &&
-            (!chunk || chunk->size != table->columns[k].size || chunk->items != rows))
+            !tl_archive_has(r->archive, full, table->columns[k].size, (size_t)rows))
             return false;
     }
     return true;
@@ -343,7 +343,7 @@ static tl_status take_names(tl_model *m, const char *all, size_t bytes, take_nam
 {
     tl_status status = TL_OK;
     for (size_t at = 0; at < bytes && status == TL_OK; at += strlen(all + at) + 1)
-        status = take(m, all + at);
+        status = tl_text_is_utf8(all + at) ? take(m, all + at) : TL_E_ARGUMENT;
     return status;
 }
 
@@ -365,8 +365,6 @@ static tl_status read_names(tl_model *m, const tl_archive *a, const char *chunk_
 static tl_status take_group(tl_model *m, const char *name)
 {
     size_t before = m->group_count;
-    if (!tl_text_is_utf8(name))
-        return TL_E_ARGUMENT;
     uint32_t group = tl_group_intern(m, name);
     return group == UINT32_MAX ? TL_E_MEMORY : group == before ? TL_OK : TL_E_ARGUMENT;
 }
@@ -374,8 +372,6 @@ static tl_status take_group(tl_model *m, const char *name)
 static tl_status take_joint(tl_model *m, const char *name)
 {
     size_t before = m->joint_count;
-    if (!tl_text_is_utf8(name))
-        return TL_E_ARGUMENT;
     uint32_t joint = tl_joint_intern(m, name);
     return joint == 0 ? TL_E_MEMORY : joint == before + 1 ? TL_OK : TL_E_ARGUMENT;
 }
@@ -555,7 +551,9 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
 {
     tl_status status = read_rows(m, a);
     for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
-        status = (*part)->restore(m, a, again);
+        status = (*part)->restore(m, a);
+    if (status == TL_OK)
+        status = tl_drives_restore(m, a, again);
     if (status == TL_OK)
         status = derive_rows(m);
     if (status == TL_OK)

@@ -9,6 +9,7 @@
 #include "cycle/walk.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "state/drives.h"
 #include "state/parts.h"
 
 #include <stdio.h>
@@ -97,6 +98,7 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     w->lost = w->lost || !saved;
     for (const tl_state_part *const *part = tl_state_parts; *part; part++)
         (*part)->save(m, w);
+    tl_drives_save(m, w);
     if (tl_detect_lasting(m))
         tl_detect_walk(tl_detect_lasting(m), &walk);
     if (m->cycle)

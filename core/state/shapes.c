@@ -206,9 +206,8 @@ static tl_status read_counts(tl_model *m, shape_counts *counts, const tl_archive
     return TL_OK;
 }
 
-static tl_status restore_shapes(tl_model *m, const tl_archive *archive, const tl_drives_again *again)
+static tl_status restore_shapes(tl_model *m, const tl_archive *archive)
 {
-    (void)again;
     size_t blocks = m->blocks.table.rows;
     shape_counts *counts = malloc((blocks + 1) * sizeof *counts);
     reading r = {.all = {NULL}};
@@ -225,9 +224,8 @@ static tl_status restore_shapes(tl_model *m, const tl_archive *archive, const tl
 
 /* ---------------------------------------------------------------- copying ---------------- */
 
-static tl_status copy_shapes(tl_model *to, const tl_model *from, const tl_drives_again *again)
+static tl_status copy_shapes(tl_model *to, const tl_model *from)
 {
-    (void)again;
     for (size_t row = 0; row < to->blocks.table.rows; row++)
         if (!(to->blocks.shape[row] = tl_poly_copy(from->blocks.shape[row])))
             return tl_fail_memory(&to->error);

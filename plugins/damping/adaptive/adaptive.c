@@ -83,8 +83,7 @@ static const tl_damping_ops ops = {.size = sizeof ops,
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_DAMPING, ops, .name = "adaptive",
-            .doc = "Viscous damping that follows the rate of kinetic energy; vanishes at rest and in "
-                   "steady motion.",
+            .doc = "Viscous damping that follows the rate of kinetic energy; vanishes at rest and in steady motion.",
             TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.adaptive", .version = TALUS_VERSION, .doc = "Adaptive global damping.",

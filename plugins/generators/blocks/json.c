@@ -30,8 +30,7 @@ static tl_status damaged(const parser *p, const char *wanted)
     while (shown < MOST_SHOWN && (unsigned char)p->at[shown] >= ' ')
         shown++;
     return t->host->fail(t->host, TL_E_GEOMETRY,
-                         "file '%.200s', line %zu: %s is expected, not '%.*s'; the file is damaged, "
-                         "or no JSON",
+                         "file '%.200s', line %zu: %s is expected, not '%.*s'; the file is damaged, or no JSON",
                          t->file, p->line, wanted, shown, p->at);
 }
 

@@ -213,13 +213,8 @@ static tl_status read_stl(mesh *m, const bytes *data)
     if (text)
         return read_text(m, data);
     if (data->count < HEADER_BYTES)
-        return MESH_FAULT(m,
-                          " is no STL: it holds %zu bytes and does not begin with "
-                          "'solid'",
-                          data->count);
-    return MESH_FAULT(m,
-                      " says it has %zu triangles, which take %zu bytes, but holds "
-                      "%zu bytes: it is %s, or no STL",
+        return MESH_FAULT(m, " is no STL: it holds %zu bytes and does not begin with 'solid'", data->count);
+    return MESH_FAULT(m, " says it has %zu triangles, which take %zu bytes, but holds %zu bytes: it is %s, or no STL",
                       triangles, whole, data->count, data->count < whole ? "truncated" : "damaged");
 }
 
@@ -253,8 +248,7 @@ static tl_status read_face(mesh *m, line *l)
         corner[count] = vertex_of(m, word);
         if (corner[count] == NONE)
             return MESH_FAULT(m,
-                              ", line %zu: '%.40s' names none of the %zu vertices "
-                              "given before it; the file is damaged",
+                              ", line %zu: '%.40s' names none of the %zu vertices given before it; the file is damaged",
                               l->number, word, m->vertices);
     }
     if (count < 3)
@@ -276,10 +270,8 @@ static tl_status read_obj_line(mesh *m, line *l)
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
         if (line_is(l, ignored[i]))
             return TL_OK;
-    return MESH_FAULT(m,
-                      ", line %zu: '%.40s' is not a word of OBJ; the file is damaged, "
-                      "or no OBJ",
-                      l->number, l->word);
+    return MESH_FAULT(m, ", line %zu: '%.40s' is not a word of OBJ; the file is damaged, or no OBJ", l->number,
+                      l->word);
 }
 
 static tl_status read_obj(mesh *m, const bytes *data)

@@ -146,9 +146,8 @@ static tl_status find_sides(const solids *s, size_t solid)
             if (h < m->mate[h] && !look_at_bend(s, h)) {
                 tl_vec3 p = m->vertex[m->corner[h]], q = m->vertex[m->corner[mesh_next(m, h)]];
                 return MESH_FAULT(m,
-                                  ": solid %zu is not convex: it bends inward at the "
-                                  "edge from {%g, %g, %g} to {%g, %g, %g} of face %u; divide it "
-                                  "into convex solids",
+                                  ": solid %zu is not convex: it bends inward at the edge from {%g, %g, %g} to {%g, "
+                                  "%g, %g} of face %u; divide it into convex solids",
                                   solid + 1, p.x, p.y, p.z, q.x, q.y, q.z, face + 1);
             }
         }
@@ -220,9 +219,7 @@ static tl_status create(const solids *s, size_t solid, double scale, tl_vec3 tra
     if (status != TL_OK)
         return status;
     if (count < 4)
-        return fault(s, solid,
-                     "has no corners to speak of: it is flat within the rounding of its "
-                     "coordinates",
+        return fault(s, solid, "has no corners to speak of: it is flat within the rounding of its coordinates",
                      "remove it, or write its coordinates with more digits");
     for (size_t i = 0; i < count; i++)
         s->corner[i] = tl_v3_madd(translate, scale, s->corner[i]);

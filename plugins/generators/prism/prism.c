@@ -41,9 +41,7 @@ static tl_status refuse(const tl_host *host, const char *name, convex_status why
                           name, one + 1, (one + 1) % count + 1, other + 1, (other + 1) % count + 1);
     case CONVEX_EMPTY:
         return host->fail(host, TL_E_GEOMETRY,
-                          "%s: its %zu points enclose no area; give the corners of a polygon in "
-                          "order",
-                          name, count);
+                          "%s: its %zu points enclose no area; give the corners of a polygon in order", name, count);
     case CONVEX_DONE:
     case CONVEX_FAILED:
     default:
@@ -145,9 +143,8 @@ static tl_status measure(const tl_host *host, polygon *g)
     }
     if (!(tl_v3_norm(area) > FLAT * g->extent * g->extent))
         return host->fail(host, TL_E_GEOMETRY,
-                          "%s: its %zu points enclose no area; give the corners of a convex polygon "
-                          "in order",
-                          g->name, count);
+                          "%s: its %zu points enclose no area; give the corners of a convex polygon in order", g->name,
+                          count);
     g->normal = tl_v3_unit(area);
     return TL_OK;
 }

@@ -286,9 +286,7 @@ static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_
     const tl_vec3 *a = p->given->face1.at, *b = p->given->face2.at;
     tl_vec3 across = tl_v3_cross(tl_v3_sub(b[j], a[i]), tl_v3_sub(b[i], a[j]));
     if (!(tl_v3_norm(across) > p->near * p->near))
-        return host->fail(host, TL_E_GEOMETRY,
-                          "the side between corners %zu and %zu has no area or "
-                          "crosses itself",
+        return host->fail(host, TL_E_GEOMETRY, "the side between corners %zu and %zu has no area or crosses itself",
                           i + 1, j + 1);
     side->normal = tl_v3_unit(across);
     side->point =
@@ -298,9 +296,8 @@ static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_
     warp = fmax(warp, fabs(tl_v3_dot(side->normal, tl_v3_sub(a[j], side->point))));
     if (warp > p->near)
         return host->fail(host, TL_E_GEOMETRY,
-                          "the side between corners %zu and %zu is warped by %g m, more than %g m: "
-                          "the corners of face2 must be in the order of those of face1, and the "
-                          "sides plane%s",
+                          "the side between corners %zu and %zu is warped by %g m, more than %g m: the corners of "
+                          "face2 must be in the order of those of face1, and the sides plane%s",
                           i + 1, j + 1, warp, p->near,
                           p->parts.parts > 1 ? ", those between its convex parts too" : "");
     return TL_OK;
@@ -345,9 +342,8 @@ static tl_status bound_part(const tl_host *host, prism *p, size_t part)
             return status;
         if (!face_outward(p, part, &spaces[k]))
             return host->fail(host, TL_E_GEOMETRY,
-                              "face1 and face2 do not fit: the side between corners %zu and %zu "
-                              "runs through the tunnel; give face2 the corners that correspond to "
-                              "those of face1, in their order",
+                              "face1 and face2 do not fit: the side between corners %zu and %zu runs through the "
+                              "tunnel; give face2 the corners that correspond to those of face1, in their order",
                               i + 1, j + 1);
     }
     for (size_t end = 0; end < 2; end++) {
@@ -370,17 +366,14 @@ static tl_status make_prism(const tl_host *host, const params *given, prism *p)
                           n < 3 ? n : given->face2.count);
     if (n != given->face2.count)
         return host->fail(host, TL_E_ARGUMENT,
-                          "face1 has %zu corners and face2 %zu: lines connect them, so there must "
-                          "be as many",
-                          n, given->face2.count);
+                          "face1 has %zu corners and face2 %zu: lines connect them, so there must be as many", n,
+                          given->face2.count);
     p->near = FIT * size_of(given);
     double farthest = 0;
     for (size_t i = 0; i < n; i++)
         farthest = fmax(farthest, tl_v3_norm(tl_v3_sub(given->face1.at[i], given->face2.at[i])));
     if (farthest <= p->near)
-        return host->fail(host, TL_E_GEOMETRY,
-                          "face1 and face2 are the same: the tunnel has no "
-                          "length");
+        return host->fail(host, TL_E_GEOMETRY, "face1 and face2 are the same: the tunnel has no length");
     tl_status status = check_face(host, &given->face1, "face1", p->near, &p->ends[0]);
     if (status == TL_OK)
         status = check_face(host, &given->face2, "face2", p->near, &p->ends[1]);
@@ -526,8 +519,7 @@ static tl_status generate(const tl_host *host, const void *given)
     }
     if (status == TL_OK && c.inside_count == 0)
         status = host->fail(host, TL_E_GEOMETRY,
-                            "the tunnel meets no visible block: it runs from {%g, %g, %g} to "
-                            "{%g, %g, %g}",
+                            "the tunnel meets no visible block: it runs from {%g, %g, %g} to {%g, %g, %g}",
                             p.ends[0].middle.x, p.ends[0].middle.y, p.ends[0].middle.z, p.ends[1].middle.x,
                             p.ends[1].middle.y, p.ends[1].middle.z);
     if (status == TL_OK)

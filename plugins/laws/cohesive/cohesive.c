@@ -71,10 +71,8 @@ static bool snaps(const char *energy, double given, const char *strength, double
     double least = 0.5 * stress * stress / k;
     if (given > least)
         return false;
-    tl_refuse(report,
-              "%s = %g J/m2 must be > %s^2 / (2 k) = %g J/m2, what the spring holds when damage "
-              "begins",
-              energy, given, strength, least);
+    tl_refuse(report, "%s = %g J/m2 must be > %s^2 / (2 k) = %g J/m2, what the spring holds when damage begins", energy,
+              given, strength, least);
     return true;
 }
 
@@ -317,8 +315,7 @@ static const tl_law_ops ops =
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_LAW, ops, .name = "cohesive",
-            .doc = "A bond that softens and breaks in tension and shear (mixed mode), with friction on "
-                   "what is broken.",
+            .doc = "A bond that softens and breaks in tension and shear (mixed mode), with friction on what is broken.",
             TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN_SINCE(8, kind, .id = "talus.cohesive", .version = TALUS_VERSION, .doc = "Cohesive joint law of mixed mode.",

@@ -517,8 +517,7 @@ static const tl_law_ops ops =
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_LAW, ops, .name = "continuously_yielding",
-            .doc = "A joint that yields from the first slip on, and whose friction wears down: for cyclic "
-                   "loading.",
+            .doc = "A joint that yields from the first slip on, and whose friction wears down: for cyclic loading.",
             TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.continuously_yielding", .version = TALUS_VERSION,

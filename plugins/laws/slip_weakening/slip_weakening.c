@@ -49,8 +49,7 @@ static const tl_param param_table[] = {
                    "angle of friction after slip, at most friction; not given: friction"),
     TL_PARAM_NOT_NEGATIVE(params, residual_cohesion, "Pa", "cohesion after slip, at most cohesion"),
     TL_PARAM_POSITIVE(params, distance, "m",
-                      "slip D_c over which the strength falls: all of it, or in the exponential form all "
-                      "but 1/e"),
+                      "slip D_c over which the strength falls: all of it, or in the exponential form all but 1/e"),
     TL_PARAM(TL_PARAM_ENUM, params, form, "", "how the strength falls with slip", .def = {LINEAR}, .choices = forms),
     TL_PARAM(TL_PARAM_ENUM, params, healing, "",
              "whether strength comes back where slip has ended: never, at once, or in time", .def = {HEAL_NONE},

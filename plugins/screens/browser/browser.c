@@ -157,8 +157,7 @@ static tl_status begin_listening(browser *b, int64_t port, tl_report *report)
                      "port %d of 127.0.0.1 is in use; give another one, or 0 for any that is free", (int)port);
         else
             snprintf(report->text, sizeof report->text,
-                     "port %d of 127.0.0.1 cannot be listened to (%s); give another one, or 0 for "
-                     "any that is free",
+                     "port %d of 127.0.0.1 cannot be listened to (%s); give another one, or 0 for any that is free",
                      (int)port, strerror(errno));
         return TL_E_IO;
     }
