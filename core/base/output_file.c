@@ -187,8 +187,7 @@ void tl_output_put(tl_output *output, const void *data, size_t bytes)
 
 tl_status tl_output_finish(tl_output *output, tl_error *error)
 {
-    /* A write error stays on the stream, but the errno of a full disk may come only with the last
-     * flush. */
+    /* A write error stays on the stream, but the errno of a full disk may come only with the last flush. */
     errno = 0;
     int bad = fflush(output->file) != 0 || (output->durable && fsync(fileno(output->file)) != 0);
     int code = output->code ? output->code : errno;

@@ -53,8 +53,7 @@ static bool faces_meet(const tl_model *m, uint32_t c)
 }
 
 /* Gives a point the traction of a stress, tension positive, as its initial force. Its closure, and what slip has
- * opened,
- * count from now. n from A to B. */
+ * opened, count from now. n from A to B. */
 static void load_point(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n, double closure, double opening)
 {
     tl_vec3 traction = tl_s3_mul(*stress, n);

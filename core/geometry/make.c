@@ -1,8 +1,7 @@
 /* make.c - making, copying and checking convex polyhedra.
  *
- * A polyhedron is one allocation: the header, then its arrays by falling alignment; seams, which few have, are
- * another. Edges are found
- * by pairing half-edges: the half-edge a -> b of one face needs exactly one b -> a in another. */
+ * A polyhedron is one allocation: the header, then its arrays by falling alignment; seams, which few have, are another.
+ * Edges are found by pairing half-edges: the half-edge a -> b of one face needs exactly one b -> a in another. */
 #include "geometry/make.h"
 
 #include "geometry/measure.h"

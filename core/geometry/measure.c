@@ -70,8 +70,7 @@ static void add_product(long_sum *s, double a, double b, double c)
     s->high = sum;
 }
 
-/* A coordinate to subtract from all others without rounding: they are within half of it and twice it,
- * or it is zero. */
+/* A coordinate to subtract from all others without rounding: they are within half of it and twice it, or it is zero. */
 static double far_part(double coordinate, double size)
 {
     return fabs(coordinate) >= 2 * size ? coordinate : 0;
