@@ -61,8 +61,7 @@ static tl_status refuse_special(tl_error *error, const char *path, mode_t mode)
         return tl_output_fail(error, path, EISDIR);
     const char *what = S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
     return tl_fail(error, TL_E_IO,
-                   "cannot write '%s': it is %s, and only a regular file can be replaced; give the "
-                   "name of a file",
+                   "cannot write '%s': it is %s, and only a regular file can be replaced; give the name of a file",
                    path, what);
 }
 

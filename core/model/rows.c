@@ -146,8 +146,7 @@ static tl_status check_measure(tl_error *error, const char *name, double value, 
     if (value >= TL_LEAST_MEASURE && value <= TL_MOST_MEASURE)
         return TL_OK;
     return tl_fail(error, TL_E_NUMERIC,
-                   "a block would have the %s %g %s, outside [%g, %g]: are its size or density in the "
-                   "wrong unit?",
+                   "a block would have the %s %g %s, outside [%g, %g]: are its size or density in the wrong unit?",
                    name, isnan(value) ? (double)NAN : value, unit, TL_LEAST_MEASURE, TL_MOST_MEASURE);
 }
 
