@@ -16,7 +16,6 @@
 #include "base/inside.h"
 #include "base/signals.h"
 
-#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>

@@ -15,7 +15,7 @@
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
-#include "cycle/kick.h"
+#include "cycle/turn.h"
 #include "cycle/undo.h"
 #include "geometry/measure.h"
 #include "model/loads.h"

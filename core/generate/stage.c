@@ -8,7 +8,6 @@
 #include "base/random.h"
 #include "base/table.h"
 #include "generate/stage_bodies.h"
-#include "generate/staging.h"
 #include "geometry/cut.h"
 #include "geometry/flatten.h"
 #include "geometry/hull.h"

@@ -5,7 +5,6 @@
 #include "geometry/make.h"
 
 #include "geometry/measure.h"
-#include "geometry/polyhedron.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -41,4 +41,8 @@ double tl_poly_thickness(const tl_poly *poly);
 /* Within `tolerance` (a length) of the inside. */
 bool tl_poly_contains(const tl_poly *poly, tl_vec3 point, double tolerance);
 
+/* Eigenvalues (ascending in `moments`) and the rotation from principal axes to the given ones. The
+ * identity for a diagonal tensor's own axes up to their order. */
+void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes);
+
 #endif

@@ -11,7 +11,6 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/point2.h"
-#include "geometry/polyhedron.h"
 
 #include <math.h>
 #include <stdlib.h>

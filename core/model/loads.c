@@ -2,7 +2,6 @@
 #include "model/loads.h"
 
 #include "model/inertia.h"
-#include "model/model.h"
 #include "model/options.h"
 
 #include <stdlib.h>

@@ -4,12 +4,9 @@
  * with r the mean distance from centroid to vertices. */
 #include "model/rows.h"
 
-#include "geometry/measure.h"
-#include "geometry/principal.h"
 #include "model/body_shape.h"
 #include "model/inertia.h"
 #include "model/loads.h"
-#include "model/model.h"
 
 #include <stdlib.h>
 #include <string.h>

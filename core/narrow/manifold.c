@@ -8,7 +8,6 @@
 #include "geometry/measure.h"
 #include "narrow/flush.h"
 #include "narrow/patch.h"
-#include "narrow/press.h"
 
 /* Tolerance: share of the limits of a patch within which a field contact becomes one: so none changes to and fro.
  * Without it a cube in a groove takes 36000 steps to rest, not 3300. */

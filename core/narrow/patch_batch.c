@@ -8,8 +8,6 @@
 #include "narrow/patch_batch.h"
 
 #include "narrow/common_polygon.h"
-#include "narrow/corner.h"
-#include "narrow/frame2.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -26,7 +26,6 @@
 #include "narrow/corner_sums.h"
 #include "narrow/field.h"
 #include "narrow/field_mesh.h"
-#include "narrow/flush.h"
 
 #include <math.h>
 #include <stdlib.h>

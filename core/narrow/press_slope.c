@@ -6,7 +6,6 @@
 #include "narrow/press_slope.h"
 
 #include "narrow/place.h"
-#include "narrow/press.h"
 
 #include <talus/vmath.h>
 
