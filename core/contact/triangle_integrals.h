@@ -115,8 +115,8 @@ TL_INLINE void add_integrals(integrals *to, const integrals *x, double odd, doub
 
 /* ---------------------------------------------------------------- parts ------------------
  *
- * What presses of a cell of a patch that is partly open, and what is apart (cells.c). The corner that u = 0 cuts off is a
- * triangle again. */
+ * What presses of a cell of a patch that is partly open, and what is apart (cells.c). The corner that u = 0 cuts off is
+ * a triangle again. */
 
 /* What presses of a triangle or cell, and what is apart, u there taken positive. */
 typedef struct cell_parts {
