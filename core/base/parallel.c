@@ -18,8 +18,6 @@
 
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 
 /* How many looks a waiting thread takes before it sleeps. They take some 50 microseconds, as sleep and waking do. */

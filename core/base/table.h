@@ -9,7 +9,6 @@
 #ifndef TL_BASE_TABLE_H
 #define TL_BASE_TABLE_H
 
-#include <stdbool.h>
 #include <talus/plugin.h>
 
 #define TL_TABLE_COLUMNS 64

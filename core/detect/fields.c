@@ -12,7 +12,7 @@
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "narrow/flush.h"
-#include "narrow/place.h"
+#include "narrow/narrow.h"
 #include "narrow/press.h"
 
 #include <math.h>

@@ -20,7 +20,7 @@
 
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
-#include "narrow/place.h"
+#include "narrow/narrow.h"
 
 #include <stdio.h>
 

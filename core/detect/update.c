@@ -22,9 +22,9 @@
 #include "narrow/corner.h"
 #include "narrow/flush.h"
 #include "narrow/manifold.h"
+#include "narrow/narrow.h"
 #include "narrow/patch.h"
 #include "narrow/patch_batch.h"
-#include "narrow/place.h"
 #include "narrow/press.h"
 
 #include <string.h>

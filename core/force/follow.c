@@ -26,7 +26,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------- turned vectors --------- */

@@ -4,8 +4,6 @@
 
 #include "geometry/polyhedron.h"
 
-#include <stddef.h>
-
 /* Volume, centroid and inertia at density 1 about the centroid, exact up to rounding. They are sums over tetrahedra
  * about a vertex, so that an offset costs no digits. */
 typedef struct tl_mass {

@@ -2,9 +2,6 @@
 #ifndef TL_NARROW_FIELD_LANES_H
 #define TL_NARROW_FIELD_LANES_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <talus/plugin.h>
 
 /* The line that one other plane draws in each of eight polygons. */

@@ -3,8 +3,6 @@
 #ifndef TL_NARROW_FIELD_SUMS_H
 #define TL_NARROW_FIELD_SUMS_H
 
-#include <stdbool.h>
-#include <stdint.h>
 #include <talus/plugin.h>
 
 /* Faces of which it can be kept that they bounded K. */

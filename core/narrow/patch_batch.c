@@ -9,7 +9,6 @@
 
 #include "narrow/common_polygon.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -16,7 +16,6 @@
 #include "narrow/manifold.h"
 #include "narrow/narrow.h"
 #include "narrow/patch.h"
-#include "narrow/place.h"
 #include "narrow/press.h"
 #include "narrow/region.h"
 
