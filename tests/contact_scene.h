@@ -22,7 +22,6 @@
 #include "geometry/measure.h"
 #include "model/joints.h"
 #include "narrow/narrow.h"
-#include "narrow/place.h"
 #include "staged.h"
 
 #define SCENE_UNUSED __attribute__((unused))

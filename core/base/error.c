@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <talus/number.h>
-#include <talus/text.h>
 
 tl_status tl_fail(tl_error *error, tl_status status, const char *format, ...)
 {

@@ -5,7 +5,6 @@
 
 #include "base/inline.h"
 
-#include <stddef.h>
 #include <talus/plugin.h>
 #include <talus/vmath.h>
 

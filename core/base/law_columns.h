@@ -2,7 +2,6 @@
 #ifndef TL_BASE_LAW_COLUMNS_H
 #define TL_BASE_LAW_COLUMNS_H
 
-#include <stddef.h>
 #include <talus/plugin.h>
 
 /* Columns of a batch. */

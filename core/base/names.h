@@ -3,7 +3,6 @@
 #ifndef TL_BASE_NAMES_H
 #define TL_BASE_NAMES_H
 
-#include <stdbool.h>
 #include <talus/talus.h>
 
 /* Number of letters to insert, delete, replace or swap with their neighbour to make `b` of `a`, upper

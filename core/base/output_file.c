@@ -61,8 +61,7 @@ static tl_status refuse_special(tl_error *error, const char *path, mode_t mode)
         return tl_output_fail(error, path, EISDIR);
     const char *what = S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
     return tl_fail(error, TL_E_IO,
-                   "cannot write '%s': it is %s, and only a regular file can be replaced; give the "
-                   "name of a file",
+                   "cannot write '%s': it is %s, and only a regular file can be replaced; give the name of a file",
                    path, what);
 }
 
@@ -187,8 +186,7 @@ void tl_output_put(tl_output *output, const void *data, size_t bytes)
 
 tl_status tl_output_finish(tl_output *output, tl_error *error)
 {
-    /* A write error stays on the stream, but the errno of a full disk may come only with the last
-     * flush. */
+    /* A write error stays on the stream, but the errno of a full disk may come only with the last flush. */
     errno = 0;
     int bad = fflush(output->file) != 0 || (output->durable && fsync(fileno(output->file)) != 0);
     int code = output->code ? output->code : errno;

@@ -16,11 +16,8 @@
 #include "base/inside.h"
 #include "base/signals.h"
 
-#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 
 /* How many looks a waiting thread takes before it sleeps. They take some 50 microseconds, as sleep and waking do. */

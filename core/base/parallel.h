@@ -7,7 +7,6 @@
 #define TL_BASE_PARALLEL_H
 
 #include <pthread.h>
-#include <stddef.h>
 #include <talus/plugin.h>
 
 #define TL_MAX_THREADS 256

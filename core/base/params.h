@@ -6,7 +6,6 @@
 
 #include "base/number.h"
 
-#include <stdbool.h>
 #include <talus/talus.h>
 
 /* Bytes of the longest text tl_param_range writes. */

@@ -3,8 +3,7 @@
 #define TL_BASE_SERIES_H
 
 /* Tolerance: half angles, rad, below which sine, cosine and tangent are taken from their series, whose next term is
- * then below
- * rounding. That gives the same bits with any mathematics library, and is faster. */
+ * then below rounding. That gives the same bits with any mathematics library, and is faster. */
 #define TL_SERIES_HALF_ANGLE 0.05
 
 #endif

@@ -1,18 +1,33 @@
 /* table.c - see table.h. */
+#define _DEFAULT_SOURCE /* madvise */
 #include "base/table.h"
 
-#include "base/pages.h"
-
 #include <assert.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* Capacities are multiples of this, so that a vector loop may run past the last row. */
 #define ROW_ROUND 16u
 /* What grows row by row gets 1 / this more than it has. A row is then copied some ten times before it lies still, and
  * little is left over. */
 #define GROWTH 8
+
+/* Bytes of a large page of x86-64 and of most others. */
+#define LARGE ((size_t)2 << 20)
+
+void tl_pages_large(void *memory, size_t bytes)
+{
+#ifdef MADV_HUGEPAGE
+    uintptr_t begin = ((uintptr_t)memory + LARGE - 1) / LARGE * LARGE;
+    uintptr_t end = ((uintptr_t)memory + bytes) / LARGE * LARGE;
+    if (begin < end)
+        (void)madvise((void *)begin, end - begin, MADV_HUGEPAGE); /* if it fails, nothing changes */
+#else
+    (void)memory;
+    (void)bytes;
+#endif
+}
 
 void tl_table_init(tl_table *table, void *owner)
 {

@@ -9,7 +9,6 @@
 #ifndef TL_BASE_TABLE_H
 #define TL_BASE_TABLE_H
 
-#include <stdbool.h>
 #include <talus/plugin.h>
 
 #define TL_TABLE_COLUMNS 64
@@ -81,5 +80,10 @@ size_t tl_table_bytes(const tl_table *table);
 bool tl_grow(void *slot, size_t *capacity, size_t need, size_t size);
 /* The same without any to spare: for what has a place for each block or body. */
 bool tl_fit(void *slot, size_t *capacity, size_t need, size_t size);
+
+/* Asks the system to keep allocated memory in large pages, as far as it has not been written to yet. A loop over many
+ * columns then has the address of each at hand. Nothing where there is no such thing, or for little memory. Not for
+ * what realloc will be asked to move: it would copy. */
+void tl_pages_large(void *memory, size_t bytes);
 
 #endif

@@ -1,8 +1,8 @@
 /* walk.h - the entries of a module, listed once: what counts bytes, copies, saves and restores a model walks these
  * lists.
  *
- * A module's walk (model/walk.c, contact/walk.c, cycle/walk.c) names each of its values, lists and tables and calls a
- * function with it, always in the same order. */
+ * A module's walk (model/walk.c, contact/store.c, cycle/prepare.c) names each of its values, lists and tables and calls
+ * a function with it, always in the same order. */
 #ifndef TL_BASE_WALK_H
 #define TL_BASE_WALK_H
 

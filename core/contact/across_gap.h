@@ -1,5 +1,4 @@
-/* across_gap.h - what contact points carry where their walls are apart: lifts by slip and initial forces, and
- * bonds. */
+/* across_gap.h - what contact points carry where their walls are apart: lifts by slip and initial forces, and bonds. */
 #ifndef TL_CONTACT_ACROSS_GAP_H
 #define TL_CONTACT_ACROSS_GAP_H
 

@@ -18,7 +18,7 @@
 #include "contact/cells.h"
 
 #include "base/inline.h"
-#include "contact/triangle_parts.h"
+#include "contact/triangle_integrals.h"
 
 #include <math.h>
 

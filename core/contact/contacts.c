@@ -9,7 +9,6 @@
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "contact/spot.h"
 #include "contact/store.h"
 #include "model/joints.h"
 

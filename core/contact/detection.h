@@ -74,4 +74,11 @@ static inline bool tl_block_is_new(const tl_model *m, uint32_t row)
     return m->blocks.changed[row] > m->detect->structure;
 }
 
+/* What a field contact keeps beside its points; NULL: nothing. */
+static inline tl_press_row *tl_press_row_of(const tl_model *m, uint32_t contact)
+{
+    uint32_t row = m->detect->contacts.press[contact];
+    return row == TL_NO_ROW ? NULL : &m->detect->press[row];
+}
+
 #endif

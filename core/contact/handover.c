@@ -18,7 +18,6 @@
 #include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "contact/presses.h"
 #include "contact/shear.h"
 #include "contact/transfer.h"
 

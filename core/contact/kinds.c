@@ -4,7 +4,6 @@
 #include "base/columns.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
-#include "contact/presses.h"
 #include "narrow/region.h"
 
 #include <math.h>

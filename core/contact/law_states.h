@@ -2,8 +2,6 @@
 #ifndef TL_CONTACT_LAW_STATES_H
 #define TL_CONTACT_LAW_STATES_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <talus/plugin.h>
 
 /* State descriptor k of a kind. */

@@ -6,9 +6,8 @@
 #include "model/model.h"
 #include "narrow/press.h"
 
-/* What points of a patch are lifted by, as a plane. `mean` is how far it moves the faces apart, m, in the mean
- * of those that press, or of all where none does. Where it is not the same everywhere both faces lean, each by
- * half. */
+/* What points of a patch are lifted by, as a plane. `mean` is how far it moves the faces apart, m, in the mean of those
+ * that press, or of all where none does. Where it is not the same everywhere both faces lean, each by half. */
 typedef struct tl_lean {
     double mean;
     bool leans;

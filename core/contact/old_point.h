@@ -3,7 +3,6 @@
 #ifndef TL_CONTACT_OLD_POINT_H
 #define TL_CONTACT_OLD_POINT_H
 
-#include <stdbool.h>
 #include <talus/plugin.h>
 
 /* Columns of what a point carries by its place: shear stress, normal stress, initial normal stress, reference,

@@ -7,8 +7,6 @@
 #include "base/inline.h"
 #include "contact/sides.h"
 
-#include <stdint.h>
-
 /* Bytes of points that no longer fit the nearer caches: within them a prefetch gains nothing and costs some percent. */
 #define TL_FAR (4u << 20)
 /* Bytes that memory hands over at a time. */

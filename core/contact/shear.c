@@ -4,7 +4,6 @@
 #include "base/columns.h"
 #include "contact/kind.h"
 #include "contact/places.h"
-#include "contact/presses.h"
 #include "contact/sides.h"
 
 double tl_contact_area_of_points(const tl_detect *d, uint32_t c)

@@ -2,6 +2,7 @@
 #ifndef TL_CONTACT_STORE_H
 #define TL_CONTACT_STORE_H
 
+#include "base/walk.h"
 #include "contact/detection.h"
 #include "contact/kind.h"
 #include "model/model.h"
@@ -29,5 +30,8 @@ static inline tl_detect *tl_detect_lasting(const tl_model *m)
 
 /* NULL when out of memory. */
 tl_detect *tl_detect_copy(const tl_detect *from);
+
+/* Visits what a detection keeps. The scratch of its threads is not among it. */
+void tl_detect_walk(tl_detect *d, const tl_walk *walk);
 
 #endif

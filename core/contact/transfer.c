@@ -421,9 +421,8 @@ static double added(const addition *more, const ring_cell *cell)
            more->old.y * cell->mean.y;
 }
 
-/* Adds to the means of `width` columns, those of a vector or one, a part of their additions. It is the same at
- * all points, so that the sum stays. Where points have hardly an area, planes through them would ask for any
- * stress. */
+/* Adds to the means of `width` columns, those of a vector or one, a part of their additions. It is the same at all
+ * points, so that the sum stays. Where points have hardly an area, planes through them would ask for any stress. */
 static void restore_planes(const relay *r, int column, int width)
 {
     addition more[3];
@@ -452,8 +451,7 @@ static void restore_planes(const relay *r, int column, int width)
             r->now[r->after.cell[k].point].column[column + w] += part * added(&more[w], &r->after.cell[k]);
 }
 
-/* Sets the rules of the states of a law. Makes those that go with the area stresses, or with `back` what they
- * were. */
+/* Sets the rules of the states of a law. Makes those that go with the area stresses, or with `back` what they were. */
 static void rule_states(relay *r, const tl_kind *kind, uint32_t columns, bool back)
 {
     static const relay_rule rules[] = {[TL_TRANSFER_COPY] = MEAN,
@@ -528,9 +526,8 @@ static void add_traction(old_point *point, size_t count, const tl_shear *now, do
     }
 }
 
-/* Brings the energy of the shear springs down to `most`. A uniform traction with a twist has the least energy
- * of all stresses of the same force and torsion. Stresses beside it have an energy of their own, which is made
- * less. */
+/* Brings the energy of the shear springs down to `most`. A uniform traction with a twist has the least energy of all
+ * stresses of the same force and torsion. Stresses beside it have an energy of their own, which is made less. */
 static void limit_energy(old_point *point, size_t count, tl_shear *now, double most, bool turns)
 {
     sum_shear(point, count, now);

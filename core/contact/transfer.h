@@ -6,10 +6,6 @@
 #include "model/model.h"
 #include "narrow/narrow.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 /* Puts the manifold's points in the place of the contact's, for which there is room. State goes over so that
  * total force and moment follow the area. false: out of memory. */
 bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow_scratch *scratch, const tl_point_lanes *lanes);

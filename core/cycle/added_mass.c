@@ -74,12 +74,12 @@ static double longest(const tl_model *m, double limit, double dt)
 
 static tl_status refuse(tl_model *m, const struct tl_added *need, double limit)
 {
-    return tl_fail(&m->error, TL_E_STATE,
-                   "mass_scaling: dt = %g s would add %.3g of the mass of the bodies that can move, "
-                   "more than most = %g; block %u would get %.3g times its inertia; give dt = %.3g "
-                   "or less, a larger most, or join slivers with %s",
-                   m->added_dt, need->share, m->added_most, m->bodies.id[need->worst], need->factor,
-                   ROUNDED_DOWN * longest(m, limit, m->added_dt), tl_words(m, "model:filter", "tl_model_filter()"));
+    return tl_fail(
+        &m->error, TL_E_STATE,
+        "mass_scaling: dt = %g s would add %.3g of the mass of the bodies that can move, more than most = %g; block %u "
+        "would get %.3g times its inertia; give dt = %.3g or less, a larger most, or join slivers with %s",
+        m->added_dt, need->share, m->added_most, m->bodies.id[need->worst], need->factor,
+        ROUNDED_DOWN * longest(m, limit, m->added_dt), tl_words(m, "model:filter", "tl_model_filter()"));
 }
 
 static void tell(tl_model *m, const struct tl_added *need)
@@ -89,8 +89,8 @@ static void tell(tl_model *m, const struct tl_added *need)
         return;
     c->told_share = need->share;
     tl_model_say(m,
-                 "mass_scaling: dt = %g s adds %.3g of the mass of the bodies that can move, to %zu "
-                 "of them; block %u has %.3g times its inertia",
+                 "mass_scaling: dt = %g s adds %.3g of the mass of the bodies that can move, to %zu of them; block %u "
+                 "has %.3g times its inertia",
                  m->added_dt, need->share, need->bodies, m->bodies.id[need->worst], need->factor);
 }
 
@@ -121,13 +121,11 @@ tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *given)
     double most = isnan(scaling.most) ? TL_MOST_ADDED : scaling.most;
     if (!adds && !isnan(scaling.most))
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "mass_scaling: most = %g is the most that a given step may add: give dt, the "
-                       "step, s, with it",
+                       "mass_scaling: most = %g is the most that a given step may add: give dt, the step, s, with it",
                        scaling.most);
     if (adds && !scaling.on)
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "mass_scaling: dt = %g s asks for scaling and on = false for none: leave one "
-                       "of them out",
+                       "mass_scaling: dt = %g s asks for scaling and on = false for none: leave one of them out",
                        scaling.dt);
     if (adds && !(scaling.dt >= TL_STEP_LEAST && scaling.dt <= 1 / TL_STEP_LEAST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "mass_scaling: dt = %g s is outside [%g, %g]", scaling.dt,

@@ -53,8 +53,7 @@ static bool faces_meet(const tl_model *m, uint32_t c)
 }
 
 /* Gives a point the traction of a stress, tension positive, as its initial force. Its closure, and what slip has
- * opened,
- * count from now. n from A to B. */
+ * opened, count from now. n from A to B. */
 static void load_point(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n, double closure, double opening)
 {
     tl_vec3 traction = tl_s3_mul(*stress, n);
@@ -113,8 +112,8 @@ static void say_tension(tl_model *m, const tl_insitu *s)
         }
     if (pulled && tl_model_says(m, TL_REMARK_TENSION))
         tl_model_say(m,
-                     "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is "
-                     "positive in tension; give compression as negative numbers, as in zz = %g",
+                     "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is positive in "
+                     "tension; give compression as negative numbers, as in zz = %g",
                      pulled, pulled == 1 ? "" : "s", a, b, s->stress.zz != 0 ? -fabs(s->stress.zz) : -1e6);
 }
 
@@ -208,8 +207,8 @@ static void say_outer(tl_model *m, const outer_blocks *found)
 {
     if (found->count)
         tl_model_say(m,
-                     "insitu: %zu block%s that can move (first: block %u) %s an outer face on "
-                     "which the stress does not act; fix the blocks around the region of interest",
+                     "insitu: %zu block%s that can move (first: block %u) %s an outer face on which the stress does "
+                     "not act; fix the blocks around the region of interest",
                      found->count, found->count == 1 ? "" : "s", found->first, found->count == 1 ? "has" : "have");
 }
 
@@ -251,8 +250,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
         return status;
     if (!is_bearable(insitu.stress) || !is_bearable(insitu.gradient) || !tl_v3_finite(insitu.at))
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "insitu: stress, Pa, gradient, Pa/m, and at must be finite numbers, the "
-                       "first two of at most %g",
+                       "insitu: stress, Pa, gradient, Pa/m, and at must be finite numbers, the first two of at most %g",
                        MOST_STRESS);
     status = check_gradient(m, &insitu);
     if (status != TL_OK)

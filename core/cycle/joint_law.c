@@ -5,7 +5,6 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/places.h"
-#include "contact/presses.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
 #include "detect/asked.h"

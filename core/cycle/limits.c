@@ -15,7 +15,7 @@
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
-#include "cycle/kick.h"
+#include "cycle/turn.h"
 #include "cycle/undo.h"
 #include "geometry/measure.h"
 #include "model/loads.h"
@@ -426,8 +426,8 @@ static tl_status report_turn(tl_model *m, uint32_t body, double turn, double dt)
 {
     char text[120];
     return tl_fail(&m->error, TL_E_NUMERIC,
-                   "cycle %lld: block %u, at %.3g rad/s, would turn by %.3g rad in this step of dt "
-                   "= %.3g s, more than the %g rad up to which its motion is right to 1 %%: %s",
+                   "cycle %lld: block %u, at %.3g rad/s, would turn by %.3g rad in this step of dt = %.3g s, more than "
+                   "the %g rad up to which its motion is right to 1 %%: %s",
                    (long long)m->cycles + 1, m->bodies.id[body], turn / dt, turn, dt, TURN_MOST,
                    way_out(m, dt * TURN_AIM / turn, text, sizeof text));
 }
@@ -439,9 +439,9 @@ static tl_status report_passing(tl_model *m, const tl_step_motion *motion, const
     uint32_t other = mover == p->a ? p->b : p->a;
     char text[120];
     return tl_fail(&m->error, TL_E_NUMERIC,
-                   "cycle %lld: block %u, at %.3g m/s, would be carried %.3g m into or past block "
-                   "%u in this step of dt = %.3g s, more than the %.3g m, half of the thinner "
-                   "one's thickness, up to which their contact can tell which way they came: %s",
+                   "cycle %lld: block %u, at %.3g m/s, would be carried %.3g m into or past block %u in this step of "
+                   "dt = %.3g s, more than the %.3g m, half of the thinner one's thickness, up to which their contact "
+                   "can tell which way they came: %s",
                    (long long)m->cycles + 1, m->blocks.id[mover], tl_v3_norm(motion[fast].shift) / dt, p->deeper,
                    m->blocks.id[other], dt, p->allowed,
                    way_out(m, dt * p->part * CLOSING_AIM / CLOSING_MOST, text, sizeof text));
@@ -646,8 +646,7 @@ static tl_status report(tl_model *m, uint32_t body, const step_span *k)
     cause most = find_cause(m, body, k, force);
     bool given = !isnan(m->timestep.dt) || tl_adds_mass(m);
     return tl_fail(&m->error, TL_E_NUMERIC,
-                   "cycle %lld: block %u would move %s, for %s (dt = %.3g s%s); %s: is that out of "
-                   "proportion%s?",
+                   "cycle %lld: block %u would move %s, for %s (dt = %.3g s%s); %s: is that out of proportion%s?",
                    (long long)m->cycles + 1, b->id[body], far, most.text, k->dt, given ? ", as given" : "", by,
                    given ? ", or the time step too large" : "");
 }

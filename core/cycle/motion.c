@@ -19,7 +19,6 @@
 
 #include "base/columns.h"
 #include "base/parallel.h"
-#include "cycle/kick.h"
 #include "cycle/turn.h"
 
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,

@@ -74,9 +74,8 @@ static void remark_density(tl_model *m, const densities *d, double g)
     if (g < EARTH_LEAST || g > EARTH_MOST || is_density(m->blocks.density[row]) || !tl_model_says(m, TL_REMARK_DENSITY))
         return;
     tl_model_say(m,
-                 "density = %g of block %u is not that of a solid, with gravity = %g m/s2: rock "
-                 "has 2000 to 3000 kg/m3, with kn in Pa/m, or 2 to 3 t/m3, with kn in kPa/m; give "
-                 "the mass of a volume, not its weight",
+                 "density = %g of block %u is not that of a solid, with gravity = %g m/s2: rock has 2000 to 3000 "
+                 "kg/m3, with kn in Pa/m, or 2 to 3 t/m3, with kn in kPa/m; give the mass of a volume, not its weight",
                  m->blocks.density[row], m->blocks.id[row], g);
 }
 
@@ -86,19 +85,18 @@ static void remark_stiffness(tl_model *m, const densities *d, double g, const tl
     bool tonnes = g >= EARTH_LEAST && g <= EARTH_MOST && d->least >= TONNES_LEAST && d->most <= TONNES_MOST;
     if (sunk > SOFT && tl_model_says(m, TL_REMARK_SOFT))
         tl_model_say(m,
-                     "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under its own "
-                     "weight; give a larger kn, or look at the units of kn (Pa/m), density and gravity",
+                     "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under its own weight; give "
+                     "a larger kn, or look at the units of kn (Pa/m), density and gravity",
                      tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->densest], 100 * sunk);
     else if (tonnes && sunk * RIGID < 1 && tl_model_says(m, TL_REMARK_DENSITY))
         tl_model_say(m,
-                     "joint '%s': kn = %g goes with density = %g of block %u only if kn is in "
-                     "kPa/m and rock is that stiff; if kn is in Pa/m, give the density in kg/m3",
+                     "joint '%s': kn = %g goes with density = %g of block %u only if kn is in kPa/m and rock is that "
+                     "stiff; if kn is in Pa/m, give the density in kg/m3",
                      tl_pattern_name(m, law->tag), law->kn, d->most, m->blocks.id[d->densest]);
     else if (least < STIFF && tl_model_says(m, TL_REMARK_STIFF))
         tl_model_say(m,
-                     "joint '%s': kn = %g is improbably stiff: block %u closes the joint by %.2g "
-                     "of its size under its own weight, and steps are short for nothing; look at "
-                     "the units of kn (Pa/m), density and gravity",
+                     "joint '%s': kn = %g is improbably stiff: block %u closes the joint by %.2g of its size under its "
+                     "own weight, and steps are short for nothing; look at the units of kn (Pa/m), density and gravity",
                      tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->lightest], least);
 }
 
@@ -143,12 +141,12 @@ void tl_remark_closure(tl_model *m)
         char name[320];
         tl_contact_describe(m, row, name, sizeof name);
         const tl_law *law = &m->joint_laws[c->law[row]];
-        tl_model_say(m,
-                     "joint '%s': kn = %.3g is soft for what presses: the %s has closed by %.3g m, "
-                     "%.0f %% of the thickness of block %u, %.3g m; give a larger kn, or look at "
-                     "the units of kn (Pa/m), densities and loads",
-                     tl_pattern_name(m, law->tag), law->kn, name, closed.overlap,
-                     100 * closed.overlap / closed.thickness, m->blocks.id[closed.thinner], closed.thickness);
+        tl_model_say(
+            m,
+            "joint '%s': kn = %.3g is soft for what presses: the %s has closed by %.3g m, %.0f %% of the thickness of "
+            "block %u, %.3g m; give a larger kn, or look at the units of kn (Pa/m), densities and loads",
+            tl_pattern_name(m, law->tag), law->kn, name, closed.overlap, 100 * closed.overlap / closed.thickness,
+            m->blocks.id[closed.thinner], closed.thickness);
         return;
     }
 }

@@ -189,9 +189,8 @@ static void say(tl_model *m, uint32_t body, const sorting *s, const choice *by)
     if (!tl_body_shape_of(m, body, &shape))
         return;
     tl_model_say(m,
-                 "time step: block %u%s (volume %.3g m3, aspect %.3g) make%s it %.3g times smaller "
-                 "than the rest of the blocks allow; %s%s%s%s joins such slivers, %.2g %% of the "
-                 "rock, to their neighbours",
+                 "time step: block %u%s (volume %.3g m3, aspect %.3g) make%s it %.3g times smaller than the rest of "
+                 "the blocks allow; %s%s%s%s joins such slivers, %.2g %% of the rock, to their neighbours",
                  m->bodies.id[body], others, tl_body_volume(m, body), shape.aspect, taken > 1 ? "" : "s",
                  sqrt(s->all.rate / by->left.rate), tl_words(m, "model:filter{ ", "tl_model_filter() with "), volume,
                  aspect, tl_words(m, "action = \"join\" }", "action = TL_FILTER_JOIN"),

@@ -384,16 +384,15 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
     overlap_push push;
     if (overlaps_push(m, &push)) {
         tl_model_say(m,
-                     "solve: an overlap pushes the model apart: blocks that were made overlapping "
-                     "have given off %.3g J, most of it blocks %u and %u, and gravity and loads "
-                     "%.3g J; block %u moves on at %.3g m/s; that is no word on whether it stands: "
-                     "make them apart, or with smaller overlaps",
+                     "solve: an overlap pushes the model apart: blocks that were made overlapping have given off %.3g "
+                     "J, most of it blocks %u and %u, and gravity and loads %.3g J; block %u moves on at %.3g m/s; "
+                     "that is no word on whether it stands: make them apart, or with smaller overlaps",
                      push.gave, push.a, push.b, push.others, r->failing, speed);
         return;
     }
     tl_model_say(m,
-                 "solve: the model fails: block %u moves on at %.3g m/s without slowing down "
-                 "(unbalanced force ratio: local %.3g, average %.3g)",
+                 "solve: the model fails: block %u moves on at %.3g m/s without slowing down (unbalanced force ratio: "
+                 "local %.3g, average %.3g)",
                  r->failing, speed, r->ratio_local, r->ratio);
 }
 
@@ -413,10 +412,9 @@ static void say_gone(tl_model *m, const tl_watch *w)
         gone = body;
     }
     if (gone != TL_NO_ROW)
-        tl_model_say(m,
-                     "solve: at rest, but not where it began: block %u has moved by %.3g m in this "
-                     "run, %.2g times its size",
-                     m->bodies.id[gone], way, most);
+        tl_model_say(
+            m, "solve: at rest, but not where it began: block %u has moved by %.3g m in this run, %.2g times its size",
+            m->bodies.id[gone], way, most);
 }
 
 /* Neither at rest nor failing: of a run that was to find out which. */
@@ -426,8 +424,8 @@ static void say_undecided(tl_model *m, const tl_solve *solve, const tl_solve_res
     double ratio = tl_unbalanced_ratio(m, (tl_ratio_measure)solve->measure);
     if (tl_model_says(m, TL_REMARK_UNDECIDED))
         tl_model_say(m,
-                     "solve: ended by %s = %.9g, neither at rest (ratio %.3g, asked for %.3g) nor "
-                     "failing: that is no word on whether it stands",
+                     "solve: ended by %s = %.9g, neither at rest (ratio %.3g, asked for %.3g) nor failing: that is no "
+                     "word on whether it stands",
                      cycles ? "max_cycles" : "max_time", cycles ? (double)solve->max_cycles : solve->max_time, ratio,
                      solve->ratio);
 }

@@ -1,4 +1,5 @@
-/* turn.h - finite turns of a body, and its free rotation.
+/* turn.h - how a body moves in a step: kicks of its velocity, (23) of Hart, Cundall and Lemos (1988), finite turns, and
+ * its free rotation.
  *
  * `series` is a constant where these functions are called. With it they are straight-line arithmetic that the compiler
  * can put into SIMD lanes, for half angles below TL_SERIES_HALF_ANGLE. Without it they use trigonometry. */
@@ -11,6 +12,14 @@
 #include <math.h>
 #include <stdbool.h>
 #include <talus/vmath.h>
+
+/* A velocity, or an angular momentum, after a kick of `span` s: v <- (D1 v + per F) D2, D1 = 1 - alpha span / 2,
+ * D2 = 1 / (1 + alpha span / 2). `per`: the span over the inertia that the force F meets. */
+TL_INLINE tl_vec3 tl_kick(tl_vec3 v, tl_vec3 force, double per, double alpha, double span)
+{
+    double d1 = 1 - 0.5 * alpha * span, d2 = 1 / (1 + 0.5 * alpha * span);
+    return tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, v), per, force));
+}
 
 /* Cosine and sine of half an angle. */
 typedef struct tl_half_turn {

@@ -222,9 +222,8 @@ tl_status tl_undo_begin(tl_model *m)
         return tl_fail_memory(&m->error);
     if (c->undo->lost)
         return tl_fail(&m->error, TL_E_STATE,
-                       "cycle %lld failed and could not be taken back, for a law or damping that "
-                       "says it never fails did: make the model anew, or restore it, with a plugin "
-                       "that does not set never_fails",
+                       "cycle %lld failed and could not be taken back, for a law or damping that says it never fails "
+                       "did: make the model anew, or restore it, with a plugin that does not set never_fails",
                        (long long)m->cycles + 1);
     c->undo->keeps = c->undo->gathered = false;
     return TL_OK;

@@ -30,8 +30,8 @@
 #include "model/rows.h"
 #include "narrow/coarse_test.h"
 #include "narrow/manifold.h"
+#include "narrow/narrow.h"
 #include "narrow/patch.h"
-#include "narrow/place.h"
 
 #include <assert.h>
 #include <stdlib.h>

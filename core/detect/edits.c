@@ -17,7 +17,6 @@
 #include "contact/kind.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
-#include "contact/presses.h"
 #include "contact/shear.h"
 #include "contact/store.h"
 #include "detect/grazing.h"

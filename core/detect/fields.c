@@ -11,9 +11,8 @@
 #include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "contact/presses.h"
 #include "narrow/flush.h"
-#include "narrow/place.h"
+#include "narrow/narrow.h"
 #include "narrow/press.h"
 
 #include <math.h>

@@ -20,7 +20,7 @@
 
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
-#include "narrow/place.h"
+#include "narrow/narrow.h"
 
 #include <stdio.h>
 
@@ -127,17 +127,16 @@ static tl_status report(tl_model *m, uint32_t contact)
     tl_contact_describe(m, contact, name, sizeof name);
     bool born = c->deep[contact] == TL_DEEP_BORN;
     if (born && tl_overlap_is_whole(&view, &region))
-        return tl_fail(&m->error, TL_E_NUMERIC,
-                       "cycle %lld, %s: one lies wholly inside the other, so no contact can part "
-                       "them: delete or move one if they were placed so, or give a higher "
-                       "stiffness or a lower velocity if it was carried there",
-                       (long long)m->cycles + 1, name);
-    return tl_fail(&m->error, TL_E_NUMERIC,
-                   "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a "
-                   "contact can tell how to part them: were they placed into each other, is a "
-                   "stiffness too low for what presses, or the time step too large?",
-                   (long long)m->cycles + 1, name, -region.gap,
-                   deepest(m, &view, region.n, c->a[contact], c->b[contact], born));
+        return tl_fail(
+            &m->error, TL_E_NUMERIC,
+            "cycle %lld, %s: one lies wholly inside the other, so no contact can part them: delete or move one if they "
+            "were placed so, or give a higher stiffness or a lower velocity if it was carried there",
+            (long long)m->cycles + 1, name);
+    return tl_fail(
+        &m->error, TL_E_NUMERIC,
+        "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a contact can tell how to part them: "
+        "were they placed into each other, is a stiffness too low for what presses, or the time step too large?",
+        (long long)m->cycles + 1, name, -region.gap, deepest(m, &view, region.n, c->a[contact], c->b[contact], born));
 }
 
 tl_status tl_overlaps_check(tl_model *m)

@@ -12,9 +12,7 @@
 #include "contact/facing.h"
 #include "contact/handover.h"
 #include "contact/lean.h"
-#include "contact/presses.h"
 #include "contact/shear.h"
-#include "contact/spot.h"
 #include "contact/store.h"
 #include "detect/fields.h"
 #include "detect/grazing.h"
@@ -24,9 +22,9 @@
 #include "narrow/corner.h"
 #include "narrow/flush.h"
 #include "narrow/manifold.h"
+#include "narrow/narrow.h"
 #include "narrow/patch.h"
 #include "narrow/patch_batch.h"
-#include "narrow/place.h"
 #include "narrow/press.h"
 
 #include <string.h>

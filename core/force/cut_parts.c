@@ -628,8 +628,7 @@ static int compare(const void *x, const void *y)
     return (p->contact > q->contact) - (p->contact < q->contact);
 }
 
-/* Forgets what patches carried whose parts are not all patches of its law: what they take over is not known
- * yet. */
+/* Forgets what patches carried whose parts are not all patches of its law: what they take over is not known yet. */
 static void forget_mixed(tl_model *m)
 {
     tl_detect *d = m->detect;
@@ -691,8 +690,7 @@ static void correct_wholes(tl_model *m, const part *all, size_t count, given *po
 
 /* ---------------------------------------------------------------- all parts -------------- */
 
-/* Adds what the patches of the parts carry; of parts of a field contact, the areas with which they have taken
- * over. */
+/* Adds what the patches of the parts carry; of parts of a field contact, the areas with which they have taken over. */
 static void sum_taken(tl_model *m)
 {
     tl_detect *d = m->detect;

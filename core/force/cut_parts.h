@@ -5,8 +5,6 @@
 #include "contact/cut_contacts.h"
 #include "model/model.h"
 
-#include <stdbool.h>
-
 /* Notes what a patch would carry in the next step that ends because a block of it was cut. */
 void tl_cut_contact_foresee(tl_model *m, uint32_t contact, tl_cut_contact *cut, const tl_cut_side *a,
                             const tl_cut_side *b);

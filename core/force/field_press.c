@@ -21,7 +21,7 @@
 #include "base/columns.h"
 #include "base/inside.h"
 #include "contact/across_gap.h"
-#include "contact/presses.h"
+#include "contact/detection.h"
 #include "contact/sides.h"
 #include "force/closures.h"
 #include "force/follow.h"

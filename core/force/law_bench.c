@@ -80,8 +80,8 @@ static tl_status try_closure(const bench *b, const motion *by, double closure, s
         sum += 0 * out->c[k][0];
     if (!isfinite(sum))
         return tl_fail(b->error, TL_E_NUMERIC,
-                       "law_test, %s: law '%s' gives a force, state or energy that is not a "
-                       "finite number at the shear displacement %g m and the closure %g m",
+                       "law_test, %s: law '%s' gives a force, state or energy that is not a finite number at the shear "
+                       "displacement %g m and the closure %g m",
                        place(b, where), b->law.kind->name, b->shear, closure);
     return TL_OK;
 }
@@ -121,8 +121,8 @@ static tl_status not_held(const bench *b)
 {
     char where[40];
     return tl_fail(b->error, TL_E_STATE,
-                   "law_test, %s: law '%s' cannot hold the normal stress of %g Pa at the shear "
-                   "displacement %g m: has the joint opened or broken?",
+                   "law_test, %s: law '%s' cannot hold the normal stress of %g Pa at the shear displacement %g m: has "
+                   "the joint opened or broken?",
                    place(b, where), b->law.kind->name, b->stress, b->shear);
 }
 
@@ -200,8 +200,7 @@ tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_error *
         return tl_fail(error, TL_E_ARGUMENT, "law_test: stiffness needs normal_stress, the stress at the start");
     if (test->count == 0)
         return tl_fail(error, TL_E_ARGUMENT,
-                       "law_test: path has no legs: give shear displacements, "
-                       "as in path = {0.01, 0}");
+                       "law_test: path has no legs: give shear displacements, as in path = {0.01, 0}");
     for (size_t k = 0; k < test->count; k++) {
         const tl_law_leg *leg = &test->path[k];
         bool ramp = !isnan(leg->normal_stress);
@@ -287,9 +286,7 @@ static tl_status walk(bench *b, const tl_law_leg *leg, tl_law_point **points)
     motion by = {.dt = time / (double)steps};
     if (!isfinite(b->time + time))
         return tl_fail(b->error, TL_E_ARGUMENT,
-                       "law_test: a leg takes %g s, too long to be told: give a higher speed or a "
-                       "shorter time",
-                       time);
+                       "law_test: a leg takes %g s, too long to be told: give a higher speed or a shorter time", time);
     for (int64_t k = 1; k <= steps; k++) {
         double shear = part(slide, slid, k, steps);
         by.du = shear - b->shear;

@@ -184,9 +184,8 @@ static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group 
         if (!(stiffness > FAR_STIFFER * tl_law_stiffness(law)) || isinf(stiffness))
             continue; /* where a trial leaves the range of numbers it tells nothing */
         tl_text_print(text, sizeof text,
-                      "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks "
-                      "= %.3g Pa/m, from "
-                      "which the time step follows: they must be upper bounds, or the step is unstable",
+                      "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks = %.3g Pa/m, "
+                      "from which the time step follows: they must be upper bounds, or the step is unstable",
                       shear ? "shear" : "normal", stiffness, law->kn, law->ks);
         tl_failure_note(failure, group->start, TL_E_PLUGIN, row + l, text);
     }
@@ -273,8 +272,8 @@ static void law_check_shear(const tl_model *m, tl_failure *failure, const tl_law
             continue;
         char text[240];
         tl_text_print(text, sizeof text,
-                      "its shear force of %.3g N has a component of %.3g N along the normal: it must "
-                      "lie in the common plane, to %g of the force",
+                      "its shear force of %.3g N has a component of %.3g N along the normal: it must lie in the common "
+                      "plane, to %g of the force",
                       tl_v3_norm(f), along, TL_OUT_OF_PLANE);
         tl_failure_note(failure, group->start, TL_E_PLUGIN, row, text);
     }
@@ -310,16 +309,14 @@ static void law_check_forces(const tl_model *m, tl_failure *failure, const tl_la
         bool sound = isfinite(at.closure) && isfinite(at.motion);
         if (sound && isfinite(at.normal) && isfinite(at.shear)) {
             tl_text_print(text, sizeof text,
-                          "the force is not a finite number: those of its points are, up to %.3g N, but "
-                          "not their sum or moment; with kn = %.3g and ks = %.3g Pa/m, is a property "
-                          "out of proportion?",
+                          "the force is not a finite number: those of its points are, up to %.3g N, but not their sum "
+                          "or moment; with kn = %.3g and ks = %.3g Pa/m, is a property out of proportion?",
                           largest, law->kn, law->ks);
             continue;
         }
         tl_text_print(text, sizeof text,
-                      "the force is not a finite number: %s a normal force of %.3g N and a shear force "
-                      "of %.3g N for a closure of %.3g m, a motion of %.3g m in the last step and an "
-                      "area of %.3g m2: look at %s",
+                      "the force is not a finite number: %s a normal force of %.3g N and a shear force of %.3g N for a "
+                      "closure of %.3g m, a motion of %.3g m in the last step and an area of %.3g m2: look at %s",
                       sound ? "the law gives" : "it is", at.normal, at.shear, at.closure, at.motion, p->area[row],
                       sound ? "its properties" : "places and velocities of the blocks");
         break;

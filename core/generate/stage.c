@@ -8,7 +8,6 @@
 #include "base/random.h"
 #include "base/table.h"
 #include "generate/stage_bodies.h"
-#include "generate/staging.h"
 #include "geometry/cut.h"
 #include "geometry/flatten.h"
 #include "geometry/hull.h"
@@ -22,9 +21,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON). And centres
- * of balls are
- * known to some roundings of the coordinates. */
+/* Tolerance: A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON). And centres of
+ * balls are known to some roundings of the coordinates. */
 #define BALL_MARGIN (2 * TL_POLY_ON)
 #define BALL_ROUNDINGS (32 * DBL_EPSILON)
 
@@ -183,8 +181,7 @@ void tl_stage_end(tl_stage *stage)
  * on the left of every edge, n x edge . (point - a) >= 0; otherwise the nearest point of the face is on one
  * of the edges. Distances are measured in the plane: the part along n is left out. */
 
-/* Square of the distance of a point from the edge a + t along, 0 <= t <= 1, with the part along n left
- * out. */
+/* Square of the distance of a point from the edge a + t along, 0 <= t <= 1, with the part along n left out. */
 static double edge_distance2(tl_vec3 along, tl_vec3 arm, tl_vec3 n)
 {
     tl_vec3 flat = tl_v3_madd(arm, -tl_v3_dot(arm, n), n);
@@ -293,8 +290,7 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
     return TL_OK;
 }
 
-/* False when the ball about a block shows that the plane or disc, relative to the model's origin, passes
- * it by. */
+/* False when the ball about a block shows that the plane or disc, relative to the model's origin, passes it by. */
 static bool may_meet(const plane_in_block *x, tl_stage_ball ball)
 {
     double rounding = BALL_ROUNDINGS * fabs(x->plane.offset);
@@ -441,8 +437,7 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
 /* ---------------------------------------------------------------- new blocks -------------- */
 
 /* Tolerance: the origin is rounded to a power of two of at least this many sizes of the first block. So models near
- * zero keep the
- * origin zero, and subtracting it from coordinates is exact. */
+ * zero keep the origin zero, and subtracting it from coordinates is exact. */
 #define ORIGIN_SIZES 8.0
 
 /* Fixes the model's origin from the extent of the first block made. */

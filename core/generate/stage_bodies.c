@@ -6,7 +6,6 @@
  * staging set was begun still hold a body together, since its blocks were joined across them. */
 #include "generate/stage_bodies.h"
 
-#include "generate/staging.h"
 #include "geometry/make.h"
 #include "geometry/seam.h"
 #include "model/model.h"

@@ -5,7 +5,6 @@
 
 #include "generate/stage.h"
 #include "generate/stage_bodies.h"
-#include "generate/staging.h"
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "model/inertia.h"

@@ -22,9 +22,8 @@
 
 #define NONE UINT16_MAX
 
-/* Tolerance: A vertex this near the plane, relative to the farthest coordinate, is on it. A vertex made by a cut
- * misses its
- * planes by one to three roundings, and a distance is computed to as many. */
+/* Tolerance: A vertex this near the plane, relative to the farthest coordinate, is on it. A vertex made by a cut misses
+ * its planes by one to three roundings, and a distance is computed to as many. */
 #define ON_ROUNDINGS (8 * DBL_EPSILON)
 
 /* One child while it is made. */

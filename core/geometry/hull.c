@@ -252,9 +252,7 @@ static tl_status check_points(const tl_vec3 *points, size_t count, tl_error *err
 {
     if (count < 4)
         return tl_fail(error, TL_E_GEOMETRY,
-                       "%zu vertices do not make a block: give four or more that do not lie in one "
-                       "plane",
-                       count);
+                       "%zu vertices do not make a block: give four or more that do not lie in one plane", count);
     if (count > TL_POLY_MAX_VERTICES)
         return tl_fail(error, TL_E_GEOMETRY, "%zu vertices: one block can have %d at most", count,
                        TL_POLY_MAX_VERTICES);
@@ -287,10 +285,10 @@ static tl_status place_on_grid(builder *b, tl_error *error)
     double reach = fmax(tl_v3_norm(low), tl_v3_norm(bounds.max));
     b->tolerance = fmax(TL_POLY_ON * b->extent, TL_POLY_ROUNDINGS * reach);
     if (b->tolerance > TL_POLY_THIN * b->extent)
-        return tl_fail(error, TL_E_GEOMETRY,
-                       "vertices %g apart with coordinates of %g lose their digits: move the model "
-                       "nearer to the origin",
-                       longest, reach);
+        return tl_fail(
+            error, TL_E_GEOMETRY,
+            "vertices %g apart with coordinates of %g lose their digits: move the model nearer to the origin", longest,
+            reach);
     int exponent;
     (void)frexp(longest, &exponent);
     b->unit = ldexp(1, GRID_BITS - exponent);
@@ -313,8 +311,8 @@ static tl_status flat(const builder *b, double thickness, tl_error *error)
     if (thickness < b->tolerance)
         thickness = 0;
     return tl_fail(error, TL_E_GEOMETRY,
-                   "the %u vertices lie in one plane (thickness %.3g): a block needs a volume, at least "
-                   "%.3g thick for a size of %.3g",
+                   "the %u vertices lie in one plane (thickness %.3g): a block needs a volume, at least %.3g thick for "
+                   "a size of %.3g",
                    b->hull.count, thickness, TL_POLY_THIN * b->extent, b->extent);
 }
 
@@ -642,8 +640,8 @@ static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
             depth = fmin(depth, p->plane[f].offset - tl_v3_dot(p->plane[f].normal, b->point[i]));
         if (depth > shallow)
             return tl_fail(error, TL_E_GEOMETRY,
-                           "vertex %u lies %.3g inside the hull of the others; a block must be convex: "
-                           "leave it out or make two blocks of it",
+                           "vertex %u lies %.3g inside the hull of the others; a block must be convex: leave it out or "
+                           "make two blocks of it",
                            i + 1, depth);
     }
     return TL_OK;
@@ -694,8 +692,8 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
         return status;
     if (!p)
         return tl_fail(error, TL_E_GEOMETRY,
-                       "the %u vertices do not make a block with flat faces: leave out vertices "
-                       "closer together than %.3g, or nearer than that to a face they do not belong to",
+                       "the %u vertices do not make a block with flat faces: leave out vertices closer together than "
+                       "%.3g, or nearer than that to a face they do not belong to",
                        b->hull.count, TL_POLY_THIN * b->extent);
     status = check_hull(b, p, error);
     if (!status)

@@ -1,12 +1,10 @@
 /* make.c - making, copying and checking convex polyhedra.
  *
- * A polyhedron is one allocation: the header, then its arrays by falling alignment; seams, which few have, are
- * another. Edges are found
- * by pairing half-edges: the half-edge a -> b of one face needs exactly one b -> a in another. */
+ * A polyhedron is one allocation: the header, then its arrays by falling alignment; seams, which few have, are another.
+ * Edges are found by pairing half-edges: the half-edge a -> b of one face needs exactly one b -> a in another. */
 #include "geometry/make.h"
 
 #include "geometry/measure.h"
-#include "geometry/polyhedron.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -167,9 +165,8 @@ static tl_status report_unpaired(const tl_poly *p, half_edges half, tl_error *er
         if (a != b && forth == 1 && back == 1)
             continue;
         return tl_fail(error, TL_E_GEOMETRY,
-                       "the edge from vertex %d to vertex %d belongs to %d face%s, not to two that "
-                       "run along it in opposite directions: give every face counter-clockwise from "
-                       "outside and leave no hole",
+                       "the edge from vertex %d to vertex %d belongs to %d face%s, not to two that run along it in "
+                       "opposite directions: give every face counter-clockwise from outside and leave no hole",
                        a + 1, b + 1, forth + back, forth + back == 1 ? "" : "s");
     }
     return TL_E_GEOMETRY;
@@ -253,9 +250,8 @@ static tl_status check_input(const tl_vec3 *vertices, size_t vertex_count, const
     for (size_t f = 0; f < face_count; f++) {
         if (start[f + 1] < start[f] + 3 || start[f + 1] > 2 * TL_POLY_MAX_EDGES)
             return tl_fail(error, TL_E_GEOMETRY,
-                           "face %zu needs three vertices or more, and all faces "
-                           "together no more than %d",
-                           f + 1, 2 * TL_POLY_MAX_EDGES);
+                           "face %zu needs three vertices or more, and all faces together no more than %d", f + 1,
+                           2 * TL_POLY_MAX_EDGES);
         if (!tl_v3_finite(planes[f].normal) || !isfinite(planes[f].offset))
             return tl_fail(error, TL_E_GEOMETRY, "the plane of face %zu is not finite", f + 1);
         for (uint32_t i = start[f]; i < start[f + 1]; i++)
@@ -265,8 +261,8 @@ static tl_status check_input(const tl_vec3 *vertices, size_t vertex_count, const
     }
     if (start[face_count] - start[0] != 2 * (vertex_count + face_count - 2))
         return tl_fail(error, TL_E_GEOMETRY,
-                       "%zu vertices, %zu faces and %g edges do not make a closed "
-                       "convex surface: vertices + faces - edges must be 2",
+                       "%zu vertices, %zu faces and %g edges do not make a closed convex surface: vertices + faces - "
+                       "edges must be 2",
                        vertex_count, face_count, 0.5 * (start[face_count] - start[0]));
     return TL_OK;
 }
@@ -304,8 +300,7 @@ tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error)
     if (!isfinite(diagonal * diagonal * diagonal) || !(thinnest >= TL_POLY_THIN * diagonal) ||
         !(thinnest * thinnest * thinnest > 0))
         return tl_fail(error, TL_E_GEOMETRY,
-                       "a box with edges %g, %g, %g: every edge must be positive and at least %g of "
-                       "the diagonal",
+                       "a box with edges %g, %g, %g: every edge must be positive and at least %g of the diagonal",
                        edge.x, edge.y, edge.z, TL_POLY_THIN);
     tl_vec3 vertices[8];
     for (int i = 0; i < 8; i++)

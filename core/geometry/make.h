@@ -15,8 +15,7 @@
 #define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
 /* Tolerance: depths below this times the thickness of a block change nothing of it. Faces may be bent, and points be
- * left out
- * inside, by no more. */
+ * left out inside, by no more. */
 #define TL_POLY_SHALLOW 1e-2
 
 /* One allocation with the counts set and its arrays laid out but empty; NULL without memory. */

@@ -4,8 +4,6 @@
 
 #include "geometry/polyhedron.h"
 
-#include <stddef.h>
-
 /* Volume, centroid and inertia at density 1 about the centroid, exact up to rounding. They are sums over tetrahedra
  * about a vertex, so that an offset costs no digits. */
 typedef struct tl_mass {
@@ -40,5 +38,9 @@ double tl_poly_diameter(const tl_poly *poly);
 double tl_poly_thickness(const tl_poly *poly);
 /* Within `tolerance` (a length) of the inside. */
 bool tl_poly_contains(const tl_poly *poly, tl_vec3 point, double tolerance);
+
+/* Eigenvalues (ascending in `moments`) and the rotation from principal axes to the given ones. The
+ * identity for a diagonal tensor's own axes up to their order. */
+void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes);
 
 #endif

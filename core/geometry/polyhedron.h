@@ -19,9 +19,8 @@
 #define TL_POLY_FLAT 1e-6
 /* Tolerance: the corners of a face miss its plane by less than this times its size: so far off are those of meshes. */
 #define TL_POLY_BENT 2e-4
-/* Tolerance: sine of 0.025 degrees, half of what flush faces may tilt. A facet of a face may tilt its plane by less,
- * so that two
- * blocks lie flush on each other by such faces. */
+/* Tolerance: sine of 0.025 degrees, half of what flush faces may tilt. A facet of a face may tilt its plane by less, so
+ * that two blocks lie flush on each other by such faces. */
 #define TL_POLY_TILT 4.3633e-4
 /* Limit: a cut that would leave a side thinner than this times the size is refused. */
 #define TL_POLY_THIN 1e-5

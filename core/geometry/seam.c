@@ -11,7 +11,6 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/point2.h"
-#include "geometry/polyhedron.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,9 +21,8 @@
  * plane, or were placed in contact by coordinates of six digits. */
 #define FIT 1e-6
 /* Tolerance: what is between faces that lie on each other: at most this gap and overlap, over the size of the smaller
- * part, and
- * this sine of their angle. They may have been joined after they had settled on each other.
- * Test: unit/test_seam, lua/test_bodies. */
+ * part, and this sine of their angle. They may have been joined after they had settled on each other. Test:
+ * unit/test_seam, lua/test_bodies. */
 #define JOINED_GAP 1e-3
 #define JOINED_OVERLAP 1e-2
 #define JOINED_TILT 1e-2

@@ -39,8 +39,8 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
-#include "base/pages.h"
 #include "base/parallel.h"
+#include "base/table.h"
 #include "contact/sides.h"
 #include "geometry/measure.h"
 #include "io/extra_fields.h"

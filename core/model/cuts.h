@@ -21,15 +21,13 @@ typedef struct tl_cut_part {
 } tl_cut_part;
 
 /* A block of a body that cuts have split since the last step. Two blocks were in one body in the last step when they
- * have the same
- * `whole`, the id of that body. */
+ * have the same `whole`, the id of that body. */
 typedef struct tl_split {
     tl_id block, whole;
 } tl_split;
 
 /* What a traction on a face of a block has put on its body: force, and moment about the centroid of the face, in axes
- * of the model. It is
- * part of the body's load. */
+ * of the model. It is part of the body's load. */
 typedef struct tl_face_load {
     tl_id block;
     uint32_t face;

@@ -43,9 +43,9 @@ static const tl_param model_params[] = {
     TL_PARAM(TL_PARAM_BOOL, tl_model_config, reuse_geometry, "",
              "whether a field contact that hardly moved goes by slopes of its force", .def = {1.0}),
     TL_PARAM(TL_PARAM_ENUM, tl_model_config, contact_points, "",
-             "where the points of a face-face contact lie: also inside, which integrates the pressure "
-             "of elastic faces exactly, or at the corners only, up to a tilt of 5 degrees: springs as "
-             "those of rigid statics, and of rigid blocks of 3DEC; docs/how_stiff.md compares both",
+             "where the points of a face-face contact lie: also inside, which integrates the pressure of elastic faces "
+             "exactly, or at the corners only, up to a tilt of 5 degrees: springs as those of rigid statics, and of "
+             "rigid blocks of 3DEC; docs/how_stiff.md compares both",
              .def = {TL_POINTS_CONSISTENT}, .choices = point_names),
     MORE_MODEL_PARAMS};
 
@@ -66,12 +66,11 @@ static const tl_param tensor_params[] = {
 
 static const tl_param timestep_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_timestep, fraction, "",
-             "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule "
-             "paper 0.1",
+             "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1",
              .min = TL_FRACTION_LEAST, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_ENUM, tl_timestep, rule, "",
-             "critical step from the lightest block and the stiffest contact (paper), or from "
-             "each body's own mass and stiffness (body)",
+             "critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and "
+             "stiffness (body)",
              .def = {TL_TIMESTEP_BODY}, .choices = timestep_names),
     TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "a fixed time step instead of the rule", .min = TL_STEP_LEAST,
              .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
@@ -80,19 +79,18 @@ static const tl_param timestep_params[] = {
 static const tl_param mass_scaling_params[] = {
     TL_PARAM(TL_PARAM_BOOL, tl_mass_scaling, on, "", "whether the inertia is scaled", .def = {1.0}),
     TL_PARAM(TL_PARAM_REAL, tl_mass_scaling, dt, "s",
-             "for motion that is to be right: the step. Only bodies in contact whose own stable step "
-             "is shorter get inertia, as much as they need for it",
+             "for motion that is to be right: the step. Only bodies in contact whose own stable step is shorter get "
+             "inertia, as much as they need for it",
              .min = TL_STEP_LEAST, .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_REAL, tl_mass_scaling, most, "",
-             "with dt: mass that may be added, as a share of the mass of all bodies that can move; a "
-             "step that would need more fails. Left out, 0.05",
+             "with dt: mass that may be added, as a share of the mass of all bodies that can move; a step that would "
+             "need more fails. Left out, 0.05",
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN | TL_PARAM_OPTIONAL),
 };
 
 static const tl_param profile_params[] = {
     TL_PARAM(TL_PARAM_BOOL, profile_args, on, "",
-             "begins to time the phases of each step, from zero, or ends it; left out, gives the "
-             "result so far",
+             "begins to time the phases of each step, from zero, or ends it; left out, gives the result so far",
              .flags = TL_PARAM_OPTIONAL),
 };
 
@@ -106,8 +104,8 @@ static const tl_param load_params[] = {
 
 static const tl_param contact_area_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_contact_area, fraction, "",
-             "minimum area of field contacts, as a share of the smaller block's mean face area; "
-             "with 0 they have no more than their own",
+             "minimum area of field contacts, as a share of the smaller block's mean face area; with 0 they have no "
+             "more than their own",
              .def = {TL_AREA_FRACTION}, .min = 0.0, .max = 1.0),
     TL_PARAM(TL_PARAM_REAL, tl_contact_area, absolute, "m2", "minimum area in square metres instead of the share",
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
@@ -190,8 +188,8 @@ static const tl_param filter_params[] = {
              "blocks whose diameter is more than this times their thickness are slivers", .min = 1.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_ENUM, tl_filter, action, "",
-             "what is done with them: nothing; they are deleted; or each is joined to the block it "
-             "shares the largest face with",
+             "what is done with them: nothing; they are deleted; or each is joined to the block it shares the largest "
+             "face with",
              .choices = filter_actions),
 };
 
@@ -203,12 +201,12 @@ static const tl_param keyblocks_params[] = {
 static const tl_param law_test_params[] = {
     TL_PARAM(TL_PARAM_STRING, tl_law_test, law, "", "name of the law", .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_REAL, tl_law_test, normal_stress, "Pa",
-             "normal stress, compression positive, which is held by closing and opening; when left "
-             "out the closure is given, and begins at 0",
+             "normal stress, compression positive, which is held by closing and opening; when left out the closure is "
+             "given, and begins at 0",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_REAL, tl_law_test, stiffness, "Pa/m",
-             "normal stiffness of the surroundings: normal_stress is that of the start, and rises "
-             "by so much a metre of dilation",
+             "normal stiffness of the surroundings: normal_stress is that of the start, and rises by so much a metre "
+             "of dilation",
              .flags = TL_PARAM_OPTIONAL, .min = 0.0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, tl_law_test, speed, "m/s", "speed of shear, or of closing where nothing is sheared",
              .def = {1e-5}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MIN_OPEN),
@@ -229,8 +227,7 @@ static const tl_param law_leg_params[] = {
              "normal stress at its end; with normal_stress and without stiffness of the test only",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_REAL, tl_law_leg, time, "s",
-             "how long the leg takes; when left out its length over the speed, or 1 s of one "
-             "without length",
+             "how long the leg takes; when left out its length over the speed, or 1 s of one without length",
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
     TL_PARAM(TL_PARAM_REAL, tl_law_leg, speed, "m/s", "in the place of the test's", .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
@@ -252,54 +249,45 @@ static const model_function functions[] = {
     {"tensor", "A symmetric tensor by its components.", PARAMS(tensor_params)},
     {"timestep", "Chooses how the time step is found.", PARAMS(timestep_params)},
     {"mass_scaling",
-     "Scales the inertia, not the weight, of free bodies up to that of the one with the longest "
-     "stable step, for finding equilibria: times and velocities then mean nothing. With dt it is "
-     "for "
-     "dynamics: inertia is added to the few bodies that need it. Without arguments it tells what "
-     "the "
-     "last step has added.",
+     "Scales the inertia, not the weight, of free bodies up to that of the one with the longest stable step, for "
+     "finding equilibria: times and velocities then mean nothing. With dt it is for dynamics: inertia is added to the "
+     "few bodies that need it. Without arguments it tells what the last step has added.",
      PARAMS(mass_scaling_params)},
     {"load",
-     "Puts a force and a moment, along the axes of the model, on the bodies of blocks, in the "
-     "place "
-     "of what they had; none at all takes the load off.",
+     "Puts a force and a moment, along the axes of the model, on the bodies of blocks, in the place of what they had; "
+     "none at all takes the load off.",
      PARAMS(load_params)},
     {"contact_area",
-     "Sets the minimum area of field contacts: those of edges, vertices and tilted faces. None by "
-     "default.",
+     "Sets the minimum area of field contacts: those of edges, vertices and tilted faces. None by default.",
      PARAMS(contact_area_params)},
     {"cycle", "Runs a number of steps.", PARAMS(cycle_params)},
     {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},
     {"profile", "Times the phases of the steps, and tells what a step works on.", PARAMS(profile_params)},
     {"write_vtk",
-     "Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. "
-     "Their names begin with the folder and the name given first.",
+     "Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin "
+     "with the folder and the name given first.",
      PARAMS(write_vtk_params)},
     {"write_section",
-     "Writes the next frame of a section: the polygons in which a plane cuts the blocks, with "
-     "their "
-     "displacements.",
+     "Writes the next frame of a section: the polygons in which a plane cuts the blocks, with their displacements.",
      PARAMS(write_section_params)},
     {"write_html",
-     "Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. "
-     "The folder and the name are given first, with or without .html.",
+     "Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. The folder and the "
+     "name are given first, with or without .html.",
      PARAMS(write_html_params)},
     {"view",
-     "Shows the model in a browser while it runs, and takes commands from there. Gives the address "
-     "to open. The page shows the model whenever a run makes steps, and while view waits.",
+     "Shows the model in a browser while it runs, and takes commands from there. Gives the address to open. The page "
+     "shows the model whenever a run makes steps, and while view waits.",
      PARAMS(view_params)},
     {"write_blocks", "Writes all blocks as they stand into a JSON file.", PARAMS(write_blocks_params)},
-    {"filter",
-     "Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to "
-     "neighbours.",
+    {"filter", "Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to neighbours.",
      PARAMS(filter_params)},
     {"keyblocks",
-     "Finds the bodies that a translation can move out of the others (Shi's theorem), how they "
-     "move, and their factor of safety in limit equilibrium.",
+     "Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor "
+     "of safety in limit equilibrium.",
      PARAMS(keyblocks_params)},
     {"law_test",
-     "Tries a joint law on one contact point, without a model: direct shear under a constant "
-     "normal stress, or in surroundings of constant normal stiffness, and closure tests.",
+     "Tries a joint law on one contact point, without a model: direct shear under a constant normal stress, or in "
+     "surroundings of constant normal stiffness, and closure tests.",
      PARAMS(law_test_params)},
     {"law_leg", "One leg of the path of a law_test.", PARAMS(law_leg_params)},
 };

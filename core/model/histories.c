@@ -1,8 +1,6 @@
 /* histories.c - the histories of a model: names, what they sample, and samples in columns from malloc. */
 #include "model/histories.h"
 
-#include "model/model.h"
-
 #include <stdlib.h>
 #include <string.h>
 

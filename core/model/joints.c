@@ -2,7 +2,6 @@
 #include "model/joints.h"
 
 #include "base/inside.h"
-#include "model/model.h"
 #include "model/options.h"
 #include "model/rows.h"
 

@@ -2,7 +2,6 @@
 #include "model/loads.h"
 
 #include "model/inertia.h"
-#include "model/model.h"
 #include "model/options.h"
 
 #include <stdlib.h>
@@ -162,8 +161,7 @@ static bool is_motion(tl_vec3 v)
 static tl_status bad_motion(tl_error *error, const char *verb, const char *name, tl_vec3 v, const char *unit)
 {
     return tl_fail(error, TL_E_ARGUMENT,
-                   "%s: %s = {%g, %g, %g} %s must be three finite numbers of at most %g: no model "
-                   "can run with more",
+                   "%s: %s = {%g, %g, %g} %s must be three finite numbers of at most %g: no model can run with more",
                    verb, name, v.x, v.y, v.z, unit, TL_FASTEST);
 }
 

@@ -66,9 +66,7 @@ tl_status tl_model_may_change(tl_model *m, const char *what)
 {
     if (m->running || m->reading)
         return tl_fail(&m->error, TL_E_STATE,
-                       "cannot %s while the model is running: end the run with a stop function and "
-                       "do it after",
-                       what);
+                       "cannot %s while the model is running: end the run with a stop function and do it after", what);
     return TL_OK;
 }
 
@@ -81,13 +79,13 @@ tl_status tl_model_may_set(tl_model *m, const char *what)
 {
     if (m->reading)
         return tl_fail(&m->error, TL_E_STATE,
-                       "cannot %s from the function of a history or of a field, which may read the "
-                       "model only: do it between two runs, or in on_progress",
+                       "cannot %s from the function of a history or of a field, which may read the model only: do it "
+                       "between two runs, or in on_progress",
                        what);
     if (m->driving)
         return tl_fail(&m->error, TL_E_STATE,
-                       "cannot %s from a drive's function, which is called in the middle of a "
-                       "step: do it between two runs, or in solve's on_progress",
+                       "cannot %s from a drive's function, which is called in the middle of a step: do it between two "
+                       "runs, or in solve's on_progress",
                        what);
     return TL_OK;
 }
@@ -116,8 +114,8 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
     m->remarked = 0;
     if (gravity.z > sqrt(gravity.x * gravity.x + gravity.y * gravity.y) && tl_model_says(m, TL_REMARK_GRAVITY))
         tl_model_say(m,
-                     "gravity = {%g, %g, %g} points upward, for z is up: blocks will fall to the "
-                     "sky; give {%g, %g, %g} for weight",
+                     "gravity = {%g, %g, %g} points upward, for z is up: blocks will fall to the sky; give {%g, %g, "
+                     "%g} for weight",
                      gravity.x, gravity.y, gravity.z, gravity.x, gravity.y, -gravity.z);
     return TL_OK;
 }

@@ -12,7 +12,6 @@
 #include "geometry/seam.h"
 #include "model/joints.h"
 #include "model/loads.h"
-#include "model/model.h"
 #include "model/options.h"
 #include "model/rows.h"
 

@@ -4,12 +4,9 @@
  * with r the mean distance from centroid to vertices. */
 #include "model/rows.h"
 
-#include "geometry/measure.h"
-#include "geometry/principal.h"
 #include "model/body_shape.h"
 #include "model/inertia.h"
 #include "model/loads.h"
-#include "model/model.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -146,8 +143,7 @@ static tl_status check_measure(tl_error *error, const char *name, double value, 
     if (value >= TL_LEAST_MEASURE && value <= TL_MOST_MEASURE)
         return TL_OK;
     return tl_fail(error, TL_E_NUMERIC,
-                   "a block would have the %s %g %s, outside [%g, %g]: are its size or density in the "
-                   "wrong unit?",
+                   "a block would have the %s %g %s, outside [%g, %g]: are its size or density in the wrong unit?",
                    name, isnan(value) ? (double)NAN : value, unit, TL_LEAST_MEASURE, TL_MOST_MEASURE);
 }
 

@@ -7,10 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Tolerance: corners nearer to each other than this times the size are one. Corners nearer to a line that clips lie
- * on it, and a
- * polygon as thin as that has no area worth a point. It is far below any length that matters, far above rounding.
- * Edges along each other would otherwise cross here and there, and points come and go. */
+/* Tolerance: corners nearer to each other than this times the size are one. Corners nearer to a line that clips lie on
+ * it, and a polygon as thin as that has no area worth a point. It is far below any length that matters, far above
+ * rounding. Edges along each other would otherwise cross here and there, and points come and go. */
 #define TL_MERGE 1e-7
 
 /* Edges of A's face are 0, 1, ..., those of B's face TL_EDGE_B, TL_EDGE_B + 1, ... */

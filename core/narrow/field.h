@@ -26,7 +26,6 @@
 
 #include "narrow/field_sums.h"
 
-#include <stddef.h>
 #include <talus/plugin.h>
 
 /* Memory that the functions below work in; zero at first. */

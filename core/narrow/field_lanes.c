@@ -17,8 +17,7 @@
 #define LANES TL_LANES
 
 /* Tolerance: sine of the angle between two lines below which they do not cross. The error of a crossing's place, a
- * rounding over
- * the sine, then becomes as large as what the wrong one of two such lines encloses. */
+ * rounding over the sine, then becomes as large as what the wrong one of two such lines encloses. */
 #define PARALLEL 1e-8
 /* Tolerance: length of a face's normal, within the polygon's plane, below which the face is parallel to the plane.
  * Test: property/field_properties, property/press_properties. */

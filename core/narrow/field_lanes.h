@@ -2,9 +2,6 @@
 #ifndef TL_NARROW_FIELD_LANES_H
 #define TL_NARROW_FIELD_LANES_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <talus/plugin.h>
 
 /* The line that one other plane draws in each of eight polygons. */
@@ -71,8 +68,7 @@ typedef struct tl_field_bounds {
 #define TL_FIELD_ALIKE 1e-7
 
 /* Tolerance: slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels
- * in thin
- * slivers. */
+ * in thin slivers. */
 #define TL_FIELD_STEEP 0.1
 
 /* Constant: offset of a plane that is none: it lies behind everything. */

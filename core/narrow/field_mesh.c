@@ -31,9 +31,8 @@
 
 #define LANES TL_LANES
 
-/* Cost only: determinant of a corner's three equations, with normals of length 1 and their differences, below which
- * its place is
- * lost in roundings. */
+/* Cost only: determinant of a corner's three equations, with normals of length 1 and their differences, below which its
+ * place is lost in roundings. */
 #define SHARP 1e-5
 
 /* Tolerance: roundings of the largest offset by which a corner may seem to lie outside. */

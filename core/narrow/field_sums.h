@@ -3,8 +3,6 @@
 #ifndef TL_NARROW_FIELD_SUMS_H
 #define TL_NARROW_FIELD_SUMS_H
 
-#include <stdbool.h>
-#include <stdint.h>
 #include <talus/plugin.h>
 
 /* Faces of which it can be kept that they bounded K. */
@@ -107,8 +105,7 @@ typedef struct tl_field_sums {
 /* Tolerance: roundings of the largest offset within which two faces that look the same way are one plane. */
 #define TL_FIELD_ONE_PLANE (16 * 2.220446049250313e-16)
 /* Tolerance: length of n_a - n_b below which two faces look so much the same way that what is between them bears
- * nothing. It
- * counts no more in the stiffness. */
+ * nothing. It counts no more in the stiffness. */
 #define TL_FIELD_SAME_WAY 0.5
 
 #endif

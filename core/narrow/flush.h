@@ -5,25 +5,22 @@
 #include "base/inline.h"
 #include "geometry/polyhedron.h"
 
-/* Tolerance: tilt of two faces, as a sine, up to which their patch is all there is, and from which on the field is
- * all. They are
- * 0.05 and 0.15 degrees. Joints of a rock mass under load stay below, at some 1e-5. */
+/* Tolerance: tilt of two faces, as a sine, up to which their patch is all there is, and from which on the field is all.
+ * They are 0.05 and 0.15 degrees. Joints of a rock mass under load stay below, at some 1e-5. */
 #define TL_FLUSH_TILT 8.7266e-4
 #define TL_FIELD_TILT 2.6180e-3
 /* Tolerance: the same of the overlap of the patch over the root of its area. Deep blocks have accidental flush faces.
  * Test: property/press_properties, verify/bounce. */
 #define TL_FLUSH_DEPTH 4e-3
 #define TL_FIELD_DEPTH 1e-2
-/* Tolerance: the same of patches with points at their corners only, which are to be springs there: 5 and 10
- * degrees. */
+/* Tolerance: the same of patches with points at their corners only, which are to be springs there: 5 and 10 degrees. */
 #define TL_CORNERS_TILT 0.0872
 #define TL_CORNERS_FIELD_TILT 0.1736
 #define TL_CORNERS_DEPTH 0.1
 #define TL_CORNERS_FIELD_DEPTH 0.2
-/* Tolerance: of these, the tilt and the overlap up to which such a patch has points. Beyond, it counts how the
- * corners and their
- * areas go in a tilt and over an edge, and all is done by the press (corner_sums.c). The points' forces are off by
- * about the tilt, and by the overlap. */
+/* Tolerance: of these, the tilt and the overlap up to which such a patch has points. Beyond, it counts how the corners
+ * and their areas go in a tilt and over an edge, and all is done by the press (corner_sums.c). The points' forces are
+ * off by about the tilt, and by the overlap. */
 #define TL_CORNERS_POINTS_TILT 2e-4
 #define TL_CORNERS_POINTS_DEPTH 1e-3
 

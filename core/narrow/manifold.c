@@ -8,14 +8,12 @@
 #include "geometry/measure.h"
 #include "narrow/flush.h"
 #include "narrow/patch.h"
-#include "narrow/press.h"
 
 /* Tolerance: share of the limits of a patch within which a field contact becomes one: so none changes to and fro.
  * Without it a cube in a groove takes 36000 steps to rest, not 3300. */
 #define BACK 0.5
 /* Tolerance: overlaps by which faces across a blunt edge must stay behind those of a patch. For the blocks press on
- * each other
- * over it, too, by this share of the patch's force. Test: unit/test_patch. */
+ * each other over it, too, by this share of the patch's force. Test: unit/test_patch. */
 #define BLUNT 2000.0
 /* Tolerance: minimum area over that of a patch up to which it makes no difference: by less than 2e-3 of the force.
  * Test: unit/test_stored. */

@@ -5,6 +5,7 @@
 #include "narrow/corner.h"
 #include "narrow/facet.h"
 #include "narrow/field.h"
+#include "narrow/view.h"
 
 /* Integrals over the common volume for a law that is not linear: of 1, of d^2 and of d^3. That of d is the energy. */
 enum { TL_PRESS_VOLUME, TL_PRESS_SQUARE, TL_PRESS_CUBE, TL_PRESS_POWERS };
@@ -95,5 +96,9 @@ typedef struct tl_touch_rule {
 void tl_narrow_scratch_free(tl_narrow_scratch *scratch);
 /* Makes room for `count` points more; false when out of memory. */
 bool tl_manifold_reserve(tl_manifold *m, size_t count);
+
+/* Fills vertex_b and normal_b of views, until any are filled anew; false when out of memory. */
+bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow_scratch *scratch);
+bool tl_pair_place(tl_pair_view *view, tl_narrow_scratch *scratch);
 
 #endif

@@ -8,10 +8,7 @@
 #include "narrow/patch_batch.h"
 
 #include "narrow/common_polygon.h"
-#include "narrow/corner.h"
-#include "narrow/frame2.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -108,8 +105,7 @@ static void crossings_of(walk *w, uint32_t i, uint32_t *in, uint32_t *out)
     }
 }
 
-/* Follows A's edges where they lie inside B, and B's edges from where one goes out to where the next comes
- * in. */
+/* Follows A's edges where they lie inside B, and B's edges from where one goes out to where the next comes in. */
 static void go_round(walk *w)
 {
     uint32_t corners_b = 0, inside_b = 0, none = w->nb, first_in = none, left_over = none;

@@ -7,8 +7,6 @@
 #include "narrow/frame2.h"
 #include "narrow/narrow.h"
 
-#include <stdint.h>
-
 /* Faces and polygons of up to this many corners have outlines. */
 #define TL_OUTLINE_CORNERS 8
 

@@ -26,7 +26,6 @@
 #include "narrow/corner_sums.h"
 #include "narrow/field.h"
 #include "narrow/field_mesh.h"
-#include "narrow/flush.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -143,8 +142,7 @@ static void list_planes(press_planes *p, const tl_press_query *of, uint32_t a, u
  * sliver of next to nothing. */
 
 /* Tolerance: energy of the patch over that of the field up to which there is no patch, and from which on there is all
- * of it.
- * Patches have nearly that of their field, or more where springs are at corners. */
+ * of it. Patches have nearly that of their field, or more where springs are at corners. */
 #define SLIVER 0.1
 #define WHOLE 0.5
 

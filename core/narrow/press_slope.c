@@ -5,8 +5,7 @@
  * differences over the same way that they are used for. */
 #include "narrow/press_slope.h"
 
-#include "narrow/place.h"
-#include "narrow/press.h"
+#include "narrow/narrow.h"
 
 #include <talus/vmath.h>
 

@@ -10,9 +10,8 @@
 #include <talus/vmath.h>
 
 /* Tolerance: lengths below it, relative to the smaller block's size, make no difference: a motion within which a pair
- * without
- * points is not looked at again. A motion in a step with which a contact is calm. A gap of walls that are together.
- * Far above rounding of places, far below the contact tolerance. */
+ * without points is not looked at again. A motion in a step with which a contact is calm. A gap of walls that are
+ * together. Far above rounding of places, far below the contact tolerance. */
 #define TL_STILL 1e-6
 
 /* Tolerance: gap at which two flush faces become a contact, relative to the smaller block's size. A contact ends at

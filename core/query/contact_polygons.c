@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "contact/kind.h"
 #include "contact/pair_view.h"
-#include "narrow/place.h"
+#include "narrow/narrow.h"
 #include "narrow/surface.h"
 
 #include <stdlib.h>

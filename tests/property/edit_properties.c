@@ -3,8 +3,8 @@
  * anew: what presses where, and by how much. */
 #include "contact_scene.h"
 
+#include "contact/detection.h"
 #include "contact/places.h"
-#include "contact/presses.h"
 #include "contact/store.h"
 #include "detect/detect.h"
 #include "generate/stage.h"

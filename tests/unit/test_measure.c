@@ -6,7 +6,6 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/polyhedron.h"
-#include "geometry/principal.h"
 
 #include <talus/vmath.h>
 

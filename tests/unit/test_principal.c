@@ -1,7 +1,7 @@
 /* test_principal.c - principal moments and axes. */
 #include "check.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
-#include "geometry/principal.h"
 
 #include <talus/vmath.h>
 

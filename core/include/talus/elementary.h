@@ -41,31 +41,32 @@ static inline tl_sum2 tl_sum2_of(double a, double b)
 
 /* ---------------------------------------------------------------- sine, cosine, tangent -- */
 
+/* Taylor series of (sin x - x) / x^3 and of (cos x - 1 + x^2 / 2) / x^4, z = x^2. */
+static inline double tl_sine_series(double z)
+{
+    double high = -1. / 39916800 + z * (1. / 6227020800 + z * (-1. / 1307674368000 + z * (1. / 355687428096000)));
+    return -1. / 6 + z * (1. / 120 + z * (-1. / 5040 + z * (1. / 362880 + z * high)));
+}
+
+static inline double tl_cosine_series(double z)
+{
+    double high = -1. / 87178291200 + z * (1. / 20922789888000 - z * (1. / 6402373705728000.));
+    return 1. / 24 + z * (-1. / 720 + z * (1. / 40320 + z * (-1. / 3628800 + z * (1. / 479001600 + z * high))));
+}
+
 /* sin(x.hi + x.lo), |x| <= pi/4 and a little. */
 static inline tl_sum2 tl_sine_of(tl_sum2 x)
 {
     double z = x.hi * x.hi;
-    double p =
-        -1. / 6 +
-        z * (1. / 120 +
-             z * (-1. / 5040 +
-                  z * (1. / 362880 + z * (-1. / 39916800 + z * (1. / 6227020800 + z * (-1. / 1307674368000 +
-                                                                                       z * (1. / 355687428096000)))))));
-    return tl_sum2_of(x.hi, x.hi * z * p + x.lo * (1 - 0.5 * z));
+    return tl_sum2_of(x.hi, x.hi * z * tl_sine_series(z) + x.lo * (1 - 0.5 * z));
 }
 
 /* cos(x.hi + x.lo), |x| <= pi/4 and a little. */
 static inline tl_sum2 tl_cosine_of(tl_sum2 x)
 {
     double z = x.hi * x.hi, half = 0.5 * z, half_lo = 0.5 * fma(x.hi, x.hi, -z);
-    double p =
-        1. / 24 +
-        z * (-1. / 720 +
-             z * (1. / 40320 +
-                  z * (-1. / 3628800 + z * (1. / 479001600 + z * (-1. / 87178291200 + z * (1. / 20922789888000 -
-                                                                                           z / 6402373705728000.))))));
     tl_sum2 c = tl_sum2_of(1, -half);
-    return tl_sum2_of(c.hi, c.lo + (z * z * p - half_lo - x.hi * x.lo));
+    return tl_sum2_of(c.hi, c.lo + (z * z * tl_cosine_series(z) - half_lo - x.hi * x.lo));
 }
 
 /* x less a whole number of quarter turns, the remainder of that number by 4 in `quarter`. */
@@ -192,6 +193,21 @@ static inline double tl_asin(double x)
 
 /* ---------------------------------------------------------------- logarithm, exponential - */
 
+/* log(1 + f) = 2 artanh s = f - s (f - r), s = f / (2 + f), z = s^2: r. */
+static inline double tl_log_series(double z)
+{
+    double high = 2. / 11 + z * (2. / 13 + z * (2. / 15 + z * (2. / 17 + z * (2. / 19 + z * (2. / 21)))));
+    return z * (2. / 3 + z * (2. / 5 + z * (2. / 7 + z * (2. / 9 + z * high))));
+}
+
+/* The Taylor series of (exp r - 1 - r - r^2 / 2) / r^3. */
+static inline double tl_exp_series(double r)
+{
+    double high = 1. / 39916800 + r * (1. / 479001600 + r * (1. / 6227020800 + r * (1. / 87178291200.)));
+    high = 1. / 40320 + r * (1. / 362880 + r * (1. / 3628800 + r * high));
+    return 1. / 6 + r * (1. / 24 + r * (1. / 120 + r * (1. / 720 + r * (1. / 5040 + r * high))));
+}
+
 /* log(1 + x), within 1 ulp. */
 static inline double tl_log1p(double x)
 {
@@ -209,14 +225,7 @@ static inline double tl_log1p(double x)
     double f = e == 0 ? x : m - 1, s = f / (2 + f), z = s * s;
     if (e == 0)
         lost = 0;
-    /* log(1 + f) = 2 artanh s = f - s (f - r) */
-    double r =
-        z *
-        (2. / 3 +
-         z * (2. / 5 +
-              z * (2. / 7 + z * (2. / 9 + z * (2. / 11 +
-                                               z * (2. / 13 +
-                                                    z * (2. / 15 + z * (2. / 17 + z * (2. / 19 + z * (2. / 21))))))))));
+    double r = tl_log_series(z);
     /* log 2 in two parts; the product of e with the first is exact */
     return e * 0x1.62e42feep-1 + (f - (s * (f - r) - (e * 0x1.a39ef35793c76p-33 + lost / w)));
 }
@@ -233,17 +242,7 @@ static inline double tl_expm1(double x)
     double n = fabs(x) < 0x1.62e42fefa39efp-2 ? 0 : floor(x * 0x1.71547652b82fep+0 + 0.5);
     double high = x - n * 0x1.62e42feep-1, low = n * 0x1.a39ef35793c76p-33;
     double r = high - low, e = (high - r) - low;
-    double p =
-        1. / 6 +
-        r * (1. / 24 +
-             r * (1. / 120 +
-                  r * (1. / 720 +
-                       r * (1. / 5040 +
-                            r * (1. / 40320 +
-                                 r * (1. / 362880 +
-                                      r * (1. / 3628800 +
-                                           r * (1. / 39916800 +
-                                                r * (1. / 479001600 + r * (1. / 6227020800 + r / 87178291200.))))))))));
+    double p = tl_exp_series(r);
     tl_sum2 q = tl_sum2_of(r, r * r * (0.5 + r * p) + e * (1 + r));
     if (n == 0)
         return q.hi;
@@ -301,17 +300,7 @@ static inline double tl_lane_exp(double x)
     double scale = tl_of_bits((tl_bits_of(k) + 1023) << 52);
     double high = x - n * 0x1.62e42feep-1, low = n * 0x1.a39ef35793c76p-33;
     double r = high - low, e = (high - r) - low;
-    double p =
-        1. / 6 +
-        r * (1. / 24 +
-             r * (1. / 120 +
-                  r * (1. / 720 +
-                       r * (1. / 5040 +
-                            r * (1. / 40320 + r * (1. / 362880 +
-                                                   r * (1. / 3628800 + r * (1. / 39916800 +
-                                                                            r * (1. / 479001600 +
-                                                                                 r * (1. / 6227020800 +
-                                                                                      r * (1. / 87178291200.)))))))))));
+    double p = tl_exp_series(r);
     double s = 1 + r, lost = (1 - s) + r;
     return scale * (s + (lost + (e + r * r * (0.5 + r * p))));
 }
@@ -325,14 +314,7 @@ static inline double tl_lane_log(double x)
     double e = tl_of_bits(k | 0x4330000000000000u) - (0x1p52 + 1024);
     double f = tl_of_bits(bits - (k << 52) + ((uint64_t)1024 << 52)) - 1;
     double s = f / (2 + f), z = s * s;
-    /* log(1 + f) = 2 artanh s = f - s (f - r) */
-    double r =
-        z *
-        (2. / 3 +
-         z * (2. / 5 +
-              z * (2. / 7 + z * (2. / 9 + z * (2. / 11 +
-                                               z * (2. / 13 +
-                                                    z * (2. / 15 + z * (2. / 17 + z * (2. / 19 + z * (2. / 21))))))))));
+    double r = tl_log_series(z);
     double log = e * 0x1.62e42feep-1 + (f - (s * (f - r) - e * 0x1.a39ef35793c76p-33));
     return log + (x - x); /* not-a-number stays one */
 }
@@ -360,18 +342,7 @@ static inline double tl_lane_tan(double x)
     const double quarter = 0x1.921fb54442d18p-1;
     double y = x > quarter ? rest : x, lo = x > quarter ? rest_lo : 0;
     double z = y * y;
-    double s =
-        -1. / 6 +
-        z * (1. / 120 +
-             z * (-1. / 5040 +
-                  z * (1. / 362880 + z * (-1. / 39916800 + z * (1. / 6227020800 + z * (-1. / 1307674368000 +
-                                                                                       z * (1. / 355687428096000)))))));
-    double c = 1. / 24 +
-               z * (-1. / 720 +
-                    z * (1. / 40320 +
-                         z * (-1. / 3628800 +
-                              z * (1. / 479001600 + z * (-1. / 87178291200 +
-                                                         z * (1. / 20922789888000 - z * (1. / 6402373705728000.)))))));
+    double s = tl_sine_series(z), c = tl_cosine_series(z);
     double half = 0.5 * z, one = 1 - half;
     double sine = y + (y * z * s + lo * one);
     double cosine = one + (((1 - one) - half) + (z * z * c - y * lo));

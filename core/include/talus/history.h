@@ -5,8 +5,6 @@
 #ifndef TALUS_HISTORY_H
 #define TALUS_HISTORY_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <talus/plugin.h>
 #include <talus/types.h>
 

@@ -5,7 +5,6 @@
 #ifndef TALUS_KEYBLOCKS_H
 #define TALUS_KEYBLOCKS_H
 
-#include <stddef.h>
 #include <talus/types.h>
 
 #ifdef __cplusplus

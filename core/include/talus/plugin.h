@@ -355,9 +355,8 @@ struct tl_host {
     void *impl;
     uint64_t seed; /* of the model */
 
-    /* Creates a block: the convex hull of `count` vertices. Refused with TL_E_GEOMETRY when they
-     * span no volume, or when one lies inside the hull of the others. density in kg/m3 > 0;
-     * group may be NULL. */
+    /* Creates a block: the convex hull of `count` vertices. Refused with TL_E_GEOMETRY when they span no volume, or
+     * when one lies inside the hull of the others. density in kg/m3 > 0; group may be NULL. */
     tl_status (*create_hull)(const tl_host *, const tl_vec3 *vertices, size_t count, double density, const char *group);
     /* Creates a block: an axis-aligned box, min < max in every component. */
     tl_status (*create_box)(const tl_host *, tl_vec3 min, tl_vec3 max, double density, const char *group);
@@ -392,9 +391,8 @@ struct tl_host {
 
     /* Whether the block's inside meets the common inside of half spaces. */
     tl_status (*meets)(const tl_host *, size_t index, const tl_half_space *spaces, size_t count, bool *meets);
-    /* Cuts one block without a joint: its new faces carry no tag and the two sides stay one body.
-     * *above is the index of the part on the normal's side; SIZE_MAX: the plane does not divide the block, or would
-     * leave a sliver. */
+    /* Cuts one block without a joint: its new faces carry no tag and the two sides stay one body. *above is the index
+     * of the part on the normal's side; SIZE_MAX: the plane does not divide the block, or would leave a sliver. */
     tl_status (*cut_block)(const tl_host *, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above);
     tl_status (*set_group)(const tl_host *, size_t index, const char *group);
     /* Takes blocks out of their bodies: those among them that hang together are one body, and so are

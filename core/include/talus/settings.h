@@ -2,8 +2,6 @@
 #ifndef TALUS_SETTINGS_H
 #define TALUS_SETTINGS_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <talus/plugin.h>
 #include <talus/types.h>
 

@@ -2,7 +2,6 @@
 #ifndef TALUS_STATE_H
 #define TALUS_STATE_H
 
-#include <stdbool.h>
 #include <talus/plugin.h>
 #include <talus/types.h>
 

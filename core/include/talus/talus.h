@@ -14,7 +14,6 @@
 #ifndef TALUS_TALUS_H
 #define TALUS_TALUS_H
 
-#include <stdbool.h>
 #include <talus/history.h>
 #include <talus/keyblocks.h>
 #include <talus/law_test.h>

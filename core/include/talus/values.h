@@ -6,7 +6,6 @@
 #ifndef TALUS_VALUES_H
 #define TALUS_VALUES_H
 
-#include <stdbool.h>
 #include <talus/plugin.h>
 #include <talus/types.h>
 

@@ -3,7 +3,6 @@
 #ifndef TALUS_VERDICT_H
 #define TALUS_VERDICT_H
 
-#include <stddef.h>
 #include <talus/plugin.h>
 #include <talus/types.h>
 

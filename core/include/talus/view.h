@@ -13,8 +13,6 @@
 #ifndef TALUS_VIEW_H
 #define TALUS_VIEW_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <talus/plugin.h>
 #include <talus/types.h>
 #include <talus/values.h>

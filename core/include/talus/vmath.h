@@ -1,8 +1,7 @@
 /* talus/vmath.h - inline vector, matrix and quaternion mathematics on the types of types.h.
  *
- * Every function is pure and evaluates in one fixed order, so results are the same bits wherever
- * they are computed (build with -ffp-contract=off). Names: tl_v3_* vectors, tl_m3_* matrices,
- * tl_q_* quaternions. */
+ * Every function is pure and evaluates in one fixed order, so results are the same bits wherever they are computed
+ * (build with -ffp-contract=off). Names: tl_v3_* vectors, tl_m3_* matrices, tl_q_* quaternions. */
 #ifndef TALUS_VMATH_H
 #define TALUS_VMATH_H
 

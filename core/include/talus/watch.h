@@ -2,8 +2,6 @@
 #ifndef TALUS_WATCH_H
 #define TALUS_WATCH_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <talus/plugin.h>
 #include <talus/types.h>
 

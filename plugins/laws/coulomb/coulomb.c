@@ -67,9 +67,8 @@ static tl_status create(const void *given, void **self, tl_report *report)
     return tl_keep(&law, sizeof law, self, report);
 }
 
-/* The law where nothing slips, for TL_LANES lanes from `begin`: most of a rock mass at most times, and
- * without its roots and divisions. false, and nothing done, when some lane slips; the results are those of
- * `move` to the bit. */
+/* The law where nothing slips, for TL_LANES lanes from `begin`: most of a rock mass at most times, and without its
+ * roots and divisions. false, and nothing done, when some lane slips; the results are those of `move` to the bit. */
 TL_IN_LOOP bool stick(const coulomb *law, const tl_law_batch *batch, uint32_t begin)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
@@ -108,9 +107,8 @@ TL_IN_LOOP bool stick(const coulomb *law, const tl_law_batch *batch, uint32_t be
 }
 
 /* The law itself, for up to TL_LANES lanes from `begin`. `heat` and `dilates` are constants at each call, so that the
- * loop exists once for each and none has a branch in it; without dilation the opening of slip in the past still
- * counts. A NaN goes through all comparisons to the forces, where the host finds it. `mark` is for
- * tl_law_put_flags. */
+ * loop exists once for each and none has a branch in it; without dilation the opening of slip in the past still counts.
+ * A NaN goes through all comparisons to the forces, where the host finds it. `mark` is for tl_law_put_flags. */
 TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                      double *restrict mark, const int heat, const int dilates)
 {
