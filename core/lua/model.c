@@ -361,9 +361,10 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .verbs = model_members},
     {.name = "generate",
      .usage = "summary = model:generate(\"GENERATOR\", {...})",
-     .doc = "Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, "
-            "{...}}, in the place of one: once for each, in their order and in one go. What an earlier entry makes and a "
-            "later one cuts gets no ids, so ids are not those of a call for each entry.",
+     .doc =
+         "Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, "
+         "{...}}, in the place of one: once for each, in their order and in one go. What an earlier entry makes and a "
+         "later one cuts gets no ids, so ids are not those of a call for each entry.",
      .has_type = true,
      .type = TL_KIND_GENERATOR,
      .title = "Fields of the summary",
