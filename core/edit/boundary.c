@@ -35,8 +35,7 @@ typedef struct outer_face {
 } outer_face;
 
 /* Tolerance: off the plane, or out of the box, by less than this times the block's size a corner is in it. It is what
- * contacts
- * take for touching (TL_CONTACT_TOLERANCE). */
+ * contacts take for touching (TL_CONTACT_TOLERANCE). */
 #define TOLERANCE 1e-3
 /* Tolerance: largest component across an axis of the normal of a face whose roller is held along that axis. */
 #define ALONG 1e-2

@@ -422,9 +422,8 @@ tl_status tl_write_html(tl_model *m, const char *prefix, const tl_html *options)
 /* Bytes whose text a thread writes at a time: a multiple of three, so the texts join. */
 #define TEXT_CHUNK ((size_t)3 << 16)
 
-/* Cost only: bytes of a piece that are tried, and the share of the length without looking for what repeats above
- * which it is not
- * looked for. */
+/* Cost only: bytes of a piece that are tried, and the share of the length without looking for what repeats above which
+ * it is not looked for. */
 #define PROBE ((size_t)8 << 10)
 #define WORTH 0.9
 /* No strategy. */

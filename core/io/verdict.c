@@ -26,8 +26,7 @@
 #define LEAST_UNBALANCED 1e-3
 
 /* Tolerance: share of the largest displacement from which a block is one of those that move. Displacement over the
- * median size
- * of blocks below which nothing is seen. */
+ * median size of blocks below which nothing is seen. */
 #define LEAST_SHARE 0.05
 #define LEAST_SEEN 1e-3
 /* Tolerance: pages keep displacements in single precision: what is told to have closed is more than that rounds. */

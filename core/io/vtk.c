@@ -64,8 +64,7 @@ static const char before_entry[] = ",\n";
 static const char tail[] = "\n  ]\n}\n";
 
 /* Tolerance: frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to
- * tell them
- * apart. */
+ * tell them apart. */
 #define STAGE 1e-9
 
 /* PREFIX_CONTENT and an ending. The text is the caller's; NULL when out of memory. */

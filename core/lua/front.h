@@ -1,9 +1,8 @@
 /* front.h - what the parts of the Lua front end share.
  *
- * Objects. A model is a userdata that owns a tl_model. A block or a contact is an *item*: a userdata
- * with an id. Its user value is the model's userdata, so the model outlives it. A selection is
- * a userdata with a list of ids, likewise. Items of either type share one implementation, driven
- * by a tl_lua_kind.
+ * Objects. A model is a userdata that owns a tl_model. A block or a contact is an *item*: a userdata with an id. Its
+ * user value is the model's userdata, so the model outlives it. A selection is a userdata with a list of ids, likewise.
+ * Items of either type share one implementation, driven by a tl_lua_kind.
  *
  * Errors. Everything here may raise a Lua error, so no local variable holds what only C could free.
  * Memory that must survive a call is a userdata on the stack or owned by one. */

@@ -1,9 +1,8 @@
 /* item.c - blocks and contacts as Lua objects: one of them, and a list.
  *
- * An item is no pointer into the kernel but a number that is looked up at every access. So one that was deleted
- * raises and never crashes. A selection is a snapshot, taken when it was made: blocks in ascending order of id,
- * contacts in that of their blocks. Sums run in that order, so they are the same bits every time, whenever contacts
- * began. */
+ * An item is no pointer into the kernel but a number that is looked up at every access. So one that was deleted raises
+ * and never crashes. A selection is a snapshot, taken when it was made: blocks in ascending order of id, contacts in
+ * that of their blocks. Sums run in that order, so they are the same bits every time, whenever contacts began. */
 #include "lua/item.h"
 
 #include "lua/convert.h"

@@ -1,5 +1,4 @@
-/* quality.c - what cutting made and what may fall: talus.report(model), model:filter{...} and
- * model:keyblocks{...}. */
+/* quality.c - what cutting made and what may fall: talus.report(model), model:filter{...} and model:keyblocks{...}. */
 #include "lua/quality.h"
 
 #include "lua/block.h"

@@ -2,9 +2,8 @@
  *
  * Joints are planes; blocks that settle on them sink in and turn a little, so that an edge bears and faces part. What
  * bounds their motion is the joint all the same. A block may have moved against another by less than TL_TOUCH_KEPT of
- * its size. It then touches it where a face lay on a face when it was made. Else, and where none did, it touches
- * where faces lie on each other now. A corner or an edge on a face bounds no half-space of motion that its neighbours
- * do not.
+ * its size. It then touches it where a face lay on a face when it was made. Else, and where none did, it touches where
+ * faces lie on each other now. A corner or an edge on a face bounds no half-space of motion that its neighbours do not.
  *
  * Candidates are pairs whose bounds overlap: those of both places, sorted along the model's longest side. */
 #include "query/touching.h"
@@ -25,8 +24,7 @@
 #include <string.h>
 
 /* Tolerance: gap up to which blocks touch, and overlap up to which they still do, over the smaller one's size. Angle
- * between
- * faces that lie on each other, as a sine. Test: lua/test_keyblocks. */
+ * between faces that lie on each other, as a sine. Test: lua/test_keyblocks. */
 #define GAP (TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE)
 #define OVERLAP 0.1
 #define TILT 0.03

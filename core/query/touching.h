@@ -39,8 +39,7 @@ bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t bod
 tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now);
 
 /* Tolerance: cosine within which a direction lies in a face, sine within which two faces are parallel: far above
- * rounding of
- * what was cut. */
+ * rounding of what was cut. */
 #define TL_TOUCH_ALONG 1e-6
 
 #endif

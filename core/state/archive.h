@@ -72,8 +72,7 @@ bool tl_archive_has(const tl_archive *archive, const char *name, size_t size, si
 /* Puts the items of a chunk into `to`, which has room for them. false: it is not there, has items of another size or
  * number, or does not unpack to them. */
 bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size, size_t items);
-/* The bytes of a chunk as a text with its terminating zero. false: it is not there, needs more room or holds a
- * zero. */
+/* The bytes of a chunk as a text with its terminating zero. false: it is not there, needs more room or holds a zero. */
 bool tl_archive_text(const tl_archive *archive, const char *name, char *text, size_t capacity);
 /* "cannot restore 'path': the file is damaged: ..." */
 tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char *format, ...) TL_PRINTF(3, 4);

@@ -1,6 +1,5 @@
-/* blocks.c - generator "blocks": the blocks of a JSON file, as docs/block_model.md describes it and
- * model:write_blocks writes it. Names that the description does not know are left aside, so that other
- * programs may add their own. */
+/* blocks.c - generator "blocks": the blocks of a JSON file, as docs/block_model.md describes it and model:write_blocks
+ * writes it. Names that the description does not know are left aside, so that other programs may add their own. */
 #include "json.h"
 
 #include <math.h>

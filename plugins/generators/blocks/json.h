@@ -25,8 +25,7 @@ typedef struct json_tree {
     size_t count, capacity;
 } json_tree;
 
-/* Reads a file. `text` holds what the tree's texts point to. Both are the caller's to free, also after a
- * failure. */
+/* Reads a file. `text` holds what the tree's texts point to. Both are the caller's to free, also after a failure. */
 tl_status json_read(json_tree *tree, char **text);
 /* The item of this name in an object; NULL when there is none. */
 const json *json_get(const json_tree *tree, const json *object, const char *key);

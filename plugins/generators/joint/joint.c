@@ -1,8 +1,7 @@
 /* joint.c - generator "joint": one plane through a point that cuts the visible blocks.
  *
- * The plane's upward normal is (sin dip sin dd, sin dip cos dd, cos dip), dd clockwise from north. Each
- * block in its path is cut with the probability `persistence`. The plane gets the next number of
- * its joint set. */
+ * The plane's upward normal is (sin dip sin dd, sin dip cos dd, cos dip), dd clockwise from north. Each block in its
+ * path is cut with the probability `persistence`. The plane gets the next number of its joint set. */
 #include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>

@@ -28,8 +28,7 @@
 /* Normal deviations end here, in standard deviations, so that a rare draw cannot turn a plane over. */
 #define NORMAL_LIMIT 3.0
 
-/* After so many draws beyond the limit the number is taken as the mean: with limit >= 1 that has a
- * chance of 1e-32. */
+/* After so many draws beyond the limit the number is taken as the mean: with limit >= 1 that has a chance of 1e-32. */
 #define MOST_ATTEMPTS 64
 
 enum { UNIFORM, NORMAL, FISHER };

@@ -15,12 +15,11 @@
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The cohesion stays
  * after slip, and comes back when an opened point closes; see coulomb_tensile for a bond that is lost.
  *
- * Energy turned to heat by slip: the plastic slip (|f_t| - |f_s|) / (ks A) along f_t times the mean of
- * the shear forces before and after in that direction. With the work of the mean force over du_s this
- * balances the change of stored energy exactly; for a reversal within one step it is taken as 0. Of
- * the work of slip, the part f_n tan(dilation) slip lifts the walls against the pressure and is not
- * heat: it is stored in the normal spring or given back to what presses. The rest,
- * (c A + f_n (tan(friction) - tan(dilation))) slip, is heat, and never less than 0 because dilation
+ * Energy turned to heat by slip: the plastic slip (|f_t| - |f_s|) / (ks A) along f_t times the mean of the shear forces
+ * before and after in that direction. With the work of the mean force over du_s this balances the change of stored
+ * energy exactly; for a reversal within one step it is taken as 0. Of the work of slip, the part f_n tan(dilation) slip
+ * lifts the walls against the pressure and is not heat: it is stored in the normal spring or given back to what
+ * presses. The rest, (c A + f_n (tan(friction) - tan(dilation))) slip, is heat, and never less than 0 because dilation
  * above friction is refused.
  *
  * Limit: a change of kn or ks, and insitu, take the present force as the one at closure 0; they belong
@@ -67,9 +66,8 @@ static tl_status create(const void *given, void **self, tl_report *report)
     return tl_keep(&law, sizeof law, self, report);
 }
 
-/* The law where nothing slips, for TL_LANES lanes from `begin`: most of a rock mass at most times, and
- * without its roots and divisions. false, and nothing done, when some lane slips; the results are those of
- * `move` to the bit. */
+/* The law where nothing slips, for TL_LANES lanes from `begin`: most of a rock mass at most times, and without its
+ * roots and divisions. false, and nothing done, when some lane slips; the results are those of `move` to the bit. */
 TL_IN_LOOP bool stick(const coulomb *law, const tl_law_batch *batch, uint32_t begin)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
@@ -108,9 +106,8 @@ TL_IN_LOOP bool stick(const coulomb *law, const tl_law_batch *batch, uint32_t be
 }
 
 /* The law itself, for up to TL_LANES lanes from `begin`. `heat` and `dilates` are constants at each call, so that the
- * loop exists once for each and none has a branch in it; without dilation the opening of slip in the past still
- * counts. A NaN goes through all comparisons to the forces, where the host finds it. `mark` is for
- * tl_law_put_flags. */
+ * loop exists once for each and none has a branch in it; without dilation the opening of slip in the past still counts.
+ * A NaN goes through all comparisons to the forces, where the host finds it. `mark` is for tl_law_put_flags. */
 TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                      double *restrict mark, const int heat, const int dilates)
 {
