@@ -191,31 +191,30 @@ tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result 
 {
     tl_filter_result unread, *const result = wanted ? wanted : &unread;
     *result = (tl_filter_result){0};
-    tl_filter read;
-    const tl_filter *limits = &read;
-    tl_status status = TL_OPTIONS_READ(tl_filter, given, &read, &m->error);
+    tl_filter limits;
+    tl_status status = TL_OPTIONS_READ(tl_filter, given, &limits, &m->error);
     if (status != TL_OK)
         return status;
     tl_rows_tidy(m);
-    if (isnan(limits->volume) && isnan(limits->edge) && isnan(limits->aspect))
+    if (isnan(limits.volume) && isnan(limits.edge) && isnan(limits.aspect))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "filter: give a limit: the smallest volume, the shortest edge or the worst aspect");
-    if (limits->action != TL_FILTER_REPORT)
+    if (limits.action != TL_FILTER_REPORT)
         status = tl_model_may_change(m, "filter blocks");
     if (status != TL_OK)
         return status;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
     filter f = {.model = m,
-                .limits = limits,
+                .limits = &limits,
                 .bad = calloc(bodies + 1, sizeof *f.bad),
                 .shared = calloc(bodies + 1, sizeof *f.shared),
                 .near = malloc((bodies + 1) * sizeof *f.near),
                 .group = malloc((blocks + 1) * sizeof *f.group)};
     if (!f.bad || !f.shared || !f.near || !f.group || !find_bad(&f, result))
         status = tl_fail_memory(&m->error);
-    if (status == TL_OK && limits->action == TL_FILTER_DELETE)
+    if (status == TL_OK && limits.action == TL_FILTER_DELETE)
         status = delete (&f, result);
-    else if (status == TL_OK && limits->action == TL_FILTER_JOIN)
+    else if (status == TL_OK && limits.action == TL_FILTER_JOIN)
         status = join(&f, result);
     free(f.bad);
     free(f.shared);

@@ -190,25 +190,6 @@ static void scene_head(const tl_model *m, const tl_html *options, const tl_scene
                   scene->live == TL_SCENE_COMMANDS ? ", \"commands\": true" : "");
 }
 
-/* ---------------------------------------------------------------- FIND --------------------
- *
- * FIND: how the model stands, as JSON. */
-
-/* The JSON of FIND, the verdict, with the state hash unless that is NULL, into `text`. */
-static void scene_finding(const tl_verdict *v, const char *hash, tl_piece *text)
-{
-    char sentence[512];
-    tl_verdict_text(v, sentence, sizeof sentence);
-    tl_json_print(text,
-                  "{\"standing\": %s, \"text\": %s, \"stage\": %s, \"closed\": %g, \"moved\": %g, "
-                  "\"contacts\": %g, \"slipping\": %g",
-                  tl_standing_name(v->standing), sentence, v->stage, v->closed, (double)v->moved, (double)v->contacts,
-                  (double)v->slipping);
-    if (hash)
-        tl_json_print(text, ", \"hash\": %s", hash);
-    tl_json_put(text, "}");
-}
-
 /* ---------------------------------------------------------------- REFU --------------------
  *
  * REFU: the cuts that were refused so far, those that the model's record lists. */
@@ -785,15 +766,23 @@ static tl_status put_block_fields(tl_model *m, const tl_html *options, tl_piece 
     return status;
 }
 
-/* A page is kept: it tells which model it is of. */
-static tl_status put_finding(const tl_scene *scene, tl_model *m, const tl_verdict *verdict, tl_piece *out)
+/* FIND: how the model stands, as JSON. A page is kept: it tells which model it is of. */
+static tl_status put_finding(const tl_scene *scene, tl_model *m, const tl_verdict *v, tl_piece *out)
 {
-    char hash[33];
+    char hash[33], sentence[512];
     tl_piece text = {0};
     tl_status status = scene->live ? TL_OK : tl_state_hash(m, hash);
     if (status != TL_OK)
         return status;
-    scene_finding(verdict, scene->live ? NULL : hash, &text);
+    tl_verdict_text(v, sentence, sizeof sentence);
+    tl_json_print(&text,
+                  "{\"standing\": %s, \"text\": %s, \"stage\": %s, \"closed\": %g, \"moved\": %g, \"contacts\": %g, "
+                  "\"slipping\": %g",
+                  tl_standing_name(v->standing), sentence, v->stage, v->closed, (double)v->moved, (double)v->contacts,
+                  (double)v->slipping);
+    if (!scene->live)
+        tl_json_print(&text, ", \"hash\": %s", hash);
+    tl_json_put(&text, "}");
     status = text.failed ? tl_fail_memory(&m->error) : tl_scene_bytes(m, "FIND", text.data, text.length, out);
     free(text.data);
     return status;

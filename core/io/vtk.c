@@ -267,49 +267,36 @@ static size_t stream_of(const tl_poly *shape)
 
 /* ---------------------------------------------------------------- points ----------------- */
 
-typedef unsigned char *(*point_fn)(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to);
-
 /* A vector of each vertex of rows. */
-static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece, point_fn of, size_t each)
+static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece, tl_vtk_point_fn of,
+                                 size_t each)
 {
     unsigned char *to = tl_piece_add(piece, (g->first[end] - g->first[begin]) * each);
     for (uint32_t row = (uint32_t)begin; to && row < end; row++) {
         const tl_poly *shape = g->blocks->shape[row];
         for (uint32_t v = 0; v < shape->vertex_count; v++)
-            to = of(g, row, shape->vertex[v], to);
+            to = of(g->model, row, shape->vertex[v], to);
     }
-}
-
-static unsigned char *put_place(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
-{
-    return tl_vtk_put_vec3(to, tl_model_point(g->model, g->blocks->body[row], local));
-}
-
-static unsigned char *put_displacement(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
-{
-    return tl_vtk_put_float3(to, tl_block_point_displacement(g->model, row, local));
-}
-
-/* From the model's centre to the block's: the same for all its vertices. */
-static unsigned char *put_explode(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
-{
-    (void)local;
-    return tl_vtk_put_float3(to, tl_v3_sub(tl_block_centroid(g->model, row), g->centre));
 }
 
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_vertices(user, begin, end, piece, put_place, TL_VTK_VEC3_BYTES);
+    fill_vertices(user, begin, end, piece, tl_vtk_put_place, TL_VTK_VEC3_BYTES);
 }
 
 static void fill_displacements(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_vertices(user, begin, end, piece, put_displacement, TL_VTK_FLOAT3_BYTES);
+    fill_vertices(user, begin, end, piece, tl_vtk_put_moved, TL_VTK_FLOAT3_BYTES);
 }
 
+/* From the model's centre to the block's: the same for all its vertices. */
 static void fill_explode(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_vertices(user, begin, end, piece, put_explode, TL_VTK_FLOAT3_BYTES);
+    const grid *g = user;
+    unsigned char *to = tl_piece_add(piece, (g->first[end] - g->first[begin]) * TL_VTK_FLOAT3_BYTES);
+    for (uint32_t row = (uint32_t)begin; to && row < end; row++)
+        for (uint32_t v = g->first[row]; v < g->first[row + 1]; v++)
+            to = tl_vtk_put_float3(to, tl_v3_sub(tl_block_centroid(g->model, row), g->centre));
 }
 
 /* ---------------------------------------------------------------- cells ------------------ */
@@ -843,14 +830,13 @@ static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
 
 tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *parts)
 {
-    tl_vtk_parts read;
-    const tl_vtk_parts *of = &read;
-    tl_status status = TL_OPTIONS_READ(tl_vtk_parts, parts, &read, &m->error);
+    tl_vtk_parts of;
+    tl_status status = TL_OPTIONS_READ(tl_vtk_parts, parts, &of, &m->error);
     if (status != TL_OK)
         return status;
-    frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT, .fields = of};
-    f.wanted = (unsigned)(of->blocks != 0) << BLOCKS | (unsigned)(of->contacts != 0) << CONTACTS |
-               (unsigned)(of->joints != 0) << JOINTS;
+    frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT, .fields = &of};
+    f.wanted = (unsigned)(of.blocks != 0) << BLOCKS | (unsigned)(of.contacts != 0) << CONTACTS |
+               (unsigned)(of.joints != 0) << JOINTS;
     if (f.wanted == 0)
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "write_vtk: blocks, contacts and joints are all false, so there is nothing "

@@ -428,20 +428,8 @@ static void fill_polygon_rows(void *user, size_t begin, size_t end, size_t chunk
             fill_face(j, i);
 }
 
-/* Puts where a corner of a polygon is, or how far it has moved with the first block. */
-typedef unsigned char *(*corner_fn)(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to);
-
-static unsigned char *put_place(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to)
-{
-    return tl_vtk_put_vec3(to, tl_model_point(m, m->blocks.body[block], local));
-}
-
-static unsigned char *put_displacement(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to)
-{
-    return tl_vtk_put_float3(to, tl_block_point_displacement(m, block, local));
-}
-
-static unsigned char *put_contact(const joints *j, size_t i, corner_fn of, unsigned char *to)
+/* Vectors of the corners of a contact's polygon, as points of its first block. */
+static unsigned char *put_contact(const joints *j, size_t i, tl_vtk_point_fn of, unsigned char *to)
 {
     const tl_model *m = j->model;
     uint32_t contact = j->rows[j->contact[i]], side = tl_contact_sides(m, contact).a;
@@ -450,7 +438,7 @@ static unsigned char *put_contact(const joints *j, size_t i, corner_fn of, unsig
     return to;
 }
 
-static unsigned char *put_face(const joints *j, size_t i, corner_fn of, unsigned char *to)
+static unsigned char *put_face(const joints *j, size_t i, tl_vtk_point_fn of, unsigned char *to)
 {
     const face *one = &j->faces[i - j->of.polygons];
     const tl_poly *shape = j->model->blocks.shape[one->block];
@@ -466,7 +454,8 @@ static size_t first_corner(const joints *j, size_t i)
 }
 
 /* A vector of each corner of polygons. */
-static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_piece *piece, corner_fn of, size_t each)
+static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_piece *piece, tl_vtk_point_fn of,
+                                size_t each)
 {
     unsigned char *to = tl_piece_add(piece, (first_corner(j, end) - first_corner(j, begin)) * each);
     for (size_t i = begin; to && i < end; i++)
@@ -475,12 +464,12 @@ static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_pi
 
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_corners(user, begin, end, piece, put_place, TL_VTK_VEC3_BYTES);
+    fill_corners(user, begin, end, piece, tl_vtk_put_place, TL_VTK_VEC3_BYTES);
 }
 
 static void fill_displacements(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_corners(user, begin, end, piece, put_displacement, TL_VTK_FLOAT3_BYTES);
+    fill_corners(user, begin, end, piece, tl_vtk_put_moved, TL_VTK_FLOAT3_BYTES);
 }
 
 static void fill_polygons(const void *user, size_t begin, size_t end, tl_piece *piece)

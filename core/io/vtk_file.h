@@ -76,6 +76,19 @@ static inline unsigned char *tl_vtk_put_vec3(unsigned char *to, tl_vec3 value)
     return tl_vtk_put_double(to, value.z);
 }
 
+/* Puts a vector of a point of a block: where it is, or how far it has moved. */
+typedef unsigned char *(*tl_vtk_point_fn)(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to);
+
+static inline unsigned char *tl_vtk_put_place(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to)
+{
+    return tl_vtk_put_vec3(to, tl_model_point(m, m->blocks.body[block], local));
+}
+
+static inline unsigned char *tl_vtk_put_moved(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to)
+{
+    return tl_vtk_put_float3(to, tl_block_point_displacement(m, block, local));
+}
+
 /* Bytes of a vector, of one in single precision, and of a whole number. */
 #define TL_VTK_VEC3_BYTES 24
 #define TL_VTK_FLOAT3_BYTES 12

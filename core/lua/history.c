@@ -362,14 +362,13 @@ static void check_field(lua_State *L, const tl_history *h, const char *name)
 /* Reads `of`, at the top of the stack, and which field of it is wanted. The ids stay those of the object. */
 static void read_items(lua_State *L, tl_history *h, const history_args *args)
 {
-    static const char *const item_types[] = {TL_LUA_BLOCK, TL_LUA_CONTACT};
-    static const char *const selection_types[] = {TL_LUA_BLOCKS, TL_LUA_CONTACTS};
     static const tl_history_source sources[] = {TL_FROM_BLOCKS, TL_FROM_CONTACTS};
     const tl_lua_model *owner = NULL;
     h->take = (tl_history_take)args->take;
     for (size_t i = 0; i < 2; i++) {
-        tl_lua_item *item = luaL_testudata(L, -1, item_types[i]);
-        const tl_lua_selection *selection = luaL_testudata(L, -1, selection_types[i]);
+        const tl_lua_kind *kind = i ? &tl_lua_contact_kind : &tl_lua_block_kind;
+        tl_lua_item *item = luaL_testudata(L, -1, kind->item_type);
+        const tl_lua_selection *selection = luaL_testudata(L, -1, kind->selection_type);
         if (!item && !selection)
             continue;
         h->source = sources[i];

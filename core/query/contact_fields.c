@@ -318,21 +318,20 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_con
     *names = NULL;
     *count = 0;
     tl_tag joint = {0, 0};
-    tl_contact_filter read;
-    const tl_contact_filter *filter = &read;
+    tl_contact_filter filter;
     uint32_t *rows = NULL;
     size_t all = 0;
     tl_contact_name *list = NULL;
-    tl_status status = TL_OPTIONS_READ(tl_contact_filter, given, &read, &m->error);
+    tl_status status = TL_OPTIONS_READ(tl_contact_filter, given, &filter, &m->error);
     if (status == TL_OK)
         status = tl_contacts_listed(m, &rows, &all);
-    if (status == TL_OK && filter->joint)
-        status = tl_joint_parse(m, filter->joint, &joint);
+    if (status == TL_OK && filter.joint)
+        status = tl_joint_parse(m, filter.joint, &joint);
     unsigned char *ma = NULL, *mb = NULL;
-    if (status == TL_OK && filter->between_a)
-        ma = mark(m, filter->between_a, filter->count_a, &status);
-    if (status == TL_OK && filter->between_b)
-        mb = mark(m, filter->between_b, filter->count_b, &status);
+    if (status == TL_OK && filter.between_a)
+        ma = mark(m, filter.between_a, filter.count_a, &status);
+    if (status == TL_OK && filter.between_b)
+        mb = mark(m, filter.between_b, filter.count_b, &status);
     if (status == TL_OK && !(list = malloc((all + 1) * sizeof *list)))
         status = tl_fail_memory(&m->error);
     for (size_t i = 0; status == TL_OK && i < all; i++) {

@@ -11,9 +11,8 @@
  *
  *     r = s + sum N_i n_i,   N_i >= 0,   s . n_i <= 0,   N_i (s . n_i) = 0
  *
- * with no N_i (falling), one (sliding on a face) or two (sliding on two faces); s = 0 is stable
- * whatever the friction. Factor of safety, with joints that do not dilate and no joint forces beyond
- * those the active force brings about:
+ * with no N_i (falling), one (sliding on a face) or two (sliding on two faces); s = 0 is stable whatever the friction.
+ * Factor of safety, with joints that do not dilate and no joint forces beyond those the active force brings about:
  *
  *     sum (N_i tan(friction_i) + cohesion_i A_i) / |s|
  *

@@ -2,10 +2,9 @@
  *
  *     R = sum alpha (m v.v + I w.w) / |d(sum Ek)/dt|
  *
- * is kept at a target: once a step alpha is multiplied by what would bring R to it, but by no more than
- * `factor` and no less than 1 / `factor`. So the damping vanishes as the kinetic energy settles, and does
- * not hold back a steady collapse. One degree of freedom loses sqrt((1 - target)/(1 + target)) of its
- * amplitude each half cycle.
+ * is kept at a target: once a step alpha is multiplied by what would bring R to it, but by no more than `factor` and no
+ * less than 1 / `factor`. So the damping vanishes as the kinetic energy settles, and does not hold back a steady
+ * collapse. One degree of freedom loses sqrt((1 - target)/(1 + target)) of its amplitude each half cycle.
  *
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125, who give the ratio;
  * the servo is ours. The bounds on alpha that are not given follow the time step, which makes them fit

@@ -1,5 +1,4 @@
-/* local.c - damping "local": a force on every body that opposes its motion and is proportional to the
- * unbalanced force.
+/* local.c - damping "local": a force on every body that opposes its motion and is proportional to the unbalanced force.
  *
  *     F_d = -alpha |F| sign(v)      for each component of force and moment on its own
  *

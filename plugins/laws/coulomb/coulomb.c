@@ -15,12 +15,11 @@
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The cohesion stays
  * after slip, and comes back when an opened point closes; see coulomb_tensile for a bond that is lost.
  *
- * Energy turned to heat by slip: the plastic slip (|f_t| - |f_s|) / (ks A) along f_t times the mean of
- * the shear forces before and after in that direction. With the work of the mean force over du_s this
- * balances the change of stored energy exactly; for a reversal within one step it is taken as 0. Of
- * the work of slip, the part f_n tan(dilation) slip lifts the walls against the pressure and is not
- * heat: it is stored in the normal spring or given back to what presses. The rest,
- * (c A + f_n (tan(friction) - tan(dilation))) slip, is heat, and never less than 0 because dilation
+ * Energy turned to heat by slip: the plastic slip (|f_t| - |f_s|) / (ks A) along f_t times the mean of the shear forces
+ * before and after in that direction. With the work of the mean force over du_s this balances the change of stored
+ * energy exactly; for a reversal within one step it is taken as 0. Of the work of slip, the part f_n tan(dilation) slip
+ * lifts the walls against the pressure and is not heat: it is stored in the normal spring or given back to what
+ * presses. The rest, (c A + f_n (tan(friction) - tan(dilation))) slip, is heat, and never less than 0 because dilation
  * above friction is refused.
  *
  * Limit: a change of kn or ks, and insitu, take the present force as the one at closure 0; they belong
