@@ -310,11 +310,6 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_c
     put_on_field(m, c, &now);
 }
 
-static tl_block_frame frame_of(const tl_model *m, uint32_t block)
-{
-    return (tl_block_frame){tl_block_local(m, block), tl_block_made(m, block).turn};
-}
-
 void tl_press_shift_faces(tl_model *m, uint32_t c, tl_face_pair faces)
 {
     const tl_contacts *contacts = &m->detect->contacts;
@@ -322,30 +317,8 @@ void tl_press_shift_faces(tl_model *m, uint32_t c, tl_face_pair faces)
     row->shifted = faces;
     row->shifted_at[0] = m->blocks.shape[contacts->a[c]]->plane[faces.a];
     row->shifted_at[1] = m->blocks.shape[contacts->b[c]]->plane[faces.b];
-    row->frame[0] = frame_of(m, contacts->a[c]);
-    row->frame[1] = frame_of(m, contacts->b[c]);
-}
-
-/* A plane of a block, from one frame of its body into another. */
-static tl_plane reframed(tl_plane plane, const tl_block_frame *from, const tl_block_frame *to)
-{
-    tl_vec3 n = tl_q_rotate(tl_q_conj(to->turn), tl_q_rotate(from->turn, plane.normal));
-    double height = plane.offset - tl_v3_dot(plane.normal, from->centroid);
-    return (tl_plane){n, height + tl_v3_dot(n, to->centroid)};
-}
-
-void tl_press_reframe(tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    tl_press_row *row = tl_press_row_of(m, c);
-    for (int of_b = 0; row && of_b < 2; of_b++) {
-        tl_block_frame now = frame_of(m, of_b ? contacts->b[c] : contacts->a[c]);
-        if (memcmp(&now, &row->frame[of_b], sizeof now) == 0)
-            continue;
-        row->shifted_at[of_b] = reframed(row->shifted_at[of_b], &row->frame[of_b], &now);
-        row->lean[of_b] = reframed(row->lean[of_b], &row->frame[of_b], &now);
-        row->frame[of_b] = now;
-    }
+    row->frame[0] = tl_block_frame_of(m, contacts->a[c]);
+    row->frame[1] = tl_block_frame_of(m, contacts->b[c]);
 }
 
 /* Moves the faces of a patch apart as its points are lifted. */

@@ -20,8 +20,6 @@ static inline double tl_contact_ends(const tl_model *m, uint32_t contact)
 }
 /* Says which faces of a contact's blocks its shift moves out. */
 void tl_press_shift_faces(tl_model *m, uint32_t contact, tl_face_pair faces);
-/* Puts the planes that a field contact keeps into the frames that its blocks' bodies have now. */
-void tl_press_reframe(tl_model *m, uint32_t contact);
 /* Brings the shift of a field contact's faces up to how far slip has opened its joint. Returns by how much in
  * the last step, m. */
 double tl_contact_lift_field(tl_model *m, uint32_t contact);

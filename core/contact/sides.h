@@ -67,6 +67,12 @@ static inline tl_vec3 tl_sides_apart(const tl_model *m, tl_sides sides)
     return tl_apart(a->x_ref, a->u, b->x_ref, b->u);
 }
 
+/* The frame of a block's body as the block sees it. */
+static inline tl_block_frame tl_block_frame_of(const tl_model *m, uint32_t block)
+{
+    return (tl_block_frame){tl_block_local(m, block), tl_block_made(m, block).turn};
+}
+
 /* Velocity of a side at an arm. */
 static inline tl_vec3 tl_side_velocity(const tl_model *m, uint32_t side, tl_vec3 arm)
 {

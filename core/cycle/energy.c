@@ -151,16 +151,8 @@ tl_status tl_model_energy(tl_model *m, tl_energy *energy)
     return TL_OK;
 }
 
-double tl_free_energy(const tl_model *m, uint32_t body)
-{
-    const tl_bodies *b = &m->bodies;
-    const unsigned fixed = b->fixed[body];
-    const double spin = fixed & TL_FIX_ROTATION ? 0 : tl_spin_energy2(m, body);
-    return 0.5 * tl_energy_scale(m->cycle, body) *
-           (b->mass[body] * tl_v3_norm2(tl_free_part(b->v[body], fixed)) + spin);
-}
-
-double tl_spin_energy2(const tl_model *m, uint32_t body)
+/* w.I w, J. */
+static double spin_energy2(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
     tl_vec3 w = tl_q_rotate(tl_q_conj(tl_q_mul(b->q[body], b->axes[body])), b->w[body]);
@@ -168,4 +160,11 @@ double tl_spin_energy2(const tl_model *m, uint32_t body)
         return b->round[body] * tl_v3_norm2(w);
     tl_vec3 i = b->moments[body];
     return i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z;
+}
+
+double tl_body_energy(const tl_model *m, uint32_t body, unsigned held)
+{
+    const tl_bodies *b = &m->bodies;
+    const double spin = held & TL_FIX_ROTATION ? 0 : spin_energy2(m, body);
+    return 0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * tl_v3_norm2(tl_free_part(b->v[body], held)) + spin);
 }

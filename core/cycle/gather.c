@@ -73,13 +73,12 @@ static void note_ratios(const tl_model *m, uint32_t body, double weight, addends
 }
 
 /* Kinetic energy and power, for a damping that asks for totals. */
-static void note_totals(const tl_model *m, uint32_t body, double v2, addends *of)
+static void note_totals(const tl_model *m, uint32_t body, addends *of)
 {
     const tl_bodies *b = &m->bodies;
-    of->number[TL_SUM_KINETIC][of->count] =
-        0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * v2 + tl_spin_energy2(m, body));
-    of->number[TL_SUM_DAMPED][of->count] =
-        b->fixed[body] ? tl_free_energy(m, body) : of->number[TL_SUM_KINETIC][of->count];
+    const double kinetic = tl_body_energy(m, body, 0);
+    of->number[TL_SUM_KINETIC][of->count] = kinetic;
+    of->number[TL_SUM_DAMPED][of->count] = b->fixed[body] ? tl_body_energy(m, body, b->fixed[body]) : kinetic;
     of->number[TL_SUM_POWER][of->count] =
         tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
 }
@@ -107,7 +106,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         double v2 = tl_v3_norm2(b->v[body]);
         note_ratios(m, body, tl_weight_of(b, body, gravity), &of, all);
         if (totals)
-            note_totals(m, body, v2, &of);
+            note_totals(m, body, &of);
         all->max_speed2 = tl_larger(all->max_speed2, v2);
         of.count++;
     }

@@ -43,12 +43,22 @@ static double ratio_of(const tl_model *m, double sum)
     return against > 0 ? sum / against : 0;
 }
 
-double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
+static double unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
 {
     const tl_sums *s = &m->cycle->sums;
     if (measure == TL_RATIO_LOCAL)
         return s->local;
     return ratio_of(m, measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced);
+}
+
+tl_balance tl_model_balance(const tl_model *m)
+{
+    if (!m->cycle || m->cycles == 0)
+        return (tl_balance){NAN, NAN, NAN, NAN};
+    return (tl_balance){.ratio = unbalanced_ratio(m, TL_RATIO_AVERAGE),
+                        .ratio_maximum = unbalanced_ratio(m, TL_RATIO_MAXIMUM),
+                        .ratio_local = unbalanced_ratio(m, TL_RATIO_LOCAL),
+                        .max_velocity = sqrt(m->cycle->sums.max_speed2)};
 }
 
 typedef struct rest_job {
@@ -62,7 +72,7 @@ static bool moves(const rest_job *job, uint32_t body)
 {
     const tl_model *m = job->m;
     const tl_bodies *b = &m->bodies;
-    double kinetic = tl_free_energy(m, body);
+    double kinetic = tl_body_energy(m, body, m->bodies.fixed[body]);
     if (kinetic == 0)
         return false;
     double stiffness = tl_body_stiffness(m, body);
@@ -111,5 +121,5 @@ bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio)
     if (measure == TL_RATIO_LOCAL)
         return m->cycle->sums.worst_ratio < ratio && all_rest(m, ratio);
     /* moments, each over its body's radius: a block that spins up is not in equilibrium */
-    return tl_unbalanced_ratio(m, measure) < ratio && ratio_of(m, m->cycle->sums.turning) < ratio;
+    return unbalanced_ratio(m, measure) < ratio && ratio_of(m, m->cycle->sums.turning) < ratio;
 }

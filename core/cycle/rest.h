@@ -8,8 +8,6 @@
  * overlaps are rounded at some 1e-16 of the radius. */
 #define TL_ROUNDED_OVERLAP 1e-10
 
-/* An unbalanced force ratio of the last gather. */
-double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure);
 /* Whether the model is at rest by a measure, to within a ratio. */
 bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio);
 /* Force that a body of a stiffness bears at the least: what its contacts carry at an overlap that is rounding. */

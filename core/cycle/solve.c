@@ -421,13 +421,14 @@ static void say_gone(tl_model *m, const tl_watch *w)
 static void say_undecided(tl_model *m, const tl_solve *solve, const tl_solve_result *r)
 {
     bool cycles = r->reason == TL_SOLVE_CYCLES;
-    double ratio = tl_unbalanced_ratio(m, (tl_ratio_measure)solve->measure);
+    const tl_balance now = tl_model_balance(m);
+    const double of[] = {now.ratio, now.ratio_maximum, now.ratio_local}; /* by tl_ratio_measure */
     if (tl_model_says(m, TL_REMARK_UNDECIDED))
         tl_model_say(m,
                      "solve: ended by %s = %.9g, neither at rest (ratio %.3g, asked for %.3g) nor failing: that is no "
                      "word on whether it stands",
-                     cycles ? "max_cycles" : "max_time", cycles ? (double)solve->max_cycles : solve->max_time, ratio,
-                     solve->ratio);
+                     cycles ? "max_cycles" : "max_time", cycles ? (double)solve->max_cycles : solve->max_time,
+                     of[solve->measure], solve->ratio);
 }
 
 /* What the end of a run means for whether the model stands. A stop function has its own reason. */
@@ -504,14 +505,4 @@ tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *ca
 tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)
 {
     return tl_model_cycle_calling(m, cycles, NULL, result);
-}
-
-tl_balance tl_model_balance(const tl_model *m)
-{
-    if (!m->cycle || m->cycles == 0)
-        return (tl_balance){NAN, NAN, NAN, NAN};
-    return (tl_balance){.ratio = tl_unbalanced_ratio(m, TL_RATIO_AVERAGE),
-                        .ratio_maximum = tl_unbalanced_ratio(m, TL_RATIO_MAXIMUM),
-                        .ratio_local = tl_unbalanced_ratio(m, TL_RATIO_LOCAL),
-                        .max_velocity = sqrt(m->cycle->sums.max_speed2)};
 }

@@ -461,14 +461,39 @@ static void find_rules(tl_model *m)
 
 /* ---------------------------------------------------------------- frames ----------------- */
 
+/* A plane of a block, from one frame of its body into another. */
+static tl_plane reframed(tl_plane plane, const tl_block_frame *from, const tl_block_frame *to)
+{
+    tl_vec3 n = tl_q_rotate(tl_q_conj(to->turn), tl_q_rotate(from->turn, plane.normal));
+    double height = plane.offset - tl_v3_dot(plane.normal, from->centroid);
+    return (tl_plane){n, height + tl_v3_dot(n, to->centroid)};
+}
+
+/* Puts the planes that a field contact keeps into the frames that its blocks' bodies have now. */
+static void reframe_faces(tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
+    for (int of_b = 0; row && of_b < 2; of_b++) {
+        tl_block_frame now = tl_block_frame_of(m, of_b ? contacts->b[c] : contacts->a[c]);
+        if (memcmp(&now, &row->frame[of_b], sizeof now) == 0)
+            continue;
+        row->shifted_at[of_b] = reframed(row->shifted_at[of_b], &row->frame[of_b], &now);
+        row->lean[of_b] = reframed(row->lean[of_b], &row->frame[of_b], &now);
+        row->frame[of_b] = now;
+    }
+}
+
 static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     tl_model *m = user;
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = (uint32_t)begin; row < end; row++)
-        if (c->pending[row] != TL_PENDING_DIE && (tl_block_is_new(m, c->a[row]) || tl_block_is_new(m, c->b[row])))
+        if (c->pending[row] != TL_PENDING_DIE && (tl_block_is_new(m, c->a[row]) || tl_block_is_new(m, c->b[row]))) {
+            reframe_faces(m, row);
             tl_contact_reframe(m, row, thread);
+        }
 }
 
 void tl_edits_follow(tl_model *m, bool rows)

@@ -539,7 +539,6 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
     tl_narrow_scratch *scratch = &m->detect->narrow[thread];
     if (m->detect->contacts.pending[c] == TL_PENDING_DIE)
         return;
-    tl_press_reframe(m, c);
     scratch->reframed = true;
     if (make_anew(m, c, thread))
         note_made(m, c); /* by the odometers of the bodies as they are now */
