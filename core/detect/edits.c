@@ -55,11 +55,9 @@ static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
                               .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
                               .touched = malloc(bodies + 1),
                               .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
-    if (scratch->row && scratch->part && scratch->odometer_0 && scratch->touched && scratch->known_blocks &&
-        tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
-        tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
-        return true;
-    return false;
+    return scratch->row && scratch->part && scratch->odometer_0 && scratch->touched && scratch->known_blocks &&
+           tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
+           tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path);
 }
 
 static void free_scratch(rows_scratch *scratch)

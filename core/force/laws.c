@@ -5,6 +5,7 @@
 #include "force/laws.h"
 
 #include "base/columns.h"
+#include "base/law_columns.h"
 #include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/handover.h"
@@ -78,11 +79,7 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
 
 /* Copies of what a law gets and gives, of the points of a SIMD group side by side. */
 typedef struct trial {
-    _Alignas(TL_ALIGN) double area[TL_LANES];
-    double closure[TL_LANES], f_n0[TL_LANES], du_n[TL_LANES], f_n[TL_LANES];
-    tl_lanes3 normal, du_s, f_s;
-    double state[TL_STATE_COLUMNS][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
-    double apart[TL_LANES];
+    _Alignas(TL_ALIGN) double c[TL_AT_COUNT][TL_LANES];
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } trial;
 
@@ -94,47 +91,43 @@ typedef struct place {
     size_t row, lane;
 } place;
 
+/* A vector of a point, whose components are three columns from `column` on. */
+static tl_vec3 vector_of(const trial *t, int column, size_t l)
+{
+    return tl_v3(t->c[column][l], t->c[column + 1][l], t->c[column + 2][l]);
+}
+
+static void put_vector(trial *t, int column, size_t l, tl_vec3 v)
+{
+    t->c[column][l] = v.x;
+    t->c[column + 1][l] = v.y;
+    t->c[column + 2][l] = v.z;
+}
+
 static void copy_points(const place *at, trial *t)
 {
     const tl_points_table *p = &at->m->detect->points;
+    memset(t, 0, sizeof *t);
     for (size_t l = 0; l < TL_LANES; l++) {
         size_t i = at->row + l, k = at->lane + l;
-        t->area[l] = p->area[i];
-        t->closure[l] = at->lanes->closure[k];
-        t->f_n0[l] = p->f_n0 ? p->f_n0[i] : 0;
-        t->f_n[l] = p->f_n[i];
+        t->c[TL_AT_AREA][l] = p->area[i];
+        t->c[TL_AT_CLOSURE][l] = t->c[TL_AT_EDGE][l] = at->lanes->closure[k];
+        t->c[TL_AT_F_N0][l] = p->f_n0 ? p->f_n0[i] : 0;
+        t->c[TL_AT_F_N][l] = p->f_n[i];
         t->flags[l] = p->flags[i];
-        t->du_n[l] = t->stored[l] = t->dissipated[l] = t->apart[l] = 0;
-        tl_lanes3_put(&t->normal, l, tl_columns_get(at->lanes->normal, k));
-        tl_lanes3_put(&t->f_s, l, tl_columns_get(p->f_s, i));
-        tl_lanes3_put(&t->du_s, l, tl_v3(0, 0, 0));
-        for (uint32_t c = 0; c < TL_STATE_COLUMNS; c++)
-            t->state[c][l] = c < p->state_columns ? p->state[c][i] : 0;
+        put_vector(t, TL_AT_NORMAL, l, tl_columns_get(at->lanes->normal, k));
+        put_vector(t, TL_AT_F_S, l, tl_columns_get(p->f_s, i));
+        for (uint32_t c = 0; c < p->state_columns; c++)
+            t->c[TL_AT_STATE + c][l] = p->state[c][i];
     }
 }
 
 static bool call(const place *at, trial *t)
 {
     double *state[TL_STATE_COLUMNS];
-    for (int c = 0; c < TL_STATE_COLUMNS; c++)
-        state[c] = t->state[c];
-    tl_law_batch batch = {.size = sizeof batch,
-                          .count = TL_LANES,
-                          .dt = at->m->dt,
-                          .area = t->area,
-                          .closure = t->closure,
-                          .f_n0 = t->f_n0,
-                          .normal = {t->normal.x, t->normal.y, t->normal.z},
-                          .du_n = t->du_n,
-                          .du_s = {t->du_s.x, t->du_s.y, t->du_s.z},
-                          .f_n = t->f_n,
-                          .f_s = {t->f_s.x, t->f_s.y, t->f_s.z},
-                          .state = state,
-                          .flags = t->flags,
-                          .stored = t->stored,
-                          .dissipated = t->dissipated,
-                          .closure_edge = t->closure,
-                          .closure_apart = t->apart};
+    tl_law_batch batch = tl_law_batch_of(t->c[0], TL_LANES, t->flags, state, TL_STATE_COLUMNS);
+    batch.count = TL_LANES;
+    batch.dt = at->m->dt;
     tl_report report;
     return tl_law_update(at->law, &batch, &report) == TL_OK;
 }
@@ -144,9 +137,12 @@ static bool try_law(const place *at, const double *move, const tl_vec3 *slide, t
 {
     copy_points(at, t);
     for (size_t l = 0; l < TL_LANES; l++) {
-        t->closure[l] += slide ? 0 : move[l];
-        t->du_n[l] = slide ? 0 : -move[l];
-        tl_lanes3_put(&t->du_s, l, slide ? tl_v3_scale(move[l], slide[l]) : tl_v3(0, 0, 0));
+        if (slide) {
+            put_vector(t, TL_AT_DU_S, l, tl_v3_scale(move[l], slide[l]));
+            continue;
+        }
+        t->c[TL_AT_CLOSURE][l] = t->c[TL_AT_EDGE][l] += move[l];
+        t->c[TL_AT_DU_N][l] = -move[l];
     }
     return call(at, t);
 }
@@ -163,12 +159,12 @@ static bool measure(const place *at, const double *move, const tl_vec3 *slide, s
     if (!try_law(at, none, NULL, &rest) || !try_law(at, move, NULL, &pressed) || !try_law(at, move, slide, &slid))
         return false;
     for (size_t l = 0; l < TL_LANES; l++) {
-        double area = rest.area[l];
+        double area = rest.c[TL_AT_AREA][l];
         found->normal[l] = found->shear[l] = 0;
         if (!(area > 0) || !(move[l] > 0))
             continue;
-        tl_vec3 before = tl_lanes3_get(&rest.f_s, l), after = tl_lanes3_get(&slid.f_s, l);
-        found->normal[l] = (pressed.f_n[l] - rest.f_n[l]) / (area * move[l]);
+        tl_vec3 before = vector_of(&rest, TL_AT_F_S, l), after = vector_of(&slid, TL_AT_F_S, l);
+        found->normal[l] = (pressed.c[TL_AT_F_N][l] - rest.c[TL_AT_F_N][l]) / (area * move[l]);
         found->shear[l] = tl_v3_dot(tl_v3_sub(before, after), slide[l]) / (area * move[l]);
     }
     return true;
@@ -233,14 +229,14 @@ static bool try_in_plane(const place *at, double along[TL_LANES])
         tl_vec3 du_s = tl_columns_get(at->lanes->du_s, at->lane + l);
         f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
         du_s = tl_v3_madd(du_s, -tl_v3_dot(du_s, n), n);
-        tl_lanes3_put(&t.f_s, l, f);
-        tl_lanes3_put(&t.du_s, l, du_s);
-        t.du_n[l] = at->lanes->du_n[at->lane + l];
+        put_vector(&t, TL_AT_F_S, l, f);
+        put_vector(&t, TL_AT_DU_S, l, du_s);
+        t.c[TL_AT_DU_N][l] = at->lanes->du_n[at->lane + l];
     }
     if (!call(at, &t))
         return false;
     for (size_t l = 0; l < TL_LANES; l++)
-        along[l] = fabs(tl_v3_dot(tl_lanes3_get(&t.f_s, l), tl_lanes3_get(&t.normal, l)));
+        along[l] = fabs(tl_v3_dot(vector_of(&t, TL_AT_F_S, l), vector_of(&t, TL_AT_NORMAL, l)));
     return true;
 }
 

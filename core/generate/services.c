@@ -139,6 +139,13 @@ static bool joint_exists(const tl_host *host, uint32_t number)
     return number >= 1 && number <= service_of(host)->model->joint_count;
 }
 
+/* Whether the generator has asked for this plane of a joint. */
+static bool plane_exists(const tl_host *host, tl_tag tag)
+{
+    return joint_exists(host, tag.joint) && tag.plane >= 1 &&
+           tag.plane <= service_of(host)->model->joints[tag.joint - 1].planes;
+}
+
 /* Counts and indices of a block given by its faces: what the geometry below relies on. */
 static tl_status check_faces(const tl_host *host, const tl_block_shape *s)
 {
@@ -153,9 +160,7 @@ static tl_status check_faces(const tl_host *host, const tl_block_shape *s)
             if (s->loops[i] >= s->vertex_count)
                 return fail(host, TL_E_GEOMETRY, "face %zu names vertex %u of %zu", f + 1, s->loops[i] + 1,
                             s->vertex_count);
-        if (s->tags && s->tags[f].joint &&
-            (!joint_exists(host, s->tags[f].joint) || s->tags[f].plane < 1 ||
-             s->tags[f].plane > service_of(host)->model->joints[s->tags[f].joint - 1].planes))
+        if (s->tags && s->tags[f].joint && !plane_exists(host, s->tags[f]))
             return fail(host, TL_E_PLUGIN, "face %zu has plane %u of joint %u, which was not asked for", f + 1,
                         s->tags[f].plane, s->tags[f].joint);
     }
@@ -484,7 +489,7 @@ static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, do
                           double persistence, size_t *met)
 {
     service *s = service_of(host);
-    if (!joint_exists(host, tag.joint) || tag.plane < 1 || tag.plane > s->model->joints[tag.joint - 1].planes)
+    if (!plane_exists(host, tag))
         return fail(host, TL_E_PLUGIN, "it cuts by plane %u of joint %u, which it did not ask for", tag.plane,
                     tag.joint);
     tl_status status = check_plane(host, normal, point);

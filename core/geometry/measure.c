@@ -211,6 +211,14 @@ double tl_poly_shortest_edge(const tl_poly *p)
     return sqrt(shortest2);
 }
 
+double tl_poly_smallest_face(const tl_poly *p)
+{
+    double smallest = INFINITY;
+    for (uint32_t f = 0; f < p->face_count; f++)
+        smallest = fmin(smallest, tl_poly_face_area(p, f));
+    return smallest;
+}
+
 double tl_poly_diameter(const tl_poly *p)
 {
     double longest2 = 0;

@@ -31,6 +31,8 @@ void tl_poly_find_size(tl_poly *poly);
 double tl_poly_face_area(const tl_poly *poly, uint32_t face);
 tl_vec3 tl_poly_face_centroid(const tl_poly *poly, uint32_t face);
 double tl_poly_shortest_edge(const tl_poly *poly);
+/* The area of its smallest face. */
+double tl_poly_smallest_face(const tl_poly *poly);
 /* Largest distance between two vertices. */
 double tl_poly_diameter(const tl_poly *poly);
 /* Smallest extent along the normal of a face. (Between two crossing edges it may be less, 0.87 of this

@@ -174,10 +174,7 @@ typedef struct measures {
 static measures measure(const tl_model *m, uint32_t row)
 {
     const tl_poly *shape = m->blocks.shape[row];
-    measures out = {m->blocks.volume[row], tl_poly_shortest_edge(shape), INFINITY};
-    for (uint32_t f = 0; f < shape->face_count; f++)
-        out.face = fmin(out.face, tl_poly_face_area(shape, f));
-    return out;
+    return (measures){m->blocks.volume[row], tl_poly_shortest_edge(shape), tl_poly_smallest_face(shape)};
 }
 
 /* A block has come. */
