@@ -1,5 +1,4 @@
-/* store.c - the detection as a whole: made, copied, let go of, given columns and lanes, and
- * its entries. */
+/* store.c - the detection as a whole: made, copied, let go of, given columns and lanes, and its entries. */
 #include "contact/store.h"
 
 #include "base/entries.h"

@@ -40,13 +40,14 @@
 #include "force/laws.h"
 #include "model/loads.h"
 
-/* What acts on bodies makes room for the step. */
-static tl_status prepare_contributors(tl_model *m)
+/* What acts on bodies makes room for the step, or finds, with `apply`, its forces at the present places. */
+static tl_status ask_contributors(tl_model *m, bool apply)
 {
     tl_status status = TL_OK;
-    for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++)
-        if ((*with)->prepare)
-            status = (*with)->prepare(m);
+    for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++) {
+        tl_status (*ask)(tl_model *) = apply ? (*with)->apply : (*with)->prepare;
+        status = ask ? ask(m) : TL_OK;
+    }
     return status;
 }
 
@@ -69,7 +70,7 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     if (status == TL_OK && !(tl_gather_prepare(m) && tl_split_prepare(m)))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
-        status = prepare_contributors(m);
+        status = ask_contributors(m, false);
     /* false when a user's function ends the run: bodies then go on as they were driven before */
     *driven = status != TL_OK || tl_drives_evaluate(m, m->time + 0.5 * *dt);
     if (status == TL_OK)
@@ -87,20 +88,10 @@ static void begin_loads(tl_model *m, double dt)
     c->gravity = changed ? tl_acting_mean(c, now, m->gravity_before) : now;
 }
 
-/* Finds what acts on bodies at the present places. */
-static tl_status apply_contributors(tl_model *m)
-{
-    tl_status status = TL_OK;
-    for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++)
-        if ((*with)->apply)
-            status = (*with)->apply(m);
-    return status;
-}
-
 /* Forces on the bodies: undone when a law or the damping fails, or a body would move too far. */
 static tl_status apply_forces(tl_model *m, double dt)
 {
-    tl_status status = apply_contributors(m);
+    tl_status status = ask_contributors(m, true);
     tl_phase_ends(m, TL_PHASE_LAWS);
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);
