@@ -118,9 +118,8 @@ static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
     tl_acting sum = *on;
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
         uint32_t i = at.contact;
-        bool is_b = tl_contact_is_b(c, i, at.block);
-        sum.force = tl_v3_madd(sum.force, is_b ? 1 : -1, force[i]);
-        sum.moment = tl_v3_add(sum.moment, tl_contact_moment(m, i, is_b));
+        sum.force = tl_v3_madd(sum.force, tl_contact_sign(c, i, at.block), force[i]);
+        sum.moment = tl_v3_add(sum.moment, tl_contact_moment(m, i, tl_contact_is_b(c, i, at.block)));
         sum.magnitude += tl_v3_norm(force[i]);
     }
     *on = sum;
