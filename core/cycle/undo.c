@@ -7,11 +7,11 @@
  *   - a plugin does not say that it never fails;
  *   - numbers are so large that a force may not be finite;
  *   - something was set by hand since the last step;
- *   - a body came near the limit of motion;
+ *   - a body came near the limit of motion, or blocks may pass each other;
  *   - a given time step is not stable.
  *
- * A step of the laws and dampings that come with the program costs nothing more. Detection and the choice of the step
- * need no undoing, for made again in the same places they change nothing. The move cannot fail. */
+ * Other steps of the laws and dampings that come with the program cost nothing more. Detection and the choice of the
+ * step need no undoing, for made again in the same places they change nothing. The move cannot fail. */
 #include "cycle/undo.h"
 
 #include <assert.h>
