@@ -74,6 +74,12 @@ static inline bool tl_block_is_new(const tl_model *m, uint32_t row)
     return m->blocks.changed[row] > m->detect->structure;
 }
 
+/* Motion over the size of a block that changes no geometry. */
+static inline double tl_still_share(const tl_model *m)
+{
+    return m->still > TL_STILL ? m->still : TL_STILL;
+}
+
 /* What a field contact keeps beside its points; NULL: nothing. */
 static inline tl_press_row *tl_press_row_of(const tl_model *m, uint32_t contact)
 {

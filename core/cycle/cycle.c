@@ -31,6 +31,7 @@
 #include "cycle/prepare.h"
 #include "cycle/profile.h"
 #include "cycle/remarks.h"
+#include "cycle/settle.h"
 #include "cycle/split.h"
 #include "cycle/timestep.h"
 #include "cycle/undo.h"
@@ -67,12 +68,12 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     if (status == TL_OK)
         status = tl_timestep_choose(m, dt);
     tl_phase_ends(m, TL_PHASE_TIMESTEP);
-    if (status == TL_OK && !(tl_gather_prepare(m) && tl_split_prepare(m)))
+    if (status == TL_OK && !(tl_gather_prepare(m) && tl_split_prepare(m) && tl_settle_prepare(m)))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
         status = ask_contributors(m, false);
     /* false when a user's function ends the run: bodies then go on as they were driven before */
-    *driven = status != TL_OK || tl_drives_evaluate(m, m->time + 0.5 * *dt);
+    *driven = status != TL_OK || tl_drives_evaluate(m, m->relaxing ? m->time : m->time + 0.5 * *dt);
     if (status == TL_OK)
         status = tl_motion_check(m, *dt, true);
     return status == TL_OK ? tl_undo_reserve(m) : status;
@@ -82,7 +83,7 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
 static void begin_loads(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
-    tl_vec3 now = m->config.gravity;
+    tl_vec3 now = tl_v3_scale(tl_loads_share(m), m->config.gravity);
     c->share_before = m->dt + dt > 0 ? m->dt / (m->dt + dt) : 0;
     bool changed = m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(now, m->gravity_before));
     c->gravity = changed ? tl_acting_mean(c, now, m->gravity_before) : now;
@@ -100,7 +101,7 @@ static tl_status apply_forces(tl_model *m, double dt)
         status = tl_split_hold(m, dt);
         tl_phase_ends(m, TL_PHASE_GATHER);
         if (status == TL_OK)
-            status = tl_damping_apply(m, dt);
+            status = m->relaxing ? tl_settle(m, dt) : tl_damping_apply(m, dt);
         if (status == TL_OK)
             status = tl_motion_check(m, dt, false);
         tl_phase_ends(m, TL_PHASE_DAMPING);
@@ -137,7 +138,7 @@ tl_status tl_step(tl_model *m)
     m->detect->stepped = m->detect->stepped || m->detect->contacts.table.rows > 0;
     /* velocities are half a step behind the places, but not when all is held and still: as before the first step */
     m->dt = tl_model_moves(m) ? dt : 0;
-    m->time += dt;
+    m->time += m->relaxing ? 0 : dt;
     m->cycles++;
     tl_remark_closure(m);
     if (!driven) /* the step is whole: bodies went on as they were driven before */

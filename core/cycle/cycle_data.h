@@ -147,6 +147,22 @@ typedef struct tl_swept {
     bool moves; /* far enough to be one of a pair that passes */
 } tl_swept;
 
+/* How a relaxation goes: settle.c. */
+typedef struct tl_settling {
+    double share;        /* of gravity and loads that acts */
+    int64_t part;        /* of those in which they come on, from 1 */
+    int64_t stops;       /* steps left with kinetic stops only, before leaps are tried */
+    int64_t stop_span;   /* that there will be the next time */
+    int64_t leaps;       /* left of those that are being made */
+    int64_t leap_span;   /* that there will be the next time */
+    int64_t idle;        /* leaps in a row that brought the model no nearer to rest */
+    double hold;         /* of a leap: inertia over dt^2 times this is added to the stiffness */
+    double power;        /* unbalanced forces at the beginning of the leap times its motion, J */
+    double expected;     /* fall of the energy in it, J */
+    double goal;         /* sum of unbalanced forces below which leaps have brought it nearer, N */
+    bool leapt, limited; /* the last step was a leap; one made shorter */
+} tl_settling;
+
 struct tl_cycle {
     tl_table table;
     const tl_contributor *contributor[TL_MOST_CONTRIBUTORS + 1]; /* NULL ends them */
@@ -197,16 +213,32 @@ struct tl_cycle {
     size_t motion_capacity;
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
-    tl_id failing;      /* in the last run that was watched: solve.c; or TL_NO_ID */
-    double rest_ratio;  /* that the last solve asked for; 0: none has */
-    bool fast;          /* a body came near the limit of motion in the last step: limits.c */
-    tl_failure failure; /* of a parallel phase */
+    tl_settling settling;
+    struct tl_secant *secant; /* of each contact, while there are leaps: secants.c */
+    size_t secant_count, secant_capacity;
+    struct tl_leap_link *link; /* of each contact and each body, in a leap */
+    struct tl_leap_body *leap;
+    size_t link_count, link_capacity, leap_capacity;
+    tl_id *fails; /* blocks that failed in the last run that saw a failure, */
+    size_t fails_count, fails_capacity;
+    double fails_volume; /* m3, */
+    tl_vec3 fails_way;   /* and where to */
+    tl_id failing;       /* in the last run that was watched: solve.c; or TL_NO_ID */
+    double rest_ratio;   /* that the last solve asked for; 0: none has */
+    bool fast;           /* a body came near the limit of motion in the last step: limits.c */
+    tl_failure failure;  /* of a parallel phase */
 };
 
 /* What partial mass scaling makes of a body's inertia: energies count it. */
 static inline double tl_energy_scale(const struct tl_cycle *c, uint32_t body)
 {
     return c->adds ? c->inertia[body] : 1;
+}
+
+/* Whether the last step was a leap of a relaxation. */
+static inline bool tl_has_leapt(const tl_model *m)
+{
+    return m->relaxing && m->cycle->settling.leapt;
 }
 
 /* What mass scaling of either kind makes of a body's mass ... */
@@ -226,13 +258,31 @@ static inline bool tl_inertia_scaled(const struct tl_cycle *c)
 /* Whether inertia is to be added for a step that was asked for. */
 static inline bool tl_adds_mass(const tl_model *m)
 {
-    return !isnan(m->added_dt);
+    return !isnan(m->added_dt) && !m->relaxing;
+}
+
+/* Whether all free bodies get the inertia that suits one step. */
+static inline bool tl_scales_all(const tl_model *m)
+{
+    return m->mass_scaling || m->relaxing;
+}
+
+/* The step that the user has given, s, or NaN. */
+static inline double tl_given_step(const tl_model *m)
+{
+    return m->relaxing ? NAN : m->timestep.dt;
+}
+
+/* Whether bodies get damping forces. */
+static inline bool tl_is_damped(const tl_model *m)
+{
+    return m->damping || m->relaxing;
 }
 
 /* Whether there is mass scaling of either kind. */
 static inline bool tl_mass_scaled(const tl_model *m)
 {
-    return m->mass_scaling || tl_adds_mass(m);
+    return tl_scales_all(m) || tl_adds_mass(m);
 }
 
 /* ... and of its moments of inertia, which it does not make less. */
@@ -268,6 +318,12 @@ static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body
     return c->reaction[c->reaction_of[body]];
 }
 
+/* The share of gravity and loads that acts: a relaxation may bring them on in parts. */
+static inline double tl_loads_share(const tl_model *m)
+{
+    return m->relaxing ? m->cycle->settling.share : 1;
+}
+
 /* What gravity and loads do in a step. The kick spans half of the last step and half of this one. What has been set in
  * between acts only in the latter, and what it was in the former. So their mean acts in the whole span. Forces that are
  * reported are those at the beginning of the step: kicks and energies take the mean. */
@@ -294,9 +350,11 @@ static inline bool tl_loads_lag(const tl_model *m)
 static inline tl_wrench tl_load_lag(const tl_model *m, uint32_t body)
 {
     tl_wrench now = tl_load_wrench(&m->bodies, body), acts = tl_acting_load(m, body);
-    tl_vec3 gravity = tl_v3_sub(m->config.gravity, m->cycle->gravity);
-    return (tl_wrench){tl_v3_madd(tl_v3_sub(now.force, acts.force), m->bodies.mass[body], gravity),
-                       tl_v3_sub(now.moment, acts.moment)};
+    const double share = tl_loads_share(m);
+    tl_vec3 gravity = tl_v3_sub(tl_v3_scale(share, m->config.gravity), m->cycle->gravity);
+    tl_vec3 force = tl_v3_scale(share, tl_v3_sub(now.force, acts.force));
+    return (tl_wrench){tl_v3_madd(force, m->bodies.mass[body], gravity),
+                       tl_v3_scale(share, tl_v3_sub(now.moment, acts.moment))};
 }
 /* Weight of a body under gravity of that size; a load weighs as much as its force. */
 static inline double tl_weight_of(const tl_bodies *b, uint32_t body, double gravity)

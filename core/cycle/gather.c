@@ -28,11 +28,12 @@ static void gather_body(tl_model *m, uint32_t body, const tl_acting *on)
     tl_vec3 force = on->force, moment = on->moment;
     if (b->fixed[body])
         m->cycle->reaction[m->cycle->reaction_of[body]] = (tl_reaction){force, moment};
-    force = tl_v3_madd(force, b->mass[body], m->config.gravity);
+    const double share = tl_loads_share(m);
+    force = tl_v3_madd(force, b->mass[body], tl_v3_scale(share, m->config.gravity));
     if (tl_body_loaded(b, body)) {
         tl_wrench load = tl_load_wrench(b, body);
-        force = tl_v3_add(force, load.force);
-        moment = tl_v3_add(moment, load.moment);
+        force = tl_v3_madd(force, share, load.force);
+        moment = tl_v3_madd(moment, share, load.moment);
     }
     b->force[body] = tl_free_part(force, b->fixed[body]);
     b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;
@@ -89,7 +90,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     tl_model *m = user;
     tl_bodies *b = &m->bodies;
     tl_gathered *all = &m->cycle->gathered[thread];
-    bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin;
+    bool totals = m->relaxing || (m->damping && ((const tl_damping_ops *)m->damping->ops)->begin);
     double gravity = tl_v3_norm(m->config.gravity);
     tl_acting on[TL_BODY_CHUNK];
     addends of;

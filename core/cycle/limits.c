@@ -56,7 +56,7 @@ TL_INLINE push push_of(const tl_model *m, uint32_t body)
         p.force = tl_v3_sub(p.force, lag.force);
         p.moment = tl_v3_sub(p.moment, lag.moment);
     }
-    if (m->damping) {
+    if (tl_is_damped(m)) {
         p.force = tl_v3_add(p.force, tl_columns_get(c->damping_force, body));
         p.moment = tl_v3_add(p.moment, tl_columns_get(c->damping_moment, body));
         p.alpha = c->alpha[body];
@@ -413,9 +413,9 @@ tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
 /* What to do about a step that should be `longest` s at the most. */
 static const char *way_out(const tl_model *m, double longest, char *text, size_t size)
 {
-    if (!isnan(m->timestep.dt) || tl_adds_mass(m))
+    if (!isnan(tl_given_step(m)) || tl_adds_mass(m))
         tl_text_print(text, size, "give a dt of %.2g s or less, or leave dt out", longest);
-    else if (m->timestep.fraction > 1)
+    else if (!m->relaxing && m->timestep.fraction > 1)
         tl_text_print(text, size, "fraction = %g of timestep is not stable; give 1 or less", m->timestep.fraction);
     else
         snprintf(text, size, "is a velocity, a load or gravity out of proportion?");
@@ -616,7 +616,7 @@ static cause find_cause(const tl_model *m, uint32_t body, const step_span *k, do
                    turns ? moment : force, turns ? "N m" : "N");
     }
     note_cause(&most, contact * per_mass, "a contact presses with", contact, "N");
-    if (m->damping) {
+    if (tl_is_damped(m)) {
         double drag = length(tl_columns_get(m->cycle->damping_force, body));
         note_cause(&most, drag * per_mass, "the damping gives it", drag, "N");
     }
@@ -644,7 +644,7 @@ static tl_status report(tl_model *m, uint32_t body, const step_span *k)
     else
         snprintf(far, sizeof far, "in this step by what is no finite number");
     cause most = find_cause(m, body, k, force);
-    bool given = !isnan(m->timestep.dt) || tl_adds_mass(m);
+    bool given = !isnan(tl_given_step(m)) || tl_adds_mass(m);
     return tl_fail(&m->error, TL_E_NUMERIC,
                    "cycle %lld: block %u would move %s, for %s (dt = %.3g s%s); %s: is that out of proportion%s?",
                    (long long)m->cycles + 1, b->id[body], far, most.text, k->dt, given ? ", as given" : "", by,

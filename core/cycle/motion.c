@@ -246,7 +246,7 @@ static void load_lane(body_group *g, size_t i, const tl_model *m)
     g->scale[i] = tl_inertia_scale(c, body);
     g->energy_scale[i] = tl_energy_scale(c, body);
     g->turn_scale[i] = tl_turn_scale(c, body);
-    if (m->damping)
+    if (tl_is_damped(m))
         put_damping(g, i, m, body);
     else
         put_undamped(g, i);
@@ -256,7 +256,7 @@ static void load_lane(body_group *g, size_t i, const tl_model *m)
 TL_VECTORIZED static void load_row(body_group *restrict g, const tl_model *m, size_t first)
 {
     const tl_bodies *b = &m->bodies;
-    bool damped = m->damping, paper = m->config.rotation == TL_ROTATION_PAPER;
+    bool damped = tl_is_damped(m), paper = m->config.rotation == TL_ROTATION_PAPER;
     tl_lanes4_load(&g->q, b->q + first);
     tl_lanes4_load(&g->axes, b->axes + first);
     tl_lanes3_load(&g->moments, b->moments + first);
@@ -517,7 +517,7 @@ TL_VECTORIZED static void book_lanes(chunk_work *restrict work, size_t first, co
 /* Books a group, from number `first` of the chunk on. */
 static void book_group(const tl_model *m, const body_group *g, size_t first, chunk_work *work)
 {
-    book_lanes(work, first, g, m->cycle->gravity, m->damping != NULL);
+    book_lanes(work, first, g, m->cycle->gravity, tl_is_damped(m));
     for (size_t i = 0; i < g->count; i++)
         book_load(work, first + i, i, g, m);
 }
@@ -552,7 +552,7 @@ static void sum_chunk(tl_model *m, unsigned thread, const chunk_work *work, size
     tl_exact_add_each(sum, TL_BOOK_EXTERNAL, work->book[0], TL_BODY_CHUNK, count);
     if (work->external || any_of(work->book[TL_BOOK_EXTERNAL], count))
         tl_exact_add_each(sum + TL_BOOK_EXTERNAL, 2, work->book[TL_BOOK_EXTERNAL], TL_BODY_CHUNK, count);
-    if (m->damping)
+    if (tl_is_damped(m))
         tl_exact_add_each(sum + TL_BOOK_DAMPING, 2, work->book[TL_BOOK_DAMPING], TL_BODY_CHUNK, count);
     if (!(work->until > 0))
         tl_exact_add(&sum[TL_BOOK_FIRST], work->book[TL_BOOK_FIRST], count);

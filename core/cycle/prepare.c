@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "cycle/contributors.h"
+#include "cycle/secants.h"
 #include "cycle/split.h"
 #include "cycle/undo.h"
 #include "model/rows.h"
@@ -16,6 +17,10 @@ static void cycle_destroy(struct tl_cycle *cycle)
     free(cycle->reaction);
     free(cycle->motion);
     free(cycle->swept);
+    free(cycle->secant);
+    free(cycle->fails);
+    free(cycle->link);
+    free(cycle->leap);
     free(cycle->gathered);
     free(cycle->booked);
     free(cycle->heat);
@@ -110,6 +115,13 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     VALUE(CACHE, failing);
     VALUE(CACHE, rest_ratio);
     VALUE(STATE, ledger);
+    VALUE(STATE, settling);
+    LIST(CACHE, fails, &c->fails_count, &c->fails_capacity, step);
+    VALUE(CACHE, fails_volume);
+    VALUE(CACHE, fails_way);
+    LIST(STATE, secant, &c->secant_count, &c->secant_capacity, step);
+    LIST(SCRATCH, link, &c->link_count, &c->link_capacity, step);
+    LIST(SCRATCH, leap, &c->leap_capacity, &c->leap_capacity, step);
     LIST(SCRATCH, gathered, &c->gathered_capacity, &c->gathered_capacity, step);
     LIST(SCRATCH, booked, &c->booked_capacity, &c->booked_capacity, step);
     LIST(SCRATCH, heat, &c->heat_capacity, &c->heat_capacity, step);

@@ -1,4 +1,6 @@
 /* solve.c - many steps: until a limit is met, the user interrupts, or a callback says so. */
+#include "cycle/solve.h"
+
 #include "base/clock.h"
 #include "contact/body_contacts.h"
 #include "contact/detection.h"
@@ -6,6 +8,7 @@
 #include "cycle/cycle_data.h"
 #include "cycle/remarks.h"
 #include "cycle/rest.h"
+#include "cycle/settle.h"
 #include "model/body_shape.h"
 #include "model/options.h"
 #include "model/rows.h"
@@ -71,6 +74,7 @@ typedef struct tl_watch {
     size_t bodies;
     uint64_t structure;
     int64_t steps;
+    double time;   /* in which they were made, s */
     double on_end; /* free blocks on end across the model */
     double least;  /* length of a leg that settlement asks for, when it was last needed, m */
     leg *leg;
@@ -95,10 +99,10 @@ static double blocks_on_end(const tl_model *m)
     return count > 0 ? 1 + tl_v3_norm(tl_v3_sub(high, low)) * count / tl_addends_sum(&sizes) : 1;
 }
 
-static void begin_leg(leg *l, const tl_model *m, uint32_t body)
+static void begin_leg(leg *l, const tl_model *m, uint32_t body, double time)
 {
     l->from = m->bodies.pose[body].u;
-    l->began = m->time;
+    l->began = time;
     l->reached = false;
 }
 
@@ -134,7 +138,7 @@ static tl_watch *watch_begin(const tl_model *m)
     for (uint32_t body = 0; body < w->bodies; body++) {
         w->leg[body].size = tl_body_size(m, body);
         w->leg[body].start = m->bodies.pose[body].u;
-        begin_leg(&w->leg[body], m, body);
+        begin_leg(&w->leg[body], m, body, 0);
     }
     return w;
 }
@@ -148,7 +152,7 @@ typedef struct sample_job {
 } sample_job;
 
 /* Adds a sample to the leg of a body. */
-static void add_sample(leg *l, double least, const tl_model *m, uint32_t body)
+static void add_sample(leg *l, const tl_watch *w, const tl_model *m, uint32_t body)
 {
     double weight = tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity));
     double unbalanced = tl_v3_norm(m->bodies.force[body]);
@@ -156,13 +160,13 @@ static void add_sample(leg *l, double least, const tl_model *m, uint32_t body)
     bool judged = l->touched || (m->cycle->contact_force[body] > 0 && unbalanced < SUPPORTED * borne);
     tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from);
     double share = l->touched ? FAILED_SHARE : LANDED_SHARE;
-    double length = share / LEGS * l->size, time = m->time - l->began;
+    double length = share / LEGS * l->size, time = w->time - l->began;
     if (!judged) {
         forget_legs(l);
-        begin_leg(l, m, body);
+        begin_leg(l, m, body, w->time);
         return;
     }
-    double far = tl_v3_norm(gone), whole = fmax(length, least);
+    double far = tl_v3_norm(gone), whole = fmax(length, w->least);
     if (far < whole && whole < NO_SLOWER * l->speed * time) /* too late by now */
         forget_legs(l);
     l->force = tl_v3_add(l->force, m->bodies.force[body]);
@@ -179,7 +183,7 @@ static void sample_range(void *user, size_t begin, size_t end, size_t chunk, uns
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (m->bodies.fixed[body] == TL_FIX_ALL)
             continue;
-        add_sample(&job->w->leg[body], job->w->least, m, body);
+        add_sample(&job->w->leg[body], job->w, m, body);
         reached = reached || job->w->leg[body].reached;
     }
     if (reached)
@@ -205,17 +209,17 @@ static double settlement(const tl_watch *w, const tl_model *m)
 }
 
 /* Ends the leg of a body, and begins the next. */
-static void end_leg(leg *l, const tl_model *m, uint32_t body)
+static void end_leg(leg *l, const tl_model *m, uint32_t body, double time)
 {
     tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from), way = tl_v3_unit(gone);
-    double speed = tl_v3_norm(gone) / (m->time - l->began);
+    double speed = tl_v3_norm(gone) / (time - l->began);
     if (speed < NO_SLOWER * l->speed || tl_v3_dot(way, l->way) < ONE_WAY)
         forget_legs(l);
     if (l->legs < LEGS)
         l->legs++;
     l->way = way;
     l->speed = speed;
-    begin_leg(l, m, body);
+    begin_leg(l, m, body, time);
 }
 
 /* The fastest of the bodies that fail: that have gone all their legs, pushed that way. */
@@ -235,11 +239,52 @@ static tl_id find_failing(const tl_watch *w, const tl_model *m)
     return failing;
 }
 
+/* Tolerance: speed over that of the fastest body that fails, from which on another fails with it. */
+#define FAILS_ALONG 0.1
+
+/* Keeps the blocks that fail with the one found, how much rock that is, and where it goes. */
+static tl_status list_failing(const tl_watch *w, tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    const uint32_t row = tl_block_row_quiet(m, w->failing);
+    if (row == TL_NO_ROW || w->structure != m->structure)
+        return TL_OK;
+    if (!tl_fit(&c->fails, &c->fails_capacity, m->blocks.table.rows, sizeof *c->fails))
+        return tl_fail_memory(&m->error);
+    const double speed = tl_v3_norm(m->bodies.v[m->blocks.body[row]]);
+    tl_addends volume = {.count = 0}, way[3] = {{.count = 0}, {.count = 0}, {.count = 0}};
+    c->fails_count = 0;
+    for (uint32_t i = 0; i < m->blocks.table.rows; i++) {
+        const uint32_t body = m->blocks.body[i];
+        const tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, w->leg[body].start);
+        const bool along = m->bodies.fixed[body] != TL_FIX_ALL && tl_v3_norm(m->bodies.v[body]) >= FAILS_ALONG * speed;
+        if (!along && i != row)
+            continue;
+        c->fails[c->fails_count++] = m->blocks.id[i];
+        const double own = m->blocks.volume[i];
+        tl_addends_put(&volume, own);
+        tl_addends_put(&way[0], own * gone.x);
+        tl_addends_put(&way[1], own * gone.y);
+        tl_addends_put(&way[2], own * gone.z);
+    }
+    c->fails_volume = tl_addends_sum(&volume);
+    c->fails_way = tl_v3_unit(tl_v3(tl_addends_sum(&way[0]), tl_addends_sum(&way[1]), tl_addends_sum(&way[2])));
+    return TL_OK;
+}
+
 /* After each step; gives the id of the block that fails steadily, or 0. */
 static tl_id watch_step(tl_watch *w, const tl_model *m)
 {
     if (w->structure != m->structure)
         return w->failing;
+    w->time += m->dt;
+    if (tl_has_leapt(m)) { /* that says nothing of speeds */
+        for (uint32_t body = 0; body < w->bodies; body++) {
+            forget_legs(&w->leg[body]);
+            begin_leg(&w->leg[body], m, body, w->time);
+        }
+        return w->failing = TL_NO_ID;
+    }
     if (w->steps++ == 0)
         for (uint32_t body = 0; body < w->bodies; body++)
             w->leg[body].touched = tl_body_has_points(m, body);
@@ -252,7 +297,7 @@ static tl_id watch_step(tl_watch *w, const tl_model *m)
     for (uint32_t body = 0; body < w->bodies && job.reached; body++)
         if (w->leg[body].reached && m->bodies.fixed[body] != TL_FIX_ALL &&
             tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->leg[body].from)) >= w->least)
-            end_leg(&w->leg[body], m, body);
+            end_leg(&w->leg[body], m, body, w->time);
     w->failing = find_failing(w, m);
     return w->failing;
 }
@@ -262,7 +307,7 @@ static tl_id watch_step(tl_watch *w, const tl_model *m)
 static const char *const reason_names[] = {
     [TL_SOLVE_RATIO] = "ratio",     [TL_SOLVE_CYCLES] = "cycles",       [TL_SOLVE_TIME] = "time",
     [TL_SOLVE_STOP] = "stop",       [TL_SOLVE_INTERRUPT] = "interrupt", [TL_SOLVE_VELOCITY] = "velocity",
-    [TL_SOLVE_FAILURE] = "failure", [TL_SOLVE_OVERLAP] = "overlap"};
+    [TL_SOLVE_FAILURE] = "failure", [TL_SOLVE_OVERLAP] = "overlap",     [TL_SOLVE_REST] = "rest"};
 
 const char *tl_solve_reason_name(tl_solve_reason reason)
 {
@@ -444,7 +489,7 @@ static void say_end(tl_model *m, const tl_solve *solve, const tl_watch *watch, c
         say_undecided(m, solve, r);
 }
 
-static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted)
+tl_status tl_solve_run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted)
 {
     tl_solve_result unread, *const result = wanted ? wanted : &unread;
     tl_rows_tidy(m);
@@ -474,8 +519,17 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted
     }
     if (status == TL_OK)
         say_end(m, solve, watch, result);
+    if (status == TL_OK && result->failing && watch)
+        status = list_failing(watch, m);
     watch_end(watch);
     return status;
+}
+
+/* Other steps than those of a relaxation that a save was made in. */
+static void end_relaxation(tl_model *m)
+{
+    if (m->relaxing && !m->running && !m->reading)
+        tl_settle_end(m);
 }
 
 tl_status tl_model_solve(tl_model *m, const tl_solve *given, tl_solve_result *result)
@@ -485,9 +539,13 @@ tl_status tl_model_solve(tl_model *m, const tl_solve *given, tl_solve_result *re
     if (status != TL_OK)
         return status;
     if (!m->damping && tl_model_says(m, TL_REMARK_UNDAMPED))
-        tl_model_say(m, "solve: the model has no damping and may never come to rest; %s or another one helps",
-                     tl_words(m, "model:damping(\"local\")", "tl_model_damping() with \"local\""));
-    return run(m, &solve, result);
+        tl_model_say(
+            m,
+            "solve: the model has no damping and may never come to rest; %s finds where it rests, %s damps its motion",
+            tl_words(m, "model:relax{}", "tl_model_relax()"),
+            tl_words(m, "model:damping(\"local\")", "tl_model_damping() with \"local\""));
+    end_relaxation(m);
+    return tl_solve_run(m, &solve, result);
 }
 
 tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *calls, tl_solve_result *result)
@@ -499,7 +557,8 @@ tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *ca
     plain.max_time = plain.velocity = NAN;
     plain.measure = TL_RATIO_LOCAL;
     plain.ratio = plain.stop_at_failure = 0;
-    return run(m, &plain, result);
+    end_relaxation(m);
+    return tl_solve_run(m, &plain, result);
 }
 
 tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)

@@ -203,9 +203,9 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
     double law = law_on_face(of, stiffest), face = law * m->bodies.face_rate[body];
     double turn = law * m->bodies.face_turn[body];
     double pushed = of.stiffness.sum * per.mass, turned = of.stiffness.r2 * per.moment;
-    bool more = m->mass_scaling ? pushed < face - turn || turned < turn : pushed + turned < face;
+    bool more = tl_scales_all(m) ? pushed < face - turn || turned < turn : pushed + turned < face;
     double part = more ? least_part(m, body, &of, face) : 0;
-    if (!m->mass_scaling)
+    if (!tl_scales_all(m))
         return (step_rates){fmax(pushed + turned, part * face), 0};
     return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
 }
@@ -311,7 +311,7 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
             kept[body] = of.rate;
             m->cycle->turn_rate[body] = of.turn;
         }
-        double value = m->mass_scaling ? -of.rate : of.rate;
+        double value = tl_scales_all(m) ? -of.rate : of.rate;
         if (of.rate > 0 && value > found.value)
             found = (tl_row_value){value, body};
     }
@@ -343,11 +343,11 @@ static tl_row_value rates_keep(tl_model *m, double known)
     struct tl_cycle *c = m->cycle;
     tl_detect *d = m->detect;
     struct tl_stiffness_rates now = {.version = 1 + m->structure + m->constraints + m->laws,
-                                     .recheck = m->mass_scaling ? m->cycles / RECHECK_STEPS : 0,
+                                     .recheck = tl_scales_all(m) ? m->cycles / RECHECK_STEPS : 0,
                                      .rotation = m->config.rotation};
     bool all = now.version != c->stiffness_rates.version || now.recheck != c->stiffness_rates.recheck ||
                now.rotation != c->stiffness_rates.rotation || (known > 0 && !(c->dt > 0)); /* it may be another one */
-    bool placed = tl_rates_points(m) && !m->mass_scaling;
+    bool placed = tl_rates_points(m) && !tl_scales_all(m);
     bool some = touch_new_points(m, placed ? TL_POINTS_PLACED : TL_POINTS_OTHERS);
     if (all || some || d->any_touched) {
         rate_search s = {.search.m = m, .stiffest = stiffest_law(m), .kept = true, .all = all, .known = known};
@@ -460,8 +460,13 @@ static bound controlling(tl_model *m, bool report)
     return out;
 }
 
+/* Tolerance: share of the critical step in a relaxation. */
+#define RELAX_FRACTION 0.9
+
 double tl_timestep_fraction(const tl_model *m)
 {
+    if (m->relaxing)
+        return RELAX_FRACTION;
     if (!isnan(m->timestep.fraction))
         return m->timestep.fraction;
     return m->timestep.rule == TL_TIMESTEP_BODY ? TL_BODY_FRACTION : TL_PAPER_FRACTION;
@@ -469,7 +474,7 @@ double tl_timestep_fraction(const tl_model *m)
 
 static double damping_factor(const tl_model *m)
 {
-    if (!m->damping)
+    if (!m->damping || m->relaxing)
         return 1;
     const tl_damping_ops *ops = m->damping->ops;
     tl_enter(m->damping, "step_factor");
@@ -488,7 +493,7 @@ static double rate_limit(const tl_model *m)
 bool tl_rates_are_state(const tl_model *m, double *known)
 {
     *known = tl_adds_mass(m) ? rate_limit(m) : 0;
-    return tl_mass_scaled(m) || (tl_rates_points(m) && isnan(m->timestep.dt));
+    return tl_mass_scaled(m) || (tl_rates_points(m) && isnan(tl_given_step(m)));
 }
 
 /* A plugin's factor is its word: refused when it cannot be. */
@@ -531,7 +536,7 @@ static void judge_step(tl_model *m)
     size_t contacts = m->detect->contacts.table.rows;
     bool due = c->dt <= 0 || m->cycles % COMPARE_EVERY == 0 || contacts > c->contacts;
     c->contacts = contacts > c->contacts ? contacts : c->contacts;
-    if (!due || c->all_held || m->mass_scaling)
+    if (!due || c->all_held || tl_scales_all(m))
         return;
     double far_above = TOO_LONG / m->timestep.dt, bearable = 2 * far_above * far_above;
     tl_row_value fastest = tl_rates_anew(m, bearable);
@@ -548,7 +553,7 @@ static void judge_step(tl_model *m)
 static tl_status choose_added(tl_model *m, double *dt, bool report)
 {
     struct tl_cycle *c = m->cycle;
-    double wanted = m->added_dt, given = m->timestep.dt;
+    double wanted = m->added_dt, given = tl_given_step(m);
     if (given > wanted)
         return tl_fail(&m->error, TL_E_STATE,
                        "timestep: dt = %g s is longer than %g s, the dt of mass_scaling; give one of "
@@ -581,21 +586,21 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
         return choose_added(m, dt, by != NULL);
     }
     c->adds = false;
-    bool given = !isnan(m->timestep.dt);
+    bool given = !isnan(tl_given_step(m));
     double least = 0;
     if (by) {
         *by = controlling(m, true);
         least = by->least;
-    } else if (m->mass_scaling || !given) {
+    } else if (tl_scales_all(m) || !given) {
         least = controlling(m, false).least;
-        c->mass_scale = m->mass_scaling && isfinite(least) ? least : 0;
+        c->mass_scale = tl_scales_all(m) && isfinite(least) ? least : 0;
     } else {
         c->mass_scale = 0;
     }
     if (given) {
         if (!by)
             judge_step(m);
-        *dt = c->dt = m->timestep.dt;
+        *dt = c->dt = tl_given_step(m);
         return TL_OK;
     }
     c->long_step = false;
@@ -604,7 +609,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
         *dt = 0;
         return tl_model_moves(m) ? no_step(m, fresh) : TL_OK;
     }
-    if (!by && !m->mass_scaling)
+    if (!by && !tl_scales_all(m))
         tl_sliver_remark(m);
     if (!(c->dt > 0) || fresh < c->dt || fresh > STEP_GROWTH * c->dt)
         c->dt = fresh;

@@ -199,7 +199,7 @@ static bool may_fail(const tl_model *m)
     const tl_sums *last = &m->cycle->sums;
     bool tame = last->contact_force < TL_UNDO_TAME && last->max_speed2 < TL_UNDO_TAME &&
                 tl_v3_norm2(m->config.gravity) < TL_UNDO_TAME;
-    bool sure = !m->damping || ((const tl_damping_ops *)m->damping->ops)->never_fails;
+    bool sure = !m->damping || m->relaxing || ((const tl_damping_ops *)m->damping->ops)->never_fails;
     return !tame || !sure || contributors_may_fail(m);
 }
 

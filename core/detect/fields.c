@@ -32,7 +32,7 @@ static bool is_calm(const tl_model *m, uint32_t c)
     double size = tl_contact_size(m, c);
     tl_contact_motion by = tl_contact_moved(m, c);
     tl_vec3 there = tl_v3_cross(by.turn, tl_side_arm(m, tl_contact_sides(m, c).a, row->press.point));
-    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
+    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < tl_still_share(m) * size;
 }
 
 static double bonded_tilt(const tl_model *m, uint32_t c)

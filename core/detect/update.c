@@ -278,7 +278,7 @@ static double way_of_faces(const tl_model *m, uint32_t c)
 /* Motion of next to nothing. */
 static double still_way(const tl_model *m, uint32_t c)
 {
-    return TL_STILL * tl_contact_size(m, c);
+    return tl_still_share(m) * tl_contact_size(m, c);
 }
 
 /* Lets a contact whose points have just been made move a little before they are made anew. */

@@ -205,7 +205,9 @@ enum {
     AT_PROGRESS,
     AT_ERROR = TL_LUA_AT_ERROR,
     AT_REASONS,
-    AT_RESULT
+    AT_RESULT,
+    AT_FAILING, /* of a relaxation */
+    AT_DIRECTION
 };
 
 typedef struct run {
@@ -214,7 +216,7 @@ typedef struct run {
     tl_lua_options *options;
     tl_solve limits; /* what is run */
     progress line;
-    tl_solve_result result;
+    tl_relax_result result; /* of other runs only the first part */
 } run;
 
 /* ---------------------------------------------------------------- results ---------------- */
@@ -258,7 +260,7 @@ static void push_empty_answer(lua_State *L, int32_t measure)
 {
     lua_settop(L, AT_ERROR);
     lua_newtable(L);
-    for (int reason = 0; reason <= TL_SOLVE_OVERLAP; reason++) {
+    for (int reason = 0; reason <= TL_SOLVE_REST; reason++) {
         lua_pushstring(L, tl_solve_reason_name((tl_solve_reason)reason));
         lua_rawseti(L, AT_REASONS, reason + 1);
     }
@@ -403,8 +405,8 @@ static int call_progress(lua_State *L)
 {
     const run *r = lua_touserdata(L, 3);
     lua_settop(L, 2);
-    push_empty_result(L, 2, r->result.measure);
-    set_result(L, &r->result);
+    push_empty_result(L, 2, r->result.run.measure);
+    set_result(L, &r->result.run);
     lua_call(L, 2, 0);
     return 0;
 }
@@ -423,7 +425,7 @@ static tl_status on_each(void *user, tl_model *model)
     run *r = user;
     if (r->running.failed) /* a drive's function */
         return TL_E_CANCELLED;
-    progress_run(&r->line, model, &r->limits, &r->result);
+    progress_run(&r->line, model, &r->limits, &r->result.run);
     if (tl_model_cycles(model) >= r->owner->next_sample && !tl_lua_histories_sample(r->running.L, AT_MODEL))
         return status_of(false);
     if (!r->owner->probe)
@@ -492,14 +494,78 @@ static bool push_callback(lua_State *L, const char *what, const char *key)
     return type == LUA_TFUNCTION;
 }
 
-/* Makes a run, or with `steps` its steps only, and pushes its result. The table of arguments is at AT_ARGS. */
-static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, bool steps)
+/* What a run makes: a number of steps, steps until a limit is met, or a relaxation. */
+typedef enum run_kind { RUN_STEPS, RUN_SOLVE, RUN_RELAX } run_kind;
+
+static tl_relax relax_of(const tl_solve *solve, int64_t load_steps)
+{
+    tl_relax relax = tl_relax_default();
+    relax.ratio = solve->ratio;
+    relax.measure = solve->measure;
+    relax.stop_at_failure = solve->stop_at_failure;
+    relax.max_cycles = solve->max_cycles;
+    relax.load_steps = load_steps;
+    relax.every = solve->every;
+    relax.each = solve->each;
+    relax.progress = solve->progress;
+    relax.stop = solve->stop;
+    relax.user = solve->user;
+    relax.between = solve->between;
+    return relax;
+}
+
+/* Room for what a relaxation answers besides: the selection of what fails, and where it goes. */
+static tl_lua_selection *push_room(lua_State *L, const tl_model *model)
+{
+    const size_t room = tl_block_count(model);
+    lua_pushnumber(L, 0);
+    lua_setfield(L, AT_RESULT, "volume");
+    lua_pushboolean(L, false);
+    lua_setfield(L, AT_RESULT, "direction");
+    tl_lua_selection *failing = tl_lua_selection_push(L, &tl_lua_block_kind, AT_MODEL);
+    failing->ids = malloc((room + 1) * sizeof *failing->ids);
+    if (!failing->ids)
+        tl_lua_fail(L, "relax: out of memory");
+    failing->count = room;
+    tl_lua_push_numbers(L, (const double[3]){0, 0, 0}, 3);
+    return failing;
+}
+
+/* Puts it into the result. */
+static void set_relaxed(lua_State *L, const tl_model *model, const tl_relax_result *result, tl_lua_selection *failing)
+{
+    const bool fails = result->failing > 0;
+    const size_t room = failing->count, found = fails ? tl_model_failing(model, failing->ids, room) : 0;
+    failing->count = found < room ? found : room;
+    for (int i = 0; i < 3; i++) {
+        lua_pushnumber(L, result->direction[i]);
+        lua_rawseti(L, AT_DIRECTION, i + 1);
+    }
+    if (!fails) {
+        lua_pushnil(L);
+        lua_replace(L, AT_FAILING);
+        lua_pushnil(L);
+        lua_replace(L, AT_DIRECTION);
+    }
+    lua_setfield(L, AT_RESULT, "direction");
+    lua_setfield(L, AT_RESULT, "failing");
+    if (fails)
+        lua_pushnumber(L, result->volume);
+    else
+        lua_pushnil(L);
+    lua_setfield(L, AT_RESULT, "volume");
+    tl_lua_set_text(L, "message", result->message);
+}
+
+/* Makes a run and pushes its result. The table of arguments is at AT_ARGS. */
+static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, run_kind kind, int64_t load_steps)
 {
     run r = {.running = {.L = L}, .owner = lua_touserdata(L, AT_MODEL), .options = tl_lua_options_of(L)};
     lua_settop(L, AT_ANCHOR);
     solve->stop = push_callback(L, what, "stop") ? on_stop : NULL;
     solve->progress = push_callback(L, what, "on_progress") ? on_progress : NULL;
-    push_empty_answer(L, steps ? TL_RATIO_LOCAL : solve->measure);
+    push_empty_answer(L, kind == RUN_STEPS ? TL_RATIO_LOCAL : solve->measure);
+    tl_lua_selection *failing = kind == RUN_RELAX ? push_room(L, model) : NULL;
     solve->each = on_each;
     solve->between = on_between;
     solve->user = &r;
@@ -508,9 +574,11 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     progress_begin(L, &r.line, model);
     tl_lua_watch watch = tl_lua_watch_begin(L);
     tl_lua_running *outer = tl_lua_running_set(&r.running);
-    tl_status status = steps ? tl_model_cycle_calling(model, solve->max_cycles, solve, &r.result)
-                             : tl_model_solve(model, solve, &r.result);
-    if (r.owner->view && !r.running.failed && !tl_lua_view_step(L, r.result.wall))
+    tl_relax relax = relax_of(solve, load_steps);
+    tl_status status = kind == RUN_STEPS   ? tl_model_cycle_calling(model, solve->max_cycles, solve, &r.result.run)
+                       : kind == RUN_SOLVE ? tl_model_solve(model, solve, &r.result.run)
+                                           : tl_model_relax(model, &relax, &r.result);
+    if (r.owner->view && !r.running.failed && !tl_lua_view_step(L, r.result.run.wall))
         tl_lua_run_keep_error();
     tl_lua_running_set(outer);
     progress_clear(&r.line);
@@ -520,10 +588,14 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
         return lua_error(L);
     }
     tl_lua_ok(L, model, status);
-    lua_settop(L, AT_RESULT);
-    set_result(L, &r.result);
-    lua_rawgeti(L, AT_REASONS, (int)r.result.reason + 1);
+    lua_rawgeti(L, AT_REASONS, (int)r.result.run.reason + 1);
     lua_setfield(L, AT_RESULT, "reason");
+    lua_settop(L, failing ? AT_DIRECTION : AT_RESULT);
+    lua_pushvalue(L, AT_RESULT);
+    set_result(L, &r.result.run);
+    lua_pop(L, 1);
+    if (failing)
+        set_relaxed(L, model, &r.result, failing);
     return 1;
 }
 
@@ -531,7 +603,20 @@ static int model_solve(lua_State *L, tl_model *model)
 {
     tl_solve solve = tl_solve_default();
     tl_lua_read_function(L, AT_ARGS, "solve", solve_keys, &solve);
-    return make_run(L, model, "solve", &solve, false);
+    return make_run(L, model, "solve", &solve, RUN_SOLVE, 1);
+}
+
+static int model_relax(lua_State *L, tl_model *model)
+{
+    tl_relax relax = tl_relax_default();
+    tl_lua_read_function(L, AT_ARGS, "relax", solve_keys, &relax);
+    tl_solve solve = tl_solve_default();
+    solve.ratio = relax.ratio;
+    solve.measure = relax.measure;
+    solve.stop_at_failure = relax.stop_at_failure;
+    solve.max_cycles = relax.max_cycles;
+    solve.every = relax.every;
+    return make_run(L, model, "relax", &solve, RUN_RELAX, relax.load_steps);
 }
 
 /* cycle(cycles, {every =, on_progress =}) */
@@ -546,7 +631,7 @@ static int model_cycle(lua_State *L, tl_model *model)
     spec.count--;
     tl_lua_read(L, AT_ARGS, &spec, false, &args);
     tl_solve steps = {.every = args.every, .max_cycles = args.cycles};
-    return make_run(L, model, "cycle", &steps, true);
+    return make_run(L, model, "cycle", &steps, RUN_STEPS, 1);
 }
 
 /* ---------------------------------------------------------------- a generator ------------ */
@@ -662,6 +747,26 @@ static const tl_lua_key run_results[] = {
     {NULL, NULL, NULL},
 };
 
+static const tl_lua_key relax_results[] = {
+    {"reason", "",
+     "why it ended: \"rest\", \"failure\", \"overlap\" (blocks that were made overlapping push it apart), "
+     "\"cycles\", \"stop\" or \"interrupt\" (Ctrl-C at the prompt; in a script it raises an error)"},
+    {"message", "", "what that means, in words; of a run that is not at rest what still moves, and why it is slow"},
+    {"failing", "", "of a failure the selection of blocks that fail, else nil"},
+    {"volume", "", "of these, m3"},
+    {"direction", "", "where they go: {x, y, z} of length 1"},
+    {"worst", "", "the block farthest from rest by the measure \"local\""},
+    {"ratio", "", "mean unbalanced force over mean contact force"},
+    {"ratio_maximum", "", "largest unbalanced force over mean contact force"},
+    {"ratio_local", "", "as in solve"},
+    {"measure", "", "the measure that may end it"},
+    {"cycles", "", "steps of this call"},
+    {"time", "", "the model's time, which stands still, s"},
+    {"wall", "", "seconds it took"},
+    {"max_velocity", "", "largest speed of a block in the last step, by the masses of the relaxation, m/s"},
+    {NULL, NULL, NULL},
+};
+
 const tl_lua_topic tl_lua_run_topics[] = {
     {.name = "cycle",
      .usage = "result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})",
@@ -679,5 +784,13 @@ const tl_lua_topic tl_lua_run_topics[] = {
      .verbs = run_results,
      .arguments = 1,
      .method = model_solve},
+    {.name = "relax",
+     .usage = "result = model:relax{ratio = 1e-5, ...}",
+     .function = "relax",
+     .keys = solve_keys,
+     .title = "Fields of the result",
+     .verbs = relax_results,
+     .arguments = 1,
+     .method = model_relax},
     {.name = NULL},
 };

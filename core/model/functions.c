@@ -147,6 +147,23 @@ static const tl_param solve_params[] = {
              .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };
 
+static const tl_param relax_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_relax, ratio, "", "ends when the unbalanced force ratio falls below this", .def = {1e-5},
+             .min = 0.0, .max = 1.0, .flags = TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_ENUM, tl_relax, measure, "", "which unbalanced force ratio ends it: see theory.md, Convergence",
+             .def = {TL_RATIO_LOCAL}, .choices = ratio_measures),
+    TL_PARAM(TL_PARAM_BOOL, tl_relax, stop_at_failure, "", "ends when some block is seen to fail steadily",
+             .def = {1.0}),
+    TL_PARAM(TL_PARAM_INT, tl_relax, max_cycles, "", "largest number of steps of this call", .def = {1000000.0},
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_relax, load_steps, "",
+             "gravity and loads come on in so many equal parts, each near rest before the next: put on at once they "
+             "settle a rock mass some per cent deeper, for friction follows its path",
+             .def = {1.0}, .min = 1.0, .max = 10000.0),
+    TL_PARAM(TL_PARAM_INT, tl_relax, every, "", "steps between calls of on_progress and stop", .def = {500.0},
+             .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+};
+
 static const tl_param write_vtk_params[] = {
     TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, blocks, "", "whether the frame has a file of the blocks", .def = {1.0}),
     TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, contacts, "", "whether the frame has a file of the contacts", .def = {1.0}),
@@ -262,6 +279,10 @@ static const model_function functions[] = {
      PARAMS(contact_area_params)},
     {"cycle", "Runs a number of steps.", PARAMS(cycle_params)},
     {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},
+    {"relax",
+     "Finds where the model rests, or that it does not, by the cheapest means. Time, damping, time step and masses are "
+     "afterwards as before, and nothing moves.",
+     PARAMS(relax_params)},
     {"profile", "Times the phases of the steps, and tells what a step works on.", PARAMS(profile_params)},
     {"write_vtk",
      "Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin "

@@ -228,6 +228,9 @@ struct tl_model {
     char stage[TL_STAGE_NAME + 1]; /* from which displacements count; "": none has been named */
     uint64_t remarked;             /* changes of blocks and laws at the last look at their numbers */
     bool mass_scaling;             /* of all free bodies */
+    /* its steps are those of a relaxation (cycle/relax.c), which sets the damping, the time step and the masses */
+    bool relaxing;
+    double still; /* in a relaxation: share of a block's size up to which motion changes no geometry; else 0 */
     double added_dt, added_most;   /* of the bodies that need it: tl_mass_scaling; NaN: off */
 
     bool profiling;

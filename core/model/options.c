@@ -35,6 +35,7 @@ static const struct {
     KNOWN(tl_mass_scaling, "mass_scaling", NULL),
     KNOWN(tl_contact_area, "contact_area", NULL),
     KNOWN(tl_solve, "solve", NULL),
+    KNOWN(tl_relax, "relax", NULL),
     KNOWN(tl_block_filter, NULL, &block_filter),
     KNOWN(tl_block_set, NULL, &block_set),
     KNOWN(tl_load, "load", NULL),

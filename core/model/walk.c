@@ -51,6 +51,8 @@ static void walk_settings(tl_model *m, const tl_walk *walk)
     LIST(STATE, joint_min_areas, joint_min_area_count, joint_min_area_count);
     walk_struct(m, tl_timestep_settings(), walk);
     FLAG(STATE, mass_scaling);
+    FLAG(STATE, relaxing);
+    VALUE(STATE, still);
     VALUE(STATE, added_dt);
     VALUE(STATE, added_most);
     VALUE(STATE, said);

@@ -150,7 +150,7 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
     if (!rate)
         return tl_fail_memory(&m->error);
     tl_rates_try(m, known, rate, rate + bodies);
-    tl_hash_numbers(hash, rate, m->mass_scaling ? 2 * bodies : bodies);
+    tl_hash_numbers(hash, rate, tl_scales_all(m) ? 2 * bodies : bodies);
     free(rate);
     return TL_OK;
 }

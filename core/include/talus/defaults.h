@@ -21,6 +21,7 @@ extern "C" {
     X(tl_mass_scaling)                                                                                                 \
     X(tl_contact_area)                                                                                                 \
     X(tl_solve)                                                                                                        \
+    X(tl_relax)                                                                                                        \
     X(tl_block_filter)                                                                                                 \
     X(tl_block_set)                                                                                                    \
     X(tl_load)                                                                                                         \

@@ -274,7 +274,8 @@ typedef enum tl_solve_reason {
     TL_SOLVE_INTERRUPT,
     TL_SOLVE_VELOCITY,
     TL_SOLVE_FAILURE,
-    TL_SOLVE_OVERLAP
+    TL_SOLVE_OVERLAP,
+    TL_SOLVE_REST /* of tl_model_relax: TL_SOLVE_RATIO of others */
 } tl_solve_reason;
 
 /* Which unbalanced force ratio ends a solve. */
@@ -321,6 +322,37 @@ TL_API const char *tl_ratio_measure_name(tl_ratio_measure measure);
 TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
 /* Runs until a limit is met. `*result` is up to date whenever a callback is called. */
 TL_API tl_status tl_model_solve(tl_model *model, const tl_solve *solve, tl_solve_result *result);
+
+/* Finds where the model rests, by the cheapest means: kinetic stops, masses that suit one step, geometry that is kept,
+ * and leaps by the stiffness that contacts have shown. */
+typedef struct tl_relax {
+    uint32_t size;           /* sizeof(tl_relax) */
+    double ratio;            /* ends when the unbalanced force ratio falls below; > 0 */
+    int32_t measure;         /* tl_ratio_measure */
+    int32_t stop_at_failure; /* ends when a steady failure is seen */
+    int64_t max_cycles;      /* of this call */
+    int64_t load_steps;      /* gravity and loads come on in so many equal parts, each near rest before the next */
+    int64_t every;           /* as in tl_solve, like the functions */
+    tl_step_fn each, progress;
+    bool (*stop)(void *user, tl_model *model);
+    void *user;
+    tl_step_fn between;
+} tl_relax;
+
+typedef struct tl_relax_result {
+    tl_solve_result run; /* reason: TL_SOLVE_REST, FAILURE, OVERLAP, CYCLES, STOP or INTERRUPT */
+    size_t failing;      /* blocks that fail: tl_model_failing */
+    double volume;       /* of these, m3 */
+    double direction[3]; /* and where they go: of length 1, or zero */
+    char message[400];   /* what the end means */
+} tl_relax_result;
+
+/* Brings the model to rest. Velocities are zero afterwards; time, damping, time step, mass scaling and what is held are
+ * as before, and steps count. Friction, opening and bonds follow their path. `result` may be NULL and is up to date
+ * whenever a callback is called. TL_E_ARGUMENT for an option out of its range, TL_E_STATE when something is driven. */
+TL_API tl_status tl_model_relax(tl_model *model, const tl_relax *relax, tl_relax_result *result);
+/* The blocks that failed in the last run that saw a failure: writes up to `most` ids, returns how many there are. */
+TL_API size_t tl_model_failing(const tl_model *model, tl_id *ids, size_t most);
 /* Asks a running cycle or solve to end after the step, a generator or writer to fail with TL_E_CANCELLED. Signal-
  * safe. */
 TL_API void tl_model_interrupt(tl_model *model);

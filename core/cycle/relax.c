@@ -1,0 +1,206 @@
+/* relax.c - a run to rest, by steps that are made for nothing else.
+ *
+ * While `relaxing` is set, damping, time step and masses of the steps are those of a relaxation (settle.c), whatever
+ * the user has set: that stays and is not touched. Time stands still: functions of time keep their values. A save made
+ * meanwhile holds both, and the next call goes on where it was. */
+#include "contact/body_contacts.h"
+#include "cycle/cycle_data.h"
+#include "cycle/prepare.h"
+#include "cycle/settle.h"
+#include "cycle/solve.h"
+#include "model/options.h"
+#include "model/rows.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <talus/number.h>
+
+/* Tolerance: ratio at which the next part of the loads comes on. */
+#define NEXT_PART 1e-3
+
+/* Refuses a model that something drives: there is no rest then. */
+static tl_status check_driven(tl_model *m)
+{
+    const tl_bodies *b = &m->bodies;
+    if (!tl_drives_evaluate(m, m->time))
+        return tl_fail(&m->error, TL_E_CANCELLED, "relax: a drive's function failed");
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        const tl_drive_record *drive = b->drive[body] ? &m->drives[b->drive[body] - 1] : NULL;
+        const unsigned fixed = b->fixed[body];
+        tl_vec3 v = drive ? drive->velocity : tl_v3_sub(b->v[body], tl_free_part(b->v[body], fixed));
+        tl_vec3 w = drive ? drive->angular_velocity : fixed & TL_FIX_ROTATION ? b->w[body] : tl_v3(0, 0, 0);
+        const double speed = tl_v3_norm(v), turn = tl_v3_norm(w);
+        if (speed > 0 || turn > 0)
+            return tl_fail(&m->error, TL_E_STATE,
+                           "relax: block %u is driven at %.3g %s, so there is nothing to come to rest: stop it first, "
+                           "or use %s",
+                           b->id[body], speed > 0 ? speed : turn, speed > 0 ? "m/s" : "rad/s",
+                           tl_words(m, "model:solve", "tl_model_solve()"));
+    }
+    return TL_OK;
+}
+
+static tl_status begin(tl_model *m)
+{
+    if (m->running || m->reading)
+        return tl_fail(&m->error, TL_E_STATE, "relax cannot be called from a function that a run has called");
+    tl_status status = tl_cycle_prepare(m);
+    if (status == TL_OK)
+        status = check_driven(m);
+    if (status != TL_OK)
+        return status;
+    const double share = m->cycle->settling.share;
+    if (m->relaxing && share > 0 && share <= 1)
+        return TL_OK; /* a save that was made meanwhile */
+    tl_settle_end(m); /* from rest */
+    m->dt = 0;
+    m->cycle->dt = 0;
+    m->cycle->stiffness_rates.version = 0;
+    tl_settle_begin(m);
+    return TL_OK;
+}
+
+static void end(tl_model *m)
+{
+    tl_settle_end(m);
+    m->dt = 0;
+    m->cycle->dt = 0;
+    m->cycle->mass_scale = 0;
+    m->cycle->stiffness_rates.version = 0;
+}
+
+/* ---------------------------------------------------------------- parts of the load ------- */
+
+/* Runs until the part of the loads that acts is borne, and brings on the next. */
+static tl_status run_parts(tl_model *m, const tl_relax *relax, tl_solve *solve, tl_solve_result *result)
+{
+    double *share = &m->cycle->settling.share;
+    const double part = 1 / (double)relax->load_steps;
+    int64_t cycles = 0;
+    double wall = 0;
+    tl_status status = TL_OK;
+    for (int64_t k = m->cycle->settling.part; k <= relax->load_steps; k++) {
+        const bool last = k == relax->load_steps;
+        m->cycle->settling.part = k;
+        *share = last ? 1 : part * (double)k;
+        solve->ratio = last ? relax->ratio : fmax(NEXT_PART, relax->ratio);
+        solve->max_cycles = relax->max_cycles - cycles;
+        status = tl_solve_run(m, solve, result);
+        cycles += result->cycles;
+        wall += result->wall;
+        if (status != TL_OK || result->reason != TL_SOLVE_RATIO)
+            break;
+    }
+    result->cycles = cycles;
+    result->wall = wall;
+    return status;
+}
+
+/* ---------------------------------------------------------------- what the end means ----- */
+
+/* What keeps the body of a block from rest. */
+static const char *why_slow(const tl_model *m, uint32_t body)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    size_t pressing = 0, slipping = 0;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        const tl_sides on = tl_contact_bodies(m, i);
+        if ((on.a != body && on.b != body) || !(tl_v3_norm2(c->force[i]) > 0))
+            continue;
+        bool slips = true;
+        for (size_t k = 0; k < c->point_count[i]; k++)
+            slips = slips && (m->detect->points.flags[tl_point_row(c, i, k)] & TL_POINT_SLIPPING);
+        pressing++;
+        slipping += slips;
+    }
+    return pressing == 0          ? "nothing bears it: it falls"
+           : slipping == pressing ? "it slides on all that bears it"
+           : slipping > 0         ? "it slides on some of what bears it"
+                                  : "what bears it is soft against what else there is";
+}
+
+static void tell_slow(const tl_model *m, const tl_relax *relax, tl_relax_result *r)
+{
+    const uint32_t row = tl_block_row_quiet(m, r->run.worst);
+    const double of[] = {r->run.ratio, r->run.ratio_maximum, r->run.ratio_local}; /* by tl_ratio_measure */
+    if (row == TL_NO_ROW)
+        tl_text_print(r->message, sizeof r->message, "not at rest after %lld steps", (long long)r->run.cycles);
+    else
+        tl_text_print(r->message, sizeof r->message,
+                      "neither at rest nor failing after %lld steps (ratio %.3g, asked for %.3g): block %u of %.3g m3 "
+                      "is farthest from rest; %s",
+                      (long long)r->run.cycles, of[relax->measure], relax->ratio, r->run.worst, m->blocks.volume[row],
+                      why_slow(m, m->blocks.body[row]));
+}
+
+static void tell(tl_model *m, const tl_relax *relax, tl_relax_result *r)
+{
+    const struct tl_cycle *c = m->cycle;
+    const tl_solve_reason reason = r->run.reason;
+    if (reason == TL_SOLVE_FAILURE || reason == TL_SOLVE_OVERLAP) {
+        r->failing = c->fails_count;
+        r->volume = c->fails_volume;
+        r->direction[0] = c->fails_way.x;
+        r->direction[1] = c->fails_way.y;
+        r->direction[2] = c->fails_way.z;
+    }
+    switch (reason) {
+    case TL_SOLVE_REST:
+        tl_text_print(r->message, sizeof r->message, "at rest after %lld steps", (long long)r->run.cycles);
+        break;
+    case TL_SOLVE_FAILURE:
+        tl_text_print(r->message, sizeof r->message,
+                      "fails: %zu blocks of %.3g m3, block %u first, towards (%.2g, %.2g, %.2g)", r->failing, r->volume,
+                      r->run.failing, c->fails_way.x, c->fails_way.y, c->fails_way.z);
+        break;
+    case TL_SOLVE_OVERLAP:
+        tl_text_print(r->message, sizeof r->message, "blocks that were made overlapping push the model apart");
+        break;
+    case TL_SOLVE_CYCLES: tell_slow(m, relax, r); break;
+    default: tl_text_print(r->message, sizeof r->message, "ended before it was at rest"); break;
+    }
+}
+
+tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wanted)
+{
+    tl_relax relax;
+    tl_relax_result unread, *const result = wanted ? wanted : &unread;
+    tl_status status = TL_OPTIONS_READ(tl_relax, given, &relax, &m->error);
+    if (status == TL_OK && !(relax.ratio > 0 && relax.ratio <= 1))
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "relax: ratio = %g is outside (0, 1]", relax.ratio);
+    if (status == TL_OK && !(relax.load_steps >= 1 && relax.load_steps <= 10000))
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "relax: load_steps = %lld is outside [1, 10000]",
+                         (long long)relax.load_steps);
+    if (status == TL_OK)
+        status = tl_check_choice(&m->error, "relax: measure", relax.measure, TL_RATIO_LOCAL);
+    *result = (tl_relax_result){.run = {.reason = TL_SOLVE_CYCLES}};
+    if (status == TL_OK)
+        status = begin(m);
+    if (status != TL_OK)
+        return status;
+    tl_solve solve = tl_solve_default();
+    solve.measure = relax.measure;
+    solve.stop_at_failure = relax.stop_at_failure;
+    solve.every = relax.every;
+    solve.each = relax.each;
+    solve.progress = relax.progress;
+    solve.stop = relax.stop;
+    solve.user = relax.user;
+    solve.between = relax.between;
+    status = run_parts(m, &relax, &solve, &result->run);
+    if (result->run.reason == TL_SOLVE_RATIO)
+        result->run.reason = TL_SOLVE_REST;
+    if (status == TL_OK)
+        tell(m, &relax, result);
+    end(m);
+    return status;
+}
+
+size_t tl_model_failing(const tl_model *m, tl_id *ids, size_t most)
+{
+    const size_t count = m->cycle ? m->cycle->fails_count : 0;
+    for (size_t i = 0; i < count && i < most; i++)
+        ids[i] = m->cycle->fails[i];
+    return count;
+}

@@ -1,0 +1,496 @@
+/* secants.c - the stiffness of contacts as their last motions tell it, and the motion to equilibrium that follows.
+ *
+ * A contact's force on B, and moment about its place, are a function f of six motions of B against A. What a law, a
+ * patch that is partly open or a pressure field make of it need not be known: each step shows a motion s and a change
+ * y = f_before - f_now. The stiffness K of the contact, at first that of its closed points, follows these by
+ *
+ *     K <- K + y y^T / (y.s) - K s s^T K / (s.K s)                                        (BFGS)
+ *
+ * Where the contact gives way, as in slip, y.s is made no less than KEEPS of s.K s: so K stays positive. It is kept as
+ * a root, K = J J^T, for the same reason:
+ *
+ *     J <- J + (y - J z) z^T / (z.z),    z = (y.s / s.K s)^1/2 J^T s
+ *
+ * With secants contact by contact, and not of the whole, few steps show all there is to know, however many blocks there
+ * are. The motion x of all bodies that would bring equilibrium is
+ *
+ *     (sum T^T K T + hold M / dt^2) x = F
+ *
+ * T: motion of B against A by those of the bodies. The second term holds what nothing else does. Conjugate gradients
+ * solve it, with the six rows of each body as preconditioner.
+ *
+ * Sources: A. Griewank and Ph. L. Toint, "Partitioned variable metric updates for large structured optimization
+ * problems", Numerische Mathematik 39 (1982) 119-137; K. Levenberg, Quarterly of Applied Mathematics 2 (1944) 164-168;
+ * M. J. D. Powell's damping, Lecture Notes in Mathematics 630 (1978) 144-157. */
+#include "cycle/secants.h"
+
+#include "base/columns.h"
+#include "base/parallel.h"
+#include "contact/facing.h"
+#include "contact/places.h"
+#include "contact/sides.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Tolerance: share of the stiffness along a motion that one step leaves of it at the least. */
+#define KEEPS 0.1
+/* Tolerance: share of the largest stiffness that a contact has in all directions. */
+#define LEAST 1e-9
+/* Tolerance: change of force over the force below which a motion tells rounding. */
+#define ROUNDING 1e-10
+/* Tolerance: of the residual of conjugate gradients, in the norm of their preconditioner. */
+#define SOLVED 0.03
+/* Limit: of their iterations. */
+#define MOST_ITERATIONS 400
+
+/* ---------------------------------------------------------------- small matrices --------- */
+
+/* k += by d d^T with d = (n, s x n): a spring along n at s. */
+static void add_spring(double k[6][6], double by, tl_vec3 n, tl_vec3 s)
+{
+    const tl_vec3 c = tl_v3_cross(s, n);
+    const double d[6] = {n.x, n.y, n.z, c.x, c.y, c.z};
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++)
+            k[i][j] += by * d[i] * d[j];
+}
+
+/* The same for a spring against turning about n. */
+static void add_turn(double k[6][6], double by, tl_vec3 n)
+{
+    const double d[3] = {n.x, n.y, n.z};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            k[3 + i][3 + j] += by * d[i] * d[j];
+}
+
+/* The Cholesky factor of a matrix in its lower half. What rounding would make no positive diagonal is made one. */
+static void factorise(double a[6][6])
+{
+    for (int j = 0; j < 6; j++) {
+        const double own = a[j][j];
+        double d = own;
+        for (int k = 0; k < j; k++)
+            d -= a[j][k] * a[j][k];
+        a[j][j] = sqrt(fmax(d, 1e-12 * own));
+        for (int i = j + 1; i < 6; i++) {
+            double t = a[i][j];
+            for (int k = 0; k < j; k++)
+                t -= a[i][k] * a[j][k];
+            a[i][j] = a[j][j] > 0 ? t / a[j][j] : 0;
+        }
+    }
+}
+
+static void solve_by(double a[6][6], const double from[6], double x[6])
+{
+    for (int i = 0; i < 6; i++) {
+        double t = from[i];
+        for (int k = 0; k < i; k++)
+            t -= a[i][k] * x[k];
+        x[i] = a[i][i] > 0 ? t / a[i][i] : 0;
+    }
+    for (int i = 5; i >= 0; i--) {
+        double t = x[i];
+        for (int k = i + 1; k < 6; k++)
+            t -= a[k][i] * x[k];
+        x[i] = a[i][i] > 0 ? t / a[i][i] : 0;
+    }
+}
+
+static double dot(const double x[6], const double y[6])
+{
+    double sum = 0;
+    for (int i = 0; i < 6; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
+static void put_vec(double to[3], tl_vec3 v)
+{
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
+}
+
+static tl_vec3 vec_of(const double v[3])
+{
+    return tl_v3(v[0], v[1], v[2]);
+}
+
+/* ---------------------------------------------------------------- one contact ------------ */
+
+/* What a closed patch is as stiff as: its points that press. */
+static void add_points(const tl_model *m, uint32_t contact, const tl_law *law, tl_vec3 arm, double k[6][6])
+{
+    const tl_contacts *c = &m->detect->contacts;
+    const tl_points_table *points = &m->detect->points;
+    const tl_vec3 n = c->facet[contact].last, e = tl_facing_aside(n), g = tl_v3_cross(n, e);
+    for (size_t i = 0; i < c->point_count[contact]; i++) {
+        const size_t row = tl_point_row(c, contact, i);
+        if (!(points->f_n[row] > 0))
+            continue;
+        const tl_vec3 at = tl_v3_sub(tl_contact_point_arm(m, contact, i), arm);
+        add_spring(k, law->kn * points->area[row], n, at);
+        add_spring(k, law->ks * points->area[row], e, at);
+        add_spring(k, law->ks * points->area[row], g, at);
+    }
+}
+
+/* The same of a field: its area, at the centre of its pressure. */
+static void add_field(const tl_model *m, uint32_t contact, const tl_law *law, double k[6][6])
+{
+    const tl_press *press = &tl_press_row_of(m, contact)->press;
+    const tl_vec3 n = m->detect->contacts.facet[contact].last, here = {0, 0, 0};
+    const tl_vec3 e = tl_facing_aside(n), g = tl_v3_cross(n, e);
+    const double turn = 0.5 * press->area * press->radius * press->radius;
+    add_spring(k, law->kn * press->area, n, here);
+    add_spring(k, law->ks * press->area, e, here);
+    add_spring(k, law->ks * press->area, g, here);
+    add_turn(k, law->kn * turn, e);
+    add_turn(k, law->kn * turn, g);
+    add_turn(k, 2 * law->ks * turn, n);
+}
+
+/* Where the contact is: the arm from A's centroid to the middle of its points. */
+static tl_vec3 place_of(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (tl_facet_is_field(&c->facet[contact]))
+        return tl_side_arm(m, tl_contact_sides(m, contact).a, tl_press_row_of(m, contact)->press.point);
+    tl_vec3 sum = {0, 0, 0};
+    double area = 0;
+    for (size_t i = 0; i < c->point_count[contact]; i++) {
+        const double own = m->detect->points.area[tl_point_row(c, contact, i)];
+        sum = tl_v3_madd(sum, own, tl_contact_point_arm(m, contact, i));
+        area += own;
+    }
+    return area > 0 ? tl_v3_scale(1 / area, sum) : sum;
+}
+
+/* Force and moment on B about its place. */
+static void force_of(const tl_model *m, uint32_t contact, const tl_secant *s, double force[6])
+{
+    const tl_contacts *c = &m->detect->contacts;
+    put_vec(force, c->force[contact]);
+    put_vec(force + 3, tl_v3_sub(c->moment[contact], tl_v3_cross(vec_of(s->arm_a), c->force[contact])));
+}
+
+static void secant_begin(const tl_model *m, uint32_t contact, tl_secant *s)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    const tl_law *law = &m->joint_laws[c->law[contact]];
+    const tl_vec3 arm = place_of(m, contact);
+    *s = (tl_secant){.born = c->born[contact], .a = c->a[contact], .b = c->b[contact]};
+    put_vec(s->arm_a, arm);
+    put_vec(s->arm_b, tl_v3_sub(arm, tl_sides_apart(m, tl_contact_sides(m, contact))));
+    if (tl_facet_is_field(&c->facet[contact]))
+        add_field(m, contact, law, s->root);
+    else
+        add_points(m, contact, law, arm, s->root);
+    double most[2] = {0, 0};
+    for (int i = 0; i < 6; i++)
+        most[i / 3] = fmax(most[i / 3], s->root[i][i]);
+    for (int i = 0; i < 6; i++)
+        s->root[i][i] += LEAST * most[i / 3];
+    factorise(s->root);
+    for (int i = 0; i < 6; i++)
+        for (int j = i + 1; j < 6; j++)
+            s->root[i][j] = 0;
+    force_of(m, contact, s, s->force);
+}
+
+/* K s, by way of J^T s. */
+static void times_root(const tl_secant *of, const double s[6], double turned[6], double ks[6])
+{
+    for (int i = 0; i < 6; i++) {
+        turned[i] = 0;
+        for (int k = 0; k < 6; k++)
+            turned[i] += of->root[k][i] * s[k];
+    }
+    for (int i = 0; i < 6; i++)
+        ks[i] = dot(of->root[i], turned);
+}
+
+/* A step with the motion s has changed the force by -y. */
+static void secant_update(tl_secant *of, const double s[6], double y[6])
+{
+    double turned[6], ks[6], jz[6];
+    times_root(of, s, turned, ks);
+    const double was = dot(s, ks);
+    if (!(was > 0) || !(dot(ks, ks) > ROUNDING * ROUNDING * dot(of->force, of->force)))
+        return;
+    double is = dot(y, s);
+    if (is < KEEPS * was) {
+        const double part = (1 - KEEPS) * was / (was - is);
+        for (int i = 0; i < 6; i++)
+            y[i] = part * y[i] + (1 - part) * ks[i];
+        is = dot(y, s);
+    }
+    const double scale = sqrt(is / was), per = 1 / is; /* z.z is y.s */
+    if (!(is > 0) || !isfinite(scale) || !isfinite(per))
+        return;
+    for (int i = 0; i < 6; i++)
+        jz[i] = y[i] - scale * ks[i];
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++)
+            of->root[i][j] += jz[i] * scale * turned[j] * per;
+}
+
+/* ---------------------------------------------------------------- all contacts ----------- */
+
+/* Whether a contact has a stiffness at all. */
+static bool counts(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    return c->law[contact] != TL_NO_ROW && c->point_count[contact] > 0 && !c->held[contact];
+}
+
+typedef struct follow_job {
+    tl_model *m;
+    bool anew;
+} follow_job;
+
+static void follow_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const follow_job *job = user;
+    const tl_model *m = job->m;
+    const tl_contacts *c = &m->detect->contacts;
+    for (uint32_t i = (uint32_t)begin; i < end; i++) {
+        tl_secant *s = &m->cycle->secant[i];
+        if (!counts(m, i)) {
+            s->born = -1;
+            continue;
+        }
+        if (job->anew || s->born != c->born[i] || s->a != c->a[i] || s->b != c->b[i]) {
+            secant_begin(m, i, s);
+            continue;
+        }
+        const tl_contact_motion by = tl_contact_moved(m, i);
+        double way[6], now[6], change[6];
+        put_vec(way, tl_v3_add(by.way, tl_v3_cross(by.turn, vec_of(s->arm_a))));
+        put_vec(way + 3, by.turn);
+        force_of(m, i, s, now);
+        for (int k = 0; k < 6; k++)
+            change[k] = s->force[k] - now[k];
+        secant_update(s, way, change);
+        memcpy(s->force, now, sizeof now);
+    }
+}
+
+static void follow(tl_model *m, bool anew)
+{
+    follow_job job = {m, anew};
+    const size_t contacts = m->detect->contacts.table.rows;
+    for (size_t i = m->cycle->secant_count; i < contacts; i++)
+        m->cycle->secant[i].born = -1;
+    m->cycle->secant_count = contacts;
+    tl_parallel_for(m->pool, contacts, TL_CONTACT_CHUNK, follow_range, &job);
+}
+
+bool tl_secants_prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    const size_t contacts = m->detect->contacts.table.rows;
+    return tl_grow(&c->secant, &c->secant_capacity, contacts, sizeof *c->secant) &&
+           tl_grow(&c->link, &c->link_capacity, contacts, sizeof *c->link) &&
+           tl_fit(&c->leap, &c->leap_capacity, m->bodies.table.rows, sizeof *c->leap);
+}
+
+void tl_secants_begin(tl_model *m)
+{
+    follow(m, true);
+}
+
+void tl_secants_follow(tl_model *m)
+{
+    follow(m, false);
+}
+
+/* ---------------------------------------------------------------- the leap --------------- */
+
+static void link_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const tl_model *m = user;
+    for (uint32_t i = (uint32_t)begin; i < end; i++) {
+        const tl_secant *s = &m->cycle->secant[i];
+        tl_leap_link *link = &m->cycle->link[i];
+        const tl_sides on = tl_contact_bodies(m, i);
+        if (s->born < 0) {
+            link->a = link->b = on.a;
+            continue;
+        }
+        link->a = on.a;
+        link->b = on.b;
+        link->arm_a = vec_of(s->arm_a);
+        link->arm_b = vec_of(s->arm_b);
+        for (int j = 0; j < 6; j++)
+            for (int k = 0; k <= j; k++)
+                link->k[j][k] = link->k[k][j] = dot(s->root[j], s->root[k]);
+    }
+}
+
+/* The motion at a contact's place by that of a body; and the force on the body by that at the place. */
+static void at_place(const double x[6], tl_vec3 arm, double out[6])
+{
+    put_vec(out, tl_v3_add(vec_of(x), tl_v3_cross(vec_of(x + 3), arm)));
+    put_vec(out + 3, vec_of(x + 3));
+}
+
+static void add_on_body(double to[6], double by, const double f[6], tl_vec3 arm)
+{
+    const tl_vec3 moment = tl_v3_add(vec_of(f + 3), tl_v3_cross(arm, vec_of(f)));
+    for (int i = 0; i < 3; i++)
+        to[i] += by * f[i];
+    put_vec(to + 3, tl_v3_madd(vec_of(to + 3), by, moment));
+}
+
+/* Adds T^T K T of one side of a contact to the body's rows. */
+static void add_block(double to[6][6], double k[6][6], tl_vec3 arm)
+{
+    for (int j = 0; j < 6; j++) {
+        double unit[6] = {0}, way[6], force[6], column[6] = {0};
+        unit[j] = 1;
+        at_place(unit, arm, way);
+        for (int i = 0; i < 6; i++)
+            force[i] = dot(k[i], way);
+        add_on_body(column, 1, force, arm);
+        for (int i = 0; i < 6; i++)
+            to[i][j] += column[i];
+    }
+}
+
+/* Components that are held do not move. */
+static void free_rows(const tl_model *m, uint32_t body, double x[6])
+{
+    const unsigned fixed = m->bodies.fixed[body];
+    if (!fixed)
+        return;
+    put_vec(x, tl_free_part(vec_of(x), fixed));
+    if (fixed & TL_FIX_ROTATION)
+        put_vec(x + 3, tl_v3(0, 0, 0));
+}
+
+static void hold_body(const tl_model *m, uint32_t body, double by, tl_leap_body *of)
+{
+    const tl_bodies *b = &m->bodies;
+    const tl_vec3 moments = tl_moments_of(m, body);
+    const double mass = by * b->mass[body] * tl_inertia_scale(m->cycle, body);
+    const double turn = by * (moments.x + moments.y + moments.z) / 3 * tl_turn_scale(m->cycle, body);
+    for (int i = 0; i < 6; i++) {
+        of->hold[i] = i < 3 ? mass : turn;
+        of->block[i][i] += of->hold[i];
+    }
+    double ones[6] = {1, 1, 1, 1, 1, 1};
+    free_rows(m, body, ones);
+    if (b->fixed[body] == TL_FIX_ALL)
+        memset(ones, 0, sizeof ones);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++)
+            if (ones[i] == 0 || ones[j] == 0)
+                of->block[i][j] = i == j;
+    factorise(of->block);
+}
+
+static void begin_bodies(const tl_model *m, double by)
+{
+    const struct tl_cycle *c = m->cycle;
+    const tl_bodies *b = &m->bodies;
+    const size_t bodies = b->table.rows;
+    memset(c->leap, 0, bodies * sizeof *c->leap);
+    for (size_t i = 0; i < m->detect->contacts.table.rows; i++) {
+        tl_leap_link *link = &c->link[i];
+        if (link->a == link->b)
+            continue;
+        add_block(c->leap[link->a].block, link->k, link->arm_a);
+        add_block(c->leap[link->b].block, link->k, link->arm_b);
+    }
+    for (uint32_t body = 0; body < bodies; body++) {
+        tl_leap_body *of = &c->leap[body];
+        hold_body(m, body, by, of);
+        if (b->fixed[body] == TL_FIX_ALL)
+            continue;
+        put_vec(of->force, b->force[body]);
+        put_vec(of->force + 3, b->moment[body]);
+        free_rows(m, body, of->force);
+    }
+}
+
+/* image = (stiffness + hold) way */
+static void times_stiffness(const tl_model *m)
+{
+    const struct tl_cycle *c = m->cycle;
+    const uint32_t bodies = (uint32_t)m->bodies.table.rows;
+    for (uint32_t body = 0; body < bodies; body++)
+        for (int i = 0; i < 6; i++)
+            c->leap[body].image[i] = c->leap[body].hold[i] * c->leap[body].way[i];
+    for (size_t i = 0; i < m->detect->contacts.table.rows; i++) {
+        const tl_leap_link *link = &c->link[i];
+        if (link->a == link->b)
+            continue;
+        tl_leap_body *a = &c->leap[link->a], *b = &c->leap[link->b];
+        double way_a[6], way[6], force[6];
+        at_place(a->way, link->arm_a, way_a);
+        at_place(b->way, link->arm_b, way);
+        for (int k = 0; k < 6; k++)
+            way[k] -= way_a[k];
+        for (int k = 0; k < 6; k++)
+            force[k] = dot(link->k[k], way);
+        add_on_body(b->image, 1, force, link->arm_b);
+        add_on_body(a->image, -1, force, link->arm_a);
+    }
+    for (uint32_t body = 0; body < bodies; body++)
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            memset(c->leap[body].image, 0, sizeof c->leap[body].image);
+        else
+            free_rows(m, body, c->leap[body].image);
+}
+
+/* preconditioned = block^-1 force; returns their product. */
+static double precondition(const tl_model *m)
+{
+    double sum = 0;
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+        tl_leap_body *of = &m->cycle->leap[body];
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
+        solve_by(of->block, of->force, of->preconditioned);
+        free_rows(m, (uint32_t)body, of->preconditioned);
+        sum += dot(of->force, of->preconditioned);
+    }
+    return sum;
+}
+
+void tl_leap_find(tl_model *m, double dt, double hold)
+{
+    const struct tl_cycle *c = m->cycle;
+    const size_t bodies = m->bodies.table.rows;
+    tl_parallel_for(m->pool, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, link_range, m);
+    begin_bodies(m, hold / (dt * dt));
+    double left = precondition(m);
+    const double least = SOLVED * SOLVED * left;
+    for (size_t i = 0; i < bodies; i++)
+        memcpy(c->leap[i].way, c->leap[i].preconditioned, sizeof c->leap[i].way);
+    for (int k = 0; k < MOST_ITERATIONS && left > least; k++) {
+        double curve = 0;
+        times_stiffness(m);
+        for (size_t i = 0; i < bodies; i++)
+            curve += dot(c->leap[i].way, c->leap[i].image);
+        if (!(curve > 0))
+            break;
+        const double by = left / curve;
+        for (size_t i = 0; i < bodies; i++)
+            for (int j = 0; j < 6; j++) {
+                c->leap[i].motion[j] += by * c->leap[i].way[j];
+                c->leap[i].force[j] -= by * c->leap[i].image[j];
+            }
+        const double next = precondition(m), turn = next / left;
+        left = next;
+        for (size_t i = 0; i < bodies; i++)
+            for (int j = 0; j < 6; j++)
+                c->leap[i].way[j] = c->leap[i].preconditioned[j] + turn * c->leap[i].way[j];
+    }
+}

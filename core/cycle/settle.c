@@ -1,0 +1,309 @@
+/* settle.c - how a relaxation brings the bodies of a step nearer to rest.
+ *
+ * Kinetic stops come first: nothing is braked until the forces of all bodies together work against the motion, and then
+ * every body is stopped (P. A. Cundall 1976; M. R. Barnes, Computers and Structures 30 (1988) 685-695). Each body has
+ * the inertia that suits one step, and the step is as long as it may be. So blocks find each other, slip and open by
+ * steps that laws can follow.
+ *
+ * What is soft among what is stiff takes the root of the ratio of both in steps: a joint that presses on its edge,
+ * columns, slivers. Once no body is far from equilibrium, leaps are tried: motions that would bring equilibrium by the
+ * secants of the contacts (secants.c). A leap is a step like any other: laws follow the motion, and the next forces say
+ * how good it was. With E the energy,
+ *
+ *     ratio = fall of E / fall expected = (F_0 + F_1).s / 2 over F_0.s - s.K s / 2
+ *
+ * With a ratio near 1 the next one is held less, with a bad one more (Levenberg and Marquardt). No body is carried
+ * farther at once than some of the closures that its contacts have: friction, opening and bonds follow their path.
+ * Leaps end when they bring the model no nearer to rest. Then stops have their turn, each time for longer.
+ *
+ * A leap is put as damping: with alpha = 2 / h (23) takes all of the old velocity and half of the kick, and the
+ * damping's force makes of it what is wanted. */
+#include "cycle/settle.h"
+
+#include "contact/detection.h"
+#include "cycle/cycle_data.h"
+#include "base/columns.h"
+#include "cycle/secants.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Tolerance: motion over a block's size up to which geometry is kept: this times the average ratio, at most the
+ * second. */
+#define STILL_PER_RATIO 0.1
+#define STILL_MOST 1e-3
+/* Cost only: more bodies than these never leap. */
+#define MOST_LEAPING 3000
+/* Tolerance: local ratio from which leaps are tried. */
+#define NEAR_REST 0.02
+/* Cost only: stops before the first leap, between two spells of leaps, and leaps of a spell; the latter grow. */
+#define FIRST_STOPS 30
+#define STOPS 50
+#define LEAPS 200
+#define GROWTH 1.5
+/* Limit: of these spans. */
+#define MOST_SPAN 1000000
+/* Tolerance: the hold of a leap: at first, at least, and above which leaps are no better than stops. */
+#define HOLD_FIRST 1.0
+#define HOLD_LEAST 1e-9
+#define HOLD_MOST 2.0
+/* Tolerance: ratio below which a leap is bad, above which it is good, and what that makes of the hold. */
+#define BAD 0.25
+#define GOOD 0.75
+#define MORE_HOLD 8.0
+#define LESS_HOLD 0.25
+/* Tolerance: leaps in a row that may bring nothing: neither half of the unbalanced force, nor a good one that was
+ * made shorter. */
+#define MOST_IDLE 15
+#define NEARER 0.5
+#define IDLE_RATIO 0.5
+/* Tolerance: closures, of the body or the mean one, by which a leap carries a body at the most. */
+#define CLOSURES 50.0
+/* Tolerance: unbalanced force over what a body bears, from which on it is loose: what others do does not hang on it. */
+#define LOOSE 0.5
+
+void tl_settle_begin(tl_model *m)
+{
+    if (m->relaxing)
+        return;
+    m->relaxing = true;
+    m->cycle->settling = (tl_settling){
+        .share = 1, .part = 1, .stops = FIRST_STOPS, .stop_span = STOPS, .leap_span = LEAPS, .hold = HOLD_FIRST};
+}
+
+void tl_settle_end(tl_model *m)
+{
+    tl_bodies *b = &m->bodies;
+    for (size_t i = 0; i < b->table.rows; i++) {
+        b->v[i] = tl_v3_sub(b->v[i], tl_free_part(b->v[i], b->fixed[i]));
+        if (!(b->fixed[i] & TL_FIX_ROTATION))
+            b->w[i] = tl_v3(0, 0, 0);
+    }
+    m->relaxing = false;
+    m->still = 0;
+    m->cycle->secant_count = 0;
+}
+
+static bool may_leap(const tl_model *m)
+{
+    return m->bodies.table.rows <= MOST_LEAPING;
+}
+
+bool tl_settle_prepare(tl_model *m)
+{
+    return !m->relaxing || !may_leap(m) || tl_secants_prepare(m);
+}
+
+/* ---------------------------------------------------------------- stops ------------------ */
+
+static void put_none(struct tl_cycle *c, double alpha)
+{
+    for (size_t i = 0; i < c->table.rows; i++)
+        c->alpha[i] = alpha;
+    for (int k = 0; k < 3; k++) {
+        memset(c->damping_force[k], 0, c->table.rows * sizeof *c->damping_force[k]);
+        memset(c->damping_moment[k], 0, c->table.rows * sizeof *c->damping_moment[k]);
+    }
+}
+
+/* The velocities so far are lost, with half of the kick: what follows begins from rest. */
+static double all_lost(const tl_model *m, double dt)
+{
+    return 2 / (0.5 * (m->dt + dt));
+}
+
+static void stop_all(tl_model *m, double dt)
+{
+    put_none(m->cycle, all_lost(m, dt));
+}
+
+static void move_on(tl_model *m, double dt)
+{
+    if (m->cycle->sums.power < 0)
+        stop_all(m, dt);
+    else
+        put_none(m->cycle, 0);
+}
+
+/* ---------------------------------------------------------------- leaps ------------------ */
+
+static double way_of(const tl_model *m, uint32_t body)
+{
+    const double *x = m->cycle->leap[body].motion;
+    double way2 = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], turn2 = x[3] * x[3] + x[4] * x[4] + x[5] * x[5];
+    return sqrt(way2) + m->bodies.radius[body] * sqrt(turn2);
+}
+
+static bool is_loose(const tl_model *m, uint32_t body, double bears)
+{
+    return tl_v3_norm(m->bodies.force[body]) > LOOSE * bears;
+}
+
+/* What a body bears, N, over the stiffness that its inertia stands for, N/m. */
+typedef struct closure {
+    double bears, size;
+} closure;
+
+static closure closure_of(const tl_model *m, uint32_t body, double dt, double gravity)
+{
+    const double stiffness = m->bodies.mass[body] * tl_inertia_scale(m->cycle, body) / (dt * dt);
+    const double bears = tl_borne(m, body, tl_weight_of(&m->bodies, body, gravity));
+    return (closure){bears, bears / stiffness};
+}
+
+/* The mean closure of the free bodies, by what they bear. */
+static double mean_closure(const tl_model *m, double dt, double gravity)
+{
+    tl_addends closures = {.count = 0}, bears = {.count = 0};
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        const bool held = m->bodies.fixed[body] == TL_FIX_ALL;
+        const closure of = held ? (closure){0, 0} : closure_of(m, body, dt, gravity);
+        tl_addends_put(&closures, of.bears * of.size);
+        tl_addends_put(&bears, of.bears);
+    }
+    const double all = tl_addends_sum(&bears);
+    return all > 0 ? tl_addends_sum(&closures) / all : 0;
+}
+
+/* Makes the motions shorter where one would go too far: those of loose bodies by themselves, others all alike. Returns
+ * the part that is left. */
+static double shorten(const tl_model *m, double dt)
+{
+    const double gravity = tl_v3_norm(m->config.gravity), mean = mean_closure(m, dt, gravity);
+    double part = 1;
+    for (int loose = 0; loose < 2; loose++)
+        for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+            if (m->bodies.fixed[body] == TL_FIX_ALL)
+                continue;
+            const closure of = closure_of(m, body, dt, gravity);
+            const double most = CLOSURES * fmax(of.size, mean), way = way_of(m, body);
+            if (!(part * way > most) || is_loose(m, body, of.bears) != (bool)loose)
+                continue;
+            if (!loose)
+                part = most / way;
+            for (int k = 0; loose && k < 6; k++)
+                m->cycle->leap[body].motion[k] *= most / (part * way);
+        }
+    return part;
+}
+
+/* Notes what the leap is to bring: the part of the motions found that is made. */
+static void expect(tl_model *m, double part)
+{
+    tl_settling *s = &m->cycle->settling;
+    tl_addends power = {.count = 0}, held = {.count = 0};
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        const bool free = m->bodies.fixed[body] != TL_FIX_ALL;
+        const tl_leap_body *of = &m->cycle->leap[body];
+        const tl_vec3 f = m->bodies.force[body], t = m->bodies.moment[body];
+        const double *x = of->motion;
+        double by = f.x * x[0] + f.y * x[1] + f.z * x[2] + t.x * x[3] + t.y * x[4] + t.z * x[5], more = 0;
+        for (int k = 0; k < 6; k++)
+            more += of->hold[k] * x[k] * x[k];
+        tl_addends_put(&power, free ? by : 0);
+        tl_addends_put(&held, free ? more : 0);
+    }
+    const double all = tl_addends_sum(&power);
+    s->power = part * all;
+    s->expected = part * all - 0.5 * part * part * (all - tl_addends_sum(&held));
+    s->limited = part < 1;
+}
+
+/* The damping that gives a body the velocity and angular velocity wanted after this kick, of h. */
+static void put_motion(tl_model *m, uint32_t body, tl_vec3 v, tl_vec3 w, double h)
+{
+    struct tl_cycle *c = m->cycle;
+    const tl_bodies *b = &m->bodies;
+    const double mass = b->mass[body] * tl_inertia_scale(c, body), turning = tl_turn_scale(c, body);
+    const tl_quat to_model = tl_q_mul(b->q[body], b->axes[body]);
+    const tl_vec3 moments = tl_moments_of(m, body), own = tl_q_rotate(tl_q_conj(to_model), w);
+    tl_vec3 spin = tl_q_rotate(to_model, tl_v3(moments.x * own.x, moments.y * own.y, moments.z * own.z));
+    if (m->config.rotation == TL_ROTATION_PAPER)
+        spin = tl_v3_scale(moments.x, w);
+    tl_columns_put(c->damping_force, body, tl_v3_sub(tl_v3_scale(2 * mass / h, v), b->force[body]));
+    tl_columns_put(c->damping_moment, body, tl_v3_sub(tl_v3_scale(2 * turning / h, spin), b->moment[body]));
+}
+
+static void leap(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    const double h = 0.5 * (m->dt + dt);
+    tl_leap_find(m, dt, c->settling.hold);
+    const double part = shorten(m, dt);
+    expect(m, part);
+    put_none(c, all_lost(m, dt));
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        const double *x = c->leap[body].motion, by = part / dt;
+        if (m->bodies.fixed[body] != TL_FIX_ALL)
+            put_motion(m, body, tl_v3(by * x[0], by * x[1], by * x[2]), tl_v3(by * x[3], by * x[4], by * x[5]), h);
+    }
+}
+
+/* Whether the last leap leaves reason for another. */
+static bool leap_again(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_settling *s = &c->settling;
+    const double fall = 0.5 * (s->power + m->dt * c->sums.power), ratio = s->expected > 0 ? fall / s->expected : -1;
+    const bool nearer = c->sums.unbalanced < NEARER * s->goal;
+    s->hold *= ratio < BAD ? MORE_HOLD : ratio > GOOD ? LESS_HOLD : 1;
+    s->hold = fmax(s->hold, HOLD_LEAST);
+    if (nearer)
+        s->goal = c->sums.unbalanced;
+    if (nearer || (s->limited && ratio >= IDLE_RATIO))
+        s->idle = nearer ? 0 : s->idle;
+    else
+        s->idle++;
+    return s->idle <= MOST_IDLE && s->hold <= HOLD_MOST && --s->leaps > 0;
+}
+
+/* After a spell of leaps. */
+static void rest_from_leaps(tl_settling *s)
+{
+    s->leapt = false;
+    s->stops = s->stop_span;
+    s->stop_span = (int64_t)fmin(GROWTH * (double)s->stop_span, MOST_SPAN);
+    s->leap_span = (int64_t)fmin(GROWTH * (double)s->leap_span, MOST_SPAN);
+}
+
+static bool begin_leaps(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_settling *s = &c->settling;
+    if (s->stops > 0)
+        s->stops--;
+    if (s->stops > 0 || !(c->sums.worst_ratio < NEAR_REST) || !may_leap(m) || tl_loads_lag(m))
+        return false;
+    s->leapt = true;
+    s->leaps = s->leap_span;
+    s->idle = 0;
+    s->hold = HOLD_FIRST;
+    s->goal = c->sums.unbalanced;
+    tl_secants_begin(m);
+    return true;
+}
+
+tl_status tl_settle(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_settling *s = &c->settling;
+    const double ratio = tl_model_balance(m).ratio;
+    m->still = isfinite(ratio) ? fmin(STILL_PER_RATIO * ratio, STILL_MOST) : 0;
+    if (!(dt > 0))
+        return TL_OK;
+    if (s->leapt) {
+        tl_secants_follow(m);
+        if (leap_again(m) && !tl_loads_lag(m)) {
+            leap(m, dt);
+            return TL_OK;
+        }
+        rest_from_leaps(s);
+        stop_all(m, dt);
+        return TL_OK;
+    }
+    if (begin_leaps(m))
+        leap(m, dt);
+    else
+        move_on(m, dt);
+    return TL_OK;
+}

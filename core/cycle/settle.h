@@ -1,0 +1,16 @@
+/* settle.h - how a relaxation brings the bodies of a step nearer to rest. */
+#ifndef TL_CYCLE_SETTLE_H
+#define TL_CYCLE_SETTLE_H
+
+#include "model/model.h"
+
+/* A relaxation begins: from rest, or from where a saved one stands. */
+void tl_settle_begin(tl_model *m);
+/* Nothing moves any more, and steps are the user's again. */
+void tl_settle_end(tl_model *m);
+/* Room for a step; false: out of memory. */
+bool tl_settle_prepare(tl_model *m);
+/* What damps the bodies in this step. */
+tl_status tl_settle(tl_model *m, double dt);
+
+#endif
