@@ -16,6 +16,8 @@
 --     steps     of the quick way over those of the slow one, where both gave the same answer
 --     off       largest difference of the blocks' displacements over the mean closure of the joints, where both are at rest
 --     slips     whether anything has slipped in either of them
+--
+-- judge:near_margin(seed, method) gives two rows, of a friction a little above and below that at which the method's verdict changes, or nil.
 local models = require "relax_models"
 
 local judge = {}
@@ -210,16 +212,25 @@ end
 
 -- ---------------------------------------------------------------- comparison
 
+-- A variant whose friction is some times as much as that of the seed.
+local function with_friction(variant, factor)
+    if not factor then
+        return variant
+    end
+    local change = { friction = factor * (variant.change.friction or 1), load = variant.change.load }
+    return { name = ("%s, all of friction x %.5f"):format(variant.name, factor), change = change, ramp = variant.ramp }
+end
+
 local function decided(outcome)
     return outcome.verdict == "rest" or outcome.verdict == "failure"
 end
 
 -- The first variant that changes the slow answer, or nil; and whether some variant gave none.
-function judge:variant_that_changes(seed, slow, brittle)
+function judge:variant_that_changes(seed, slow, brittle, friction)
     local unknown = false
     for _, variant in ipairs(VARIANTS) do
         if not variant.brittle or brittle then
-            local other = self:slow(seed, variant)
+            local other = self:slow(seed, with_friction(variant, friction))
             if decided(other) and other.verdict ~= slow.verdict then
                 return variant.name
             end
@@ -227,6 +238,29 @@ function judge:variant_that_changes(seed, slow, brittle)
         end
     end
     return nil, unknown
+end
+
+-- The factor of friction at which the verdict of a method changes, between two, to a share of `within`; nil where it does not change
+-- or there is no verdict. What is said on both sides of it is compared with the slow answer: a hard test, for the path decides.
+function judge:critical_friction(seed, method, low, high, within)
+    local function stands(factor)
+        return self:run(seed, method, { friction = factor }).verdict
+    end
+    if stands(low) ~= "failure" or stands(high) ~= "rest" then
+        return nil
+    end
+    while high / low > 1 + within do
+        local middle = math.sqrt(low * high)
+        local verdict = stands(middle)
+        if verdict == "failure" then
+            low = middle
+        elseif verdict == "rest" then
+            high = middle
+        else
+            return nil
+        end
+    end
+    return math.sqrt(low * high)
 end
 
 local function largest_difference(a, b)
@@ -238,10 +272,12 @@ local function largest_difference(a, b)
     return largest
 end
 
-function judge:try(seed, method)
-    local slow, about = self:slow(seed)
-    local quick = self:run(seed, method)
-    local row = { seed = seed, about = about, slow = slow, quick = quick }
+-- With a factor of friction, where one is given.
+function judge:try(seed, method, friction)
+    local variant = friction and with_friction({ name = "as it is", change = {} }, friction)
+    local slow, about = self:slow(seed, variant)
+    local quick = self:run(seed, method, variant and variant.change)
+    local row = { seed = seed, about = about, slow = slow, quick = quick, friction = friction }
     if not decided(slow) or not decided(quick) then
         row.class = "undecided"
     elseif slow.verdict == quick.verdict then
@@ -252,10 +288,20 @@ function judge:try(seed, method)
             row.off = largest_difference(slow.u, quick.u) / slow.closure
         end
     else
-        row.why = self:variant_that_changes(seed, slow, about.brittle)
+        row.why = self:variant_that_changes(seed, slow, about.brittle, friction)
         row.class = row.why and "marginal" or "wrong " .. quick.verdict
     end
     return row
+end
+
+local MARGIN = 1.02
+
+function judge:near_margin(seed, method)
+    local factor = self:critical_friction(seed, method, 0.3, 3, 1e-3)
+    if not factor then
+        return nil
+    end
+    return { self:try(seed, method, factor * MARGIN), self:try(seed, method, factor / MARGIN) }
 end
 
 local function outcome_text(outcome)

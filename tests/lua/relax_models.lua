@@ -571,11 +571,12 @@ function laws.slip_weakening(p)
     return "slip_weakening", params, true
 end
 
+-- Closure is linear from stresses that are not reached: the stiffness at the wall strength would make the slow run's steps too short.
 function laws.barton_bandis(p)
     local jrc, jcs = p.random(2, 12), p.stress * 10 ^ p.random(1.5, 3)
     local rough = jrc * math.log(jcs / p.stress, 10)
     return "barton_bandis", { jrc = jrc, jcs = jcs, phi_r = math.min(60, math.max(3, p.friction - rough)), kni = p.kn / 2,
-        vm = 10 * p.stress / p.kn, ks = p.ks, reduction = 1 / p.f }, true
+        vm = 10 * p.stress / p.kn, ks = p.ks, reduction = 1 / p.f, linear_from = 10 * p.stress }, true
 end
 
 function laws.continuously_yielding(p)
