@@ -12,7 +12,7 @@
 --
 --     class     "agree"; "marginal": the answers differ, and the slow one changes under a variant, too; "wrong rest"; "wrong failure";
 --               "undecided": one of the two gave no answer
---     why       of marginal ones the variant
+--     why       of marginal ones the variant; of wrong ones what the slow run says when gravity comes in steps
 --     steps     of the quick way over those of the slow one, where both gave the same answer
 --     off       largest difference of the blocks' displacements over the mean closure of the joints, where both are at rest
 --     slips     whether anything has slipped in either of them
@@ -29,10 +29,11 @@ local RATIO, FINE = 1e-5, 1e-6
 local SLIPPED = 1e-9
 local LOAD_STEPS = 20
 
+local RAMP = { name = "gravity in 20 steps", change = {}, ramp = true, brittle = true }
 local VARIANTS = {
     { name = "friction x 0.99", change = { friction = 0.99 } },
     { name = "friction x 1.01", change = { friction = 1.01 } },
-    { name = "gravity in 20 steps", change = {}, ramp = true, brittle = true },
+    RAMP,
     { name = "loads x 0.95", change = { load = 0.95 }, brittle = true },
     { name = "loads x 1.05", change = { load = 1.05 }, brittle = true },
 }
@@ -290,6 +291,10 @@ function judge:try(seed, method, friction)
     else
         row.why = self:variant_that_changes(seed, slow, about.brittle, friction)
         row.class = row.why and "marginal" or "wrong " .. quick.verdict
+        if not row.why and not about.brittle and about.apply then
+            local ramped = self:slow(seed, with_friction(RAMP, friction))
+            row.why = ("slow with %s: %s"):format(RAMP.name, ramped.verdict)
+        end
     end
     return row
 end

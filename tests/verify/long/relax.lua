@@ -1,11 +1,12 @@
 -- A quick way to rest against a slow one on 300 random models, of which about half fail.
 --
---     talus --quiet tests/verify/long/relax.lua [FIRST LAST [relax|today|slow [margin]]]
+--     talus --quiet tests/verify/long/relax.lua [FIRST LAST [relax|today|slow [margin|stick]]]
 --
 -- With seeds: a line for each, then a summary. `relax` is model:relax; `today` is damping "kinetic" with scaled masses, and what is
 -- taken where there is no model:relax; `slow` only fills the file of slow answers. TALUS_RELAX_SLOW names that file, which spares
 -- the slow runs, most of an hour, the next time; TALUS_RELAX_SECONDS is the longest that a run may take, 120 s. With `margin` the friction of
 -- each model is first brought near that at which the quick verdict changes, and both sides are compared: two lines a seed, hard ones.
+-- With `stick` friction is 100 times as much, so that little slips and displacements can be compared.
 package.path = "tests/verify/?.lua;tests/lua/?.lua;" .. package.path -- run in the source root
 local relax_judge = require "relax_judge"
 
@@ -27,7 +28,8 @@ end
 
 local rows = {}
 for seed = first, last do
-    for _, row in ipairs(arg[4] == "margin" and (judge:near_margin(seed, method) or {}) or { judge:try(seed, method) }) do
+    local near = arg[4] == "margin"
+    for _, row in ipairs(near and (judge:near_margin(seed, method) or {}) or { judge:try(seed, method, arg[4] == "stick" and 100) }) do
         rows[#rows + 1] = row
         print(judge.line(row))
         io.stdout:flush()
