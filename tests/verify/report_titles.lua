@@ -68,6 +68,7 @@ local TITLES = {
     { "S.block_on_slope", "block on an incline that slides, topples or both" },
     { "S.eq5", "shear force of a joint that turns with its blocks" },
     { "S.rest", "piles, arch and beam that come to rest" },
+    { "S.relax", "random models that are brought to rest, or fail" },
     { "S.series", "two joints in series between plates" },
     { "S.shear", "joint sheared to and fro" },
     { "S.stack%.(%d+)", "%1 cubes on each other at rest" },

@@ -1,0 +1,56 @@
+-- A quick way to rest against a slow one on 300 random models, of which about half fail.
+--
+--     talus --quiet tests/verify/long/relax.lua [FIRST LAST [relax|today|slow [margin|stick]]]
+--
+-- With seeds: a line for each, then a summary. `relax` is model:relax; `today` is damping "kinetic" with scaled masses, and what is
+-- taken where there is no model:relax; `slow` only fills the file of slow answers. TALUS_RELAX_SLOW names that file, which spares
+-- the slow runs, most of an hour, the next time; TALUS_RELAX_SECONDS is the longest that a run may take, 120 s. With `margin` the friction of
+-- each model is first brought near that at which the quick verdict changes, and both sides are compared: two lines a seed, hard ones.
+-- With `stick` friction is 100 times as much, so that little slips and displacements can be compared.
+package.path = "tests/verify/?.lua;tests/lua/?.lua;" .. package.path -- run in the source root
+local relax_judge = require "relax_judge"
+
+local MODELS = 300
+
+local judge = relax_judge.new { slow = os.getenv "TALUS_RELAX_SLOW", seconds = tonumber(os.getenv "TALUS_RELAX_SECONDS") }
+local first, last = math.tointeger(tonumber(arg[1] or "1")), math.tointeger(tonumber(arg[2] or arg[1] or tostring(MODELS)))
+local method = arg[3] or judge.has_relax() and "relax" or "today"
+
+if method == "slow" then
+    for seed = first, last do
+        local outcome, about = judge:slow(seed)
+        print(("%4d %-8s %-10s %7d %7d steps %6.1f s %s of %d: %s"):format(seed, outcome.verdict, outcome.stage, outcome.steps,
+            outcome.all, outcome.seconds, about.kind, about.blocks, about.text))
+        io.stdout:flush()
+    end
+    return
+end
+
+local rows = {}
+for seed = first, last do
+    local near = arg[4] == "margin"
+    for _, row in ipairs(near and (judge:near_margin(seed, method) or {}) or { judge:try(seed, method, arg[4] == "stick" and 100) }) do
+        rows[#rows + 1] = row
+        print(judge.line(row))
+        io.stdout:flush()
+    end
+end
+local sum = judge.summary(rows)
+print(judge.summary_text(sum))
+if arg[1] then
+    return
+end
+
+local figures = require "check_figures"
+figures.case("S.relax", MODELS .. " random models, of which about half fail: slopes, floors, tunnels and rooms under initial stress, stacks, columns, "
+    .. "arches, walls, wedges, toppling columns, hanging blocks and joined bodies, with slivers, and laws with and without bonds. A quick way to "
+    .. "rest says of each what a slow run with damping \"local\" says, but where the slow run changes its mind with 1 % of friction or, of "
+    .. "brittle laws, when loads come slowly or change by 5 %.", "the slow run")
+figures.between("share of models that fail", sum.fails / sum.rows, 0.4, 0.6)
+figures.between("models at rest that do not stand", sum.class["wrong rest"] or 0, 0, 0)
+figures.between("models said to fail that stand", sum.class["wrong failure"] or 0, 0, 0)
+figures.between("models of which one of the two says nothing", sum.class.undecided or 0, 0, 0.02 * MODELS)
+figures.between("steps of the quick way over those of the slow one: median", sum.all.median, 0, 0.1)
+figures.between("steps of the quick way over those of the slow one: worst", sum.all.worst, 0, 0.5)
+figures.between("displacements where nothing slips: largest difference over the mean closure", sum.worst_off, 0, 0.05)
+figures.finish()
