@@ -161,6 +161,7 @@ typedef struct tl_settling {
     double expected;     /* fall of the energy in it, J */
     double goal;         /* sum of unbalanced forces below which leaps have brought it nearer, N */
     bool leapt, limited; /* the last step was a leap; one made shorter */
+    bool calm;           /* the model as a whole is near rest: loose bodies go their own way */
 } tl_settling;
 
 struct tl_cycle {
@@ -366,6 +367,22 @@ static inline double tl_borne(const tl_model *m, uint32_t body, double weight)
 {
     double contact = m->cycle->contact_force[body];
     return contact > weight ? contact : weight;
+}
+
+/* Tolerance: unbalanced force over what a body bears, from which on next to nothing bears it. */
+#define TL_LOOSE 0.5
+
+/* Whether a body of that weight is loose: how others move says nothing of it. */
+static inline bool tl_body_is_loose(const tl_model *m, uint32_t body, double weight)
+{
+    return tl_v3_norm(m->bodies.force[body]) > TL_LOOSE * tl_borne(m, body, weight);
+}
+
+/* Power of the unbalanced forces on a body, W. */
+static inline double tl_body_power(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    return tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
 }
 
 /* A row of contacts or bodies and what was looked for in it; TL_NO_ROW: there is none. */

@@ -74,14 +74,14 @@ static void note_ratios(const tl_model *m, uint32_t body, double weight, addends
 }
 
 /* Kinetic energy and power, for a damping that asks for totals. */
-static void note_totals(const tl_model *m, uint32_t body, addends *of)
+static void note_totals(const tl_model *m, uint32_t body, double weight, addends *of)
 {
     const tl_bodies *b = &m->bodies;
     const double kinetic = tl_body_energy(m, body, 0);
     of->number[TL_SUM_KINETIC][of->count] = kinetic;
     of->number[TL_SUM_DAMPED][of->count] = b->fixed[body] ? tl_body_energy(m, body, b->fixed[body]) : kinetic;
-    of->number[TL_SUM_POWER][of->count] =
-        tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
+    const bool alone = m->relaxing && m->cycle->settling.calm && tl_body_is_loose(m, body, weight);
+    of->number[TL_SUM_POWER][of->count] = alone ? 0 : tl_body_power(m, body); /* settle.c */
 }
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -105,9 +105,10 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
         double v2 = tl_v3_norm2(b->v[body]);
-        note_ratios(m, body, tl_weight_of(b, body, gravity), &of, all);
+        const double weight = tl_weight_of(b, body, gravity);
+        note_ratios(m, body, weight, &of, all);
         if (totals)
-            note_totals(m, body, &of);
+            note_totals(m, body, weight, &of);
         all->max_speed2 = tl_larger(all->max_speed2, v2);
         of.count++;
     }

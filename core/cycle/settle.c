@@ -3,7 +3,7 @@
  * Kinetic stops come first: nothing is braked until the forces of all bodies together work against the motion, and then
  * every body is stopped (P. A. Cundall 1976; M. R. Barnes, Computers and Structures 30 (1988) 685-695). Each body has
  * the inertia that suits one step, and the step is as long as it may be. So blocks find each other, slip and open by
- * steps that laws can follow.
+ * steps that laws can follow. What next to nothing bears goes its own way: it falls, and is stopped where it lands.
  *
  * What is soft among what is stiff takes the root of the ratio of both in steps: a joint that presses on its edge,
  * columns, slivers. Once no body is far from equilibrium, leaps are tried: motions that would bring equilibrium by the
@@ -20,9 +20,9 @@
  * damping's force makes of it what is wanted. */
 #include "cycle/settle.h"
 
+#include "base/columns.h"
 #include "contact/detection.h"
 #include "cycle/cycle_data.h"
-#include "base/columns.h"
 #include "cycle/secants.h"
 
 #include <math.h>
@@ -36,6 +36,8 @@
 #define MOST_LEAPING 3000
 /* Tolerance: local ratio from which leaps are tried. */
 #define NEAR_REST 0.02
+/* Tolerance: average ratio below which the model as a whole is near rest. */
+#define CALM 1e-2
 /* Cost only: stops before the first leap, between two spells of leaps, and leaps of a spell; the latter grow. */
 #define FIRST_STOPS 30
 #define STOPS 50
@@ -59,8 +61,6 @@
 #define IDLE_RATIO 0.5
 /* Tolerance: closures, of the body or the mean one, by which a leap carries a body at the most. */
 #define CLOSURES 50.0
-/* Tolerance: unbalanced force over what a body bears, from which on it is loose: what others do does not hang on it. */
-#define LOOSE 0.5
 
 void tl_settle_begin(tl_model *m)
 {
@@ -117,12 +117,16 @@ static void stop_all(tl_model *m, double dt)
     put_none(m->cycle, all_lost(m, dt));
 }
 
+/* Stops all but loose bodies when these together work against the motion, and each loose one when it does. */
 static void move_on(tl_model *m, double dt)
 {
-    if (m->cycle->sums.power < 0)
-        stop_all(m, dt);
-    else
-        put_none(m->cycle, 0);
+    struct tl_cycle *c = m->cycle;
+    const tl_bodies *b = &m->bodies;
+    const double gravity = tl_v3_norm(m->config.gravity), lost = all_lost(m, dt);
+    put_none(c, c->sums.power < 0 ? lost : 0);
+    for (uint32_t body = 0; c->settling.calm && body < b->table.rows; body++)
+        if (b->fixed[body] != TL_FIX_ALL && tl_body_is_loose(m, body, tl_weight_of(b, body, gravity)))
+            c->alpha[body] = tl_body_power(m, body) < 0 ? lost : 0;
 }
 
 /* ---------------------------------------------------------------- leaps ------------------ */
@@ -132,11 +136,6 @@ static double way_of(const tl_model *m, uint32_t body)
     const double *x = m->cycle->leap[body].motion;
     double way2 = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], turn2 = x[3] * x[3] + x[4] * x[4] + x[5] * x[5];
     return sqrt(way2) + m->bodies.radius[body] * sqrt(turn2);
-}
-
-static bool is_loose(const tl_model *m, uint32_t body, double bears)
-{
-    return tl_v3_norm(m->bodies.force[body]) > LOOSE * bears;
 }
 
 /* What a body bears, N, over the stiffness that its inertia stands for, N/m. */
@@ -177,7 +176,8 @@ static double shorten(const tl_model *m, double dt)
                 continue;
             const closure of = closure_of(m, body, dt, gravity);
             const double most = CLOSURES * fmax(of.size, mean), way = way_of(m, body);
-            if (!(part * way > most) || is_loose(m, body, of.bears) != (bool)loose)
+            if (!(part * way > most) ||
+                tl_body_is_loose(m, body, tl_weight_of(&m->bodies, body, gravity)) != (bool)loose)
                 continue;
             if (!loose)
                 part = most / way;
@@ -301,9 +301,12 @@ tl_status tl_settle(tl_model *m, double dt)
         stop_all(m, dt);
         return TL_OK;
     }
-    if (begin_leaps(m))
+    if (begin_leaps(m)) {
+        s->calm = false;
         leap(m, dt);
-    else
-        move_on(m, dt);
+        return TL_OK;
+    }
+    move_on(m, dt);
+    s->calm = ratio < CALM;
     return TL_OK;
 }

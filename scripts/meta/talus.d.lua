@@ -853,6 +853,39 @@ function Model:cycle(cycles) end
 ---@return talus.SolveResult
 function Model:solve(options) end
 
+---@class (exact) talus.RelaxOptions
+---@field ratio? number in (0, 1], default 1e-05: ends when the unbalanced force ratio falls below this
+---@field measure? "average"|"maximum"|"local" default "local": which unbalanced force ratio ends it: see theory.md, Convergence
+---@field stop_at_failure? boolean default true: ends when some block is seen to fail steadily
+---@field max_cycles? integer >= 0, default 1000000: largest number of steps of this call
+---@field load_steps? integer in [1, 10000], default 1: gravity and loads come on in so many equal parts, each near rest before the next: put on at once they settle a rock mass some per cent deeper, for friction follows its path
+---@field every? integer >= 1, default 500: steps between calls of on_progress and stop
+---@field stop? fun(model: talus.Model): any called every `every` steps; ends the run when it answers true
+---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
+
+---@class (exact) talus.RelaxResult
+---@field reason string why it ended: "rest", "failure", "overlap" (blocks that were made overlapping push it apart), "cycles", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
+---@field message string what that means, in words; of a run that is not at rest what still moves, and why it is slow
+---@field failing any of a failure the selection of blocks that fail, else nil
+---@field volume any of these, m3
+---@field direction any where they go: {x, y, z} of length 1
+---@field worst talus.Block the block farthest from rest by the measure "local"
+---@field ratio number mean unbalanced force over mean contact force
+---@field ratio_maximum number largest unbalanced force over mean contact force
+---@field ratio_local number as in solve
+---@field measure string the measure that may end it
+---@field cycles integer steps of this call
+---@field time number the model's time, which stands still, s
+---@field wall number seconds it took
+---@field max_velocity number largest speed of a block in the last step, by the masses of the relaxation, m/s
+
+--- Finds where the model rests, or that it does not, by the cheapest means. Time, damping, time step and masses are afterwards as before, and nothing moves.
+---
+---     result = model:relax{ratio = 1e-5, ...}
+---@param options? talus.RelaxOptions
+---@return talus.RelaxResult
+function Model:relax(options) end
+
 ---@class (exact) talus.HistoryOptions
 ---@field name string what it is called, one of its own
 ---@field every? integer >= 1, default 10: steps between two samples; the first is taken at once
