@@ -7,6 +7,7 @@
 #include "base/inside.h"
 #include "base/lanes.h"
 #include "base/parallel.h"
+#include "cycle/settling.h"
 #include "force/laws.h"
 #include "model/contributor.h"
 #include "model/loads.h"
@@ -146,23 +147,6 @@ typedef struct tl_swept {
     uint32_t row;
     bool moves; /* far enough to be one of a pair that passes */
 } tl_swept;
-
-/* How a relaxation goes: settle.c. */
-typedef struct tl_settling {
-    double share;        /* of gravity and loads that acts */
-    int64_t part;        /* of those in which they come on, from 1 */
-    int64_t stops;       /* steps left with kinetic stops only, before leaps are tried */
-    int64_t stop_span;   /* that there will be the next time */
-    int64_t leaps;       /* left of those that are being made */
-    int64_t leap_span;   /* that there will be the next time */
-    int64_t idle;        /* leaps in a row that brought the model no nearer to rest */
-    double hold;         /* of a leap: inertia over dt^2 times this is added to the stiffness */
-    double power;        /* unbalanced forces at the beginning of the leap times its motion, J */
-    double expected;     /* fall of the energy in it, J */
-    double goal;         /* sum of unbalanced forces below which leaps have brought it nearer, N */
-    bool leapt, limited; /* the last step was a leap; one made shorter */
-    bool calm;           /* the model as a whole is near rest: loose bodies go their own way */
-} tl_settling;
 
 struct tl_cycle {
     tl_table table;

@@ -16,8 +16,8 @@
  * farther at once than some of the closures that its contacts have: friction, opening and bonds follow their path.
  * Leaps end when they bring the model no nearer to rest. Then stops have their turn, each time for longer.
  *
- * A leap is put as damping: with alpha = 2 / h (23) takes all of the old velocity and half of the kick, and the
- * damping's force makes of it what is wanted. */
+ * A leap is put as damping. With alpha = 2 / h (23) takes all of the old velocity and half of the kick. The damping's
+ * force makes of it what is wanted. */
 #include "cycle/settle.h"
 
 #include "base/columns.h"

@@ -422,6 +422,12 @@ static bool call_between(tl_model *m, const progress *p, tl_watch **watch, tl_st
     return false;
 }
 
+/* The call that a remark is of. */
+static const char *run_name(const tl_model *m)
+{
+    return m->relaxing ? "relax" : "solve";
+}
+
 static void say_failure(tl_model *m, const tl_solve_result *r)
 {
     uint32_t row = tl_block_row_quiet(m, r->failing);
@@ -429,16 +435,16 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
     overlap_push push;
     if (overlaps_push(m, &push)) {
         tl_model_say(m,
-                     "solve: an overlap pushes the model apart: blocks that were made overlapping have given off %.3g "
+                     "%s: an overlap pushes the model apart: blocks that were made overlapping have given off %.3g "
                      "J, most of it blocks %u and %u, and gravity and loads %.3g J; block %u moves on at %.3g m/s; "
                      "that is no word on whether it stands: make them apart, or with smaller overlaps",
-                     push.gave, push.a, push.b, push.others, r->failing, speed);
+                     run_name(m), push.gave, push.a, push.b, push.others, r->failing, speed);
         return;
     }
     tl_model_say(m,
-                 "solve: the model fails: block %u moves on at %.3g m/s without slowing down (unbalanced force ratio: "
+                 "%s: the model fails: block %u moves on at %.3g m/s without slowing down (unbalanced force ratio: "
                  "local %.3g, average %.3g)",
-                 r->failing, speed, r->ratio_local, r->ratio);
+                 run_name(m), r->failing, speed, r->ratio_local, r->ratio);
 }
 
 /* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for.
@@ -458,8 +464,8 @@ static void say_gone(tl_model *m, const tl_watch *w)
     }
     if (gone != TL_NO_ROW)
         tl_model_say(
-            m, "solve: at rest, but not where it began: block %u has moved by %.3g m in this run, %.2g times its size",
-            m->bodies.id[gone], way, most);
+            m, "%s: at rest, but not where it began: block %u has moved by %.3g m in this run, %.2g times its size",
+            run_name(m), m->bodies.id[gone], way, most);
 }
 
 /* Neither at rest nor failing: of a run that was to find out which. */
@@ -470,10 +476,10 @@ static void say_undecided(tl_model *m, const tl_solve *solve, const tl_solve_res
     const double of[] = {now.ratio, now.ratio_maximum, now.ratio_local}; /* by tl_ratio_measure */
     if (tl_model_says(m, TL_REMARK_UNDECIDED))
         tl_model_say(m,
-                     "solve: ended by %s = %.9g, neither at rest (ratio %.3g, asked for %.3g) nor failing: that is no "
+                     "%s: ended by %s = %.9g, neither at rest (ratio %.3g, asked for %.3g) nor failing: that is no "
                      "word on whether it stands",
-                     cycles ? "max_cycles" : "max_time", cycles ? (double)solve->max_cycles : solve->max_time,
-                     of[solve->measure], solve->ratio);
+                     run_name(m), cycles ? "max_cycles" : "max_time",
+                     cycles ? (double)solve->max_cycles : solve->max_time, of[solve->measure], solve->ratio);
 }
 
 /* What the end of a run means for whether the model stands. A stop function has its own reason. */
@@ -485,7 +491,7 @@ static void say_end(tl_model *m, const tl_solve *solve, const tl_watch *watch, c
         say_failure(m, r);
     else if (rests && watch)
         say_gone(m, watch);
-    else if (limit && solve->ratio > 0 && m->damping)
+    else if (limit && solve->ratio > 0 && tl_is_damped(m))
         say_undecided(m, solve, r);
 }
 

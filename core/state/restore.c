@@ -174,8 +174,8 @@ static bool settings_are_sound(const tl_model *m)
            tl_v3_finite(m->gravity_before) && (!m->loads_changed || m->bodies.load_before) && tl_v3_finite(m->origin) &&
            isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 && memchr(m->stage, 0, sizeof m->stage) &&
            tl_text_is_clean(m->stage) && m->cycles >= 0 && m->cycles <= MOST_CYCLES && m->gone == 0 &&
-           (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) && !(m->added_most < 0) &&
-           m->structure <= MOST_CHANGES && m->constraints <= MOST_CHANGES && m->laws <= MOST_CHANGES;
+           (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) && !(m->added_most < 0) && m->still >= 0 &&
+           m->still < 1 && m->structure <= MOST_CHANGES && m->constraints <= MOST_CHANGES && m->laws <= MOST_CHANGES;
 }
 
 static bool rule_is_sound(const tl_min_area_rule *rule)

@@ -300,6 +300,16 @@ static int64_t *put_words(int64_t *to, const tl_model *m, const tl_settings *of)
     return to;
 }
 
+/* How a relaxation goes. The secants of its leaps follow from the steps that these numbers stand for. */
+static void hash_settling(tl_hash *hash, const tl_model *m)
+{
+    const tl_settling *s = &m->cycle->settling;
+    const int64_t words[] = {s->part, s->stops, s->stop_span, s->leaps, s->leap_span,
+                             s->idle, s->leapt, s->limited,   s->calm};
+    tl_hash_numbers(hash, (const double[]){m->still, s->share, s->hold, s->power, s->expected, s->goal}, 6);
+    tl_hash_bytes(hash, words, sizeof words);
+}
+
 static void hash_settings(tl_hash *hash, const tl_model *m)
 {
     const struct tl_cycle *c = m->cycle;
@@ -327,6 +337,8 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
     hash_laws(hash, m);
     if (m->damping)
         hash_damping(hash, m);
+    if (m->relaxing && c)
+        hash_settling(hash, m);
 }
 
 tl_status tl_state_hash(tl_model *m, char text[33])

@@ -1,0 +1,25 @@
+/* settling.h - how a relaxation goes: settle.c. */
+#ifndef TL_CYCLE_SETTLING_H
+#define TL_CYCLE_SETTLING_H
+
+#include <stdint.h>
+
+typedef struct tl_settling {
+    double share;      /* of gravity and loads that acts */
+    int64_t part;      /* of those in which they come on, from 1 */
+    int64_t stops;     /* steps left with kinetic stops only, before leaps are tried */
+    int64_t stop_span; /* that there will be the next time */
+    int64_t leaps;     /* left of those that are being made */
+    int64_t leap_span; /* that there will be the next time */
+    int64_t idle;      /* leaps in a row that brought the model no nearer to rest */
+    double hold;       /* of a leap: inertia over dt^2 times this is added to the stiffness */
+    double power;      /* unbalanced forces at the beginning of the leap times its motion, J */
+    double expected;   /* fall of the energy in it, J */
+    double goal;       /* sum of unbalanced forces below which leaps have brought it nearer, N */
+    int32_t leapt;     /* the last step was a leap, 1 or 0, */
+    int32_t limited;   /* that was made shorter */
+    int32_t calm;      /* the model as a whole is near rest: loose bodies go their own way */
+    int32_t unused;    /* up to whole doubles */
+} tl_settling;
+
+#endif

@@ -1,0 +1,145 @@
+-- program only
+-- What model:relax promises: rest and failure are told, nothing of the user's is changed, the same bits for any threads
+-- and over a copy or a save in the middle, what is driven is refused.
+local talus = require "talus"
+local check = require "check"
+
+local TMP = os.tmpname()
+
+-- A slope of a few dozen blocks on two sets of joints.
+local function slope(friction, threads)
+    local m = talus.model { gravity = { 0, 0, -9.81 }, seed = 7, threads = threads or 1 }
+    m:generate("profile", {
+        section = { { 0, -5 }, { 30, -5 }, { 30, 0 }, { 20, 0 }, { 12, 12 }, { 0, 12 } }, from = 0, to = 6, density = 2650,
+    })
+    m:generate("jointset", { joint = "J1", dip = 45, dip_direction = 90, spacing = 3, number = 12, origin = { 15, 3, 3 } })
+    m:generate("jointset", { joint = "J2", dip = 80, dip_direction = 270, spacing = 4, number = 12, origin = { 15, 3, 3 } })
+    m:boundary { xmin = "roller", xmax = "roller", ymin = "roller", ymax = "roller", zmin = "fixed" }
+    m:joint("*", "coulomb", { kn = 1e9, ks = 5e8, friction = friction })
+    return m
+end
+
+-- Five bricks, each set back by a share of what makes them topple: joints that press on their edges.
+local function bricks(share)
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("box", { min = { -1, 0, -0.5 }, max = { 0, 0.6, 0 }, density = 2300 })
+    m:blocks():fix()
+    local n, h, x = 5, 0.25, 0
+    for i = n, 1, -1 do
+        x = x + share / (2 * i)
+        m:generate("box", { min = { x - 1, 0, (n - i) * h }, max = { x, 0.6, (n - i + 1) * h }, density = 2300 })
+    end
+    m:joint("*", "coulomb", { kn = 3e10, ks = 3e10, friction = 35 })
+    return m
+end
+
+local function largest(m)
+    local most = 0
+    for _, b in ipairs(m:blocks { fixed = false }) do
+        local u = b.displacement
+        most = math.max(most, math.sqrt(u[1] ^ 2 + u[2] ^ 2 + u[3] ^ 2))
+    end
+    return most
+end
+
+-- Rest, and all that is the user's as before.
+do
+    local m = slope(60)
+    m:damping("local", { alpha = 0.7 })
+    m:timestep { rule = "body", fraction = 0.4 }
+    local before = m:timestep()
+    local r = m:relax {}
+    check.equal(r.reason, "rest")
+    check.holds(r.ratio_local < 1e-5, "the local ratio of what rests")
+    check.holds(r.cycles > 10 and r.cycles < 300, "steps to rest: " .. r.cycles)
+    check.equal(m.cycles, r.cycles)
+    check.equal(m.time, 0)
+    check.equal(r.failing, nil)
+    check.equal(r.volume, nil)
+    check.equal(m:blocks():max "speed", 0)
+    check.near(m:timestep().dt, before.dt, 0.2 * before.dt)
+    check.equal(m:mass_scaling().on, false)
+    local on = m:solve { ratio = 2e-5, max_cycles = 200 }
+    check.equal(on.reason, "ratio") -- what rests by relax rests
+    check.equal(m:relax {}.reason, "rest")
+end
+
+-- What fails is told, and where it goes.
+do
+    local m = slope(20)
+    local r = m:relax {}
+    check.equal(r.reason, "failure")
+    check.holds(#r.failing > 0, "some block fails")
+    check.near(r.volume, r.failing:sum "volume", 1e-9 * r.volume)
+    check.holds(r.direction[1] > 0.3 and r.direction[3] < -0.3, "down the slope")
+    check.holds(r.message:find "fails: %d+ blocks", r.message)
+    check.equal(m:blocks():max "speed", 0)
+end
+
+-- Neither: what is in the way.
+do
+    local r = slope(60):relax { max_cycles = 5 }
+    check.equal(r.reason, "cycles")
+    check.equal(r.cycles, 5)
+    check.holds(r.message:find "neither at rest nor failing after 5 steps" and r.worst, r.message)
+end
+
+-- Joints that press on their edges come to rest, too: the kinetic damping alone takes some 40,000 steps to the same place.
+do
+    local m = bricks(0.97)
+    local r = m:relax { ratio = 1e-7 }
+    check.equal(r.reason, "rest")
+    check.holds(r.cycles < 5000, r.cycles .. " steps of bricks that are set back")
+    check.near(1e3 * largest(m), 3.1186, 2e-3)
+end
+
+-- The same bits for any threads, and over a copy and a save in the middle; during leaps, too.
+for _, case in ipairs { { slope, 60 }, { bricks, 0.9 } } do
+    local at = {}
+    local function run(threads, middle)
+        local m = case[1](case[2], threads)
+        local r = m:relax {
+            every = 1,
+            on_progress = function(model)
+                if model.cycles == middle then
+                    at.copy = model:copy()
+                    model:save(TMP)
+                end
+            end,
+        }
+        check.equal(r.reason, "rest")
+        return m:state_hash(), r.cycles
+    end
+    local hash, cycles = run(1)
+    for _, middle in ipairs { 20, cycles - 3 } do
+        check.equal(run(3, middle), hash)
+        check.equal(at.copy:relax {}.reason, "rest")
+        check.equal(at.copy:state_hash(), hash)
+        local restored = talus.restore(TMP)
+        check.equal(restored.time, 0)
+        check.equal(restored:relax {}.reason, "rest")
+        check.equal(restored:state_hash(), hash)
+    end
+end
+os.remove(TMP)
+
+-- In parts gravity stores less: friction follows its path.
+do
+    local at_once, in_parts = slope(50), slope(50)
+    local a, b = at_once:relax {}, in_parts:relax { load_steps = 10 }
+    check.equal(a.reason, "rest")
+    check.equal(b.reason, "rest")
+    check.holds(in_parts:energy().stored <= at_once:energy().stored, "in parts no more is stored")
+    check.holds(b.cycles > a.cycles, "and it takes more steps")
+end
+
+-- What cannot be asked for.
+do
+    local m = slope(60)
+    check.refused(m, function() m:relax { ratio = 0 } end, "ratio")
+    check.refused(m, function() m:relax { load_steps = 0 } end, "load_steps")
+    check.refused(m, function() m:relax { dt = 1 } end, "dt")
+    m:blocks():fix()
+    m:blocks():drive { velocity = { 0.1, 0, 0 } }
+    check.refused(m, function() m:relax {} end, "is driven at 0.1 m/s")
+end
