@@ -245,6 +245,8 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     VALUE(CACHE, laid_at);
     VALUE(CACHE, spare_share);
     LIST(CACHE, layout.spans, layout.span_count, layout.span_capacity, other);
+    VALUE(CACHE, layout.laid_rows);
+    VALUE(CACHE, layout.added_at);
     LIST(CACHE, layout.groups, layout.group_capacity, layout.group_capacity, index);
     TABLE(SCRATCH, spare, spare);
     TABLE(SCRATCH, spare_points, spare);

@@ -463,13 +463,12 @@ static void touch(tl_model *m, uint32_t row)
     d->touched[on.a] = d->touched[on.b] = true;
 }
 
-/* Takes out the dead and finds room for those that are new or have grown; false when there is none. Backward,
- * for the last contact takes the row of one that goes. */
+/* Takes out the dead, gives others their law, and finds room for those that are new or have grown; false when there is
+ * none. Backward, for the last contact takes the row of one that goes. */
 static bool settle_rows(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
-    bool enough = true;
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
         if (c->pending[row] == TL_PENDING_NONE)
             continue;
@@ -482,14 +481,12 @@ static bool settle_rows(tl_model *m)
             note_parted(d, pair);
             continue;
         }
-        if (c->pending[row] == TL_PENDING_MOVE) {
+        if (c->pending[row] == TL_PENDING_MOVE)
             d->pairs[pair].want_points = c->point_capacity[row];
-        }
         if (tl_law_row(m, c->tag[row]) != c->law[row])
             change_law(m, row);
-        enough = enough && tl_contact_place(d, row);
     }
-    return enough;
+    return tl_contacts_place(d, m->cycles);
 }
 
 /* Builds the facets of the contacts that have been given their room; *more: some want more still. */
@@ -540,18 +537,20 @@ static tl_status settle(tl_model *m)
 {
     tl_detect *d = m->detect;
     size_t born = 0;
+    bool scattered = tl_contacts_scattered(d, m->cycles);
     tl_contacts_free_spare(d, m->cycles);
     tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
-    if (born == 0 && !d->rows_changed && !some_pending(&d->contacts))
+    if (born == 0 && !d->rows_changed && !some_pending(&d->contacts) && !scattered)
         return TL_OK;
     d->any_without_rows = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {
-        if (!settle_rows(m))
+        if (!settle_rows(m) || scattered)
             status = tl_contacts_repack(m);
         else if (!tl_contacts_index(m))
             status = tl_fail_memory(&m->error);
+        scattered = false;
         if (status == TL_OK)
             status = fill_contacts(m, &more);
         d->parted += tl_addends_sum(&d->parting);
