@@ -429,9 +429,9 @@ static void give_press_back(tl_detect *d, uint32_t row)
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
 #define SPARE_ROWS 64
-/* Cost only: spans that are added take one row of points for so many that were laid out, at the most. They leave as many
+/* Cost only: spans that are added take one row of points for so many that were laid out, at most. They leave as many
  * lanes empty in the spans from which their contacts come. */
-#define MOST_ADDED 4
+#define MOST_ADDED 2
 /* Cost only: how many steps laying out takes as long as. All are laid out anew once empty lanes have cost as much. */
 #define LAYOUT_STEPS 8
 
