@@ -429,7 +429,7 @@ static void give_press_back(tl_detect *d, uint32_t row)
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
 #define SPARE_ROWS 64
-/* Cost only: spans that are added take one row of points for so many that were laid out, at most. They leave as many
+/* Cost only: spans that are added take one row of points for so many in use, at most. They leave as many
  * lanes empty in the spans from which their contacts come. */
 #define MOST_ADDED 2
 /* Cost only: how many steps laying out takes as long as. All are laid out anew once empty lanes have cost as much. */
@@ -693,6 +693,15 @@ static bool place_contact(tl_detect *d, uint32_t row)
     return group != NULL;
 }
 
+/* Whether a span that was added last may stay. */
+static bool has_room(const tl_layout *layout, const tl_span *span)
+{
+    size_t used = 0;
+    for (const tl_span *laid = layout->spans; laid < span && laid->begin < layout->laid_rows; laid++)
+        used += laid->end - laid->begin;
+    return span->limit - layout->laid_rows <= used / MOST_ADDED && span->limit <= UINT32_MAX;
+}
+
 /* Adds a span for some contacts, of one law and kind, and moves their points there; false when there is no room. */
 static bool move_to_new_span(tl_detect *d, const place *list, size_t count, lane_request *requests, int64_t cycles)
 {
@@ -705,8 +714,7 @@ static bool move_to_new_span(tl_detect *d, const place *list, size_t count, lane
     tl_span *span = add_span(layout, &d->contacts, list->row, requests, count, d->spare_share, SPARE_ADDED);
     if (!span)
         return false;
-    if ((size_t)most * TL_LANES > d->lane_capacity ||
-        span->limit > layout->laid_rows + layout->laid_rows / MOST_ADDED || span->limit > UINT32_MAX ||
+    if ((size_t)most * TL_LANES > d->lane_capacity || !has_room(layout, span) ||
         !tl_table_resize(&d->points.table, span->limit)) {
         layout->span_count--;
         return false;
