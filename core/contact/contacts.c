@@ -727,13 +727,14 @@ static bool move_to_new_span(tl_detect *d, const place *list, size_t count, lane
     return true;
 }
 
-/* Whether a contact that waits for a lane is of a span that there is none of yet. */
+/* Whether a contact that has come under another law, or is held now, is of a span that there is none of yet. For
+ * contacts that are born or grow all are laid out anew. */
 static bool lacks_span(tl_detect *d, uint32_t row)
 {
-    return d->contacts.pending[row] != TL_PENDING_NONE && wanted_points(d, row) > 0 && !span_of(d, row);
+    return d->contacts.pending[row] == TL_PENDING_MOVE && wanted_points(d, row) > 0 && !span_of(d, row);
 }
 
-/* Makes the spans that contacts which wait for a lane lack, in the order of a layout. false when there is no room. */
+/* Makes the spans that such contacts lack, in the order of a layout. false when there is no room. */
 static bool add_spans(tl_detect *d, int64_t cycles)
 {
     const tl_contacts *c = &d->contacts;

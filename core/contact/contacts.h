@@ -22,7 +22,7 @@ void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
  * it. */
 void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind, const tl_point_lanes *lanes);
 /* Moves the points of contacts with something pending to lanes with the room they want, in their spans. Spans that
- * they lack are added behind the others. false when there is no room: lay all out anew. */
+ * contacts under another law lack are added behind the others. false when there is no room: lay all out anew. */
 bool tl_contacts_place(tl_detect *d, int64_t cycles);
 /* Whether contacts that have moved to added spans have left so many lanes empty, for so long, that laying out anew
  * would have cost less. */
