@@ -46,10 +46,11 @@ static bool copy_table(const tl_entry *to, const tl_entry *from)
 /* Makes an empty table of the same columns in the place of one. */
 static void take_columns(tl_table *to, const tl_table *from)
 {
-    free(to->memory);
+    tl_table_free(to);
     *to = *from;
     to->owner = to;
     to->memory = NULL;
+    to->mapped = 0;
     tl_table_free(to);
 }
 

@@ -1,11 +1,12 @@
 /* table.c - see table.h. */
-#define _DEFAULT_SOURCE /* madvise */
+#define _GNU_SOURCE /* madvise, mremap */
 #include "base/table.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 /* Capacities are multiples of this, so that a vector loop may run past the last row. */
 #define ROW_ROUND 16u
@@ -15,6 +16,11 @@
 
 /* Bytes of a large page of x86-64 and of most others. */
 #define LARGE ((size_t)2 << 20)
+/* Cost only: bytes from which a table has pages of its own, which are moved when it grows. */
+#define LEAST_MAPPED ((size_t)1 << 20)
+/* Cost only: cache lines between the beginnings of columns in their pages, or the same row of all columns would lie in
+ * one set of the nearest cache. */
+#define STAGGER 5
 
 void tl_pages_large(void *memory, size_t bytes)
 {
@@ -77,29 +83,101 @@ static size_t column_bytes(const tl_column *column, size_t capacity)
     return (capacity * column->size + TL_ALIGN - 1) / TL_ALIGN * TL_ALIGN;
 }
 
-/* Gives the table memory for `capacity` rows and takes its rows over, but for columns without any data. All
- * columns lie in one allocation that comes zeroed: what is not written to yet costs little memory. */
+/* ---------------------------------------------------------------- memory ------------------
+ *
+ * All columns lie in one allocation that comes zeroed: what is not written to yet costs little memory.
+ *
+ * A large table is mapped, and each column has pages of its own. When it grows, these are put elsewhere in the address
+ * space as they are: nothing is copied, and no page is cleared but those of new rows. */
+
+static size_t page_bytes(void)
+{
+    return (size_t)sysconf(_SC_PAGESIZE);
+}
+
+static size_t round_up(size_t bytes, size_t to)
+{
+    return (bytes + to - 1) / to * to;
+}
+
+/* Bytes before column i in its first page. */
+static size_t stagger(size_t i)
+{
+    return i * STAGGER * TL_ALIGN % page_bytes();
+}
+
+static void release(void *memory, size_t mapped)
+{
+    if (mapped)
+        (void)munmap(memory, mapped);
+    else
+        free(memory);
+}
+
+/* Puts the pages of a column elsewhere; false when that is not possible (nothing changed). */
+static bool move_pages(char *to, char *from, size_t bytes)
+{
+#ifdef MREMAP_FIXED
+    bytes = round_up(bytes, page_bytes());
+    return mremap(from, bytes, bytes, MREMAP_MAYMOVE | MREMAP_FIXED, to) == to;
+#else
+    (void)to, (void)from, (void)bytes;
+    return false;
+#endif
+}
+
+/* Where column i begins in memory that is free from `at` on. Large pages can be moved as a whole to a place that lies
+ * in such pages as the old one did. */
+static char *place_column(const tl_table *table, size_t i, size_t capacity, char *at, bool mapped)
+{
+    at += (TL_ALIGN - (uintptr_t)at % TL_ALIGN) % TL_ALIGN;
+    if (!mapped)
+        return at;
+    at += round_up((uintptr_t)at, page_bytes()) - (uintptr_t)at;
+    const char *old = get(table, &table->columns[i]);
+    if (table->mapped && old && column_bytes(&table->columns[i], capacity) >= LARGE)
+        at += ((uintptr_t)(old - stagger(i)) - (uintptr_t)at) % LARGE;
+    return at + stagger(i);
+}
+
+/* Takes the rows of a column over. */
+static void take_rows(const tl_table *table, size_t i, char *to)
+{
+    char *old = get(table, &table->columns[i]);
+    const size_t bytes = table->rows * table->columns[i].size, before = stagger(i);
+    if (bytes == 0 || !old || (table->mapped && move_pages(to - before, old - before, before + bytes)))
+        return;
+    memcpy(to, old, bytes);
+}
+
+/* Gives the table memory for `capacity` rows and takes its rows over, but for columns without any data. */
 static bool allocate(tl_table *table, size_t capacity)
 {
     size_t bytes = TL_ALIGN;
     for (size_t i = 0; i < table->column_count; i++)
         bytes += column_bytes(&table->columns[i], capacity);
-    char *memory = calloc(bytes, 1);
-    if (!memory)
+    const bool mapped = bytes >= LEAST_MAPPED;
+    assert(mapped || !table->mapped); /* it only grows */
+    if (mapped)
+        bytes += table->column_count * (2 * page_bytes() + (table->mapped ? LARGE : 0));
+    char *memory =
+        mapped ? mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) : calloc(bytes, 1);
+    if (!memory || (mapped && memory == MAP_FAILED))
         return false;
     tl_pages_large(memory, bytes);
-    char *at = memory + (TL_ALIGN - (uintptr_t)memory % TL_ALIGN) % TL_ALIGN;
+    char *at = memory;
     for (size_t i = 0; i < table->column_count; i++) {
-        const void *old = get(table, &table->columns[i]);
-        if (table->rows && old)
-            memcpy(at, old, table->rows * table->columns[i].size);
+        at = place_column(table, i, capacity, at, mapped);
+        take_rows(table, i, at);
         put(table, &table->columns[i], at);
         at += column_bytes(&table->columns[i], capacity);
     }
-    free(table->memory);
+    release(table->memory, table->mapped);
+    if (!table->mapped || table->rows == 0) /* pages that were moved may have more than the rows */
+        table->used = table->rows;
     table->memory = memory;
+    table->mapped = mapped ? bytes : 0;
     table->capacity = capacity;
-    table->used = table->rows;
     return true;
 }
 
@@ -207,6 +285,7 @@ bool tl_table_copy(tl_table *table, void *owner, const tl_table *from)
     *table = *from;
     table->owner = owner;
     table->memory = NULL;
+    table->mapped = 0;
     for (size_t i = 0; i < table->column_count; i++)
         put(table, &table->columns[i], get(from, &table->columns[i])); /* allocate copies it */
     if (from->capacity == 0 || allocate(table, from->capacity))
@@ -220,14 +299,15 @@ size_t tl_table_bytes(const tl_table *table)
     size_t row = 0;
     for (size_t i = 0; i < table->column_count; i++)
         row += table->columns[i].size;
-    return row * table->capacity;
+    return row * (table->mapped ? table->used : table->capacity);
 }
 
 void tl_table_free(tl_table *table)
 {
     for (size_t i = 0; i < table->column_count; i++)
         put(table, &table->columns[i], NULL);
-    free(table->memory);
+    release(table->memory, table->mapped);
     table->memory = NULL;
+    table->mapped = 0;
     table->rows = table->capacity = table->used = 0;
 }

@@ -31,8 +31,9 @@ typedef struct tl_column {
 typedef struct tl_table {
     void *owner;
     size_t rows, capacity;
-    size_t used;  /* rows from here on have been zero since the memory was had */
-    void *memory; /* of all columns */
+    size_t used;   /* rows from here on have been zero since the memory was had */
+    void *memory;  /* of all columns */
+    size_t mapped; /* bytes of it, where it was mapped; 0: it was allocated */
     size_t column_count;
     tl_column columns[TL_TABLE_COLUMNS];
 } tl_table;
@@ -72,7 +73,8 @@ void tl_table_free(tl_table *table);
 /* Makes a table of the same columns, rows and capacity for another owner of the same type. It replaces one without
  * memory. false when out of memory (it is empty then). */
 bool tl_table_copy(tl_table *table, void *owner, const tl_table *from);
-/* Bytes its columns take, spare rows included. */
+/* Bytes its columns take, spare rows included, but for those of large tables that have not been written to: they take
+ * none. */
 size_t tl_table_bytes(const tl_table *table);
 
 /* Makes room for `need` items of `size` bytes in the array whose pointer is at `slot`, with some to spare. What is

@@ -2,7 +2,7 @@
  *
  * The points of a joint law are one span of rows, so a law is called on the columns themselves; a span has room for a
  * few contacts more. Laying out anew sorts the contacts by joint law, apart those between bodies that are held still,
- * and by blocks. */
+ * and by blocks. Contacts of a law that has no span yet get one behind the others, and nothing else moves. */
 #include "contact/contacts.h"
 
 #include "base/columns.h"
@@ -34,9 +34,10 @@
 #define MOST_SPARE 8
 /* Points more than it needs that a contact may grow by in a SIMD group that is begun for it. */
 #define GROWTH 2
-/* Rows and SIMD groups that are left to spare in a span at least. */
+/* Rows and SIMD groups that are left to spare in a span at least; and rows in one that is added to a layout. */
 #define SPARE_POINTS 1024
 #define SPARE_GROUPS 16
+#define SPARE_ADDED 128
 
 /* A contact that is to get a lane, and the points that it wants room for. */
 typedef struct lane_request {
@@ -69,19 +70,25 @@ static tl_simd_group *begin_group(tl_layout *layout, tl_span *span, uint32_t slo
     return group;
 }
 
-/* Gives a window of contacts their lanes. */
-static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_request *requests, size_t count)
+/* Sorts the requests of a span, window by window. Returns the rows that they need. */
+static size_t sort_requests(lane_request *requests, size_t count)
 {
-    if (count > 1)
-        qsort(requests, count, sizeof *requests, compare_requests);
+    size_t rows = 0;
+    for (size_t i = 0; i < count; i += WINDOW)
+        qsort(&requests[i], count - i < WINDOW ? count - i : WINDOW, sizeof *requests, compare_requests);
+    for (size_t i = 0; i < count; i += TL_LANES) /* the largest of a group is its first */
+        rows += (size_t)requests[i].points * TL_LANES;
+    return rows;
+}
+
+/* Begins the SIMD groups of a span for sorted requests. */
+static void begin_groups(tl_layout *layout, tl_span *span, const lane_request *requests, size_t count)
+{
     tl_simd_group *group = NULL;
     for (size_t i = 0; i < count; i++) {
-        uint32_t lane = (uint32_t)(i % TL_LANES), row = requests[i].row;
-        if (lane == 0)
+        if (i % TL_LANES == 0)
             group = begin_group(layout, span, requests[i].points);
-        group->contact[lane] = row;
-        c->point_start[row] = group->start + lane;
-        c->point_capacity[row] = (uint16_t)group->slots;
+        group->contact[i % TL_LANES] = requests[i].row;
     }
 }
 
@@ -90,53 +97,61 @@ static bool is_of_span(const tl_contacts *c, uint32_t row, const tl_span *span)
     return c->law[row] == span->law && c->held[row] == span->held && c->kind[row] == span->kind;
 }
 
-/* Lays the span of the contacts from `row` on that are of it; returns the row behind them. */
-static uint32_t lay_span(tl_layout *layout, tl_contacts *c, tl_span *span, uint32_t row)
+/* Adds a span behind the others: for contacts as that in a row, and for requests, which it sorts. It has one in `share`
+ * rows and SIMD groups to spare, and so many rows at least. NULL when out of memory. */
+static tl_span *add_span(tl_layout *layout, const tl_contacts *c, uint32_t row, lane_request *requests, size_t count,
+                         size_t share, size_t spare)
 {
-    lane_request requests[WINDOW];
-    size_t count = 0;
-    for (; row < c->table.rows && is_of_span(c, row, span); row++) {
-        c->point_start[row] = 0;
-        if (c->point_capacity[row])
-            requests[count++] = (lane_request){c->point_capacity[row], row};
-        if (count == WINDOW) {
-            assign_lanes(layout, c, span, requests, count);
-            count = 0;
-        }
-    }
-    assign_lanes(layout, c, span, requests, count);
-    return row;
+    const tl_span last = layout->span_count ? layout->spans[layout->span_count - 1] : (tl_span){.limit = 0};
+    const size_t begin = last.limit, group_begin = last.group_limit;
+    const size_t rows = with_spare(sort_requests(requests, count), share, spare);
+    const size_t groups = with_spare((count + TL_LANES - 1) / TL_LANES, share, SPARE_GROUPS);
+    if (!tl_grow(&layout->spans, &layout->span_capacity, layout->span_count + 1, sizeof *layout->spans) ||
+        !tl_grow(&layout->groups, &layout->group_capacity, group_begin + groups, sizeof *layout->groups))
+        return NULL;
+    tl_span *span = &layout->spans[layout->span_count++];
+    *span = (tl_span){.law = c->law[row],
+                      .held = c->held[row],
+                      .kind = c->kind[row],
+                      .begin = begin,
+                      .end = begin,
+                      .limit = begin + (rows + TL_LANES - 1) / TL_LANES * TL_LANES,
+                      .group_begin = group_begin,
+                      .group_end = group_begin,
+                      .group_limit = group_begin + groups};
+    return span;
 }
 
 /* Gives contacts that are sorted by spans their lanes in an empty layout: sets the start and room of each by the
- * room it wants, with one in `share` to spare. *points is the number of rows. false when out of memory. */
-static bool make_layout(tl_layout *layout, tl_contacts *c, size_t share, size_t *points)
+ * room it wants, with one in `share` to spare. false when out of memory. */
+static bool make_layout(tl_layout *layout, tl_contacts *c, size_t share)
 {
-    uint32_t rows = (uint32_t)c->table.rows;
-    *points = 0;
-    size_t groups = 0;
-    for (uint32_t row = 0; row < rows;) {
-        if (!tl_grow(&layout->spans, &layout->span_capacity, layout->span_count + 1, sizeof *layout->spans))
-            return false;
-        tl_span *span = &layout->spans[layout->span_count++];
-        *span = (tl_span){
-            .law = c->law[row], .held = c->held[row], .kind = c->kind[row], .begin = *points, .group_begin = groups};
+    const uint32_t rows = (uint32_t)c->table.rows;
+    lane_request *requests = malloc((rows + 1) * sizeof *requests);
+    bool enough = requests != NULL;
+    for (uint32_t row = 0; row < rows && enough;) {
+        const uint32_t first = row;
+        const tl_span like = {.law = c->law[first], .held = c->held[first], .kind = c->kind[first]};
         size_t count = 0;
-        for (uint32_t i = row; i < rows && is_of_span(c, i, span); i++)
-            count += c->point_capacity[i] > 0;
-        span->end = span->begin;
-        span->group_end = groups;
-        /* every window but the last of a span is full */
-        size_t full = (count + TL_LANES - 1) / TL_LANES;
-        span->group_limit = groups = groups + with_spare(full, share, SPARE_GROUPS);
-        if (!tl_grow(&layout->groups, &layout->group_capacity, groups, sizeof *layout->groups))
-            return false;
-        row = lay_span(layout, c, span, row);
-        span->limit = span->begin + with_spare(span->end - span->begin, share, SPARE_POINTS);
-        span->limit = (span->limit + TL_LANES - 1) / TL_LANES * TL_LANES;
-        *points = span->limit;
+        for (; row < rows && is_of_span(c, row, &like); row++) {
+            c->point_start[row] = 0;
+            if (c->point_capacity[row])
+                requests[count++] = (lane_request){c->point_capacity[row], row};
+        }
+        tl_span *span = add_span(layout, c, first, requests, count, share, SPARE_POINTS);
+        enough = span != NULL;
+        if (!enough)
+            break;
+        begin_groups(layout, span, requests, count);
+        for (size_t r = span->group_begin; r < span->group_end; r++)
+            for (uint32_t l = 0; l < TL_LANES && layout->groups[r].contact[l] != TL_NO_ROW; l++) {
+                c->point_start[layout->groups[r].contact[l]] = layout->groups[r].start + l;
+                c->point_capacity[layout->groups[r].contact[l]] = (uint16_t)layout->groups[r].slots;
+            }
     }
-    return true;
+    free(requests);
+    layout->laid_rows = layout->span_count ? layout->spans[layout->span_count - 1].limit : 0;
+    return enough;
 }
 
 static tl_span *span_of(tl_detect *d, uint32_t contact)
@@ -158,13 +173,9 @@ static bool take_lane(tl_simd_group *group, uint32_t contact, uint32_t *lane)
     return false;
 }
 
-/* A free lane of a contact's span with room for so many points, taken for it; NULL when there is none. */
-static tl_simd_group *take_group(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane)
+/* A free lane of a span with room for so many points, taken for a contact; NULL when there is none. */
+static tl_simd_group *take_group(tl_detect *d, tl_span *span, uint32_t points, uint32_t contact, uint32_t *lane)
 {
-    tl_span *span = span_of(d, contact);
-    if (!span)
-        return NULL;
-    span->rest = TL_SPAN_WOKEN;
     for (size_t r = span->group_end, back = 0; r-- > span->group_begin && back < LOOK_BACK; back++) {
         tl_simd_group *group = &d->layout.groups[r];
         if (group->slots >= points && group->slots <= points + MOST_SPARE && take_lane(group, contact, lane))
@@ -418,6 +429,11 @@ static void give_press_back(tl_detect *d, uint32_t row)
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
 #define SPARE_ROWS 64
+/* Cost only: spans that are added take one row of points for so many in use, at most. They leave as many
+ * lanes empty in the spans from which their contacts come. */
+#define MOST_ADDED 2
+/* Cost only: how many steps laying out takes as long as. All are laid out anew once empty lanes have cost as much. */
+#define LAYOUT_STEPS 8
 
 uint32_t tl_law_row(const tl_model *m, tl_tag tag)
 {
@@ -458,6 +474,17 @@ typedef struct place {
     uint32_t law, held, kind, a, b, row;
 } place;
 
+static place place_of(const tl_contacts *c, uint32_t row)
+{
+    return (place){c->law[row], c->held[row], c->kind[row], c->a[row], c->b[row], row};
+}
+
+/* Whether two contacts are of different spans. */
+static bool are_apart(const place *p, const place *q)
+{
+    return p->law != q->law || p->held != q->held || p->kind != q->kind;
+}
+
 static int compare_place(const void *x, const void *y)
 {
     const place *p = x, *q = y;
@@ -477,7 +504,7 @@ static place *sorted(const tl_contacts *c, size_t *count)
     *count = 0;
     for (uint32_t row = 0; list && row < c->table.rows; row++)
         if (c->pending[row] != TL_PENDING_DIE)
-            list[(*count)++] = (place){c->law[row], c->held[row], c->kind[row], c->a[row], c->b[row], row};
+            list[(*count)++] = place_of(c, row);
     if (list && *count > 1)
         qsort(list, *count, sizeof *list, compare_place);
     return list;
@@ -583,11 +610,19 @@ static void move_points(tl_detect *d, const place *list)
     }
 }
 
+bool tl_contacts_scattered(const tl_detect *d, int64_t cycles)
+{
+    const tl_layout *layout = &d->layout;
+    const size_t rows = layout->span_count ? layout->spans[layout->span_count - 1].limit : 0;
+    return rows > layout->laid_rows && (double)(cycles - layout->added_at) * (double)(rows - layout->laid_rows) >=
+                                           LAYOUT_STEPS * (double)layout->laid_rows;
+}
+
 tl_status tl_contacts_repack(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts, *fresh = &d->spare;
-    size_t count, points;
+    size_t count;
     place *list = sorted(c, &count);
     if (!list)
         return tl_fail_memory(&m->error);
@@ -599,8 +634,8 @@ tl_status tl_contacts_repack(tl_model *m)
     for (uint32_t i = 0; i < count && there; i++)
         copy_contact(d, list[i].row, i);
     tl_layout layout = {0};
-    there = there && make_layout(&layout, fresh, d->spare_share, &points) && tl_detect_make_lanes(d, &layout) &&
-            tl_table_resize(&d->spare_points.table, points);
+    there = there && make_layout(&layout, fresh, d->spare_share) && tl_detect_make_lanes(d, &layout) &&
+            layout.laid_rows <= UINT32_MAX && tl_table_resize(&d->spare_points.table, layout.laid_rows);
     if (there)
         move_points(d, list);
     free(list);
@@ -625,7 +660,19 @@ static void clear_points(tl_detect *d, uint32_t contact)
         tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
 }
 
-bool tl_contact_place(tl_detect *d, uint32_t row)
+/* Moves a contact's points to a lane that was taken for it. */
+static void move_lane(tl_detect *d, uint32_t row, const tl_simd_group *group, uint32_t lane)
+{
+    tl_contacts *c = &d->contacts;
+    copy_points(&d->points, c->point_start[row], &d->points, group->start + lane, c->point_count[row]);
+    clear_points(d, row);
+    c->point_start[row] = group->start + lane;
+    c->point_capacity[row] = (uint16_t)group->slots;
+}
+
+/* Moves a contact's points, if it has or wants any, to a lane of its span with the room it wants; false when there is
+ * none. */
+static bool place_contact(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     uint32_t points = wanted_points(d, row), lane;
@@ -634,14 +681,94 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
         leave_lane(d, c, row);
         return true;
     }
-    const tl_simd_group *group = take_group(d, points, row, &lane);
-    if (!group)
+    tl_span *span = span_of(d, row);
+    if (!span)
         return false;
-    copy_points(&d->points, c->point_start[row], &d->points, group->start + lane, c->point_count[row]);
-    clear_points(d, row);
-    c->point_start[row] = group->start + lane;
-    c->point_capacity[row] = (uint16_t)group->slots;
+    span->rest = TL_SPAN_WOKEN;
+    if (c->point_capacity[row] >= points && c->point_start[row] >= span->begin && c->point_start[row] < span->end)
+        return true;
+    const tl_simd_group *group = take_group(d, span, points, row, &lane);
+    if (group)
+        move_lane(d, row, group, lane);
+    return group != NULL;
+}
+
+/* Whether a span that was added last may stay. */
+static bool has_room(const tl_layout *layout, const tl_span *span)
+{
+    size_t used = 0;
+    for (const tl_span *laid = layout->spans; laid < span && laid->begin < layout->laid_rows; laid++)
+        used += laid->end - laid->begin;
+    return span->limit - layout->laid_rows <= used / MOST_ADDED && span->limit <= UINT32_MAX;
+}
+
+/* Adds a span for some contacts, of one law and kind, and moves their points there; false when there is no room. */
+static bool move_to_new_span(tl_detect *d, const place *list, size_t count, lane_request *requests, int64_t cycles)
+{
+    tl_layout *layout = &d->layout;
+    uint32_t most = 0;
+    for (size_t i = 0; i < count; i++) {
+        requests[i] = (lane_request){wanted_points(d, list[i].row), list[i].row};
+        most = requests[i].points > most ? requests[i].points : most;
+    }
+    tl_span *span = add_span(layout, &d->contacts, list->row, requests, count, d->spare_share, SPARE_ADDED);
+    if (!span)
+        return false;
+    if ((size_t)most * TL_LANES > d->lane_capacity || !has_room(layout, span) ||
+        !tl_table_resize(&d->points.table, span->limit)) {
+        layout->span_count--;
+        return false;
+    }
+    begin_groups(layout, span, requests, count);
+    for (size_t r = span->group_begin; r < span->group_end; r++)
+        for (uint32_t l = 0; l < TL_LANES && layout->groups[r].contact[l] != TL_NO_ROW; l++)
+            move_lane(d, layout->groups[r].contact[l], &layout->groups[r], l);
+    layout->added_at = cycles;
     return true;
+}
+
+/* Whether a contact that has come under another law, or is held now, is of a span that there is none of yet. For
+ * contacts that are born or grow all are laid out anew. */
+static bool lacks_span(tl_detect *d, uint32_t row)
+{
+    return d->contacts.pending[row] == TL_PENDING_MOVE && wanted_points(d, row) > 0 && !span_of(d, row);
+}
+
+/* Makes the spans that such contacts lack, in the order of a layout. false when there is no room. */
+static bool add_spans(tl_detect *d, int64_t cycles)
+{
+    const tl_contacts *c = &d->contacts;
+    size_t count = 0;
+    for (uint32_t row = 0; row < c->table.rows; row++)
+        count += lacks_span(d, row);
+    if (count == 0 || d->layout.span_count == 0)
+        return count == 0;
+    place *list = malloc(count * sizeof *list);
+    lane_request *requests = malloc(count * sizeof *requests);
+    bool enough = list && requests;
+    size_t listed = 0;
+    for (uint32_t row = 0; row < c->table.rows && enough; row++)
+        if (lacks_span(d, row))
+            list[listed++] = place_of(c, row);
+    if (enough)
+        qsort(list, count, sizeof *list, compare_place);
+    for (size_t first = 0, end; first < count && enough; first = end) {
+        for (end = first + 1; end < count && !are_apart(&list[first], &list[end]);)
+            end++;
+        enough = move_to_new_span(d, &list[first], end - first, requests, cycles);
+    }
+    free(list);
+    free(requests);
+    return enough;
+}
+
+bool tl_contacts_place(tl_detect *d, int64_t cycles)
+{
+    bool enough = add_spans(d, cycles);
+    for (uint32_t row = (uint32_t)d->contacts.table.rows; row-- > 0 && enough;)
+        if (d->contacts.pending[row] != TL_PENDING_NONE)
+            enough = place_contact(d, row);
+    return enough;
 }
 
 void tl_contact_remove(tl_detect *d, uint32_t row)

@@ -21,9 +21,12 @@ void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
 /* The points of a contact begin under a law. Walls that are apart and do not pull on each other are not bonded by
  * it. */
 void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind, const tl_point_lanes *lanes);
-/* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its span;
- * false when there is none: lay all out anew. */
-bool tl_contact_place(tl_detect *d, uint32_t contact);
+/* Moves the points of contacts with something pending to lanes with the room they want, in their spans. Spans that
+ * contacts under another law lack are added behind the others. false when there is no room: lay all out anew. */
+bool tl_contacts_place(tl_detect *d, int64_t cycles);
+/* Whether contacts that have moved to added spans have left so many lanes empty, for so long, that laying out anew
+ * would have cost less. */
+bool tl_contacts_scattered(const tl_detect *d, int64_t cycles);
 /* Takes a contact out; the last one gets its row. */
 void tl_contact_remove(tl_detect *d, uint32_t contact);
 /* Index of the joint law that rules a tag, or TL_NO_ROW. */

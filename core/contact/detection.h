@@ -15,6 +15,23 @@ typedef struct tl_known_block {
     uint32_t body;
 } tl_known_block;
 
+/* What a contact that is to be made begins with: found when its pair was tested. */
+typedef struct tl_birth {
+    uint32_t pair, kind;
+    tl_tag tag;
+    uint32_t points;
+    double valid;  /* way that its faces hold for, m */
+    bool overlaps; /* its blocks do, by enough to be told */
+    bool deep;     /* by too much: overlap.c */
+} tl_birth;
+
+/* Of the pairs that a thread has tested last, in their order, until the contacts are made. */
+typedef struct tl_births {
+    tl_birth *list;
+    size_t count, capacity;
+    size_t next; /* to be made */
+} tl_births;
+
 typedef struct tl_detect {
     const struct tl_contact_kind *const *kinds; /* by the numbers of their facets */
     uint32_t kind_count;
@@ -61,6 +78,7 @@ typedef struct tl_detect {
     tl_cut_contact *cut_contacts;
     tl_old_point *cut_points;
     size_t cut_count, cut_capacity, cut_point_count, cut_point_capacity;
+    tl_births *births;         /* [threads] */
     bool stepped;              /* a step has used contacts */
     tl_narrow_scratch *narrow; /* [threads] */
     tl_point_lanes *lanes;     /* [threads]: a tile, or the largest SIMD group */

@@ -89,6 +89,8 @@ typedef struct tl_layout {
     size_t span_count, span_capacity;
     tl_simd_group *groups;
     size_t group_capacity;
+    size_t laid_rows; /* of points, when all were laid out; spans behind them were added since */
+    int64_t added_at; /* steps made when a span was added last */
 } tl_layout;
 
 static inline void tl_layout_free(tl_layout *layout)

@@ -263,7 +263,8 @@ static bool span_is_sound(const tl_model *m, const tl_detect *d, const tl_span *
 static bool layout_is_sound(const tl_model *m, const tl_detect *d)
 {
     size_t taken = 0, wanted = 0;
-    if (d->points.table.rows > UINT32_MAX)
+    if (d->points.table.rows > UINT32_MAX || d->layout.laid_rows > d->points.table.rows || d->layout.added_at < 0 ||
+        d->layout.added_at > m->cycles)
         return false;
     for (size_t k = 0; k < d->layout.span_count; k++)
         if (!span_is_sound(m, d, &d->layout.spans[k], k ? &d->layout.spans[k - 1] : NULL, &taken))

@@ -88,9 +88,10 @@ tl_detect *tl_detect_make(unsigned threads, const tl_contact_kind *const *kinds,
     d->threads = threads;
     d->narrow = calloc(threads, sizeof *d->narrow);
     d->lanes = calloc(threads, sizeof *d->lanes);
+    d->births = calloc(threads, sizeof *d->births);
     init_contacts(&d->contacts, &d->points);
     init_contacts(&d->spare, &d->spare_points);
-    if (!d->narrow || !d->lanes) {
+    if (!d->narrow || !d->lanes || !d->births) {
         tl_detect_destroy(d);
         return NULL;
     }
@@ -110,6 +111,14 @@ void tl_cut_contacts_end(tl_detect *d)
     d->cut_count = d->cut_capacity = d->cut_point_count = d->cut_point_capacity = 0;
 }
 
+void tl_births_end(tl_detect *d)
+{
+    for (unsigned i = 0; d->births && i < d->threads; i++) {
+        free(d->births[i].list);
+        d->births[i] = (tl_births){.list = NULL};
+    }
+}
+
 void tl_detect_destroy(tl_detect *d)
 {
     tl_table_free(&d->contacts.table);
@@ -120,6 +129,8 @@ void tl_detect_destroy(tl_detect *d)
         tl_narrow_scratch_free(&d->narrow[i]);
     for (unsigned i = 0; d->lanes && i < d->threads; i++)
         tl_table_free(&d->lanes[i].table);
+    tl_births_end(d);
+    free(d->births);
     free(d->narrow);
     free(d->lanes);
     free(d->press);
@@ -245,6 +256,8 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     VALUE(CACHE, laid_at);
     VALUE(CACHE, spare_share);
     LIST(CACHE, layout.spans, layout.span_count, layout.span_capacity, other);
+    VALUE(CACHE, layout.laid_rows);
+    VALUE(CACHE, layout.added_at);
     LIST(CACHE, layout.groups, layout.group_capacity, layout.group_capacity, index);
     TABLE(SCRATCH, spare, spare);
     TABLE(SCRATCH, spare_points, spare);

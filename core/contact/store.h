@@ -34,4 +34,7 @@ tl_detect *tl_detect_copy(const tl_detect *from);
 /* Visits what a detection keeps. The scratch of its threads is not among it. */
 void tl_detect_walk(tl_detect *d, const tl_walk *walk);
 
+/* Forgets what was found of contacts that are to be made. */
+void tl_births_end(tl_detect *d);
+
 #endif

@@ -184,9 +184,39 @@ static tl_manifold_before before_contact(const tl_model *m, const tl_pair *p, co
     return out;
 }
 
+/* Size of the smaller one of a pair's bodies, m. */
+static double size_of_bodies(const tl_model *m, const tl_pair *pair)
+{
+    return fmin(tl_body_size(m, m->blocks.body[pair->a]), tl_body_size(m, m->blocks.body[pair->b]));
+}
+
+/* What the contact of a placed pair begins with, whose facet and points have been found. */
+static tl_birth birth_of(const tl_model *m, const tl_pair *p, const tl_pair_view *view, const tl_region *region,
+                         tl_tag tag, const tl_narrow_scratch *scratch)
+{
+    const tl_manifold *g = &scratch->manifold;
+    const double overlap = tl_facet_is_field(&g->facet) ? g->press->deepest : -region->gap;
+    const bool meet = !tl_cut_contact_of(m, p->a, p->b); /* parts of blocks go on in the overlap of these */
+    return (tl_birth){.pair = (uint32_t)(p - m->detect->pairs),
+                      .kind = g->facet.kind,
+                      .tag = tag,
+                      .points = (uint32_t)g->point_count,
+                      .valid = g->valid,
+                      .overlaps =
+                          meet && overlap > TL_SHALLOW * view->size && overlap > TL_SHALLOW * size_of_bodies(m, p),
+                      .deep = tl_overlap_is_deep(m, view, region, p->a, p->b, meet)};
+}
+
+/* Keeps what was found of a pair until its contact is made. Without the memory for it, it is found again. */
+static void note_birth(tl_births *births, const tl_birth *birth)
+{
+    if (tl_grow(&births->list, &births->capacity, births->count + 1, sizeof *births->list))
+        births->list[births->count++] = *birth;
+}
+
 /* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of
  * memory. */
-static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
+static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_narrow_scratch *scratch)
 {
     const double reach = m->detect->reach;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
@@ -212,7 +242,8 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scra
     double way = holds ? -1 : way_to_contact(&view, &region, corners);
     if (way > 0)
         return way;
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), before.over);
+    const tl_tag tag = tl_touching_tag(&view, region.n);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     if (!holds && !(rule.min_area > 0)) {
         tl_grazing_choose_faces(&view, p);
         margin = tl_grazing_margin(&view, p, &gap);
@@ -225,14 +256,18 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scra
         return way;
     if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))
         return NAN; /* what was found is not all there is */
-    if (scratch->manifold.point_count > 0 || tl_overlap_is_whole(&view, &region))
-        return -1;
-    return TL_STILL * view.size; /* edges part the blocks by next to nothing */
+    if (scratch->manifold.point_count == 0 && !tl_overlap_is_whole(&view, &region))
+        return TL_STILL * view.size; /* edges part the blocks by next to nothing */
+    if (!cut) {
+        const tl_birth birth = birth_of(m, p, &view, &region, tag, scratch);
+        note_birth(births, &birth);
+    }
+    return -1;
 }
 
-static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
+static void test_pair(tl_model *m, tl_pair *p, tl_births *births, tl_narrow_scratch *scratch)
 {
-    const double way = way_to_test(m, p, scratch);
+    const double way = way_to_test(m, p, births, scratch);
     if (isnan(way))
         scratch->failed = true;
     else if (way < 0)
@@ -260,7 +295,7 @@ static void test_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         if (!tl_pair_is_apart(p))
             continue;
         if (tl_pair_path(d, p) >= (double)p->wake) {
-            test_pair(m, p, &d->narrow[thread]);
+            test_pair(m, p, &d->births[thread], &d->narrow[thread]);
             all->found = all->found || p->wake == TL_PAIR_FOUND;
         }
         wake = p->wake < wake ? p->wake : wake;
@@ -271,8 +306,9 @@ static void test_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 /* Tests the pairs without a contact that may have come near: chunks and pairs tell which were found. */
 static void test_pairs(tl_model *m)
 {
-    const tl_detect *d = m->detect;
+    tl_detect *d = m->detect;
     bool all_sleep = true;
+    tl_births_end(d); /* of an update that failed */
     for (size_t chunk = 0; all_sleep && chunk * TL_PAIR_CHUNK < d->pair_count; chunk++)
         all_sleep = sleeps(d, &d->chunks[chunk]);
     if (!all_sleep) /* a loop of the threads costs more than to see that there is nothing to do */
@@ -369,10 +405,37 @@ typedef struct overlaps {
     uint32_t pair; /* the first */
 } overlaps;
 
-/* Size of the smaller one of a pair's bodies, m. */
-static double size_of_bodies(const tl_model *m, const tl_pair *pair)
+/* What was found of a pair when it was tested; NULL: nothing is known. Pairs are asked for in their order. */
+static const tl_birth *noted_birth(const tl_detect *d, uint32_t pair)
 {
-    return fmin(tl_body_size(m, m->blocks.body[pair->a]), tl_body_size(m, m->blocks.body[pair->b]));
+    for (unsigned i = 0; i < d->threads; i++) {
+        tl_births *births = &d->births[i];
+        while (births->next < births->count && births->list[births->next].pair < pair)
+            births->next++;
+        if (births->next < births->count && births->list[births->next].pair == pair)
+            return &births->list[births->next];
+    }
+    return NULL;
+}
+
+/* Finds what the contact of a pair begins with that takes over from another, and how it is held; false: out of
+ * memory. */
+static bool find_birth(const tl_model *m, const tl_pair *p, tl_birth *out, bool *holds, tl_narrow_scratch *scratch)
+{
+    tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
+    if (!tl_pair_place(&view, scratch))
+        return false;
+    const tl_manifold_before before = before_contact(m, p, &view, scratch);
+    tl_region region;
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + before.shift, scratch, &region))
+        return false;
+    tl_tag tag = tl_touching_tag(&view, region.n);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
+    if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))
+        return false;
+    *out = birth_of(m, p, &view, &region, tag, scratch);
+    *holds = before.holds;
+    return true;
 }
 
 /* Makes the contact of a pair that has come near; its overlap is noted when it is deep. */
@@ -380,32 +443,24 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
 {
     tl_detect *d = m->detect;
     tl_narrow_scratch *scratch = &d->narrow[0];
-    tl_pair_view view = tl_pair_view_of(m, d->pairs[pair].a, d->pairs[pair].b);
-    if (!tl_pair_place(&view, scratch))
+    const tl_birth *noted = noted_birth(d, pair);
+    tl_birth birth;
+    bool holds = false;
+    if (noted)
+        birth = *noted;
+    else if (!find_birth(m, &d->pairs[pair], &birth, &holds, scratch))
         return tl_fail_memory(&m->error);
-    const tl_manifold_before before = before_contact(m, &d->pairs[pair], &view, scratch);
-    tl_region region;
-    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + before.shift, scratch, &region))
-        return tl_fail_memory(&m->error);
-    tl_tag tag = tl_touching_tag(&view, region.n);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
-    const tl_manifold *g = &scratch->manifold;
-    if (!tl_kind_find(m, d->pairs[pair].a, d->pairs[pair].b, &view, &region, &rule, &before, scratch) ||
-        !tl_contact_append(m, pair, g->facet.kind, g->valid, tag, g->point_count))
+    if (!tl_contact_append(m, pair, birth.kind, birth.valid, birth.tag, birth.points))
         return tl_fail_memory(&m->error);
     uint32_t row = (uint32_t)d->contacts.table.rows - 1;
-    if (before.holds) { /* so that it is found once more when it has got its room */
-        d->contacts.facet[row] = g->facet;
+    if (holds) { /* so that it is found once more when it has got its room */
+        d->contacts.facet[row] = scratch->manifold.facet;
         d->contacts.holds_over_gap[row] = true;
     }
-    double overlap = tl_facet_is_field(&g->facet) ? g->press->deepest : -region.gap;
-    /* parts of blocks go on in the overlap of these */
-    bool meet = !tl_cut_contact_of(m, d->pairs[pair].a, d->pairs[pair].b);
-    if (meet && overlap > TL_SHALLOW * view.size && overlap > TL_SHALLOW * size_of_bodies(m, &d->pairs[pair]) &&
-        deep->count++ == 0)
+    if (birth.overlaps && deep->count++ == 0)
         deep->pair = pair;
-    if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, meet)) {
-        tl_overlap_mark(&d->contacts, row, meet);
+    if (birth.deep) {
+        tl_overlap_mark(&d->contacts, row, !tl_cut_contact_of(m, d->pairs[pair].a, d->pairs[pair].b));
         scratch->deep = true;
     }
     return TL_OK;
@@ -429,6 +484,7 @@ static tl_status give_births(tl_model *m, size_t *born)
         }
         d->chunks[chunk].found = false;
     }
+    tl_births_end(d);
     if (deep.count && tl_model_says(m, TL_REMARK_OVERLAP))
         tl_model_say(m,
                      "%zu pair%s of blocks (first: blocks %u and %u) overlap%s by more than %g of their "
@@ -463,13 +519,12 @@ static void touch(tl_model *m, uint32_t row)
     d->touched[on.a] = d->touched[on.b] = true;
 }
 
-/* Takes out the dead and finds room for those that are new or have grown; false when there is none. Backward,
- * for the last contact takes the row of one that goes. */
+/* Takes out the dead, gives others their law, and finds room for those that are new or have grown; false when there is
+ * none. Backward, for the last contact takes the row of one that goes. */
 static bool settle_rows(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
-    bool enough = true;
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
         if (c->pending[row] == TL_PENDING_NONE)
             continue;
@@ -482,14 +537,12 @@ static bool settle_rows(tl_model *m)
             note_parted(d, pair);
             continue;
         }
-        if (c->pending[row] == TL_PENDING_MOVE) {
+        if (c->pending[row] == TL_PENDING_MOVE)
             d->pairs[pair].want_points = c->point_capacity[row];
-        }
         if (tl_law_row(m, c->tag[row]) != c->law[row])
             change_law(m, row);
-        enough = enough && tl_contact_place(d, row);
     }
-    return enough;
+    return tl_contacts_place(d, m->cycles);
 }
 
 /* Builds the facets of the contacts that have been given their room; *more: some want more still. */
@@ -540,18 +593,20 @@ static tl_status settle(tl_model *m)
 {
     tl_detect *d = m->detect;
     size_t born = 0;
+    bool scattered = tl_contacts_scattered(d, m->cycles);
     tl_contacts_free_spare(d, m->cycles);
     tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
-    if (born == 0 && !d->rows_changed && !some_pending(&d->contacts))
+    if (born == 0 && !d->rows_changed && !some_pending(&d->contacts) && !scattered)
         return TL_OK;
     d->any_without_rows = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {
-        if (!settle_rows(m))
+        if (!settle_rows(m) || scattered)
             status = tl_contacts_repack(m);
         else if (!tl_contacts_index(m))
             status = tl_fail_memory(&m->error);
+        scattered = false;
         if (status == TL_OK)
             status = fill_contacts(m, &more);
         d->parted += tl_addends_sum(&d->parting);

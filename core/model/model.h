@@ -231,7 +231,7 @@ struct tl_model {
     /* its steps are those of a relaxation (cycle/relax.c), which sets the damping, the time step and the masses */
     bool relaxing;
     double still; /* in a relaxation: share of a block's size up to which motion changes no geometry; else 0 */
-    double added_dt, added_most;   /* of the bodies that need it: tl_mass_scaling; NaN: off */
+    double added_dt, added_most; /* of the bodies that need it: tl_mass_scaling; NaN: off */
 
     bool profiling;
     double phase_began; /* s, of the clock */

@@ -1,6 +1,6 @@
 -- edits.lua - what edits of a cut rock at rest cost: an edit and the next step together, less a usual step, in usual steps.
 --
---     talus tests/bench/edits.lua blocks=10000,100000 reuse=on,off reps=5 loops=on
+--     talus tests/bench/edits.lua blocks=10000,100000 reuse=on,off reps=5 loops=on only=plane
 --
 -- The rock is that of rock.lua. Rows of size "loop_..." are of edits that are made one after the other without a step in
 -- between: microseconds an edit, for as many edits as the row has blocks.
@@ -40,13 +40,28 @@ local function neighbour(block)
     end
 end
 
--- Each takes the model, a block and the number of the repetition, and says what to time: what is looked for first is no part of it.
+-- Another law for planes of the rock's joints: `count` of them from the `first` on, one joint after the other.
+local function plane_laws(model, side, first, count, friction)
+    for k = first, first + count - 1 do
+        local plane = string.format("J%d:%d", 1 + k % 3, 1 + k // 3 % (side - 1))
+        model:joint(plane, "coulomb", { kn = 1.2e9, ks = 5e8, friction = friction })
+    end
+end
+
+-- Each takes the model, a block, the number of the repetition and the rock's width, and says what to time: what is
+-- looked for first is no part of it.
 local EDITS = {
     { "friction", function(model, _, i)
         return function() model:joint("*", { friction = 35 + 0.01 * i }) end
     end },
     { "joint", function(model, _, i)
         return function() model:joint("J3", "coulomb", { kn = 1e9, ks = 5e8, friction = 40 + 0.01 * i }) end
+    end },
+    { "plane", function(model, _, i, side)
+        return function() plane_laws(model, side, i, 1, 40 + 0.01 * i) end
+    end },
+    { "ten_planes", function(model, _, i, side)
+        return function() plane_laws(model, side, 10 * (i - 1), 10, 40 + 0.01 * i) end
     end },
     { "contact_area", function(model, _, i)
         return function() model:contact_area { fraction = 1e-6 * i } end
@@ -94,14 +109,14 @@ local function prepared(count, reuse)
 end
 
 -- Each edit in a rock of its own, for the edits before would have set it moving.
-local function measure(count, reuse, reps)
-    for _, edit in ipairs(EDITS) do
+local function measure(count, reuse, reps, edits)
+    for _, edit in ipairs(edits) do
         local model, side = prepared(count, reuse)
         local costs = {}
         for i = 1, reps do
             local blocks = inner(model, side)
             local block = blocks[1 + (i * 7919 + 13 * #edit[1]) % #blocks]
-            local act = edit[2](model, block, i)
+            local act = edit[2](model, block, i, side)
             model:cycle(CALM)
             local step = usual(model)
             collectgarbage()
@@ -131,10 +146,16 @@ local function loops(n)
     end)
 end
 
-local given = bench.arguments { blocks = "10000", reuse = "on", reps = 5, loops = "on" }
+local given = bench.arguments { blocks = "10000", reuse = "on", reps = 5, loops = "on", only = "" }
+local edits = {}
+for _, edit in ipairs(EDITS) do
+    if given.only == "" or given.only == edit[1] then
+        edits[#edits + 1] = edit
+    end
+end
 for _, count in ipairs(bench.list(given.blocks)) do
     for reuse in given.reuse:gmatch "[^,]+" do
-        measure(count, reuse, given.reps)
+        measure(count, reuse, given.reps, edits)
     end
 end
 if given.loops == "on" then

@@ -447,7 +447,7 @@ TEST(growing_contacts_have_room_for_what_they_had)
         if (grown & 2)
             CHECK_INT(tl_contacts_repack(m), TL_OK);
         else
-            CHECK(tl_contact_place(m->detect, 0));
+            CHECK(tl_contacts_place(m->detect, m->cycles));
         CHECK(c->point_capacity[0] >= (fewer ? points : points + 8));
         CHECK_INT(c->point_count[0], points);
         c->pending[0] = TL_PENDING_NONE;

@@ -331,6 +331,8 @@ static const lie lies[] = {
     LIE("detect.layout.groups", offsetof(tl_simd_group, slots), far_row),
     LIE("detect.layout.groups", offsetof(tl_simd_group, contact), all_bits),
     LIE("detect.laid_at", 0, long_hence),
+    LIE("detect.layout.laid_rows", 0, most),
+    LIE("detect.layout.added_at", 0, long_hence),
     LIE("detect.structure", 0, most),
     LIE("detect.known_blocks", 4, far_row),
     LIE("detect.pairs", 0, far_row),

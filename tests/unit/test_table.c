@@ -1,4 +1,4 @@
-/* test_table.c - columns that grow together, and one that comes later than the rows. */
+/* test_table.c - columns that grow together, in small and large tables, and one that comes later than the rows. */
 #include "base/table.h"
 
 #include "check.h"
@@ -73,5 +73,54 @@ static void rows_that_come_back_are_zero(void)
     tl_table_free(&t.table);
 }
 
+/* Numbers that no row has by chance. */
+static double size_of(size_t i)
+{
+    return 1 / (1.0 + (double)i);
+}
+
+/* Large tables have pages of their own, which are moved when they grow. */
+static void a_large_table_keeps_its_rows_when_it_grows(void)
+{
+    sample_table t;
+    make(&t, 5);
+    size_t rows = 5;
+    for (size_t i = 0; i < rows; i++)
+        t.size[i] = size_of(i);
+    for (int round = 0; round < 40; round++) {
+        const size_t more = rows + rows / 2 + 7;
+        CHECK(tl_table_resize(&t.table, more));
+        bool right = true;
+        for (size_t i = rows; i < more; i++) {
+            right = right && t.size[i] == 0 && t.count[i] == 0;
+            t.size[i] = size_of(i);
+            t.count[i] = (uint32_t)i;
+        }
+        for (size_t i = 0; i < more; i++)
+            right = right && t.size[i] == size_of(i) && t.count[i] == i;
+        CHECK(right);
+        CHECK_INT((uintptr_t)t.size % TL_ALIGN, 0);
+        CHECK_INT((uintptr_t)t.count % TL_ALIGN, 0);
+        rows = more;
+        if (rows > 2000000) { /* some go, and are zero when they come back */
+            rows = rows / (size_t)(3 + round % 3);
+            CHECK(tl_table_resize(&t.table, rows));
+        }
+    }
+    CHECK(widen(&t));
+    bool right = true;
+    for (size_t i = 0; i < rows; i++)
+        right = right && t.size[i] == size_of(i) && t.count[i] == i && t.late[i] == 0;
+    sample_table copy;
+    CHECK(tl_table_copy(&copy.table, &copy, &t.table));
+    CHECK(tl_table_resize(&copy.table, 2 * rows));
+    for (size_t i = 0; i < 2 * rows; i++)
+        right = right && copy.size[i] == (i < rows ? size_of(i) : 0);
+    CHECK(right);
+    CHECK(t.size[rows - 1] == size_of(rows - 1));
+    tl_table_free(&copy.table);
+    tl_table_free(&t.table);
+}
+
 TEST_MAIN(RUN(a_late_column_is_zero_and_the_rest_stays), RUN(an_empty_table_takes_a_late_column),
-          RUN(rows_that_come_back_are_zero))
+          RUN(rows_that_come_back_are_zero), RUN(a_large_table_keeps_its_rows_when_it_grows))
