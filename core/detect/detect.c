@@ -210,6 +210,8 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_narrow_scratch *scra
         return fmin(gap - tolerance, reach);
     if (!holds && !tl_coarse_test(&view, tolerance + reach))
         return reach;
+    if (!holds && gap > tolerance)
+        return gap - tolerance;
     tl_region region;
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region))
         return NAN;

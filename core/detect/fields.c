@@ -1,7 +1,8 @@
 /* fields.c - field contacts from step to step.
  *
- * A contact goes by the slopes that its press has had at the last place where it was found: a little way for some steps,
- * and as long as it stays there. Otherwise it goes by its list of faces, while that holds. */
+ * A contact that has stayed near a place for some time goes by the slopes that its press has there. So does one in
+ * motion, a little way for some steps, as far as the energy balance allows. Others go by their list of faces,
+ * while that holds. */
 #include "detect/fields.h"
 
 #include "contact/across_gap.h"
@@ -265,8 +266,8 @@ static bool wants_slopes(const tl_model *m, uint32_t c)
             last_way(m, c, tl_press_lever(press)) <= reach_in_motion(m) * press->deepest);
 }
 
-/* Keeps the slopes of the press just found when the contact has stayed where it is for as many steps as it costs to find
- * them, or in motion if the mesh has told them. false: out of memory. */
+/* Keeps the slopes of the press just found when the contact has stayed where it is for as many steps as they cost. In
+ * motion it keeps those that the mesh has told. false: out of memory. */
 static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press, tl_press_row *row,
                   tl_narrow_scratch *scratch)
 {

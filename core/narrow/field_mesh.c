@@ -22,8 +22,8 @@
  * Polygons are summed by triangles from their first corner.
  *
  * Slopes. Force and moment are the fluxes of d_A t through S, for t = e_k and e_k x x. Where B moves by a field of ways
- * u, S moves along n by -(n_b . u) / |n_a - n_b|. The divergence of d_A t is -n_a . t, and d_A t is continuous on S and 0
- * on its border. So the flux changes by
+ * u, S moves along n by -(n_b . u) / |n_a - n_b|. The divergence of d_A t is -n_a . t. And d_A t is continuous on S,
+ * and 0 on its border. So the flux changes by
  *
  *     int over S of (n_a . t) (n_b . u) / |n_a - n_b| dS. */
 #include "narrow/field_mesh.h"

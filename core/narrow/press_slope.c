@@ -1,8 +1,9 @@
 /* press_slope.c - a press near a place where it was found: force and all else go on by their slopes there.
  *
  * Blocks at rest move by a small part of their overlap. There the energy is a quadratic of the motion. Its force goes
- * by the slopes -d2G, which are symmetric, so that what swings within neither gains nor loses. Of a field alone its mesh
- * tells them (field_mesh.c); otherwise they are central differences over the same way that they are used for. */
+ * by the slopes -d2G, which are symmetric, so that what swings within neither gains nor loses. The mesh of a field
+ * tells them where there is no patch (field_mesh.c). Otherwise they are central differences over the way that they are
+ * used for. */
 #include "narrow/press_slope.h"
 
 #include "narrow/narrow.h"
