@@ -110,7 +110,7 @@ TEST(a_body_without_contacts_stands_on_its_largest_face)
     scene_law(m, "elastic", kn / 3, kn, -1);
     double dt, least = mass * fmin(a * a + c * c, b * b + c * c) / 12;
     double r2 = (a * a + b * b) / 12 + c * c / 4;
-    tl_timestep timestep = {sizeof(tl_timestep), fraction, TL_TIMESTEP_BODY, NAN};
+    tl_timestep timestep = {sizeof(tl_timestep), fraction, TL_TIMESTEP_BODY, NAN, 0};
     scene_ok(m, tl_model_timestep(m, &timestep));
     scene_ok(m, tl_model_dt(m, &dt));
     CHECK_REL(dt, fraction * 2 * sqrt(1 / (k * (1 / mass + r2 / least))), 1e-12);
