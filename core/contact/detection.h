@@ -43,7 +43,10 @@ typedef struct tl_detect {
     bool rows_changed;     /* since contacts were laid out */
     bool any_without_rows; /* there may be contacts without rows for points */
     double reach;          /* half the skin of the broad phase */
-    double *odometer_0;    /* of each body, when the broad phase was made */
+    /* share of the error of the energy balance that is left for contacts in motion to go by slopes: 1 .. 0; by the rule
+     * balance of the time step only */
+    double balance_left;
+    double *odometer_0; /* of each body, when the broad phase was made */
     size_t odometer_capacity;
     tl_known_block
         *known_blocks; /* of each row of blocks, at the last update: finds the block again after rows have changed */

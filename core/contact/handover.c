@@ -449,11 +449,12 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
 
 /* Notes half of the way of the centre of pressure in the last step. The old one has gone half with A and half
  * with B. A step that is made again finds the points where it left them, and keeps what it has noted. A contact
- * that goes by slopes has stayed where it is. */
+ * that has gone by slopes for long has stayed where it is. */
 static void note_way(tl_model *m, uint32_t c, tl_vec3 centre)
 {
     tl_press_row *row = tl_press_row_of(m, c);
-    if (row->moved_at == m->cycles || row->by_slope)
+    const bool stays = row->by_slope && m->cycles - row->since >= TL_PRESS_STEPS;
+    if (row->moved_at == m->cycles || stays)
         return;
     const tl_contact_motion by = tl_contact_moved(m, c);
     const tl_mat3 *turn = tl_side_rotation(m, tl_contact_sides(m, c).a);

@@ -140,7 +140,7 @@ static bool mesh_is_sound(const tl_field_mesh *mesh, uint32_t faces)
 static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press_row *row, uint32_t a, uint32_t b)
 {
     if (!tl_is_flag(&row->press.powers) || !tl_is_flag(&row->flush) || !tl_is_flag(&row->listed) ||
-        !tl_is_flag(&row->by_slope) || !tl_is_flag(&row->leans) ||
+        !tl_is_flag(&row->by_slope) || !tl_is_flag(&row->leans) || !tl_is_flag(&row->refused) ||
         !(row->shifted.a < faces_of(m, d, a) && row->shifted.b < faces_of(m, d, b)))
         return false;
     uint32_t sum = 0;
@@ -152,16 +152,14 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
         }
     if (row->blunt_a > row->count[0] || row->blunt_b > row->count[1])
         return row->listed ? false : true;
-    if (row->by_slope)
-        return tl_is_flag(&row->slope.known) && tl_is_flag(&row->there.powers);
-    return mesh_is_sound(&row->mesh, sum);
+    return tl_is_flag(&row->slope.known) && tl_is_flag(&row->there.powers) && mesh_is_sound(&row->mesh, sum);
 }
 
 /* The rows of presses: each is a contact's, or in the list of free ones. */
 static bool presses_are_sound(const tl_model *m, const tl_detect *d, unsigned char *used)
 {
     size_t count = d->press_count, rows = 0, free_rows = 0;
-    bool sound = true;
+    bool sound = d->balance_left >= 0 && d->balance_left <= 1;
     for (uint32_t c = 0; c < d->contacts.table.rows && sound; c++) {
         uint32_t row = d->contacts.press[c];
         if (row == TL_NO_ROW)

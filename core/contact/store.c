@@ -229,6 +229,7 @@ static void walk_pairs(tl_detect *d, const tl_walk *walk)
     LIST(CACHE, chunks, chunk_capacity, chunk_capacity, pairs);
     FLAG(CACHE, listed);
     VALUE(CACHE, reach);
+    VALUE(CACHE, balance_left);
     LIST(CACHE, odometer_0, odometer_capacity, odometer_capacity, broad);
     LIST(CACHE, known_blocks, known_block_count, known_block_capacity, broad);
     LIST(CACHE, path, path_capacity, path_capacity, broad);

@@ -74,17 +74,14 @@ typedef struct tl_press_row {
     tl_pair_pose listed_at;                                    /* where they were listed */
     double listed_shift;                                       /* and with which shift */
     bool flush, listed, leans;
-    /* It has stayed near a place since some step: for long, then it goes by slopes of its press there, else by its mesh
-     * (fields.c). */
+    bool refused; /* there it was no patch, although it lay still */
+    tl_field_mesh mesh;
+    /* It goes by the slopes that its press has had there at the place where it was `since` some step; or else by its
+     * mesh, and has stayed near a place since then (fields.c). */
     tl_pair_pose place;
     bool by_slope;
-    union {
-        tl_field_mesh mesh;
-        struct {
-            tl_press there;
-            tl_press_slope slope;
-        };
-    };
+    tl_press there;
+    tl_press_slope slope;
     tl_press_extra extra; /* of a press that has more */
 } tl_press_row;
 

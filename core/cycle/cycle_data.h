@@ -295,7 +295,7 @@ static inline tl_vec3 tl_free_part(tl_vec3 v, unsigned fixed)
 /* Whether rates count contact points, or only faces. */
 static inline bool tl_rates_points(const tl_model *m)
 {
-    return tl_mass_scaled(m) || m->timestep.rule == TL_TIMESTEP_BODY;
+    return tl_mass_scaled(m) || m->timestep.rule != TL_TIMESTEP_PAPER;
 }
 
 static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body)

@@ -121,6 +121,13 @@ static void sum_booked(tl_model *m, double now[TL_BOOK_COUNT])
     }
 }
 
+void tl_balance_note(tl_model *m)
+{
+    const double error = fabs(m->cycle->ledger.energy.balance), most = m->timestep.error;
+    const double left = fmax(0, fmin(1, 2 * (1 - error / most)));
+    m->detect->balance_left = m->timestep.rule == TL_TIMESTEP_BALANCE && m->cycle->ledger.started ? left : 0;
+}
+
 void tl_energy_close(tl_model *m)
 {
     tl_ledger *l = &m->cycle->ledger;
@@ -143,6 +150,7 @@ void tl_energy_close(tl_model *m)
     m->cycle->kinetic_before = now[TL_BOOK_MOTION0];
     note_terms(l, now, own.stored);
     balance(l, first, changed);
+    tl_balance_note(m);
 }
 
 tl_status tl_model_energy(tl_model *m, tl_energy *energy)

@@ -8,5 +8,7 @@
 double tl_body_energy(const tl_model *m, uint32_t body, unsigned held);
 /* Closes the ledger of a step, of which the move has booked what its bodies have and what is done to them. */
 void tl_energy_close(tl_model *m);
+/* Notes how much of its error the rule balance of the time step has left. */
+void tl_balance_note(tl_model *m);
 
 #endif

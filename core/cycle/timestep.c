@@ -3,6 +3,7 @@
  * "paper": dt = FRAC 2 (M_min / (2 K_max))^1/2, K_max the largest max(kn, ks) A_c of a contact (27).
  * "body":  dt = FRAC 2 (1 / (2 rate))^1/2 with the highest rate of a body: no motion of a body and its
  *          neighbours is faster, so FRAC 1 is stable.
+ * "balance": as "body", with as much of the step as the energy balance allows.
  * By either rule no body's step is longer than its largest face allows, whatever areas its contacts have.
  * A step that would carry or turn a block too far is made shorter (limits.c). The one in use stays, for the steps after
  * that. Mass scaling gives every free body the bound of the one that has the most. With a step asked for it adds
@@ -12,6 +13,7 @@
 #include "base/columns.h"
 #include "contact/sides.h"
 #include "cycle/added_mass.h"
+#include "cycle/energy.h"
 #include "cycle/limits.h"
 #include "cycle/prepare.h"
 #include "cycle/remarks.h"
@@ -469,7 +471,18 @@ double tl_timestep_fraction(const tl_model *m)
         return RELAX_FRACTION;
     if (!isnan(m->timestep.fraction))
         return m->timestep.fraction;
-    return m->timestep.rule == TL_TIMESTEP_BODY ? TL_BODY_FRACTION : TL_PAPER_FRACTION;
+    const double fractions[] = {[TL_TIMESTEP_PAPER] = TL_PAPER_FRACTION,
+                                [TL_TIMESTEP_BODY] = TL_BODY_FRACTION,
+                                [TL_TIMESTEP_BALANCE] = TL_BALANCE_FRACTION};
+    return fractions[m->timestep.rule];
+}
+
+/* What the rule balance leaves of the critical step: all of it while there is half of the error left, and half of it
+ * when there is none. */
+static double balance_factor(const tl_model *m)
+{
+    const double left = m->detect ? m->detect->balance_left : 0;
+    return m->timestep.rule == TL_TIMESTEP_BALANCE ? 0.5 * (1 + left) : 1;
 }
 
 static double damping_factor(const tl_model *m)
@@ -604,7 +617,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
         return TL_OK;
     }
     c->long_step = false;
-    double fresh = tl_timestep_fraction(m) * damping_factor(m) * 2 * sqrt(least);
+    double fresh = tl_timestep_fraction(m) * balance_factor(m) * damping_factor(m) * 2 * sqrt(least);
     if (!(isfinite(fresh) && fresh > 0)) {
         *dt = 0;
         return tl_model_moves(m) ? no_step(m, fresh) : TL_OK;
@@ -640,7 +653,12 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
     if (!isnan(timestep.dt) && !(timestep.dt >= TL_STEP_LEAST && timestep.dt <= 1 / TL_STEP_LEAST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s is outside [%g, %g]", timestep.dt, TL_STEP_LEAST,
                        1 / TL_STEP_LEAST);
+    if (!(timestep.error >= 0 && timestep.error <= 1))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: error = %g is outside [0, 1]", timestep.error);
     m->timestep = timestep;
+    m->timestep.error = timestep.error > 0 ? timestep.error : TL_BALANCE_ERROR;
+    if (m->cycle && m->detect)
+        tl_balance_note(m);
     if (m->cycle) {
         m->cycle->dt = 0;
         m->cycle->stiffness_rates.version = 0; /* another rule asks something else of contacts */

@@ -214,6 +214,9 @@ static void note_birth(tl_births *births, const tl_birth *birth)
         births->list[births->count++] = *birth;
 }
 
+/* Cost only: gap along a face, over the reach of the coarse test, from which on that test is spared. */
+#define FAR_APART 0.25
+
 /* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of
  * memory. */
 static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_narrow_scratch *scratch)
@@ -231,8 +234,14 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_n
     if (!tl_pair_place(&view, scratch))
         return NAN;
     double tolerance = TL_CONTACT_TOLERANCE * view.size;
+    if (!tl_region_gap(&view, scratch, &gap))
+        return NAN;
+    if (!holds && gap - tolerance > FAR_APART * reach)
+        return fmin(gap - tolerance, reach);
     if (!holds && !tl_coarse_test(&view, tolerance + reach))
         return reach;
+    if (!holds && gap > tolerance)
+        return gap - tolerance;
     tl_region region;
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region))
         return NAN;

@@ -1,7 +1,8 @@
 /* fields.c - field contacts from step to step.
  *
- * A contact that has stayed near a place for some time goes by the slopes that its press has there; another one by its
- * list of faces, while that holds. */
+ * A contact that has stayed near a place for some time goes by the slopes that its press has there. So does one in
+ * motion, a little way for some steps, as far as the energy balance allows. Others go by their list of faces,
+ * while that holds. */
 #include "detect/fields.h"
 
 #include "contact/across_gap.h"
@@ -24,15 +25,21 @@
  * normal, whose cosine is wrong by 1e-3 there. */
 #define BONDED_TILT 0.05
 
+/* How far the blocks of a field contact have moved against each other in the last step: at its point, and by their turn
+ * so far from it. */
+static double last_way(const tl_model *m, uint32_t c, double lever)
+{
+    tl_contact_motion by = tl_contact_moved(m, c);
+    tl_vec3 arm = tl_side_arm(m, tl_contact_sides(m, c).a, tl_press_row_of(m, c)->press.point);
+    return tl_v3_norm(tl_v3_add(by.way, tl_v3_cross(by.turn, arm))) + lever * tl_v3_norm(by.turn);
+}
+
 /* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a
  * patch. A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
 static bool is_calm(const tl_model *m, uint32_t c)
 {
-    const tl_press_row *row = tl_press_row_of(m, c);
     double size = tl_contact_size(m, c);
-    tl_contact_motion by = tl_contact_moved(m, c);
-    tl_vec3 there = tl_v3_cross(by.turn, tl_side_arm(m, tl_contact_sides(m, c).a, row->press.point));
-    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < tl_still_share(m) * size;
+    return last_way(m, c, size) < tl_still_share(m) * size;
 }
 
 static double bonded_tilt(const tl_model *m, uint32_t c)
@@ -112,7 +119,7 @@ tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *r)
     const uint32_t count[] = {r->a, r->b, r->border_a, r->border_b};
     uint8_t now[TL_PRESS_FACES];
     tl_field_mesh mesh = {0};
-    if (!row->listed || row->by_slope)
+    if (!row->listed)
         return mesh;
     mesh = row->mesh;
     mesh.bounding = 0;
@@ -144,8 +151,9 @@ tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *r)
     return mesh;
 }
 
-void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *r)
+void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *r, bool calm)
 {
+    row->refused = calm;
     uint32_t faces = r->a + r->b + r->border_a + r->border_b;
     row->by_slope = false;
     row->listed_at = (tl_pair_pose){view->turn, view->shift};
@@ -221,34 +229,67 @@ bool tl_field_goes_on(tl_model *m, uint32_t c)
            contacts->deep[c] == TL_DEEP_NOT && is_listed(m, c, row);
 }
 
-/* Whether a contact may go by the slopes of its press, if it is near. */
-static bool has_slopes(const tl_model *m, uint32_t c, const tl_press_row *row)
+/* Whether a contact may go by slopes of its press: these are of the energy only. */
+static bool takes_slopes(const tl_model *m, uint32_t c)
 {
     uint32_t law = m->detect->contacts.law[c];
-    bool tells = law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]); /* slopes are of the energy only */
-    return row->by_slope && !tells && m->config.reuse_geometry && m->detect->contacts.points_valid_to[c] != TL_OUTDATED;
+    bool tells = law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]);
+    return !tells && m->config.reuse_geometry;
 }
 
-/* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs.
- * They go by the count of steps, not of looks: a step made again finds the same. false: out of memory. */
+/* How far a contact may go by slopes in motion, over its overlap. */
+static double reach_in_motion(const tl_model *m)
+{
+    return TL_PRESS_NEAR + m->detect->balance_left * (TL_PRESS_REACH - TL_PRESS_NEAR);
+}
+
+/* The press of a contact near the place of its slopes. false: it has none, or is not near. They last by the count of
+ * steps, not of looks: a step made again finds the same. */
+static bool is_near(const tl_model *m, uint32_t c, const tl_pair_pose *now, tl_press *press)
+{
+    const tl_press_row *row = tl_press_row_of(m, c);
+    const double reach = m->cycles - row->since < TL_PRESS_STEPS ? reach_in_motion(m) : TL_PRESS_NEAR;
+    return row->by_slope && takes_slopes(m, c) && m->detect->contacts.points_valid_to[c] != TL_OUTDATED &&
+           tl_press_near(&row->there, &row->slope, &row->place, now, reach, press);
+}
+
+/* Whether slopes at the present place may be of use: the contact has stayed for long enough, or does not move as far in
+ * a step as they reach in motion. */
+static bool wants_slopes(const tl_model *m, uint32_t c)
+{
+    const tl_press_row *row = tl_press_row_of(m, c);
+    const tl_press *press = &row->press;
+    if (!takes_slopes(m, c))
+        return false;
+    return m->cycles - row->since >= TL_PRESS_SLOPE_COST ||
+           (m->detect->balance_left > 0 &&
+            last_way(m, c, tl_press_lever(press)) <= reach_in_motion(m) * press->deepest);
+}
+
+/* Keeps the slopes of the press just found when the contact has stayed where it is for as many steps as they cost. In
+ * motion it keeps those that the mesh has told. false: out of memory. */
 static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press, tl_press_row *row,
                   tl_narrow_scratch *scratch)
 {
     const tl_pair_pose place = {query->view->turn, query->view->shift};
+    const bool told = query->slope && query->slope->known;
     bool stays = tl_press_moved(press, &row->place, &place) <= 0.5 * TL_PRESS_NEAR;
-    if (!stays) {
+    const bool moves = told && m->detect->balance_left > 0;
+    if (!stays || moves) {
         row->place = place;
         row->since = m->cycles;
     }
-    if (!stays || m->cycles - row->since < TL_PRESS_SLOPE_COST || press->patch >= 1 ||
-        press->powers || /* slopes are of the energy only */
-        !m->config.reuse_geometry)
+    bool rests = stays && m->cycles - row->since >= TL_PRESS_SLOPE_COST && (press->patch < 1 || row->refused) &&
+                 !press->powers && m->config.reuse_geometry; /* slopes are of the energy only */
+    if (!rests && !moves)
         return true;
     tl_press_slope slope;
-    if (!tl_press_slope_find(query, press, scratch, &slope))
+    if (told)
+        slope = tl_press_slope_of(press, query->slope);
+    else if (!tl_press_slope_find(query, press, scratch, &slope))
         return false;
     row->place = place;
-    if (slope.known) { /* it takes the place of the mesh */
+    if (slope.known) {
         row->by_slope = true;
         row->there = *press;
         row->slope = slope;
@@ -271,8 +312,6 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     tl_press_row *row = tl_press_row_of(m, c);
     uint32_t k = b->asked++;
     const tl_pair_view *view = &b->view[k];
-    if (row->by_slope)
-        row->mesh = (tl_field_mesh){0};
     row->by_slope = false;
     tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], 0);
     b->region[k] = kept_region(row);
@@ -280,6 +319,7 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     note_moved_faces(m, c, row, &before);
     b->query[k] = tl_manifold_query(view, &b->region[k], &rule, &before);
     b->query[k].lean = row->leans ? row->lean : NULL; /* that lasts */
+    b->query[k].slope = wants_slopes(m, c) ? &b->slope[k] : NULL;
 }
 
 bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
@@ -308,12 +348,10 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
     b->asked = 0;
     for (uint32_t k = 0; k < b->count; k++) {
         uint32_t c = b->contact[k];
-        const tl_press_row *row = tl_press_row_of(m, c);
         tl_pair_view *view = &b->view[b->asked];
         *view = tl_contact_view(m, c);
         const tl_pair_pose place = {view->turn, view->shift};
-        b->near[k] = !lift(m, c) && has_slopes(m, c, row) &&
-                     tl_press_near(&row->there, &row->slope, &row->place, &place, &b->press[k]);
+        b->near[k] = !lift(m, c) && is_near(m, c, &place, &b->press[k]);
         if (!b->near[k])
             ask(m, b, c);
     }
@@ -324,6 +362,14 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
         tl_region_choose_flush(&b->view[k], &b->region[k]);
     b->failed = !tl_press_find(b->query, b->asked, scratch, b->found, b->extra);
     b->asked = 0;
+}
+
+/* Whether a contact may be a patch now. One that was none when it lay still here is none yet. */
+static bool may_be_patch(const tl_model *m, uint32_t c, const tl_pair_view *view, const tl_press *press)
+{
+    const tl_press_row *row = tl_press_row_of(m, c);
+    return press->patch >= 1 && is_calm(m, c) &&
+           !(row->refused && way_since(view, &row->listed_at) < TL_STILL * view->size);
 }
 
 tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k, tl_narrow_scratch *scratch)
@@ -340,7 +386,7 @@ tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k, tl_nar
         uint32_t i = b->asked++;
         press = &b->found[i];
         extra = &b->extra[i];
-        if (!(press->area > 0) || (press->patch >= 1 && is_calm(m, c)))
+        if (!(press->area > 0) || may_be_patch(m, c, &b->view[i], press))
             return TL_FIELD_LOST; /* it may be a patch or nothing now */
         if (!watch(m, &b->query[i], press, row, scratch))
             return TL_FIELD_FAILED;

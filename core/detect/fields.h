@@ -14,8 +14,8 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool r
 /* Tolerance: how far walls may part, over how far they are lifted, before the lift is forgotten. As far again they
  * ride on what has opened them. Test: lua/test_insitu. */
 #define TL_PARTED 2
-/* Keeps the region of a field contact. */
-void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *region);
+/* Keeps the region of a field contact; whether it lay still when that was found. */
+void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *region, bool calm);
 /* What is known of the field, with the numbers that its faces have in a list made anew; nothing where one is not in
  * it. */
 tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *region);
@@ -44,6 +44,7 @@ typedef struct tl_field_batch {
     tl_pair_view view[TL_FIELD_PAIRS];
     tl_region region[TL_FIELD_PAIRS];
     tl_press_query query[TL_FIELD_PAIRS];
+    tl_field_slope slope[TL_FIELD_PAIRS];
     uint32_t asked;
 } tl_field_batch;
 

@@ -135,7 +135,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     check_depth(m, c, &view, &region, scratch);
     note_tag(m, c, tag);
     if (tl_press_row_of(m, c))
-        tl_field_keep(tl_press_row_of(m, c), &view, &region);
+        tl_field_keep(tl_press_row_of(m, c), &view, &region, before.calm);
     if (row && g->point_count > 0 && tl_facet_is_field(&g->facet))
         tl_press_shift_faces(m, c, row->shift == 0 ? tl_touching_faces(&view, region.n) : row->shifted);
     return true;

@@ -23,7 +23,7 @@ static const char *const filter_actions[] = {
 
 static const char *const point_names[] = {"consistent", "corners", NULL};
 static const char *const rotation_names[] = {"exact", "paper", NULL};
-static const char *const timestep_names[] = {"paper", "body", NULL};
+static const char *const timestep_names[] = {"paper", "body", "balance", NULL};
 
 /* A test adds a setting by one row here. */
 #ifndef MORE_MODEL_PARAMS
@@ -66,14 +66,20 @@ static const tl_param tensor_params[] = {
 
 static const tl_param timestep_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_timestep, fraction, "",
-             "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1",
+             "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1, by the "
+             "rule balance 1",
              .min = TL_FRACTION_LEAST, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_ENUM, tl_timestep, rule, "",
              "critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and "
-             "stiffness (body)",
+             "stiffness (body). balance is for collapses: the critical step of body, and field contacts in motion by "
+             "slopes of their force, both as far as the energy balance allows; with dt the slopes only",
              .def = {TL_TIMESTEP_BODY}, .choices = timestep_names),
     TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "a fixed time step instead of the rule", .min = TL_STEP_LEAST,
              .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_timestep, error, "",
+             "rule balance: up to half of this error of the energy balance the step is the longest; from there to all "
+             "of it it falls to half of that, and the slopes are used for contacts at rest only",
+             .def = {TL_BALANCE_ERROR}, .min = 0.0, .max = 1.0),
 };
 
 static const tl_param mass_scaling_params[] = {

@@ -8,6 +8,9 @@
 /* Default: FRAC of (27), by the rule: one contact counts (Hart, Cundall and Lemos 1988), or all of a body. */
 #define TL_PAPER_FRACTION 0.1
 #define TL_BODY_FRACTION 0.5
+#define TL_BALANCE_FRACTION 1.0
+/* Default: error of the energy balance that the rule balance allows. */
+#define TL_BALANCE_ERROR 1e-4
 
 /* Default: share of the mass that may be added for a longer step: what slides or falls is then as much slower at the
  * most. Test: lua/test_mass_added. */

@@ -19,7 +19,13 @@
  * (field.c). So all sides that a corner has lead to corners that are known: the mesh is closed, and K hangs
  * together.
  *
- * Polygons are summed by triangles from their first corner. */
+ * Polygons are summed by triangles from their first corner.
+ *
+ * Slopes. Force and moment are the fluxes of d_A t through S, for t = e_k and e_k x x. Where B moves by a field of ways
+ * u, S moves along n by -(n_b . u) / |n_a - n_b|. The divergence of d_A t is -n_a . t. And d_A t is continuous on S,
+ * and 0 on its border. So the flux changes by
+ *
+ *     int over S of (n_a . t) (n_b . u) / |n_a - n_b| dS. */
 #include "narrow/field_mesh.h"
 
 #include "base/inline.h"
@@ -166,6 +172,11 @@ typedef struct integrals {
     double area[LANES], d[LANES], dd[LANES], x[3][LANES], dx[3][LANES], xx[LANES];
 } integrals;
 
+/* Second moments of eight polygons: xx, yy, zz, xy, yz, zx. */
+typedef struct second_moments {
+    double of[6][LANES];
+} second_moments;
+
 /* Eight polygons. */
 typedef struct polygons {
     const uint8_t *loop[LANES];
@@ -215,6 +226,29 @@ TL_INLINE void add_triangle(const polygons *p, const polygon_corner *u, const po
         s->dx[1][l] += twelfth * (d * y + ud * uy + vd * vy + wd * wy);
         s->dx[2][l] += twelfth * (d * z + ud * uz + vd * vz + wd * wz);
         s->xx[l] += twelfth * (x * x + y * y + z * z + squares);
+    }
+}
+
+/* Adds the second moments of a triangle of each polygon. */
+TL_INLINE void add_second_moments(const polygons *p, const polygon_corner *u, const polygon_corner *v,
+                                  const polygon_corner *w, second_moments *s)
+{
+#pragma omp simd
+    for (uint32_t l = 0; l < LANES; l++) {
+        double ux = u->x[0][l], uy = u->x[1][l], uz = u->x[2][l];
+        double vx = v->x[0][l], vy = v->x[1][l], vz = v->x[2][l];
+        double wx = w->x[0][l], wy = w->x[1][l], wz = w->x[2][l];
+        double ax = vx - ux, ay = vy - uy, az = vz - uz;
+        double bx = wx - ux, by = wy - uy, bz = wz - uz;
+        double twelfth = (1.0 / 24) * (p->n[0][l] * (ay * bz - az * by) + p->n[1][l] * (az * bx - ax * bz) +
+                                       p->n[2][l] * (ax * by - ay * bx));
+        double x = ux + vx + wx, y = uy + vy + wy, z = uz + vz + wz;
+        s->of[0][l] += twelfth * (x * x + ux * ux + vx * vx + wx * wx);
+        s->of[1][l] += twelfth * (y * y + uy * uy + vy * vy + wy * wy);
+        s->of[2][l] += twelfth * (z * z + uz * uz + vz * vz + wz * wz);
+        s->of[3][l] += twelfth * (x * y + ux * uy + vx * vy + wx * wy);
+        s->of[4][l] += twelfth * (y * z + uy * uz + vy * vz + wy * wz);
+        s->of[5][l] += twelfth * (z * x + uz * ux + vz * vx + wz * wx);
     }
 }
 
@@ -271,8 +305,9 @@ TL_VECTORIZED static void integrate_powers(const corners *restrict at, const pol
     *out = s;
 }
 
-/* Integrates over eight polygons by triangles from their first corners. */
-TL_VECTORIZED static void integrate_polygons(const corners *restrict at, polygons *restrict p)
+/* Integrates over eight polygons by triangles from their first corners; their second moments, too, if they are wanted.
+ */
+TL_INLINE void integrate_triangles(const corners *restrict at, polygons *restrict p, second_moments *restrict second)
 {
     polygon_corner u, v, w;
     integrals s;
@@ -291,9 +326,25 @@ TL_VECTORIZED static void integrate_polygons(const corners *restrict at, polygon
     for (uint32_t k = 2; k < p->most; k++) {
         take_corner(at, p, k, &w);
         add_triangle(p, &u, &v, &w, &s);
+        if (second)
+            add_second_moments(p, &u, &v, &w, second);
         v = w;
     }
     p->of = s;
+}
+
+TL_VECTORIZED static void integrate_polygons(const corners *restrict at, polygons *restrict p)
+{
+    integrate_triangles(at, p, NULL);
+}
+
+TL_VECTORIZED static void integrate_second_moments(const corners *restrict at, polygons *restrict p,
+                                                   second_moments *restrict out)
+{
+    second_moments s;
+    memset(&s, 0, sizeof s);
+    integrate_triangles(at, p, &s);
+    *out = s;
 }
 
 /* What the polygons in the lanes give, in columns of lanes: the vectors' components, then the others. */
@@ -390,6 +441,42 @@ static void add_powers(const corners *at, const polygons *p, double given[TL_FIE
     add_power(p, s->cube, s->fourth, s->x[1], 1.0 / 8, given[1]);
 }
 
+/* Slopes of force and moment, rows, by ways and turns, columns. */
+enum { SLOPES = 36 };
+
+/* Adds those of the polygons in the lanes. `a`, `b`: normals of the faces of A and of B. */
+TL_VECTORIZED static void add_slopes(const polygons *restrict p, const second_moments *restrict second,
+                                     double (*restrict a)[LANES], double (*restrict b)[LANES],
+                                     double (*restrict out)[LANES])
+{
+    const double(*restrict q)[LANES] = second->of;
+#pragma omp simd
+    for (uint32_t l = 0; l < LANES; l++) {
+        bool any = p->of.area[l] > 0;
+        double per = any ? p->gradient[l] / p->length[l] : 0.0, area = per * p->of.area[l];
+        double x = per * p->of.x[0][l], y = per * p->of.x[1][l], z = per * p->of.x[2][l];
+        double xx = per * q[0][l], yy = per * q[1][l], zz = per * q[2][l];
+        double xy = per * q[3][l], yz = per * q[4][l], zx = per * q[5][l];
+        double na[3] = {a[0][l], a[1][l], a[2][l]}, nb[3] = {b[0][l], b[1][l], b[2][l]};
+        /* int x cross n of both faces */
+        double ma[3] = {y * na[2] - z * na[1], z * na[0] - x * na[2], x * na[1] - y * na[0]};
+        double mb[3] = {y * nb[2] - z * nb[1], z * nb[0] - x * nb[2], x * nb[1] - y * nb[0]};
+        /* int x_i (x cross n_b), i the first index */
+        double m[3][3] = {{xy * nb[2] - zx * nb[1], zx * nb[0] - xx * nb[2], xx * nb[1] - xy * nb[0]},
+                          {yy * nb[2] - yz * nb[1], yz * nb[0] - xy * nb[2], xy * nb[1] - yy * nb[0]},
+                          {yz * nb[2] - zz * nb[1], zz * nb[0] - zx * nb[2], zx * nb[1] - yz * nb[0]}};
+        for (int k = 0; k < 3; k++) {
+            int i = (k + 1) % 3, j = (k + 2) % 3;
+            for (int to = 0; to < 3; to++) {
+                out[6 * k + to][l] += area * na[k] * nb[to];
+                out[6 * k + 3 + to][l] += na[k] * mb[to];
+                out[18 + 6 * k + to][l] += ma[k] * nb[to];
+                out[18 + 6 * k + 3 + to][l] += m[i][to] * na[j] - m[j][to] * na[i];
+            }
+        }
+    }
+}
+
 /* Sum of eight lanes. */
 TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES], double *restrict sum)
 {
@@ -473,6 +560,33 @@ static void add_strays(const tl_field_faces *f, const polygons *p, uint32_t firs
     }
 }
 
+/* Integrates over polygons, from number `first` on, with their slopes. */
+static void integrate_slopes(const tl_field_faces *f, const corners *at, uint32_t first, uint32_t count, polygons *p,
+                             double slopes[SLOPES][LANES])
+{
+    second_moments second;
+    double n[2][3][LANES];
+    for (uint32_t l = 0; l < LANES; l++)
+        for (int own = 0; own < 2; own++) {
+            uint32_t face = f->mesh->own[first + (l < count ? l : count - 1)][own];
+            for (int axis = 0; axis < 3; axis++)
+                n[own][axis][l] = f->n[axis][face];
+        }
+    integrate_second_moments(at, p, &second);
+    add_slopes(p, &second, n[0], n[1], slopes);
+}
+
+static void put_slopes(double slopes[SLOPES][LANES], tl_field_slope *out)
+{
+    double sum[SLOPES];
+    sum_lanes(SLOPES, slopes, sum);
+    for (int by = 0; by < 6; by++) {
+        out->force[by] = (tl_vec3){sum[by], sum[6 + by], sum[12 + by]};
+        out->moment[by] = (tl_vec3){sum[18 + by], sum[24 + by], sum[30 + by]};
+    }
+    out->known = true;
+}
+
 /* The deepest corner of S: faces of both blocks meet there. The four planes are in ascending order. */
 static void find_deepest(const tl_field_faces *f, const corners *at, tl_field_sums *sums)
 {
@@ -540,7 +654,8 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     corners at;
     polygons p;
     double given[GIVEN][LANES], sum[GIVEN], by_power[TL_FIELD_POWERS];
-    double powers[TL_FIELD_POWERS][POWER_GIVEN][LANES];
+    double powers[TL_FIELD_POWERS][POWER_GIVEN][LANES], slopes[SLOPES][LANES];
+    tl_field_slope *slope = f->seamed ? NULL : f->slope;
     if (!mesh || mesh->polygons == 0)
         return false;
     bool strays = mesh->apex[0].strays || mesh->apex[1].strays;
@@ -551,10 +666,15 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     memset(given, 0, sizeof given);
     if (f->powers)
         memset(powers, 0, sizeof powers);
+    if (slope)
+        memset(slopes, 0, sizeof slopes);
     const uint32_t between = between_cells(f);
     for (uint32_t first = 0; first < between; first += LANES) {
         uint32_t count = begin_polygons(f, apex, first, between, &loop, &p);
-        integrate_polygons(&at, &p);
+        if (slope)
+            integrate_slopes(f, &at, first, count, &p, slopes);
+        else
+            integrate_polygons(&at, &p);
         add_given(&p, given);
         if (f->powers)
             add_powers(&at, &p, powers);
@@ -576,6 +696,8 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
                             .stiffness = sum[STIFFNESS]};
     sums->area = sums->swept;
     find_deepest(f, &at, sums);
+    if (slope)
+        put_slopes(slopes, slope);
     if (between < mesh->polygons)
         add_borders(f, &at, between, loop, powers, sums);
     for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++) {

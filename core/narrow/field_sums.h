@@ -50,6 +50,13 @@ static inline uint32_t tl_mesh_lanes(const tl_field_mesh *mesh)
     return (mesh->corners + TL_LANES - 1) / TL_LANES * TL_LANES;
 }
 
+/* How force and moment of a field change: by B's ways along the axes, and then by its turns about them through the
+ * origin. */
+typedef struct tl_field_slope {
+    tl_vec3 force[6], moment[6];
+    bool known;
+} tl_field_slope;
+
 /* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among
  * them. Of blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a
  * border all faces are needed, for beyond it the nearest need not bound K. Of blocks that are apart the faces left may
@@ -66,6 +73,7 @@ typedef struct tl_field_faces {
     bool seamed;                /* the nearest face need not bound K: there are borders, or faces of other parts */
     bool energy_only;           /* the volume is not wanted, nor found where it costs more */
     bool powers;                /* int d^2 dV and int d^3 dV are wanted, too */
+    tl_field_slope *slope;      /* to be found by the mesh, where there are no borders; NULL: not wanted */
 } tl_field_faces;
 
 static inline tl_vec3 tl_field_normal(const tl_field_faces *f, uint32_t face)

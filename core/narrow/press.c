@@ -476,6 +476,22 @@ static void put_powers(const tl_press_query *of, tl_vec3 origin, const tl_field_
     press->overlap = 4 * press->energy / volume;
 }
 
+/* Slopes about A's zero of those about another origin. A patch that presses, too, has others. */
+static void finish_slope(tl_field_slope *slope, tl_vec3 origin, bool patch)
+{
+    slope->known = slope->known && !patch;
+    for (int k = 0; k < 3 && slope->known; k++) {
+        const tl_vec3 axis = {k == 0, k == 1, k == 2}, way = tl_v3_cross(axis, origin);
+        const double by[] = {way.x, way.y, way.z};
+        for (int j = 0; j < 3; j++) {
+            slope->force[3 + k] = tl_v3_madd(slope->force[3 + k], by[j], slope->force[j]);
+            slope->moment[3 + k] = tl_v3_madd(slope->moment[3 + k], by[j], slope->moment[j]);
+        }
+    }
+    for (int k = 0; k < 6 && slope->known; k++)
+        slope->moment[k] = tl_v3_add(slope->moment[k], tl_v3_cross(origin, slope->force[k]));
+}
+
 /* Radius of gyration of the area about a place: none where it is a rounding of what is subtracted, as at a single
  * corner. */
 static double radius_of(const tl_field_sums *sums, tl_vec3 about)
@@ -532,6 +548,8 @@ static bool press_of(const tl_press_query *of, press_planes *p, tl_field_sums *s
     tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
     press->point = tl_v3_add(p->origin, centre);
     press->radius = radius_of(sums, centre);
+    if (p->faces.slope)
+        finish_slope(p->faces.slope, p->origin, flush.count > 0);
     return true;
 }
 
@@ -542,6 +560,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, press_planes *p)
     list_planes(p, of, of->region->a, of->region->b);
     p->faces.energy_only = !(of->min_area > 0 || of->volumes);
     p->faces.powers = of->volumes;
+    p->faces.slope = p->faces.energy_only ? of->slope : NULL;
     p->faces.mesh = of->region->mesh;
     p->faces.inner = NULL;
     p->faces.seamed = of->region->border_a + of->region->border_b > 0 || has_shared_planes(of);
@@ -658,6 +677,8 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
     if (!press_reserve(scratch, query, count, p))
         return false;
     for (uint32_t k = 0; k < count; k++) {
+        if (query[k].slope)
+            query[k].slope->known = false;
         bool found = follow(&query[k], &p[k], &sums[k]);
         if (!found)
             begin_anew(&query[k], &p[k], &inner[k]);
@@ -698,6 +719,7 @@ static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_
         before[some] = query[k];
         before[some].region = &region[some];
         before[some].shift -= query[k].opened;
+        before[some].slope = NULL;
         opened[some++] = k;
     }
     if (some == 0)

@@ -1,8 +1,9 @@
 /* press_slope.c - a press near a place where it was found: force and all else go on by their slopes there.
  *
  * Blocks at rest move by a small part of their overlap. There the energy is a quadratic of the motion. Its force goes
- * by the slopes -d2G, which are symmetric, so that what swings within neither gains nor loses. The slopes are central
- * differences over the same way that they are used for. */
+ * by the slopes -d2G, which are symmetric, so that what swings within neither gains nor loses. The mesh of a field
+ * tells them where there is no patch (field_mesh.c). Otherwise they are central differences over the way that they are
+ * used for. */
 #include "narrow/press_slope.h"
 
 #include "narrow/narrow.h"
@@ -23,8 +24,7 @@ static motion motion_between(tl_vec3 point, const tl_pair_pose *from, const tl_p
                         tl_v3_scale(0.5, tl_v3(q.m[2][1] - q.m[1][2], q.m[0][2] - q.m[2][0], q.m[1][0] - q.m[0][1]))};
 }
 
-/* Way at the rim of the area for a turn of 1. Of a corner the area is smaller than its overlap. */
-static double lever(const tl_press *at)
+double tl_press_lever(const tl_press *at)
 {
     return fmax(2 * at->radius, at->deepest);
 }
@@ -32,7 +32,7 @@ static double lever(const tl_press *at)
 /* The motion over the overlap of the press: along, and by turns at the rim of its area. */
 static double over_depth(const tl_press *at, const motion *by)
 {
-    return (tl_v3_norm(by->way) + lever(at) * tl_v3_norm(by->turn)) / at->deepest;
+    return (tl_v3_norm(by->way) + tl_press_lever(at) * tl_v3_norm(by->turn)) / at->deepest;
 }
 
 double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to)
@@ -70,7 +70,7 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_nar
     const tl_region *region = query->region;
     slope->known = true;
     for (int axis = 0; axis < 6; axis++) {
-        double way = TL_PRESS_NEAR * at->deepest, by = axis < 3 ? way : way / lever(at);
+        double way = TL_PRESS_NEAR * at->deepest, by = axis < 3 ? way : way / tl_press_lever(at);
         double per = 1 / (2 * by);
         tl_field_mesh mesh[2];
         tl_region same[2] = {*region, *region};
@@ -96,12 +96,43 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_nar
     return true;
 }
 
-bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from, const tl_pair_pose *to,
-                   tl_press *out)
+tl_press_slope tl_press_slope_of(const tl_press *at, const tl_field_slope *field)
 {
+    tl_press_slope out = {.known = field->known};
+    for (int k = 0; k < 3; k++) {
+        const tl_vec3 axis = {k == 0, k == 1, k == 2}, way = tl_v3_cross(at->point, axis);
+        const double by[] = {way.x, way.y, way.z}; /* of a turn about the point, beside one about zero */
+        out.point[k] = tl_v3_scale(0.5, axis);
+        out.force[k] = field->force[k];
+        out.moment[k] = field->moment[k];
+        out.force[3 + k] = field->force[3 + k];
+        out.moment[3 + k] = field->moment[3 + k];
+        for (int j = 0; j < 3; j++) {
+            out.force[3 + k] = tl_v3_madd(out.force[3 + k], by[j], field->force[j]);
+            out.moment[3 + k] = tl_v3_madd(out.moment[3 + k], by[j], field->moment[j]);
+        }
+    }
+    return out;
+}
+
+static bool is_same(const tl_pair_pose *a, const tl_pair_pose *b)
+{
+    bool same = a->shift.x == b->shift.x && a->shift.y == b->shift.y && a->shift.z == b->shift.z;
+    for (int k = 0; k < 9; k++)
+        same = same && a->turn.m[k / 3][k % 3] == b->turn.m[k / 3][k % 3];
+    return same;
+}
+
+bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from, const tl_pair_pose *to,
+                   double reach, tl_press *out)
+{
+    if (is_same(from, to)) { /* to the last digit */
+        *out = *at;
+        return true;
+    }
     const motion by = motion_between(at->point, from, to);
     const double x[] = {by.way.x, by.way.y, by.way.z, by.turn.x, by.turn.y, by.turn.z};
-    if (!(over_depth(at, &by) <= TL_PRESS_NEAR))
+    if (!(over_depth(at, &by) <= reach))
         return false;
     *out = *at;
     for (int k = 0; k < 6; k++) {

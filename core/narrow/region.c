@@ -106,12 +106,15 @@ TL_VECTORIZED static void vertex_heights(const planes *restrict q, size_t g, con
     }
 }
 
-/* The largest height over one of the planes of a face's lowest vertex. */
-TL_VECTORIZED static void find_outside(const tl_poly *poly, size_t faces, const double (*restrict height)[TL_LANES],
-                                       double *restrict outside)
+/* The largest height over one of the planes of a face's lowest vertex; of a face that lies outside by more than the
+ * margin no more than that. */
+TL_VECTORIZED static void find_outside(const tl_poly *poly, size_t faces, double margin,
+                                       const double (*restrict height)[TL_LANES], double *restrict outside)
 {
     for (size_t f = 0; f < faces; f++) {
         double low[TL_LANES], most = outside[f];
+        if (most > margin)
+            continue;
         memcpy(low, height[poly->loop[poly->start[f]]], sizeof low);
         for (uint32_t k = poly->start[f] + 1; k < poly->start[f + 1]; k++) {
             const double *restrict h = height[poly->loop[k]];
@@ -126,13 +129,13 @@ TL_VECTORIZED static void find_outside(const tl_poly *poly, size_t faces, const 
 }
 
 /* Where the faces of p lie over the planes of q. `height` has room for p's vertices. */
-static void find_heights(const planes *p, const planes *q, double (*height)[TL_LANES])
+static void find_heights(const planes *p, const planes *q, double margin, double (*height)[TL_LANES])
 {
     for (size_t f = 0; f < p->count; f++)
         p->outside[f] = -INFINITY;
     for (size_t g = 0; g < q->count; g += TL_LANES) {
         vertex_heights(q, g, p->vertex, p->poly->vertex_count, height);
-        find_outside(p->poly, p->faces, (const double(*)[TL_LANES])height, p->outside);
+        find_outside(p->poly, p->faces, margin, (const double(*)[TL_LANES])height, p->outside);
     }
 }
 
@@ -256,19 +259,49 @@ static void find_leads(const planes *a, const planes *b, tl_region *out, uint16_
                 out->flush_lead = fmin(out->flush_lead, out->flush_gap - fmax(a->low[face[k]], b->low[of_b[m]]));
 }
 
-bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch, tl_region *out)
+/* The planes of both blocks, and room for the heights of vertices. */
+typedef struct both {
+    planes a, b;
+    double (*height)[TL_LANES];
+} both;
+
+static bool place_planes(const tl_pair_view *view, tl_narrow_scratch *scratch, both *out)
 {
     const size_t count_a = view->a->plane_count, count_b = view->b->plane_count;
     const size_t rows_a = padded(count_a), rows_b = padded(count_b);
-    *out = (tl_region){0};
     uint32_t vertices = view->a->vertex_count > view->b->vertex_count ? view->a->vertex_count : view->b->vertex_count;
     if (!reserve(scratch, 7 * (rows_a + rows_b) + TL_LANES * (size_t)vertices, count_a + count_b))
         return false;
-    const planes a = columns_of(view, false, scratch->plane);
-    const planes b = columns_of(view, true, scratch->plane + 7 * rows_a);
-    double(*height)[TL_LANES] = (double(*)[TL_LANES])(scratch->plane + 7 * (rows_a + rows_b));
-    find_heights(&a, &b, height);
-    find_heights(&b, &a, height);
+    *out = (both){.a = columns_of(view, false, scratch->plane),
+                  .b = columns_of(view, true, scratch->plane + 7 * rows_a),
+                  .height = (double(*)[TL_LANES])(scratch->plane + 7 * (rows_a + rows_b))};
+    return true;
+}
+
+bool tl_region_gap(const tl_pair_view *view, tl_narrow_scratch *scratch, double *gap)
+{
+    both of;
+    tl_region region = {0};
+    if (!place_planes(view, scratch, &of))
+        return false;
+    for (size_t g = 0; g < of.b.count; g += TL_LANES)
+        vertex_heights(&of.b, g, of.a.vertex, of.a.poly->vertex_count, of.height);
+    for (size_t g = 0; g < of.a.count; g += TL_LANES)
+        vertex_heights(&of.a, g, of.b.vertex, of.b.poly->vertex_count, of.height);
+    find_gap(&of.a, &of.b, &region);
+    *gap = region.gap;
+    return true;
+}
+
+bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch, tl_region *out)
+{
+    both of;
+    *out = (tl_region){0};
+    if (!place_planes(view, scratch, &of))
+        return false;
+    const planes a = of.a, b = of.b;
+    find_heights(&a, &b, margin, of.height);
+    find_heights(&b, &a, margin, of.height);
     find_gap(&a, &b, out);
     uint16_t *face = scratch->face;
     bool seams = view->a->seams || view->b->seams;

@@ -281,6 +281,8 @@ static void hash_reals(tl_hash *hash, const tl_model *m, const tl_settings *of)
     for (size_t i = 0; i < of->count; i++) {
         const uint32_t type = of->params[i].type;
         const double *at = tl_setting_at(m, of, i), fraction = tl_timestep_fraction(m);
+        if (at == &m->timestep.error && m->timestep.rule != TL_TIMESTEP_BALANCE)
+            continue; /* it makes no difference then */
         if (at && (type == TL_PARAM_REAL || type == TL_PARAM_VEC3))
             tl_hash_numbers(hash, at == &m->timestep.fraction ? &fraction : at, type == TL_PARAM_VEC3 ? 3 : 1);
     }

@@ -482,9 +482,10 @@ function Model:insitu(options) end
 function Model:damping(damping, options) end
 
 ---@class (exact) talus.TimestepOptions
----@field fraction? number in [1e-09, 2]: share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1
----@field rule? "paper"|"body" default "body": critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and stiffness (body)
+---@field fraction? number in [1e-09, 2]: share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1, by the rule balance 1
+---@field rule? "paper"|"body"|"balance" default "body": critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and stiffness (body). balance is for collapses: the critical step of body, and field contacts in motion by slopes of their force, both as far as the energy balance allows; with dt the slopes only
 ---@field dt? number s, in [1e-100, 1e+100]: a fixed time step instead of the rule
+---@field error? number in [0, 1], default 0.0001: rule balance: up to half of this error of the energy balance the step is the longest; from there to all of it it falls to half of that, and the slopes are used for contacts at rest only
 
 ---@class (exact) talus.TimestepResult
 ---@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set

@@ -280,6 +280,7 @@ static const lie lies[] = {
     PRESS(listed, two),
     PRESS(leans, two),
     PRESS(by_slope, two),
+    PRESS(refused, two),
     PRESS(shifted.a, far_row),
     PRESS(shifted.b, far_row),
     PRESS(count[0], far_vertex),

@@ -191,7 +191,7 @@ TL_API tl_status tl_model_insitu(tl_model *model, const tl_insitu *insitu);
 /* Chooses the damping plugin; "none" is no damping. */
 TL_API tl_status tl_model_damping(tl_model *model, const char *damping, const tl_args *args);
 
-typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timestep_rule;
+typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY, TL_TIMESTEP_BALANCE } tl_timestep_rule;
 
 /* Limit: largest FRAC: twice what two free blocks bear; more is a slip of the pen. */
 #define TL_FRACTION_MOST 2.0
@@ -205,6 +205,7 @@ typedef struct tl_timestep {
     double fraction; /* FRAC of (27); NaN: that of the rule */
     int32_t rule;    /* tl_timestep_rule */
     double dt;       /* fixed step, s; NaN: by the rule */
+    double error;    /* rule balance: of the energy balance, up to which the step is longer; 0: the default */
 } tl_timestep;
 /* Sets how the time step is chosen; NULL: by the defaults. TL_E_ARGUMENT with a sentence for a fraction or a step out
  * of the ranges above; then nothing changes. */
