@@ -18,8 +18,8 @@
 #define LARGE ((size_t)2 << 20)
 /* Cost only: bytes from which a table has pages of its own, which are moved when it grows. */
 #define LEAST_MAPPED ((size_t)1 << 20)
-/* Cost only: cache lines between the beginnings of columns in their pages, or the same row of all columns would lie in
- * one set of the nearest cache. */
+/* Cost only: cache lines between the beginnings of columns in their pages. Without, the same row of all columns would
+ * lie in one set of the nearest cache. */
 #define STAGGER 5
 
 void tl_pages_large(void *memory, size_t bytes)

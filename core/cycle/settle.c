@@ -81,7 +81,8 @@ void tl_settle_end(tl_model *m)
     }
     m->relaxing = false;
     m->still = 0;
-    m->cycle->secant_count = 0;
+    if (m->cycle) /* a file may lack it */
+        m->cycle->secant_count = 0;
 }
 
 static bool may_leap(const tl_model *m)
