@@ -55,6 +55,8 @@ enum {
     MOMENT_BEFORE = FORCE_BEFORE + 3,
     MASS = MOMENT_BEFORE + 3,
     INERTIA,
+    MOVING_MASS,
+    MOVING_INERTIA,
     OUT,
     OUT_FORCE = OUT,
     OUT_MOMENT = OUT_FORCE + 3,
@@ -105,6 +107,11 @@ static void next_motion(trial *t, int step)
             t->in.c[FORCE_BEFORE + k][i] = step ? before.c[FORCE + k][i] : 0;
         t->in.c[MASS][i] = tl_check_scale(tl_key(body, 1), 1, 6);
         t->in.c[INERTIA][i] = t->in.c[MASS][i] * tl_check_scale(tl_key(body, 2), -1, 1);
+        /* as by mass scaling, which every fourth does not need */
+        for (int k = 0; k < 2; k++) {
+            double scale = i % 4 == 0 ? 1 : tl_check_scale(tl_key(body, 3 + (uint64_t)k), k == 0 ? -1 : 0, 2);
+            t->in.c[MOVING_MASS + k][i] = t->in.c[MASS + k][i] * scale;
+        }
         for (int k = OUT; k < COLUMNS; k++)
             t->in.c[k][i] = 0;
     }
@@ -127,7 +134,9 @@ static tl_status call(trial *t, buffer *b, size_t count)
                               .mass = b->c[MASS],
                               .inertia = b->c[INERTIA],
                               .alpha = b->c[OUT_ALPHA],
-                              .state = t->at};
+                              .state = t->at,
+                              .moving_mass = b->c[MOVING_MASS],
+                              .moving_inertia = b->c[MOVING_INERTIA]};
     for (int k = 0; k < 3; k++) {
         batch.velocity[k] = b->c[VELOCITY + k];
         batch.angular_velocity[k] = b->c[SPIN + k];
@@ -155,7 +164,7 @@ static bool run(trial *t, const bodies *in, bodies *out, const size_t *order, si
     for (size_t l = 0; l < MOST; l++)
         for (int k = 0; k < COLUMNS; k++) {
             size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
-            double rest = k == MASS || k == INERTIA ? 1 : 0;
+            double rest = k >= MASS && k < OUT ? 1 : 0;
             now.c[k][l] = l < count ? in->c[k][i] : l < padded ? rest : tl_check_nobodys(k, t->other);
         }
     before = now;

@@ -103,7 +103,13 @@ typedef struct body_columns {
     double force[3][TL_BODY_CHUNK], moment[3][TL_BODY_CHUNK];
     double force_before[3][TL_BODY_CHUNK], moment_before[3][TL_BODY_CHUNK];
     double mass[TL_BODY_CHUNK], inertia[TL_BODY_CHUNK];
+    double moving_mass[TL_BODY_CHUNK], moving_inertia[TL_BODY_CHUNK]; /* only where they are not the body's own */
 } body_columns;
+
+TL_INLINE double mean_of(tl_vec3 moments)
+{
+    return (moments.x + moments.y + moments.z) / 3;
+}
 
 /* The vectors of `count` bodies from `first` on as columns; 0 beyond them, up to `lanes`. */
 TL_INLINE void put(double (*restrict columns)[TL_BODY_CHUNK], const tl_vec3 *restrict first, size_t count, size_t lanes)
@@ -124,12 +130,28 @@ TL_VECTORIZED static void fill_columns(body_columns *s, const tl_bodies *b, size
     put(s->force, b->force + begin, count, lanes);
     put(s->moment, b->moment + begin, count, lanes);
     for (size_t i = 0; i < count; i++) {
-        tl_vec3 moments = b->moments[begin + i];
         s->mass[i] = b->mass[begin + i];
-        s->inertia[i] = (moments.x + moments.y + moments.z) / 3;
+        s->inertia[i] = mean_of(b->moments[begin + i]);
     }
     for (size_t i = count; i < lanes; i++)
         s->mass[i] = s->inertia[i] = 1;
+}
+
+/* Whether the step moves a body by another mass or other moments than its own. */
+static bool moves_by_others(const tl_model *m)
+{
+    return tl_inertia_scaled(m->cycle) || m->config.rotation == TL_ROTATION_PAPER;
+}
+
+static void fill_moving(body_columns *s, const tl_model *m, size_t begin, size_t count, size_t lanes)
+{
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t body = (uint32_t)(begin + i);
+        s->moving_mass[i] = s->mass[i] * tl_inertia_scale(m->cycle, body);
+        s->moving_inertia[i] = mean_of(tl_moments_of(m, body)) * tl_turn_scale(m->cycle, body);
+    }
+    for (size_t i = count; i < lanes; i++)
+        s->moving_mass[i] = s->moving_inertia[i] = 1;
 }
 
 /* What the damping gave must be numbers: one that is not would spread over the model. */
@@ -165,13 +187,18 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         put(s.force_before, b->force_before + begin, last - begin, end - begin);
         put(s.moment_before, b->moment_before + begin, last - begin, end - begin);
     }
+    const bool others = moves_by_others(m);
+    if (others)
+        fill_moving(&s, m, begin, last - begin, end - begin);
     tl_damping_batch batch = {.size = sizeof batch,
                               .count = (uint32_t)(end - begin),
                               .dt = job->dt,
                               .mass = s.mass,
                               .inertia = s.inertia,
                               .alpha = c->alpha + begin,
-                              .state = job->state};
+                              .state = job->state,
+                              .moving_mass = others ? s.moving_mass : s.mass,
+                              .moving_inertia = others ? s.moving_inertia : s.inertia};
     memset(batch.alpha, 0, (end - begin) * sizeof *batch.alpha);
     for (int k = 0; k < 3; k++) {
         batch.velocity[k] = s.velocity[k];

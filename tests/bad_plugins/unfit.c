@@ -186,6 +186,8 @@ enum {
     D_ALONE,
     D_SPLIT,
     D_WRITES,
+    D_MOVING,
+    D_GROWS,
     D_STATE,
     D_FINITE,
     D_BRAKES,
@@ -199,8 +201,9 @@ typedef struct damping_params {
     int32_t damping_fault;
 } damping_params;
 
-static const char *const damping_faults[] = {"none",   "runs",   "repeats", "alone", "split",  "writes", "state",
-                                             "finite", "brakes", "alpha",   "rests", "factor", "states", NULL};
+static const char *const damping_faults[] = {"none",   "runs",   "repeats", "alone",  "split",  "writes",
+                                             "moving", "grows",  "state",   "finite", "brakes", "alpha",
+                                             "rests",  "factor", "states",  NULL};
 
 static const tl_param damping_table[] = {
     TL_PARAM(TL_PARAM_ENUM, damping_params, damping_fault, "", "what is wrong with the damping",
@@ -239,6 +242,8 @@ static tl_status damping_update(const void *self, const tl_damping_batch *batch,
         case D_ALONE: batch->alpha[i] += batch->count > TL_LANES ? 1e-9 : 0; break;
         case D_SPLIT: batch->alpha[i] += i % 3 == 2 ? 1e-9 : 0; break;
         case D_WRITES: ((double *)(uintptr_t)batch->velocity[0])[i] = 0; break;
+        case D_MOVING: ((double *)(uintptr_t)batch->moving_mass)[i] = 0; break;
+        case D_GROWS: batch->alpha[i] *= batch->moving_mass[i]; break;
         case D_STATE: *batch->state[0] += 1; break;
         case D_FINITE: batch->damping_moment[0][i] = 0 / batch->angular_velocity[0][i]; break;
         case D_RESTS: batch->damping_force[2][i] += batch->velocity[2][i] == 0 ? 1e-9 : 0; break;

@@ -180,10 +180,11 @@ WRONG = [
     ("alpha grows with the mass", VISCOUS, "= p->alpha;", "= p->alpha * batch->mass[i];", "masses", "twice the mass"),
     ("the force of the step before is not looked at", COMBINED, "change = force[i] - before[i];", "change = force[i];", "reads",
      "step before"),
-    ("drag without the mass", DRAG, "double factor = -c * inertia[i] *", "double factor = -c *", "masses", "twice the mass"),
+    ("drag without the mass", DRAG, "fmin(c * inertia[i] *", "fmin(c *", "masses", "twice the mass"),
     ("drag of one component is left out", DRAG, "        out[2][i] = factor * z;\n", "", "turned", "turned to other axes"),
-    ("the turning is not damped", DRAG, "    drag(p->spin_drag, batch, batch->inertia, batch->angular_velocity, "
-     "batch->damping_moment);\n", "", "parameters", "spin_drag"),
+    ("the limit of the drag without the mass", DRAG, "moving[i] / batch->dt;", "1 / batch->dt;", "masses", "twice the mass"),
+    ("the turning is not damped", DRAG, "    drag(p->spin_drag, batch, batch->inertia, batch->moving_inertia, "
+     "batch->angular_velocity, batch->damping_moment);\n", "", "parameters", "spin_drag"),
     ("the bound of the servo is not used", ADAPTIVE, "clamp(alpha, minimum < maximum ? minimum : maximum, maximum)", "alpha",
      "parameters|finite", "imum|finite"),
     ("a servo with the wrong sign", ADAPTIVE, "alpha *= clamp(", "alpha *= -clamp(", "parameters|brakes", "energy|target"),

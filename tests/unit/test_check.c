@@ -75,6 +75,8 @@ TEST(each_check_finds_what_breaks_it)
         {"damping_fault", "alone", "one by one; split; "},
         {"damping_fault", "split", "one by one; split; "},
         {"damping_fault", "writes", "writes; "},
+        {"damping_fault", "moving", "writes; "},
+        {"damping_fault", "grows", "masses; "},
         {"damping_fault", "brakes", "one by one; split; brakes; "},
         {"damping_fault", "alpha", "brakes; "},
         {"damping_fault", "rests", "rests; turned; masses; "},

@@ -65,7 +65,9 @@ static void damping_update(damping *d, bodies *b, double dt)
                               .mass = b->mass,
                               .inertia = b->inertia,
                               .alpha = b->alpha,
-                              .state = d->state};
+                              .state = d->state,
+                              .moving_mass = b->mass,
+                              .moving_inertia = b->inertia};
     for (int k = 0; k < 3; k++) {
         batch.velocity[k] = b->velocity[k];
         batch.angular_velocity[k] = b->spin[k];

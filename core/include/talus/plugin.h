@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 8u
+#define TL_ABI_MINOR 9u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -273,7 +273,7 @@ typedef struct tl_damping_totals {
 } tl_damping_totals;
 
 /* A run of bodies. The host then applies (23): v <- (D1 v + (F + F_d)/m dt) D2 with
- * D1 = 1 - alpha dt/2, D2 = 1/(1 + alpha dt/2), for velocities and angular velocities alike. */
+ * D1 = 1 - alpha dt/2, D2 = 1/(1 + alpha dt/2), for velocities and angular velocities alike; m is the moving mass. */
 typedef struct tl_damping_batch {
     uint32_t size;
     uint32_t count;
@@ -282,8 +282,8 @@ typedef struct tl_damping_batch {
     const double *angular_velocity[3]; /* rad/s */
     const double *force[3];            /* N, whole unbalanced force: contacts, weight, loads */
     const double *moment[3];           /* N m, about the centroid */
-    const double *mass;                /* kg */
-    const double *inertia;             /* kg m2, mean principal moment */
+    const double *mass;                /* kg, the body's own: its weight goes with it */
+    const double *inertia;             /* kg m2, mean principal moment, the body's own */
     double *damping_force[3];          /* out, preset to 0 */
     double *damping_moment[3];         /* out, preset to 0 */
     double *alpha;                     /* out, preset to 0: viscous coefficient, 1/s */
@@ -291,6 +291,9 @@ typedef struct tl_damping_batch {
     /* since minor 1: force and moment of the step before, 0 on a new body; NULL when `before` is 0 */
     const double *force_before[3];
     const double *moment_before[3];
+    /* since minor 9: what the step divides forces and moments by: the body's own, or what mass scaling makes of it */
+    const double *moving_mass;    /* kg */
+    const double *moving_inertia; /* kg m2, mean of the three moments, or the paper's one */
 } tl_damping_batch;
 
 typedef struct tl_damping_ops {

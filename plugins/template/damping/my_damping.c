@@ -2,8 +2,10 @@
  *
  *     F_d = -c m |v| v        M_d = -c_w I |w| w
  *
- * c is in 1/m, c_w without a unit. A body that falls reaches the velocity sqrt(g / c). The force is a pure function of
- * the body, so the host may give bodies in batches of any size, to several threads. */
+ * c is in 1/m, c_w without a unit. A body that falls reaches the velocity sqrt(g / c): drag goes with its own mass, as
+ * its weight does. The step moves it by the moving mass, which mass scaling makes another one. Drag that would turn it
+ * back within the step stops it instead. The force is a pure function of the body, so the host may give bodies in
+ * batches of any size, to several threads. */
 #include <talus/kit.h>
 
 /* What a script gives; the host fills it in from the table below, checked and with defaults. */
@@ -18,13 +20,14 @@ static const tl_param param_table[] = {
              .def = {0}, .min = 0, .max = INFINITY),
 };
 
-/* -c times the size of the vector, times the vector, for all bodies of the batch. */
-static void drag(double c, const tl_damping_batch *batch, const double *inertia, const double *const motion[3],
-                 double *const out[3])
+/* -c times the size of the vector, times the vector, for all bodies of the batch; no more than stops `moving`. */
+static void drag(double c, const tl_damping_batch *batch, const double *inertia, const double *moving,
+                 const double *const motion[3], double *const out[3])
 {
     for (uint32_t i = 0; i < batch->count; i++) {
         double x = motion[0][i], y = motion[1][i], z = motion[2][i];
-        double factor = -c * inertia[i] * sqrt(x * x + y * y + z * z);
+        double most = moving[i] / batch->dt;
+        double factor = -fmin(c * inertia[i] * sqrt(x * x + y * y + z * z), most);
         out[0][i] = factor * x;
         out[1][i] = factor * y;
         out[2][i] = factor * z;
@@ -36,8 +39,8 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
 {
     (void)report;
     const params *p = self;
-    drag(p->drag, batch, batch->mass, batch->velocity, batch->damping_force);
-    drag(p->spin_drag, batch, batch->inertia, batch->angular_velocity, batch->damping_moment);
+    drag(p->drag, batch, batch->mass, batch->moving_mass, batch->velocity, batch->damping_force);
+    drag(p->spin_drag, batch, batch->inertia, batch->moving_inertia, batch->angular_velocity, batch->damping_moment);
     return TL_OK;
 }
 
@@ -48,4 +51,6 @@ static const tl_kind kind =
     TL_KIND(TL_KIND_DAMPING, ops, .name = "my_damping", .doc = "Drag that grows with the square of the velocity.",
             TL_KIND_PARAMS(params, param_table));
 
-TL_PLUGIN(kind, .id = "example.my_damping", .version = "1.0", .doc = "Quadratic drag.", .licence = "BSD-3-Clause");
+/* Hosts give the moving mass since minor version 9. */
+TL_PLUGIN_SINCE(9, kind, .id = "example.my_damping", .version = "1.0", .doc = "Quadratic drag.",
+                .licence = "BSD-3-Clause");
