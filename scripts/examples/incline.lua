@@ -55,8 +55,8 @@ local function build(theta, mu, fraction)
     model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS,
         friction = math.deg(math.atan(mu)) })
     model:timestep { rule = "body", fraction = fraction or 0.5 }
+    model:relax { ratio = AT_REST }
     model:damping "local"
-    model:solve { ratio = AT_REST }
     return model, model:blocks { group = "cube" }, model:blocks { group = "plane" }
 end
 

@@ -106,16 +106,18 @@ function slope.moving(model)
     return volumes, still
 end
 
--- Runs until `pieces` blocks have failed (true), or the slope is at rest or patience ends (false).
-local function fails(model, pieces)
+-- Runs by `go`, "solve" or "relax", until `pieces` blocks have failed (true), or the slope is at rest or
+-- patience ends (false).
+local function fails(model, go, pieces)
     local free = model:blocks { fixed = false }
-    local run = model:solve { ratio = AT_REST, max_cycles = PATIENCE, every = 20, stop = function()
-        local count = 0
-        for _, block in ipairs(free) do
-            count = count + (length(block.displacement) > FAILED and 1 or 0)
-        end
-        return count >= pieces
-    end }
+    local run = model[go](model, { ratio = AT_REST, stop_at_failure = false, max_cycles = PATIENCE, every = 20,
+        stop = function()
+            local count = 0
+            for _, block in ipairs(free) do
+                count = count + (length(block.displacement) > FAILED and 1 or 0)
+            end
+            return count >= pieces
+        end })
     return run.reason == "stop", run
 end
 
@@ -125,7 +127,7 @@ function slope.identify(friction, pieces, options)
     model:damping "adaptive"
     model:mass_scaling(true)
     model:timestep { rule = "body", fraction = 0.5 }
-    local failed, run = fails(model, pieces)
+    local failed, run = fails(model, "solve", pieces)
     local volumes, still = slope.moving(model)
     return { model = model, failed = failed, run = run, volumes = volumes, still = still }
 end
@@ -135,16 +137,14 @@ end
 -- within the cycles given: it ends the search.
 function slope.bracket(frictions, options)
     local model = slope.build(frictions[1], options)
-    model:damping "adaptive" -- it vanishes in steady motion, so a slow slide is seen sooner
-    model:timestep { rule = "body", fraction = 0.5 }
     local held
     for _, friction in ipairs(frictions) do
         model:joint("*", { friction = friction })
-        local failed, run = fails(model, 1)
+        local failed, run = fails(model, "relax", 1)
         if failed then
             return held, friction
         end
-        if run.reason ~= "ratio" then
+        if run.reason ~= "rest" then
             return held, nil, friction
         end
         held = friction
