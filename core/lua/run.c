@@ -752,9 +752,9 @@ static const tl_lua_key relax_results[] = {
      "why it ended: \"rest\", \"failure\", \"overlap\" (blocks that were made overlapping push it apart), "
      "\"cycles\", \"stop\" or \"interrupt\" (Ctrl-C at the prompt; in a script it raises an error)"},
     {"message", "", "what that means, in words; of a run that is not at rest what still moves, and why it is slow"},
-    {"failing", "", "of a failure the selection of blocks that fail, else nil"},
-    {"volume", "", "of these, m3"},
-    {"direction", "", "where they go: {x, y, z} of length 1"},
+    {"failing", "", "the selection of blocks that fail; nil when none does"},
+    {"volume", "", "their volume, m3; nil when none fails"},
+    {"direction", "", "{x, y, z} of length 1: where they go; nil when none fails"},
     {"worst", "", "the block farthest from rest by the measure \"local\""},
     {"ratio", "", "mean unbalanced force over mean contact force"},
     {"ratio_maximum", "", "largest unbalanced force over mean contact force"},
