@@ -866,9 +866,9 @@ function Model:solve(options) end
 ---@class (exact) talus.RelaxResult
 ---@field reason string why it ended: "rest", "failure", "overlap" (blocks that were made overlapping push it apart), "cycles", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
 ---@field message string what that means, in words; of a run that is not at rest what still moves, and why it is slow
----@field failing any of a failure the selection of blocks that fail, else nil
----@field volume any of these, m3
----@field direction any where they go: {x, y, z} of length 1
+---@field failing talus.Blocks? of a failure the selection of blocks that fail, else nil
+---@field volume number? of these, m3
+---@field direction talus.Vector? where they go: {x, y, z} of length 1
 ---@field worst talus.Block the block farthest from rest by the measure "local"
 ---@field ratio number mean unbalanced force over mean contact force
 ---@field ratio_maximum number largest unbalanced force over mean contact force
