@@ -59,6 +59,8 @@
 #define MOST_IDLE 15
 #define NEARER 0.5
 #define IDLE_RATIO 0.5
+/* Tolerance: way over its radius that leaps may carry a body in all. What goes farther may slide or topple: stops tell. */
+#define MOST_CARRIED 0.02
 /* Tolerance: closures, of the body or the mean one, by which a leap carries a body at the most. */
 #define CLOSURES 50.0
 
@@ -208,6 +210,11 @@ static void expect(tl_model *m, double part)
     s->power = part * all;
     s->expected = part * all - 0.5 * part * part * (all - tl_addends_sum(&held));
     s->limited = part < 1;
+    double farthest = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        if (m->bodies.fixed[body] != TL_FIX_ALL)
+            farthest = fmax(farthest, part * way_of(m, body) / m->bodies.radius[body]);
+    s->carried += farthest;
 }
 
 /* The damping that gives a body the velocity and angular velocity wanted after this kick, of h. */
@@ -255,7 +262,7 @@ static bool leap_again(tl_model *m)
         s->idle = nearer ? 0 : s->idle;
     else
         s->idle++;
-    return s->idle <= MOST_IDLE && s->hold <= HOLD_MOST && --s->leaps > 0;
+    return s->idle <= MOST_IDLE && s->hold <= HOLD_MOST && s->carried < MOST_CARRIED && --s->leaps > 0;
 }
 
 /* After a spell of leaps. */
@@ -273,7 +280,8 @@ static bool begin_leaps(tl_model *m)
     tl_settling *s = &c->settling;
     if (s->stops > 0)
         s->stops--;
-    if (s->stops > 0 || !(c->sums.worst_ratio < NEAR_REST) || !may_leap(m) || tl_loads_lag(m))
+    if (s->stops > 0 || !(c->sums.worst_ratio < NEAR_REST) || !may_leap(m) || tl_loads_lag(m) ||
+        s->carried >= MOST_CARRIED)
         return false;
     s->leapt = true;
     s->leaps = s->leap_span;

@@ -12,6 +12,7 @@ typedef struct tl_settling {
     int64_t leaps;     /* left of those that are being made */
     int64_t leap_span; /* that there will be the next time */
     int64_t idle;      /* leaps in a row that brought the model no nearer to rest */
+    double carried;    /* way of bodies in leaps over their radius, the largest of each */
     double hold;       /* of a leap: inertia over dt^2 times this is added to the stiffness */
     double power;      /* unbalanced forces at the beginning of the leap times its motion, J */
     double expected;   /* fall of the energy in it, J */

@@ -174,7 +174,8 @@ local function field_type(value, meaning, class)
             meaning:match("^the selection of blocks") and "talus.Blocks" or meaning:match("^{x, y, z}") and "talus.Vector" or
             meaning:match("%f[%w]m3%f[%W]") and "number" or
             meaning:match("^{block =, factor =}") and "{ block: integer, factor: number }" or
-            meaning:match("%f[%w]s%f[%W]") and "number" or "any"
+            meaning:match("the selection of blocks") and "talus.Blocks" or meaning:match("{x, y, z}") and "talus.Vector" or
+            (meaning:match("%f[%w]s%f[%W]") or meaning:match("%f[%w]m3%f[%W]")) and "number" or "any"
     end
     return type .. ((may_be_nil or value == nil) and type ~= "any" and type ~= "table" and "?" or "")
 end
