@@ -6,8 +6,8 @@
  *
  *     K <- K + y y^T / (y.s) - K s s^T K / (s.K s)                                        (BFGS)
  *
- * Where the contact gives way, as in slip, y.s is made no less than KEEPS of s.K s: so K stays positive. It is kept as
- * a root, K = J J^T, for the same reason:
+ * Where the contact gives way, as it opens, y.s is made no less than KEEPS of s.K s: so K stays positive. Where it slips
+ * it stays as stiff as it was: a leap must not carry on what slides. K is kept as a root, K = J J^T:
  *
  *     J <- J + (y - J z) z^T / (z.z),    z = (y.s / s.K s)^1/2 J^T s
  *
@@ -214,7 +214,7 @@ static void times_root(const tl_secant *of, const double s[6], double turned[6],
 }
 
 /* A step with the motion s has changed the force by -y. */
-static void secant_update(tl_secant *of, const double s[6], double y[6])
+static void secant_update(tl_secant *of, const double s[6], double y[6], double keeps)
 {
     double turned[6], ks[6], jz[6];
     times_root(of, s, turned, ks);
@@ -222,8 +222,8 @@ static void secant_update(tl_secant *of, const double s[6], double y[6])
     if (!(was > 0) || !(dot(ks, ks) > ROUNDING * ROUNDING * dot(of->force, of->force)))
         return;
     double is = dot(y, s);
-    if (is < KEEPS * was) {
-        const double part = (1 - KEEPS) * was / (was - is);
+    if (is < keeps * was) {
+        const double part = is < was ? (1 - keeps) * was / (was - is) : 1;
         for (int i = 0; i < 6; i++)
             y[i] = part * y[i] + (1 - part) * ks[i];
         is = dot(y, s);
@@ -245,6 +245,16 @@ static bool counts(const tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
     return c->law[contact] != TL_NO_ROW && c->point_count[contact] > 0 && !c->held[contact];
+}
+
+/* Whether some of it slips. */
+static bool slips(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    bool any = false;
+    for (size_t i = 0; i < c->point_count[contact]; i++)
+        any = any || (m->detect->points.flags[tl_point_row(c, contact, i)] & TL_POINT_SLIPPING);
+    return any;
 }
 
 typedef struct follow_job {
@@ -275,7 +285,7 @@ static void follow_range(void *user, size_t begin, size_t end, size_t chunk, uns
         force_of(m, i, s, now);
         for (int k = 0; k < 6; k++)
             change[k] = s->force[k] - now[k];
-        secant_update(s, way, change);
+        secant_update(s, way, change, slips(m, i) ? 1 : KEEPS);
         memcpy(s->force, now, sizeof now);
     }
 }

@@ -40,9 +40,11 @@
 #define CALM 1e-2
 /* Cost only: stops before the first leap, between two spells of leaps, and leaps of a spell; the latter grow. */
 #define FIRST_STOPS 30
-#define STOPS 50
+#define STOPS 30
 #define LEAPS 200
 #define GROWTH 1.5
+/* Cost only: growth of the span of stops after leaps that brought nothing. */
+#define IDLE_GROWTH 4.0
 /* Limit: of these spans. */
 #define MOST_SPAN 1000000
 /* Tolerance: the hold of a leap: at first, at least, and above which leaps are no better than stops. */
@@ -256,8 +258,10 @@ static bool leap_again(tl_model *m)
     const bool nearer = c->sums.unbalanced < NEARER * s->goal;
     s->hold *= ratio < BAD ? MORE_HOLD : ratio > GOOD ? LESS_HOLD : 1;
     s->hold = fmax(s->hold, HOLD_LEAST);
-    if (nearer)
+    if (nearer) {
         s->goal = c->sums.unbalanced;
+        s->gained = 1;
+    }
     if (nearer || (s->limited && ratio >= IDLE_RATIO))
         s->idle = nearer ? 0 : s->idle;
     else
@@ -269,8 +273,8 @@ static bool leap_again(tl_model *m)
 static void rest_from_leaps(tl_settling *s)
 {
     s->leapt = false;
+    s->stop_span = (int64_t)fmin((s->gained ? GROWTH : IDLE_GROWTH) * (double)s->stop_span, MOST_SPAN);
     s->stops = s->stop_span;
-    s->stop_span = (int64_t)fmin(GROWTH * (double)s->stop_span, MOST_SPAN);
     s->leap_span = (int64_t)fmin(GROWTH * (double)s->leap_span, MOST_SPAN);
 }
 
@@ -286,6 +290,7 @@ static bool begin_leaps(tl_model *m)
     s->leapt = true;
     s->leaps = s->leap_span;
     s->idle = 0;
+    s->gained = 0;
     s->hold = HOLD_FIRST;
     s->goal = c->sums.unbalanced;
     tl_secants_begin(m);

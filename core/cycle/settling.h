@@ -20,7 +20,7 @@ typedef struct tl_settling {
     int32_t leapt;     /* the last step was a leap, 1 or 0, */
     int32_t limited;   /* that was made shorter */
     int32_t calm;      /* the model as a whole is near rest: loose bodies go their own way */
-    int32_t unused;    /* up to whole doubles */
+    int32_t gained;    /* leaps of this spell have brought it nearer to rest */
 } tl_settling;
 
 #endif
