@@ -6,8 +6,8 @@
  *
  *     K <- K + y y^T / (y.s) - K s s^T K / (s.K s)                                        (BFGS)
  *
- * Where the contact gives way, as it opens, y.s is made no less than KEEPS of s.K s: so K stays positive. Where it slips
- * it stays as stiff as it was: a leap must not carry on what slides. K is kept as a root, K = J J^T:
+ * Where the contact gives way, as it opens, y.s is made no less than KEEPS of s.K s: so K stays positive. If it slips
+ * K is made no less: a leap must not carry on what slides. K is kept as a root, K = J J^T:
  *
  *     J <- J + (y - J z) z^T / (z.z),    z = (y.s / s.K s)^1/2 J^T s
  *

@@ -61,7 +61,8 @@
 #define MOST_IDLE 15
 #define NEARER 0.5
 #define IDLE_RATIO 0.5
-/* Tolerance: way over its radius that leaps may carry a body in all. What goes farther may slide or topple: stops tell. */
+/* Tolerance: way over its radius that leaps may carry a body in all. What goes farther may slide or topple: that is for
+ * stops to tell. */
 #define MOST_CARRIED 0.02
 /* Tolerance: closures, of the body or the mean one, by which a leap carries a body at the most. */
 #define CLOSURES 50.0

@@ -79,8 +79,10 @@ NUMBERS = [
     ("core/cycle/settle.c", "MOST_IDLE", 15, "when 15 in a row bring the model no nearer to rest"),
     ("core/cycle/settle.c", "HOLD_MOST", 2, "when μ is above 2, or after 200"),
     ("core/cycle/settle.c", "LEAPS", 200, "when μ is above 2, or after 200"),
-    ("core/cycle/settle.c", "STOPS", 50, "50 steps with stops follow"),
-    ("core/cycle/settle.c", "GROWTH", 1.5, "half as long again"),
+    ("core/cycle/settle.c", "STOPS", 30, "Stops follow: 30 steps"),
+    ("core/cycle/settle.c", "IDLE_GROWTH", 4, "or times 4 where the leaps brought nothing"),
+    ("core/cycle/settle.c", "MOST_CARRIED", 0.02, "by 0.02 of its radius in all"),
+    ("core/cycle/settle.c", "GROWTH", 1.5, "half as many again"),
     ("core/cycle/relax.c", "NEXT_PART", 1e-3, "once the ratio is below 1e-3"),
 ]
 # Shares and places of a patch's points, in the order of tl_point_rule.
