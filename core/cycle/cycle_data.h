@@ -146,6 +146,7 @@ typedef struct tl_swept {
     tl_bounds box;
     uint32_t row;
     bool moves; /* far enough to be one of a pair that passes */
+    bool thin;  /* may be the thinner one of such a pair */
 } tl_swept;
 
 struct tl_cycle {

@@ -123,6 +123,8 @@ typedef struct sweep {
     double share;
     tl_swept *list;
     size_t count;
+    double farthest; /* that a block goes in the step, m */
+    double longest;  /* box of the list along x, m */
 } sweep;
 
 static void include(tl_bounds *box, tl_vec3 x)
@@ -146,7 +148,8 @@ static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
         include(&box, x);
         include(&box, tl_v3_add(x, tl_v3_add(by->shift, tl_v3_cross(by->turn, arm))));
     }
-    return (tl_swept){box, row, moves};
+    const double far = step_travel(s->m, s->motion, body) + s->farthest;
+    return (tl_swept){box, row, moves, far > s->share * tl_least_thickness(s->m, row)};
 }
 
 static int compare_swept(const void *a, const void *b)
@@ -161,6 +164,8 @@ static void list_swept(sweep *s, double far)
 {
     const tl_model *m = s->m;
     tl_bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        s->farthest = fmax(s->farthest, step_travel(m, s->motion, m->blocks.body[row]));
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         if (!(step_travel(m, s->motion, m->blocks.body[row]) > far))
             continue;
@@ -178,6 +183,8 @@ static void list_swept(sweep *s, double far)
         if (tl_bounds_meet(&ball, &all))
             s->list[s->count++] = sweep_block(s, row, false);
     }
+    for (size_t i = 0; i < s->count; i++)
+        s->longest = fmax(s->longest, s->list[i].box.max.x - s->list[i].box.min.x);
     if (s->count > 0)
         qsort(s->list, s->count, sizeof *s->list, compare_swept);
 }
@@ -276,6 +283,25 @@ static void look_at(const sweep *s, uint32_t a, uint32_t b, passing *out)
         *out = (passing){part, a, b, deeper, s->share * thickness};
 }
 
+/* Looks at a pair of the list. */
+static void try_pair(const sweep *s, size_t i, size_t j, passing *out)
+{
+    const uint32_t a = s->list[i].row, b = s->list[j].row;
+    if (may_pass(s, &s->list[i], &s->list[j]))
+        look_at(s, a < b ? a : b, a < b ? b : a, out);
+}
+
+/* Looks at the pairs of a thin block that begin behind it along x, and with others that begin before it. */
+static void try_thin(const sweep *s, size_t i, passing *out)
+{
+    const double begins = s->list[i].box.min.x, ends = s->list[i].box.max.x;
+    for (size_t j = i + 1; j < s->count && s->list[j].box.min.x <= ends; j++)
+        try_pair(s, i, j, out);
+    for (size_t j = i; j-- > 0 && begins - s->list[j].box.min.x <= s->longest;)
+        if (!s->list[j].thin && s->list[j].box.max.x >= begins)
+            try_pair(s, i, j, out);
+}
+
 /* Finds the pair whose overlap would first grow by more than `share` of the thinner block's thickness. `motion`: of
  * each body; `thinnest`: the least thickness of all blocks, m; `list`: a place for each block, overwritten. */
 static passing find_passing(const tl_model *m, const tl_step_motion *motion, double share, double thinnest,
@@ -285,11 +311,8 @@ static passing find_passing(const tl_model *m, const tl_step_motion *motion, dou
     passing out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0, 0};
     list_swept(&s, 0.5 * share * thinnest);
     for (size_t i = 0; i < s.count; i++)
-        for (size_t j = i + 1; j < s.count && s.list[j].box.min.x <= s.list[i].box.max.x; j++)
-            if (may_pass(&s, &s.list[i], &s.list[j])) {
-                uint32_t a = s.list[i].row, b = s.list[j].row;
-                look_at(&s, a < b ? a : b, a < b ? b : a, &out);
-            }
+        if (s.list[i].thin)
+            try_thin(&s, i, &out);
     return out;
 }
 
