@@ -253,21 +253,19 @@ static bool is_near(const tl_model *m, uint32_t c, const tl_pair_pose *now, tl_p
            tl_press_near(&row->there, &row->slope, &row->place, now, reach, press);
 }
 
-/* Whether slopes at the present place may be of use: the contact has stayed for long enough, or does not move as far in
- * a step as they reach in motion. */
+/* Whether slopes of the mesh at the present place may be of use: the contact does not move as far in a step as they
+ * reach in motion. */
 static bool wants_slopes(const tl_model *m, uint32_t c)
 {
     const tl_press_row *row = tl_press_row_of(m, c);
     const tl_press *press = &row->press;
     if (!takes_slopes(m, c))
         return false;
-    return m->cycles - row->since >= TL_PRESS_SLOPE_COST ||
-           (m->detect->balance_left > 0 &&
-            last_way(m, c, tl_press_lever(press)) <= reach_in_motion(m) * press->deepest);
+    return m->detect->balance_left > 0 && last_way(m, c, tl_press_lever(press)) <= reach_in_motion(m) * press->deepest;
 }
 
-/* Keeps the slopes of the press just found when the contact has stayed where it is for as many steps as they cost. In
- * motion it keeps those that the mesh has told. false: out of memory. */
+/* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs. In
+ * motion it keeps those that the mesh has told, in which areas stay as they are. false: out of memory. */
 static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press, tl_press_row *row,
                   tl_narrow_scratch *scratch)
 {
@@ -284,7 +282,7 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
     if (!rests && !moves)
         return true;
     tl_press_slope slope;
-    if (told)
+    if (!rests)
         slope = tl_press_slope_of(press, query->slope);
     else if (!tl_press_slope_find(query, press, scratch, &slope))
         return false;

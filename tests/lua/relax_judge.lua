@@ -1,7 +1,7 @@
 -- relax_judge.lua - judges a quick way to rest by a slow one, on the models of relax_models.lua.
 --
---     local judge = require("relax_judge").new { slow = path, seconds = 120 }
---     local row = judge:try(seed, method)       method = "today" or "relax"
+--     local judge = require("relax_judge").new { slow = path, work = 40e6 }
+--     local row = judge:try(seed, method)       method = "relax"
 --
 -- The slow way is damping "local", the time step of the rule "body" and half of the critical step, and real masses, to a local ratio
 -- of 1e-6. Its answers are kept in the file `slow`, where one is given, and taken from there again: a line for each seed and variant,
@@ -24,6 +24,7 @@ local judge = {}
 judge.__index = judge
 
 local CYCLES = 400000 -- of a stage
+local WORK = 40000000 -- blocks times steps of a stage: some minutes
 local RATIO, FINE = 1e-5, 1e-6
 -- Heat over elastic energy from which something has slipped.
 local SLIPPED = 1e-9
@@ -43,12 +44,12 @@ local VARIANTS = {
 -- Each makes a function(model, last) that runs a stage and gives what `solve` gives, with `steps`, those up to RATIO.
 local ways = {}
 
-function ways.slow(self, begun)
+function ways.slow(self)
     return function(model)
         model:damping "local"
+        local most = math.min(CYCLES, self.work // #model:blocks { fixed = false })
         local function solve(ratio)
-            return model:solve { ratio = ratio, measure = "local", stop_at_failure = true, max_cycles = CYCLES, every = 200,
-                stop = function() return os.clock() - begun > self.seconds end }
+            return model:solve { ratio = ratio, measure = "local", stop_at_failure = true, max_cycles = most }
         end
         local result = solve(RATIO)
         local steps, all = result.cycles, result.cycles
@@ -58,20 +59,7 @@ function ways.slow(self, begun)
             steps = result.reason == "ratio" and steps or all
         end
         return { reason = result.reason, failing = result.failing, steps = steps, all = all, ratio_local = result.ratio_local,
-            worst = result.worst }
-    end
-end
-
--- What the manual says today of equilibria.
-function ways.today(self, begun)
-    return function(model)
-        model:damping "kinetic"
-        model:mass_scaling(true)
-        model:timestep { fraction = 0.9 }
-        local result = model:solve { ratio = RATIO, measure = "local", stop_at_failure = true, max_cycles = CYCLES, every = 200,
-            stop = function() return os.clock() - begun > self.seconds end }
-        return { reason = result.reason, failing = result.failing, steps = result.cycles, ratio_local = result.ratio_local,
-            worst = result.worst }
+            worst = result.worst, wall = result.wall }
     end
 end
 
@@ -83,7 +71,7 @@ function ways.relax()
             failing = failing[1]
         end
         return { reason = result.reason, failing = failing, steps = result.cycles, ratio_local = result.ratio_local,
-            worst = result.worst }
+            worst = result.worst, wall = result.wall }
     end
 end
 
@@ -109,13 +97,12 @@ local function mean_closure(model)
     return forces > 0 and closures / forces or 0
 end
 
--- Runs a model to its end. An outcome has: verdict ("rest", "failure", "overlap", "cycles", "stop": too many seconds, "error"),
+-- Runs a model to its end. An outcome has: verdict ("rest", "failure", "overlap", "cycles", "error"),
 -- stage, steps, all (steps to the fine ratio), failing (id), seconds; slip, heat over elastic energy; closure; u, displacements of all
 -- blocks one after the other; said, the sentence of an error.
 function judge:run(seed, way, change, ramp)
-    local begun = os.clock()
     local model, about = models.build(seed, change)
-    local step, outcome = ways[way](self, begun), { steps = 0, all = 0 }
+    local step, outcome = ways[way](self), { steps = 0, all = 0, seconds = 0 }
     if ramp and about.apply then
         for k = 1, LOAD_STEPS - 1 do
             about.apply(model, k / LOAD_STEPS)
@@ -134,6 +121,7 @@ function judge:run(seed, way, change, ramp)
             outcome.verdict, outcome.said = "error", tostring(result)
             break
         end
+        outcome.seconds = outcome.seconds + result.wall
         outcome.steps, outcome.all = outcome.steps + result.steps, outcome.all + (result.all or result.steps)
         outcome.verdict, outcome.failing = VERDICTS[result.reason] or result.reason, id_of(result.failing)
         outcome.ratio_local = result.ratio_local
@@ -145,7 +133,6 @@ function judge:run(seed, way, change, ramp)
     local energy = model:energy()
     outcome.slip = energy.stored > 0 and energy.friction / energy.stored or 0
     outcome.closure, outcome.u = mean_closure(model), model:blocks { hidden = "any" }:values("displacement", "flat")
-    outcome.seconds = os.clock() - begun
     return outcome, about
 end
 
@@ -373,13 +360,9 @@ function judge.summary_text(sum)
 end
 
 -- Whether this program has model:relax.
-function judge.has_relax()
-    local model = models.build(1)
-    return (pcall(function() return model.relax end))
-end
 
 return {
     new = function(options)
-        return setmetatable({ path = options.slow, seconds = options.seconds or 120, kept = load_kept(options.slow) }, judge)
+        return setmetatable({ path = options.slow, work = options.work or WORK, kept = load_kept(options.slow) }, judge)
     end,
 }
