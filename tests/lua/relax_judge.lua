@@ -359,8 +359,6 @@ function judge.summary_text(sum)
     return table.concat(lines, "\n")
 end
 
--- Whether this program has model:relax.
-
 return {
     new = function(options)
         return setmetatable({ path = options.slow, work = options.work or WORK, kept = load_kept(options.slow) }, judge)

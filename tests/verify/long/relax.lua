@@ -3,7 +3,8 @@
 --     talus --quiet tests/verify/long/relax.lua [FIRST LAST [relax|slow [margin|stick]]]
 --
 -- With seeds: a line for each, then a summary. `slow` only fills the file of slow answers. TALUS_RELAX_SLOW names that file, which spares
--- the slow runs, an hour for 300 models, the next time. With `margin` the friction of each model is first brought near that at which the quick verdict changes, and both sides are compared: two lines a seed, hard ones.
+-- the slow runs, an hour for 300 models, the next time. With `margin` the friction of each model is first brought near that at which the
+-- quick verdict changes, and both sides are compared: two lines a seed, hard ones.
 -- With `stick` friction is 100 times as much, so that little slips and displacements can be compared.
 package.path = "tests/verify/?.lua;tests/lua/?.lua;" .. package.path -- run in the source root
 local relax_judge = require "relax_judge"
