@@ -54,20 +54,8 @@ static tl_status begin(tl_model *m)
     if (m->relaxing && share > 0 && share <= 1)
         return TL_OK; /* a save that was made meanwhile */
     tl_settle_end(m); /* from rest */
-    m->dt = 0;
-    m->cycle->dt = 0;
-    m->cycle->stiffness_rates.version = 0;
     tl_settle_begin(m);
     return TL_OK;
-}
-
-static void end(tl_model *m)
-{
-    tl_settle_end(m);
-    m->dt = 0;
-    m->cycle->dt = 0;
-    m->cycle->mass_scale = 0;
-    m->cycle->stiffness_rates.version = 0;
 }
 
 /* ---------------------------------------------------------------- parts of the load ------- */
@@ -193,7 +181,7 @@ tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wa
         result->run.reason = TL_SOLVE_REST;
     if (status == TL_OK)
         tell(m, &relax, result);
-    end(m);
+    tl_settle_end(m);
     return status;
 }
 

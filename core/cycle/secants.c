@@ -39,6 +39,8 @@
 #define LEAST 1e-9
 /* Tolerance: change of force over the force below which a motion tells rounding. */
 #define ROUNDING 1e-10
+/* Tolerance: share of a diagonal of Cholesky below which what is left of it is rounding. */
+#define ROUNDED 1e-12
 /* Tolerance: of the residual of conjugate gradients, in the norm of their preconditioner. */
 #define SOLVED 0.03
 /* Limit: of their iterations. */
@@ -73,7 +75,7 @@ static void factorise(double a[6][6])
         double d = own;
         for (int k = 0; k < j; k++)
             d -= a[j][k] * a[j][k];
-        a[j][j] = sqrt(fmax(d, 1e-12 * own));
+        a[j][j] = sqrt(fmax(d, ROUNDED * own));
         for (int i = j + 1; i < 6; i++) {
             double t = a[i][j];
             for (int k = 0; k < j; k++)

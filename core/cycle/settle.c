@@ -69,8 +69,6 @@
 
 void tl_settle_begin(tl_model *m)
 {
-    if (m->relaxing)
-        return;
     m->relaxing = true;
     m->cycle->settling = (tl_settling){
         .share = 1, .part = 1, .stops = FIRST_STOPS, .stop_span = STOPS, .leap_span = LEAPS, .hold = HOLD_FIRST};
@@ -86,8 +84,13 @@ void tl_settle_end(tl_model *m)
     }
     m->relaxing = false;
     m->still = 0;
-    if (m->cycle) /* a file may lack it */
-        m->cycle->secant_count = 0;
+    m->dt = 0; /* what follows begins from rest */
+    struct tl_cycle *c = m->cycle;
+    if (!c) /* a file may lack it */
+        return;
+    c->secant_count = 0;
+    c->dt = c->mass_scale = 0; /* step, masses and rates are others from now on */
+    c->stiffness_rates.version = 0;
 }
 
 static bool may_leap(const tl_model *m)

@@ -4,9 +4,9 @@
 
 #include "model/model.h"
 
-/* A relaxation begins: from rest, or from where a saved one stands. */
+/* A relaxation begins, from rest. */
 void tl_settle_begin(tl_model *m);
-/* Nothing moves any more, and steps are the user's again. */
+/* Nothing moves any more, and steps, masses and rates are the user's again. */
 void tl_settle_end(tl_model *m);
 /* Room for a step; false: out of memory. */
 bool tl_settle_prepare(tl_model *m);

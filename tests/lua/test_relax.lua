@@ -119,6 +119,11 @@ for _, case in ipairs { { slope, 60 }, { bricks, 0.9 } } do
         check.equal(restored.time, 0)
         check.equal(restored:relax {}.reason, "rest")
         check.equal(restored:state_hash(), hash)
+        local other, plain = talus.restore(TMP), case[1](case[2]) -- other steps than those of the relaxation
+        other:cycle(2)
+        plain:cycle(2)
+        check.near(other.dt, plain.dt, 0.3 * plain.dt)
+        check.near(other.time, other.dt + other.dt, 1e-9 * other.dt)
     end
 end
 os.remove(TMP)
