@@ -15,6 +15,7 @@
 
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <talus/number.h>
 
 /* ---------------------------------------------------------------- steady failure ----------
  *
@@ -441,10 +442,13 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
                      run_name(m), push.gave, push.a, push.b, push.others, r->failing, speed);
         return;
     }
+    char at[40] = ""; /* by the masses of a relaxation a speed means nothing */
+    if (!m->relaxing)
+        tl_text_print(at, sizeof at, " at %.3g m/s", speed);
     tl_model_say(m,
-                 "%s: the model fails: block %u moves on at %.3g m/s without slowing down (unbalanced force ratio: "
-                 "local %.3g, average %.3g)",
-                 run_name(m), r->failing, speed, r->ratio_local, r->ratio);
+                 "%s: the model fails: block %u moves on%s without slowing down (unbalanced force ratio: local %.3g, "
+                 "average %.3g)",
+                 run_name(m), r->failing, at, r->ratio_local, r->ratio);
 }
 
 /* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for.
