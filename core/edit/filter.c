@@ -1,5 +1,5 @@
 /* filter.c - slivers: bodies below the user's limits, which are reported, deleted, or joined. A body of
- * several parts is measured as the one body that it is (body_shape.c).
+ * several parts is measured as the one body that it is (body_shape.c). Limits may be left to model/slivers.c.
  *
  * Joining is the merge of a discontinuum: the sliver becomes one rigid body with the neighbour it shares the largest
  * face with. Its mass and shape stay exact, the face between the two no longer moves, and its small mass no longer
@@ -10,6 +10,8 @@
  * Bodies of which a block is hidden are left alone. */
 
 #include "base/groups.h"
+#include "cycle/sliver.h"
+#include "cycle/timestep.h"
 #include "model/body_shape.h"
 #include "model/options.h"
 #include "model/regroup.h"
@@ -187,43 +189,107 @@ static tl_status delete (filter *f, tl_filter_result *result)
     return status;
 }
 
-tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result *wanted)
+/* ---------------------------------------------------------------- what is asked for ------ */
+
+static tl_status read_limits(tl_model *m, const tl_filter *given, tl_filter *limits)
 {
-    tl_filter_result unread, *const result = wanted ? wanted : &unread;
-    *result = (tl_filter_result){0};
-    tl_filter limits;
-    tl_status status = TL_OPTIONS_READ(tl_filter, given, &limits, &m->error);
+    const tl_status status = TL_OPTIONS_READ(tl_filter, given, limits, &m->error);
     if (status != TL_OK)
         return status;
-    tl_rows_tidy(m);
-    if (isnan(limits.volume) && isnan(limits.edge) && isnan(limits.aspect))
+    const bool some = !isnan(limits->volume) || !isnan(limits->edge) || !isnan(limits->aspect);
+    if (limits->automatic && some)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "filter: give limits, or %s, not both",
+                       tl_words(m, "auto = true, which chooses them", "automatic, which chooses them"));
+    if (!limits->automatic && !some)
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "filter: give a limit: the smallest volume, the shortest edge or the worst aspect");
-    if (limits.action != TL_FILTER_REPORT)
-        status = tl_model_may_change(m, "filter blocks");
-    if (status != TL_OK)
-        return status;
-    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+                       "filter: give a limit: the smallest volume, the shortest edge or the worst aspect; or %s",
+                       tl_words(m, "auto = true", "automatic"));
+    return limits->action == TL_FILTER_REPORT ? TL_OK : tl_model_may_change(m, "filter blocks");
+}
+
+static tl_status act(filter *f, tl_filter_result *result)
+{
+    if (!find_bad(f, result))
+        return tl_fail_memory(&f->model->error);
+    if (f->limits->action == TL_FILTER_DELETE)
+        return delete (f, result);
+    return f->limits->action == TL_FILTER_JOIN ? join(f, result) : TL_OK;
+}
+
+/* Finds the slivers and does with them what is asked for. */
+static tl_status run(tl_model *m, const tl_filter *limits, tl_filter_result *result)
+{
+    const size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
     filter f = {.model = m,
-                .limits = &limits,
+                .limits = limits,
                 .bad = calloc(bodies + 1, sizeof *f.bad),
                 .shared = calloc(bodies + 1, sizeof *f.shared),
                 .near = malloc((bodies + 1) * sizeof *f.near),
                 .group = malloc((blocks + 1) * sizeof *f.group)};
-    if (!f.bad || !f.shared || !f.near || !f.group || !find_bad(&f, result))
-        status = tl_fail_memory(&m->error);
-    if (status == TL_OK && limits.action == TL_FILTER_DELETE)
-        status = delete (&f, result);
-    else if (status == TL_OK && limits.action == TL_FILTER_JOIN)
-        status = join(&f, result);
+    const bool enough = f.bad && f.shared && f.near && f.group;
+    const tl_status status = enough ? act(&f, result) : tl_fail_memory(&m->error);
     free(f.bad);
     free(f.shared);
     free(f.near);
     free(f.group);
     tl_touches_free(&f.touches);
+    return status;
+}
+
+/* Limits that make the step longer, by the rates that it goes by. As long as there are none, for some contact has no
+ * law, by shapes. */
+static tl_status choose_limits(tl_model *m, tl_sliver_limits *out)
+{
+    tl_timestep_report report;
+    tl_status status = tl_model_timestep_report(m, &report);
+    if (status != TL_OK && status != TL_E_MEMORY) {
+        m->error = (tl_error){0};
+        return tl_slivers_by_shape(m, out);
+    }
+    const size_t bodies = m->bodies.table.rows;
+    double *rate = malloc((bodies + 1) * sizeof *rate), *turn_rate = malloc((bodies + 1) * sizeof *turn_rate);
+    if (status == TL_OK && (!rate || !turn_rate))
+        status = tl_fail_memory(&m->error);
+    if (status == TL_OK) {
+        tl_rates_try(m, 0, rate, turn_rate);
+        status = tl_sliver_limits_choose(m, rate, out);
+    }
+    free(rate);
+    free(turn_rate);
+    return status;
+}
+
+/* The same with limits that are chosen for the time step. */
+static tl_status run_automatic(tl_model *m, tl_filter limits, tl_filter_result *result)
+{
+    tl_sliver_limits by, after;
+    tl_status status = choose_limits(m, &by);
+    if (status != TL_OK)
+        return status;
+    limits.volume = by.volume;
+    limits.aspect = by.aspect;
+    status = run(m, &limits, result);
+    result->gain = by.gain;
+    /* Not all that is beyond the limits can be joined, and what is joined changes its rate. */
+    if (status == TL_OK && limits.action != TL_FILTER_REPORT && !by.by_shape && choose_limits(m, &after) == TL_OK &&
+        !after.by_shape && after.fastest > 0)
+        result->gain = sqrt(by.fastest / after.fastest);
+    return status;
+}
+
+tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result *wanted)
+{
+    tl_filter_result unread, *const result = wanted ? wanted : &unread;
+    tl_filter limits;
+    *result = (tl_filter_result){.gain = NAN};
+    tl_status status = read_limits(m, given, &limits);
+    if (status != TL_OK)
+        return status;
+    tl_rows_tidy(m);
+    status = limits.automatic ? run_automatic(m, limits, result) : run(m, &limits, result);
     if (status != TL_OK || !wanted) {
         free(result->slivers);
-        *result = (tl_filter_result){0};
+        *result = (tl_filter_result){.gain = NAN};
     }
     return status;
 }

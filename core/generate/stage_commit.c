@@ -12,6 +12,7 @@
 #include "model/model.h"
 #include "model/regroup.h"
 #include "model/rows.h"
+#include "model/slivers.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -536,9 +537,11 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
         m->drives[from->drive - 1].bodies++;
 }
 
-static void summarize(tl_stage *stage)
+/* Sums up the call, which has made the last rows. */
+static void summarize(tl_stage *stage, size_t made)
 {
-    tl_extremes all = tl_extremes_of(stage->model);
+    const tl_model *m = stage->model;
+    const tl_extremes all = tl_extremes_of(stage->model);
     tl_generate_summary *s = &stage->summary;
     s->after = tl_block_count(stage->model);
     s->smallest_volume = s->after ? all.volume : 0;
@@ -546,6 +549,8 @@ static void summarize(tl_stage *stage)
     s->smallest_face = s->after ? all.face : 0;
     if (all.total > 0)
         s->volume_error = fabs(stage->changed_volume - stage->created_volume) / all.total;
+    for (size_t row = s->after - made; row < s->after; row++)
+        s->slivers += tl_is_sliver(m->blocks.shape[row], m->blocks.volume[row], all.total / (double)s->after);
 }
 
 /* Adds what the stage did to the model's record, whose list has room. `ids` are those of the staged blocks. */
@@ -872,7 +877,7 @@ tl_status tl_stage_commit(tl_stage *stage)
     list_wholes(stage, &scratch);
     drop_replaced(stage, old, &scratch);
     add_made(stage, made, &scratch);
-    summarize(stage);
+    summarize(stage, made);
     if (stage->regroups) {
         list_groups(stage, scratch.ids, scratch.first, scratch.group);
         status = tl_bodies_regroup(m, scratch.group);

@@ -324,6 +324,9 @@ static const tl_lua_key generate_results[] = {
      "cuts made, refused because a side would be too thin, and fallen on an existing face"},
     {"smallest_volume, smallest_edge, smallest_face", "", "of the model after, m3, m and m2"},
     {"volume_error", "", "relative change of the volume that is not accounted for"},
+    {"slivers", "",
+     "blocks that this call made with an aspect over 50, or with less than 0.001 of the mean volume of a block; "
+     "model:filter{auto = true} joins those that decide the time step"},
     {NULL, NULL, NULL},
 };
 

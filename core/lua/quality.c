@@ -89,7 +89,7 @@ static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
 {
     enum { SHOWN = 5 }; /* refused cuts of the page; the table has them all */
     printf("%-18s%zu in %zu bodies\n", "blocks", q->blocks, q->bodies);
-    char numbers[80];
+    char numbers[120];
     tl_text_print(numbers, sizeof numbers, "%.10g m3, kept to %.1e", q->volume, q->volume_error);
     printf("%-18s%s\n", "volume", numbers);
     for (size_t i = 0; i < EXTREMES; i++) {
@@ -107,6 +107,11 @@ static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
     }
     if (q->refused > SHOWN)
         printf("%-18sand %zu more\n", "", q->refused - SHOWN);
+    if (q->slivers) {
+        tl_text_print(numbers, sizeof numbers, "%.2g %% of the volume; the others allow %.3g times the step",
+                      100 * q->sliver_share, q->sliver_gain);
+        printf("%-18s%zu, %s: model:filter{ auto = true } joins them\n", "slivers", q->slivers, numbers);
+    }
     lua_getfield(L, -1, "timestep_message");
     printf("%-18s%s\n", "time step", lua_tostring(L, -1));
     lua_pop(L, 1);
@@ -134,10 +139,11 @@ static int module_report(lua_State *L)
     tl_model *model = tl_lua_model_of(L, "report");
     tl_quality q;
     tl_lua_ok(L, model, tl_model_quality(model, &q));
-    lua_createtable(L, 0, 20);
+    lua_createtable(L, 0, 23);
     TL_LUA_SET_COUNTS(L, {"blocks", q.blocks}, {"bodies", q.bodies}, {"cuts", q.cuts}, {"refused", q.refused},
-                      {"coincident", q.coincident});
-    TL_LUA_SET_NUMBERS(L, {"volume", q.volume}, {"volume_error", q.volume_error});
+                      {"coincident", q.coincident}, {"slivers", q.slivers});
+    TL_LUA_SET_NUMBERS(L, {"volume", q.volume}, {"volume_error", q.volume_error}, {"sliver_share", q.sliver_share},
+                       {"sliver_gain", q.sliver_gain});
     for (size_t i = 0; i < EXTREMES; i++) {
         tl_extreme e = extreme_of(&q, &extremes[i]);
         tl_lua_set_number(L, extremes[i].field, e.value);
@@ -161,9 +167,11 @@ static int free_filter_result(lua_State *L)
 /* Each sliver gets a block it is joined to, which the action tells. */
 static void push_filter_result(lua_State *L, const tl_filter_result *r)
 {
-    lua_createtable(L, 0, 5);
+    lua_createtable(L, 0, 6);
     TL_LUA_SET_COUNTS(L, {"found", r->count}, {"deleted", r->deleted}, {"joined", r->joined});
     tl_lua_set_number(L, "volume", r->volume);
+    if (!isnan(r->gain))
+        tl_lua_set_number(L, "gain", r->gain);
     lua_createtable(L, (int)r->count, 0);
     for (size_t i = 0; i < r->count; i++) {
         const tl_sliver *s = &r->slivers[i];
@@ -189,6 +197,8 @@ static void set_filtered(lua_State *L, const tl_filter_result *r)
 {
     tl_lua_set_count(L, "deleted", r->deleted);
     tl_lua_set_count(L, "joined", r->joined);
+    if (!isnan(r->gain))
+        tl_lua_set_number(L, "gain", r->gain);
     lua_getfield(L, -1, "slivers");
     for (size_t i = 0; i < r->count; i++) {
         lua_rawgeti(L, -1, (lua_Integer)i + 1);
@@ -203,6 +213,9 @@ static int model_filter(lua_State *L, tl_model *model)
 {
     tl_filter limits = tl_filter_default();
     tl_lua_read_function(L, 2, "filter", NULL, &limits);
+    if (limits.automatic && lua_getfield(L, 2, "action") == LUA_TNIL)
+        limits.action = TL_FILTER_JOIN;
+    lua_settop(L, 2);
     tl_filter report = limits;
     report.action = TL_FILTER_REPORT;
     tl_filter_result *found = tl_lua_hold(L, sizeof *found, "talus.filter", free_filter_result);
@@ -450,6 +463,11 @@ static const tl_lua_key report_results[] = {
     {"worst_aspect, worst_aspect_block", "",
      "largest aspect of a block: its diameter (largest distance between two vertices) over its "
      "thickness (smallest extent along the normal of a face); 1.73 for a cube"},
+    {"slivers, sliver_share", "",
+     "number of bodies whose shape makes the time step short where all joints are equally stiff, and their share of "
+     "the "
+     "volume; model:filter{auto = true} joins them"},
+    {"sliver_gain", "", "how many times longer a step the others allow"},
     {"cuts, refused, coincident", "",
      "cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made"},
     {"refused_cuts", "",
@@ -464,6 +482,9 @@ static const tl_lua_key report_results[] = {
 static const tl_lua_key filter_results[] = {
     {"found, deleted, joined", "", "number of slivers, and what was done with them"},
     {"volume", "", "of all slivers, m3"},
+    {"gain", "",
+     "how many times longer the time step is or, where slivers are only reported, would be; as long as "
+     "some contact has no law, where all joints are equally stiff; nil without auto"},
     {"slivers", "",
      "each a table: block (its number), volume, edge, aspect, beyond (which limits: \"volume\", "
      "\"edge\", \"aspect\") and joined_to (a block, or nil)"},

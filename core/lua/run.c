@@ -659,7 +659,7 @@ static void progress_generate(void *user, const tl_generate_progress *done)
 static void set_summary(lua_State *L, const tl_generate_summary *s)
 {
     TL_LUA_SET_COUNTS(L, {"before", s->before}, {"after", s->after}, {"cuts", s->cuts}, {"refused", s->refused},
-                      {"coincident", s->coincident});
+                      {"coincident", s->coincident}, {"slivers", s->slivers});
     TL_LUA_SET_NUMBERS(L, {"smallest_volume", s->smallest_volume}, {"smallest_edge", s->smallest_edge},
                        {"smallest_face", s->smallest_face}, {"volume_error", s->volume_error});
 }

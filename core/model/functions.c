@@ -212,8 +212,15 @@ static const tl_param filter_params[] = {
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_ENUM, tl_filter, action, "",
              "what is done with them: nothing; they are deleted; or each is joined to the block it shares the largest "
-             "face with",
+             "face with; joined when left out with auto = true",
              .choices = filter_actions),
+    {.size = sizeof(tl_param),
+     .type = TL_PARAM_BOOL,
+     .name = "auto",
+     .unit = "",
+     .doc = "no limits are given: they are chosen so that little rock is beyond them, without which the time step is "
+            "much longer; none where no filter gains a factor of two",
+     .offset = offsetof(tl_filter, automatic)},
 };
 
 static const tl_param keyblocks_params[] = {

@@ -1,5 +1,5 @@
 /* quality.c - how good the blocks are that cutting made: volume kept, the smallest and the thinnest of
- * them, and the cuts that were refused.
+ * them, slivers, and the cuts that were refused.
  *
  * Volumes are summed without rounding (base/exact.h). What shows as an error of a million blocks is then that of the
  * cuts and not of the sum. */
@@ -7,6 +7,7 @@
 #include "geometry/measure.h"
 #include "model/model.h"
 #include "model/rows.h"
+#include "model/slivers.h"
 
 static void note_smallest(tl_extreme *extreme, double value, tl_id block)
 {
@@ -43,5 +44,10 @@ tl_status tl_model_quality(tl_model *m, tl_quality *quality)
     tl_addends_put(&volume, -record->created);
     if (quality->volume > 0)
         quality->volume_error = fabs(tl_addends_sum(&volume)) / quality->volume;
-    return TL_OK;
+    tl_sliver_limits slivers;
+    const tl_status status = tl_slivers_by_shape(m, &slivers);
+    quality->slivers = slivers.count;
+    quality->sliver_share = slivers.share;
+    quality->sliver_gain = slivers.gain;
+    return status;
 }

@@ -420,6 +420,7 @@ function talus.model(options) end
 ---@field smallest_edge number of the model after, m3, m and m2
 ---@field smallest_face number of the model after, m3, m and m2
 ---@field volume_error number relative change of the volume that is not accounted for
+---@field slivers integer blocks that this call made with an aspect over 50, or with less than 0.001 of the mean volume of a block; model:filter{auto = true} joins those that decide the time step
 
 --- Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, {...}}, in the place of one: once for each, in their order and in one go. What an earlier entry makes and a later one cuts gets no ids, so ids are not those of a call for each entry.
 ---
@@ -978,6 +979,9 @@ function talus.write_file(path, text) end
 ---@field smallest_face number m3, m and m2; smallest_volume_block and so on are the blocks that have them
 ---@field worst_aspect number largest aspect of a block: its diameter (largest distance between two vertices) over its thickness (smallest extent along the normal of a face); 1.73 for a cube
 ---@field worst_aspect_block talus.Block largest aspect of a block: its diameter (largest distance between two vertices) over its thickness (smallest extent along the normal of a face); 1.73 for a cube
+---@field slivers integer number of bodies whose shape makes the time step short where all joints are equally stiff, and their share of the volume; model:filter{auto = true} joins them
+---@field sliver_share number number of bodies whose shape makes the time step short where all joints are equally stiff, and their share of the volume; model:filter{auto = true} joins them
+---@field sliver_gain number how many times longer a step the others allow
 ---@field cuts integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
 ---@field refused integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
 ---@field coincident integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
@@ -997,13 +1001,15 @@ function talus.report(model) end
 ---@field volume? number m3, > 0: blocks smaller than this are slivers
 ---@field edge? number m, > 0: blocks with a shorter edge are slivers
 ---@field aspect? number > 1: blocks whose diameter is more than this times their thickness are slivers
----@field action? "report"|"delete"|"join" default "report": what is done with them: nothing; they are deleted; or each is joined to the block it shares the largest face with
+---@field action? "report"|"delete"|"join" default "report": what is done with them: nothing; they are deleted; or each is joined to the block it shares the largest face with; joined when left out with auto = true
+---@field auto? boolean default false: no limits are given: they are chosen so that little rock is beyond them, without which the time step is much longer; none where no filter gains a factor of two
 
 ---@class (exact) talus.FilterResult
 ---@field found integer number of slivers, and what was done with them
 ---@field deleted integer number of slivers, and what was done with them
 ---@field joined integer number of slivers, and what was done with them
 ---@field volume number of all slivers, m3
+---@field gain number? how many times longer the time step is or, where slivers are only reported, would be; as long as some contact has no law, where all joints are equally stiff; nil without auto
 ---@field slivers table each a table: block (its number), volume, edge, aspect, beyond (which limits: "volume", "edge", "aspect") and joined_to (a block, or nil)
 
 --- Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to neighbours.

@@ -22,7 +22,7 @@ MODULES = {
     "force": ("base", "plugin", "narrow", "model", "contact"),
     "detect": ("base", "geometry", "narrow", "model", "contact", "force"),
     "query": ("base", "geometry", "narrow", "model", "contact", "detect"),
-    "edit": ("base", "geometry", "model", "contact", "detect", "query"),
+    "edit": ("base", "geometry", "model", "contact", "detect", "query", "cycle"),
     "cycle": ("base", "geometry", "plugin", "model", "contact", "force", "detect"),
     "state": ("base", "geometry", "narrow", "plugin", "model", "contact", "force", "detect", "cycle"),
     "io": ("base", "geometry", "model", "contact", "force", "query", "cycle", "state"),

@@ -254,7 +254,8 @@ static tl_model *eight_cubes(double size, double share, remark_log *h)
 /* The filter that the remark names, with joining. */
 static tl_filter named_filter(const char *text)
 {
-    tl_filter filter = {sizeof(tl_filter), NAN, NAN, NAN, TL_FILTER_JOIN};
+    tl_filter filter = tl_filter_default();
+    filter.action = TL_FILTER_JOIN;
     const char *named = strstr(text, "tl_model_filter() with ");
     const char *volume = named ? strstr(named, "volume = ") : NULL;
     const char *aspect = named ? strstr(named, "aspect = ") : NULL;

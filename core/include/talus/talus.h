@@ -110,6 +110,8 @@ typedef struct tl_generate_summary {
     size_t coincident;                                    /* cuts that fell on an existing face */
     double smallest_volume, smallest_edge, smallest_face; /* of the model after */
     double volume_error; /* |volume after - volume before - volume created| / volume after */
+    /* Blocks that this call made with an aspect over 50, or with less than 0.001 of the mean volume of a block. */
+    size_t slivers;
 } tl_generate_summary;
 
 /* Runs a generator plugin on the visible blocks; commits its work whole or not at all. `summary` may be NULL. */
@@ -143,6 +145,10 @@ typedef struct tl_quality {
     size_t cuts, refused, coincident;   /* since the model was made */
     const tl_refused_cut *refused_cuts; /* the first ones; valid until the model changes */
     size_t refused_listed;
+    /* Bodies whose shape makes the time step short where all joints are equally stiff; their share of the volume; and
+     * how many times longer a step the others allow. `automatic` of tl_filter joins them. */
+    size_t slivers;
+    double sliver_share, sliver_gain;
 } tl_quality;
 
 /* Measures the blocks: volumes, m3, edges, m, faces, m2, and what cuts have done. TL_E_MEMORY. */
@@ -154,6 +160,8 @@ typedef struct tl_filter {
     uint32_t size;               /* sizeof(tl_filter) */
     double volume, edge, aspect; /* smallest volume, m3, and edge, m; worst aspect; NaN: no limit */
     int32_t action;              /* tl_filter_action */
+    /* No limits are given: those are taken beyond which little rock lies that makes the time step much shorter. */
+    int32_t automatic;
 } tl_filter;
 
 /* A visible body beyond one of the limits. One of several parts is measured as a whole: its volume is that of all
@@ -169,6 +177,9 @@ typedef struct tl_filter_result {
     tl_sliver *slivers;            /* in the order of their ids; freed with free() */
     size_t count, deleted, joined; /* bodies */
     double volume;                 /* of all slivers, m3 */
+    /* How many times longer the time step is or, where slivers are only reported, would be; NaN without `automatic`. As
+     * long as some contact has no law: by area over volume of the bodies. */
+    double gain;
 } tl_filter_result;
 
 /* Finds the slivers and deletes them, or joins each to the body with which it shares the largest area. `result` may be
