@@ -13,6 +13,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
 
@@ -41,7 +42,45 @@ static tl_status check_driven(tl_model *m)
     return TL_OK;
 }
 
-static tl_status begin(tl_model *m)
+/* ---------------------------------------------------------------- what moved before ------- */
+
+/* What a relaxation that makes no step gives back. */
+typedef struct motion {
+    tl_vec3 *v, *w; /* [bodies]; NULL: a relaxation that goes on */
+    double dt, step;
+} motion;
+
+static tl_status keep_motion(tl_model *m, motion *kept)
+{
+    const tl_bodies *b = &m->bodies;
+    const size_t bodies = b->table.rows;
+    kept->v = malloc((bodies + 1) * sizeof *kept->v);
+    kept->w = malloc((bodies + 1) * sizeof *kept->w);
+    if (!kept->v || !kept->w)
+        return tl_fail_memory(&m->error);
+    if (bodies > 0) {
+        memcpy(kept->v, b->v, bodies * sizeof *kept->v);
+        memcpy(kept->w, b->w, bodies * sizeof *kept->w);
+    }
+    kept->dt = m->dt;
+    kept->step = m->cycle->dt;
+    return TL_OK;
+}
+
+static void give_back(tl_model *m, const motion *kept)
+{
+    const size_t bodies = m->bodies.table.rows;
+    if (!kept->v || !kept->w)
+        return;
+    if (bodies > 0) {
+        memcpy(m->bodies.v, kept->v, bodies * sizeof *kept->v);
+        memcpy(m->bodies.w, kept->w, bodies * sizeof *kept->w);
+    }
+    m->dt = kept->dt;
+    m->cycle->dt = kept->step;
+}
+
+static tl_status begin(tl_model *m, motion *kept)
 {
     if (m->running || m->reading)
         return tl_fail(&m->error, TL_E_STATE, "relax cannot be called from a function that a run has called");
@@ -53,6 +92,9 @@ static tl_status begin(tl_model *m)
     const double share = m->cycle->settling.share;
     if (m->relaxing && share > 0 && share <= 1)
         return TL_OK; /* a save that was made meanwhile */
+    status = keep_motion(m, kept);
+    if (status != TL_OK)
+        return status;
     tl_settle_end(m); /* from rest */
     tl_settle_begin(m);
     return TL_OK;
@@ -150,6 +192,25 @@ static void tell(tl_model *m, const tl_relax *relax, tl_relax_result *r)
     }
 }
 
+static tl_status run(tl_model *m, const tl_relax *relax, tl_relax_result *result)
+{
+    tl_solve solve = tl_solve_default();
+    solve.measure = relax->measure;
+    solve.stop_at_failure = relax->stop_at_failure;
+    solve.every = relax->every;
+    solve.each = relax->each;
+    solve.progress = relax->progress;
+    solve.stop = relax->stop;
+    solve.user = relax->user;
+    solve.between = relax->between;
+    const tl_status status = run_parts(m, relax, &solve, &result->run);
+    if (result->run.reason == TL_SOLVE_RATIO)
+        result->run.reason = TL_SOLVE_REST;
+    if (status == TL_OK)
+        tell(m, relax, result);
+    return status;
+}
+
 tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wanted)
 {
     tl_relax relax;
@@ -163,25 +224,18 @@ tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wa
     if (status == TL_OK)
         status = tl_check_choice(&m->error, "relax: measure", relax.measure, TL_RATIO_LOCAL);
     *result = (tl_relax_result){.run = {.reason = TL_SOLVE_CYCLES}};
-    if (status == TL_OK)
-        status = begin(m);
     if (status != TL_OK)
         return status;
-    tl_solve solve = tl_solve_default();
-    solve.measure = relax.measure;
-    solve.stop_at_failure = relax.stop_at_failure;
-    solve.every = relax.every;
-    solve.each = relax.each;
-    solve.progress = relax.progress;
-    solve.stop = relax.stop;
-    solve.user = relax.user;
-    solve.between = relax.between;
-    status = run_parts(m, &relax, &solve, &result->run);
-    if (result->run.reason == TL_SOLVE_RATIO)
-        result->run.reason = TL_SOLVE_REST;
-    if (status == TL_OK)
-        tell(m, &relax, result);
-    tl_settle_end(m);
+    motion kept = {.v = NULL};
+    status = begin(m, &kept);
+    if (status == TL_OK) {
+        status = run(m, &relax, result);
+        tl_settle_end(m);
+        if (status != TL_OK && result->run.cycles == 0)
+            give_back(m, &kept);
+    }
+    free(kept.v);
+    free(kept.w);
     return status;
 }
 

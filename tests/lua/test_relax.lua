@@ -148,3 +148,18 @@ do
     m:blocks():drive { velocity = { 0.1, 0, 0 } }
     check.refused(m, function() m:relax {} end, "is driven at 0.1 m/s")
 end
+
+-- What fails in its first step takes no motion away: here a block lies in another.
+do
+    local m = talus.model {}
+    m:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 }, { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2000 } })
+    m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    local upper = m:blocks { id = 2 }
+    upper:set { velocity = { 0.1, 0, 0 }, angular_velocity = { 0, 0, 1 } }
+    m:cycle(3)
+    m:generate("box", { min = { 0.4, 0.4, 0.4 }, max = { 0.6, 0.6, 0.6 }, density = 2000 })
+    local before = upper[1].velocity[1]
+    check.holds(before > 0, "it moves")
+    check.refused(m, function() m:relax {} end, "inside")
+    check.equal(upper[1].velocity[1], before)
+end
