@@ -12,7 +12,8 @@
  *
  *     ratio = fall of E / fall expected = (F_0 + F_1).s / 2 over F_0.s - s.K s / 2
  *
- * With a ratio near 1 the next one is held less, with a bad one more (Levenberg and Marquardt). No body is carried
+ * With a ratio near 1 the next one is held less, with a bad one more (Levenberg and Marquardt). Where leaps are too
+ * short, since contacts slip, the next one takes along some of the last motion (Polyak). No body is carried
  * farther at once than some of the closures that its contacts have: friction, opening and bonds follow their path.
  * Leaps end when they bring the model no nearer to rest. Then stops have their turn, each time for longer.
  *
@@ -33,7 +34,7 @@
 #define STILL_PER_RATIO 0.1
 #define STILL_MOST 1e-3
 /* Cost only: more bodies than these never leap. */
-#define MOST_LEAPING 3000
+#define MOST_LEAPING 6000
 /* Tolerance: local ratio from which leaps are tried. */
 #define NEAR_REST 0.02
 /* Tolerance: average ratio below which the model as a whole is near rest. */
@@ -56,6 +57,10 @@
 #define GOOD 0.75
 #define MORE_HOLD 8.0
 #define LESS_HOLD 0.25
+/* Tolerance: work left by a leap beyond what was expected, over what it began with. From then on the next leap takes
+ * more of the last motion along; and the largest share of that motion. */
+#define SOFTER 0.5
+#define MOST_MOMENTUM 0.9
 /* Tolerance: leaps in a row that may bring nothing: neither half of the unbalanced force, nor a good one that was
  * made shorter. */
 #define MOST_IDLE 15
@@ -238,11 +243,25 @@ static void put_motion(tl_model *m, uint32_t body, tl_vec3 v, tl_vec3 w, double 
     tl_columns_put(c->damping_moment, body, tl_v3_sub(tl_v3_scale(2 * turning / h, spin), b->moment[body]));
 }
 
+/* Adds a share of the motion of the last leap. */
+static void go_on(tl_model *m, double share)
+{
+    const tl_bodies *b = &m->bodies;
+    for (uint32_t body = 0; share > 0 && body < b->table.rows; body++) {
+        double *x = m->cycle->leap[body].motion;
+        const double by = share * m->dt;
+        const double last[6] = {b->v[body].x, b->v[body].y, b->v[body].z, b->w[body].x, b->w[body].y, b->w[body].z};
+        for (int k = 0; k < 6 && b->fixed[body] != TL_FIX_ALL; k++)
+            x[k] += by * last[k];
+    }
+}
+
 static void leap(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
     const double h = 0.5 * (m->dt + dt);
     tl_leap_find(m, dt, c->settling.hold);
+    go_on(m, c->settling.momentum);
     const double part = shorten(m, dt);
     expect(m, part);
     put_none(c, all_lost(m, dt));
@@ -258,7 +277,12 @@ static bool leap_again(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
     tl_settling *s = &c->settling;
-    const double fall = 0.5 * (s->power + m->dt * c->sums.power), ratio = s->expected > 0 ? fall / s->expected : -1;
+    const double after = m->dt * c->sums.power; /* work of the forces that are left, were the leap made again */
+    if (after < 0)
+        s->momentum = 0;
+    else if (after > 2 * s->expected - s->power + SOFTER * s->power)
+        s->momentum = fmin(1 - 0.5 * (1 - s->momentum), MOST_MOMENTUM);
+    const double fall = 0.5 * (s->power + after), ratio = s->expected > 0 ? fall / s->expected : -1;
     const bool nearer = c->sums.unbalanced < NEARER * s->goal;
     s->hold *= ratio < BAD ? MORE_HOLD : ratio > GOOD ? LESS_HOLD : 1;
     s->hold = fmax(s->hold, HOLD_LEAST);
@@ -296,6 +320,7 @@ static bool begin_leaps(tl_model *m)
     s->idle = 0;
     s->gained = 0;
     s->hold = HOLD_FIRST;
+    s->momentum = 0;
     s->goal = c->sums.unbalanced;
     tl_secants_begin(m);
     return true;

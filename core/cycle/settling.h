@@ -14,6 +14,7 @@ typedef struct tl_settling {
     int64_t idle;      /* leaps in a row that brought the model no nearer to rest */
     double carried;    /* way of bodies in leaps over their radius, the largest of each */
     double hold;       /* of a leap: inertia over dt^2 times this is added to the stiffness */
+    double momentum;   /* share of the motion of the last leap that the next one takes along */
     double power;      /* unbalanced forces at the beginning of the leap times its motion, J */
     double expected;   /* fall of the energy in it, J */
     double goal;       /* sum of unbalanced forces below which leaps have brought it nearer, N */

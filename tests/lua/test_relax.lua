@@ -163,3 +163,43 @@ do
     check.refused(m, function() m:relax {} end, "inside")
     check.equal(upper[1].velocity[1], before)
 end
+
+-- One sliver, a thin slice of some block of a rock, does not stop the others. Where it slips, leaps take along what was too short.
+do
+    local SIDE = 5
+    local function rock()
+        local m = talus.model { gravity = { 0, 0, -9.81 }, seed = 1 }
+        m:generate("box", { min = { 0, 0, 0 }, max = { SIDE, SIDE, SIDE }, density = 2600 })
+        for _, set in ipairs { { "J1", 2, 40 }, { "J2", 88, 85 }, { "J3", 86, 175 } } do
+            m:generate("jointset", { joint = set[1], dip = set[2], dip_direction = set[3], dip_dev = 0.5, dip_direction_dev = 0.5,
+                spacing = 1, spacing_dev = 0.2, number = SIDE - 1, origin = { SIDE / 2, SIDE / 2, SIDE / 2 } })
+        end
+        m:boundary { xmin = "fixed", xmax = "fixed", ymin = "fixed", ymax = "fixed", zmin = "fixed" }
+        m:joint("*", "coulomb", { kn = 1e9, ks = 5e8, friction = 35 })
+        return m
+    end
+    local plain = rock():relax {}
+    local shares = {}
+    for k = 1, 10 do
+        local m = rock()
+        local free = m:blocks { fixed = false }
+        local block = free[1 + 37 * k % #free]
+        local dip, direction, at = 30 * (k % 4), 36 * k, block.centroid
+        local n = { math.sin(math.rad(dip)) * math.sin(math.rad(direction)), math.sin(math.rad(dip)) * math.cos(math.rad(direction)),
+            math.cos(math.rad(dip)) }
+        local thick = 1e-3 * block.volume ^ (1 / 3)
+        m:blocks():hide()
+        m:blocks { id = block.id, hidden = "any" }:show()
+        m:generate("joint", { joint = "X", dip = dip, dip_direction = direction, origin = at })
+        local cut = m:generate("joint", { joint = "X", dip = dip, dip_direction = direction,
+            origin = { at[1] + thick * n[1], at[2] + thick * n[2], at[3] + thick * n[3] } })
+        m:blocks { hidden = "any" }:show()
+        check.equal(cut.slivers, 1)
+        local r = m:relax {}
+        check.equal(r.reason, "rest")
+        shares[k] = r.cycles / plain.cycles
+    end
+    table.sort(shares)
+    check.holds((shares[5] + shares[6]) / 2 < 1.4 and shares[10] < 2.1,
+        ("with a sliver %.2f times the steps, %.2f at the most"):format((shares[5] + shares[6]) / 2, shares[10]))
+end
