@@ -548,7 +548,8 @@ tl_status tl_model_solve(tl_model *m, const tl_solve *given, tl_solve_result *re
     tl_status status = TL_OPTIONS_READ(tl_solve, given, &solve, &m->error);
     if (status != TL_OK)
         return status;
-    if (!m->damping && tl_model_says(m, TL_REMARK_UNDAMPED))
+    const bool waits_for_rest = solve.ratio > 0 || solve.velocity > 0;
+    if (!m->damping && waits_for_rest && tl_model_says(m, TL_REMARK_UNDAMPED))
         tl_model_say(
             m,
             "solve: the model has no damping and may never come to rest; %s finds where it rests, %s damps its motion",

@@ -546,7 +546,7 @@ function Model:contact_area(options) end
 ---@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
 ---@field balance number error of the sum over the largest change of a term so far
 
---- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step.
+--- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
 ---     energy = model:energy()
 ---@return talus.EnergyResult

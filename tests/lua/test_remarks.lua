@@ -246,3 +246,13 @@ for mover, sign in pairs { wall = 1, block = -1 } do
     is_silent(trench(mover, 0.005 * sign))
     says(trench(mover, 0.02 * sign), "keyblocks: 1 body (first: block 3) has moved against what it touches or touched by more than 1 %")
 end
+
+-- Who waits for rest without damping is told of relax; who asks for a time only is not.
+local UNDAMPED = [[
+local m = talus.model {}
+m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2700 })
+m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 35 })
+]]
+says(UNDAMPED .. "m:solve { max_cycles = 2 } m:solve { max_cycles = 2 }", "no damping and may never come to rest", "model:relax{}")
+says(UNDAMPED .. "m:solve { ratio = 0, velocity = 1e-3, max_cycles = 2 }", "no damping and may never come to rest")
+is_silent(UNDAMPED .. "m:solve { ratio = 0, max_time = 0.001 }")
