@@ -140,6 +140,8 @@ tl_status tl_step(tl_model *m)
     m->dt = tl_model_moves(m) ? dt : 0;
     m->time += m->relaxing ? 0 : dt;
     m->cycles++;
+    if (m->relaxing)
+        tl_settle_loads(m);
     tl_remark_closure(m);
     if (!driven) /* the step is whole: bodies went on as they were driven before */
         return tl_fail(&m->error, TL_E_CANCELLED, "cycle %lld: a drive's function failed", (long long)m->cycles);

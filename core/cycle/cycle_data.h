@@ -354,15 +354,6 @@ static inline double tl_borne(const tl_model *m, uint32_t body, double weight)
     return contact > weight ? contact : weight;
 }
 
-/* Tolerance: unbalanced force over what a body bears, from which on next to nothing bears it. */
-#define TL_LOOSE 0.5
-
-/* Whether a body of that weight is loose: how others move says nothing of it. */
-static inline bool tl_body_is_loose(const tl_model *m, uint32_t body, double weight)
-{
-    return tl_v3_norm(m->bodies.force[body]) > TL_LOOSE * tl_borne(m, body, weight);
-}
-
 /* Power of the unbalanced forces on a body, W. */
 static inline double tl_body_power(const tl_model *m, uint32_t body)
 {

@@ -125,7 +125,8 @@ void tl_balance_note(tl_model *m)
 {
     const double error = fabs(m->cycle->ledger.energy.balance), most = m->timestep.error;
     const double left = fmax(0, fmin(1, 2 * (1 - error / most)));
-    m->detect->balance_left = m->timestep.rule == TL_TIMESTEP_BALANCE && m->cycle->ledger.started ? left : 0;
+    m->detect->balance_left =
+        m->timestep.rule == TL_TIMESTEP_BALANCE && !m->relaxing && m->cycle->ledger.started ? left : 0;
 }
 
 void tl_energy_close(tl_model *m)

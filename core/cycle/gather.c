@@ -8,6 +8,7 @@
 #include "contact/detection.h"
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
+#include "cycle/loose.h"
 #include "cycle/rest.h"
 #include "model/loads.h"
 

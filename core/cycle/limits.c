@@ -15,6 +15,7 @@
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
+#include "cycle/loose.h"
 #include "cycle/turn.h"
 #include "cycle/undo.h"
 #include "geometry/measure.h"
@@ -48,7 +49,7 @@ TL_INLINE push push_of(const tl_model *m, uint32_t body)
     const tl_bodies *b = &m->bodies;
     push p = {b->force[body], b->moment[body], b->mass[body], 0, 1, 1};
     if (tl_inertia_scaled(c)) {
-        p.scale = tl_inertia_scale(c, body);
+        p.scale = tl_step_scale(m, body);
         p.turn_scale = tl_turn_scale(c, body);
     }
     if (tl_loads_lag(m)) {

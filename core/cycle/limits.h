@@ -4,13 +4,6 @@
 
 #include "cycle/cycle_data.h"
 
-/* Least thickness that a block of volume V and surface S can have, m: a convex body holds a ball of radius V / S. */
-static inline double tl_least_thickness(const tl_model *m, uint32_t row)
-{
-    const tl_blocks *b = &m->blocks;
-    return 2 * b->volume[row] / (b->mean_face[row] * b->shape[row]->face_count);
-}
-
 /* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
  * not: those that forces move or, with `held`, after the drives have been evaluated, those whose motion is given. */
 tl_status tl_motion_check(tl_model *m, double dt, bool held);

@@ -19,6 +19,7 @@
 
 #include "base/columns.h"
 #include "base/parallel.h"
+#include "cycle/loose.h"
 #include "cycle/turn.h"
 
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
@@ -243,7 +244,7 @@ static void load_lane(body_group *g, size_t i, const tl_model *m)
     tl_lanes3_put(&g->w0, i, b->w[body]);
     g->mass[i] = b->mass[body];
     g->radius[i] = b->radius[body];
-    g->scale[i] = tl_inertia_scale(c, body);
+    g->scale[i] = tl_step_scale(m, body);
     g->energy_scale[i] = tl_energy_scale(c, body);
     g->turn_scale[i] = tl_turn_scale(c, body);
     if (tl_is_damped(m))

@@ -17,9 +17,6 @@
 #include <string.h>
 #include <talus/number.h>
 
-/* Tolerance: ratio at which the next part of the loads comes on. */
-#define NEXT_PART 1e-3
-
 /* Refuses a model that something drives: there is no rest then. */
 static tl_status check_driven(tl_model *m)
 {
@@ -80,7 +77,7 @@ static void give_back(tl_model *m, const motion *kept)
     m->cycle->dt = kept->step;
 }
 
-static tl_status begin(tl_model *m, motion *kept)
+static tl_status begin(tl_model *m, int64_t load_steps, motion *kept)
 {
     if (m->running || m->reading)
         return tl_fail(&m->error, TL_E_STATE, "relax cannot be called from a function that a run has called");
@@ -89,6 +86,8 @@ static tl_status begin(tl_model *m, motion *kept)
         status = check_driven(m);
     if (status != TL_OK)
         return status;
+    if (!TL_COLUMN_NEED(&m->bodies.table, &m->bodies, fall, TL_COLUMN_STEP))
+        return tl_fail_memory(&m->error);
     const double share = m->cycle->settling.share;
     if (m->relaxing && share > 0 && share <= 1)
         return TL_OK; /* a save that was made meanwhile */
@@ -96,35 +95,8 @@ static tl_status begin(tl_model *m, motion *kept)
     if (status != TL_OK)
         return status;
     tl_settle_end(m); /* from rest */
-    tl_settle_begin(m);
+    tl_settle_begin(m, load_steps);
     return TL_OK;
-}
-
-/* ---------------------------------------------------------------- parts of the load ------- */
-
-/* Runs until the part of the loads that acts is borne, and brings on the next. */
-static tl_status run_parts(tl_model *m, const tl_relax *relax, tl_solve *solve, tl_solve_result *result)
-{
-    double *share = &m->cycle->settling.share;
-    const double part = 1 / (double)relax->load_steps;
-    int64_t cycles = 0;
-    double wall = 0;
-    tl_status status = TL_OK;
-    for (int64_t k = m->cycle->settling.part; k <= relax->load_steps; k++) {
-        const bool last = k == relax->load_steps;
-        m->cycle->settling.part = k;
-        *share = last ? 1 : part * (double)k;
-        solve->ratio = last ? relax->ratio : fmax(NEXT_PART, relax->ratio);
-        solve->max_cycles = relax->max_cycles - cycles;
-        status = tl_solve_run(m, solve, result);
-        cycles += result->cycles;
-        wall += result->wall;
-        if (status != TL_OK || result->reason != TL_SOLVE_RATIO)
-            break;
-    }
-    result->cycles = cycles;
-    result->wall = wall;
-    return status;
 }
 
 /* ---------------------------------------------------------------- what the end means ----- */
@@ -203,7 +175,9 @@ static tl_status run(tl_model *m, const tl_relax *relax, tl_relax_result *result
     solve.stop = relax->stop;
     solve.user = relax->user;
     solve.between = relax->between;
-    const tl_status status = run_parts(m, relax, &solve, &result->run);
+    solve.ratio = relax->ratio;
+    solve.max_cycles = relax->max_cycles;
+    const tl_status status = tl_solve_run(m, &solve, &result->run);
     if (result->run.reason == TL_SOLVE_RATIO)
         result->run.reason = TL_SOLVE_REST;
     if (status == TL_OK)
@@ -227,7 +201,7 @@ tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wa
     if (status != TL_OK)
         return status;
     motion kept = {.v = NULL};
-    status = begin(m, &kept);
+    status = begin(m, relax.load_steps, &kept);
     if (status == TL_OK) {
         status = run(m, &relax, result);
         tl_settle_end(m);

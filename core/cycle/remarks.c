@@ -8,6 +8,7 @@
 #include "contact/contacts.h"
 #include "cycle/limits.h"
 #include "detect/overlap.h"
+#include "model/body_shape.h"
 #include "model/joints.h"
 
 #include <string.h>

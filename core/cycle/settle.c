@@ -3,7 +3,8 @@
  * Kinetic stops come first: nothing is braked until the forces of all bodies together work against the motion, and then
  * every body is stopped (P. A. Cundall 1976; M. R. Barnes, Computers and Structures 30 (1988) 685-695). Each body has
  * the inertia that suits one step, and the step is as long as it may be. So blocks find each other, slip and open by
- * steps that laws can follow. What next to nothing bears goes its own way: it falls, and is stopped where it lands.
+ * steps that laws can follow. What next to nothing bears goes its own way: it falls, by its own mass (loose.h), and is
+ * stopped where it lands.
  *
  * What is soft among what is stiff takes the root of the ratio of both in steps: a joint that presses on its edge,
  * columns, slivers. Once no body is far from equilibrium, leaps are tried: motions that would bring equilibrium by the
@@ -24,6 +25,9 @@
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "cycle/cycle_data.h"
+#include "cycle/energy.h"
+#include "cycle/loose.h"
+#include "cycle/rest.h"
 #include "cycle/secants.h"
 
 #include <math.h>
@@ -33,12 +37,18 @@
  * second. */
 #define STILL_PER_RATIO 0.1
 #define STILL_MOST 1e-3
+/* Tolerance: local ratio at which the next part of the loads comes on. */
+#define NEXT_PART 1e-3
 /* Cost only: more bodies than these never leap. */
 #define MOST_LEAPING 6000
 /* Tolerance: local ratio from which leaps are tried. */
 #define NEAR_REST 0.02
 /* Tolerance: average ratio below which the model as a whole is near rest. */
 #define CALM 1e-2
+/* Tolerance: way in a step that a body may fall by its own mass once something has borne it, over that of its landing;
+ * and what each further step makes of it. */
+#define LANDING 0.1
+#define FALL_GROWTH 1.1
 /* Cost only: stops before the first leap, between two spells of leaps, and leaps of a spell; the latter grow. */
 #define FIRST_STOPS 30
 #define STOPS 30
@@ -72,11 +82,20 @@
 /* Tolerance: closures, of the body or the mean one, by which a leap carries a body at the most. */
 #define CLOSURES 50.0
 
-void tl_settle_begin(tl_model *m)
+void tl_settle_begin(tl_model *m, int64_t load_steps)
 {
+    for (size_t body = 0; body < m->bodies.table.rows; body++)
+        m->bodies.fall[body] = INFINITY;
     m->relaxing = true;
-    m->cycle->settling = (tl_settling){
-        .share = 1, .part = 1, .stops = FIRST_STOPS, .stop_span = STOPS, .leap_span = LEAPS, .hold = HOLD_FIRST};
+    if (m->detect)
+        tl_balance_note(m); /* the balance of the motion so far is none of a relaxation's */
+    m->cycle->settling = (tl_settling){.share = 1 / (double)load_steps,
+                                       .part = 1,
+                                       .parts = load_steps,
+                                       .stops = FIRST_STOPS,
+                                       .stop_span = STOPS,
+                                       .leap_span = LEAPS,
+                                       .hold = HOLD_FIRST};
 }
 
 void tl_settle_end(tl_model *m)
@@ -96,6 +115,22 @@ void tl_settle_end(tl_model *m)
     c->secant_count = 0;
     c->dt = c->mass_scale = 0; /* step, masses and rates are others from now on */
     c->stiffness_rates.version = 0;
+}
+
+void tl_settle_loads(tl_model *m)
+{
+    tl_settling *s = &m->cycle->settling;
+    if (s->part >= s->parts || !tl_at_rest(m, TL_RATIO_LOCAL, NEXT_PART))
+        return;
+    s->part++;
+    s->share = s->part < s->parts ? (double)s->part / (double)s->parts : 1;
+    s->came = m->cycles;
+}
+
+bool tl_settle_bears_all(const tl_model *m)
+{
+    const tl_settling *s = &m->cycle->settling;
+    return s->part >= s->parts && s->came < m->cycles;
 }
 
 static bool may_leap(const tl_model *m)
@@ -326,6 +361,21 @@ static bool begin_leaps(tl_model *m)
     return true;
 }
 
+/* What has landed comes down by smaller steps when it falls again, and by larger ones the longer it falls. */
+static void note_landings(tl_model *m, double dt)
+{
+    const tl_bodies *b = &m->bodies;
+    const double gravity = tl_v3_norm(m->config.gravity);
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        const double weight = tl_weight_of(b, body, gravity), way = tl_v3_norm(b->v[body]) * m->dt;
+        const double least = weight * dt * dt / (b->mass[body] * tl_inertia_scale(m->cycle, body));
+        if (tl_body_falls(m, body, weight))
+            b->fall[body] *= FALL_GROWTH;
+        else if (way * LANDING < b->fall[body])
+            b->fall[body] = fmax(way * LANDING, least);
+    }
+}
+
 tl_status tl_settle(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
@@ -334,6 +384,7 @@ tl_status tl_settle(tl_model *m, double dt)
     m->still = isfinite(ratio) ? fmin(STILL_PER_RATIO * ratio, STILL_MOST) : 0;
     if (!(dt > 0))
         return TL_OK;
+    note_landings(m, dt);
     if (s->leapt) {
         tl_secants_follow(m);
         if (leap_again(m) && !tl_loads_lag(m)) {

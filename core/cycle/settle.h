@@ -5,7 +5,11 @@
 #include "model/model.h"
 
 /* A relaxation begins, from rest. */
-void tl_settle_begin(tl_model *m);
+void tl_settle_begin(tl_model *m, int64_t load_steps);
+/* At the end of a step: brings on the next part of the loads once the one before is borne. */
+void tl_settle_loads(tl_model *m);
+/* Whether the last step was made with all of them. */
+bool tl_settle_bears_all(const tl_model *m);
 /* Nothing moves any more, and steps, masses and rates are the user's again. */
 void tl_settle_end(tl_model *m);
 /* Room for a step; false: out of memory. */

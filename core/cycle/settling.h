@@ -6,7 +6,9 @@
 
 typedef struct tl_settling {
     double share;      /* of gravity and loads that acts */
-    int64_t part;      /* of those in which they come on, from 1 */
+    int64_t part;      /* of those in which they come on, from 1, */
+    int64_t parts;     /* how many these are, */
+    int64_t came;      /* and after which step the last one did */
     int64_t stops;     /* steps left with kinetic stops only, before leaps are tried */
     int64_t stop_span; /* that there will be the next time */
     int64_t leaps;     /* left of those that are being made */

@@ -361,7 +361,8 @@ static bool call_back(tl_model *m, const tl_solve *s, int64_t done, tl_status *s
 
 static bool at_rest(tl_model *m, const progress *p)
 {
-    bool rests = tl_at_rest(m, (tl_ratio_measure)p->solve->measure, p->solve->ratio);
+    bool rests =
+        (!m->relaxing || tl_settle_bears_all(m)) && tl_at_rest(m, (tl_ratio_measure)p->solve->measure, p->solve->ratio);
     p->result->worst = worst_body(m); /* where forces balance, one that still moves */
     return rests;
 }

@@ -482,7 +482,7 @@ double tl_timestep_fraction(const tl_model *m)
 static double balance_factor(const tl_model *m)
 {
     const double left = m->detect ? m->detect->balance_left : 0;
-    return m->timestep.rule == TL_TIMESTEP_BALANCE ? 0.5 * (1 + left) : 1;
+    return m->timestep.rule == TL_TIMESTEP_BALANCE && !m->relaxing ? 0.5 * (1 + left) : 1;
 }
 
 static double damping_factor(const tl_model *m)

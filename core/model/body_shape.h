@@ -18,4 +18,11 @@ typedef struct tl_body_shape {
 /* Of a body whose rows are tidy. false: out of memory. */
 bool tl_body_shape_of(const tl_model *m, uint32_t body, tl_body_shape *out);
 
+/* Least thickness that a block of volume V and surface S can have, m: a convex body holds a ball of radius V / S. */
+static inline double tl_least_thickness(const tl_model *m, uint32_t row)
+{
+    const tl_blocks *b = &m->blocks;
+    return 2 * b->volume[row] / (b->mean_face[row] * b->shape[row]->face_count);
+}
+
 #endif

@@ -262,6 +262,8 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
         tl_v3(sum->fixed & TL_FIX_X ? 0 : v.x, sum->fixed & TL_FIX_Y ? 0 : v.y, sum->fixed & TL_FIX_Z ? 0 : v.z);
     if (b->force_before)
         b->force_before[body] = b->moment_before[body] = tl_v3(0, 0, 0);
+    if (b->fall)
+        b->fall[body] = INFINITY;
     if (b->load_before)
         b->load_before[body] = (tl_wrench){{0, 0, 0}, {0, 0, 0}};
     if (b->load)

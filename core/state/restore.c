@@ -328,6 +328,8 @@ static bool hold_columns(tl_model *m, const tl_archive *a)
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, load_before, 0);
     if (tl_archive_find(a, "bodies.load"))
         held = held && tl_bodies_hold_loads(&m->bodies);
+    if (tl_archive_find(a, "bodies.fall"))
+        held = held && TL_COLUMN_NEED(bodies, &m->bodies, fall, TL_COLUMN_STEP);
     if (tl_archive_find(a, "bodies.force_before"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, moment_before, TL_COLUMN_STEP) &&
                TL_COLUMN_NEED(bodies, &m->bodies, force_before, TL_COLUMN_STEP);

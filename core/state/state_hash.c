@@ -306,12 +306,14 @@ static int64_t *put_words(int64_t *to, const tl_model *m, const tl_settings *of)
 static void hash_settling(tl_hash *hash, const tl_model *m)
 {
     const tl_settling *s = &m->cycle->settling;
-    const int64_t words[] = {s->part, s->stops, s->stop_span, s->leaps, s->leap_span,
-                             s->idle, s->leapt, s->limited,   s->calm,  s->gained};
+    const int64_t words[] = {s->part,      s->parts, s->came,  s->stops,   s->stop_span, s->leaps,
+                             s->leap_span, s->idle,  s->leapt, s->limited, s->calm,      s->gained};
     tl_hash_numbers(
         hash, (const double[]){m->still, s->share, s->hold, s->power, s->expected, s->goal, s->carried, s->momentum},
         8);
     tl_hash_bytes(hash, words, sizeof words);
+    if (m->relaxing && m->bodies.fall)
+        tl_hash_bytes(hash, m->bodies.fall, m->bodies.table.rows * sizeof *m->bodies.fall);
 }
 
 static void hash_settings(tl_hash *hash, const tl_model *m)

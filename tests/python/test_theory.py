@@ -61,7 +61,7 @@ NUMBERS = [
     ("core/cycle/solve.c", "SUPPORTED", 0.5, "(|F| < B / 2)"),
     ("core/cycle/solve.c", "LEAST_PUSH", 1e-4, "is more than 1e-4 of what it bears"),
     ("core/cycle/timestep.c", "RELAX_FRACTION", 0.9, "The step is 0.9 of the critical one"),
-    ("core/cycle/cycle_data.h", "TL_LOOSE", 0.5, "A body is loose while |F| > B / 2"),
+    ("core/cycle/loose.h", "TL_LOOSE", 0.5, "A body is loose while |F| > B / 2"),
     ("core/cycle/settle.c", "CALM", 1e-2, "Once the average ratio is below 1e-2, P leaves loose bodies out"),
     ("core/cycle/settle.c", "STILL_PER_RATIO", 0.1, "min(0.1 R, 1e-3)"),
     ("core/cycle/settle.c", "STILL_MOST", 1e-3, "min(0.1 R, 1e-3)"),
@@ -85,7 +85,10 @@ NUMBERS = [
     ("core/cycle/settle.c", "IDLE_GROWTH", 4, "or times 4 where the leaps brought nothing"),
     ("core/cycle/settle.c", "MOST_CARRIED", 0.02, "by 0.02 of its radius in all"),
     ("core/cycle/settle.c", "GROWTH", 1.5, "half as many again"),
-    ("core/cycle/relax.c", "NEXT_PART", 1e-3, "once the ratio is below 1e-3"),
+    ("core/cycle/settle.c", "NEXT_PART", 1e-3, "once the local ratio is below 1e-3"),
+    ("core/cycle/loose.h", "TL_FALL_STEP", 0.1, "0.1 of its thickness at the most"),
+    ("core/cycle/settle.c", "LANDING", 0.1, "ℓ becomes 0.1 of the way of that step"),
+    ("core/cycle/settle.c", "FALL_GROWTH", 1.1, "makes ℓ 1.1 times as long"),
 ]
 # Shares and places of a patch's points, in the order of tl_point_rule.
 POINT_RULE = ("16/75 (a₋ + a₊)", "12/25 a", "7/75 A_c", "5/8 of the way", "5/6 of the way")
