@@ -45,7 +45,8 @@ static void mark_largest(const tl_model *m, uint32_t *of, uint32_t *largest, uns
         of[body] = largest[body] = body;
     for (uint32_t i = 0; i < c->table.rows; i++) {
         const tl_sides on = tl_contact_bodies(m, i);
-        if (c->point_count[i] && c->kind[i] == TL_FACET_PATCH && tl_bodies_may_join(&m->bodies, on.a, on.b))
+        if (c->point_count[i] && c->kind[i] == TL_FACET_PATCH && tl_bodies_may_join(&m->bodies, on.a, on.b) &&
+            tl_body_is_visible(m, on.a) && tl_body_is_visible(m, on.b))
             tl_put_together(of, on.a, on.b);
     }
     for (uint32_t body = 0; body < bodies; body++) {

@@ -47,14 +47,6 @@ static bool measure(const filter *f, uint32_t body, tl_sliver *out)
     return true;
 }
 
-static bool is_visible(const tl_model *m, uint32_t body)
-{
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
-        if (m->blocks.hidden[m->members[m->bodies.member_start[body] + k]])
-            return false;
-    return true;
-}
-
 /* Lists the slivers in the order of their ids, and marks them. */
 static bool find_bad(filter *f, tl_filter_result *result)
 {
@@ -63,7 +55,7 @@ static bool find_bad(filter *f, tl_filter_result *result)
     for (uint32_t body = 0; body < bodies && result->slivers; body++) {
         tl_sliver *sliver = &result->slivers[result->count];
         f->bad[body] = 0;
-        if (!is_visible(f->model, body))
+        if (!tl_body_is_visible(f->model, body))
             continue;
         if (!measure(f, body, sliver))
             return false;
@@ -109,7 +101,7 @@ static uint32_t find_partner(filter *f, uint32_t body, bool any)
     uint32_t partner = TL_NO_ROW;
     const size_t count = list_near(f, body);
     for (size_t i = 0; i < count; i++)
-        if (tl_bodies_may_join(&f->model->bodies, body, f->near[i]) && is_visible(f->model, f->near[i]) &&
+        if (tl_bodies_may_join(&f->model->bodies, body, f->near[i]) && tl_body_is_visible(f->model, f->near[i]) &&
             (any || !f->bad[f->near[i]]) && is_better(f, f->near[i], partner))
             partner = f->near[i];
     for (size_t i = 0; i < count; i++)

@@ -9,6 +9,14 @@
 #include <string.h>
 #include <talus/elementary.h>
 
+bool tl_body_is_visible(const tl_model *m, uint32_t body)
+{
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
+        if (m->blocks.hidden[tl_body_blocks(m, body)[k]])
+            return false;
+    return true;
+}
+
 double tl_body_volume(const tl_model *m, uint32_t body)
 {
     double volume = 0;

@@ -4,6 +4,9 @@
 
 #include "model/model.h"
 
+/* Whether none of its parts is hidden. */
+bool tl_body_is_visible(const tl_model *m, uint32_t body);
+
 /* Of all parts of a body, m3; and the cube root of it, m. */
 double tl_body_volume(const tl_model *m, uint32_t body);
 double tl_body_size(const tl_model *m, uint32_t body);

@@ -15,7 +15,7 @@
 
 /* Tolerance: the largest share of the rock, by volume, that may be called slivers. */
 #define LITTLE 0.05
-/* Tolerance: share of the largest gain that suffices. */
+/* Tolerance: share of the largest gain that suffices; and 1 over the least gain. */
 #define ENOUGH 0.5
 
 /* Tolerance: aspect above which a block counts as a sliver for the summary of a cut. */
@@ -116,7 +116,7 @@ static bool sort_bodies(const tl_model *m, const double *rate, const unsigned ch
     for (int k = 0; k < PARTS; k++)
         s->volume[k] = rounded(part[k] * whole / count);
     for (uint32_t body = 0; body < bodies; body++)
-        if (rate[body] > 0 && !sort_body(m, s, body, rate[body], stays[body]))
+        if (rate[body] > 0 && !sort_body(m, s, body, rate[body], stays[body] || !tl_body_is_visible(m, body)))
             return false;
     return true;
 }
@@ -136,7 +136,8 @@ static heap left_by(const sorting *s, int small, int thin)
     return left;
 }
 
-/* The filter that takes least and gains enough of what one that takes little can; without limits when none does. */
+/* The filter that takes least and gains enough of what one that takes little can; without limits when none does. What
+ * is hidden stays. */
 static choice choose(const sorting *s)
 {
     choice best = {0, 0, s->all};
@@ -149,7 +150,7 @@ static choice choose(const sorting *s)
                     continue;
                 if (pass == 0)
                     least = fmin(least, left.rate);
-                else if (left.rate * (ENOUGH * ENOUGH) <= least &&
+                else if (left.rate * (ENOUGH * ENOUGH) <= least && left.rate <= (ENOUGH * ENOUGH) * s->all.rate &&
                          (best.left.rate * (ENOUGH * ENOUGH) > least || left.volume > best.left.volume))
                     best = (choice){small, thin, left};
             }

@@ -860,7 +860,7 @@ function Model:solve(options) end
 ---@field measure? "average"|"maximum"|"local" default "local": which unbalanced force ratio ends it: see theory.md, Convergence
 ---@field stop_at_failure? boolean default true: ends when some block is seen to fail steadily
 ---@field max_cycles? integer >= 0, default 1000000: largest number of steps of this call
----@field load_steps? integer in [1, 10000], default 1: gravity and loads come on in so many equal parts, each near rest before the next: put on at once they settle a rock mass some per cent deeper, for friction follows its path
+---@field load_steps? integer in [1, 10000], default 1: gravity and loads come on in so many equal parts, each near rest before the next: put on at once they settle a rock mass some per cent deeper, for friction follows its path. For loads that come on for the first time: a model that has borne them before is unloaded first
 ---@field every? integer >= 1, default 500: steps between calls of on_progress and stop
 ---@field stop? fun(model: talus.Model): any called every `every` steps; ends the run when it answers true
 ---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
