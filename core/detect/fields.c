@@ -169,11 +169,13 @@ void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region 
         row->count[k] = (uint16_t)count[k];
     memcpy(row->face, r->face, faces * sizeof *r->face);
     row->mesh = *r->mesh;
+    row->flat = *r->flat;
 }
 
 static tl_region kept_region(tl_press_row *row)
 {
     return (tl_region){.mesh = &row->mesh,
+                       .flat = &row->flat,
                        .a = row->count[0],
                        .b = row->count[1],
                        .border_a = row->count[2],
@@ -336,7 +338,7 @@ bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     region.mesh = NULL;
     const tl_press_query query = tl_manifold_query(&view, &region, &rule, &before);
     row->by_slope = false;
-    row->mesh = (tl_field_mesh){0};
+    row->mesh = row->flat = (tl_field_mesh){0};
     contacts->faces_valid_to[c] = contacts->points_valid_to[c] = TL_OUTDATED;
     return tl_press_find(&query, 1, scratch, &row->press, &row->extra);
 }
