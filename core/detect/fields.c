@@ -318,6 +318,7 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
     note_moved_faces(m, c, row, &before);
     b->query[k] = tl_manifold_query(view, &b->region[k], &rule, &before);
+    b->query[k].faces_only = true;
     b->query[k].lean = row->leans ? row->lean : NULL; /* that lasts */
     b->query[k].slope = wants_slopes(m, c) ? &b->slope[k] : NULL;
 }
@@ -355,11 +356,16 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
         if (!b->near[k])
             ask(m, b, c);
     }
-    b->failed = !tl_pairs_place(b->view, b->asked, scratch);
+    b->failed = !tl_pairs_reserve(b->view, b->asked, scratch);
     if (b->failed)
         return;
-    for (uint32_t k = 0; k < b->asked; k++)
+    for (uint32_t k = 0; k < b->asked; k++) {
+        const tl_region *r = &b->region[k];
+        const uint16_t *of_b = r->face + r->a, *borders_of_b = of_b + r->b + r->border_a;
+        tl_pair_place_normals(&b->view[k], of_b, r->b);
+        tl_pair_place_normals(&b->view[k], borders_of_b, r->border_b);
         tl_region_choose_flush(&b->view[k], &b->region[k]);
+    }
     b->failed = !tl_press_find(b->query, b->asked, scratch, b->found, b->extra);
     b->asked = 0;
 }

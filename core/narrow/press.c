@@ -99,8 +99,10 @@ tl_plane tl_pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
 
 static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin, uint32_t count)
 {
+    const bool moved = of->shift != 0 || of->lean;
     for (uint32_t k = begin; k < begin + count; k++) {
-        tl_plane plane = tl_pressing_plane(of, of_b, of->region->face[k]);
+        const uint16_t face = of->region->face[k];
+        const tl_plane plane = moved ? tl_pressing_plane(of, of_b, face) : tl_view_plane(of->view, of_b, face);
         p->faces.n[0][p->count] = plane.normal.x;
         p->faces.n[1][p->count] = plane.normal.y;
         p->faces.n[2][p->count] = plane.normal.z;
@@ -771,6 +773,13 @@ static void begin_anew(const tl_press_query *of, press_planes *p, tl_mesh_inner 
     list_inner_corners(of->view, of->region, inner);
 }
 
+/* Whether the press of a field that goes by its mesh needs the listed faces only: in_both needs all, patches at corners
+ * need vertices. */
+static bool faces_suffice(const tl_press_query *of, const tl_field_sums *sums)
+{
+    return sums->deepest > FAINT * of->view->size && !of->corners;
+}
+
 static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch, tl_press press[],
                      tl_press_extra extra[])
 {
@@ -786,11 +795,13 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
         if (query[k].slope)
             query[k].slope->known = false;
         bool found = follow(&query[k], &p[k], &sums[k]);
-        if (!found)
-            begin_anew(&query[k], &p[k], &inner[k]);
-        known[k] = p[k].faces.mesh ? p[k].faces.mesh->bounding : 0;
+        known[k] = found ? p[k].faces.mesh->bounding : 0;
+        if (query[k].faces_only && !(known[k] && faces_suffice(&query[k], &sums[k])))
+            tl_pair_place_all(query[k].view);
         if (found)
             continue;
+        begin_anew(&query[k], &p[k], &inner[k]);
+        known[k] = p[k].faces.mesh ? p[k].faces.mesh->bounding : 0;
         faces[left] = &p[k].faces;
         to[left] = &sums[k];
         anew[left++] = k;

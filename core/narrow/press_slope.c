@@ -84,6 +84,7 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_nar
             same[k].flat = &flat[k];
             there[k].region = &same[k];
             there[k].view = &view[k];
+            there[k].faces_only = false;
         }
         if (!tl_pairs_place(view, 2, scratch) || !tl_press_find(there, 2, scratch, side, NULL))
             return false;
