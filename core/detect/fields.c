@@ -188,21 +188,29 @@ static tl_region kept_region(tl_press_row *row)
 
 /* ---------------------------------------------------------------- places ----------------- */
 
+/* The square of the longest way of some vertices x, the change of a matrix times x plus a vector. */
+static double longest_way(const tl_vec3 *x, uint32_t count, const tl_mat3 *change, tl_vec3 way)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double moved = tl_v3_norm2(tl_v3_add(tl_m3_mul(change, x[i]), way));
+        most = moved > most ? moved : most;
+    }
+    return most;
+}
+
 /* The farthest that a vertex of either block has moved against the other block, since B was at a place. */
 static double way_since(const tl_pair_view *view, const tl_pair_pose *since)
 {
-    double most = 0;
-    for (uint32_t i = 0; i < view->b->vertex_count; i++) {
-        tl_vec3 now = tl_v3_add(tl_m3_mul(&view->turn, view->b->vertex[i]), view->shift);
-        tl_vec3 then = tl_v3_add(tl_m3_mul(&since->turn, view->b->vertex[i]), since->shift);
-        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
-    }
-    for (uint32_t i = 0; i < view->a->vertex_count; i++) { /* in B's frame */
-        tl_vec3 now = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[i], view->shift));
-        tl_vec3 then = tl_m3_tmul(&since->turn, tl_v3_sub(view->a->vertex[i], since->shift));
-        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
-    }
-    return sqrt(most);
+    tl_mat3 change, back;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            back.m[k][i] = change.m[i][k] = view->turn.m[i][k] - since->turn.m[i][k];
+    const tl_vec3 now = tl_m3_tmul(&view->turn, view->shift), then = tl_m3_tmul(&since->turn, since->shift);
+    const tl_poly *a = view->a, *b = view->b;
+    double of_b = longest_way(b->vertex, b->vertex_count, &change, tl_v3_sub(view->shift, since->shift));
+    double of_a = longest_way(a->vertex, a->vertex_count, &back, tl_v3_sub(then, now)); /* in B's frame */
+    return sqrt(fmax(of_a, of_b));
 }
 
 /* Whether the faces of a contact are listed still. By the odometers, which count the motion of both blocks together,

@@ -481,8 +481,14 @@ TL_VECTORIZED static void add_slopes(const polygons *restrict p, const second_mo
 TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES], double *restrict sum)
 {
     for (int k = 0; k < count; k++) {
-        const double *v = given[k];
-        sum[k] = ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+        double four[4], two[2];
+#pragma omp simd
+        for (uint32_t l = 0; l < 4; l++)
+            four[l] = given[k][l] + given[k][l + 4];
+#pragma omp simd
+        for (uint32_t l = 0; l < 2; l++)
+            two[l] = four[l] + four[l + 2];
+        sum[k] = two[0] + two[1];
     }
 }
 

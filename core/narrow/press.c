@@ -99,15 +99,21 @@ tl_plane tl_pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
 
 static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin, uint32_t count)
 {
+    if (count == 0)
+        return 0;
+    const tl_vec3 origin = p->origin;
+    const uint16_t *face = of->region->face + begin;
     const bool moved = of->shift != 0 || of->lean;
-    for (uint32_t k = begin; k < begin + count; k++) {
-        const uint16_t face = of->region->face[k];
-        const tl_plane plane = moved ? tl_pressing_plane(of, of_b, face) : tl_view_plane(of->view, of_b, face);
-        p->faces.n[0][p->count] = plane.normal.x;
-        p->faces.n[1][p->count] = plane.normal.y;
-        p->faces.n[2][p->count] = plane.normal.z;
-        p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
+    double *restrict x = p->faces.n[0] + p->count, *restrict y = p->faces.n[1] + p->count;
+    double *restrict z = p->faces.n[2] + p->count, *restrict c = p->faces.c + p->count;
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_plane plane = moved ? tl_pressing_plane(of, of_b, face[k]) : tl_view_plane(of->view, of_b, face[k]);
+        x[k] = plane.normal.x;
+        y[k] = plane.normal.y;
+        z[k] = plane.normal.z;
+        c[k] = plane.offset - tl_v3_dot(plane.normal, origin);
     }
+    p->count += count;
     return count;
 }
 
