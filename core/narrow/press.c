@@ -53,7 +53,6 @@ static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query
     for (uint32_t k = 0; k < count; k++) {
         const tl_region *r = query[k].region;
         faces[k] = r->a + r->b + r->border_a + r->border_b;
-        faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
         all += faces[k];
     }
     if (!tl_grow(&scratch->press, &scratch->press_capacity, 4 * all, sizeof(double)))
