@@ -197,8 +197,8 @@ static void choose_three(const tl_field_faces *f, uint64_t planes, uint8_t three
             }
 }
 
-/* Lists the corners of the blocks in which more than three planes meet, of planes that are listed with the first `a`
- * faces of A and `b` of B. */
+/* Lists the corners of the blocks in which more than three planes meet. The first `a` faces of A and `b` of B come
+ * before all borders. */
 static void list_vertices(press_planes *p, const tl_press_query *of, uint32_t a, uint32_t b)
 {
     const tl_region *r = of->region;
@@ -217,9 +217,11 @@ static void list_vertices(press_planes *p, const tl_press_query *of, uint32_t a,
         return;
     for (int side = 0; side < 2; side++)
         for (uint32_t k = 0; k < all[side]->count && p->vertices.count < TL_MESH_VERTICES; k++) {
-            uint64_t planes = all[side]->planes[k], three_less = planes & (planes - 1);
-            three_less &= three_less - 1;
-            if (!(three_less & (three_less - 1)))
+            const uint64_t planes = all[side]->planes[k];
+            uint64_t more = planes; /* than three, without the lowest bits of as many */
+            for (int i = 0; i < 3; i++)
+                more &= more - 1;
+            if (!more)
                 continue;
             choose_three(&p->faces, planes, p->vertices.three[p->vertices.count]);
             p->vertices.planes[p->vertices.count++] = planes;
