@@ -74,8 +74,8 @@ typedef struct tl_press_row {
     tl_pair_pose listed_at;                                    /* where they were listed */
     double listed_shift;                                       /* and with which shift */
     bool flush, listed, leans;
-    bool refused; /* there it was no patch, although it lay still */
-    tl_field_mesh mesh;
+    bool refused;             /* there it was no patch, although it lay still */
+    tl_field_mesh mesh, flat; /* of the field, and of the patch of its flush faces */
     /* It goes by the slopes that its press has had there at the place where it was `since` some step; or else by its
      * mesh, and has stayed near a place since then (fields.c). */
     tl_pair_pose place;

@@ -242,13 +242,17 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_n
         return reach;
     if (!holds && gap > tolerance)
         return gap - tolerance;
+    const bool edges_only = !holds && !cut && !(gap > 0) && !tl_grazing_may_be(&view);
+    double way = edges_only ? way_to_edges(&view, tolerance + reach) : 0;
+    if (way > 0)
+        return way;
     tl_region region;
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region))
         return NAN;
     const tl_manifold_before before = before_contact(m, p, &view, scratch);
     const bool corners = m->config.contact_points == TL_POINTS_CORNERS;
     holds = before.holds || (shift > 0 && region.gap <= shift);
-    double way = holds ? -1 : way_to_contact(&view, &region, corners);
+    way = holds ? -1 : way_to_contact(&view, &region, corners);
     if (way > 0)
         return way;
     const tl_tag tag = tl_touching_tag(&view, region.n);
@@ -260,7 +264,7 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_n
             return margin;
         tl_pair_forget_faces(p);
     }
-    way = holds || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + reach);
+    way = holds || edges_only || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + reach);
     if (way > 0)
         return way;
     if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))

@@ -169,11 +169,13 @@ void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region 
         row->count[k] = (uint16_t)count[k];
     memcpy(row->face, r->face, faces * sizeof *r->face);
     row->mesh = *r->mesh;
+    row->flat = *r->flat;
 }
 
 static tl_region kept_region(tl_press_row *row)
 {
     return (tl_region){.mesh = &row->mesh,
+                       .flat = &row->flat,
                        .a = row->count[0],
                        .b = row->count[1],
                        .border_a = row->count[2],
@@ -186,21 +188,29 @@ static tl_region kept_region(tl_press_row *row)
 
 /* ---------------------------------------------------------------- places ----------------- */
 
+/* The square of the longest way of some vertices x, the change of a matrix times x plus a vector. */
+static double longest_way(const tl_vec3 *x, uint32_t count, const tl_mat3 *change, tl_vec3 way)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double moved = tl_v3_norm2(tl_v3_add(tl_m3_mul(change, x[i]), way));
+        most = moved > most ? moved : most;
+    }
+    return most;
+}
+
 /* The farthest that a vertex of either block has moved against the other block, since B was at a place. */
 static double way_since(const tl_pair_view *view, const tl_pair_pose *since)
 {
-    double most = 0;
-    for (uint32_t i = 0; i < view->b->vertex_count; i++) {
-        tl_vec3 now = tl_v3_add(tl_m3_mul(&view->turn, view->b->vertex[i]), view->shift);
-        tl_vec3 then = tl_v3_add(tl_m3_mul(&since->turn, view->b->vertex[i]), since->shift);
-        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
-    }
-    for (uint32_t i = 0; i < view->a->vertex_count; i++) { /* in B's frame */
-        tl_vec3 now = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[i], view->shift));
-        tl_vec3 then = tl_m3_tmul(&since->turn, tl_v3_sub(view->a->vertex[i], since->shift));
-        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
-    }
-    return sqrt(most);
+    tl_mat3 change, back;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            back.m[k][i] = change.m[i][k] = view->turn.m[i][k] - since->turn.m[i][k];
+    const tl_vec3 now = tl_m3_tmul(&view->turn, view->shift), then = tl_m3_tmul(&since->turn, since->shift);
+    const tl_poly *a = view->a, *b = view->b;
+    double of_b = longest_way(b->vertex, b->vertex_count, &change, tl_v3_sub(view->shift, since->shift));
+    double of_a = longest_way(a->vertex, a->vertex_count, &back, tl_v3_sub(then, now)); /* in B's frame */
+    return sqrt(fmax(of_a, of_b));
 }
 
 /* Whether the faces of a contact are listed still. By the odometers, which count the motion of both blocks together,
@@ -316,6 +326,7 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
     note_moved_faces(m, c, row, &before);
     b->query[k] = tl_manifold_query(view, &b->region[k], &rule, &before);
+    b->query[k].faces_only = true;
     b->query[k].lean = row->leans ? row->lean : NULL; /* that lasts */
     b->query[k].slope = wants_slopes(m, c) ? &b->slope[k] : NULL;
 }
@@ -336,7 +347,7 @@ bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     region.mesh = NULL;
     const tl_press_query query = tl_manifold_query(&view, &region, &rule, &before);
     row->by_slope = false;
-    row->mesh = (tl_field_mesh){0};
+    row->mesh = row->flat = (tl_field_mesh){0};
     contacts->faces_valid_to[c] = contacts->points_valid_to[c] = TL_OUTDATED;
     return tl_press_find(&query, 1, scratch, &row->press, &row->extra);
 }
@@ -353,11 +364,16 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
         if (!b->near[k])
             ask(m, b, c);
     }
-    b->failed = !tl_pairs_place(b->view, b->asked, scratch);
+    b->failed = !tl_pairs_reserve(b->view, b->asked, scratch);
     if (b->failed)
         return;
-    for (uint32_t k = 0; k < b->asked; k++)
+    for (uint32_t k = 0; k < b->asked; k++) {
+        const tl_region *r = &b->region[k];
+        const uint16_t *of_b = r->face + r->a, *borders_of_b = of_b + r->b + r->border_a;
+        tl_pair_place_normals(&b->view[k], of_b, r->b);
+        tl_pair_place_normals(&b->view[k], borders_of_b, r->border_b);
         tl_region_choose_flush(&b->view[k], &b->region[k]);
+    }
     b->failed = !tl_press_find(b->query, b->asked, scratch, b->found, b->extra);
     b->asked = 0;
 }

@@ -92,11 +92,16 @@ bool tl_grazing_only_touches(const tl_pair_view *view, const tl_pair *p)
     return faces.one != faces.other && gap_from(view, faces.one) >= least && gap_from(view, faces.other) >= least;
 }
 
+bool tl_grazing_may_be(const tl_pair_view *view)
+{
+    return view->a->face_count * view->b->face_count <= FEW;
+}
+
 void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p)
 {
     uint32_t one, other;
     tl_pair_forget_faces(p);
-    if (view->a->face_count * view->b->face_count > FEW)
+    if (!tl_grazing_may_be(view))
         return;
     if (widest(view, tl_v3(0, 0, 0), &one) && widest(view, normal_of(view, one), &other))
         tl_pair_set_faces(p, (tl_pair_faces){one, other});

@@ -5,6 +5,8 @@
 #include "contact/pair.h"
 #include "narrow/view.h"
 
+/* Whether blocks have few enough faces to be looked at for grazing. */
+bool tl_grazing_may_be(const tl_pair_view *view);
 /* Chooses the two faces that show that a pair is grazing. */
 void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p);
 /* Whether neither of the two faces is overlapped, so that the pair has nothing in common under any rule. */

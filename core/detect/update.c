@@ -114,12 +114,13 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
         !tl_region_find(&view, TL_LIST_MARGIN * view.size + before.reach, scratch, &region))
         return false;
     const tl_press_row *row = tl_press_row_of(m, c);
-    tl_field_mesh mesh;
+    tl_field_mesh mesh, flat;
     if (row)
-        mesh = (tl_field_mesh){0};
+        mesh = flat = (tl_field_mesh){0};
     if (row && contacts->point_count[c] && !scratch->reframed) /* else faces may have other numbers */
         mesh = tl_field_listed_anew(row, &region);
     region.mesh = row ? &mesh : NULL;
+    region.flat = row ? &flat : NULL;
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;

@@ -162,7 +162,7 @@ static void draw_polygon(mesh_draft *draft, const uint16_t own[2], const uint16_
             side[at] = side[at - 1];
         side[at] = (uint8_t)k;
     }
-    if (draft->full)
+    if (draft->full || sides < 3) /* it has the area of roundings */
         return;
     uint32_t polygon = draft->polygons++;
     draft->own[polygon][0] = (uint8_t)own[0];
@@ -172,16 +172,45 @@ static void draw_polygon(mesh_draft *draft, const uint16_t own[2], const uint16_
         draft->label[draft->labels++] = side[k] ? (uint8_t)bound[side[k] - 1] : TL_MESH_ZERO;
 }
 
-/* The number of a corner of four planes, which is added when there is none; TL_MESH_CORNERS: there is no room. */
-static uint32_t corner_of(tl_field_mesh *mesh, const uint8_t own[2], uint8_t one, uint8_t other)
+static void sort_planes(uint8_t plane[4])
 {
-    uint8_t plane[4] = {own[0], own[1], one, other};
     for (int i = 1; i < 4; i++)
         for (int k = i; k > 0 && plane[k] < plane[k - 1]; k--) {
             uint8_t swap = plane[k];
             plane[k] = plane[k - 1];
             plane[k - 1] = swap;
         }
+}
+
+/* Gives all corners in one corner of a block the same planes: three that meet there, and d = 0 where one of them is a
+ * face's, or else the face that is the nearest. */
+static void name_by_vertex(const tl_field_faces *f, uint8_t plane[4])
+{
+    for (uint32_t k = 0; f->vertices && k < f->vertices->count; k++) {
+        const uint8_t *three = f->vertices->three[k];
+        uint8_t other = TL_MESH_ZERO;
+        int others = 0;
+        for (int i = 0; i < 4; i++)
+            if (plane[i] == TL_MESH_ZERO || !(f->vertices->planes[k] >> plane[i] & 1)) {
+                other = plane[i];
+                others++;
+            }
+        bool on_face = three[0] < real_faces(f);
+        if (others > 1 || (on_face ? other != TL_MESH_ZERO : other >= real_faces(f)))
+            continue;
+        plane[0] = other;
+        memcpy(plane + 1, three, 3);
+        return;
+    }
+}
+
+/* The number of a corner of four planes, which is added when there is none; TL_MESH_CORNERS: there is no room. */
+static uint32_t corner_of(const tl_field_faces *f, tl_field_mesh *mesh, const uint8_t own[2], uint8_t one,
+                          uint8_t other)
+{
+    uint8_t plane[4] = {own[0], own[1], one, other};
+    name_by_vertex(f, plane);
+    sort_planes(plane);
     for (uint32_t corner = 0; corner < mesh->corners; corner++) {
         bool same = true;
         for (int k = 0; k < 4; k++)
@@ -246,9 +275,9 @@ static bool has_all(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t
 
 /* Whether the polygons hang together: with seams all of them, else those of S. A side on the surface of K, with d = 0,
  * belongs to one only. The label of a side is that between its corner and the one before. */
-static bool hangs_together(const tl_field_mesh *mesh, const mesh_draft *draft, const tl_field_faces *f)
+static bool hangs_together(const tl_field_mesh *mesh, const uint8_t *label, const tl_field_faces *f)
 {
-    const uint8_t *loop = mesh->loop, *label = draft->label;
+    const uint8_t *loop = mesh->loop;
     for (uint32_t k = 0; k < mesh->polygons; k++) {
         uint32_t sides = mesh->sides[k];
         for (uint32_t i = 0; i < sides; i++) {
@@ -264,38 +293,55 @@ static bool hangs_together(const tl_field_mesh *mesh, const mesh_draft *draft, c
     return true;
 }
 
+/* Adds the corners of a polygon to the end of a mesh, and its labels to those of the mesh. Sides that begin and end in
+ * one corner are left out, and what has no three sides then. false: there is no room. */
+static bool add_polygon(const tl_field_faces *f, const mesh_draft *draft, uint32_t polygon, const uint8_t *label,
+                        tl_field_mesh *mesh, uint8_t **loop, uint8_t **labels)
+{
+    const uint32_t all = draft->sides[polygon];
+    uint8_t corner[TL_MESH_SIDES];
+    uint32_t sides = 0;
+    for (uint32_t i = 0; i < all; i++) {
+        uint32_t number = corner_of(f, mesh, draft->own[polygon], label[i], label[i + 1 < all ? i + 1 : 0]);
+        if (number == TL_MESH_CORNERS)
+            return false;
+        corner[i] = (uint8_t)number;
+    }
+    for (uint32_t i = 0; i < all; i++)
+        sides += corner[i] != corner[i ? i - 1 : all - 1];
+    if (sides < 3)
+        return true;
+    for (uint32_t i = 0; i < all; i++)
+        if (corner[i] != corner[i ? i - 1 : all - 1]) {
+            *(*loop)++ = corner[i];
+            *(*labels)++ = label[i];
+        }
+    memcpy(mesh->own[mesh->polygons], draft->own[polygon], sizeof mesh->own[0]);
+    mesh->sides[mesh->polygons++] = (uint8_t)sides;
+    return true;
+}
+
 /* Makes a mesh of all polygons of a field. It has none when they do not fit together, or are too many. */
 static void make_mesh(const mesh_draft *draft, const tl_field_faces *faces, tl_field_mesh *mesh)
 {
     const uint8_t *label = draft->label;
-    uint8_t *loop = mesh->loop;
+    uint8_t labels[TL_MESH_SIDES], *of_mesh = labels, *loop = mesh->loop;
     uint64_t bounding = mesh->bounding;
     memset(mesh, 0, sizeof *mesh);
     mesh->bounding = bounding;
     if (draft->full || draft->polygons == 0 || !faces->inner || faces->inner->count > TL_MESH_INNER)
         return;
     bool fits = true;
-    for (uint32_t k = 0; k < draft->polygons && fits; k++) {
-        uint32_t sides = draft->sides[k];
-        memcpy(mesh->own[k], draft->own[k], sizeof mesh->own[k]);
-        mesh->sides[k] = (uint8_t)sides;
-        fits = sides > 2;
-        for (uint32_t i = 0; i < sides && fits; i++) {
-            uint32_t corner = corner_of(mesh, draft->own[k], label[i], label[i + 1 < sides ? i + 1 : 0]);
-            fits = corner < TL_MESH_CORNERS;
-            *loop++ = (uint8_t)corner;
-        }
-        label += sides;
-    }
+    for (uint32_t k = 0; k < draft->polygons && fits; label += draft->sides[k++])
+        fits = add_polygon(faces, draft, k, label, mesh, &loop, &of_mesh);
     for (uint32_t k = 0; k < faces->inner->count && fits; k++) {
         const uint8_t *face = faces->inner->face[k];
-        fits = corner_of(mesh, face, face[2], TL_MESH_ZERO) < TL_MESH_CORNERS;
+        fits = corner_of(faces, mesh, face, face[2], TL_MESH_ZERO) < TL_MESH_CORNERS;
     }
     for (uint32_t i = mesh->corners; i % LANES; i++) /* what is left of eight is the first again */
         for (int k = 0; k < 4; k++)
             mesh->plane[k][i] = mesh->plane[k][0];
-    mesh->polygons = draft->polygons;
-    if (!fits || !hangs_together(mesh, draft, faces)) {
+    if (!fits || !hangs_together(mesh, labels, faces)) {
         memset(mesh, 0, sizeof *mesh);
         mesh->bounding = bounding;
     }

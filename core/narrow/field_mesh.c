@@ -29,6 +29,7 @@
 #include "narrow/field_mesh.h"
 
 #include "base/inline.h"
+#include "base/lanes.h"
 #include "narrow/apex.h"
 
 #include <math.h>
@@ -50,31 +51,34 @@
 
 /* ---------------------------------------------------------------- corners ---------------- */
 
-/* Places of the corners of a mesh, and the depths there. */
+/* Places of the corners of a mesh, and the depths there: x, y, z, d in a row. */
 typedef struct corners {
-    double x[3][TL_MESH_CORNERS], d[TL_MESH_CORNERS];
+    double at[TL_MESH_CORNERS][4];
 } corners;
+
+/* The planes of a field, n and c in a row. */
+typedef struct plane_rows {
+    double of[TL_FIELD_KNOWN + 1][4];
+} plane_rows;
 
 /* Places and depths of eight corners, and how much larger roundings of offsets are there; NaN where planes hardly
  * meet. The first plane of a corner is a face's. The others are as near, or are borders, numbers from `faces` on, and
  * hold it. */
-TL_INLINE void place_corners(const tl_field_faces *restrict f, const uint8_t *restrict plane, uint32_t faces,
+TL_INLINE void place_corners(const plane_rows *restrict rows, const uint8_t *restrict plane, uint32_t faces,
                              bool seamed, double *restrict x, double *restrict y, double *restrict z,
                              double *restrict d, double *restrict blur)
 {
-    const double *restrict nx = f->n[0], *restrict ny = f->n[1], *restrict nz = f->n[2];
-    const double *restrict c = f->c;
     double n[4][3][LANES], o[4][LANES], near[4][LANES];
-    for (uint32_t k = 0; k < 4; k++)
-        for (uint32_t l = 0; l < LANES; l++) {
-            uint32_t i = plane[k * TL_MESH_CORNERS + l];
-            n[k][0][l] = nx[i];
-            n[k][1][l] = ny[i];
-            n[k][2][l] = nz[i];
-            o[k][l] = c[i];
-            if (seamed)
-                near[k][l] = i < faces || i == TL_MESH_ZERO ? 1.0 : 0.0;
+    for (uint32_t k = 0; k < 4; k++) {
+        const uint8_t *restrict of = plane + (size_t)k * TL_MESH_CORNERS;
+        for (uint32_t l = 0; l < LANES; l += 4) {
+            const double *const row[] = {rows->of[of[l]], rows->of[of[l + 1]], rows->of[of[l + 2]],
+                                         rows->of[of[l + 3]]};
+            tl_lanes_turn(row, n[k][0] + l, n[k][1] + l, n[k][2] + l, o[k] + l);
         }
+        for (uint32_t l = 0; l < LANES && seamed; l++)
+            near[k][l] = of[l] < faces || of[l] == TL_MESH_ZERO ? 1.0 : 0.0;
+    }
 #pragma omp simd
     for (uint32_t l = 0; l < LANES; l++) {
         double a = seamed ? near[1][l] : 1.0, b = seamed ? near[2][l] : 1.0;
@@ -98,18 +102,41 @@ TL_INLINE void place_corners(const tl_field_faces *restrict f, const uint8_t *re
     }
 }
 
-TL_VECTORIZED static void place_corners_of_faces(const tl_field_faces *restrict f, const uint8_t *restrict plane,
+TL_VECTORIZED static void place_corners_of_faces(const plane_rows *restrict rows, const uint8_t *restrict plane,
                                                  double *restrict x, double *restrict y, double *restrict z,
                                                  double *restrict d, double *restrict blur)
 {
-    place_corners(f, plane, 0, false, x, y, z, d, blur);
+    place_corners(rows, plane, 0, false, x, y, z, d, blur);
 }
 
-TL_VECTORIZED static void place_seamed_corners(const tl_field_faces *restrict f, const uint8_t *restrict plane,
-                                               double *restrict x, double *restrict y, double *restrict z,
-                                               double *restrict d, double *restrict blur)
+TL_VECTORIZED static void place_seamed_corners(const plane_rows *restrict rows, const uint8_t *restrict plane,
+                                               uint32_t faces, double *restrict x, double *restrict y,
+                                               double *restrict z, double *restrict d, double *restrict blur)
 {
-    place_corners(f, plane, f->a + f->b, true, x, y, z, d, blur);
+    place_corners(rows, plane, faces, true, x, y, z, d, blur);
+}
+
+/* Eight columns of four become rows, and four columns of so many planes. */
+TL_VECTORIZED static void put_corners(const double *restrict x, const double *restrict y, const double *restrict z,
+                                      const double *restrict d, double (*restrict to)[4])
+{
+    for (uint32_t l = 0; l < LANES; l += 4) {
+        const double *const column[] = {x + l, y + l, z + l, d + l};
+        tl_lanes_turn(column, to[l], to[l + 1], to[l + 2], to[l + 3]);
+    }
+}
+
+static void put_planes(const tl_field_faces *f, uint32_t count, plane_rows *rows)
+{
+    const double *x = f->n[0], *y = f->n[1], *z = f->n[2], *c = f->c;
+    for (uint32_t k = 0; k < count; k++) {
+        double *row = rows->of[k];
+        row[0] = x[k];
+        row[1] = y[k];
+        row[2] = z[k];
+        row[3] = c[k];
+    }
+    memset(rows->of[TL_MESH_ZERO], 0, sizeof rows->of[0]);
 }
 
 /* Whether none of the planes from `first` to before `end` is nearer to any of eight corners than d. Allowed is a slack
@@ -141,18 +168,19 @@ static bool mesh_holds(const tl_field_faces *f, corners *at)
     const double none[LANES] = {0};
     const tl_field_mesh *mesh = f->mesh;
     const uint32_t planes = f->a + f->b, all = planes + f->border_a + f->border_b;
-    double blur[LANES], largest = 0;
-    for (int axis = 0; axis < 3; axis++)
-        f->n[axis][TL_MESH_ZERO] = 0;
-    f->c[TL_MESH_ZERO] = 0;
-    for (uint32_t k = 0; k < all; k++)
-        largest = fmax(largest, fabs(f->c[k]));
+    double x[LANES], y[LANES], z[LANES], d[LANES], blur[LANES], largest = 0;
+    plane_rows rows;
+    put_planes(f, all, &rows);
+    for (uint32_t k = 0; k < all; k++) {
+        const double far = fabs(f->c[k]);
+        largest = far > largest ? far : largest;
+    }
     for (uint32_t i = 0; i < mesh->corners; i += LANES) {
-        double *x = at->x[0] + i, *y = at->x[1] + i, *z = at->x[2] + i, *d = at->d + i;
         if (f->seamed)
-            place_seamed_corners(f, mesh->plane[0] + i, x, y, z, d, blur);
+            place_seamed_corners(&rows, mesh->plane[0] + i, planes, x, y, z, d, blur);
         else
-            place_corners_of_faces(f, mesh->plane[0] + i, x, y, z, d, blur);
+            place_corners_of_faces(&rows, mesh->plane[0] + i, x, y, z, d, blur);
+        put_corners(x, y, z, d, at->at + i);
         if (!corners_hold(f, 0, planes, x, y, z, d, blur, SLACK * largest) ||
             (all > planes && !corners_hold(f, planes, all, x, y, z, none, blur, SLACK * largest)))
             return false;
@@ -191,12 +219,11 @@ typedef struct polygons {
 /* The k-th corners of eight polygons; of one that has fewer, its last. */
 TL_INLINE void take_corner(const corners *at, const polygons *p, uint32_t k, polygon_corner *out)
 {
-    for (uint32_t l = 0; l < LANES; l++) {
-        uint32_t corner = p->loop[l][k < p->sides[l] ? k : p->sides[l] - 1];
-        out->x[0][l] = at->x[0][corner];
-        out->x[1][l] = at->x[1][corner];
-        out->x[2][l] = at->x[2][corner];
-        out->d[l] = at->d[corner];
+    for (uint32_t l = 0; l < LANES; l += 4) {
+        const double *row[4];
+        for (uint32_t i = 0; i < 4; i++)
+            row[i] = at->at[p->loop[l + i][k < p->sides[l + i] ? k : p->sides[l + i] - 1]];
+        tl_lanes_turn(row, out->x[0] + l, out->x[1] + l, out->x[2] + l, out->d + l);
     }
 }
 
@@ -309,7 +336,7 @@ TL_VECTORIZED static void integrate_powers(const corners *restrict at, const pol
  */
 TL_INLINE void integrate_triangles(const corners *restrict at, polygons *restrict p, second_moments *restrict second)
 {
-    polygon_corner u, v, w;
+    polygon_corner u, side[2];
     integrals s;
     memset(&s, 0, sizeof s);
 #pragma omp simd
@@ -322,13 +349,14 @@ TL_INLINE void integrate_triangles(const corners *restrict at, polygons *restric
         p->n[2][l] = z * per;
     }
     take_corner(at, p, 0, &u);
-    take_corner(at, p, 1, &v);
+    take_corner(at, p, 1, &side[1]);
     for (uint32_t k = 2; k < p->most; k++) {
-        take_corner(at, p, k, &w);
-        add_triangle(p, &u, &v, &w, &s);
+        polygon_corner *w = &side[k % 2];
+        const polygon_corner *v = &side[(k + 1) % 2];
+        take_corner(at, p, k, w);
+        add_triangle(p, &u, v, w, &s);
         if (second)
-            add_second_moments(p, &u, &v, &w, second);
-        v = w;
+            add_second_moments(p, &u, v, w, second);
     }
     p->of = s;
 }
@@ -481,8 +509,14 @@ TL_VECTORIZED static void add_slopes(const polygons *restrict p, const second_mo
 TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES], double *restrict sum)
 {
     for (int k = 0; k < count; k++) {
-        const double *v = given[k];
-        sum[k] = ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+        double four[4], two[2];
+#pragma omp simd
+        for (uint32_t l = 0; l < 4; l++)
+            four[l] = given[k][l] + given[k][l + 4];
+#pragma omp simd
+        for (uint32_t l = 0; l < 2; l++)
+            two[l] = four[l] + four[l + 2];
+        sum[k] = two[0] + two[1];
     }
 }
 
@@ -596,10 +630,10 @@ static void find_deepest(const tl_field_faces *f, const corners *at, tl_field_su
         for (int i = 1; i < 4; i++)
             both = both || mesh->plane[i][k] - f->a < f->b; /* false where the number is less */
         both = both && mesh->plane[0][k] < f->a;
-        if (!both || !(at->d[k] > sums->deepest))
+        if (!both || !(at->at[k][3] > sums->deepest))
             continue;
-        sums->deepest = at->d[k];
-        sums->deepest_at = tl_v3(at->x[0][k], at->x[1][k], at->x[2][k]);
+        sums->deepest = at->at[k][3];
+        sums->deepest_at = tl_v3(at->at[k][0], at->at[k][1], at->at[k][2]);
     }
 }
 

@@ -13,6 +13,7 @@
 #define TL_MESH_POLYGONS 48
 #define TL_MESH_SIDES 192
 #define TL_MESH_INNER 8
+#define TL_MESH_VERTICES 24
 /* The number of d = 0 among planes. */
 #define TL_MESH_ZERO TL_FIELD_KNOWN
 
@@ -21,6 +22,14 @@ typedef struct tl_mesh_inner {
     uint32_t count; /* TL_MESH_INNER + 1: more than there is room for */
     uint8_t face[TL_MESH_INNER][3];
 } tl_mesh_inner;
+
+/* Corners of one block in which more than three of the planes meet: a bit for each of these, and three that meet there
+ * at the sharpest, the first one a face's if there is one. Others can meet in the same place. */
+typedef struct tl_mesh_vertices {
+    uint32_t count;
+    uint64_t planes[TL_MESH_VERTICES];
+    uint8_t three[TL_MESH_VERTICES][3];
+} tl_mesh_vertices;
 
 /* Faces that may pass by the point in which the others of a block meet: field.h. */
 #define TL_APEX_STRAYS 2
@@ -64,16 +73,17 @@ typedef struct tl_field_slope {
 typedef struct tl_field_faces {
     uint32_t a, b, border_a, border_b; /* how many of each */
     uint32_t seam_a, seam_b;           /* so many borders, the last of A's and of B's, are seams to other parts */
-    double *n[3], *c;                  /* [all of them]; with a mesh there is room for TL_FIELD_KNOWN + 1 */
+    double *n[3], *c;                  /* [all of them] */
     /* What is known of another place; NULL: nobody keeps it. It is of use for up to TL_FIELD_KNOWN planes. The bits
      * must be of all faces that bounded K. They must be forgotten when a corner of one block lies in the other, and on
      * or beyond a face that is not among them. The function leaves what it finds here. */
     tl_field_mesh *mesh;
-    const tl_mesh_inner *inner; /* corners of one block in the other, for a new mesh; NULL: make none */
-    bool seamed;                /* the nearest face need not bound K: there are borders, or faces of other parts */
-    bool energy_only;           /* the volume is not wanted, nor found where it costs more */
-    bool powers;                /* int d^2 dV and int d^3 dV are wanted, too */
-    tl_field_slope *slope;      /* to be found by the mesh, where there are no borders; NULL: not wanted */
+    const tl_mesh_inner *inner;       /* corners of one block in the other, for a new mesh; NULL: make none */
+    const tl_mesh_vertices *vertices; /* for a new mesh with all polygons; NULL: no corner has more than three planes */
+    bool seamed;           /* the nearest face need not bound K: there are borders, or faces of other parts */
+    bool energy_only;      /* the volume is not wanted, nor found where it costs more */
+    bool powers;           /* int d^2 dV and int d^3 dV are wanted, too */
+    tl_field_slope *slope; /* to be found by the mesh, where there are no borders; NULL: not wanted */
 } tl_field_faces;
 
 static inline tl_vec3 tl_field_normal(const tl_field_faces *f, uint32_t face)

@@ -100,5 +100,9 @@ bool tl_manifold_reserve(tl_manifold *m, size_t count);
 /* Fills vertex_b and normal_b of views, until any are filled anew; false when out of memory. */
 bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow_scratch *scratch);
 bool tl_pair_place(tl_pair_view *view, tl_narrow_scratch *scratch);
+/* The same with nothing filled yet; and then some normals, or all. */
+bool tl_pairs_reserve(tl_pair_view view[], uint32_t count, tl_narrow_scratch *scratch);
+void tl_pair_place_normals(const tl_pair_view *view, const uint16_t *face, uint32_t count);
+void tl_pair_place_all(const tl_pair_view *view);
 
 #endif

@@ -36,7 +36,11 @@ typedef struct press_planes {
     tl_field_faces faces;
     tl_vec3 origin;
     uint32_t count;
+    tl_mesh_vertices vertices; /* found when a mesh is to be made that needs them */
 } press_planes;
+
+/* Corners of a block that are looked at for being among those in which more than three of the planes meet. */
+#define MOST_VERTICES 64
 
 /* ---------------------------------------------------------------- faces that press --------
  *
@@ -49,7 +53,6 @@ static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query
     for (uint32_t k = 0; k < count; k++) {
         const tl_region *r = query[k].region;
         faces[k] = r->a + r->b + r->border_a + r->border_b;
-        faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
         all += faces[k];
     }
     if (!tl_grow(&scratch->press, &scratch->press_capacity, 4 * all, sizeof(double)))
@@ -95,13 +98,21 @@ tl_plane tl_pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
 
 static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin, uint32_t count)
 {
-    for (uint32_t k = begin; k < begin + count; k++) {
-        tl_plane plane = tl_pressing_plane(of, of_b, of->region->face[k]);
-        p->faces.n[0][p->count] = plane.normal.x;
-        p->faces.n[1][p->count] = plane.normal.y;
-        p->faces.n[2][p->count] = plane.normal.z;
-        p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
+    if (count == 0)
+        return 0;
+    const tl_vec3 origin = p->origin;
+    const uint16_t *face = of->region->face + begin;
+    const bool moved = of->shift != 0 || of->lean;
+    double *restrict x = p->faces.n[0] + p->count, *restrict y = p->faces.n[1] + p->count;
+    double *restrict z = p->faces.n[2] + p->count, *restrict c = p->faces.c + p->count;
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_plane plane = moved ? tl_pressing_plane(of, of_b, face[k]) : tl_view_plane(of->view, of_b, face[k]);
+        x[k] = plane.normal.x;
+        y[k] = plane.normal.y;
+        z[k] = plane.normal.z;
+        c[k] = plane.offset - tl_v3_dot(plane.normal, origin);
     }
+    p->count += count;
     return count;
 }
 
@@ -129,6 +140,92 @@ static void list_planes(press_planes *p, const tl_press_query *of, uint32_t a, u
     f->border_a += add_covered(p, of, false, covered_a, r->border_a, &f->seam_a);
     f->border_b = add_faces(p, of, true, r->a + b, r->b - b);
     f->border_b += add_covered(p, of, true, covered_b, r->border_b, &f->seam_b);
+}
+
+/* Corners of one block, and which of the listed planes meet in each. */
+typedef struct listed_vertices {
+    uint32_t count, vertex[MOST_VERTICES];
+    uint64_t planes[MOST_VERTICES];
+} listed_vertices;
+
+/* Adds a plane to those that meet in a vertex. false: there is no room. */
+static bool add_plane(listed_vertices *to, uint32_t vertex, uint32_t plane)
+{
+    uint32_t k = 0;
+    while (k < to->count && to->vertex[k] != vertex)
+        k++;
+    if (k == MOST_VERTICES)
+        return false;
+    if (k == to->count)
+        to->planes[to->count++] = 0;
+    to->vertex[k] = vertex;
+    to->planes[k] |= UINT64_C(1) << plane;
+    return true;
+}
+
+/* Adds the corners of faces whose planes are listed from number `plane` on. */
+static bool add_corners(listed_vertices *to, const tl_poly *poly, const uint16_t *face, uint32_t count, uint32_t plane)
+{
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t h = face[k] < poly->face_count ? poly->start[face[k]] : 0;
+             face[k] < poly->face_count && h < poly->start[face[k] + 1u]; h++)
+            if (!add_plane(to, poly->loop[h], plane + k))
+                return false;
+    return true;
+}
+
+/* Three planes of some that meet at the sharpest, the first of all among them if it is a face's. */
+static void choose_three(const tl_field_faces *f, uint64_t planes, uint8_t three[3])
+{
+    uint8_t at[TL_FIELD_KNOWN];
+    uint32_t count = 0;
+    double most = -1;
+    for (uint8_t k = 0; k < TL_FIELD_KNOWN; k++)
+        if (planes >> k & 1)
+            at[count++] = k;
+    for (uint32_t i = 0; i < (at[0] < f->a + f->b ? 1 : count); i++)
+        for (uint32_t j = i + 1; j < count; j++)
+            for (uint32_t k = j + 1; k < count; k++) {
+                tl_vec3 across = tl_v3_cross(tl_field_normal(f, at[i]), tl_field_normal(f, at[j]));
+                double sharp = fabs(tl_v3_dot(across, tl_field_normal(f, at[k])));
+                if (sharp <= most)
+                    continue;
+                most = sharp;
+                three[0] = at[i];
+                three[1] = at[j];
+                three[2] = at[k];
+            }
+}
+
+/* Lists the corners of the blocks in which more than three planes meet. The first `a` faces of A and `b` of B come
+ * before all borders. */
+static void list_vertices(press_planes *p, const tl_press_query *of, uint32_t a, uint32_t b)
+{
+    const tl_region *r = of->region;
+    const uint16_t *face_a = r->face, *face_b = face_a + r->a, *covered_a = face_b + r->b;
+    const uint32_t border_a = a + b, border_b = border_a + r->a - a + r->border_a;
+    listed_vertices of_a = {.count = 0}, of_b = {.count = 0};
+    const listed_vertices *const all[] = {&of_a, &of_b};
+    p->vertices.count = 0;
+    p->faces.vertices = &p->vertices;
+    if (!add_corners(&of_a, of->view->a, face_a, a, 0) ||
+        !add_corners(&of_a, of->view->a, face_a + a, r->a - a, border_a) ||
+        !add_corners(&of_a, of->view->a, covered_a, r->border_a, border_a + r->a - a) ||
+        !add_corners(&of_b, of->view->b, face_b, b, a) ||
+        !add_corners(&of_b, of->view->b, face_b + b, r->b - b, border_b) ||
+        !add_corners(&of_b, of->view->b, covered_a + r->border_a, r->border_b, border_b + r->b - b))
+        return;
+    for (int side = 0; side < 2; side++)
+        for (uint32_t k = 0; k < all[side]->count && p->vertices.count < TL_MESH_VERTICES; k++) {
+            const uint64_t planes = all[side]->planes[k];
+            uint64_t more = planes; /* than three, without the lowest bits of as many */
+            for (int i = 0; i < 3; i++)
+                more &= more - 1;
+            if (!more)
+                continue;
+            choose_three(&p->faces, planes, p->vertices.three[p->vertices.count]);
+            p->vertices.planes[p->vertices.count++] = planes;
+        }
 }
 
 /* ---------------------------------------------------------------- shares of corners -------
@@ -308,17 +405,6 @@ static void blend_powers(const patches *p, tl_field_power field[TL_PRESS_POWERS]
     }
 }
 
-/* The integrals over the patch of the flush faces. false: out of memory. */
-static bool sum_patch(const tl_press_query *of, press_planes *p, tl_narrow_scratch *scratch, tl_field_sums *out)
-{
-    list_planes(p, of, of->region->blunt_a, of->region->blunt_b);
-    p->faces.mesh = NULL;
-    p->faces.energy_only = false;
-    p->faces.powers = of->volumes;
-    const tl_field_faces *faces = &p->faces;
-    return tl_field_integrate(&faces, &out, 1, &scratch->field);
-}
-
 /* Whether planes of other parts are listed: they may be the nearest to some point and bound nothing. */
 static bool has_shared_planes(const tl_press_query *of)
 {
@@ -337,6 +423,34 @@ static bool is_of_use(const tl_press_query *of)
 {
     const tl_region *r = of->region;
     return r->mesh && of->shift == 0 && !of->lean && r->a + r->b + r->border_a + r->border_b <= TL_FIELD_KNOWN;
+}
+
+/* The integrals over the patch of the flush faces, by its mesh if that is known. One that has just been made is gone by
+ * at once, as in begin_mesh. false: out of memory. */
+static bool sum_patch(const tl_press_query *of, press_planes *p, tl_narrow_scratch *scratch, tl_field_sums *out)
+{
+    const tl_mesh_inner none = {.count = 0}; /* all its polygons have all corners */
+    const tl_field_faces *faces = &p->faces;
+    tl_field_mesh *mesh = of->region->flat;
+    list_planes(p, of, of->region->blunt_a, of->region->blunt_b);
+    p->faces.mesh = mesh && is_of_use(of) ? mesh : NULL;
+    p->faces.inner = &none;
+    p->faces.seamed = true;
+    p->faces.energy_only = false;
+    p->faces.powers = of->volumes;
+    if (p->faces.mesh && tl_mesh_integrate(faces, out))
+        return true;
+    p->faces.vertices = NULL;
+    if (p->faces.mesh)
+        list_vertices(p, of, of->region->blunt_a, of->region->blunt_b);
+    if (!tl_field_integrate(&faces, &out, 1, &scratch->field))
+        return false;
+    const tl_field_sums anew = *out;
+    if (p->faces.mesh && !tl_mesh_integrate(faces, out)) {
+        *out = anew;
+        mesh->polygons = 0;
+    }
+    return true;
 }
 
 /* Whether a number is so far above the smallest ones that its square is known to all digits. */
@@ -563,6 +677,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, press_planes *p)
     p->faces.slope = p->faces.energy_only ? of->slope : NULL;
     p->faces.mesh = of->region->mesh;
     p->faces.inner = NULL;
+    p->faces.vertices = NULL;
     p->faces.seamed = of->region->border_a + of->region->border_b > 0 || has_shared_planes(of);
 }
 
@@ -665,6 +780,13 @@ static void begin_anew(const tl_press_query *of, press_planes *p, tl_mesh_inner 
     list_inner_corners(of->view, of->region, inner);
 }
 
+/* Whether the press of a field that goes by its mesh needs the listed faces only: in_both needs all, patches at corners
+ * need vertices. */
+static bool faces_suffice(const tl_press_query *of, const tl_field_sums *sums)
+{
+    return sums->deepest > FAINT * of->view->size && !of->corners;
+}
+
 static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch, tl_press press[],
                      tl_press_extra extra[])
 {
@@ -680,11 +802,13 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
         if (query[k].slope)
             query[k].slope->known = false;
         bool found = follow(&query[k], &p[k], &sums[k]);
-        if (!found)
-            begin_anew(&query[k], &p[k], &inner[k]);
-        known[k] = p[k].faces.mesh ? p[k].faces.mesh->bounding : 0;
+        known[k] = found ? p[k].faces.mesh->bounding : 0;
+        if (query[k].faces_only && !(known[k] && faces_suffice(&query[k], &sums[k])))
+            tl_pair_place_all(query[k].view);
         if (found)
             continue;
+        begin_anew(&query[k], &p[k], &inner[k]);
+        known[k] = p[k].faces.mesh ? p[k].faces.mesh->bounding : 0;
         faces[left] = &p[k].faces;
         to[left] = &sums[k];
         anew[left++] = k;
@@ -715,7 +839,7 @@ static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_
         if (query[k].opened == 0 || !(press[k].area > 0))
             continue;
         region[some] = *query[k].region;
-        region[some].mesh = NULL;
+        region[some].mesh = region[some].flat = NULL;
         before[some] = query[k];
         before[some].region = &region[some];
         before[some].shift -= query[k].opened;

@@ -28,6 +28,8 @@ typedef struct tl_press_query {
     bool volumes;  /* the powers are wanted, for a law that is not linear: press.c */
     /* Slip opens the joint. The next part of a body may be moved out otherwise, so nothing passes through a seam. */
     bool opens;
+    /* of B only the listed faces are in A's frame yet: the rest is placed where it is needed */
+    bool faces_only;
     /* gets the slopes of force and moment, turns about A's zero, where a mesh tells them and no patch presses; NULL:
      * not wanted */
     tl_field_slope *slope;

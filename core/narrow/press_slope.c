@@ -72,7 +72,7 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_nar
     for (int axis = 0; axis < 6; axis++) {
         double way = TL_PRESS_NEAR * at->deepest, by = axis < 3 ? way : way / tl_press_lever(at);
         double per = 1 / (2 * by);
-        tl_field_mesh mesh[2];
+        tl_field_mesh mesh[2], flat[2];
         tl_region same[2] = {*region, *region};
         tl_press side[2];
         tl_pair_view view[] = {moved(query->view, at->point, axis, -by), moved(query->view, at->point, axis, by)};
@@ -80,8 +80,11 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_nar
         for (int k = 0; k < 2; k++) {
             mesh[k] = region->mesh ? *region->mesh : (tl_field_mesh){0};
             same[k].mesh = &mesh[k];
+            flat[k] = region->flat ? *region->flat : (tl_field_mesh){0};
+            same[k].flat = &flat[k];
             there[k].region = &same[k];
             there[k].view = &view[k];
+            there[k].faces_only = false;
         }
         if (!tl_pairs_place(view, 2, scratch) || !tl_press_find(there, 2, scratch, side, NULL))
             return false;

@@ -12,6 +12,7 @@ typedef struct tl_region {
     uint32_t a, b, border_a, border_b;
     const uint16_t *face; /* their numbers, one after the other; in the thread's scratch */
     tl_field_mesh *mesh;  /* what is known of the field at another place; NULL: nobody keeps it */
+    tl_field_mesh *flat;  /* the same of the patch of its flush faces, in their order in that; NULL as well */
     /* the face along whose normal the blocks are farthest apart, or overlap the least: min over B - max over A */
     double gap;
     tl_vec3 n;               /* its normal, A to B, in A's frame */

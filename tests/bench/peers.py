@@ -14,6 +14,8 @@ BENCH = pathlib.Path("tests/bench")
 ROUNDS = 3
 # Of a row of several: the others are the same in all, or belong to Talus alone.
 FIGURES = ("contacts", "points", "rate", "block_steps_per_s", "speed")
+# Step of all in *collapse*, s. A rule of Talus chooses longer ones.
+COLLAPSE_STEP, RULE = 2e-4, "balance"
 
 
 # ---------------------------------------------------------------------- Yade
@@ -121,11 +123,32 @@ def rockable_folder(r, case):
     return r.out / f"rockable_{case.name}_{case.size}"
 
 
+def seconds(rows, name, step):
+    """Rows of the seconds that a second of a model takes whose steps were measured."""
+    return [{**row, "workload": f"{row['workload'].split()[0]} {name}", "unit": "s/s", "block_steps_per_s": "",
+             "rate": f"{table.number(row, 'blocks') / (table.number(row, 'block_steps_per_s') * step):.5g}"}
+            for row in rows]
+
+
 def run_case(r, case, model, rockable, box3d):
     """Rows of one turn: Talus, Rockable, Box3D."""
     rows = r.script(*case.script, keep=False)
     for row in rows:
         row["workload"] = f"talus {case.name}"
+    rows += run_others(r, case, model, rockable, box3d)
+    if case.name != "collapse":
+        return rows
+    by_rule = [row for row in r.script(*case.script, f"rule={RULE}", keep=False)
+               if row["workload"] == f"collapse by {RULE}"]
+    others = [row for row in rows if not row["workload"].startswith("talus ")]
+    for row in by_rule:
+        row.update(workload=f"talus collapse, a second by {RULE}", blocks=rows[0]["blocks"], reuse="on")
+    return (rows + seconds(rows, "collapse, a second", COLLAPSE_STEP) + by_rule
+            + seconds(others, f"collapse, a second by {RULE}", COLLAPSE_STEP))
+
+
+def run_others(r, case, model, rockable, box3d):
+    rows = []
     if rockable and case.rockable:
         folder = rockable_folder(r, case)
         rows += r.run(sys.executable, BENCH / "rockable_blocks.py", model, f"--workload=rockable {case.name}",

@@ -3,8 +3,8 @@
 
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
-NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate edits output examples yade
-beside million cuts); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
+NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest edits output examples
+yade beside million cuts); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
 
@@ -163,6 +163,7 @@ def rock(r):
 
 def collapse(r):
     r.script("collapse", f"file={pile_file(r)[1]}", "threads=1,2")
+    r.script("collapse", f"file={pile_file(r)[1]}", "rule=balance")
 
 
 def slope(r):
@@ -180,6 +181,10 @@ def falling(r):
 
 def consolidate(r):
     r.script("consolidate", f"blocks={200 if r.quick else 1000}")
+
+
+def rest(r):
+    r.script("rest")
 
 
 def output(r):
@@ -217,7 +222,8 @@ def cuts(r):
         r.program("cuts")
 
 
-JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, edits, output,
+JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest, edits,
+                                      output,
                                       examples, yade, beside, million, cuts)}
 
 

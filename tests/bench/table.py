@@ -11,6 +11,8 @@ MEMORY = ("total", "points", "contacts", "facets", "pairs", "broad", "index", "s
 IN_CACHE = 30000
 # First words of workloads that have tables of their own.
 APART = ("limit", "yade", "talus", "rockable", "box3d")
+# Units of figures of which the smaller one is the better: seconds, and seconds that a second of the model takes.
+TIMES = ("s", "s/s")
 BEGIN, END = "<!-- Figures: begin. Written by tests/bench/run.py. -->", "<!-- Figures: end. -->"
 
 
@@ -127,7 +129,7 @@ def ratios(ours, theirs):
     """Talus over another program: contacts, contact points and blocks; nothing where one was not measured."""
     if not ours or not theirs:
         return [float("nan")] * 3
-    if ours.get("unit") == "s":
+    if ours.get("unit") in TIMES:
         return [float("nan")] * 2 + [number(theirs, "rate") / number(ours, "rate")]
     return [number(ours, "rate") / number(theirs, "rate"), pointwise(ours) / pointwise(theirs),
             number(ours, "block_steps_per_s") / number(theirs, "block_steps_per_s")]
@@ -150,9 +152,9 @@ def beside_table(rows, peer):
         (ours, theirs, on), (_, other, off) = cells
         if not ours or not theirs:
             continue
-        timed = theirs["unit"] == "s"
-        rate = short(number(theirs, "rate")) + (" s" if timed else "")
-        slow = "" if timed or not other or other is theirs else short(number(other, "rate"))
+        timed = theirs["unit"] in TIMES
+        rate = short(number(theirs, "rate")) + (" " + theirs["unit"] if timed else "")
+        slow = "" if not other or other is theirs else short(number(other, "rate"))
         body.append([name, blocks, f"{ours['contacts']}, {ours.get('points', '')}" if not timed else "",
                      f"{theirs['contacts']}, {theirs['points']}" if not timed else "", rate, slow,
                      short(number(theirs, "block_steps_per_s")), *map(short, on + off)])
