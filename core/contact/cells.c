@@ -174,8 +174,23 @@ static tl_vec3 lay_lifts(const tl_cell_patch *of)
 
 /* ---------------------------------------------------------------- cells ------------------ */
 
+/* Before parts are added. What only a curved law asks for is not touched for others. */
+static void clear(tl_cell *cell, bool curved)
+{
+    const tl_vec3 none = {0, 0, 0};
+    cell->pressed = cell->apart = none;
+    cell->pressed_volume = cell->apart_volume = 0;
+    cell->pressed_second = cell->apart_second = 0;
+    cell->pressed_more = cell->apart_more = 0;
+    if (!curved)
+        return;
+    cell->pressed_area = cell->pressed_third = cell->pressed_fourth = 0;
+    cell->pressed_centre = cell->pressed_square = cell->pressed_cube = none;
+    cell->bent = (tl_bent){0};
+}
+
 /* Adds a cell's part, whose volumes are those of a triangle of the fan of area `fan` with the sides e and f. */
-static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e, tl_vec3 f, bool curved)
+TL_INLINE void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e, tl_vec3 f, const bool curved)
 {
     const integrals *p = &part->pressed, *a = &part->apart;
     if (a->uu > 0) {
@@ -247,11 +262,8 @@ void tl_cells_find(const tl_cell_patch *of, bool curved)
     const tl_vec3 slope = lay_lifts(of);
     tl_cell *cell = of->lanes->cell;
     const double centre = cell[tl_cell_lane(of, 2 * n)].closure;
-    for (size_t k = 0; k <= 2 * n; k++) {
-        const size_t i = tl_cell_lane(of, k);
-        cell[i] =
-            (tl_cell){.closure = cell[i].closure, .level = cell[i].level, .lift = cell[i].lift, .hold = cell[i].hold};
-    }
+    for (size_t k = 0; k <= 2 * n; k++)
+        clear(&cell[tl_cell_lane(of, k)], curved);
     tl_vec3 e = tl_cell_corner(of, 0);
     double here = corner_closure(of, 0) + tl_v3_dot(slope, e);
     for (size_t k = 0; k < n; k++) {

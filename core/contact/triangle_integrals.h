@@ -127,17 +127,23 @@ TL_INLINE void add_triangle(const node n[3], const double u[3], double f, bool c
 {
     const integrals all = whole_of(n, u, f, curved);
     const size_t above = (size_t)((u[0] > 0) + (u[1] > 0) + (u[2] > 0));
-    if (above == 3 || above == 2)
+    if (above == 3) {
         add_integrals(&to->pressed, &all, 1, 1, curved);
-    else
+    } else if (above == 0) {
         add_integrals(&to->apart, &all, -1, 1, curved); /* of -u */
-    if (above % 3 == 0)
-        return;
-    const bool presses = above == 1; /* the corner that is cut off, or else it is apart */
-    size_t k = presses ? (u[0] > 0 ? 0 : u[1] > 0 ? 1 : 2) : u[0] > 0 ? (u[1] > 0 ? 2 : 1) : 0;
-    const integrals some = corner_of(n, u, f, k, presses ? 1 : -1, curved);
-    add_integrals(presses ? &to->pressed : &to->apart, &some, 1, 1, curved);
-    add_integrals(presses ? &to->apart : &to->pressed, &some, 1, -1, curved);
+    } else if (above == 2) {                            /* the corner that is cut off is apart */
+        const size_t k = u[0] > 0 ? (u[1] > 0 ? 2 : 1) : 0;
+        const integrals some = corner_of(n, u, f, k, -1, curved);
+        add_integrals(&to->pressed, &all, 1, 1, curved);
+        add_integrals(&to->apart, &some, 1, 1, curved);
+        add_integrals(&to->pressed, &some, 1, -1, curved);
+    } else { /* it presses */
+        const size_t k = u[0] > 0 ? 0 : u[1] > 0 ? 1 : 2;
+        const integrals some = corner_of(n, u, f, k, 1, curved);
+        add_integrals(&to->apart, &all, -1, 1, curved);
+        add_integrals(&to->pressed, &some, 1, 1, curved);
+        add_integrals(&to->apart, &some, 1, -1, curved);
+    }
 }
 
 #endif

@@ -16,6 +16,7 @@
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
 #include "cycle/loose.h"
+#include "cycle/settle.h"
 #include "cycle/turn.h"
 #include "cycle/undo.h"
 #include "geometry/measure.h"
@@ -95,8 +96,9 @@ static velocities kicked(const tl_model *m, uint32_t body, const step_span *k)
  * before the step:
  *
  *   1. A body that travels by less than half of what the thinnest block allows is none of those that pass.
- *   2. The bounds of blocks are swept from where they are to where the step takes them, and sorted along x. Pairs
- *      whose swept bounds meet are looked at: the others cannot touch in this step.
+ *   2. The bounds of thin blocks, and of those that come near them, are swept from where they are to where the step
+ *      takes them, and sorted along x. Pairs whose swept bounds meet are looked at: the others cannot touch in this
+ *      step.
  *   3. A pair may close along a face that parts it now, or along which it overlaps the least. Along the normal of any
  *      other face its overlap is large already. The gap along a fixed normal is a concave function of time, as no
  *      corner moves on a curve. So the straight line between the gaps before and after the step is below it.
@@ -134,7 +136,7 @@ static void include(tl_bounds *box, tl_vec3 x)
     box->max = tl_v3_max(box->max, x);
 }
 
-static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
+static tl_swept sweep_block(const sweep *s, uint32_t row, bool thin, double far)
 {
     const tl_poly *shape = s->m->blocks.shape[row];
     uint32_t body = s->m->blocks.body[row];
@@ -149,8 +151,7 @@ static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
         include(&box, x);
         include(&box, tl_v3_add(x, tl_v3_add(by->shift, tl_v3_cross(by->turn, arm))));
     }
-    const double far = step_travel(s->m, s->motion, body) + s->farthest;
-    return (tl_swept){box, row, moves, far > s->share * tl_least_thickness(s->m, row)};
+    return (tl_swept){box, row, step_travel(s->m, s->motion, body) > far, thin};
 }
 
 static int compare_swept(const void *a, const void *b)
@@ -160,7 +161,14 @@ static int compare_swept(const void *a, const void *b)
     return along ? along : (x->row > y->row) - (x->row < y->row);
 }
 
-/* Lists the blocks that move far, and then those that they may meet. */
+/* Whether a block is so thin that it, or what meets it, may be carried past the other. */
+static bool is_thin(const sweep *s, uint32_t row)
+{
+    const double far = step_travel(s->m, s->motion, s->m->blocks.body[row]) + s->farthest;
+    return far > s->share * tl_least_thickness(s->m, row);
+}
+
+/* Lists the thin blocks, and then those that they may meet. `far`: what goes no farther is none that passes. */
 static void list_swept(sweep *s, double far)
 {
     const tl_model *m = s->m;
@@ -168,21 +176,21 @@ static void list_swept(sweep *s, double far)
     for (uint32_t row = 0; row < m->blocks.table.rows; row++)
         s->farthest = fmax(s->farthest, step_travel(m, s->motion, m->blocks.body[row]));
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
-        if (!(step_travel(m, s->motion, m->blocks.body[row]) > far))
+        if (!is_thin(s, row))
             continue;
-        tl_swept swept = s->list[s->count++] = sweep_block(s, row, true);
+        tl_swept swept = s->list[s->count++] = sweep_block(s, row, true, far);
         include(&all, swept.box.min);
         include(&all, swept.box.max);
     }
     for (uint32_t row = 0; s->count > 0 && row < m->blocks.table.rows; row++) {
-        uint32_t body = m->blocks.body[row];
-        if (step_travel(m, s->motion, body) > far)
+        if (is_thin(s, row))
             continue;
-        double reach = m->bodies.radius[body] + far;
+        uint32_t body = m->blocks.body[row];
+        double reach = m->bodies.radius[body] + step_travel(m, s->motion, body);
         tl_vec3 grow = {reach, reach, reach}, place = tl_body_place(&m->bodies, body);
         tl_bounds ball = {tl_v3_sub(place, grow), tl_v3_add(place, grow)};
         if (tl_bounds_meet(&ball, &all))
-            s->list[s->count++] = sweep_block(s, row, false);
+            s->list[s->count++] = sweep_block(s, row, false, far);
     }
     for (size_t i = 0; i < s->count; i++)
         s->longest = fmax(s->longest, s->list[i].box.max.x - s->list[i].box.min.x);
@@ -410,7 +418,7 @@ static uint32_t faster_of(const tl_model *m, const tl_step_motion *motion, uint3
 tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
 {
     *body = TL_NO_ROW;
-    if (!travel_may_matter(m, *dt))
+    if (m->relaxing || !travel_may_matter(m, *dt)) /* what goes too far in a relaxation is held back: hold_back */
         return TL_OK;
     const double least = SHORTEST * *dt;
     tl_step_motion *motion = motions_of(m, &(step_span){*dt, 0});
@@ -483,6 +491,47 @@ static tl_status travel_check(tl_model *m, const step_span *span)
         return report_turn(m, turns, turn, span->dt);
     const passing by = find_passing(m, motion, CLOSING_MOST, thinnest_of(m), m->cycle->swept);
     return by.part < 1 ? report_passing(m, motion, &by, span->dt) : TL_OK;
+}
+
+/* ---------------------------------------------------------------- held back -------------- */
+
+/* Cost only: pairs of blocks that are held back one by one. */
+#define MOST_HELD_BACK 100
+/* Tolerance: share of what is allowed that those may go which are held back: it is not exceeded by a rounding. */
+#define HELD_BACK 0.999
+
+/* Lets a body go a part of its way in this step. */
+static void go_part(tl_model *m, uint32_t body, double part, double dt)
+{
+    tl_step_motion *by = &m->cycle->motion[body];
+    if (m->bodies.fixed[body] == TL_FIX_ALL)
+        return;
+    *by = (tl_step_motion){tl_v3_scale(part, by->shift), tl_v3_scale(part, by->turn)};
+    tl_settle_move(m, body, tl_v3_scale(1 / dt, by->shift), tl_v3_scale(1 / dt, by->turn), dt);
+}
+
+/* In a relaxation velocities mean nothing. So a block that would be carried too far goes as far as it may, and the
+ * step of the others is as long as it was. */
+static tl_status hold_back(tl_model *m, const step_span *span)
+{
+    tl_step_motion *motion = motions_of(m, span);
+    if (!motion)
+        return tl_fail_memory(&m->error);
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        const double turn = tl_v3_norm(motion[body].turn);
+        if (turn > TURN_AIM)
+            go_part(m, body, TURN_AIM / turn, span->dt);
+    }
+    for (int k = 0; k <= MOST_HELD_BACK; k++) {
+        const passing by = find_passing(m, motion, CLOSING_AIM, thinnest_of(m), m->cycle->swept);
+        const bool all = k == MOST_HELD_BACK;
+        if (!(by.part < 1))
+            break;
+        for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+            if (all || body == m->blocks.body[by.a] || body == m->blocks.body[by.b])
+                go_part(m, body, HELD_BACK * by.part, span->dt);
+    }
+    return TL_OK;
 }
 
 /* ---------------------------------------------------------------- motion ------------------ */
@@ -706,7 +755,9 @@ tl_status tl_motion_check(tl_model *m, double dt, bool held)
         return report(m, (uint32_t)c->failure.point, &job.span);
     }
     if (held)
-        c->may_pass = travel_may_matter(m, dt);
+        c->may_pass = !m->relaxing && travel_may_matter(m, dt);
+    if (m->relaxing)
+        return !held && dt > 0 && travel_may_matter(m, dt) ? hold_back(m, &job.span) : TL_OK;
     /* a step that is not kept is one in which nothing can have become fast at once */
     return !held && tl_undo_keeps(m) && travel_may_matter(m, dt) ? travel_check(m, &job.span) : TL_OK;
 }

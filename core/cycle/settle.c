@@ -263,19 +263,25 @@ static void expect(tl_model *m, double part)
     s->carried += farthest;
 }
 
-/* The damping that gives a body the velocity and angular velocity wanted after this kick, of h. */
-static void put_motion(tl_model *m, uint32_t body, tl_vec3 v, tl_vec3 w, double h)
+void tl_settle_move(tl_model *m, uint32_t body, tl_vec3 v, tl_vec3 w, double dt)
 {
     struct tl_cycle *c = m->cycle;
     const tl_bodies *b = &m->bodies;
-    const double mass = b->mass[body] * tl_inertia_scale(c, body), turning = tl_turn_scale(c, body);
+    const double mass = b->mass[body] * tl_step_scale(m, body), turning = tl_turn_scale(c, body);
+    const double h = 0.5 * (m->dt + dt);
     const tl_quat to_model = tl_q_mul(b->q[body], b->axes[body]);
     const tl_vec3 moments = tl_moments_of(m, body), own = tl_q_rotate(tl_q_conj(to_model), w);
     tl_vec3 spin = tl_q_rotate(to_model, tl_v3(moments.x * own.x, moments.y * own.y, moments.z * own.z));
     if (m->config.rotation == TL_ROTATION_PAPER)
         spin = tl_v3_scale(moments.x, w);
-    tl_columns_put(c->damping_force, body, tl_v3_sub(tl_v3_scale(2 * mass / h, v), b->force[body]));
-    tl_columns_put(c->damping_moment, body, tl_v3_sub(tl_v3_scale(2 * turning / h, spin), b->moment[body]));
+    tl_wrench by = {b->force[body], b->moment[body]};
+    if (tl_loads_lag(m)) {
+        const tl_wrench lag = tl_load_lag(m, body);
+        by = (tl_wrench){tl_v3_sub(by.force, lag.force), tl_v3_sub(by.moment, lag.moment)};
+    }
+    c->alpha[body] = all_lost(m, dt);
+    tl_columns_put(c->damping_force, body, tl_v3_sub(tl_v3_scale(2 * mass / h, v), by.force));
+    tl_columns_put(c->damping_moment, body, tl_v3_sub(tl_v3_scale(2 * turning / h, spin), by.moment));
 }
 
 /* Adds a share of the motion of the last leap. */
@@ -294,7 +300,6 @@ static void go_on(tl_model *m, double share)
 static void leap(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
-    const double h = 0.5 * (m->dt + dt);
     tl_leap_find(m, dt, c->settling.hold);
     go_on(m, c->settling.momentum);
     const double part = shorten(m, dt);
@@ -303,7 +308,7 @@ static void leap(tl_model *m, double dt)
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         const double *x = c->leap[body].motion, by = part / dt;
         if (m->bodies.fixed[body] != TL_FIX_ALL)
-            put_motion(m, body, tl_v3(by * x[0], by * x[1], by * x[2]), tl_v3(by * x[3], by * x[4], by * x[5]), h);
+            tl_settle_move(m, body, tl_v3(by * x[0], by * x[1], by * x[2]), tl_v3(by * x[3], by * x[4], by * x[5]), dt);
     }
 }
 

@@ -16,5 +16,7 @@ void tl_settle_end(tl_model *m);
 bool tl_settle_prepare(tl_model *m);
 /* What damps the bodies in this step. */
 tl_status tl_settle(tl_model *m, double dt);
+/* Damps a body so that it moves with the velocity and angular velocity wanted in this step, whatever kicks it. */
+void tl_settle_move(tl_model *m, uint32_t body, tl_vec3 v, tl_vec3 w, double dt);
 
 #endif

@@ -141,43 +141,27 @@ static_assert(sizeof(tl_pose) == TL_POSE_ROW * sizeof(double), "a pose is not it
 static_assert(sizeof(tl_pose) % TL_ALIGN == 0, "poses do not begin where lines of memory do");
 static_assert(AT(tl_pose, r) == 0, "a pose does not begin with its matrix");
 
+/* Wider ones would be taken apart into doubles before the copies of a TL_VECTORIZED function are made. */
 typedef double pair __attribute__((vector_size(16)));
-typedef double quad __attribute__((vector_size(32)));
-typedef double octet __attribute__((vector_size(64)));
 
-/* Two doubles of each of two rows. */
-TL_INLINE void of_rows(quad *out, const double *low, const double *high)
+/* Puts two doubles of two rows each side by side. */
+TL_INLINE void put_pairs(double *first, double *second, const double *left, const double *right)
 {
     pair a, b;
-    memcpy(&a, low, sizeof a);
-    memcpy(&b, high, sizeof b);
-    *out = __builtin_shufflevector(a, b, 0, 1, 2, 3);
+    memcpy(&a, left, sizeof a);
+    memcpy(&b, right, sizeof b);
+    pair low = __builtin_shufflevector(a, b, 0, 2), high = __builtin_shufflevector(a, b, 1, 3);
+    memcpy(first, &low, sizeof low);
+    memcpy(second, &high, sizeof high);
 }
 
-TL_INLINE void put_octet(double *to, const quad *low, const quad *high)
-{
-    octet all = __builtin_shufflevector(*low, *high, 0, 1, 2, 3, 4, 5, 6, 7);
-    memcpy(to, &all, sizeof all);
-}
-
-/* Turns `count` doubles, an even number, of a row for each lane into a row of lanes for each double. What is loaded as
- * one vector is stored as one: a load cannot wait for two stores. */
+/* Turns `count` doubles, an even number, of a row for each lane into a row of lanes for each double. */
 TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *row, size_t count)
 {
 #pragma GCC unroll 1
-    for (size_t k = 0; k < count; k += 2) {
-        quad even, odd, low[2], high[2];
-        of_rows(&even, row[0] + k, row[2] + k);
-        of_rows(&odd, row[1] + k, row[3] + k);
-        low[0] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
-        low[1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
-        of_rows(&even, row[4] + k, row[6] + k);
-        of_rows(&odd, row[5] + k, row[7] + k);
-        high[0] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
-        high[1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
-        put_octet(to[k], &low[0], &high[0]);
-        put_octet(to[k + 1], &low[1], &high[1]);
-    }
+    for (size_t k = 0; k < count; k += 2)
+        for (size_t l = 0; l < TL_LANES; l += 2)
+            put_pairs(&to[k][l], &to[k + 1][l], row[l] + k, row[l + 1] + k);
 }
 
 TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)

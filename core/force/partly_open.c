@@ -31,6 +31,7 @@
 #include "force/partly_open.h"
 
 #include "base/columns.h"
+#include "base/extremes.h"
 #include "base/inline.h"
 #include "contact/across_gap.h"
 #include "contact/cells.h"
@@ -390,8 +391,8 @@ static holds holds_of(const tl_cell_patch *of)
     holds out = {1, 0};
     for (size_t k = 0; k <= 2 * of->corners; k++) {
         double hold = of->lanes->hold[tl_cell_lane(of, k)];
-        out.least = fmin(out.least, hold);
-        out.most = fmax(out.most, hold);
+        out.least = tl_smaller(hold, out.least);
+        out.most = tl_larger(hold, out.most);
     }
     return out;
 }
@@ -427,7 +428,7 @@ static double share_of_cells(const tl_cell_patch *of)
         const tl_cell *cell = &of->lanes->cell[tl_cell_lane(of, k)];
         double sum = cell->pressed_volume + cell->apart_volume;
         double loose = 1 - of->lanes->hold[tl_cell_lane(of, k)];
-        share = fmax(share, sum > 0 ? loose * (cell->apart_volume / sum) : 0);
+        share = tl_larger(sum > 0 ? loose * (cell->apart_volume / sum) : 0, share);
     }
     return share;
 }
@@ -639,7 +640,7 @@ static tl_part_sums sum_cells(const tl_cell_patch *of, const tl_law *law, tl_vec
         double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
         /* what slip has opened in this step presses at the point: it is not in the volume, which may be tiny */
         double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : straight;
-        spring = fmax(0, fmin(spring, SAME_STIFFNESS * law->kn));
+        spring = tl_larger(tl_smaller(spring, SAME_STIFFNESS * law->kn), 0);
         double moved = du * cell->apart_more + tl_v3_dot(tl_v3_cross(turn, cell->apart), n);
         sum = tl_v3_madd(tl_v3_madd(sum, spring, cell->pressed), -pulls, cell->apart);
         out.stored += spring * cell->pressed_second + pulls * cell->apart_second;

@@ -6,9 +6,10 @@ local check = require "check"
 -- A chip of 1 cm before a plate of 2 m of the given thickness, or off to its side.
 local function chip(options)
     local size, thick, gap, beside = 0.01, options.thick or 0.01, options.gap, options.beside or 0
-    local m = talus.model { threads = options.threads, gravity = { 0, 0, 0 } }
+    local high = options.high or size
+    local m = talus.model { threads = options.threads, gravity = options.gravity or { 0, 0, 0 } }
     m:generate("box", { min = { -1, -1, -thick }, max = { 1, 1, 0 }, density = 2500 })
-    m:generate("box", { min = { beside, 0, gap }, max = { beside + size, size, gap + size }, density = 2500 })
+    m:generate("box", { min = { beside, 0, gap }, max = { beside + size, size, gap + high }, density = 2500 })
     m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
     return m, m:blocks { id = 1 }, m:blocks { id = 2 }
 end
@@ -65,6 +66,19 @@ for case = 1, 60 do
         from = to
         if from < 0.5 * (thick + 0.01) - 0.0026 then break end
     end
+end
+
+-- ---------------------------------------------------------------- relaxation
+
+-- A leaf far thinner than its way in a step, which a relaxation lets fall on a plate, lands on it: it is held back.
+for _, thick in ipairs { 1e-4, 1e-2 } do
+    local gap = 0.4
+    local m, plate, piece = chip { thick = thick, gap = gap, high = 1e-4, gravity = { 0, 0, -9810 } }
+    plate:fix()
+    local r = m:relax { stop_at_failure = false, max_cycles = 4000 }
+    local what = ("on a plate of %g m"):format(thick)
+    check.equal(r.reason, "rest", what)
+    check.near(piece[1].displacement[3], -gap, 1e-4 * gap, what .. ": way down, m")
 end
 
 -- ---------------------------------------------------------------- what is not slowed down
@@ -173,7 +187,7 @@ end
 os.remove(stem)
 
 -- A given step that is far above what is stable is looked at, too, while all is slow: what it would do is not done.
-local slow = talus.model { gravity = { 0, 0, -9.81 } }
+local slow = talus.model { gravity = { 0, 0, -9810 } }
 slow:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = 2500, group = "floor" })
 slow:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
 slow:blocks { group = "floor" }:fix()
