@@ -510,8 +510,8 @@ static void go_part(tl_model *m, uint32_t body, double part, double dt)
     tl_settle_move(m, body, tl_v3_scale(1 / dt, by->shift), tl_v3_scale(1 / dt, by->turn), dt);
 }
 
-/* In a relaxation velocities mean nothing. So a block that would be carried too far goes as far as it may, and the
- * step of the others is as long as it was. */
+/* In a relaxation velocities mean nothing. So a block that would be carried too far goes as far as it may. The step of
+ * the others is as long as it was. */
 static tl_status hold_back(tl_model *m, const step_span *span)
 {
     tl_step_motion *motion = motions_of(m, span);

@@ -187,7 +187,7 @@ end
 os.remove(stem)
 
 -- A given step that is far above what is stable is looked at, too, while all is slow: what it would do is not done.
-local slow = talus.model { gravity = { 0, 0, -9810 } }
+local slow = talus.model { gravity = { 0, 0, -9.81 } }
 slow:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = 2500, group = "floor" })
 slow:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
 slow:blocks { group = "floor" }:fix()
