@@ -20,6 +20,7 @@
 #include "cycle/turn.h"
 #include "cycle/undo.h"
 #include "geometry/measure.h"
+#include "model/body_shape.h"
 #include "model/loads.h"
 
 #include <stdatomic.h>
