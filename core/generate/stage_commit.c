@@ -549,7 +549,8 @@ static void summarize(tl_stage *stage, size_t made)
     s->smallest_face = s->after ? all.face : 0;
     if (all.total > 0)
         s->volume_error = fabs(stage->changed_volume - stage->created_volume) / all.total;
-    for (size_t row = s->after - made; row < s->after; row++)
+    const size_t rows = m->blocks.table.rows;
+    for (size_t row = rows - made; row < rows; row++)
         s->slivers += tl_is_sliver(m->blocks.shape[row], m->blocks.volume[row], all.total / (double)s->after);
 }
 

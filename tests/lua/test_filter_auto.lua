@@ -64,6 +64,15 @@ check.equal(none.found, 0)
 check.equal(none.gain, 1)
 check.equal(talus.report(halves).slivers, 0)
 
+-- What a call makes is counted, also beside blocks that have been deleted before.
+local beside = talus.model {}
+for k = 1, 3 do
+    beside:generate("box", { min = { 2 * k, 0, 0 }, max = { 2 * k + 1, 1, 1 }, density = 2500 })
+end
+beside:blocks { id = 1 }:delete()
+check.equal(beside:generate("box", { min = { 0, 0, 3 }, max = { 1, 1, 3.001 }, density = 2500 }).slivers, 1)
+check.equal(beside:generate("box", { min = { 0, 0, 5 }, max = { 1, 1, 6 }, density = 2500 }).slivers, 0)
+
 -- ---------------------------------------------------------------- what is done, and what is refused
 
 local model = cube(1, 1e-3)
