@@ -86,6 +86,7 @@ NUMBERS = [
     ("core/cycle/settle.c", "MOST_CARRIED", 0.02, "by 0.02 of its radius in all"),
     ("core/cycle/settle.c", "GROWTH", 1.5, "half as many again"),
     ("core/cycle/settle.c", "NEXT_PART", 1e-3, "once the local ratio is below 1e-3"),
+    ("core/cycle/loose.h", "TL_FALL_STEP", 0.1, "0.1 of its thickness at the most"),
     ("core/cycle/settle.c", "LANDING", 0.1, "ℓ becomes 0.1 of the way of that step"),
     ("core/cycle/settle.c", "FALL_GROWTH", 1.1, "makes ℓ 1.1 times as long"),
 ]
