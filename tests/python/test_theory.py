@@ -29,7 +29,7 @@ NUMBERS = [
     ("core/geometry/polyhedron.h", "TL_POLY_BENT", 2e-4, "all their corners lie within 1e-4 of its size of one plane"),
     ("core/geometry/polyhedron.h", "TL_POLY_TILT", 0.025 * DEGREE, "more than sin 0.025° of the face's area across"),
     ("core/narrow/press_slope.h", "TL_PRESS_NEAR", 3e-5, "up to |u| = 3e-5 o"),
-    ("core/narrow/press_slope.h", "TL_PRESS_SLOPE_COST", 12, "within 5e-5 o for twelve steps"),
+    ("core/narrow/press_slope.h", "TL_PRESS_SLOPE_COST", 12, "within 1.5e-5 o for twelve steps"),
     ("core/narrow/frame2.h", "TL_STRAIGHT", 0.02, "turns by less than 0.02 rad"),
     ("core/narrow/frame2.h", "TL_CORNER", 0.2, "between 0.02 and 0.2 rad"),
     ("core/narrow/press.c", "SLIVER", 0.1, "S(G_p/G_f; 0.1, 0.5)"),
