@@ -152,8 +152,9 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
         }
     if (row->blunt_a > row->count[0] || row->blunt_b > row->count[1])
         return row->listed ? false : true;
-    return tl_is_flag(&row->slope.known) && tl_is_flag(&row->there.powers) && mesh_is_sound(&row->mesh, sum) &&
-           mesh_is_sound(&row->flat, sum);
+    return mesh_is_sound(&row->mesh, sum) &&
+           (row->by_slope ? tl_is_flag(&row->slope.known) && tl_is_flag(&row->there.powers)
+                          : mesh_is_sound(&row->flat, sum));
 }
 
 /* The rows of presses: each is a contact's, or in the list of free ones. */

@@ -74,14 +74,20 @@ typedef struct tl_press_row {
     tl_pair_pose listed_at;                                    /* where they were listed */
     double listed_shift;                                       /* and with which shift */
     bool flush, listed, leans;
-    bool refused;             /* there it was no patch, although it lay still */
-    tl_field_mesh mesh, flat; /* of the field, and of the patch of its flush faces */
+    bool refused; /* there it was no patch, although it lay still */
+    tl_field_mesh mesh;
     /* It goes by the slopes that its press has had there at the place where it was `since` some step; or else by its
-     * mesh, and has stayed near a place since then (fields.c). */
+     * mesh, and has stayed near a place since then (fields.c). Then it also keeps the mesh of the patch of its flush
+     * faces. */
     tl_pair_pose place;
     bool by_slope;
-    tl_press there;
-    tl_press_slope slope;
+    union {
+        struct {
+            tl_press there;
+            tl_press_slope slope;
+        };
+        tl_field_mesh flat;
+    };
     tl_press_extra extra; /* of a press that has more */
 } tl_press_row;
 

@@ -156,6 +156,7 @@ void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region 
     row->refused = calm;
     uint32_t faces = r->a + r->b + r->border_a + r->border_b;
     row->by_slope = false;
+    row->flat = *r->flat;
     row->listed_at = (tl_pair_pose){view->turn, view->shift};
     row->listed_shift = row->shift;
     row->listed = faces <= TL_PRESS_FACES;
@@ -169,7 +170,6 @@ void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region 
         row->count[k] = (uint16_t)count[k];
     memcpy(row->face, r->face, faces * sizeof *r->face);
     row->mesh = *r->mesh;
-    row->flat = *r->flat;
 }
 
 static tl_region kept_region(tl_press_row *row)
@@ -320,6 +320,8 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     tl_press_row *row = tl_press_row_of(m, c);
     uint32_t k = b->asked++;
     const tl_pair_view *view = &b->view[k];
+    if (row->by_slope) /* its slopes have taken the place of that mesh */
+        row->flat = (tl_field_mesh){0};
     row->by_slope = false;
     tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], 0);
     b->region[k] = kept_region(row);

@@ -39,7 +39,7 @@ typedef struct press_planes {
     tl_mesh_vertices vertices; /* found when a mesh is to be made that needs them */
 } press_planes;
 
-/* Corners of a block that are looked at for being among those in which more than three of the planes meet. */
+/* Limit: corners of a block that are looked at for being among those in which more than three of the planes meet. */
 #define MOST_VERTICES 64
 
 /* ---------------------------------------------------------------- faces that press --------
