@@ -84,17 +84,10 @@ TL_INLINE void tl_lanes3_load_columns(tl_lanes3 *restrict to, double *const colu
     tl_lanes_load(to->z, column[2] + first);
 }
 
-/* Four rows of four numbers become four columns: x gets the first of each row, w the last. Compilers with shuffles of
- * vectors need eight of these. */
+/* Four rows of four numbers become four columns: x gets the first of each row, w the last. */
 TL_INLINE void tl_lanes_turn(const double *const row[4], double *restrict x, double *restrict y, double *restrict z,
                              double *restrict w)
 {
-#if defined(__has_builtin)
-#if __has_builtin(__builtin_shufflevector)
-#define TL_HAS_SHUFFLES
-#endif
-#endif
-#ifdef TL_HAS_SHUFFLES
     typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
     const four a = *(const four *)row[0], b = *(const four *)row[1];
     const four c = *(const four *)row[2], d = *(const four *)row[3];
@@ -104,14 +97,6 @@ TL_INLINE void tl_lanes_turn(const double *const row[4], double *restrict x, dou
     *(four *)y = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
     *(four *)z = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
     *(four *)w = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
-#else
-    for (int i = 0; i < 4; i++) {
-        x[i] = row[i][0];
-        y[i] = row[i][1];
-        z[i] = row[i][2];
-        w[i] = row[i][3];
-    }
-#endif
 }
 
 /* Matrices element by element, not in loops: a loop over lanes with loops in it does not become SIMD code. */
