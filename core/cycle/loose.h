@@ -32,7 +32,7 @@ static inline double tl_step_scale(const tl_model *m, uint32_t body)
     if (!m->relaxing || m->cycle->settling.leapt ||
         !tl_body_falls(m, body, tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity))))
         return scale;
-    const double dt = m->cycle->dt, thin = TL_FALL_STEP * tl_least_thickness(m, tl_body_blocks(m, body)[0]);
+    const double dt = m->cycle->dt, thin = TL_FALL_STEP * tl_body_least_thickness(m, body);
     const double most = thin < m->bodies.fall[body] ? thin : m->bodies.fall[body];
     const double left = most - tl_v3_norm(m->bodies.v[body]) * dt;
     const double needed = tl_v3_norm(m->bodies.force[body]) * (dt * dt) / m->bodies.mass[body];

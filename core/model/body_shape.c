@@ -30,6 +30,14 @@ double tl_body_size(const tl_model *m, uint32_t body)
     return tl_cbrt(tl_body_volume(m, body));
 }
 
+double tl_body_least_thickness(const tl_model *m, uint32_t body)
+{
+    double least = INFINITY;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
+        least = fmin(least, tl_least_thickness(m, tl_body_blocks(m, body)[k]));
+    return least;
+}
+
 /* The hull of points, which it spoils, as many at a time as a polyhedron can have; NULL: it has more corners. */
 static tl_status hull_of_many(tl_vec3 *points, size_t count, tl_poly **hull)
 {

@@ -28,4 +28,7 @@ static inline double tl_least_thickness(const tl_model *m, uint32_t row)
     return 2 * b->volume[row] / (b->mean_face[row] * b->shape[row]->face_count);
 }
 
+/* The least of that of all parts, m. */
+double tl_body_least_thickness(const tl_model *m, uint32_t body);
+
 #endif
