@@ -64,11 +64,13 @@ static tl_status keep_motion(tl_model *m, motion *kept)
     return TL_OK;
 }
 
+/* A relaxation that goes on is left as it was. */
 static void give_back(tl_model *m, const motion *kept)
 {
     const size_t bodies = m->bodies.table.rows;
-    if (!kept->v || !kept->w)
+    if (!kept->v)
         return;
+    tl_settle_end(m);
     if (bodies > 0) {
         memcpy(m->bodies.v, kept->v, bodies * sizeof *kept->v);
         memcpy(m->bodies.w, kept->w, bodies * sizeof *kept->w);
@@ -204,9 +206,10 @@ tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wa
     status = begin(m, relax.load_steps, &kept);
     if (status == TL_OK) {
         status = run(m, &relax, result);
-        tl_settle_end(m);
         if (status != TL_OK && result->run.cycles == 0)
             give_back(m, &kept);
+        else
+            tl_settle_end(m);
     }
     free(kept.v);
     free(kept.w);
