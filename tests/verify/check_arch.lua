@@ -1,55 +1,27 @@
 -- check_arch.lua - a semicircular arch of voussoirs under its own weight stands when it is a little thicker than the
 -- least thickness at which a line of thrust fits inside, and falls as a mechanism of hinges when it
 -- is a little thinner.
-local talus = require "talus"
+package.path = "tests/lua/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local statics = require "check_statics"
 local reference = require "reference_dynamics"
+local voussoirs = require "voussoirs"
 
-local GRAVITY, DENSITY = 10, 2000
-local RADIUS, DEPTH, GROUND = 1, 0.2, 0.1   -- of the mean line; across; of the springers
 -- kn / (rho g). An arch near its limit stands on hinges, where its joints open and close: by the third root of their
 -- yielding, which costs it height (topple.lua has it for one block). So does the thickness it needs over the limit of rigid
 -- blocks; with eight times the stiffness it is half as much, and twice the one less the other is that limit.
 local SOFT, STIFF = 1.25e5, 1e6
 local MORE = { [SOFT] = 0.145, [STIFF] = 0.0725 } -- about, of the limit thickness
-local FRICTION = 60               -- degrees: no joint slides
 local AT_REST = 1e-6
 local MOST_CYCLES = 3000000       -- near its limit an arch rests late: one took 1.5e6
-local FALLEN = 0.05 * RADIUS
+local FALLEN = 0.05 * voussoirs.RADIUS
 local AROUND = 0.02               -- of the limit thickness: sought so far below and above
 local BRACKET = 0.005             -- of the limit thickness, in which failure is found
 local LIMIT = 0.01                -- relative
 
-local function build(voussoirs, thickness, stiffness)
-    local model = talus.model { gravity = { 0, 0, -GRAVITY } }
-    local inner, outer = RADIUS - thickness / 2, RADIUS + thickness / 2
-    for k = 1, voussoirs do
-        local vertices = {}
-        for _, angle in ipairs { math.pi * (k - 1) / voussoirs, math.pi * k / voussoirs } do
-            for _, radius in ipairs { inner, outer } do
-                for _, y in ipairs { 0, DEPTH } do
-                    vertices[#vertices + 1] = { radius * math.cos(angle), y,
-                        radius * math.sin(angle) }
-                end
-            end
-        end
-        model:generate("polyhedron", { vertices = vertices, density = DENSITY, group = "arch" })
-    end
-    for _, side in ipairs { { inner, outer }, { -outer, -inner } } do
-        model:generate("box", { min = { side[1], 0, -GROUND }, max = { side[2], DEPTH, 0 },
-            density = DENSITY, group = "springer" })
-    end
-    model:blocks { group = "springer" }:fix()
-    model:joint("*", "coulomb", { kn = stiffness, ks = stiffness, friction = FRICTION })
-    model:damping "local"
-    model:timestep { rule = "body", fraction = 0.5 }
-    return model, model:blocks { group = "arch" }
-end
-
 -- Whether the arch stands, its thickness a share of the limit.
 local function stands(case, share, stiffness)
-    local model, arch = build(case.voussoirs, share * case.thickness * RADIUS, stiffness * DENSITY * GRAVITY)
+    local model, arch = voussoirs.arch(case.voussoirs, share * case.thickness * voussoirs.RADIUS, stiffness)
     return (statics.stands(model, arch, { ratio = AT_REST, moving = FALLEN, max_cycles = MOST_CYCLES }))
 end
 
