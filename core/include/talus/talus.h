@@ -183,7 +183,7 @@ typedef struct tl_filter_result {
 } tl_filter_result;
 
 /* Finds the slivers and deletes them, or joins each to the body with which it shares the largest area. `result` may be
- * NULL. */
+ * NULL. TL_E_ARGUMENT without limits, or with some and `automatic`; TL_E_STATE in a run; TL_E_MEMORY. */
 TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter, tl_filter_result *result);
 
 /* Sets the law of a joint: "*" every joint not named otherwise, "J1" a set, "J1:3" a plane of it.
