@@ -1,0 +1,344 @@
+/* grid.c - meshes of bodies, as tables.
+ *
+ * Clusters of a mesh come in the order in which they lie together. As many of them as a parcel holds make one. In a
+ * parcel they are sorted by their numbers of zones, so that groups have few inert rows. Rows of a mesh's gridpoints are
+ * padded to whole lanes: those beyond its points are fixed and have no zones. */
+#include "zone/grid.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Mass of a row without a gridpoint, kg: it is divided by. */
+#define NO_MASS 1.0
+
+static void add_columns(struct tl_zones *z)
+{
+    tl_gridpoints *p = &z->points;
+    tl_table_init(&p->table, p);
+    for (int k = 0; k < 3; k++) {
+        TL_COLUMN(&p->table, p, ref[k], TL_COLUMN_STATE);
+        TL_COLUMN(&p->table, p, u[k], TL_COLUMN_STATE);
+        TL_COLUMN(&p->table, p, v[k], TL_COLUMN_STATE);
+        TL_COLUMN(&p->table, p, moved[k], TL_COLUMN_STATE);
+        TL_COLUMN(&p->table, p, force[k], TL_COLUMN_STEP);
+    }
+    TL_COLUMN(&p->table, p, mass, TL_COLUMN_STATE);
+    TL_COLUMN(&p->table, p, bears, TL_COLUMN_STEP);
+    TL_COLUMN(&p->table, p, zones, 0);
+    TL_COLUMN(&p->table, p, stiffness, 0);
+    TL_COLUMN(&p->table, p, fixed, TL_COLUMN_STATE);
+
+    tl_zone_table *t = &z->zones;
+    tl_table_init(&t->table, t);
+    for (int k = 0; k < 4; k++)
+        TL_COLUMN(&t->table, t, corner[k], 0);
+    for (int k = 0; k < 6; k++)
+        TL_COLUMN(&t->table, t, stress[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&t->table, t, flags, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&t->table, t, number, 0);
+
+    tl_parcels *parcels = &z->parcels;
+    tl_table_init(&parcels->table, parcels);
+    TL_COLUMN(&parcels->table, parcels, of, 0);
+    TL_COLUMN(&parcels->table, parcels, stored, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&parcels->table, parcels, heat, TL_COLUMN_STEP);
+    TL_COLUMN(&parcels->table, parcels, most_strain, TL_COLUMN_STEP);
+}
+
+tl_status tl_zones_begin(tl_model *m)
+{
+    if (m->zones)
+        return TL_OK;
+    m->zones = calloc(1, sizeof *m->zones);
+    if (!m->zones)
+        return tl_fail_memory(&m->error);
+    m->zones_destroy = tl_zones_free;
+    add_columns(m->zones);
+    return TL_OK;
+}
+
+void tl_zones_free(struct tl_zones *z)
+{
+    tl_table_free(&z->points.table);
+    tl_table_free(&z->zones.table);
+    tl_table_free(&z->parcels.table);
+    void *const owned[] = {z->group, z->listed, z->slot, z->use, z->use_start, z->row_of, z->mesh, z->scratch};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+    tl_solids_free(z);
+    free(z);
+}
+
+uint32_t tl_mesh_of(const tl_model *m, tl_id body)
+{
+    const size_t count = m->zones ? m->zones->mesh_count : 0;
+    for (size_t k = 0; k < count; k++)
+        if (m->zones->mesh[k].body == body)
+            return (uint32_t)k;
+    return TL_NO_ROW;
+}
+
+/* ---------------------------------------------------------------- parcels ---------------- */
+
+/* A mesh on its way into the tables: scratch of `tl_zones_add`. */
+typedef struct laying {
+    tl_model *m;
+    struct tl_zones *z;
+    const tl_grid *grid;
+    uint32_t *local;   /* of each of the mesh's points: its number in the parcel, or TL_NO_ROW */
+    uint32_t *sorted;  /* clusters of the parcel, by their sizes */
+    uint32_t points;   /* that the parcel has */
+    uint32_t first;    /* row of the mesh's first gridpoint */
+} laying;
+
+static size_t size_of(const tl_grid *g, uint32_t cluster)
+{
+    return g->cluster_start[cluster + 1] - g->cluster_start[cluster];
+}
+
+/* Gridpoints of a cluster that are not in the parcel yet. */
+static uint32_t new_points(const laying *l, uint32_t cluster, bool add)
+{
+    const tl_grid *g = l->grid;
+    uint32_t found = l->points, all = 0, seen[4 * TL_CLUSTER_ZONES];
+    for (uint32_t k = g->cluster_start[cluster]; k < g->cluster_start[cluster + 1]; k++)
+        for (int a = 0; a < 4; a++) {
+            const uint32_t point = g->zone[g->cluster_zone[k]][a];
+            bool is_new = l->local[point] == TL_NO_ROW;
+            for (uint32_t s = 0; !add && s < all; s++)
+                is_new = is_new && seen[s] != point;
+            if (!is_new)
+                continue;
+            if (add)
+                l->local[point] = found;
+            else
+                seen[all++] = point;
+            found++;
+        }
+    return found - l->points;
+}
+
+/* How many clusters from `first` on make a parcel: its gridpoints get their numbers. */
+static uint32_t gather_clusters(laying *l, uint32_t first)
+{
+    const tl_grid *g = l->grid;
+    size_t zones = 0;
+    uint32_t end = first;
+    for (size_t k = 0; k < g->point_count; k++)
+        l->local[k] = TL_NO_ROW;
+    l->points = 0;
+    while (end < g->cluster_count) {
+        const size_t more = size_of(g, end);
+        if (zones + more > TL_PARCEL_ZONES * 9 / 10 || l->points + new_points(l, end, false) > TL_PARCEL_POINTS)
+            break;
+        l->points += new_points(l, end, true);
+        zones += more;
+        end++;
+    }
+    return end;
+}
+
+/* Sorts clusters by their sizes, the largest first, those of one size as they are. */
+static void sort_clusters(laying *l, uint32_t first, uint32_t end)
+{
+    uint32_t at = 0;
+    for (size_t size = TL_CLUSTER_ZONES; size > 0; size--)
+        for (uint32_t k = first; k < end; k++)
+            if (size_of(l->grid, k) == size)
+                l->sorted[at++] = k;
+}
+
+/* The volume of a zone as made, m3. */
+static double volume_of(const tl_grid *g, uint32_t zone)
+{
+    const uint32_t *c = g->zone[zone];
+    const tl_vec3 x = g->point[c[0]];
+    const tl_vec3 a = tl_v3_sub(g->point[c[1]], x), b = tl_v3_sub(g->point[c[2]], x), d = tl_v3_sub(g->point[c[3]], x);
+    return tl_v3_dot(a, tl_v3_cross(b, d)) / 6;
+}
+
+/* Puts zone `number` of the mesh in a row. */
+static void put_zone(const laying *l, size_t row, uint32_t zone, bool inert)
+{
+    tl_zone_table *t = &l->z->zones;
+    for (int a = 0; a < 4; a++)
+        t->corner[a][row] = (uint16_t)l->local[l->grid->zone[zone][a]];
+    t->number[row] = inert ? TL_NO_ROW : zone;
+    if (!inert)
+        l->z->row_of[l->z->row_of_count + zone] = (uint32_t)row;
+}
+
+/* Fills a group, from a row on, with up to TL_LANES clusters of a parcel. */
+static void lay_group(const laying *l, const uint32_t *cluster, uint32_t count, size_t *row)
+{
+    const tl_grid *g = l->grid;
+    struct tl_zones *z = l->z;
+    tl_zone_group *group = &z->group[z->group_count++];
+    *group = (tl_zone_group){.start = (uint32_t)*row, .depth = (uint8_t)size_of(g, cluster[0])};
+    *row += (size_t)group->depth * TL_LANES;
+    for (uint32_t lane = 0; lane < TL_LANES; lane++) {
+        const uint32_t of = cluster[lane < count ? lane : 0], begin = g->cluster_start[of];
+        const size_t size = lane < count ? size_of(g, of) : 0;
+        double volume = 0;
+        for (size_t k = 0; k < group->depth; k++)
+            put_zone(l, group->start + TL_LANES * k + lane, g->cluster_zone[begin + (k < size ? k : 0)], k >= size);
+        for (size_t k = 0; k < size; k++)
+            volume += volume_of(g, g->cluster_zone[begin + k]);
+        group->count[lane] = (uint8_t)size;
+        group->extent[lane] = size > 0 ? tl_cube_root(volume) : 1;
+    }
+}
+
+/* Lays a parcel of the clusters from `first` on, its zones from a row on, and says which cluster is the next. */
+static uint32_t lay_parcel(laying *l, uint32_t first, uint32_t parcel, size_t *row, uint32_t mesh, uint32_t solid)
+{
+    struct tl_zones *z = l->z;
+    const uint32_t end = gather_clusters(l, first), count = end - first;
+    tl_parcel of = {.mesh = mesh, .solid = solid, .group_begin = (uint32_t)z->group_count};
+    sort_clusters(l, first, end);
+    for (uint32_t k = 0; k < count; k += TL_LANES)
+        lay_group(l, l->sorted + k, count - k < TL_LANES ? count - k : TL_LANES, row);
+    of.group_end = (uint32_t)z->group_count;
+    of.point_begin = (uint32_t)z->listed_count;
+    of.point_end = of.point_begin + l->points;
+    for (uint32_t p = 0; p < l->grid->point_count; p++)
+        if (l->local[p] != TL_NO_ROW)
+            z->listed[of.point_begin + l->local[p]] = l->first + p;
+    z->listed_count = of.point_end;
+    z->parcels.of[parcel] = of;
+    return end;
+}
+
+/* ---------------------------------------------------------------- gridpoints ------------- */
+
+static void put_points(const laying *l, size_t padded)
+{
+    const tl_grid *g = l->grid;
+    tl_gridpoints *p = &l->z->points;
+    for (size_t k = 0; k < padded; k++) {
+        const tl_vec3 at = g->point[k < g->point_count ? k : 0];
+        p->ref[0][l->first + k] = at.x;
+        p->ref[1][l->first + k] = at.y;
+        p->ref[2][l->first + k] = at.z;
+        p->mass[l->first + k] = k < g->point_count ? 0 : NO_MASS;
+        p->fixed[l->first + k] = k < g->point_count ? 0 : TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+    }
+    for (uint32_t zone = 0; zone < g->zone_count; zone++) {
+        const double mass = g->density * volume_of(g, zone) / 4;
+        for (int a = 0; a < 4; a++) {
+            const uint32_t row = l->first + g->zone[zone][a];
+            p->mass[row] += mass;
+            p->zones[row]++;
+        }
+    }
+}
+
+bool tl_zones_index(struct tl_zones *z)
+{
+    const size_t points = z->points.table.rows;
+    if (!tl_fit(&z->use_start, &z->use_start_capacity, points + 1, sizeof *z->use_start) ||
+        !tl_fit(&z->use, &z->use_capacity, z->listed_count, sizeof *z->use))
+        return false;
+    memset(z->use_start, 0, (points + 1) * sizeof *z->use_start);
+    for (size_t k = 0; k < z->listed_count; k++)
+        z->use_start[z->listed[k] + 1]++;
+    for (size_t p = 0; p < points; p++)
+        z->use_start[p + 1] += z->use_start[p];
+    for (size_t k = 0; k < z->listed_count; k++)
+        z->use[z->use_start[z->listed[k]]++] = (uint32_t)k;
+    memmove(z->use_start + 1, z->use_start, points * sizeof *z->use_start);
+    z->use_start[0] = 0;
+    return true;
+}
+
+/* ---------------------------------------------------------------- a mesh comes ----------- */
+
+/* What a mesh adds to the tables. */
+typedef struct sizes {
+    size_t points, parcels, groups, rows, listed;
+} sizes;
+
+/* Adds what the clusters of a parcel take; they are sorted. */
+static void count_parcel(const laying *l, uint32_t count, sizes *all)
+{
+    for (uint32_t k = 0; k < count; k += TL_LANES) {
+        all->groups++;
+        all->rows += TL_LANES * size_of(l->grid, l->sorted[k]);
+    }
+    all->parcels++;
+    all->listed += l->points;
+}
+
+static bool reserve(laying *l, const sizes *more)
+{
+    struct tl_zones *z = l->z;
+    return tl_table_reserve(&z->points.table, z->points.table.rows + more->points) &&
+           tl_table_reserve(&z->zones.table, z->zones.table.rows + more->rows) &&
+           tl_table_reserve(&z->parcels.table, z->parcels.table.rows + more->parcels) &&
+           tl_grow(&z->group, &z->group_capacity, z->group_count + more->groups, sizeof *z->group) &&
+           tl_grow(&z->listed, &z->listed_capacity, z->listed_count + more->listed, sizeof *z->listed) &&
+           tl_grow(&z->slot, &z->slot_capacity, z->listed_count + more->listed, sizeof *z->slot) &&
+           tl_grow(&z->row_of, &z->row_of_capacity, z->row_of_count + l->grid->zone_count, sizeof *z->row_of) &&
+           tl_grow(&z->mesh, &z->mesh_capacity, z->mesh_count + 1, sizeof *z->mesh);
+}
+
+/* Makes room for a mesh. */
+static bool make_room(laying *l, sizes *more)
+{
+    const tl_grid *g = l->grid;
+    l->local = malloc((g->point_count + 1) * sizeof *l->local);
+    l->sorted = malloc((g->cluster_count + 1) * sizeof *l->sorted);
+    if (!l->local || !l->sorted)
+        return false;
+    *more = (sizes){.points = (g->point_count + TL_LANES - 1) / TL_LANES * TL_LANES};
+    for (uint32_t first = 0, end; first < g->cluster_count; first = end) {
+        end = gather_clusters(l, first);
+        sort_clusters(l, first, end);
+        count_parcel(l, end - first, more);
+    }
+    return reserve(l, more);
+}
+
+/* Lays a mesh for which there is room. */
+static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
+{
+    struct tl_zones *z = l->z;
+    const uint32_t number = (uint32_t)z->mesh_count++;
+    tl_body_mesh *mesh = &z->mesh[number];
+    *mesh = (tl_body_mesh){.body = body,
+                           .point_begin = (uint32_t)z->points.table.rows,
+                           .parcel_begin = (uint32_t)z->parcels.table.rows,
+                           .zone_begin = (uint32_t)z->row_of_count};
+    l->first = mesh->point_begin;
+    tl_table_resize(&z->points.table, z->points.table.rows + more->points);
+    put_points(l, more->points);
+    tl_table_resize(&z->parcels.table, z->parcels.table.rows + more->parcels);
+    tl_table_resize(&z->zones.table, z->zones.table.rows + more->rows);
+    uint32_t parcel = mesh->parcel_begin, first = 0;
+    size_t row = z->zones.table.rows - more->rows;
+    while (first < l->grid->cluster_count)
+        first = lay_parcel(l, first, parcel++, &row, number, solid);
+    z->row_of_count += l->grid->zone_count;
+    mesh->point_end = mesh->point_begin + (uint32_t)l->grid->point_count;
+    mesh->parcel_end = parcel;
+    mesh->zone_end = (uint32_t)z->row_of_count;
+    z->version++;
+}
+
+tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid)
+{
+    struct tl_zones *z = m->zones;
+    laying l = {.m = m, .z = z, .grid = grid};
+    sizes more;
+    const size_t points = z->points.table.rows + grid->point_count + TL_LANES;
+    bool enough = make_room(&l, &more) && tl_solid_columns(z, &z->solid[solid]) &&
+                  tl_fit(&z->use_start, &z->use_start_capacity, points + 1, sizeof *z->use_start) &&
+                  tl_fit(&z->use, &z->use_capacity, z->listed_count + more.listed, sizeof *z->use);
+    if (enough) {
+        lay_mesh(&l, body, solid, &more);
+        tl_zones_index(z);
+    }
+    free(l.local);
+    free(l.sorted);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}

@@ -1,0 +1,31 @@
+/* grid.h - meshes of bodies, as tables. */
+#ifndef TL_ZONE_GRID_H
+#define TL_ZONE_GRID_H
+
+#include "zone/zones.h"
+
+/* Tetrahedra that fill a body. Corners 0, 1, 2 of each are counter-clockwise as seen from the side without corner 3.
+ * Clusters are lists of zones that hang together, of 1 to TL_CLUSTER_ZONES; what follows each other lies together. */
+typedef struct tl_grid {
+    const tl_vec3 *point; /* from the model's origin, m */
+    size_t point_count;
+    const uint32_t (*zone)[4];
+    size_t zone_count;
+    const uint32_t *cluster_start, *cluster_zone; /* cluster k: cluster_zone[cluster_start[k] .. cluster_start[k + 1]) */
+    size_t cluster_count;
+    double density; /* kg/m3 */
+} tl_grid;
+
+/* Makes the model's zones, without any; nothing when they are there. */
+tl_status tl_zones_begin(tl_model *m);
+/* Gives a body that has none a mesh, all of one solid, free of stress. Nothing has changed when it fails. */
+tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid);
+/* Takes the mesh of a body away. */
+void tl_zones_remove(tl_model *m, uint32_t mesh);
+void tl_zones_free(struct tl_zones *z);
+/* Lists the slots of each gridpoint. false: out of memory. */
+bool tl_zones_index(struct tl_zones *z);
+/* The number of a body's mesh, or TL_NO_ROW. */
+uint32_t tl_mesh_of(const tl_model *m, tl_id body);
+
+#endif

@@ -1,0 +1,142 @@
+/* zones.h - the meshes of deformable bodies: gridpoints, and tetrahedra between them, the zones.
+ *
+ * The strain of a zone is the same everywhere in it. Some six zones that hang together are a cluster: they share the
+ * change of their volume, and the change of their mean stress (pass.c).
+ *
+ * A SIMD group is TL_LANES clusters side by side. Zone k of the cluster in lane l is row start + TL_LANES k + l of the
+ * table. A cluster of fewer zones than the deepest of its group, and a lane without a cluster, has inert rows: copies
+ * of a zone whose volume counts as 0.
+ *
+ * A parcel is some groups of one body and one solid, with a list of the gridpoints that they use. A thread takes one
+ * parcel at a time. What the zones of a parcel do to a gridpoint is summed in a slot of the parcel; a gridpoint adds
+ * its slots in their order. So sums do not depend on threads.
+ *
+ * Signs: stress and strain are positive in tension. Six components are xx yy zz xy yz zx, strains as of a tensor. */
+#ifndef TL_ZONE_ZONES_H
+#define TL_ZONE_ZONES_H
+
+#include "base/table.h"
+#include "model/model.h"
+
+/* Zones of a cluster, at the most. */
+#define TL_CLUSTER_ZONES 10
+/* Rows of a parcel, at the most: its gridpoints are numbered by 16 bits. */
+#define TL_PARCEL_ZONES 4096
+/* Gridpoints of a parcel, at the most. */
+#define TL_PARCEL_POINTS 2048
+
+/* A material that the model has given a name. */
+typedef struct tl_solid {
+    char *name;
+    const tl_kind *kind;
+    void *params;               /* the plugin's params struct */
+    void *self;                 /* what its create made, or params */
+    double constrained, shear;  /* upper bounds of its moduli K + 4/3 G and G, Pa */
+    uint32_t columns;           /* of states */
+    bool turns;                 /* some of them turn with the zones */
+} tl_solid;
+
+typedef struct tl_gridpoints {
+    tl_table table;
+    double *ref[3];   /* where it was made, from the model's origin, m */
+    double *u[3];     /* displacement since, m */
+    double *v[3];     /* velocity, half a step behind the place, m/s */
+    double *moved[3]; /* that of the last motion: since then v may have been set anew */
+    double *mass;     /* kg: a quarter of the mass of each of its zones */
+    double *force[3]; /* unbalanced: zones, contacts, weight, load; of held components it is what holds, reversed, N */
+    double *bears;    /* a bound of the sum of the sizes of the forces on it, N: pass.c */
+    uint32_t *zones;   /* that have it for a corner */
+    double *stiffness; /* bound of the row of the stiffness matrix, N/m: stiffness.c */
+    uint8_t *fixed;   /* TL_FIX_X, _Y, _Z */
+    double *load[3];  /* of the user's, N; NULL: none has ever been set */
+    double *damping[3], *alpha; /* what the damping plugin gave; NULL: there has been none */
+} tl_gridpoints;
+
+typedef struct tl_zone_table {
+    tl_table table;
+    uint16_t *corner[4]; /* in the list of the parcel's gridpoints; 0-1-2 is counter-clockwise from 3's other side */
+    double *stress[6];   /* Pa */
+    uint32_t *flags;     /* TL_ZONE_*, of the solid */
+    uint32_t *number;    /* of its body's zones, from 0; TL_NO_ROW: an inert row */
+    double *state[TL_STATE_COLUMNS]; /* as many as the solids need; the others are NULL */
+    uint32_t state_columns;
+} tl_zone_table;
+
+/* A SIMD group: its first row, the zones of its deepest cluster and of each lane's, and the cube roots of the volumes
+ * that the lanes' clusters were made with, m. */
+typedef struct tl_zone_group {
+    uint32_t start;
+    uint8_t depth, count[TL_LANES];
+    double extent[TL_LANES];
+} tl_zone_group;
+
+typedef struct tl_parcel {
+    uint32_t mesh, solid;
+    uint32_t group_begin, group_end;
+    uint32_t point_begin, point_end; /* in `listed`, and its slots */
+} tl_parcel;
+
+typedef struct tl_parcels {
+    tl_table table;
+    tl_parcel *of;
+    double *stored;      /* by its zones, J */
+    double *heat;        /* that they have made in the last step, J */
+    double *most_strain; /* square of the largest that a zone got in it */
+} tl_parcels;
+
+/* What the zones of a parcel do to a gridpoint: the sum of their forces, and of the squares of their sizes. */
+typedef struct tl_slot {
+    double force[3], square;
+} tl_slot;
+
+/* Gridpoints of a parcel: where they are, m, and how they came there in the last step. Scratch of a thread. */
+typedef struct tl_parcel_points {
+    double x[3][TL_PARCEL_POINTS], way[3][TL_PARCEL_POINTS];
+} tl_parcel_points;
+
+/* The mesh of a body. */
+typedef struct tl_body_mesh {
+    tl_id body;
+    uint32_t point_begin, point_end;   /* rows of gridpoints */
+    uint32_t parcel_begin, parcel_end;
+    uint32_t zone_begin, zone_end;     /* in `row_of` */
+} tl_body_mesh;
+
+struct tl_zones {
+    tl_gridpoints points;
+    tl_zone_table zones;
+    tl_zone_group *group;
+    size_t group_count, group_capacity;
+    tl_parcels parcels;
+    uint32_t *listed; /* rows of gridpoints, parcel by parcel */
+    tl_slot *slot;    /* of each of them */
+    size_t listed_count, listed_capacity, slot_capacity;
+    /* the slots of gridpoint p are use[use_start[p]] .. use[use_start[p + 1] - 1] */
+    uint32_t *use, *use_start;
+    size_t use_capacity, use_start_capacity;
+    uint32_t *row_of; /* the row of each zone, mesh by mesh, by its number */
+    size_t row_of_count, row_of_capacity;
+    tl_body_mesh *mesh;
+    size_t mesh_count, mesh_capacity;
+    tl_solid *solid;
+    size_t solid_count, solid_capacity;
+    tl_parcel_points *scratch; /* of each thread */
+    size_t scratch_capacity;
+    uint64_t version; /* counts changes of meshes and solids */
+    double highest_rate; /* stiffness over mass of the gridpoint that has the most, 1/s2 */
+    uint32_t highest;    /* its row, or TL_NO_ROW */
+    uint64_t rated_for;  /* version then; 0: not known */
+    int64_t rated_at;    /* steps made then */
+};
+
+static inline bool tl_model_deforms(const tl_model *m)
+{
+    return m->zones && m->zones->mesh_count > 0;
+}
+
+static inline tl_vec3 tl_gridpoint_place(const tl_gridpoints *g, size_t row)
+{
+    return tl_v3(g->ref[0][row] + g->u[0][row], g->ref[1][row] + g->u[1][row], g->ref[2][row] + g->u[2][row]);
+}
+
+#endif
