@@ -1,12 +1,12 @@
-/* talus/plugin.h - the plugin interface: contact laws, dampings, generators and screens as shared objects.
+/* talus/plugin.h - the plugin interface: contact laws, dampings, generators, screens and solids as shared objects.
  *
  * A plugin is a shared object that exports one function,
  *
  *     const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor);
  *
  * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a plugin creates
- * nothing. The descriptor lists *kinds*: laws, dampings, generators and screens, each with its parameters, states and
- * operations. The host checks, defaults and documents parameters from one table. It owns states, carries them over,
+ * nothing. The descriptor lists *kinds*: laws, dampings, generators, screens and solids, each with its parameters, states
+ * and operations. The host checks, defaults and documents parameters from one table. It owns states, carries them over,
  * saves and writes them.
  *
  * Growth: every struct begins with its `size` and every array carries a stride, so a newer host
@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 9u
+#define TL_ABI_MINOR 10u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -72,7 +72,9 @@ typedef enum tl_param_type {
     TL_PARAM_VEC3, /* tl_vec3; NaN when optional and not given */
     /* of generators only: they are valid during the call, and the host refuses them in kinds that keep parameters */
     TL_PARAM_STRING, /* const char *; NULL when optional and not given */
-    TL_PARAM_POINTS  /* tl_points: a list of vectors; empty when optional and not given */
+    /* tl_points: a list of vectors; empty when optional and not given. Since 1.10 also of solids, with TL_PARAM_FLAT: a
+     * table of rows {x, y} in which x ascends. The host keeps the rows as long as `self`. */
+    TL_PARAM_POINTS
 } tl_param_type;
 
 typedef struct tl_points {
@@ -93,8 +95,8 @@ enum {
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
- * is. min = max = 0 means no range. NaN and infinity are always refused. So are reals of laws and dampings that are not
- * 0 and whose size is outside [1e-50, 1e50]. */
+ * is. min = max = 0 means no range. NaN and infinity are always refused. So are reals of laws, dampings and solids that
+ * are not 0 and whose size is outside [1e-50, 1e50]. */
 typedef struct tl_param {
     uint32_t size; /* sizeof(tl_param) */
     uint32_t type; /* tl_param_type */
@@ -121,10 +123,16 @@ typedef struct tl_param {
 
 /* Columns that the states of one law or damping may take: one for a scalar, three for a tangent. */
 #define TL_STATE_COLUMNS 8
+/* Columns that the states of one solid may take. */
+#define TL_SOLID_COLUMNS 16
 
 typedef enum tl_state_kind {
-    TL_STATE_SCALAR, /* one column */
-    TL_STATE_TANGENT /* three columns: a vector in the common plane, turned with it by the host */
+    TL_STATE_SCALAR,  /* one column */
+    TL_STATE_TANGENT, /* of laws, three columns: a vector in the common plane, turned with it by the host */
+    /* since 1.10, of solids, three columns: a vector, turned with the zone by the host. A new one is 0, and 0 stays 0: a
+     * solid whose axis is 0 takes the one that its parameters give. */
+    TL_STATE_AXIS,
+    TL_STATE_TENSOR /* since 1.10, of solids, six columns xx yy zz xy yz zx, turned with the zone by the host */
 } tl_state_kind;
 
 /* What becomes of a state when the contact polygon changes. */
@@ -137,11 +145,11 @@ typedef enum tl_state_transfer {
     TL_TRANSFER_LIFT /* 1.8, >= 0: what the normal force is linear in; its moments over the area stay, too */
 } tl_state_transfer;
 
-/* One state of a law (per contact point) or of a damping (per model). The host owns it. */
+/* One state of a law (per contact point), of a damping (per model) or of a solid (per zone). The host owns it. */
 typedef struct tl_state {
     uint32_t size;
     uint32_t kind;     /* tl_state_kind; a damping has scalars only */
-    uint32_t transfer; /* tl_state_transfer */
+    uint32_t transfer; /* tl_state_transfer; TL_TRANSFER_COPY for dampings and solids */
     const char *name;
     const char *unit;
     const char *doc;
@@ -464,17 +472,72 @@ typedef struct tl_screen_ops {
     void (*close)(void *self);
 } tl_screen_ops;
 
+/* ---------------------------------------------------------------- solids ----------------- */
+
+/* Since 1.10: a solid is the material of the zones into which blocks are divided. */
+
+/* Flags of a zone, set by the solid. 0 is elastic, and always has been. */
+enum {
+    TL_ZONE_SHEAR = 1,        /* yields in shear in this step */
+    TL_ZONE_TENSION = 2,      /* yields in tension in this step */
+    TL_ZONE_SHEAR_PAST = 4,   /* has yielded in shear in a step before */
+    TL_ZONE_TENSION_PAST = 8, /* has yielded in tension in a step before */
+    TL_ZONE_JOINT = 16,       /* yields on its weak plane, in shear or tension, in this step */
+    TL_ZONE_JOINT_PAST = 32   /* has yielded on its weak plane in a step before */
+};
+
+/* Zones of one solid, with one set of properties, as columns. Every column has `count` entries, a multiple of TL_LANES,
+ * aligned to TL_ALIGN bytes, padded with inert lanes (volume 0), so loops need no tail.
+ *
+ * Signs: stress and strain are positive in tension. Their components are in the order xx yy zz xy yz zx; xy, yz and zx
+ * of a strain are those of the tensor, half the angle. The stress is that of Cauchy. It comes in turned with the zone
+ * into the present, as states are that are an axis or a tensor. */
+typedef struct tl_solid_batch {
+    uint32_t size;
+    uint32_t count;
+    double dt;               /* s, of the motion; 0 in the first step of a run */
+    const double *volume;    /* m3 */
+    const double *extent;    /* m, cube root of the volume of the zones that share their volumetric strain */
+    const double *strain[6]; /* increment in this step */
+    double *stress[6];       /* in/out: Pa */
+    double *const *state;    /* in/out: state columns in the order declared (3 for an axis, 6 for a tensor) */
+    uint32_t *flags;         /* in/out: TL_ZONE_* */
+    double *stored;          /* out, or NULL: elastic energy, J/m3 */
+    double *dissipated;      /* out, or NULL: energy turned to heat in this step, J/m3, >= 0 */
+} tl_solid_batch;
+
+/* Operations of a solid. `create` and `destroy` may both be NULL: then `self` is the host's own copy of the params
+ * struct. */
+typedef struct tl_solid_ops {
+    uint32_t size;
+    /* [main] */
+    tl_status (*create)(const void *params, void **self, tl_report *report);
+    /* [worker] a pure function; zones do not depend on each other */
+    tl_status (*update)(const void *self, const tl_solid_batch *batch, tl_report *report);
+    /* [worker] upper bounds, Pa: of the constrained modulus K + 4 G / 3, and of the shear modulus G */
+    void (*moduli)(const void *self, double *constrained, double *shear);
+    /* [main] */
+    void (*destroy)(void *self);
+    /* [worker] the elastic energy, J/m3, that `update` tells as `stored`, of `count` zones. May be NULL: the host then
+     * asks `update` with strains of 0. */
+    void (*energy)(const void *self, uint32_t count, const double *const stress[6], double *const *state,
+                   double *stored);
+    /* not 0: `update` always returns TL_OK, as a law's */
+    uint32_t never_fails;
+} tl_solid_ops;
+
 /* ---------------------------------------------------------------- descriptors ------------ */
 
 typedef enum tl_kind_type {
     TL_KIND_LAW,
     TL_KIND_DAMPING,
     TL_KIND_GENERATOR,
-    TL_KIND_SCREEN /* since 1.7 */
+    TL_KIND_SCREEN, /* since 1.7 */
+    TL_KIND_SOLID   /* since 1.10 */
 } tl_kind_type;
 
-/* One law, damping, generator or screen. `ops` points to tl_law_ops, tl_damping_ops, tl_generator_ops or
- * tl_screen_ops. */
+/* One law, damping, generator, screen or solid. `ops` points to tl_law_ops, tl_damping_ops, tl_generator_ops,
+ * tl_screen_ops or tl_solid_ops. */
 typedef struct tl_kind {
     uint32_t size;
     uint32_t type;    /* tl_kind_type */
