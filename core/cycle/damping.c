@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/params.h"
 #include "contact/contacts.h"
+#include "cycle/gridpoints.h"
 #include "cycle/undo.h"
 #include "plugin/loader.h"
 
@@ -172,6 +173,18 @@ static void check_numbers(tl_model *m, size_t begin, size_t end, size_t chunk)
     }
 }
 
+bool tl_damping_call(tl_model *m, const tl_damping_batch *batch, size_t chunk)
+{
+    const tl_damping_ops *ops = m->damping->ops;
+    tl_report report = {.size = sizeof report};
+    tl_enter(m->damping, "update");
+    const tl_status status = ops->update(m->damping_self, batch, &report);
+    tl_leave();
+    if (status != TL_OK)
+        tl_failure_note(&m->cycle->failure, chunk, status, 0, tl_report_text(&report, status));
+    return status == TL_OK;
+}
+
 static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)thread;
@@ -212,13 +225,7 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         memset(batch.damping_force[k], 0, (end - begin) * sizeof *batch.damping_force[k]);
         memset(batch.damping_moment[k], 0, (end - begin) * sizeof *batch.damping_moment[k]);
     }
-    tl_report report = {.size = sizeof report};
-    tl_enter(m->damping, "update");
-    tl_status status = ops->update(m->damping_self, &batch, &report);
-    tl_leave();
-    if (status != TL_OK)
-        tl_failure_note(&m->cycle->failure, chunk, status, 0, tl_report_text(&report, status));
-    else
+    if (tl_damping_call(m, &batch, chunk))
         check_numbers(m, begin, last, chunk);
     if (ops->before)
         note_forces(b, begin, last);
@@ -256,6 +263,7 @@ tl_status tl_damping_apply(tl_model *m, double dt)
     if (status == TL_OK) {
         damping_job job = {m, dt, state};
         tl_parallel_for(m->pool, c->table.rows, TL_BODY_CHUNK, damp_range, &job);
+        tl_gridpoints_damp(m, dt, state);
         status = c->failure.error.status;
         if (status == TL_OK)
             status = check_states(m, &c->failure.error);

@@ -8,6 +8,7 @@
 #include "contact/detection.h"
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
+#include "cycle/gridpoints.h"
 #include "cycle/loose.h"
 #include "cycle/rest.h"
 #include "model/loads.h"
@@ -155,6 +156,7 @@ void tl_gather(tl_model *m)
     for (unsigned t = 0; t < threads; t++)
         c->gathered[t] = (tl_gathered){.worst = TL_NO_ROW};
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, gather_range, m);
+    tl_gridpoints_gather(m);
     for (unsigned t = 1; t < threads; t++)
         merge(all, &c->gathered[t]);
     c->sums = (tl_sums){.unbalanced = tl_exact_value(&all->sum[TL_SUM_UNBALANCED]),

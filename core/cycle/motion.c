@@ -19,6 +19,7 @@
 
 #include "base/columns.h"
 #include "base/parallel.h"
+#include "cycle/gridpoints.h"
 #include "cycle/loose.h"
 #include "cycle/turn.h"
 
@@ -631,4 +632,5 @@ void tl_move(tl_model *m, double dt)
     move_job job = {m, 0.5 * (m->dt + dt), dt};
     begin_books(m);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, move_range, &job);
+    tl_gridpoints_move(m, dt);
 }

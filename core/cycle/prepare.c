@@ -57,6 +57,7 @@ tl_status tl_cycle_prepare(tl_model *m)
         add_columns(m->cycle);
         tl_contributors_begin(m->cycle);
     }
+    tl_contributors_list(m);
     struct tl_cycle *c = m->cycle;
     size_t bodies = m->bodies.table.rows, threads = tl_pool_threads(m->pool);
     /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */

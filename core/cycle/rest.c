@@ -16,12 +16,9 @@
 
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
+#include "cycle/gridpoints.h"
 
 #include <stdatomic.h>
-
-/* Tolerance: how much softer than the contacts of one body the whole may swing, as a column of 30 blocks does. So much
- * more energy goes with the same force. Test: lua/test_rest. */
-#define SOFTER 1e3
 
 /* Weight and loads of the bodies that can move. */
 static double weight_of_all(const tl_model *m)
@@ -79,7 +76,7 @@ static bool moves(const rest_job *job, uint32_t body)
     double bears = tl_borne(m, body, tl_weight_of(b, body, job->gravity));
     bears = fmax(bears, tl_least_borne(b, body, stiffness));
     double stored = stiffness > 0 ? 0.5 * bears * bears / stiffness : b->mass[body] * job->stored;
-    return !(kinetic < job->ratio * fmin(1, SOFTER * job->ratio) * stored);
+    return !(kinetic < tl_kinetic_share(job->ratio) * stored);
 }
 
 static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -110,9 +107,10 @@ static bool all_rest(tl_model *m, double ratio)
                     .stored = mass > 0 ? energy.stored / mass : 0,
                     .moving = TL_NO_ROW};
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_READ_CHUNK, rest_range, &job);
-    if (job.moving == TL_NO_ROW)
+    const uint32_t mesh = tl_gridpoints_moving(m, ratio), moving = job.moving < mesh ? job.moving : mesh;
+    if (moving == TL_NO_ROW)
         return true;
-    m->cycle->sums.worst = job.moving;
+    m->cycle->sums.worst = moving;
     return false;
 }
 

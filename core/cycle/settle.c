@@ -26,6 +26,7 @@
 #include "contact/detection.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
+#include "cycle/gridpoints.h"
 #include "cycle/loose.h"
 #include "cycle/rest.h"
 #include "cycle/secants.h"
@@ -135,7 +136,7 @@ bool tl_settle_bears_all(const tl_model *m)
 
 static bool may_leap(const tl_model *m)
 {
-    return m->bodies.table.rows <= MOST_LEAPING;
+    return m->bodies.table.rows <= MOST_LEAPING && !tl_model_deforms(m);
 }
 
 bool tl_settle_prepare(tl_model *m)
@@ -173,6 +174,7 @@ static void move_on(tl_model *m, double dt)
     const tl_bodies *b = &m->bodies;
     const double gravity = tl_v3_norm(m->config.gravity), lost = all_lost(m, dt);
     put_none(c, c->sums.power < 0 ? lost : 0);
+    tl_gridpoints_brake(m, c->sums.power < 0 ? lost : 0);
     for (uint32_t body = 0; c->settling.calm && body < b->table.rows; body++)
         if (b->fixed[body] != TL_FIX_ALL && tl_body_is_loose(m, body, tl_weight_of(b, body, gravity)))
             c->alpha[body] = tl_body_power(m, body) < 0 ? lost : 0;

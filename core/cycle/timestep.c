@@ -14,6 +14,7 @@
 #include "contact/sides.h"
 #include "cycle/added_mass.h"
 #include "cycle/energy.h"
+#include "cycle/gridpoints.h"
 #include "cycle/limits.h"
 #include "cycle/prepare.h"
 #include "cycle/remarks.h"
@@ -265,6 +266,7 @@ static void rates_count(tl_model *m)
     c->all_held = true;
     for (uint32_t body = 0; body < b->table.rows && c->all_held; body++)
         c->all_held = b->fixed[body] == TL_FIX_ALL;
+    c->all_held = c->all_held && !tl_model_deforms(m);
     for (uint32_t body = 0; body < b->table.rows; body++)
         if (tl_body_counts(m, body) && b->mass[body] < now.least_mass) {
             now.least_mass = b->mass[body];
@@ -585,6 +587,15 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     return TL_OK;
 }
 
+/* With what gridpoints ask for: `least` is a square of a step, over 4, for all of the critical step. */
+static double with_zones(tl_model *m, double least)
+{
+    const double own = tl_gridpoints_least(m), share = m->timestep.zone_fraction / tl_timestep_fraction(m);
+    if (!isfinite(own) || tl_scales_all(m))
+        return !isfinite(own) ? least : isfinite(least) ? fmax(least, own) : own;
+    return fmin(least, share * share * own);
+}
+
 /* The step; 0 where nothing can move or does. A report gets `by`, what controls it, and leaves the inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
@@ -603,9 +614,9 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     double least = 0;
     if (by) {
         *by = controlling(m, true);
-        least = by->least;
+        least = with_zones(m, by->least);
     } else if (tl_scales_all(m) || !given) {
-        least = controlling(m, false).least;
+        least = with_zones(m, controlling(m, false).least);
         c->mass_scale = tl_scales_all(m) && isfinite(least) ? least : 0;
     } else {
         c->mass_scale = 0;

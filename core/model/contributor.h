@@ -32,7 +32,7 @@ typedef struct tl_energies {
 } tl_energies;
 
 /* Tables of a contributor whose columns a step overwrites. */
-#define TL_CONTRIBUTOR_TABLES 2
+#define TL_CONTRIBUTOR_TABLES 3
 
 /* Functions that are NULL add nothing. Those of a body are called on any thread. */
 typedef struct tl_contributor {

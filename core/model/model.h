@@ -245,6 +245,8 @@ struct tl_model {
     void (*detect_destroy)(struct tl_detect *);
     struct tl_cycle *cycle; /* of the module cycle */
     void (*cycle_destroy)(struct tl_cycle *);
+    struct tl_zones *zones; /* meshes of deformable bodies and their materials, or NULL: module zone */
+    void (*zones_destroy)(struct tl_zones *);
     struct tl_outputs *outputs; /* of the module state: files written so far */
     void (*outputs_destroy)(struct tl_outputs *);
 };

@@ -5,6 +5,9 @@
  * padded to whole lanes: those beyond its points are fixed and have no zones. */
 #include "zone/grid.h"
 
+#include "zone/solids.h"
+
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +29,7 @@ static void add_columns(struct tl_zones *z)
     TL_COLUMN(&p->table, p, bears, TL_COLUMN_STEP);
     TL_COLUMN(&p->table, p, zones, 0);
     TL_COLUMN(&p->table, p, stiffness, 0);
+    TL_COLUMN(&p->table, p, mesh, 0);
     TL_COLUMN(&p->table, p, fixed, TL_COLUMN_STATE);
 
     tl_zone_table *t = &z->zones;
@@ -89,6 +93,7 @@ typedef struct laying {
     uint32_t *sorted;  /* clusters of the parcel, by their sizes */
     uint32_t points;   /* that the parcel has */
     uint32_t first;    /* row of the mesh's first gridpoint */
+    uint32_t row;      /* of the body */
 } laying;
 
 static size_t size_of(const tl_grid *g, uint32_t cluster)
@@ -168,6 +173,17 @@ static void put_zone(const laying *l, size_t row, uint32_t zone, bool inert)
         l->z->row_of[l->z->row_of_count + zone] = (uint32_t)row;
 }
 
+/* Cube root of a volume, by Newton's method: the same bits everywhere. */
+static double cube_root(double volume)
+{
+    int power;
+    const double part = frexp(volume, &power), shift = power >= 0 ? (power + 2) / 3 : power / 3;
+    double root = ldexp(1, (int)shift);
+    for (int k = 0; k < 60 && part > 0; k++)
+        root = (2 * root + volume / (root * root)) / 3;
+    return root;
+}
+
 /* Fills a group, from a row on, with up to TL_LANES clusters of a parcel. */
 static void lay_group(const laying *l, const uint32_t *cluster, uint32_t count, size_t *row)
 {
@@ -185,7 +201,7 @@ static void lay_group(const laying *l, const uint32_t *cluster, uint32_t count, 
         for (size_t k = 0; k < size; k++)
             volume += volume_of(g, g->cluster_zone[begin + k]);
         group->count[lane] = (uint8_t)size;
-        group->extent[lane] = size > 0 ? tl_cube_root(volume) : 1;
+        group->extent[lane] = size > 0 ? cube_root(volume) : 1;
     }
 }
 
@@ -211,7 +227,7 @@ static uint32_t lay_parcel(laying *l, uint32_t first, uint32_t parcel, size_t *r
 
 /* ---------------------------------------------------------------- gridpoints ------------- */
 
-static void put_points(const laying *l, size_t padded)
+static void put_points(const laying *l, size_t padded, uint32_t mesh)
 {
     const tl_grid *g = l->grid;
     tl_gridpoints *p = &l->z->points;
@@ -220,6 +236,7 @@ static void put_points(const laying *l, size_t padded)
         p->ref[0][l->first + k] = at.x;
         p->ref[1][l->first + k] = at.y;
         p->ref[2][l->first + k] = at.z;
+        p->mesh[l->first + k] = mesh;
         p->mass[l->first + k] = k < g->point_count ? 0 : NO_MASS;
         p->fixed[l->first + k] = k < g->point_count ? 0 : TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
     }
@@ -306,12 +323,13 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
     const uint32_t number = (uint32_t)z->mesh_count++;
     tl_body_mesh *mesh = &z->mesh[number];
     *mesh = (tl_body_mesh){.body = body,
+                           .row = l->row,
                            .point_begin = (uint32_t)z->points.table.rows,
                            .parcel_begin = (uint32_t)z->parcels.table.rows,
                            .zone_begin = (uint32_t)z->row_of_count};
     l->first = mesh->point_begin;
     tl_table_resize(&z->points.table, z->points.table.rows + more->points);
-    put_points(l, more->points);
+    put_points(l, more->points, number);
     tl_table_resize(&z->parcels.table, z->parcels.table.rows + more->parcels);
     tl_table_resize(&z->zones.table, z->zones.table.rows + more->rows);
     uint32_t parcel = mesh->parcel_begin, first = 0;
@@ -328,7 +346,7 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
 tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid)
 {
     struct tl_zones *z = m->zones;
-    laying l = {.m = m, .z = z, .grid = grid};
+    laying l = {.m = m, .z = z, .grid = grid, .row = m->blocks.body[tl_block_row_quiet(m, body)]};
     sizes more;
     const size_t points = z->points.table.rows + grid->point_count + TL_LANES;
     bool enough = make_room(&l, &more) && tl_solid_columns(z, &z->solid[solid]) &&
@@ -337,6 +355,8 @@ tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t so
     if (enough) {
         lay_mesh(&l, body, solid, &more);
         tl_zones_index(z);
+        m->bodies.fixed[l.row] = TL_FIX_ALL; /* its gridpoints move it */
+        m->constraints++;
     }
     free(l.local);
     free(l.sorted);

@@ -28,7 +28,7 @@
 #include "base/inline.h"
 #include "plugin/loader.h"
 
-#include <stdio.h>
+#include <string.h>
 
 /* Rows of a SIMD group. */
 #define ROWS (TL_CLUSTER_ZONES * TL_LANES)
@@ -79,30 +79,34 @@ TL_INLINE void cross(lanes3 *out, const lanes3 *a, const lanes3 *b)
     }
 }
 
-/* Turns a stress by Q of the turn w, lane by lane. */
-TL_INLINE void turn(double *const stress[6], double (*before)[ROWS], size_t row, size_t at, const lanes3 *w)
+/* Q of the turn w. */
+TL_INLINE tl_mat3 turn_of(tl_vec3 w)
+{
+    const double x = 0.5 * w.x, y = 0.5 * w.y, z = 0.5 * w.z, s = 2 / (1 + (x * x + y * y + z * z));
+    return (tl_mat3){{{1 - s * (y * y + z * z), s * (x * y - z), s * (x * z + y)},
+                      {s * (x * y + z), 1 - s * (x * x + z * z), s * (y * z - x)},
+                      {s * (x * z - y), s * (y * z + x), 1 - s * (x * x + y * y)}}};
+}
+
+/* Turns the stresses of a row of zones. */
+TL_INLINE void turn_row(double *const stress[6], size_t row, size_t at, group_rows *restrict r)
 {
     for (size_t l = 0; l < TL_LANES; l++) {
-        const double kx = 0.5 * w->of[0][l], ky = 0.5 * w->of[1][l], kz = 0.5 * w->of[2][l];
-        const double s = 2 / (1 + (kx * kx + ky * ky + kz * kz));
-        const double q[3][3] = {
-            {1 - s * (ky * ky + kz * kz), s * (kx * ky - kz), s * (kx * kz + ky)},
-            {s * (kx * ky + kz), 1 - s * (kx * kx + kz * kz), s * (ky * kz - kx)},
-            {s * (kx * kz - ky), s * (ky * kz + kx), 1 - s * (kx * kx + ky * ky)}};
+        const tl_mat3 q = turn_of(tl_v3(r->spin[0][at + l], r->spin[1][at + l], r->spin[2][at + l]));
         const double xx = stress[0][row + l], yy = stress[1][row + l], zz = stress[2][row + l];
         const double xy = stress[3][row + l], yz = stress[4][row + l], zx = stress[5][row + l];
-        double t[3][3];
+        tl_mat3 t;
         for (int i = 0; i < 3; i++) {
-            t[i][0] = q[i][0] * xx + q[i][1] * xy + q[i][2] * zx;
-            t[i][1] = q[i][0] * xy + q[i][1] * yy + q[i][2] * yz;
-            t[i][2] = q[i][0] * zx + q[i][1] * yz + q[i][2] * zz;
+            t.m[i][0] = q.m[i][0] * xx + q.m[i][1] * xy + q.m[i][2] * zx;
+            t.m[i][1] = q.m[i][0] * xy + q.m[i][1] * yy + q.m[i][2] * yz;
+            t.m[i][2] = q.m[i][0] * zx + q.m[i][1] * yz + q.m[i][2] * zz;
         }
-        before[0][at + l] = t[0][0] * q[0][0] + t[0][1] * q[0][1] + t[0][2] * q[0][2];
-        before[1][at + l] = t[1][0] * q[1][0] + t[1][1] * q[1][1] + t[1][2] * q[1][2];
-        before[2][at + l] = t[2][0] * q[2][0] + t[2][1] * q[2][1] + t[2][2] * q[2][2];
-        before[3][at + l] = t[0][0] * q[1][0] + t[0][1] * q[1][1] + t[0][2] * q[1][2];
-        before[4][at + l] = t[1][0] * q[2][0] + t[1][1] * q[2][1] + t[1][2] * q[2][2];
-        before[5][at + l] = t[2][0] * q[0][0] + t[2][1] * q[0][1] + t[2][2] * q[0][2];
+        r->before[0][at + l] = t.m[0][0] * q.m[0][0] + t.m[0][1] * q.m[0][1] + t.m[0][2] * q.m[0][2];
+        r->before[1][at + l] = t.m[1][0] * q.m[1][0] + t.m[1][1] * q.m[1][1] + t.m[1][2] * q.m[1][2];
+        r->before[2][at + l] = t.m[2][0] * q.m[2][0] + t.m[2][1] * q.m[2][1] + t.m[2][2] * q.m[2][2];
+        r->before[3][at + l] = t.m[0][0] * q.m[1][0] + t.m[0][1] * q.m[1][1] + t.m[0][2] * q.m[1][2];
+        r->before[4][at + l] = t.m[1][0] * q.m[2][0] + t.m[1][1] * q.m[2][1] + t.m[1][2] * q.m[2][2];
+        r->before[5][at + l] = t.m[2][0] * q.m[0][0] + t.m[2][1] * q.m[0][1] + t.m[2][2] * q.m[0][2];
     }
 }
 
@@ -112,7 +116,7 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
 {
     const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
     uint16_t *const *corner = z->zones.corner;
-    lanes3 x0, way0, edge[3], way[3], mid[3], area[3], w;
+    lanes3 x0, way0, edge[3], way[3], mid[3], area[3];
     load(&x0, p->x, corner[0] + row);
     load(&way0, p->way, corner[0] + row);
     for (int a = 0; a < 3; a++) {
@@ -154,14 +158,11 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
         r->strain[3][at + l] = 0.5 * (d[0][1] + d[1][0]);
         r->strain[4][at + l] = 0.5 * (d[1][2] + d[2][1]);
         r->strain[5][at + l] = 0.5 * (d[2][0] + d[0][2]);
-        w.of[0][l] = 0.5 * (d[2][1] - d[1][2]);
-        w.of[1][l] = 0.5 * (d[0][2] - d[2][0]);
-        w.of[2][l] = 0.5 * (d[1][0] - d[0][1]);
+        r->spin[0][at + l] = 0.5 * (d[2][1] - d[1][2]);
+        r->spin[1][at + l] = 0.5 * (d[0][2] - d[2][0]);
+        r->spin[2][at + l] = 0.5 * (d[1][0] - d[0][1]);
     }
-    for (int i = 0; i < 3; i++)
-        for (size_t l = 0; l < TL_LANES; l++)
-            r->spin[i][at + l] = w.of[i][l];
-    turn(z->zones.stress, r->before, row, at, &w);
+    turn_row(z->zones.stress, row, at, r);
 }
 
 /* ---------------------------------------------------------------- clusters --------------- */
@@ -307,19 +308,42 @@ TL_VECTORIZED static double close_group(const struct tl_zones *z, const tl_zone_
     return work_of(r, z->zones.stress, g->start, g->depth);
 }
 
+/* Turns column k and those after it, of a row: a vector's three, or a tensor's six. */
+static void turn_state(const tl_mat3 *q, double *const *state, uint32_t kind, size_t row)
+{
+    if (kind == TL_STATE_AXIS) {
+        const tl_vec3 v = tl_m3_mul(q, tl_v3(state[0][row], state[1][row], state[2][row]));
+        state[0][row] = v.x;
+        state[1][row] = v.y;
+        state[2][row] = v.z;
+        return;
+    }
+    const double a[3][3] = {{state[0][row], state[3][row], state[5][row]},
+                            {state[3][row], state[1][row], state[4][row]},
+                            {state[5][row], state[4][row], state[2][row]}};
+    static const int at[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
+    for (int c = 0; c < 6; c++) {
+        double sum = 0;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                sum += q->m[at[c][0]][i] * a[i][j] * q->m[at[c][1]][j];
+        state[c][row] = sum;
+    }
+}
+
 /* States that are directions or tensors turn with their zones. */
 static void turn_states(const struct tl_zones *z, const tl_solid *solid, const tl_zone_group *g, const group_rows *r)
 {
-    double *const *state = z->zones.state;
-    tl_state_columns at = {0};
-    while (tl_state_next(solid->kind, UINT32_MAX, &at))
-        for (size_t i = 0; at.count > 1 && i < (size_t)g->depth * TL_LANES; i++) {
-            const tl_mat3 q = tl_zone_turn(tl_v3(r->spin[0][i], r->spin[1][i], r->spin[2][i]));
-            if (at.count == 3)
-                tl_turn_axis(&q, state + at.begin, g->start + i);
-            else
-                tl_turn_tensor(&q, state + at.begin, g->start + i);
+    for (size_t i = 0; i < (size_t)g->depth * TL_LANES; i++) {
+        const tl_mat3 q = turn_of(tl_v3(r->spin[0][i], r->spin[1][i], r->spin[2][i]));
+        double *const *state = z->zones.state;
+        for (uint32_t k = 0; k < solid->kind->state_count; k++) {
+            const tl_state *of = tl_kind_state(solid->kind, k);
+            if (of->kind != TL_STATE_SCALAR)
+                turn_state(&q, state, of->kind, g->start + i);
+            state += of->kind == TL_STATE_TENSOR ? 6 : of->kind == TL_STATE_AXIS ? 3 : 1;
         }
+    }
 }
 
 /* Calls the solid for the rows of a group. */
@@ -327,7 +351,7 @@ static bool call_solid(const pass_job *job, const tl_solid *solid, const tl_zone
 {
     const struct tl_zones *z = job->zones;
     const tl_solid_ops *ops = solid->kind->ops;
-    double *state[TL_STATE_COLUMNS];
+    double *state[TL_SOLID_COLUMNS];
     for (uint32_t k = 0; k < solid->columns; k++)
         state[k] = z->zones.state[k] + g->start;
     tl_solid_batch batch = {.size = sizeof batch,
@@ -378,6 +402,7 @@ static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
         const tl_zone_group *g = &z->group[k];
         group_rows r;
         double lost;
+        memset(r.dissipated, 0, sizeof r.dissipated);
         most = tl_larger(most, strain_group(z, p, g, &r));
         if (solid->turns)
             turn_states(z, solid, g, &r);

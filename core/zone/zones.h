@@ -47,9 +47,11 @@ typedef struct tl_gridpoints {
     double *bears;    /* a bound of the sum of the sizes of the forces on it, N: pass.c */
     uint32_t *zones;   /* that have it for a corner */
     double *stiffness; /* bound of the row of the stiffness matrix, N/m: stiffness.c */
-    uint8_t *fixed;   /* TL_FIX_X, _Y, _Z */
+    uint32_t *mesh;    /* its number */
+    uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
     double *load[3];  /* of the user's, N; NULL: none has ever been set */
-    double *damping[3], *alpha; /* what the damping plugin gave; NULL: there has been none */
+    double *damping[3], *alpha; /* what the damping gave; NULL: there has been none */
+    double *force_before[3];    /* in the last damped step; NULL: no damping has asked for them */
 } tl_gridpoints;
 
 typedef struct tl_zone_table {
@@ -58,7 +60,7 @@ typedef struct tl_zone_table {
     double *stress[6];   /* Pa */
     uint32_t *flags;     /* TL_ZONE_*, of the solid */
     uint32_t *number;    /* of its body's zones, from 0; TL_NO_ROW: an inert row */
-    double *state[TL_STATE_COLUMNS]; /* as many as the solids need; the others are NULL */
+    double *state[TL_SOLID_COLUMNS]; /* as many as the solids need; the others are NULL */
     uint32_t state_columns;
 } tl_zone_table;
 
@@ -97,6 +99,7 @@ typedef struct tl_parcel_points {
 /* The mesh of a body. */
 typedef struct tl_body_mesh {
     tl_id body;
+    uint32_t row; /* of the body */
     uint32_t point_begin, point_end;   /* rows of gridpoints */
     uint32_t parcel_begin, parcel_end;
     uint32_t zone_begin, zone_end;     /* in `row_of` */
@@ -123,10 +126,10 @@ struct tl_zones {
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
     uint64_t version; /* counts changes of meshes and solids */
-    double highest_rate; /* stiffness over mass of the gridpoint that has the most, 1/s2 */
-    uint32_t highest;    /* its row, or TL_NO_ROW */
-    uint64_t rated_for;  /* version then; 0: not known */
-    int64_t rated_at;    /* steps made then */
+    double highest_rate, lowest_rate; /* stiffness over mass of the gridpoints that may move, 1/s2; 0: there are none */
+    uint32_t highest;                 /* row of that with the highest, or TL_NO_ROW */
+    uint64_t rated_for;               /* version then; 0: not known */
+    int64_t rated_at;                 /* steps made then */
 };
 
 static inline bool tl_model_deforms(const tl_model *m)

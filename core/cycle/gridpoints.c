@@ -1,0 +1,416 @@
+/* gridpoints.c - gridpoints of zones in a step: their forces, motion and rest.
+ *
+ * A gridpoint is a point of mass m. Its zones, contacts, weight and load push it, and it moves by central differences
+ * as bodies do: v <- (D1 v + F/m h) D2, x <- x + v dt. Components that are held keep the velocity they were given.
+ *
+ * Rest asks of a gridpoint what it asks of a body (rest.c), with B = sqrt(n sum f^2) for the n forces of its zones. A
+ * mesh swings more softly than one of its gridpoints by far. So kinetic energy is compared over the whole of it:
+ *
+ *     sum m v.v / 2  <  the smaller of ratio and 1000 ratio^2, times sum B^2 / (2 k)
+ *
+ * Rows of a mesh are padded to whole lanes, so lanes add up in one order, whoever takes them. */
+#include "cycle/gridpoints.h"
+
+#include "base/columns.h"
+#include "base/extremes.h"
+#include "cycle/damping.h"
+#include "cycle/rest.h"
+#include "cycle/turn.h"
+#include "zone/pass.h"
+#include "zone/stiffness.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rows that a thread takes at a time: a multiple of TL_LANES. */
+#define CHUNK 256
+
+/* All components of a gridpoint. */
+#define ALL (TL_FIX_X | TL_FIX_Y | TL_FIX_Z)
+
+/* Tolerance: strain of a zone in a step from which the next one is kept, and looked at before it is made. */
+#define FAST_STRAIN 1e-3
+
+/* ---------------------------------------------------------------- forces of zones -------- */
+
+static tl_status apply(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    if (!tl_model_deforms(m))
+        return TL_OK;
+    tl_zones_pass(m, m->dt, &c->failure);
+    const tl_status status = c->failure.error.status;
+    if (status == TL_OK)
+        return TL_OK;
+    const struct tl_zones *z = m->zones;
+    const tl_parcel *of = &z->parcels.of[c->failure.chunk];
+    const tl_solid *solid = &z->solid[of->solid];
+    c->failure.error.status = TL_OK;
+    return tl_fail(&m->error, status, "cycle %lld, solid '%s' (%s) of block %u: %s", (long long)m->cycles + 1,
+                   solid->name, solid->kind->name, z->mesh[of->mesh].body, c->failure.error.text);
+}
+
+static tl_energies energies(tl_model *m)
+{
+    tl_energies sum = {0, 0};
+    const tl_parcels *p = m->zones ? &m->zones->parcels : NULL;
+    for (size_t k = 0; p && k < p->table.rows; k++) {
+        sum.stored += p->stored[k];
+        sum.heat += p->heat[k];
+    }
+    return sum;
+}
+
+static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
+{
+    if (!tl_model_deforms(m))
+        return 0;
+    table[0] = &m->zones->zones.table;
+    table[1] = &m->zones->parcels.table;
+    table[2] = &m->zones->points.table;
+    return 3;
+}
+
+static bool may_fail(const tl_model *m)
+{
+    const struct tl_zones *z = m->zones;
+    bool sure = true;
+    for (size_t k = 0; z && k < z->solid_count; k++)
+        sure = sure && ((const tl_solid_ops *)z->solid[k].kind->ops)->never_fails;
+    for (size_t k = 0; z && k < z->parcels.table.rows; k++)
+        sure = sure && z->parcels.most_strain[k] < FAST_STRAIN * FAST_STRAIN;
+    return !sure;
+}
+
+/* Room for what the damping gives. */
+static bool need_damping(tl_gridpoints *p, bool before)
+{
+    bool enough = TL_COLUMN_NEED(&p->table, p, alpha, 0);
+    for (int k = 0; k < 3; k++) {
+        enough = enough && TL_COLUMN_NEED(&p->table, p, damping[k], 0);
+        enough = enough && (!before || TL_COLUMN_NEED(&p->table, p, force_before[k], TL_COLUMN_STEP));
+    }
+    return enough;
+}
+
+static tl_status prepare(tl_model *m)
+{
+    if (!tl_model_deforms(m))
+        return TL_OK;
+    struct tl_zones *z = m->zones;
+    const bool before = m->damping && ((const tl_damping_ops *)m->damping->ops)->before;
+    const bool enough = tl_fit(&z->scratch, &z->scratch_capacity, tl_pool_threads(m->pool), sizeof *z->scratch) &&
+                        (!tl_is_damped(m) || need_damping(&z->points, before));
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+const tl_contributor tl_zones_act = {
+    .name = "zones", .prepare = prepare, .apply = apply, .energies = energies, .tables = tables, .may_fail = may_fail};
+
+/* ---------------------------------------------------------------- step ------------------- */
+
+double tl_gridpoints_least(tl_model *m)
+{
+    if (!tl_model_deforms(m))
+        return INFINITY;
+    tl_zones_rate(m);
+    const double rate = tl_scales_all(m) ? m->zones->lowest_rate : m->zones->highest_rate;
+    return rate > 0 ? 1 / rate : INFINITY;
+}
+
+/* What mass scaling makes of a gridpoint's mass. */
+static double scale_of(const tl_model *m, size_t row)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const double scale = m->cycle->mass_scale * p->stiffness[row] / p->mass[row];
+    return m->cycle->mass_scale > 0 && p->stiffness[row] > 0 ? scale : 1;
+}
+
+/* ---------------------------------------------------------------- gather ----------------- */
+
+static tl_vec3 load_of(const tl_gridpoints *p, size_t row)
+{
+    return p->load[0] ? tl_columns_get(p->load, row) : tl_v3(0, 0, 0);
+}
+
+static void gather_point(const tl_model *m, size_t row, double share)
+{
+    struct tl_zones *z = m->zones;
+    tl_gridpoints *p = &z->points;
+    tl_vec3 force = {0, 0, 0};
+    double square = 0;
+    for (uint32_t k = z->use_start[row]; k < z->use_start[row + 1]; k++) {
+        const tl_slot *slot = &z->slot[z->use[k]];
+        force = tl_v3_add(force, tl_v3(slot->force[0], slot->force[1], slot->force[2]));
+        square += slot->square;
+    }
+    force = tl_v3_madd(force, share * p->mass[row], m->config.gravity);
+    tl_columns_put(p->force, row, tl_v3_madd(force, share, load_of(p, row)));
+    p->bears[row] = sqrt((double)p->zones[row] * square);
+}
+
+/* What is summed of a chunk: a number for each row of lanes. */
+typedef struct addends {
+    double number[TL_SUM_COUNT][CHUNK / TL_LANES];
+} addends;
+
+/* Unbalanced force of a gridpoint, by itself and over what it bears. */
+static void note_ratio(const tl_model *m, size_t row, size_t at, double gravity, uint32_t body, addends *of,
+                       tl_gathered *all)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 force = tl_free_part(tl_columns_get(p->force, row), p->fixed[row]), v = tl_columns_get(p->v, row);
+    const double size = tl_v3_norm(force), weight = p->mass[row] * gravity + tl_v3_norm(load_of(p, row));
+    const double bears = tl_larger(p->bears[row], weight), ratio = bears > 0 ? size / bears : size > 0;
+    of->number[TL_SUM_UNBALANCED][at] += size;
+    of->number[TL_SUM_CONTACT_FORCE][at] += bears;
+    all->largest = tl_larger(all->largest, size);
+    all->max_speed2 = tl_larger(all->max_speed2, tl_v3_norm2(v));
+    all->local = tl_larger(all->local, ratio);
+    all->bodies++;
+    if (ratio > all->worst_ratio || (ratio == all->worst_ratio && body < all->worst)) {
+        all->worst_ratio = ratio;
+        all->worst = body;
+    }
+}
+
+/* Kinetic energy and power, for what asks for totals. */
+static void note_totals(const tl_model *m, size_t row, size_t at, addends *of)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 v = tl_columns_get(p->v, row), force = tl_columns_get(p->force, row);
+    const double mass = p->mass[row];
+    of->number[TL_SUM_KINETIC][at] += 0.5 * mass * tl_v3_norm2(v);
+    of->number[TL_SUM_DAMPED][at] += 0.5 * mass * tl_v3_norm2(tl_free_part(v, p->fixed[row]));
+    of->number[TL_SUM_POWER][at] += tl_v3_dot(tl_free_part(force, p->fixed[row]), v);
+}
+
+static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    tl_model *m = user;
+    const struct tl_zones *z = m->zones;
+    const bool totals = m->relaxing || (m->damping && ((const tl_damping_ops *)m->damping->ops)->begin);
+    const double gravity = tl_v3_norm(m->config.gravity), share = tl_loads_share(m);
+    tl_gathered *all = &m->cycle->gathered[thread];
+    addends of;
+    memset(&of, 0, sizeof of);
+    for (size_t row = begin; row < end; row++) {
+        gather_point(m, row, share);
+        if (z->points.fixed[row] == ALL)
+            continue;
+        const size_t at = (row - begin) / TL_LANES;
+        note_ratio(m, row, at, gravity, z->mesh[z->points.mesh[row]].row, &of, all);
+        if (totals)
+            note_totals(m, row, at, &of);
+    }
+    tl_exact_add_each(all->sum, totals ? TL_SUM_COUNT : TL_SUM_KINETIC, of.number[0], CHUNK / TL_LANES,
+                      (end - begin) / TL_LANES);
+}
+
+void tl_gridpoints_gather(tl_model *m)
+{
+    if (tl_model_deforms(m))
+        tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
+}
+
+/* ---------------------------------------------------------------- damping ---------------- */
+
+typedef struct damp_job {
+    tl_model *m;
+    double dt;
+    double *const *state;
+} damp_job;
+
+/* Gridpoints have neither moment nor turn. */
+static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)thread;
+    const damp_job *job = user;
+    tl_gridpoints *p = &job->m->zones->points;
+    double none[CHUNK] = {0}, one[CHUNK], scaled[CHUNK], out[3][CHUNK] = {{0}};
+    const bool scales = job->m->cycle->mass_scale > 0;
+    for (size_t i = 0; i < end - begin; i++) {
+        one[i] = 1;
+        scaled[i] = p->mass[begin + i] * scale_of(job->m, begin + i);
+        p->alpha[begin + i] = 0;
+    }
+    tl_damping_batch batch = {.size = sizeof batch,
+                              .count = (uint32_t)(end - begin),
+                              .dt = job->dt,
+                              .mass = p->mass + begin,
+                              .inertia = one,
+                              .alpha = p->alpha + begin,
+                              .state = job->state,
+                              .moving_mass = scales ? scaled : p->mass + begin,
+                              .moving_inertia = one};
+    for (int k = 0; k < 3; k++) {
+        batch.velocity[k] = p->v[k] + begin;
+        batch.angular_velocity[k] = batch.moment[k] = none;
+        batch.force[k] = p->force[k] + begin;
+        batch.force_before[k] = p->force_before[k] ? p->force_before[k] + begin : NULL;
+        batch.moment_before[k] = none;
+        batch.damping_force[k] = p->damping[k] + begin;
+        batch.damping_moment[k] = out[k];
+        memset(batch.damping_force[k], 0, (end - begin) * sizeof *batch.damping_force[k]);
+    }
+    tl_damping_call(job->m, &batch, chunk);
+    for (int k = 0; k < 3 && p->force_before[k]; k++)
+        memcpy(p->force_before[k] + begin, p->force[k] + begin, (end - begin) * sizeof *p->force[k]);
+}
+
+void tl_gridpoints_damp(tl_model *m, double dt, double *const *state)
+{
+    damp_job job = {m, dt, state};
+    if (tl_model_deforms(m))
+        tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, damp_range, &job);
+}
+
+void tl_gridpoints_brake(tl_model *m, double alpha)
+{
+    tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
+    for (size_t row = 0; p && row < p->table.rows; row++) {
+        p->alpha[row] = alpha;
+        tl_columns_put(p->damping, row, tl_v3(0, 0, 0));
+    }
+}
+
+/* ---------------------------------------------------------------- motion ----------------- */
+
+typedef struct move_job {
+    tl_model *m;
+    double kick, drift;
+} move_job;
+
+/* What makes a gridpoint faster: its free forces, and what slows it. */
+typedef struct push {
+    tl_vec3 force, damping;
+    double mass, alpha; /* mass as the step moves it */
+} push;
+
+static push push_of(const tl_model *m, size_t row)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const unsigned fixed = p->fixed[row];
+    push out = {tl_free_part(tl_columns_get(p->force, row), fixed), {0, 0, 0}, p->mass[row] * scale_of(m, row), 0};
+    if (tl_is_damped(m) && p->alpha) {
+        out.damping = tl_free_part(tl_columns_get(p->damping, row), fixed);
+        out.alpha = p->alpha[row];
+    }
+    if (tl_loads_lag(m)) {
+        const tl_vec3 lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
+        out.force = tl_v3_sub(out.force, tl_free_part(tl_v3_scale(p->mass[row], lag), fixed));
+    }
+    return out;
+}
+
+/* The velocity after the kick: that of held components stays. */
+static tl_vec3 kicked(const tl_model *m, size_t row, const push *by, double kick)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const unsigned fixed = p->fixed[row];
+    const tl_vec3 v0 = tl_columns_get(p->v, row);
+    const tl_vec3 v1 = tl_kick(v0, tl_v3_add(by->force, by->damping), kick / by->mass, by->alpha, kick);
+    return tl_v3_add(tl_v3_sub(v0, tl_free_part(v0, fixed)), tl_free_part(v1, fixed));
+}
+
+/* What is booked of a chunk (energy.c): a number for each row of lanes. */
+typedef struct chunk_work {
+    double book[TL_BOOK_COUNT][CHUNK / TL_LANES];
+    double until, after; /* half of the step before and of the one after */
+} chunk_work;
+
+static void book_work(chunk_work *work, size_t at, tl_work_kind kind, tl_vec3 force, tl_vec3 moved, tl_vec3 v1)
+{
+    work->book[TL_BOOK_UNTIL(kind)][at] += work->until * tl_v3_dot(force, moved);
+    work->book[TL_BOOK_AFTER(kind)][at] += work->after * tl_v3_dot(force, v1);
+}
+
+/* As motion.c books a body. */
+static void book_point(const tl_model *m, size_t row, size_t at, const push *by, tl_vec3 v1, chunk_work *work)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 v0 = tl_columns_get(p->v, row), moved = tl_columns_get(p->moved, row), dv = tl_v3_sub(v1, v0);
+    const double mass = p->mass[row], share = work->until / (work->until + work->after), dv2 = tl_v3_norm2(dv);
+    const tl_vec3 v = tl_v3_madd(v0, share, dv), held = tl_columns_get(p->force, row);
+    work->book[TL_BOOK_KINETIC][at] += 0.5 * mass * (tl_v3_norm2(v) - share * (1 - share) * dv2);
+    work->book[TL_BOOK_FIRST][at] += 0.5 * mass * dv2;
+    work->book[TL_BOOK_MOTION0][at] += 0.5 * mass * tl_v3_norm2(v0);
+    work->book[TL_BOOK_MOTION2][at] += 0.5 * mass * tl_v3_norm2(v1);
+    work->book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][at] += share * mass * tl_v3_dot(tl_v3_sub(v0, moved), dv);
+    book_work(work, at, TL_WORK_GRAVITY, tl_v3_scale(mass, m->cycle->gravity), moved, v1);
+    book_work(work, at, TL_WORK_EXTERNAL, load_of(p, row), moved, v1);
+    book_work(work, at, TL_WORK_EXTERNAL, tl_v3_sub(tl_free_part(held, p->fixed[row]), held), moved, v1);
+    if (!tl_is_damped(m))
+        return;
+    const tl_vec3 slowed = tl_free_part(tl_v3_add(v0, v1), p->fixed[row]);
+    book_work(work, at, TL_WORK_DAMPING, tl_v3_madd(by->damping, -0.5 * by->alpha * by->mass, slowed), moved, v1);
+}
+
+static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    const move_job *job = user;
+    tl_model *m = job->m;
+    tl_gridpoints *p = &m->zones->points;
+    chunk_work work;
+    memset(&work, 0, sizeof work);
+    work.until = 0.5 * m->dt;
+    work.after = 0.5 * job->drift;
+    for (size_t row = begin; row < end; row++) {
+        const push by = push_of(m, row);
+        const tl_vec3 v1 = kicked(m, row, &by, job->kick);
+        book_point(m, row, (row - begin) / TL_LANES, &by, v1, &work);
+        tl_columns_put(p->v, row, v1);
+        tl_columns_put(p->moved, row, v1);
+        tl_columns_put(p->u, row, tl_v3_madd(tl_columns_get(p->u, row), job->drift, v1));
+    }
+    tl_exact_add_each(m->cycle->booked[thread].sum, TL_BOOK_COUNT, work.book[0], CHUNK / TL_LANES,
+                      (end - begin) / TL_LANES);
+}
+
+/* The means over a mesh, by mass, are those of its body. */
+static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const tl_model *m = user;
+    const tl_gridpoints *p = &m->zones->points;
+    for (size_t k = begin; k < end; k++) {
+        const tl_body_mesh *mesh = &m->zones->mesh[k];
+        tl_vec3 u = {0, 0, 0};
+        double mass = 0;
+        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
+            u = tl_v3_madd(u, p->mass[row], tl_columns_get(p->u, row));
+            mass += p->mass[row];
+        }
+        m->bodies.pose[mesh->row].u = tl_v3_scale(1 / mass, u);
+    }
+}
+
+void tl_gridpoints_move(tl_model *m, double dt)
+{
+    move_job job = {m, 0.5 * (m->dt + dt), dt};
+    if (!tl_model_deforms(m))
+        return;
+    tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
+    tl_parallel_for(m->pool, m->zones->mesh_count, 1, pose_range, m);
+}
+
+/* ---------------------------------------------------------------- rest ------------------- */
+
+uint32_t tl_gridpoints_moving(const tl_model *m, double ratio)
+{
+    uint32_t out = TL_NO_ROW;
+    for (size_t k = 0; m->zones && k < m->zones->mesh_count; k++) {
+        const tl_gridpoints *p = &m->zones->points;
+        const tl_body_mesh *mesh = &m->zones->mesh[k];
+        double kinetic = 0, stored = 0;
+        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
+            kinetic += 0.5 * p->mass[row] * tl_v3_norm2(tl_free_part(tl_columns_get(p->v, row), p->fixed[row]));
+            stored += p->stiffness[row] > 0 ? 0.5 * p->bears[row] * p->bears[row] / p->stiffness[row] : 0;
+        }
+        if (kinetic > 0 && !(kinetic < tl_kinetic_share(ratio) * stored) && mesh->row < out)
+            out = mesh->row;
+    }
+    return out;
+}

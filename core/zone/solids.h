@@ -1,0 +1,15 @@
+/* solids.h - the solids of a model: materials of zones, by their names. */
+#ifndef TL_ZONE_SOLIDS_H
+#define TL_ZONE_SOLIDS_H
+
+#include "zone/zones.h"
+
+/* The number of a solid, or TL_NO_ROW. */
+uint32_t tl_solid_find(const tl_model *m, const char *name);
+/* Sets a solid: with `kind` a new one or another in its place, without it only parameters of one that there is. */
+tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args);
+/* Gives the zones the columns of states that a solid needs. false: out of memory. */
+bool tl_solid_columns(struct tl_zones *z, const tl_solid *solid);
+void tl_solids_free(struct tl_zones *z);
+
+#endif

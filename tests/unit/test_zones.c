@@ -1,0 +1,238 @@
+/* test_zones.c - zones of a deformable body: uniform strain, energy, momentum, frequencies, the same bits on any threads. */
+#include "contact_scene.h"
+#include "zone/grid.h"
+#include "zone/solids.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------- an elastic solid ------- */
+
+typedef struct elastic {
+    double young, poisson;
+} elastic;
+
+static const tl_param elastic_params[] = {
+    TL_PARAM(TL_PARAM_REAL, elastic, young, "Pa", "Young's modulus", .min = 1.0, .max = 1e15),
+    TL_PARAM(TL_PARAM_REAL, elastic, poisson, "", "Poisson's ratio", .min = 0.0, .max = 0.4999),
+};
+
+static tl_status elastic_update(const void *self, const tl_solid_batch *b, tl_report *report)
+{
+    (void)report;
+    const elastic *e = self;
+    const double g = e->young / (2 * (1 + e->poisson)), l = 2 * g * e->poisson / (1 - 2 * e->poisson);
+    for (uint32_t i = 0; i < b->count; i++) {
+        const double t = l * (b->strain[0][i] + b->strain[1][i] + b->strain[2][i]);
+        for (int j = 0; j < 6; j++)
+            b->stress[j][i] += 2 * g * b->strain[j][i] + (j < 3 ? t : 0);
+    }
+    return TL_OK;
+}
+
+static void elastic_moduli(const void *self, double *constrained, double *shear)
+{
+    const elastic *e = self;
+    *shear = e->young / (2 * (1 + e->poisson));
+    *constrained = 2 * *shear * (1 - e->poisson) / (1 - 2 * e->poisson);
+}
+
+static const tl_solid_ops elastic_ops = {
+    .size = sizeof elastic_ops, .update = elastic_update, .moduli = elastic_moduli, .never_fails = 1};
+static const tl_kind elastic_kind = {.size = sizeof elastic_kind,
+                                     .type = TL_KIND_SOLID,
+                                     .name = "elastic",
+                                     .params = elastic_params,
+                                     .param_count = 2,
+                                     .param_stride = sizeof elastic_params[0],
+                                     .params_size = sizeof(elastic),
+                                     .ops = &elastic_ops};
+
+/* ---------------------------------------------------------------- a box of zones --------- */
+
+/* A box of n[0] x n[1] x n[2] cells, each of six zones about its diagonal, which are a cluster. */
+typedef struct box {
+    tl_vec3 *point;
+    uint32_t (*zone)[4], *start, *list;
+    tl_grid grid;
+} box;
+
+static box box_of(const int n[3], tl_vec3 min, tl_vec3 max, double density)
+{
+    const size_t points = (size_t)((n[0] + 1) * (n[1] + 1) * (n[2] + 1)), cells = (size_t)(n[0] * n[1] * n[2]);
+    box b = {.point = calloc(points, sizeof *b.point),
+             .zone = calloc(6 * cells, sizeof *b.zone),
+             .start = calloc(cells + 1, sizeof *b.start),
+             .list = calloc(6 * cells, sizeof *b.list)};
+    static const int order[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    size_t p = 0, c = 0;
+    for (int k = 0; k <= n[2]; k++)
+        for (int j = 0; j <= n[1]; j++)
+            for (int i = 0; i <= n[0]; i++)
+                b.point[p++] = tl_v3(min.x + (max.x - min.x) * i / n[0], min.y + (max.y - min.y) * j / n[1],
+                                     min.z + (max.z - min.z) * k / n[2]);
+    for (int k = 0; k < n[2]; k++)
+        for (int j = 0; j < n[1]; j++)
+            for (int i = 0; i < n[0]; i++, c++) {
+                b.start[c + 1] = (uint32_t)(6 * (c + 1));
+                for (int t = 0; t < 6; t++) {
+                    int at[3] = {i, j, k};
+                    uint32_t *z = b.zone[6 * c + (size_t)t];
+                    for (int a = 0; a < 4; a++) {
+                        z[a] = (uint32_t)(at[0] + (n[0] + 1) * (at[1] + (n[1] + 1) * at[2]));
+                        if (a < 3)
+                            at[order[t][a]]++;
+                    }
+                    if (t >= 3) { /* odd: turned inside out */
+                        const uint32_t swap = z[1];
+                        z[1] = z[2];
+                        z[2] = swap;
+                    }
+                    b.list[6 * c + (size_t)t] = (uint32_t)(6 * c) + (uint32_t)t;
+                }
+            }
+    b.grid = (tl_grid){.point = b.point,
+                       .point_count = points,
+                       .zone = (const uint32_t(*)[4])b.zone,
+                       .zone_count = 6 * cells,
+                       .cluster_start = b.start,
+                       .cluster_zone = b.list,
+                       .cluster_count = cells,
+                       .density = density};
+    return b;
+}
+
+static void box_free(box *b)
+{
+    free(b->point);
+    free(b->zone);
+    free(b->start);
+    free(b->list);
+}
+
+/* A box of zones, alone. */
+static tl_model *zoned(const int n[3], tl_vec3 size, double young, double poisson, double density, unsigned threads)
+{
+    tl_model *m = scene_model(threads);
+    const tl_vec3 half = tl_v3_scale(0.5, size);
+    scene_box(m, tl_v3_neg(half), half);
+    const tl_arg values[] = {{.key = "young", .type = TL_ARG_NUMBER, .number = young},
+                             {.key = "poisson", .type = TL_ARG_NUMBER, .number = poisson}};
+    const tl_args args = {values, 2};
+    CHECK_INT(tl_zones_begin(m), TL_OK);
+    scene_ok(m, tl_solid_set(m, "rock", &elastic_kind, &args));
+    box b = box_of(n, tl_v3_sub(tl_v3_neg(half), m->origin), tl_v3_sub(half, m->origin), density);
+    scene_ok(m, tl_zones_add(m, 1, &b.grid, 0));
+    box_free(&b);
+    return m;
+}
+
+static void run(tl_model *m, int64_t steps)
+{
+    tl_solve_result result;
+    scene_ok(m, tl_model_cycle(m, steps, &result));
+}
+
+/* ---------------------------------------------------------------- tests ------------------ */
+
+/* A linear velocity field strains every zone alike: the stress is uniform to rounding, whatever clusters share. */
+TEST(a_uniform_strain_is_uniform)
+{
+    const int n[3] = {3, 4, 2};
+    tl_model *m = zoned(n, tl_v3(1, 2, 1.5), 1e9, 0.25, 2500, 1);
+    tl_gridpoints *p = &m->zones->points;
+    const double rate[3][3] = {{1e-3, 2e-4, -3e-4}, {5e-4, -2e-3, 1e-4}, {3e-4, 6e-4, 7e-4}};
+    for (size_t row = 0; row < p->table.rows; row++) {
+        p->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+        for (int i = 0; i < 3; i++)
+            p->v[i][row] = rate[i][0] * p->ref[0][row] + rate[i][1] * p->ref[1][row] + rate[i][2] * p->ref[2][row];
+    }
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-3, .zone_fraction = 1}));
+    run(m, 2);
+    const double g = 1e9 / 2.5, l = g * 0.5 / 0.5;
+    const double trace = rate[0][0] + rate[1][1] + rate[2][2];
+    const double right[6] = {2 * g * rate[0][0] + l * trace,          2 * g * rate[1][1] + l * trace,
+                             2 * g * rate[2][2] + l * trace,          g * (rate[0][1] + rate[1][0]),
+                             g * (rate[1][2] + rate[2][1]),           g * (rate[2][0] + rate[0][2])};
+    const tl_zone_table *t = &m->zones->zones;
+    for (size_t row = 0; row < t->table.rows; row++)
+        for (int j = 0; j < 6; j++)
+            CHECK_NEAR(t->stress[j][row], 1e-3 * right[j], 1e-3 * 1e6 * 3e-6);
+    for (size_t row = 1; row < t->table.rows; row++)
+        for (int j = 0; j < 6; j++)
+            CHECK_NEAR(t->stress[j][row], t->stress[j][0], 1e-9);
+    tl_model_destroy(m);
+}
+
+/* A box that swings freely keeps its energy and its momentum. */
+TEST(a_swinging_box_makes_no_energy)
+{
+    const int n[3] = {4, 4, 4};
+    tl_model *m = zoned(n, tl_v3(1, 1, 1), 1e9, 0.3, 2500, 2);
+    tl_gridpoints *p = &m->zones->points;
+    for (size_t row = 0; row < p->table.rows; row++)
+        if (p->zones[row] > 0)
+            for (int i = 0; i < 3; i++)
+                p->v[i][row] = sin(7.0 * p->ref[(i + 1) % 3][row] + i) + 0.3 * i;
+    tl_energy energy;
+    double most = 0;
+    for (int k = 0; k < 60; k++) {
+        run(m, 10);
+        scene_ok(m, tl_model_energy(m, &energy));
+        most = fmax(most, fabs(energy.balance));
+    }
+    CHECK(most < 2e-3);
+    CHECK(energy.stored > 0.05 * energy.kinetic);
+    CHECK(fabs(energy.friction) < 1e-9 * energy.kinetic);
+    tl_model_destroy(m);
+}
+
+/* The same bits on one thread and on many. */
+TEST(zones_have_the_same_bits_on_any_threads)
+{
+    const int n[3] = {9, 9, 9};
+    tl_model *m[2];
+    for (int k = 0; k < 2; k++) {
+        m[k] = zoned(n, tl_v3(1, 1, 1), 1e9, 0.3, 2500, k ? 3 : 1);
+        tl_gridpoints *p = &m[k]->zones->points;
+        for (size_t row = 0; row < p->table.rows; row++)
+            if (p->zones[row] > 0)
+                p->v[0][row] = sin(7.0 * p->ref[1][row]);
+        run(m[k], 50);
+    }
+    CHECK(m[0]->zones->parcels.table.rows > 1);
+    for (int i = 0; i < 3; i++) {
+        const size_t bytes = m[0]->zones->points.table.rows * sizeof(double);
+        CHECK(memcmp(m[0]->zones->points.u[i], m[1]->zones->points.u[i], bytes) == 0);
+        CHECK(memcmp(m[0]->zones->points.force[i], m[1]->zones->points.force[i], bytes) == 0);
+    }
+    for (int k = 0; k < 2; k++)
+        tl_model_destroy(m[k]);
+}
+
+/* A column on a held foot shortens by rho g h^2 / (2 M) under its weight, M the constrained modulus where its sides are held. */
+TEST(a_column_settles_under_its_weight)
+{
+    const int n[3] = {2, 2, 16};
+    tl_model *m = zoned(n, tl_v3(1, 1, 8), 1e9, 0.25, 2500, 1);
+    tl_gridpoints *p = &m->zones->points;
+    scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
+    for (size_t row = 0; row < p->table.rows; row++) {
+        if (p->zones[row] > 0)
+            p->fixed[row] = TL_FIX_X | TL_FIX_Y;
+        if (p->zones[row] > 0 && p->ref[2][row] < m->origin.z - 3.9)
+            p->fixed[row] |= TL_FIX_Z;
+    }
+    m->constraints++;
+    tl_solve_result result;
+    scene_ok(m, tl_model_damping(m, "local", NULL));
+    scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-6, .max_cycles = 20000}, &result));
+    double low = 0;
+    for (size_t row = 0; row < p->table.rows; row++)
+        low = fmin(low, p->u[2][row]);
+    printf("settles by %.6g in %d steps\n", low, (int)result.cycles);
+    CHECK_NEAR(low, -2500 * 10 * 64 / (2 * 1.2e9), 1e-3 * 6.7e-4);
+    tl_model_destroy(m);
+}
+
+TEST_MAIN()
