@@ -44,10 +44,10 @@ static tl_status apply(tl_model *m)
         return TL_OK;
     const struct tl_zones *z = m->zones;
     const tl_parcel *of = &z->parcels.of[c->failure.chunk];
-    const tl_solid *solid = &z->solid[of->solid];
+    const tl_named_solid *solid = &z->solid[of->solid];
     c->failure.error.status = TL_OK;
     return tl_fail(&m->error, status, "cycle %lld, solid '%s' (%s) of block %u: %s", (long long)m->cycles + 1,
-                   solid->name, solid->kind->name, z->mesh[of->mesh].body, c->failure.error.text);
+                   solid->name, solid->of.kind->name, z->mesh[of->mesh].body, c->failure.error.text);
 }
 
 static tl_energies energies(tl_model *m)
@@ -76,7 +76,7 @@ static bool may_fail(const tl_model *m)
     const struct tl_zones *z = m->zones;
     bool sure = true;
     for (size_t k = 0; z && k < z->solid_count; k++)
-        sure = sure && ((const tl_solid_ops *)z->solid[k].kind->ops)->never_fails;
+        sure = sure && ((const tl_solid_ops *)z->solid[k].of.kind->ops)->never_fails;
     for (size_t k = 0; z && k < z->parcels.table.rows; k++)
         sure = sure && z->parcels.most_strain[k] < FAST_STRAIN * FAST_STRAIN;
     return !sure;

@@ -147,7 +147,7 @@ static void walk_fields(const char *item, const tl_field *(*list)(size_t *count)
 
 static const char *plugin_word(tl_kind_type type)
 {
-    static const char *const words[] = {"law", "damping", "generator", "screen"};
+    static const char *const words[] = {"law", "damping", "generator", "screen", "solid"};
     return words[type];
 }
 
@@ -180,7 +180,10 @@ static void walk_kind(const tl_kind *kind, row_call call, void *user)
         call(&(row){.heading = "Parameters:"}, user);
     walk_params(kind->params, kind->param_count, call, user);
     if (kind->state_count)
-        call(&(row){.heading = kind->type == TL_KIND_LAW ? "States of a contact point:" : "States:"}, user);
+        call(&(row){.heading = kind->type == TL_KIND_LAW     ? "States of a contact point:"
+                               : kind->type == TL_KIND_SOLID ? "States of a zone:"
+                                                             : "States:"},
+             user);
     for (uint32_t i = 0; i < kind->state_count; i++)
         call(&(row){NULL, kind->states[i].name, NULL, "", kind->states[i].doc}, user);
 }
@@ -237,7 +240,7 @@ static void print_overview(void)
          "  talus -e CHUNK                   run a piece of Lua\n"
          "  talus help [TOPIC]               this page, a function, or a plugin\n"
          "  talus plugins                    what is loaded, and what was refused and why\n"
-         "  talus new law|damping|generator NAME [FOLDER]\n"
+         "  talus new law|damping|generator|solid NAME [FOLDER]\n"
          "                                   a folder with a plugin to change, that builds and "
          "works\n"
          "  talus check FILE.so [NAME=VALUE...]\n"
@@ -253,8 +256,8 @@ static void print_overview(void)
     const tl_lua_topic *topic;
     for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         print_row(topic->name, topic_doc(topic));
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
-        static const char *const titles[] = {"Laws", "Dampings", "Generators", "Screens"};
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
+        static const char *const titles[] = {"Laws", "Dampings", "Generators", "Screens", "Solids"};
         printf("\n%s:\n", titles[type]);
         print_kinds((tl_kind_type)type);
     }
@@ -339,7 +342,7 @@ static bool unknown_topic(const char *word, tl_error *error)
         if (topic_says(topic, word))
             list_page(&pages, topic->name);
     }
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
         const tl_kind *kind;
         for (size_t i = 0; (kind = tl_plugin_kind((tl_kind_type)type, i)) != NULL; i++) {
             tl_lua_names_add(&names, kind->name);
@@ -375,7 +378,7 @@ bool tl_lua_help(const char *word, tl_error *error)
     for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         if (strcmp(topic->name, word) == 0 && ++found)
             print_topic(topic);
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
         const tl_kind *kind = tl_plugin_find((tl_kind_type)type, word);
         if (kind && found++)
             putchar('\n');

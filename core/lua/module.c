@@ -87,13 +87,14 @@ static int module_kinds(lua_State *L)
     return 1;
 }
 
-/* Puts talus.laws, talus.dampings, talus.generators and talus.screens into the module at the top of the stack. */
+/* Puts talus.laws, talus.dampings, talus.generators, talus.screens and talus.solids into the module at the top of the stack. */
 static void put_kinds(lua_State *L)
 {
     static const char *const lists[] = {[TL_KIND_LAW] = "laws",
                                         [TL_KIND_DAMPING] = "dampings",
                                         [TL_KIND_GENERATOR] = "generators",
-                                        [TL_KIND_SCREEN] = "screens"};
+                                        [TL_KIND_SCREEN] = "screens",
+                                        [TL_KIND_SOLID] = "solids"};
     for (size_t type = 0; type < TL_LUA_COUNT(lists); type++) {
         lua_pushinteger(L, (lua_Integer)type);
         lua_pushfstring(L, "talus.%s", lists[type]);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/params.h"
+#include "base/solid_columns.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -65,6 +66,11 @@ static const struct {
                          {AT(tl_screen_ops, take)},
                          {AT(tl_screen_ops, close)}},
                         {{0}}},
+    [TL_KIND_SOLID] = {"solid",
+                       sizeof(tl_solid_ops),
+                       sizeof(tl_solid_ops),
+                       {{AT(tl_solid_ops, update)}, {AT(tl_solid_ops, moduli)}},
+                       {{AT(tl_solid_ops, create)}, {AT(tl_solid_ops, destroy)}}},
 };
 
 /* A plugin's headers, as it states them. */
@@ -209,7 +215,12 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
         return unclean(error, "parameter", p->name);
     if (bytes == 0)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the unknown type %u", p->name, p->type);
-    if (kind->type != TL_KIND_GENERATOR && (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
+    bool table = kind->type == TL_KIND_SOLID && p->type == TL_PARAM_POINTS;
+    if (table && !(p->flags & TL_PARAM_FLAT))
+        return tl_fail(error, TL_E_PLUGIN,
+                       "parameter '%s' is a list of points in space: a solid takes tables, with TL_PARAM_FLAT",
+                       p->name);
+    if (kind->type != TL_KIND_GENERATOR && !table && (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
         return tl_fail(error, TL_E_PLUGIN,
                        "parameter '%s' is a %s, which lives only as long as the call: a %s cannot keep it", p->name,
                        p->type == TL_PARAM_STRING ? "string" : "list of points", tl_kind_type_name(kind->type));
@@ -228,6 +239,16 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
 
 /* ---------------------------------------------------------------- states and operations -- */
 
+/* Whether kinds of that type may have such states. */
+static bool state_fits(uint32_t type, uint32_t state)
+{
+    switch (type) {
+    case TL_KIND_LAW: return state == TL_STATE_SCALAR || state == TL_STATE_TANGENT;
+    case TL_KIND_SOLID: return state == TL_STATE_SCALAR || state == TL_STATE_AXIS || state == TL_STATE_TENSOR;
+    default: return state == TL_STATE_SCALAR;
+    }
+}
+
 static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *error)
 {
     const tl_state *s = &kind->states[index];
@@ -237,12 +258,21 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name, s->doc ? "unit" : "doc");
     if (any_unclean(s->unit, s->doc))
         return unclean(error, "state", s->name);
-    if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_LIFT)
+    if (s->kind > TL_STATE_TENSOR || s->transfer > TL_TRANSFER_LIFT)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has the unknown %s %u", s->name,
-                       s->kind > TL_STATE_TANGENT ? "kind" : "transfer",
-                       s->kind > TL_STATE_TANGENT ? s->kind : s->transfer);
-    if (kind->type == TL_KIND_DAMPING && s->kind != TL_STATE_SCALAR)
-        return tl_fail(error, TL_E_PLUGIN, "state '%s' of a damping must be a scalar", s->name);
+                       s->kind > TL_STATE_TENSOR ? "kind" : "transfer",
+                       s->kind > TL_STATE_TENSOR ? s->kind : s->transfer);
+    if (!state_fits(kind->type, s->kind))
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' of a %s must be a scalar%s", s->name,
+                       tl_kind_type_name(kind->type),
+                       kind->type == TL_KIND_LAW     ? " or a tangent"
+                       : kind->type == TL_KIND_SOLID ? ", an axis or a tensor"
+                                                     : "");
+    if (kind->type == TL_KIND_SOLID && s->transfer != TL_TRANSFER_COPY)
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' of a solid must have TL_TRANSFER_COPY: zones stay what they are",
+                       s->name);
+    if (s->kind == TL_STATE_AXIS && s->initial != 0)
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' is an axis: it must begin at 0", s->name);
     if (s->transfer == TL_TRANSFER_ENERGY && (s->kind != TL_STATE_SCALAR || s->initial != 0))
         return tl_fail(error, TL_E_PLUGIN, "state '%s' is an energy: it must be a scalar that begins at 0", s->name);
     if (!isfinite(s->initial))
@@ -304,23 +334,24 @@ static tl_status copy_ops(const version *v, tl_kind *kind)
 static tl_status check_rows(const tl_kind *kind, tl_error *error)
 {
     tl_status status = TL_OK;
-    uint32_t columns = 0;
+    bool solid = kind->type == TL_KIND_SOLID;
+    uint32_t columns = 0, most = solid ? TL_SOLID_COLUMNS : TL_STATE_COLUMNS;
     for (uint32_t i = 0; i < kind->param_count && status == TL_OK; i++)
         status = check_param(kind, i, error);
     if (status != TL_OK)
         return status;
-    if (kind->type >= TL_KIND_GENERATOR && kind->state_count > 0)
+    if ((kind->type == TL_KIND_GENERATOR || kind->type == TL_KIND_SCREEN) && kind->state_count > 0)
         return tl_fail(error, TL_E_PLUGIN, "a %s has no states, this one declares %u", tl_kind_type_name(kind->type),
                        kind->state_count);
     for (uint32_t i = 0; i < kind->state_count && status == TL_OK; i++) {
         status = check_state(kind, i, error);
-        columns += kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1;
+        columns += tl_state_width(kind->states[i].kind);
     }
     if (status != TL_OK)
         return status;
-    if (columns > TL_STATE_COLUMNS)
-        return tl_fail(error, TL_E_PLUGIN, "its states take %u columns (a scalar 1, a tangent 3); %d at the most",
-                       columns, TL_STATE_COLUMNS);
+    if (columns > most)
+        return tl_fail(error, TL_E_PLUGIN, "its states take %u columns (a scalar 1, %s); %u at the most", columns,
+                       solid ? "an axis 3, a tensor 6" : "a tangent 3", most);
     return TL_OK;
 }
 
@@ -373,14 +404,14 @@ static void drop_unknown(tl_plugin *plugin, tl_kind *kinds, char note[TL_NOTE_TE
 {
     uint32_t kept = 0, given = plugin->kind_count;
     for (uint32_t i = 0; i < given; i++) {
-        if (kinds[i].type <= TL_KIND_SCREEN)
+        if (kinds[i].type <= TL_KIND_SOLID)
             kinds[kept++] = kinds[i];
         else if (i == kept)
             snprintf(note, TL_NOTE_TEXT,
                      "kind %u, '%.60s', is of the unknown type %u and is left out: this Talus knows "
-                     "laws (%d), dampings (%d), generators (%d) and screens (%d)",
+                     "laws (%d), dampings (%d), generators (%d), screens (%d) and solids (%d)",
                      i + 1, kinds[i].name ? kinds[i].name : "", kinds[i].type, TL_KIND_LAW, TL_KIND_DAMPING,
-                     TL_KIND_GENERATOR, TL_KIND_SCREEN);
+                     TL_KIND_GENERATOR, TL_KIND_SCREEN, TL_KIND_SOLID);
     }
     size_t length = strlen(note);
     if (given - kept > 1)
@@ -425,7 +456,7 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
         return tl_fail(error, TL_E_PLUGIN,
                        "its id, version, doc or licence has a control character in it; its id is '%.60s'", given->id);
     if (given->kind_count == 0)
-        return tl_fail(error, TL_E_PLUGIN, "it holds no law, damping, generator or screen");
+        return tl_fail(error, TL_E_PLUGIN, "it holds no law, damping, generator, screen or solid");
     void *kinds;
     status = copy_rows(&v, "a kind", given->kinds, given->kind_count, given->kind_stride, FIRST_KIND_SIZE,
                        sizeof(tl_kind), &kinds);

@@ -349,7 +349,7 @@ tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t so
     laying l = {.m = m, .z = z, .grid = grid, .row = m->blocks.body[tl_block_row_quiet(m, body)]};
     sizes more;
     const size_t points = z->points.table.rows + grid->point_count + TL_LANES;
-    bool enough = make_room(&l, &more) && tl_solid_columns(z, &z->solid[solid]) &&
+    bool enough = make_room(&l, &more) && tl_solid_columns(z, &z->solid[solid].of) &&
                   tl_fit(&z->use_start, &z->use_start_capacity, points + 1, sizeof *z->use_start) &&
                   tl_fit(&z->use, &z->use_capacity, z->listed_count + more.listed, sizeof *z->use);
     if (enough) {

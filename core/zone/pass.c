@@ -26,7 +26,7 @@
 
 #include "base/extremes.h"
 #include "base/inline.h"
-#include "plugin/loader.h"
+#include "base/solid_columns.h"
 
 #include <string.h>
 
@@ -332,16 +332,16 @@ static void turn_state(const tl_mat3 *q, double *const *state, uint32_t kind, si
 }
 
 /* States that are directions or tensors turn with their zones. */
-static void turn_states(const struct tl_zones *z, const tl_solid *solid, const tl_zone_group *g, const group_rows *r)
+static void turn_states(const struct tl_zones *z, const tl_kind *kind, const tl_zone_group *g, const group_rows *r)
 {
     for (size_t i = 0; i < (size_t)g->depth * TL_LANES; i++) {
         const tl_mat3 q = turn_of(tl_v3(r->spin[0][i], r->spin[1][i], r->spin[2][i]));
         double *const *state = z->zones.state;
-        for (uint32_t k = 0; k < solid->kind->state_count; k++) {
-            const tl_state *of = tl_kind_state(solid->kind, k);
-            if (of->kind != TL_STATE_SCALAR)
-                turn_state(&q, state, of->kind, g->start + i);
-            state += of->kind == TL_STATE_TENSOR ? 6 : of->kind == TL_STATE_AXIS ? 3 : 1;
+        for (uint32_t k = 0; k < kind->state_count; k++) {
+            const uint32_t form = tl_solid_state(kind, k)->kind;
+            if (form != TL_STATE_SCALAR)
+                turn_state(&q, state, form, g->start + i);
+            state += tl_state_width(form);
         }
     }
 }
@@ -350,7 +350,6 @@ static void turn_states(const struct tl_zones *z, const tl_solid *solid, const t
 static bool call_solid(const pass_job *job, const tl_solid *solid, const tl_zone_group *g, group_rows *r, size_t parcel)
 {
     const struct tl_zones *z = job->zones;
-    const tl_solid_ops *ops = solid->kind->ops;
     double *state[TL_SOLID_COLUMNS];
     for (uint32_t k = 0; k < solid->columns; k++)
         state[k] = z->zones.state[k] + g->start;
@@ -366,14 +365,11 @@ static bool call_solid(const pass_job *job, const tl_solid *solid, const tl_zone
         batch.strain[j] = r->strain[j];
         batch.stress[j] = z->zones.stress[j] + g->start;
     }
-    tl_report report = {.size = sizeof report};
-    tl_enter(solid->kind, "update");
-    const tl_status status = ops->update(solid->self, &batch, &report);
-    tl_leave();
-    if (status == TL_OK)
-        return true;
-    tl_failure_note(job->failure, parcel, status, g->start, tl_report_text(&report, status));
-    return false;
+    tl_report report;
+    const tl_status status = tl_solid_update(solid, &batch, &report);
+    if (status != TL_OK)
+        tl_failure_note(job->failure, parcel, status, g->start, tl_report_text(&report, status));
+    return status == TL_OK;
 }
 
 /* The places of a parcel's gridpoints, and their way in the last step. */
@@ -394,7 +390,8 @@ static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
 {
     struct tl_zones *z = job->zones;
     const tl_parcel *of = &z->parcels.of[parcel];
-    const tl_solid *solid = &z->solid[of->solid];
+    const tl_named_solid *named = &z->solid[of->solid];
+    const tl_solid *solid = &named->of;
     const double bulk = solid->constrained - 4.0 / 3 * solid->shear;
     double work = 0, heat = 0, most = 0;
     list_points(job, of, p);
@@ -404,8 +401,8 @@ static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
         double lost;
         memset(r.dissipated, 0, sizeof r.dissipated);
         most = tl_larger(most, strain_group(z, p, g, &r));
-        if (solid->turns)
-            turn_states(z, solid, g, &r);
+        if (named->turns)
+            turn_states(z, solid->kind, g, &r);
         if (!call_solid(job, solid, g, &r, parcel))
             return;
         work += close_group(z, g, &r, &lost);

@@ -48,7 +48,7 @@ static void parcel_range(void *user, size_t begin, size_t end, size_t chunk, uns
     const struct tl_zones *z = user;
     for (size_t k = begin; k < end; k++) {
         const tl_parcel *of = &z->parcels.of[k];
-        const double modulus = z->solid[of->solid].constrained;
+        const double modulus = z->solid[of->solid].of.constrained;
         for (uint32_t s = of->point_begin; s < of->point_end; s++)
             z->slot[s].square = 0;
         for (uint32_t g = of->group_begin; g < of->group_end; g++)

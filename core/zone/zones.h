@@ -17,6 +17,7 @@
 
 #include "base/table.h"
 #include "model/model.h"
+#include "zone/solid.h"
 
 /* Zones of a cluster, at the most. */
 #define TL_CLUSTER_ZONES 10
@@ -25,16 +26,18 @@
 /* Gridpoints of a parcel, at the most. */
 #define TL_PARCEL_POINTS 2048
 
-/* A material that the model has given a name. */
-typedef struct tl_solid {
+/* A solid that the model has given a name. */
+typedef struct tl_named_solid {
     char *name;
-    const tl_kind *kind;
-    void *params;               /* the plugin's params struct */
-    void *self;                 /* what its create made, or params */
-    double constrained, shear;  /* upper bounds of its moduli K + 4/3 G and G, Pa */
-    uint32_t columns;           /* of states */
-    bool turns;                 /* some of them turn with the zones */
-} tl_solid;
+    tl_solid of;
+    bool turns; /* some of its states turn with the zones */
+} tl_named_solid;
+
+/* State descriptor k of a kind of solids. */
+static inline const tl_state *tl_solid_state(const tl_kind *kind, uint32_t k)
+{
+    return (const tl_state *)(const void *)((const char *)kind->states + (size_t)k * kind->state_stride);
+}
 
 typedef struct tl_gridpoints {
     tl_table table;
@@ -121,7 +124,7 @@ struct tl_zones {
     size_t row_of_count, row_of_capacity;
     tl_body_mesh *mesh;
     size_t mesh_count, mesh_capacity;
-    tl_solid *solid;
+    tl_named_solid *solid;
     size_t solid_count, solid_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;

@@ -23,6 +23,7 @@ MODULES = {
     "detect": ("base", "geometry", "narrow", "model", "contact", "force"),
     "query": ("base", "geometry", "narrow", "model", "contact", "detect"),
     "edit": ("base", "geometry", "model", "contact", "detect", "query", "cycle"),
+    "zone": ("base", "geometry", "plugin", "model"),
     "cycle": ("base", "geometry", "plugin", "model", "contact", "force", "detect"),
     "state": ("base", "geometry", "narrow", "plugin", "model", "contact", "force", "detect", "cycle"),
     "io": ("base", "geometry", "model", "contact", "force", "query", "cycle", "state"),
@@ -39,6 +40,8 @@ PUBLIC = {
     "number.h": {"plugin.h"},
     "text.h": set(),
     "kit.h": {"elementary.h", "number.h", "plugin.h", "vmath.h"},
+    "solid_kit.h": {"kit.h"},
+    "solid_returns.h": {"solid_kit.h"},
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
     "state.h": {"types.h", "plugin.h"},
@@ -48,10 +51,11 @@ PUBLIC = {
     "watch.h": {"types.h", "plugin.h"},
     "settings.h": {"types.h", "plugin.h"},
     "law_test.h": {"types.h", "plugin.h"},
+    "solid_test.h": {"types.h", "plugin.h"},
     "view.h": {"types.h", "plugin.h", "values.h"},
     "values.h": {"types.h", "plugin.h"},
     "check.h": {"plugins.h", "values.h"},
-    "talus.h": {"types.h", "plugin.h", "plugins.h", "history.h", "keyblocks.h", "law_test.h", "output.h", "state.h", "watch.h", "settings.h", "values.h",
+    "talus.h": {"types.h", "plugin.h", "plugins.h", "history.h", "keyblocks.h", "law_test.h", "solid_test.h", "output.h", "state.h", "watch.h", "settings.h", "values.h",
                 "version.h", "verdict.h", "view.h", "defaults.h"},
     "defaults.h": {"talus.h"},
     "fields.h": {"talus.h"},
@@ -59,7 +63,7 @@ PUBLIC = {
     "boundary.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h",
-                  "talus/kit.h", "talus/number.h", "talus/text.h"}
+                  "talus/kit.h", "talus/solid_kit.h", "talus/solid_returns.h", "talus/number.h", "talus/text.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"
@@ -71,7 +75,7 @@ STANDARD_HEADERS = {
 SCREEN_HEADERS = {"pthread.h", "unistd.h", "poll.h", "strings.h", "netinet/in.h", "sys/eventfd.h", "sys/random.h", "sys/socket.h",
                   "microhttpd.h"}
 LUA_HEADERS = {"lua.h", "lauxlib.h", "lualib.h", "luaconf.h", "lua.hpp"}
-KIND_FOLDERS = ("laws", "damping", "generators", "screens")
+KIND_FOLDERS = ("laws", "damping", "generators", "solids", "screens")
 # Kinds whose names are also words of the model (a joint is a thing, a field and a generator; a
 # contact's state may be elastic, a ratio local, energy kinetic, a boundary in a box): only a look-up or comparison with them is a fault.
 WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic", "box"}

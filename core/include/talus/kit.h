@@ -1,4 +1,4 @@
-/* kit.h - what contact laws, dampings and generators have in common, for whoever writes one.
+/* kit.h - what contact laws, dampings, generators and solids have in common, for whoever writes one.
  *
  * A plugin can do without: everything here is made of what plugin.h declares. Functions over columns take `lanes`
  * points from `begin` on; a loop with a constant number of them is vectorised best. */

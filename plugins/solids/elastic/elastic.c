@@ -1,0 +1,58 @@
+/* elastic.c - solid "elastic": isotropic, Hooke's law of the increments.
+ *
+ *     d sigma = (K - 2 G / 3) tr(d eps) I + 2 G d eps,  U = s:s / (4 G) + p^2 / (2 K) */
+#include <talus/solid_kit.h>
+
+typedef struct params {
+    double young, poisson, bulk, shear;
+} params;
+
+static const tl_param param_table[] = {TL_PARAMS_ELASTIC(params)};
+
+typedef struct elastic_solid {
+    tl_isotropic elastic;
+} elastic_solid;
+
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    const params *p = given;
+    elastic_solid solid;
+    tl_status status = tl_isotropic_of(p->young, p->poisson, p->bulk, p->shear, &solid.elastic, report);
+    return status == TL_OK ? tl_keep(&solid, sizeof solid, self, report) : status;
+}
+
+TL_VECTORIZED static tl_status update(const void *self, const tl_solid_batch *batch, tl_report *report)
+{
+    (void)report;
+    const tl_isotropic *elastic = &((const elastic_solid *)self)->elastic;
+    for (uint32_t begin = 0; begin < batch->count; begin += TL_LANES) {
+        tl_lanes6 trial;
+        tl_solid_trial(batch, begin, elastic, trial);
+        for (uint32_t k = 0; k < 6; k++)
+            memcpy(batch->stress[k] + begin, trial[k], sizeof trial[k]);
+    }
+    if (batch->stored)
+        tl_isotropic_energies(elastic, batch->count, (const double *const *)batch->stress, batch->stored);
+    if (batch->dissipated)
+        memset(batch->dissipated, 0, batch->count * sizeof *batch->dissipated);
+    for (uint32_t i = 0; i < batch->count; i++)
+        batch->flags[i] = tl_zone_flags(batch->flags[i], 0);
+    return TL_OK;
+}
+
+TL_VECTORIZED static void energy(const void *self, uint32_t count, const double *const stress[6], double *const *state,
+                                 double *stored)
+{
+    (void)state;
+    tl_isotropic_energies(&((const elastic_solid *)self)->elastic, count, stress, stored);
+}
+
+TL_SOLID_MODULI(elastic_solid);
+
+static const tl_solid_ops ops = TL_SOLID_OPS();
+
+static const tl_kind kind = TL_KIND(TL_KIND_SOLID, ops, .name = "elastic", .doc = "Isotropic and elastic.",
+                                    TL_KIND_PARAMS(params, param_table));
+
+TL_PLUGIN_SINCE(10, kind, .id = "talus.solid_elastic", .version = TALUS_VERSION, .doc = "Isotropic elastic solid.",
+                .licence = "BSD-3-Clause");
