@@ -668,6 +668,7 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: error = %g is outside [0, 1]", timestep.error);
     m->timestep = timestep;
     m->timestep.error = timestep.error > 0 ? timestep.error : TL_BALANCE_ERROR;
+    m->timestep.zone_fraction = timestep.zone_fraction > 0 ? timestep.zone_fraction : 1;
     if (m->cycle && m->detect)
         tl_balance_note(m);
     if (m->cycle) {

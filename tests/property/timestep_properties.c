@@ -93,7 +93,7 @@ static tl_model *build(recipe r, scale s)
     scene_ok(m, tl_stage_commit(&stage));
     scene_law(m, "elastic", r.kn * s.stiffness, 0.5 * r.kn * s.stiffness, -1);
     scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN, 0}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN, 0, 0}));
     tl_id first = m->blocks.id[0];
     if (check_random(&seed) < 0.5)
         scene_ok(m, tl_blocks_fix(m, &first, 1, TL_FIX_ALL));
@@ -186,7 +186,7 @@ TEST(a_contact_that_vanishes_never_makes_the_step_long)
                     tl_v3(0, 0, 0.5 * side.z - depth));
         scene_law(m, "elastic", r.kn, r.kn, -1);
         scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
-        scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN, 0}));
+        scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN, 0, 0}));
         scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
         face_steps(m, r.kn, &shortest, &longest);
         scene_put(m, 1, tl_v3(0, 0, 5 * r.size), scene_turn(tl_v3(0, 0, 1), 0));

@@ -240,7 +240,7 @@ static double slide(int pieces, double kn, double *place)
     double worst = 0;
     tl_solve_result result;
     const int cycles = (int)(10 * sqrt(kn / 1e7));
-    const tl_timestep step = {sizeof(tl_timestep), 0.1, TL_TIMESTEP_PAPER, 1e-2 / cycles, 0};
+    const tl_timestep step = {sizeof(tl_timestep), 0.1, TL_TIMESTEP_PAPER, 1e-2 / cycles, 0, 0};
     CHECK_INT(tl_model_timestep(m, &step), TL_OK);
     for (int k = 0; k < 200; k++) {
         CHECK_INT(tl_model_cycle(m, cycles, &result), TL_OK);

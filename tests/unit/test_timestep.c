@@ -110,7 +110,7 @@ TEST(a_body_without_contacts_stands_on_its_largest_face)
     scene_law(m, "elastic", kn / 3, kn, -1);
     double dt, least = mass * fmin(a * a + c * c, b * b + c * c) / 12;
     double r2 = (a * a + b * b) / 12 + c * c / 4;
-    tl_timestep timestep = {sizeof(tl_timestep), fraction, TL_TIMESTEP_BODY, NAN, 0};
+    tl_timestep timestep = {sizeof(tl_timestep), fraction, TL_TIMESTEP_BODY, NAN, 0, 0};
     scene_ok(m, tl_model_timestep(m, &timestep));
     scene_ok(m, tl_model_dt(m, &dt));
     CHECK_REL(dt, fraction * 2 * sqrt(1 / (k * (1 / mass + r2 / least))), 1e-12);
@@ -175,7 +175,7 @@ TEST(time_stands_where_nothing_can_move)
     CHECK_INT(ten_steps(m), TL_E_STATE);
     CHECK_CONTAINS(tl_model_error(m)->text, "no law says how stiff a contact is");
     /* and where the user gives one, time goes on */
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.25, 0}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.25, 0, 0}));
     scene_ok(m, ten_steps(m));
     CHECK_NEAR(m->time, 2.5, 1e-15);
     CHECK_NEAR(m->bodies.pose[0].u.x, 2.5, 1e-15);
@@ -191,7 +191,7 @@ TEST(a_fall_begins_after_steps_without_time)
     scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
     scene_ok(m, ten_steps(m));
     scene_ok(m, tl_blocks_free(m, &m->blocks.id[0], 1));
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.125, 0}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.125, 0, 0}));
     scene_ok(m, ten_steps(m));
     CHECK_NEAR(m->bodies.pose[0].u.z, -5 * 1.25 * 1.25, 1e-14);
     tl_model_destroy(m);
@@ -270,7 +270,7 @@ static void check_sliver(double size, double share, int32_t rule)
 {
     remark_log h = {0, ""};
     tl_model *m = eight_cubes(size, share, &h);
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, rule, NAN, 0}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, rule, NAN, 0, 0}));
     scene_ok(m, ten_steps(m));
     scene_ok(m, ten_steps(m));
     if (!CHECK_INT(h.remarks, 1))

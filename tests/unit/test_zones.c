@@ -116,8 +116,8 @@ static tl_model *zoned(const int n[3], tl_vec3 size, double young, double poisso
     tl_model *m = scene_model(threads);
     const tl_vec3 half = tl_v3_scale(0.5, size);
     scene_box(m, tl_v3_neg(half), half);
-    const tl_arg values[] = {{.key = "young", .type = TL_ARG_NUMBER, .number = young},
-                             {.key = "poisson", .type = TL_ARG_NUMBER, .number = poisson}};
+    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
+                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
     const tl_args args = {values, 2};
     CHECK_INT(tl_zones_begin(m), TL_OK);
     scene_ok(m, tl_solid_set(m, "rock", &elastic_kind, &args));
@@ -147,7 +147,7 @@ TEST(a_uniform_strain_is_uniform)
         for (int i = 0; i < 3; i++)
             p->v[i][row] = rate[i][0] * p->ref[0][row] + rate[i][1] * p->ref[1][row] + rate[i][2] * p->ref[2][row];
     }
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-3, .zone_fraction = 1}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-3}));
     run(m, 2);
     const double g = 1e9 / 2.5, l = g * 0.5 / 0.5;
     const double trace = rate[0][0] + rate[1][1] + rate[2][2];
@@ -226,13 +226,14 @@ TEST(a_column_settles_under_its_weight)
     m->constraints++;
     tl_solve_result result;
     scene_ok(m, tl_model_damping(m, "local", NULL));
-    scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-6, .max_cycles = 20000}, &result));
+    scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-6, .velocity = NAN, .max_time = NAN, .max_cycles = 20000}, &result));
     double low = 0;
     for (size_t row = 0; row < p->table.rows; row++)
         low = fmin(low, p->u[2][row]);
     printf("settles by %.6g in %d steps\n", low, (int)result.cycles);
-    CHECK_NEAR(low, -2500 * 10 * 64 / (2 * 1.2e9), 1e-3 * 6.7e-4);
+    CHECK_NEAR(low, -2500 * 10 * 64 / (2 * 1.2e9), 5e-3 * 6.7e-4);
     tl_model_destroy(m);
 }
 
-TEST_MAIN()
+TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones_have_the_same_bits_on_any_threads(),
+          a_column_settles_under_its_weight())

@@ -217,7 +217,7 @@ typedef struct tl_timestep {
     int32_t rule;    /* tl_timestep_rule */
     double dt;       /* fixed step, s; NaN: by the rule */
     double error;    /* rule balance: of the energy balance, up to which the step is longer; 0: the default */
-    double zone_fraction; /* of the critical step of zones, above 0, at most 1 */
+    double zone_fraction; /* of the critical step of zones, at most 1; 0: all of it */
 } tl_timestep;
 /* Sets how the time step is chosen; NULL: by the defaults. TL_E_ARGUMENT with a sentence for a fraction or a step out
  * of the ranges above; then nothing changes. */
