@@ -141,8 +141,8 @@ static void gather_point(const tl_model *m, size_t row, double share)
     double square = 0;
     for (uint32_t k = z->use_start[row]; k < z->use_start[row + 1]; k++) {
         const tl_slot *slot = &z->slot[z->use[k]];
-        force = tl_v3_add(force, tl_v3(slot->force[0], slot->force[1], slot->force[2]));
-        square += slot->square;
+        force = tl_v3_add(force, tl_v3(slot->of[0], slot->of[1], slot->of[2]));
+        square += slot->of[3];
     }
     force = tl_v3_madd(force, share * p->mass[row], m->config.gravity);
     tl_columns_put(p->force, row, tl_v3_madd(force, share, load_of(p, row)));

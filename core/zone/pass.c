@@ -59,6 +59,7 @@ typedef struct lanes3 {
 TL_INLINE void load(lanes3 *to, const double (*from)[TL_PARCEL_POINTS], const uint16_t *corner)
 {
     for (int i = 0; i < 3; i++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++)
             to->of[i][l] = from[i][corner[l]];
 }
@@ -66,12 +67,14 @@ TL_INLINE void load(lanes3 *to, const double (*from)[TL_PARCEL_POINTS], const ui
 TL_INLINE void take(lanes3 *from, const lanes3 *other)
 {
     for (int i = 0; i < 3; i++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++)
             from->of[i][l] -= other->of[i][l];
 }
 
 TL_INLINE void cross(lanes3 *out, const lanes3 *a, const lanes3 *b)
 {
+#pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         out->of[0][l] = a->of[1][l] * b->of[2][l] - a->of[2][l] * b->of[1][l];
         out->of[1][l] = a->of[2][l] * b->of[0][l] - a->of[0][l] * b->of[2][l];
@@ -80,7 +83,7 @@ TL_INLINE void cross(lanes3 *out, const lanes3 *a, const lanes3 *b)
 }
 
 /* Q of the turn w. */
-TL_INLINE tl_mat3 turn_of(tl_vec3 w)
+static tl_mat3 turn_of(tl_vec3 w)
 {
     const double x = 0.5 * w.x, y = 0.5 * w.y, z = 0.5 * w.z, s = 2 / (1 + (x * x + y * y + z * z));
     return (tl_mat3){{{1 - s * (y * y + z * z), s * (x * y - z), s * (x * z + y)},
@@ -88,25 +91,28 @@ TL_INLINE tl_mat3 turn_of(tl_vec3 w)
                       {s * (x * z - y), s * (y * z + x), 1 - s * (x * x + y * y)}}};
 }
 
-/* Turns the stresses of a row of zones. */
+/* Turns the stresses of a row of zones: Q stress Q^T, with rows of Q stress on the way. */
 TL_INLINE void turn_row(double *const stress[6], size_t row, size_t at, group_rows *restrict r)
 {
+    const double *restrict sxx = stress[0] + row, *restrict syy = stress[1] + row, *restrict szz = stress[2] + row;
+    const double *restrict sxy = stress[3] + row, *restrict syz = stress[4] + row, *restrict szx = stress[5] + row;
+#pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_mat3 q = turn_of(tl_v3(r->spin[0][at + l], r->spin[1][at + l], r->spin[2][at + l]));
-        const double xx = stress[0][row + l], yy = stress[1][row + l], zz = stress[2][row + l];
-        const double xy = stress[3][row + l], yz = stress[4][row + l], zx = stress[5][row + l];
-        tl_mat3 t;
-        for (int i = 0; i < 3; i++) {
-            t.m[i][0] = q.m[i][0] * xx + q.m[i][1] * xy + q.m[i][2] * zx;
-            t.m[i][1] = q.m[i][0] * xy + q.m[i][1] * yy + q.m[i][2] * yz;
-            t.m[i][2] = q.m[i][0] * zx + q.m[i][1] * yz + q.m[i][2] * zz;
-        }
-        r->before[0][at + l] = t.m[0][0] * q.m[0][0] + t.m[0][1] * q.m[0][1] + t.m[0][2] * q.m[0][2];
-        r->before[1][at + l] = t.m[1][0] * q.m[1][0] + t.m[1][1] * q.m[1][1] + t.m[1][2] * q.m[1][2];
-        r->before[2][at + l] = t.m[2][0] * q.m[2][0] + t.m[2][1] * q.m[2][1] + t.m[2][2] * q.m[2][2];
-        r->before[3][at + l] = t.m[0][0] * q.m[1][0] + t.m[0][1] * q.m[1][1] + t.m[0][2] * q.m[1][2];
-        r->before[4][at + l] = t.m[1][0] * q.m[2][0] + t.m[1][1] * q.m[2][1] + t.m[1][2] * q.m[2][2];
-        r->before[5][at + l] = t.m[2][0] * q.m[0][0] + t.m[2][1] * q.m[0][1] + t.m[2][2] * q.m[0][2];
+        const double x = 0.5 * r->spin[0][at + l], y = 0.5 * r->spin[1][at + l], z = 0.5 * r->spin[2][at + l];
+        const double s = 2 / (1 + (x * x + y * y + z * z));
+        const double a0 = 1 - s * (y * y + z * z), a1 = s * (x * y - z), a2 = s * (x * z + y);
+        const double b0 = s * (x * y + z), b1 = 1 - s * (x * x + z * z), b2 = s * (y * z - x);
+        const double c0 = s * (x * z - y), c1 = s * (y * z + x), c2 = 1 - s * (x * x + y * y);
+        const double xx = sxx[l], yy = syy[l], zz = szz[l], xy = sxy[l], yz = syz[l], zx = szx[l];
+        const double p0 = a0 * xx + a1 * xy + a2 * zx, p1 = a0 * xy + a1 * yy + a2 * yz, p2 = a0 * zx + a1 * yz + a2 * zz;
+        const double q0 = b0 * xx + b1 * xy + b2 * zx, q1 = b0 * xy + b1 * yy + b2 * yz, q2 = b0 * zx + b1 * yz + b2 * zz;
+        const double t0 = c0 * xx + c1 * xy + c2 * zx, t1 = c0 * xy + c1 * yy + c2 * yz, t2 = c0 * zx + c1 * yz + c2 * zz;
+        r->before[0][at + l] = p0 * a0 + p1 * a1 + p2 * a2;
+        r->before[1][at + l] = q0 * b0 + q1 * b1 + q2 * b2;
+        r->before[2][at + l] = t0 * c0 + t1 * c1 + t2 * c2;
+        r->before[3][at + l] = p0 * b0 + p1 * b1 + p2 * b2;
+        r->before[4][at + l] = q0 * c0 + q1 * c1 + q2 * c2;
+        r->before[5][at + l] = t0 * a0 + t1 * a1 + t2 * a2;
     }
 }
 
@@ -117,6 +123,7 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
     const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
     uint16_t *const *corner = z->zones.corner;
     lanes3 x0, way0, edge[3], way[3], mid[3], area[3];
+    double factor[TL_LANES], per[TL_LANES], d[3][3][TL_LANES];
     load(&x0, p->x, corner[0] + row);
     load(&way0, p->way, corner[0] + row);
     for (int a = 0; a < 3; a++) {
@@ -125,42 +132,51 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
         take(&edge[a], &x0);
         take(&way[a], &way0);
         for (int i = 0; i < 3; i++)
+#pragma omp simd
             for (size_t l = 0; l < TL_LANES; l++)
                 mid[a].of[i][l] = edge[a].of[i][l] - 0.5 * way[a].of[i][l];
     }
     for (int a = 0; a < 3; a++) {
         cross(&area[a], &edge[(a + 1) % 3], &edge[(a + 2) % 3]);
         for (int i = 0; i < 3; i++)
+#pragma omp simd
             for (size_t l = 0; l < TL_LANES; l++)
                 r->area[a][i][at + l] = area[a].of[i][l];
     }
+    for (size_t l = 0; l < TL_LANES; l++)
+        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
+#pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const double factor = k < g->count[l] ? 1.0 / 6 : 0;
-        r->volume[at + l] = factor * (area[0].of[0][l] * edge[0].of[0][l] + area[0].of[1][l] * edge[0].of[1][l] +
+        r->volume[at + l] = factor[l] * (area[0].of[0][l] * edge[0].of[0][l] + area[0].of[1][l] * edge[0].of[1][l] +
                                       area[0].of[2][l] * edge[0].of[2][l]);
         r->extent[at + l] = g->extent[l];
     }
     for (int a = 0; a < 3; a++)
         cross(&area[a], &mid[(a + 1) % 3], &mid[(a + 2) % 3]);
+#pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const double six = area[0].of[0][l] * mid[0].of[0][l] + area[0].of[1][l] * mid[0].of[1][l] +
                            area[0].of[2][l] * mid[0].of[2][l];
-        const double per = 1 / six;
-        double d[3][3];
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                d[i][j] = per * (way[0].of[i][l] * area[0].of[j][l] + way[1].of[i][l] * area[1].of[j][l] +
-                                 way[2].of[i][l] * area[2].of[j][l]);
-        r->middle[at + l] = k < g->count[l] ? six / 6 : 0;
-        r->strain[0][at + l] = d[0][0];
-        r->strain[1][at + l] = d[1][1];
-        r->strain[2][at + l] = d[2][2];
-        r->strain[3][at + l] = 0.5 * (d[0][1] + d[1][0]);
-        r->strain[4][at + l] = 0.5 * (d[1][2] + d[2][1]);
-        r->strain[5][at + l] = 0.5 * (d[2][0] + d[0][2]);
-        r->spin[0][at + l] = 0.5 * (d[2][1] - d[1][2]);
-        r->spin[1][at + l] = 0.5 * (d[0][2] - d[2][0]);
-        r->spin[2][at + l] = 0.5 * (d[1][0] - d[0][1]);
+        r->middle[at + l] = factor[l] * six;
+        per[l] = 1 / six;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+#pragma omp simd
+            for (size_t l = 0; l < TL_LANES; l++)
+                d[i][j][l] = per[l] * (way[0].of[i][l] * area[0].of[j][l] + way[1].of[i][l] * area[1].of[j][l] +
+                                       way[2].of[i][l] * area[2].of[j][l]);
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        r->strain[0][at + l] = d[0][0][l];
+        r->strain[1][at + l] = d[1][1][l];
+        r->strain[2][at + l] = d[2][2][l];
+        r->strain[3][at + l] = 0.5 * (d[0][1][l] + d[1][0][l]);
+        r->strain[4][at + l] = 0.5 * (d[1][2][l] + d[2][1][l]);
+        r->strain[5][at + l] = 0.5 * (d[2][0][l] + d[0][2][l]);
+        r->spin[0][at + l] = 0.5 * (d[2][1][l] - d[1][2][l]);
+        r->spin[1][at + l] = 0.5 * (d[0][2][l] - d[2][0][l]);
+        r->spin[2][at + l] = 0.5 * (d[1][0][l] - d[0][1][l]);
     }
     turn_row(z->zones.stress, row, at, r);
 }
@@ -172,14 +188,17 @@ TL_INLINE double share_volume(group_rows *restrict r, size_t depth)
 {
     double sum[TL_LANES] = {0}, all[TL_LANES] = {0}, most[TL_LANES] = {0};
     for (size_t k = 0; k < depth; k++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l;
             sum[l] += r->middle[i] * (r->strain[0][i] + r->strain[1][i] + r->strain[2][i]);
             all[l] += r->middle[i];
         }
+#pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++)
         sum[l] /= all[l] != 0 ? all[l] : 1;
     for (size_t k = 0; k < depth; k++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l;
             const double more = (sum[l] - (r->strain[0][i] + r->strain[1][i] + r->strain[2][i])) / 3;
@@ -202,6 +221,7 @@ TL_INLINE double share_stress(group_rows *restrict r, double *const stress[6], s
 {
     double sum[TL_LANES] = {0}, all[TL_LANES] = {0}, lost[TL_LANES] = {0};
     for (size_t k = 0; k < depth; k++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l, j = row + i;
             const double change = (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) +
@@ -209,9 +229,11 @@ TL_INLINE double share_stress(group_rows *restrict r, double *const stress[6], s
             sum[l] += r->volume[i] * change;
             all[l] += r->volume[i];
         }
+#pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++)
         sum[l] /= all[l] != 0 ? all[l] : 1;
     for (size_t k = 0; k < depth; k++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l, j = row + i;
             const double change = (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) +
@@ -234,6 +256,7 @@ TL_INLINE double work_of(const group_rows *r, double *const stress[6], size_t ro
 {
     double sum[TL_LANES] = {0};
     for (size_t k = 0; k < depth; k++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l;
             double straight = 0, shear = 0;
@@ -249,36 +272,58 @@ TL_INLINE double work_of(const group_rows *r, double *const stress[6], size_t ro
     return out;
 }
 
+/* What a zone does to a corner: three components and the square of the size. */
+typedef struct push {
+    _Alignas(4 * sizeof(double)) double of[4][TL_LANES][4]; /* of each corner */
+} push;
+
+/* Forces on corner a, 1 to 3, of one row of zones: the stress, by -1/6, times the vector area. */
+TL_INLINE void push_corner(double *const stress[6], size_t row, const double factor[TL_LANES], int a,
+                           const group_rows *restrict r, size_t at, push *restrict out)
+{
+    const double *restrict sxx = stress[0] + row, *restrict syy = stress[1] + row, *restrict szz = stress[2] + row;
+    const double *restrict sxy = stress[3] + row, *restrict syz = stress[4] + row, *restrict szx = stress[5] + row;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const double x = -factor[l] * r->area[a - 1][0][at + l], y = -factor[l] * r->area[a - 1][1][at + l];
+        const double z = -factor[l] * r->area[a - 1][2][at + l];
+        const double fx = sxx[l] * x + sxy[l] * y + szx[l] * z, fy = sxy[l] * x + syy[l] * y + syz[l] * z;
+        const double fz = szx[l] * x + syz[l] * y + szz[l] * z;
+        out->of[a][l][0] = fx;
+        out->of[a][l][1] = fy;
+        out->of[a][l][2] = fz;
+        out->of[a][l][3] = fx * fx + fy * fy + fz * fz;
+    }
+}
+
 /* Adds the forces of one row of zones to the slots, lane by lane, corner by corner. */
 TL_INLINE void push_row(const struct tl_zones *z, const tl_zone_group *g, size_t k, const group_rows *restrict r,
                         tl_slot *restrict slots)
 {
     const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
-    double *const *s = z->zones.stress;
-    _Alignas(TL_ALIGN) double force[4][4][TL_LANES];
+    double factor[TL_LANES];
+    push by;
+    for (size_t l = 0; l < TL_LANES; l++)
+        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
+    for (int a = 1; a < 4; a++)
+        push_corner(z->zones.stress, row, factor, a, r, at, &by);
+#pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const double by = k < g->count[l] ? -1.0 / 6 : 0, xx = by * s[0][row + l], yy = by * s[1][row + l];
-        const double zz = by * s[2][row + l], xy = by * s[3][row + l], yz = by * s[4][row + l], zx = by * s[5][row + l];
-        double sum[3] = {0, 0, 0};
-        for (int a = 0; a < 3; a++) {
-            const double x = r->area[a][0][at + l], y = r->area[a][1][at + l], v = r->area[a][2][at + l];
-            const double f[3] = {xx * x + xy * y + zx * v, xy * x + yy * y + yz * v, zx * x + yz * y + zz * v};
-            for (int i = 0; i < 3; i++) {
-                force[a + 1][i][l] = f[i];
-                sum[i] -= f[i];
-            }
-            force[a + 1][3][l] = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-        }
-        for (int i = 0; i < 3; i++)
-            force[0][i][l] = sum[i];
-        force[0][3][l] = sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2];
+        const double fx = -(by.of[1][l][0] + by.of[2][l][0] + by.of[3][l][0]);
+        const double fy = -(by.of[1][l][1] + by.of[2][l][1] + by.of[3][l][1]);
+        const double fz = -(by.of[1][l][2] + by.of[2][l][2] + by.of[3][l][2]);
+        by.of[0][l][0] = fx;
+        by.of[0][l][1] = fy;
+        by.of[0][l][2] = fz;
+        by.of[0][l][3] = fx * fx + fy * fy + fz * fz;
     }
     for (size_t l = 0; l < TL_LANES; l++)
         for (int a = 0; a < 4; a++) {
-            tl_slot *slot = &slots[z->zones.corner[a][row + l]];
-            for (int i = 0; i < 3; i++)
-                slot->force[i] += force[a][i][l];
-            slot->square += force[a][3][l];
+            double *restrict sum = slots[z->zones.corner[a][row + l]].of;
+            const double *restrict add = by.of[a][l];
+#pragma omp simd
+            for (int i = 0; i < 4; i++)
+                sum[i] += add[i];
         }
 }
 
@@ -382,7 +427,7 @@ static void list_points(const pass_job *job, const tl_parcel *of, tl_parcel_poin
             p->x[i][at] = g->ref[i][row] + g->u[i][row];
             p->way[i][at] = job->dt * g->moved[i][row];
         }
-        job->zones->slot[k] = (tl_slot){.square = 0};
+        job->zones->slot[k] = (tl_slot){{0}};
     }
 }
 

@@ -39,7 +39,7 @@ static void add_zone(const struct tl_zones *z, const tl_parcel *of, size_t row, 
     }
     const double six = fabs(tl_v3_dot(side_of(x, 1), tl_v3_sub(x[1], x[0])));
     for (int a = 0; a < 4; a++)
-        z->slot[of->point_begin + z->zones.corner[a][row]].square += modulus * size[a] * all / (6 * six);
+        z->slot[of->point_begin + z->zones.corner[a][row]].of[3] += modulus * size[a] * all / (6 * six);
 }
 
 static void parcel_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -50,7 +50,7 @@ static void parcel_range(void *user, size_t begin, size_t end, size_t chunk, uns
         const tl_parcel *of = &z->parcels.of[k];
         const double modulus = z->solid[of->solid].of.constrained;
         for (uint32_t s = of->point_begin; s < of->point_end; s++)
-            z->slot[s].square = 0;
+            z->slot[s].of[3] = 0;
         for (uint32_t g = of->group_begin; g < of->group_end; g++)
             for (size_t row = z->group[g].start, last = row + (size_t)z->group[g].depth * TL_LANES; row < last; row++)
                 if (z->zones.number[row] != TL_NO_ROW)
@@ -65,7 +65,7 @@ static void point_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     for (size_t p = begin; p < end; p++) {
         double sum = 0;
         for (uint32_t k = z->use_start[p]; k < z->use_start[p + 1]; k++)
-            sum += z->slot[z->use[k]].square;
+            sum += z->slot[z->use[k]].of[3];
         z->points.stiffness[p] = sum;
     }
 }

@@ -89,9 +89,10 @@ typedef struct tl_parcels {
     double *most_strain; /* square of the largest that a zone got in it */
 } tl_parcels;
 
-/* What the zones of a parcel do to a gridpoint: the sum of their forces, and of the squares of their sizes. */
+/* What the zones of a parcel do to a gridpoint: the three components of the sum of their forces, and the sum of the
+ * squares of their sizes. */
 typedef struct tl_slot {
-    double force[3], square;
+    double of[4];
 } tl_slot;
 
 /* Gridpoints of a parcel: where they are, m, and how they came there in the last step. Scratch of a thread. */
