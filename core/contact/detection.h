@@ -40,6 +40,7 @@ typedef struct tl_detect {
     tl_pair_chunk *chunks;
     size_t chunk_capacity;
     bool listed;           /* pairs have been listed */
+    uint64_t lists;        /* how many times */
     bool rows_changed;     /* since contacts were laid out */
     bool any_without_rows; /* there may be contacts without rows for points */
     double reach;          /* half the skin of the broad phase */

@@ -7,7 +7,7 @@
 /* Those of every model. */
 static const tl_contributor *const known[] = {&tl_contacts_act};
 
-_Static_assert(sizeof known / sizeof *known + 1 <= TL_MOST_CONTRIBUTORS, "there is room for all");
+_Static_assert(sizeof known / sizeof *known + 2 <= TL_MOST_CONTRIBUTORS, "there is room for all");
 
 void tl_contributors_begin(struct tl_cycle *cycle)
 {
@@ -20,10 +20,13 @@ void tl_contributors_list(tl_model *m)
     const tl_contributor **at = m->cycle->contributor;
     while (*at && *at != &tl_zones_act)
         at++;
-    if (!*at && tl_model_deforms(m) && at < m->cycle->contributor + TL_MOST_CONTRIBUTORS)
-        *at = &tl_zones_act;
-    for (; *at && !tl_model_deforms(m); at++) /* its meshes have gone */
-        at[0] = at[1];
+    if (!*at && tl_model_deforms(m) && at + 1 < m->cycle->contributor + TL_MOST_CONTRIBUTORS) {
+        at[0] = &tl_zones_act;
+        at[1] = &tl_segments_act;
+    } else if (*at && !tl_model_deforms(m)) { /* its meshes have gone */
+        for (; *at; at++)
+            at[0] = at[1] ? at[2] : NULL;
+    }
 }
 
 double tl_body_stiffness(const tl_model *m, uint32_t body)

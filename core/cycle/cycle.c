@@ -40,6 +40,7 @@
 #include "detect/overlap.h"
 #include "force/laws.h"
 #include "model/loads.h"
+#include "segment/meets.h"
 
 /* What acts on bodies makes room for the step, or finds, with `apply`, its forces at the present places. */
 static tl_status ask_contributors(tl_model *m, bool apply)
@@ -60,6 +61,8 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
         status = tl_undo_begin(m);
     if (status == TL_OK)
         status = tl_detect_update(m);
+    if (status == TL_OK)
+        status = tl_segments_find(m);
     if (status == TL_OK)
         status = tl_overlaps_check(m);
     tl_phase_ends(m, TL_PHASE_DETECT);

@@ -16,6 +16,7 @@
 #include "cycle/damping.h"
 #include "cycle/rest.h"
 #include "cycle/turn.h"
+#include "segment/act.h"
 #include "zone/pass.h"
 #include "zone/stiffness.h"
 
@@ -104,6 +105,54 @@ static tl_status prepare(tl_model *m)
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
+/* ---------------------------------------------------------------- segments --------------- */
+
+static tl_status apply_segments(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    const tl_status status = tl_segments_apply(m, &c->failure);
+    c->failure.error.status = TL_OK;
+    return status == TL_OK ? status
+                           : tl_fail(&m->error, status, "cycle %lld, a law on a deformable block: %s",
+                                     (long long)m->cycles + 1, c->failure.error.text);
+}
+
+static void gather_segments(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
+{
+    for (uint32_t body = begin; m->segments && body < end; body++)
+        tl_segments_gather_body(m, body, &on[body - begin]);
+}
+
+static void hold_segments(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
+{
+    if (m->segments && points)
+        tl_segments_hold(m, body, sum);
+}
+
+static double stiffness_of_segments(const tl_model *m, uint32_t body)
+{
+    tl_holding sum = {{0, 0}, 0, false};
+    hold_segments(m, body, true, &sum);
+    return sum.stiffness.sum;
+}
+
+static size_t tables_of_segments(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
+{
+    if (!m->segments)
+        return 0;
+    table[0] = &m->segments->table.table;
+    table[1] = &m->segments->points.table;
+    return 2;
+}
+
+const tl_contributor tl_segments_act = {.name = "segments",
+                                        .apply = apply_segments,
+                                        .gather = gather_segments,
+                                        .stiffness = stiffness_of_segments,
+                                        .hold = hold_segments,
+                                        .energies = tl_segments_energies,
+                                        .tables = tables_of_segments};
+
 const tl_contributor tl_zones_act = {
     .name = "zones", .prepare = prepare, .apply = apply, .energies = energies, .tables = tables, .may_fail = may_fail};
 
@@ -113,6 +162,12 @@ double tl_gridpoints_least(tl_model *m)
 {
     if (!tl_model_deforms(m))
         return INFINITY;
+    if (m->segments && m->segments->version != m->zones->segments_rated)
+        m->zones->rated_for = 0;
+    if (tl_zones_stiffen(m))
+        tl_segments_stiffen(m);
+    if (m->segments)
+        m->zones->segments_rated = m->segments->version;
     tl_zones_rate(m);
     const double rate = tl_scales_all(m) ? m->zones->lowest_rate : m->zones->highest_rate;
     return rate > 0 ? 1 / rate : INFINITY;
@@ -144,9 +199,12 @@ static void gather_point(const tl_model *m, size_t row, double share)
         force = tl_v3_add(force, tl_v3(slot->of[0], slot->of[1], slot->of[2]));
         square += slot->of[3];
     }
+    double touched = 0;
+    if (m->segments)
+        tl_segments_gather(m, (uint32_t)row, &force, &touched);
     force = tl_v3_madd(force, share * p->mass[row], m->config.gravity);
     tl_columns_put(p->force, row, tl_v3_madd(force, share, load_of(p, row)));
-    p->bears[row] = sqrt((double)p->zones[row] * square);
+    p->bears[row] = sqrt((double)p->zones[row] * square) + touched;
 }
 
 /* What is summed of a chunk: a number for each row of lanes. */

@@ -5,8 +5,8 @@
 #include "cycle/cycle_data.h"
 #include "zone/zones.h"
 
-/* Zones act on gridpoints: a contributor. */
-extern const tl_contributor tl_zones_act;
+/* Contributors: zones act on gridpoints, and segments on these and on bodies. */
+extern const tl_contributor tl_zones_act, tl_segments_act;
 
 /* The longest stable step by the zones, squared and over 4, s2; INFINITY: there are none that may move. With mass
  * scaling the shortest that no gridpoint needs more mass for. */

@@ -416,6 +416,7 @@ static tl_status list_anew(tl_model *m)
         return status;
     m->detect->reach = reach;
     m->detect->listed = true;
+    m->detect->lists++;
     return restart_paths(m);
 }
 

@@ -100,6 +100,8 @@ void tl_model_destroy(tl_model *m)
         m->cycle_destroy(m->cycle);
     if (m->zones)
         m->zones_destroy(m->zones);
+    if (m->segments)
+        m->segments_destroy(m->segments);
     if (m->outputs)
         m->outputs_destroy(m->outputs);
     for (size_t i = 0; i < m->blocks.table.rows; i++)

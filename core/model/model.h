@@ -247,6 +247,8 @@ struct tl_model {
     void (*cycle_destroy)(struct tl_cycle *);
     struct tl_zones *zones; /* meshes of deformable bodies and their materials, or NULL: module zone */
     void (*zones_destroy)(struct tl_zones *);
+    struct tl_segments *segments; /* their flush contacts, or NULL: module segment */
+    void (*segments_destroy)(struct tl_segments *);
     struct tl_outputs *outputs; /* of the module state: files written so far */
     void (*outputs_destroy)(struct tl_outputs *);
 };

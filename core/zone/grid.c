@@ -66,7 +66,7 @@ void tl_zones_free(struct tl_zones *z)
     tl_table_free(&z->points.table);
     tl_table_free(&z->zones.table);
     tl_table_free(&z->parcels.table);
-    void *const owned[] = {z->group, z->listed, z->slot, z->use, z->use_start, z->row_of, z->mesh, z->scratch};
+    void *const owned[] = {z->group, z->listed, z->slot, z->use, z->use_start, z->row_of, z->part, z->mesh, z->scratch};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     tl_solids_free(z);
@@ -296,6 +296,7 @@ static bool reserve(laying *l, const sizes *more)
            tl_grow(&z->listed, &z->listed_capacity, z->listed_count + more->listed, sizeof *z->listed) &&
            tl_grow(&z->slot, &z->slot_capacity, z->listed_count + more->listed, sizeof *z->slot) &&
            tl_grow(&z->row_of, &z->row_of_capacity, z->row_of_count + l->grid->zone_count, sizeof *z->row_of) &&
+           tl_grow(&z->part, &z->part_capacity, z->part_count + l->grid->part_count, sizeof *z->part) &&
            tl_grow(&z->mesh, &z->mesh_capacity, z->mesh_count + 1, sizeof *z->mesh);
 }
 
@@ -326,7 +327,8 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
                            .row = l->row,
                            .point_begin = (uint32_t)z->points.table.rows,
                            .parcel_begin = (uint32_t)z->parcels.table.rows,
-                           .zone_begin = (uint32_t)z->row_of_count};
+                           .zone_begin = (uint32_t)z->row_of_count,
+                           .part_begin = (uint32_t)z->part_count};
     l->first = mesh->point_begin;
     tl_table_resize(&z->points.table, z->points.table.rows + more->points);
     put_points(l, more->points, number);
@@ -340,6 +342,13 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
     mesh->point_end = mesh->point_begin + (uint32_t)l->grid->point_count;
     mesh->parcel_end = parcel;
     mesh->zone_end = (uint32_t)z->row_of_count;
+    for (size_t k = 0; k < l->grid->part_count; k++) {
+        tl_surface_part *part = &z->part[z->part_count++];
+        *part = l->grid->part[k];
+        for (int a = 0; a < 3; a++)
+            part->corner[a] += l->first;
+    }
+    mesh->part_end = (uint32_t)z->part_count;
     z->version++;
 }
 

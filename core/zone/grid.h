@@ -14,6 +14,9 @@ typedef struct tl_grid {
     const uint32_t *cluster_start, *cluster_zone; /* cluster k: cluster_zone[cluster_start[k] .. cluster_start[k + 1]) */
     size_t cluster_count;
     double density; /* kg/m3 */
+    /* of the surface, by block and face; corners are numbers of points */
+    const tl_surface_part *part;
+    size_t part_count;
 } tl_grid;
 
 /* Makes the model's zones, without any; nothing when they are there. */

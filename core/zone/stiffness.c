@@ -70,16 +70,22 @@ static void point_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     }
 }
 
+bool tl_zones_stiffen(tl_model *m)
+{
+    struct tl_zones *z = m->zones;
+    if (z->rated_for == z->version && m->cycles / RATE_EVERY == z->rated_at / RATE_EVERY)
+        return false;
+    tl_parallel_for(m->pool, z->parcels.table.rows, 1, parcel_range, z);
+    tl_parallel_for(m->pool, z->points.table.rows, CHUNK, point_range, z);
+    z->rated_for = z->version;
+    z->rated_at = m->cycles;
+    return true;
+}
+
 void tl_zones_rate(tl_model *m)
 {
     struct tl_zones *z = m->zones;
     const tl_gridpoints *p = &z->points;
-    if (z->rated_for != z->version || m->cycles / RATE_EVERY != z->rated_at / RATE_EVERY) {
-        tl_parallel_for(m->pool, z->parcels.table.rows, 1, parcel_range, z);
-        tl_parallel_for(m->pool, p->table.rows, CHUNK, point_range, z);
-        z->rated_for = z->version;
-        z->rated_at = m->cycles;
-    }
     z->highest_rate = 0;
     z->lowest_rate = INFINITY;
     z->highest = TL_NO_ROW;

@@ -4,8 +4,10 @@
 
 #include "zone/zones.h"
 
-/* Finds `stiffness` of all gridpoints, and the one with the highest rate of those that may move, where meshes or solids
- * have changed, or some steps have been made since. */
+/* Finds `stiffness` of all gridpoints, as their zones hold them, where meshes or solids have changed, or some steps have
+ * been made since. false: it stands. */
+bool tl_zones_stiffen(tl_model *m);
+/* Finds the gridpoints with the highest and the lowest rate of those that may move. */
 void tl_zones_rate(tl_model *m);
 
 #endif

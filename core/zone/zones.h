@@ -100,6 +100,13 @@ typedef struct tl_parcel_points {
     double x[3][TL_PARCEL_POINTS], way[3][TL_PARCEL_POINTS];
 } tl_parcel_points;
 
+/* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the block
+ * and its face that it is a part of. */
+typedef struct tl_surface_part {
+    uint32_t corner[3], face;
+    tl_id block;
+} tl_surface_part;
+
 /* The mesh of a body. */
 typedef struct tl_body_mesh {
     tl_id body;
@@ -107,6 +114,7 @@ typedef struct tl_body_mesh {
     uint32_t point_begin, point_end;   /* rows of gridpoints */
     uint32_t parcel_begin, parcel_end;
     uint32_t zone_begin, zone_end;     /* in `row_of` */
+    uint32_t part_begin, part_end;     /* in `part` */
 } tl_body_mesh;
 
 struct tl_zones {
@@ -123,6 +131,8 @@ struct tl_zones {
     size_t use_capacity, use_start_capacity;
     uint32_t *row_of; /* the row of each zone, mesh by mesh, by its number */
     size_t row_of_count, row_of_capacity;
+    tl_surface_part *part; /* of the surfaces, mesh by mesh; of a mesh by block and face */
+    size_t part_count, part_capacity;
     tl_body_mesh *mesh;
     size_t mesh_count, mesh_capacity;
     tl_named_solid *solid;
@@ -134,6 +144,7 @@ struct tl_zones {
     uint32_t highest;                 /* row of that with the highest, or TL_NO_ROW */
     uint64_t rated_for;               /* version then; 0: not known */
     int64_t rated_at;                 /* steps made then */
+    uint64_t segments_rated;          /* version of the segments then */
 };
 
 static inline bool tl_model_deforms(const tl_model *m)

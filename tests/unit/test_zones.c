@@ -1,5 +1,6 @@
 /* test_zones.c - zones of a deformable body: uniform strain, energy, momentum, frequencies, the same bits on any threads. */
 #include "contact_scene.h"
+#include "segment/segments.h"
 #include "zone/grid.h"
 #include "zone/solids.h"
 
@@ -54,6 +55,7 @@ static const tl_kind elastic_kind = {.size = sizeof elastic_kind,
 typedef struct box {
     tl_vec3 *point;
     uint32_t (*zone)[4], *start, *list;
+    tl_surface_part *part;
     tl_grid grid;
 } box;
 
@@ -102,12 +104,55 @@ static box box_of(const int n[3], tl_vec3 min, tl_vec3 max, double density)
     return b;
 }
 
+/* Lists the triangles of the surface: the faces of `shape` tell which is which. */
+static void box_surface(box *b, const tl_poly *shape, tl_vec3 centre, tl_id block)
+{
+    tl_surface_part *list = calloc(4 * b->grid.zone_count, sizeof *list);
+    size_t count = 0;
+    for (uint32_t f = 0; f < shape->face_count; f++)
+        for (size_t z = 0; z < b->grid.zone_count; z++)
+            for (int a = 0; a < 4; a++) {
+                static const int side[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+                tl_surface_part part = {.face = f, .block = block};
+                bool on = true;
+                for (int k = 0; k < 3; k++) {
+                    part.corner[k] = b->zone[z][side[a][k]];
+                    const tl_vec3 x = tl_v3_sub(b->point[part.corner[k]], centre);
+                    on = on && fabs(tl_v3_dot(shape->plane[f].normal, x) - shape->plane[f].offset) < 1e-9;
+                }
+                if (on)
+                    list[count++] = part;
+            }
+    b->part = list;
+    b->grid.part = list;
+    b->grid.part_count = count;
+}
+
 static void box_free(box *b)
 {
+    free(b->part);
     free(b->point);
     free(b->zone);
     free(b->start);
     free(b->list);
+}
+
+/* Gives a block that is a box zones. */
+static void zone_box(tl_model *m, tl_id block, const int n[3], tl_vec3 min, tl_vec3 max, double density)
+{
+    box b = box_of(n, tl_v3_sub(min, m->origin), tl_v3_sub(max, m->origin), density);
+    box_surface(&b, m->blocks.shape[block - 1], tl_v3_sub(tl_v3_scale(0.5, tl_v3_add(min, max)), m->origin), block);
+    scene_ok(m, tl_zones_add(m, block, &b.grid, 0));
+    box_free(&b);
+}
+
+static void solid(tl_model *m, double young, double poisson)
+{
+    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
+                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
+    const tl_args args = {values, 2};
+    CHECK_INT(tl_zones_begin(m), TL_OK);
+    scene_ok(m, tl_solid_set(m, "rock", &elastic_kind, &args));
 }
 
 /* A box of zones, alone. */
@@ -116,14 +161,8 @@ static tl_model *zoned(const int n[3], tl_vec3 size, double young, double poisso
     tl_model *m = scene_model(threads);
     const tl_vec3 half = tl_v3_scale(0.5, size);
     scene_box(m, tl_v3_neg(half), half);
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
-    const tl_args args = {values, 2};
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", &elastic_kind, &args));
-    box b = box_of(n, tl_v3_sub(tl_v3_neg(half), m->origin), tl_v3_sub(half, m->origin), density);
-    scene_ok(m, tl_zones_add(m, 1, &b.grid, 0));
-    box_free(&b);
+    solid(m, young, poisson);
+    zone_box(m, 1, n, tl_v3_neg(half), half, density);
     return m;
 }
 
@@ -235,5 +274,55 @@ TEST(a_column_settles_under_its_weight)
     tl_model_destroy(m);
 }
 
+/* Two columns on each other, of other meshes, held at the foot and pressed by a uniform load: each part shortens by
+ * p h / M with its sides held, and the joint closes by p / kn. */
+TEST(columns_on_a_joint_shorten_in_series)
+{
+    const int n[2][3] = {{2, 2, 4}, {3, 3, 3}};
+    const double young = 1e9, poisson = 0.25, modulus = 1.2e9, kn = 1e9, p = 1e5;
+    tl_model *m = scene_model(2);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 2));
+    scene_box(m, tl_v3(0, 0, 2), tl_v3(1, 1, 4));
+    scene_law(m, "coulomb", kn, kn, 30);
+    solid(m, young, poisson);
+    zone_box(m, 1, n[0], tl_v3(0, 0, 0), tl_v3(1, 1, 2), 2500);
+    zone_box(m, 2, n[1], tl_v3(0, 0, 2), tl_v3(1, 1, 4), 2500);
+    tl_gridpoints *g = &m->zones->points;
+    const double foot = -m->origin.z, top = 4 - m->origin.z;
+    for (int k = 0; k < 3; k++)
+        CHECK(tl_table_need(&g->table, "load", sizeof(double), TL_COLUMN_AT(g, load[k]), TL_COLUMN_STATE));
+    for (size_t row = 0; row < g->table.rows; row++) {
+        if (g->zones[row] == 0)
+            continue;
+        g->fixed[row] = TL_FIX_X | TL_FIX_Y | (g->ref[2][row] < foot + 1e-9 ? TL_FIX_Z : 0);
+    }
+    for (size_t k = 0; k < m->zones->part_count; k++) { /* a third of the load on each corner of the triangles at the top */
+        const uint32_t *c = m->zones->part[k].corner;
+        if (g->ref[2][c[0]] < top - 1e-9 || g->ref[2][c[1]] < top - 1e-9 || g->ref[2][c[2]] < top - 1e-9)
+            continue;
+        const tl_vec3 x = tl_gridpoint_place(g, c[0]), a = tl_v3_sub(tl_gridpoint_place(g, c[1]), x);
+        const tl_vec3 area = tl_v3_scale(0.5, tl_v3_cross(a, tl_v3_sub(tl_gridpoint_place(g, c[2]), x)));
+        for (int i = 0; i < 3; i++)
+            g->load[2][c[i]] -= p * area.z / 3;
+    }
+    m->constraints++;
+    tl_solve_result result;
+    scene_ok(m, tl_model_damping(m, "local", NULL));
+    scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-8, .velocity = NAN, .max_time = NAN, .max_cycles = 20000}, &result));
+    printf("%d steps, reason %d, meets %zu segments %zu\n", (int)result.cycles, (int)result.reason, m->segments->meet_count, m->segments->table.table.rows);
+    const double right = p * (2 / modulus), joint = p / kn;
+    for (size_t row = 0; row < g->table.rows; row++) {
+        if (g->zones[row] == 0)
+            continue;
+        const double z = g->ref[2][row] - foot;
+        const bool above = g->mesh[row] == 1;
+        CHECK_NEAR(g->u[2][row], -p * z / modulus - (above ? joint : 0), 1e-3 * (right + joint));
+    }
+    tl_energy energy;
+    scene_ok(m, tl_model_energy(m, &energy));
+    CHECK(fabs(energy.balance) < 1e-3);
+    tl_model_destroy(m);
+}
+
 TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones_have_the_same_bits_on_any_threads(),
-          a_column_settles_under_its_weight())
+          a_column_settles_under_its_weight(), columns_on_a_joint_shorten_in_series())

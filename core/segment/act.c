@@ -1,0 +1,351 @@
+/* act.c - segments follow their sides, and push them apart by the laws of their joints.
+ *
+ * A side carries the three points of a segment with it: with x the places of the corners of its triangle and d how
+ * these moved in the last step, a point of weights w lies at sum w x and has moved by sum w d. So it is with the normal,
+ * and with the spin of the triangle about it,
+ *
+ *     spin . n = (g_1 x d_1 + g_2 x d_2) . n / 2,    g_1, g_2 reciprocal to the edges
+ *
+ * The common normal n bisects those of both sides. The gap is n . (x_B - x_A), its closure what a law gets, the motion
+ * d_B - d_A. Shear turns from the last normal to this one and by the mean spin about it. What a point bears acts on the
+ * corners by the same weights, so work, forces and energy agree whatever the triangles do. */
+#include "segment/act.h"
+
+#include "base/columns.h"
+#include "base/parallel.h"
+#include "base/series.h"
+#include "contact/contacts.h"
+#include "contact/plane_turn.h"
+#include "force/joint_laws.h"
+#include "segment/lay.h"
+
+#include <math.h>
+#include <string.h>
+#include <talus/elementary.h>
+
+/* SIMD groups that a law gets at a time. */
+#define TILE 4
+/* Points of a group, and of a tile. */
+#define GROUP_POINTS (TL_SEGMENT_POINTS * TL_LANES)
+#define TILE_POINTS (TILE * GROUP_POINTS)
+/* Tolerance: slide or stretch of a segment over its size, from which on it is laid anew. */
+#define SLID 1e-3
+
+/* What is known of a tile's points only in a step. */
+typedef struct lanes {
+    _Alignas(TL_ALIGN) double closure[TILE_POINTS];
+    double du_n[TILE_POINTS], normal[3][TILE_POINTS], du_s[3][TILE_POINTS];
+    double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
+} lanes;
+
+/* ---------------------------------------------------------------- sides ------------------ */
+
+/* A side now: places of its corners and their motion in the last step, or a rigid body's; its outward normal. */
+typedef struct side_now {
+    bool rigid;
+    uint32_t body;
+    tl_vec3 x[3], d[3];
+    tl_vec3 shift; /* of a rigid side: of its centroid in the last step, m */
+    tl_mat3 back;  /* and what a point has moved beside that, on its arm */
+    tl_vec3 normal, turn;
+} side_now;
+
+/* What a point has moved beside the centroid as the body turned by w, as it acts on its arm now (force/follow.c). */
+static tl_mat3 turned_back(tl_vec3 w)
+{
+    const double a = tl_v3_norm(w);
+    const tl_vec3 h = tl_v3_scale(a > 0 ? tl_tan(0.5 * a) / a : 0.5, w), s = tl_v3_scale(2 / (1 + tl_v3_norm2(h)), h);
+    return (tl_mat3){{{s.y * h.y + s.z * h.z, -s.x * h.y - s.z, -s.x * h.z + s.y},
+                      {-s.y * h.x + s.z, s.z * h.z + s.x * h.x, -s.y * h.z - s.x},
+                      {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
+}
+
+static side_now side_of(const tl_model *m, const tl_segment_side *side, tl_vec3 normal)
+{
+    side_now out = {.rigid = tl_side_is_rigid(side), .body = side->at[0]};
+    if (out.rigid) {
+        const tl_pose *pose = &m->bodies.pose[out.body];
+        out.shift = tl_v3_scale(m->dt, pose->v_moved);
+        out.turn = tl_v3_scale(m->dt, pose->w_moved);
+        out.back = turned_back(out.turn);
+        out.normal = tl_m3_mul(&pose->r, normal);
+        return out;
+    }
+    const tl_gridpoints *g = &m->zones->points;
+    for (int k = 0; k < 3; k++) {
+        out.x[k] = tl_gridpoint_place(g, side->at[k]);
+        out.d[k] = tl_v3_scale(m->dt, tl_columns_get(g->moved, side->at[k]));
+    }
+    const tl_vec3 a = tl_v3_sub(out.x[1], out.x[0]), b = tl_v3_sub(out.x[2], out.x[0]), area = tl_v3_cross(a, b);
+    const double size = tl_v3_norm(area);
+    out.normal = tl_v3_scale(1 / size, area);
+    const tl_vec3 ga = tl_v3_scale(1 / size, tl_v3_cross(b, out.normal));
+    const tl_vec3 gb = tl_v3_scale(1 / size, tl_v3_cross(out.normal, a));
+    const tl_vec3 da = tl_v3_sub(out.d[1], out.d[0]), db = tl_v3_sub(out.d[2], out.d[0]);
+    out.turn = tl_v3_scale(0.5, tl_v3_add(tl_v3_cross(ga, da), tl_v3_cross(gb, db)));
+    return out;
+}
+
+/* Where a point of the side is, and how it has moved. */
+typedef struct carried {
+    tl_vec3 place, moved;
+} carried;
+
+static carried carry(const tl_model *m, const side_now *s, tl_vec3 at)
+{
+    if (s->rigid) {
+        const tl_vec3 place = tl_body_point(&m->bodies, s->body, at);
+        const tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, s->body));
+        return (carried){place, tl_v3_add(s->shift, tl_m3_mul(&s->back, arm))};
+    }
+    const double w[3] = {at.x, at.y, at.z};
+    carried out = {{0, 0, 0}, {0, 0, 0}};
+    for (int k = 0; k < 3; k++) {
+        out.place = tl_v3_madd(out.place, w[k], s->x[k]);
+        out.moved = tl_v3_madd(out.moved, w[k], s->d[k]);
+    }
+    return out;
+}
+
+/* ---------------------------------------------------------------- following -------------- */
+
+static void put(double (*to)[TILE_POINTS], size_t at, tl_vec3 v)
+{
+    to[0][at] = v.x;
+    to[1][at] = v.y;
+    to[2][at] = v.z;
+}
+
+/* Follows a segment: its points' lanes, and their shear. Notes when it has slid. */
+static void follow(tl_model *m, uint32_t row, size_t lane, lanes *l)
+{
+    struct tl_segments *s = m->segments;
+    const tl_segment *of = &s->table.of[row];
+    tl_segment_points *p = &s->points;
+    const side_now a = side_of(m, &of->a, of->normal_a), b = side_of(m, &of->b, of->normal_b);
+    const tl_vec3 n = tl_v3_unit(tl_v3_sub(a.normal, b.normal)), last = tl_columns_get(s->table.normal, row);
+    const tl_vec3 half = tl_v3_scale(0.25, tl_v3_add(a.turn, b.turn)); /* of the mean turn */
+    double slid2 = 0;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t at = lane + k * TL_LANES;
+        const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + k) + row % TL_LANES;
+        const carried ca = carry(m, &a, tl_columns_get(p->at_a, point)), cb = carry(m, &b, tl_columns_get(p->at_b, point));
+        const tl_vec3 apart = tl_v3_sub(cb.place, ca.place), du = tl_v3_sub(cb.moved, ca.moved);
+        const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
+        l->closure[at] = -gap - (p->reference ? p->reference[point] : 0);
+        l->du_n[at] = du_n;
+        const tl_vec3 du_s = tl_v3_madd(du, -du_n, n);
+        put(l->normal, at, n);
+        put(l->du_s, at, du_s);
+        tl_columns_put(p->f_s, point, tl_turn_one(tl_columns_get(p->f_s, point), last, n, half));
+        slid2 = fmax(slid2, tl_v3_norm2(tl_v3_madd(apart, -gap, n)));
+    }
+    tl_columns_put(s->table.normal, row, n);
+    s->table.slid[row] = slid2 > SLID * SLID * s->table.area[row];
+}
+
+/* ---------------------------------------------------------------- laws ------------------- */
+
+typedef struct act_job {
+    tl_model *m;
+    tl_failure *failure;
+    const tl_segment_span *span;
+} act_job;
+
+static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
+{
+    tl_segment_points *p = &job->m->segments->points;
+    const tl_law *law = &job->m->joint_laws[job->span->law];
+    double *state[TL_STATE_COLUMNS];
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = k < p->state_columns ? p->state[k] + first : l->zero;
+    memset(l->stored, 0, count * sizeof *l->stored);
+    memset(l->dissipated, 0, count * sizeof *l->dissipated);
+    memset(l->zero, 0, count * sizeof *l->zero);
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = (uint32_t)count,
+                                .dt = job->m->dt,
+                                .area = p->area + first,
+                                .closure = l->closure,
+                                .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,
+                                .normal = {l->normal[0], l->normal[1], l->normal[2]},
+                                .du_n = l->du_n,
+                                .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
+                                .f_n = p->f_n + first,
+                                .f_s = {p->f_s[0] + first, p->f_s[1] + first, p->f_s[2] + first},
+                                .state = state,
+                                .flags = p->flags + first,
+                                .stored = l->stored,
+                                .dissipated = l->dissipated,
+                                .closure_edge = l->closure,
+                                .closure_apart = l->zero};
+    tl_report report;
+    const tl_status status = tl_law_update(law, &batch, &report);
+    const size_t bad = report.first_bad < count ? report.first_bad : 0;
+    if (status != TL_OK)
+        tl_failure_note(job->failure, first, status, first + bad, tl_report_text(&report, status));
+    return status == TL_OK;
+}
+
+static void add(double *sum, tl_vec3 v)
+{
+    sum[0] += v.x;
+    sum[1] += v.y;
+    sum[2] += v.z;
+}
+
+/* Adds the force of a point to what its side gets: the corners by their weights, or a body force and moment. */
+static void push_side(const tl_model *m, const tl_segment_side *side, tl_vec3 at, tl_vec3 force, double sum[9])
+{
+    if (tl_side_is_rigid(side)) {
+        add(sum, force);
+        add(sum + 3, tl_v3_cross(tl_m3_mul(&m->bodies.pose[side->at[0]].r, at), force));
+        return;
+    }
+    add(sum, tl_v3_scale(at.x, force));
+    add(sum + 3, tl_v3_scale(at.y, force));
+    add(sum + 6, tl_v3_scale(at.z, force));
+}
+
+/* What a segment does to its sides. */
+static void push(tl_model *m, uint32_t row, size_t lane, const lanes *l)
+{
+    struct tl_segments *s = m->segments;
+    const tl_segment *of = &s->table.of[row];
+    const tl_segment_points *p = &s->points;
+    double sums[2][9] = {{0}}, bears = 0;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t at = lane + k * TL_LANES;
+        const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + k) + row % TL_LANES;
+        const tl_vec3 n = tl_v3(l->normal[0][at], l->normal[1][at], l->normal[2][at]);
+        const tl_vec3 on_b = tl_v3_madd(tl_columns_get(p->f_s, point), p->f_n[point], n);
+        bears += tl_v3_norm(on_b);
+        push_side(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
+        push_side(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
+    }
+    for (int side = 0; side < 2; side++)
+        for (int c = 0; c < 9; c++)
+            s->table.push[side][c][row] = sums[side][c];
+    s->table.bears[row] = bears;
+}
+
+static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const act_job *job = user;
+    tl_model *m = job->m;
+    struct tl_segments *s = m->segments;
+    lanes l;
+    const size_t first = (job->span->group_begin + begin) * TL_LANES, count = (end - begin) * TL_LANES;
+    memset(&l, 0, sizeof l);
+    for (size_t k = 0; k < count; k++)
+        if (s->table.of[first + k].meet != TL_NO_ROW)
+            follow(m, (uint32_t)(first + k), k / TL_LANES * GROUP_POINTS + k % TL_LANES, &l);
+    if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))
+        return;
+    for (size_t k = 0; k < count; k++) {
+        const size_t lane = k / TL_LANES * GROUP_POINTS + k % TL_LANES;
+        if (s->table.of[first + k].meet == TL_NO_ROW)
+            continue;
+        push(m, (uint32_t)(first + k), lane, &l);
+        s->table.stored[first + k] = s->table.heat[first + k] = 0;
+        for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
+            s->table.stored[first + k] += l.stored[lane + i * TL_LANES];
+            s->table.heat[first + k] += l.dissipated[lane + i * TL_LANES];
+        }
+    }
+}
+
+tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
+{
+    struct tl_segments *s = m->segments;
+    for (size_t k = 0; s && k < s->span_count && failure->error.status == TL_OK; k++) {
+        act_job job = {m, failure, &s->span[k]};
+        if (job.span->law != TL_NO_ROW)
+            tl_parallel_for(m->pool, job.span->group_end - job.span->group_begin, TILE, act_range, &job);
+    }
+    return failure->error.status;
+}
+
+/* ---------------------------------------------------------------- who gets what ---------- */
+
+void tl_segments_gather(const tl_model *m, uint32_t gridpoint, tl_vec3 *force, double *bears)
+{
+    const struct tl_segments *s = m->segments;
+    for (uint32_t k = s->use_start[gridpoint]; k < s->use_start[gridpoint + 1]; k++) {
+        const tl_segment_use *use = &s->use[k];
+        double *const *push = &s->table.push[use->side][3 * use->corner];
+        const tl_vec3 f = tl_v3(push[0][use->segment], push[1][use->segment], push[2][use->segment]);
+        *force = tl_v3_add(*force, f);
+        *bears += tl_v3_norm(f);
+    }
+}
+
+void tl_segments_gather_body(const tl_model *m, uint32_t body, tl_acting *on)
+{
+    const struct tl_segments *s = m->segments;
+    for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
+        const tl_segment_use *use = &s->body_use[k];
+        double *const *push = s->table.push[use->side];
+        const uint32_t row = use->segment;
+        on->force = tl_v3_add(on->force, tl_v3(push[0][row], push[1][row], push[2][row]));
+        on->moment = tl_v3_add(on->moment, tl_v3(push[3][row], push[4][row], push[5][row]));
+        on->magnitude += s->table.bears[row];
+    }
+}
+
+/* Twice k w of each point, for each corner: w its weight there. */
+void tl_segments_stiffen(tl_model *m)
+{
+    const struct tl_segments *s = m->segments;
+    for (uint32_t row = 0; s && row < s->table.table.rows; row++) {
+        const tl_segment *of = &s->table.of[row];
+        if (of->meet == TL_NO_ROW || s->meet[of->meet].law == TL_NO_ROW)
+            continue;
+        const double k = tl_law_stiffness(&m->joint_laws[s->meet[of->meet].law]);
+        for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
+            const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + i) + row % TL_LANES;
+            for (int side = 0; side < 2; side++) {
+                const tl_segment_side *to = side ? &of->b : &of->a;
+                for (int c = 0; c < 3 && !tl_side_is_rigid(to); c++)
+                    m->zones->points.stiffness[to->at[c]] +=
+                        2 * k * s->points.area[point] * fabs((side ? s->points.at_b : s->points.at_a)[c][point]);
+            }
+        }
+    }
+}
+
+void tl_segments_hold(const tl_model *m, uint32_t body, tl_holding *sum)
+{
+    const struct tl_segments *s = m->segments;
+    for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
+        const tl_segment *of = &s->table.of[s->body_use[k].segment];
+        const uint32_t law = s->meet[of->meet].law;
+        if (law == TL_NO_ROW)
+            continue;
+        const double stiff = tl_law_stiffness(&m->joint_laws[law]);
+        sum->law = fmax(sum->law, stiff);
+        sum->presses = true;
+        for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
+            const uint32_t row = s->body_use[k].segment;
+            const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + i) + row % TL_LANES;
+            double *const *at = s->body_use[k].side ? s->points.at_b : s->points.at_a;
+            sum->stiffness.sum += stiff * s->points.area[point];
+            sum->stiffness.r2 += stiff * s->points.area[point] * tl_v3_norm2(tl_columns_get(at, point));
+        }
+    }
+}
+
+tl_energies tl_segments_energies(tl_model *m)
+{
+    struct tl_segments *s = m->segments;
+    tl_energies sum = {0, s ? s->lost : 0};
+    for (size_t row = 0; s && row < s->table.table.rows; row++)
+        if (s->table.of[row].meet != TL_NO_ROW) {
+            sum.stored += s->table.stored[row];
+            sum.heat += s->table.heat[row];
+        }
+    if (s)
+        s->lost = 0;
+    return sum;
+}

@@ -1,0 +1,512 @@
+/* lay.c - segments laid into their tables, with what points take over.
+ *
+ * Segments come by the laws of their meets, and of one law by meets and triangles. A meet that is not stale keeps its
+ * segments, whatever rows they get. */
+#include "segment/lay.h"
+
+#include "contact/contacts.h"
+#include "contact/law_states.h"
+#include "model/joints.h"
+#include "segment/meets.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------- tables ----------------- */
+
+static void add_columns(struct tl_segments *s, uint32_t states)
+{
+    tl_segment_table *t = &s->table;
+    tl_table_init(&t->table, t);
+    TL_COLUMN(&t->table, t, of, 0);
+    TL_COLUMN(&t->table, t, area, TL_COLUMN_STATE);
+    for (int k = 0; k < 3; k++)
+        TL_COLUMN(&t->table, t, normal[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < 9; k++)
+            TL_COLUMN(&t->table, t, push[side][k], 0);
+    TL_COLUMN(&t->table, t, bears, 0);
+    TL_COLUMN(&t->table, t, stored, 0);
+    TL_COLUMN(&t->table, t, heat, 0);
+    TL_COLUMN(&t->table, t, slid, 0);
+
+    tl_segment_points *p = &s->points;
+    tl_table_init(&p->table, p);
+    for (int k = 0; k < 3; k++) {
+        TL_COLUMN(&p->table, p, at_a[k], TL_COLUMN_STATE);
+        TL_COLUMN(&p->table, p, at_b[k], TL_COLUMN_STATE);
+        TL_COLUMN(&p->table, p, f_s[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
+    }
+    TL_COLUMN(&p->table, p, area, TL_COLUMN_STATE);
+    TL_COLUMN(&p->table, p, f_n, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&p->table, p, flags, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    for (uint32_t k = 0; k < states; k++)
+        TL_COLUMN(&p->table, p, state[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
+    p->state_columns = states;
+}
+
+bool tl_segments_begin(tl_model *m)
+{
+    m->segments = calloc(1, sizeof *m->segments);
+    if (!m->segments)
+        return false;
+    m->segments_destroy = tl_segments_free;
+    add_columns(m->segments, 0);
+    return true;
+}
+
+void tl_segments_free(struct tl_segments *s)
+{
+    tl_table_free(&s->table.table);
+    tl_table_free(&s->points.table);
+    void *const owned[] = {s->meet,       s->span,  s->use,        s->body_use, s->use_start,
+                           s->body_start, s->corner, s->room_memory};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+    free(s);
+}
+
+/* ---------------------------------------------------------------- meets ------------------ */
+
+void tl_laying_begin(tl_laying *l)
+{
+    *l = (tl_laying){.list = NULL};
+}
+
+bool tl_laying_add(tl_laying *l, const tl_new_segment *segment)
+{
+    if (!tl_grow(&l->list, &l->capacity, l->count + 1, sizeof *l->list))
+        return false;
+    l->list[l->count++] = *segment;
+    return true;
+}
+
+void tl_laying_end(tl_laying *l)
+{
+    free(l->list);
+    free(l->now);
+}
+
+static int order_of(const tl_meet *a, const tl_meet *b)
+{
+    const uint64_t x[4] = {a->a, a->b, a->face_a, a->face_b}, y[4] = {b->a, b->b, b->face_a, b->face_b};
+    for (int k = 0; k < 4; k++)
+        if (x[k] != y[k])
+            return x[k] < y[k] ? -1 : 1;
+    return 0;
+}
+
+bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, size_t count)
+{
+    l->now = malloc((s->meet_count + 1) * sizeof *l->now);
+    if (!l->now) {
+        free(list);
+        return false;
+    }
+    size_t at = 0;
+    for (size_t k = 0; k < s->meet_count; k++) {
+        while (at < count && order_of(&list[at], &s->meet[k]) < 0)
+            at++;
+        const bool same = at < count && order_of(&list[at], &s->meet[k]) == 0;
+        l->now[k] = same ? (uint32_t)at : TL_NO_ROW;
+        if (same)
+            list[at] = s->meet[k];
+    }
+    free(s->meet);
+    s->meet = list;
+    s->meet_count = s->meet_capacity = count;
+    return true;
+}
+
+/* ---------------------------------------------------------------- places ----------------- */
+
+tl_vec3 tl_segment_place(const tl_model *m, const tl_segment_side *side, tl_vec3 at)
+{
+    if (tl_side_is_rigid(side))
+        return tl_body_point(&m->bodies, side->at[0], at);
+    const tl_gridpoints *g = &m->zones->points;
+    const double w[3] = {at.x, at.y, at.z};
+    tl_vec3 sum = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        sum = tl_v3_madd(sum, w[k], tl_gridpoint_place(g, side->at[k]));
+    return sum;
+}
+
+/* What keeps to the material of a side at a place: weights, or the place in the body's frame. */
+static tl_vec3 keep_to(const tl_model *m, const tl_segment_side *side, tl_vec3 place)
+{
+    if (tl_side_is_rigid(side))
+        return tl_body_local(&m->bodies, side->at[0], place);
+    const tl_gridpoints *g = &m->zones->points;
+    const tl_vec3 x = tl_gridpoint_place(g, side->at[0]);
+    const tl_vec3 a = tl_v3_sub(tl_gridpoint_place(g, side->at[1]), x), b = tl_v3_sub(tl_gridpoint_place(g, side->at[2]), x);
+    const tl_vec3 d = tl_v3_sub(place, x), n = tl_v3_cross(a, b);
+    const double n2 = tl_v3_norm2(n);
+    const double wb = tl_v3_dot(tl_v3_cross(d, b), n) / n2, wc = tl_v3_dot(tl_v3_cross(a, d), n) / n2;
+    return tl_v3(1 - wb - wc, wb, wc);
+}
+
+/* ---------------------------------------------------------------- what is taken over ----- */
+
+/* A segment to be laid: an old row, or a new one of the list. */
+typedef struct entry {
+    uint32_t law, meet, key[2];
+    uint32_t old; /* row; TL_NO_ROW: it is new */
+    uint32_t fresh;
+} entry;
+
+static int compare_entries(const void *x, const void *y)
+{
+    const entry *a = x, *b = y;
+    const uint32_t p[4] = {a->law, a->meet, a->key[0], a->key[1]}, q[4] = {b->law, b->meet, b->key[0], b->key[1]};
+    for (int k = 0; k < 4; k++)
+        if (p[k] != q[k])
+            return p[k] < q[k] ? -1 : 1;
+    return 0;
+}
+
+static size_t point_row(size_t segment, size_t k)
+{
+    return TL_LANES * (TL_SEGMENT_POINTS * (segment / TL_LANES) + k) + segment % TL_LANES;
+}
+
+static void copy_point(tl_segment_points *to, size_t at, const tl_segment_points *from, size_t row, double scale)
+{
+    for (int c = 0; c < 3; c++)
+        to->f_s[c][at] = scale * from->f_s[c][row];
+    to->f_n[at] = scale * from->f_n[row];
+    to->flags[at] = from->flags[row];
+    for (uint32_t k = 0; k < from->state_columns && k < to->state_columns; k++)
+        to->state[k][at] = from->state[k][row];
+    if (to->f_n0 && from->f_n0) {
+        to->f_n0[at] = scale * from->f_n0[row];
+        to->reference[at] = from->reference[row];
+    }
+}
+
+/* A point that takes over from none: a law's states begin. Walls that are apart were never bonded. */
+static void begin_point(tl_segment_points *p, size_t at, const tl_kind *law, bool apart)
+{
+    for (int c = 0; c < 3; c++)
+        p->f_s[c][at] = 0;
+    p->f_n[at] = 0;
+    p->flags[at] = apart ? TL_POINT_APART : 0;
+    for (uint32_t k = 0; k < p->state_columns; k++)
+        p->state[k][at] = 0;
+    for (tl_state_columns s = {0}; tl_state_next(law, p->state_columns, &s);)
+        if (s.count == 1)
+            p->state[s.begin][at] = s.state->initial;
+}
+
+/* Old segments by meet and triangles, for those who take over. */
+typedef struct old_segments {
+    const tl_model *m;
+    const struct tl_segments *s;
+    entry *list;
+    size_t count;
+} old_segments;
+
+/* The first old segment that is not before a meet and its triangles. */
+static size_t first_from(const old_segments *old, const entry *of)
+{
+    size_t low = 0, high = old->count;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        const entry *at = &old->list[middle];
+        const uint32_t p[3] = {at->meet, at->key[0], at->key[1]}, q[3] = {of->meet, of->key[0], of->key[1]};
+        int order = 0;
+        for (int k = 0; k < 3 && order == 0; k++)
+            order = p[k] < q[k] ? -1 : p[k] > q[k];
+        if (order < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The row of the old point of the meet that is nearest to a place, or TL_NO_ROW. */
+static size_t nearest_point(const old_segments *old, uint32_t meet, tl_vec3 place)
+{
+    const tl_segment_points *p = &old->s->points;
+    size_t found = TL_NO_ROW;
+    double least = INFINITY;
+    for (size_t i = first_from(old, &(entry){.meet = meet}); i < old->count && old->list[i].meet == meet; i++)
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+            const size_t row = point_row(old->list[i].old, k);
+            const tl_vec3 at = tl_v3(p->at_a[0][row], p->at_a[1][row], p->at_a[2][row]);
+            const double d2 = tl_v3_norm2(
+                tl_v3_sub(place, tl_segment_place(old->m, &old->s->table.of[old->list[i].old].a, at)));
+            if (d2 < least) {
+                least = d2;
+                found = row;
+            }
+        }
+    return found;
+}
+
+/* Points of a new segment in row `row` of fresh tables. */
+static void lay_points(const old_segments *old, struct tl_segments *to, size_t row, const entry *of,
+                       const tl_new_segment *made, const tl_kind *law)
+{
+    const tl_model *m = old->m;
+    tl_segment_points *p = &to->points;
+    const size_t at = first_from(old, of);
+    const bool same = at < old->count && old->list[at].meet == of->meet && old->list[at].key[0] == of->key[0] &&
+                      old->list[at].key[1] == of->key[1];
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t point = point_row(row, k);
+        const tl_vec3 a = keep_to(m, &made->a, made->over.on_a[k]), b = keep_to(m, &made->b, made->over.on_b[k]);
+        const double gap = tl_v3_dot(tl_v3_sub(made->over.on_b[k], made->over.on_a[k]), made->over.n);
+        p->at_a[0][point] = a.x;
+        p->at_a[1][point] = a.y;
+        p->at_a[2][point] = a.z;
+        p->at_b[0][point] = b.x;
+        p->at_b[1][point] = b.y;
+        p->at_b[2][point] = b.z;
+        p->area[point] = made->over.area / TL_SEGMENT_POINTS;
+        const size_t from =
+            same ? point_row(old->list[at].old, k) : nearest_point(old, of->meet, made->over.on_a[k]);
+        const double size = from != TL_NO_ROW ? old->s->points.area[from] : 0;
+        if (size > 0)
+            copy_point(p, point, &old->s->points, from, p->area[point] / size);
+        else
+            begin_point(p, point, law, gap > TL_CONTACT_TOLERANCE * sqrt(made->over.area));
+    }
+}
+
+/* ---------------------------------------------------------------- laying ----------------- */
+
+/* Twice the energy of the shear springs of a segment, times ks. */
+static double shear_energy(const tl_segment_points *p, size_t segment)
+{
+    double sum = 0;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t row = point_row(segment, k);
+        double f2 = 0;
+        for (int c = 0; c < 3; c++)
+            f2 += p->f_s[c][row] * p->f_s[c][row];
+        sum += p->area[row] > 0 ? f2 / p->area[row] : 0;
+    }
+    return sum;
+}
+
+/* Lets the springs of shear of stale meets hold no more than they did. Returns what they hold less, J. */
+static double keep_energy(const tl_model *m, const old_segments *old, struct tl_segments *to)
+{
+    double *sum = calloc(2 * m->segments->meet_count + 1, sizeof *sum), lost = 0; /* before, and now */
+    if (!sum)
+        return 0;
+    for (size_t i = 0; i < old->count; i++)
+        sum[2 * old->list[i].meet] += shear_energy(&old->s->points, old->list[i].old);
+    for (size_t row = 0; row < to->table.table.rows; row++)
+        if (to->table.of[row].meet != TL_NO_ROW)
+            sum[2 * to->table.of[row].meet + 1] += shear_energy(&to->points, row);
+    for (size_t row = 0; row < to->table.table.rows; row++) {
+        const uint32_t meet = to->table.of[row].meet;
+        if (meet == TL_NO_ROW || !m->segments->meet[meet].stale || !(sum[2 * meet + 1] > sum[2 * meet]))
+            continue;
+        const double scale = sqrt(sum[2 * meet] / sum[2 * meet + 1]);
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+            for (int c = 0; c < 3; c++)
+                to->points.f_s[c][point_row(row, k)] *= scale;
+    }
+    for (size_t k = 0; k < m->segments->meet_count; k++) {
+        const uint32_t law = m->segments->meet[k].law;
+        const double ks = law != TL_NO_ROW ? m->joint_laws[law].ks : 0;
+        if (m->segments->meet[k].stale && ks > 0 && sum[2 * k] > sum[2 * k + 1])
+            lost += 0.5 * (sum[2 * k] - sum[2 * k + 1]) / ks;
+    }
+    free(sum);
+    return lost;
+}
+
+/* Which old segments go over as they are, and which are looked at. */
+static size_t list_entries(const tl_model *m, const tl_laying *l, entry *list, old_segments *old)
+{
+    const struct tl_segments *s = m->segments;
+    size_t count = 0;
+    for (uint32_t row = 0; row < s->table.table.rows; row++) {
+        const tl_segment *of = &s->table.of[row];
+        const uint32_t meet = of->meet == TL_NO_ROW ? TL_NO_ROW : l->now ? l->now[of->meet] : of->meet;
+        if (meet == TL_NO_ROW)
+            continue;
+        const entry one = {s->meet[meet].law, meet, {of->key[0], of->key[1]}, row, TL_NO_ROW};
+        if (!s->meet[meet].stale)
+            list[count++] = one;
+        old->list[old->count] = one;
+        old->list[old->count++].law = 0; /* they are looked for by meets alone */
+    }
+    for (uint32_t k = 0; k < l->count; k++) {
+        const tl_new_segment *of = &l->list[k];
+        list[count++] = (entry){s->meet[of->meet].law, of->meet, {of->key[0], of->key[1]}, TL_NO_ROW, k};
+    }
+    if (count > 0)
+        qsort(list, count, sizeof *list, compare_entries);
+    if (old->count > 0)
+        qsort(old->list, old->count, sizeof *old->list, compare_entries);
+    return count;
+}
+
+static void lay_entry(const old_segments *old, const tl_laying *l, struct tl_segments *to, size_t row, const entry *e)
+{
+    const tl_model *m = old->m;
+    const tl_kind *law = e->law != TL_NO_ROW ? m->joint_laws[e->law].kind : NULL;
+    if (e->old != TL_NO_ROW) {
+        const struct tl_segments *s = old->s;
+        to->table.of[row] = s->table.of[e->old];
+        to->table.of[row].meet = e->meet;
+        to->table.area[row] = s->table.area[e->old];
+        for (int c = 0; c < 3; c++)
+            to->table.normal[c][row] = s->table.normal[c][e->old];
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+            const size_t at = point_row(row, k), from = point_row(e->old, k);
+            for (int c = 0; c < 3; c++) {
+                to->points.at_a[c][at] = s->points.at_a[c][from];
+                to->points.at_b[c][at] = s->points.at_b[c][from];
+            }
+            to->points.area[at] = s->points.area[from];
+            copy_point(&to->points, at, &s->points, from, 1);
+        }
+        return;
+    }
+    const tl_new_segment *made = &l->list[e->fresh];
+    to->table.of[row] = (tl_segment){made->meet, made->a,        made->b,
+                                     {made->key[0], made->key[1]}, made->normal_a, made->normal_b};
+    to->table.area[row] = made->over.area;
+    to->table.normal[0][row] = made->over.n.x;
+    to->table.normal[1][row] = made->over.n.y;
+    to->table.normal[2][row] = made->over.n.z;
+    lay_points(old, to, row, e, made, law);
+}
+
+/* Rows of all segments, each law from a new group on. */
+static size_t rows_of(const entry *list, size_t count)
+{
+    size_t rows = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (k > 0 && list[k].law != list[k - 1].law)
+            rows = (rows + TL_LANES - 1) / TL_LANES * TL_LANES;
+        rows++;
+    }
+    return (rows + TL_LANES - 1) / TL_LANES * TL_LANES;
+}
+
+/* Columns of states that the laws need. */
+static uint32_t states_of(const tl_model *m)
+{
+    uint32_t most = 0;
+    for (size_t k = 0; k < m->joint_law_count; k++)
+        most = m->joint_laws[k].columns > most ? m->joint_laws[k].columns : most;
+    return most;
+}
+
+static void fill_tables(const old_segments *old, const tl_laying *l, struct tl_segments *to, const entry *list,
+                        size_t count)
+{
+    size_t row = 0;
+    for (size_t k = 0; k < to->table.table.rows; k++)
+        to->table.of[k].meet = TL_NO_ROW;
+    to->span_count = 0;
+    for (size_t k = 0; k < count; k++, row++) {
+        if (k == 0 || list[k].law != list[k - 1].law) {
+            row = (row + TL_LANES - 1) / TL_LANES * TL_LANES;
+            to->span[to->span_count++] = (tl_segment_span){list[k].law, (uint32_t)(row / TL_LANES), 0};
+        }
+        lay_entry(old, l, to, row, &list[k]);
+        to->span[to->span_count - 1].group_end = (uint32_t)(row / TL_LANES + 1);
+    }
+}
+
+/* ---------------------------------------------------------------- who gets what ---------- */
+
+/* Lists the segments of each gridpoint and each body, in the order of their rows. There is room. */
+static void index_uses(const tl_model *m, struct tl_segments *s)
+{
+    const size_t points = m->zones->points.table.rows, bodies = m->bodies.table.rows;
+    for (int pass = 0; pass < 2; pass++) {
+        uint32_t *start[2] = {s->use_start, s->body_start};
+        const size_t rows[2] = {points, bodies};
+        for (int w = 0; w < 2 && pass == 0; w++)
+            memset(start[w], 0, (rows[w] + 1) * sizeof **start);
+        for (uint32_t row = 0; row < s->table.table.rows; row++)
+            for (int side = 0; s->table.of[row].meet != TL_NO_ROW && side < 2; side++) {
+                const tl_segment_side *of = side ? &s->table.of[row].b : &s->table.of[row].a;
+                const bool rigid = tl_side_is_rigid(of);
+                for (uint8_t c = 0; c < (rigid ? 1 : 3); c++) {
+                    if (pass == 0)
+                        start[rigid][of->at[c] + 1]++;
+                    else
+                        (rigid ? s->body_use : s->use)[start[rigid][of->at[c]]++] =
+                            (tl_segment_use){row, (uint8_t)side, c};
+                }
+            }
+        for (int w = 0; w < 2; w++) {
+            for (size_t k = 0; k < rows[w] && pass == 0; k++)
+                start[w][k + 1] += start[w][k];
+            if (pass == 1) {
+                memmove(start[w] + 1, start[w], rows[w] * sizeof **start);
+                start[w][0] = 0;
+            }
+        }
+    }
+}
+
+static bool index_room(const tl_model *m, struct tl_segments *s, size_t segments)
+{
+    return tl_grow(&s->use, &s->use_capacity, 6 * segments, sizeof *s->use) &&
+           tl_grow(&s->body_use, &s->body_use_capacity, 2 * segments, sizeof *s->body_use) &&
+           tl_grow(&s->use_start, &s->use_start_capacity, m->zones->points.table.rows + 1, sizeof *s->use_start) &&
+           tl_grow(&s->body_start, &s->body_start_capacity, m->bodies.table.rows + 1, sizeof *s->body_start);
+}
+
+static void sum_areas(struct tl_segments *s)
+{
+    for (size_t k = 0; k < s->meet_count; k++)
+        s->meet[k].area = 0;
+    for (size_t row = 0; row < s->table.table.rows; row++)
+        if (s->table.of[row].meet != TL_NO_ROW)
+            s->meet[s->table.of[row].meet].area += s->table.area[row];
+}
+
+bool tl_lay_segments(tl_model *m, const tl_laying *l)
+{
+    struct tl_segments *s = m->segments, fresh = {.span = NULL};
+    for (size_t k = 0; k < s->meet_count; k++)
+        s->meet[k].law = tl_law_row(m, s->meet[k].tag);
+    const size_t most = s->table.table.rows + l->count + 1;
+    entry *list = malloc(most * sizeof *list);
+    old_segments old = {m, s, malloc(most * sizeof *old.list), 0};
+    add_columns(&fresh, states_of(m));
+    bool enough = list && old.list;
+    const size_t count = enough ? list_entries(m, l, list, &old) : 0;
+    const size_t rows = rows_of(list, count);
+    enough = enough && tl_table_resize(&fresh.table.table, rows) &&
+             tl_table_resize(&fresh.points.table, TL_SEGMENT_POINTS * rows) &&
+             tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) &&
+             index_room(m, s, count);
+    if (!enough) {
+        tl_table_free(&fresh.table.table);
+        tl_table_free(&fresh.points.table);
+    } else {
+        fresh.span = s->span;
+        fill_tables(&old, l, &fresh, list, count);
+        s->lost += keep_energy(m, &old, &fresh);
+        tl_table_free(&s->table.table);
+        tl_table_free(&s->points.table);
+        s->table = fresh.table;
+        s->table.table.owner = &s->table;
+        s->points = fresh.points;
+        s->points.table.owner = &s->points;
+        s->span_count = fresh.span_count;
+        for (size_t k = 0; k < s->meet_count; k++)
+            s->meet[k].stale = false;
+        s->version++;
+        sum_areas(s);
+        index_uses(m, s);
+    }
+    free(list);
+    free(old.list);
+    return enough;
+}

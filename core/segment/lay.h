@@ -1,0 +1,35 @@
+/* lay.h - segments laid into their tables, with what points take over. */
+#ifndef TL_SEGMENT_LAY_H
+#define TL_SEGMENT_LAY_H
+
+#include "segment/segments.h"
+
+/* A segment that has been found. */
+typedef struct tl_new_segment {
+    uint32_t meet, key[2];
+    tl_segment_side a, b;
+    tl_vec3 normal_a, normal_b;
+    tl_overlay over;
+} tl_new_segment;
+
+/* Segments on their way into the tables: those of stale meets, in the order of these. */
+typedef struct tl_laying {
+    tl_new_segment *list;
+    size_t count, capacity;
+    uint32_t *now; /* of each meet that there was: its number now, or TL_NO_ROW; NULL: the same */
+} tl_laying;
+
+bool tl_segments_begin(tl_model *m);
+void tl_laying_begin(tl_laying *l);
+bool tl_laying_add(tl_laying *l, const tl_new_segment *segment);
+/* Puts a list of meets in the place of the present ones. Those that there were stay as they are. false: out of memory,
+ * and the list has been freed. */
+bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, size_t count);
+/* Lays all segments anew. false: out of memory, and nothing has changed. */
+bool tl_lay_segments(tl_model *m, const tl_laying *l);
+void tl_laying_end(tl_laying *l);
+
+/* Where a point of a side lies, from the model's origin. */
+tl_vec3 tl_segment_place(const tl_model *m, const tl_segment_side *side, tl_vec3 at);
+
+#endif

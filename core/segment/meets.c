@@ -1,0 +1,290 @@
+/* meets.c - which faces may touch by segments, and the segments that they have.
+ *
+ * Of two blocks that the broad phase lists, one of which is deformable, faces meet that look at each other and are
+ * near. All triangles of one that lie over triangles of the other make a segment, closed or open. Segments stand until
+ * their sides have slid by a share of their size, or until meets are listed anew. What points carry goes over:
+ *
+ *   - a segment of the same two triangles takes over from its own three points, by area;
+ *   - another one takes the stress of the nearest old point of its meet;
+ *   - of each meet the springs of shear hold no more energy than before.
+ */
+#include "segment/meets.h"
+
+#include "contact/detection.h"
+#include "contact/sides.h"
+#include "force/joint_laws.h"
+#include "model/joints.h"
+#include "narrow/manifold.h"
+#include "segment/lay.h"
+#include "zone/grid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Tolerance: cos of 10 degrees, up to which faces that meet may be tilted. */
+#define LEAST_FACING 0.98480775301220806
+/* Tolerance: distance over the size of the smaller block up to which faces meet. */
+#define NEAR 0.02
+
+/* ---------------------------------------------------------------- faces ------------------ */
+
+/* A face of a block: its parts, or a rigid polygon; and its centre and vector area now. */
+typedef struct face {
+    uint32_t block, number;
+    const tl_surface_part *part; /* NULL: rigid */
+    size_t part_count;
+    tl_vec3 centre, area;
+    double reach; /* no corner is farther from the centre, m */
+} face;
+
+/* The parts of a face of a block; none: it is rigid. */
+static const tl_surface_part *parts_of(const tl_model *m, tl_id block, uint32_t number, size_t *count)
+{
+    const struct tl_zones *z = m->zones;
+    const uint32_t mesh = tl_mesh_of(m, m->bodies.id[m->blocks.body[tl_block_row_quiet(m, block)]]);
+    *count = 0;
+    if (mesh == TL_NO_ROW)
+        return NULL;
+    const tl_surface_part *at = z->part + z->mesh[mesh].part_begin, *end = z->part + z->mesh[mesh].part_end;
+    while (at < end && (at->block < block || (at->block == block && at->face < number)))
+        at++;
+    while (at + *count < end && at[*count].block == block && at[*count].face == number)
+        ++*count;
+    return at;
+}
+
+static tl_vec3 corner_of(const tl_model *m, const tl_surface_part *part, int k)
+{
+    return tl_gridpoint_place(&m->zones->points, part->corner[k]);
+}
+
+static void measure_parts(const tl_model *m, face *f)
+{
+    double weight = 0;
+    for (size_t k = 0; k < f->part_count; k++) {
+        const tl_vec3 a = corner_of(m, &f->part[k], 0), b = corner_of(m, &f->part[k], 1), c = corner_of(m, &f->part[k], 2);
+        const tl_vec3 area = tl_v3_scale(0.5, tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a)));
+        const double size = tl_v3_norm(area);
+        f->area = tl_v3_add(f->area, area);
+        f->centre = tl_v3_madd(f->centre, size / 3, tl_v3_add(a, tl_v3_add(b, c)));
+        weight += size;
+    }
+    f->centre = tl_v3_scale(1 / weight, f->centre);
+    for (size_t k = 0; k < f->part_count; k++)
+        for (int i = 0; i < 3; i++)
+            f->reach = fmax(f->reach, tl_v3_norm(tl_v3_sub(corner_of(m, &f->part[k], i), f->centre)));
+}
+
+static tl_vec3 rigid_corner(const tl_model *m, uint32_t block, uint32_t number, uint32_t k)
+{
+    const tl_poly *p = m->blocks.shape[block];
+    return tl_body_point(&m->bodies, m->blocks.body[block], p->vertex[p->loop[p->start[number] + k]]);
+}
+
+static void measure_rigid(const tl_model *m, face *f)
+{
+    const uint32_t count = tl_poly_face_size(m->blocks.shape[f->block], f->number);
+    const tl_vec3 first = rigid_corner(m, f->block, f->number, 0);
+    for (uint32_t k = 1; k + 1 < count; k++)
+        f->area = tl_v3_madd(f->area, 0.5, tl_v3_cross(tl_v3_sub(rigid_corner(m, f->block, f->number, k), first),
+                                                       tl_v3_sub(rigid_corner(m, f->block, f->number, k + 1), first)));
+    for (uint32_t k = 0; k < count; k++)
+        f->centre = tl_v3_madd(f->centre, 1.0 / count, rigid_corner(m, f->block, f->number, k));
+    for (uint32_t k = 0; k < count; k++)
+        f->reach = fmax(f->reach, tl_v3_norm(tl_v3_sub(rigid_corner(m, f->block, f->number, k), f->centre)));
+}
+
+static face face_of(const tl_model *m, uint32_t block, uint32_t number)
+{
+    face f = {.block = block, .number = number};
+    f.part = parts_of(m, m->blocks.id[block], number, &f.part_count);
+    if (f.part)
+        measure_parts(m, &f);
+    else
+        measure_rigid(m, &f);
+    return f;
+}
+
+/* Whether two faces look at each other and are near. */
+static bool faces_meet(const tl_model *m, const face *a, const face *b)
+{
+    const tl_vec3 na = tl_v3_unit(a->area), nb = tl_v3_unit(b->area), apart = tl_v3_sub(b->centre, a->centre);
+    const double near = NEAR * fmin(m->blocks.size[a->block], m->blocks.size[b->block]);
+    const tl_vec3 n = tl_v3_unit(tl_v3_sub(na, nb));
+    const double gap = tl_v3_dot(apart, n), aside = tl_v3_norm(tl_v3_madd(apart, -gap, n));
+    return -tl_v3_dot(na, nb) > LEAST_FACING && fabs(gap) < near + 0.2 * fmin(a->reach, b->reach) &&
+           aside < a->reach + b->reach;
+}
+
+/* ---------------------------------------------------------------- meets ------------------ */
+
+static bool deforms(const tl_model *m, uint32_t block)
+{
+    return tl_mesh_of(m, m->bodies.id[m->blocks.body[block]]) != TL_NO_ROW;
+}
+
+/* Adds the meets of two blocks. false: out of memory. */
+static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list, size_t *count, size_t *capacity)
+{
+    const tl_poly *pa = m->blocks.shape[a], *pb = m->blocks.shape[b];
+    for (uint32_t i = 0; i < pa->face_count; i++) {
+        const face fa = face_of(m, a, i);
+        for (uint32_t k = 0; k < pb->face_count && !pa->covered[i]; k++) {
+            if (pb->covered[k])
+                continue;
+            const face fb = face_of(m, b, k);
+            if (!faces_meet(m, &fa, &fb))
+                continue;
+            if (!tl_grow(list, capacity, *count + 1, sizeof **list))
+                return false;
+            (*list)[(*count)++] = (tl_meet){.a = m->blocks.id[a],
+                                            .b = m->blocks.id[b],
+                                            .face_a = i,
+                                            .face_b = k,
+                                            .tag = tl_flush_tag(pa->tag[i], pb->tag[k]),
+                                            .stale = true};
+        }
+    }
+    return true;
+}
+
+static int compare_meets(const void *x, const void *y)
+{
+    const tl_meet *a = x, *b = y;
+    if (a->a != b->a)
+        return a->a < b->a ? -1 : 1;
+    if (a->b != b->b)
+        return a->b < b->b ? -1 : 1;
+    if (a->face_a != b->face_a)
+        return a->face_a < b->face_a ? -1 : 1;
+    return (a->face_b > b->face_b) - (a->face_b < b->face_b);
+}
+
+/* Lists the meets of all pairs, in the order of their ids. Those that there were keep what they have: `was` tells of
+ * each the number it had, or TL_NO_ROW. */
+static tl_meet *list_meets(const tl_model *m, size_t *count, bool *enough)
+{
+    tl_meet *list = NULL;
+    size_t capacity = 0;
+    *count = 0;
+    *enough = true;
+    for (size_t k = 0; *enough && k < m->detect->pair_count; k++) {
+        const uint32_t a = m->detect->pairs[k].a, b = m->detect->pairs[k].b;
+        const bool seen = !m->blocks.hidden[a] && !m->blocks.hidden[b] && m->blocks.body[a] != m->blocks.body[b];
+        if (seen && (deforms(m, a) || deforms(m, b)))
+            *enough = list_pair(m, a, b, &list, count, &capacity);
+    }
+    if (*count > 0)
+        qsort(list, *count, sizeof *list, compare_meets);
+    return list;
+}
+
+/* ---------------------------------------------------------------- segments --------------- */
+
+/* Notes a segment of two parts, or of a part and a rigid face, that lie over each other. false: out of memory. */
+static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a, size_t i, const face *b, size_t k)
+{
+    tl_overlay over;
+    tl_vec3 ca[3], cb[3];
+    const face *of[2] = {a, b};
+    const size_t at[2] = {i, k};
+    tl_outer_face outer[2];
+    tl_vec3 *corner[2] = {ca, cb};
+    for (int s = 0; s < 2; s++) {
+        if (of[s]->part) {
+            for (int c = 0; c < 3; c++)
+                corner[s][c] = corner_of(m, &of[s]->part[at[s]], c);
+            outer[s] = (tl_outer_face){corner[s], 3};
+        } else {
+            const uint32_t count = tl_poly_face_size(m->blocks.shape[of[s]->block], of[s]->number);
+            for (uint32_t c = 0; c < count; c++)
+                m->segments->corner[c] = rigid_corner(m, of[s]->block, of[s]->number, c);
+            outer[s] = (tl_outer_face){m->segments->corner, count};
+        }
+    }
+    if (!tl_overlay_find(&outer[0], &outer[1], &m->segments->room, &over))
+        return true;
+    tl_new_segment made = {.meet = meet, .key = {(uint32_t)i, (uint32_t)k}, .over = over};
+    for (int s = 0; s < 2; s++) {
+        const uint32_t body = m->blocks.body[of[s]->block];
+        tl_segment_side *side = s ? &made.b : &made.a;
+        for (int c = 0; c < 3; c++)
+            side->at[c] = of[s]->part ? of[s]->part[at[s]].corner[c] : c ? TL_NO_ROW : body;
+        if (!of[s]->part)
+            *(s ? &made.normal_b : &made.normal_a) = m->blocks.shape[of[s]->block]->plane[of[s]->number].normal;
+    }
+    return tl_laying_add(l, &made);
+}
+
+/* Room for the corners of the faces of a meet. */
+static bool make_room(tl_model *m, const face *a, const face *b)
+{
+    struct tl_segments *s = m->segments;
+    const size_t na = a->part ? 3 : tl_poly_face_size(m->blocks.shape[a->block], a->number);
+    const size_t nb = b->part ? 3 : tl_poly_face_size(m->blocks.shape[b->block], b->number);
+    const size_t need = na + nb + 4;
+    if (!tl_grow(&s->corner, &s->corner_capacity, need, sizeof *s->corner))
+        return false;
+    if (need <= s->room.capacity)
+        return true;
+    tl_point2 *all = malloc(3 * need * sizeof *all);
+    if (!all)
+        return false;
+    free(s->room_memory);
+    s->room_memory = all;
+    s->room = (tl_overlay_room){all, all + need, all + 2 * need, need};
+    return true;
+}
+
+/* Notes the segments of a meet. */
+static bool find_segments(tl_model *m, tl_laying *l, uint32_t number)
+{
+    const tl_meet *meet = &m->segments->meet[number];
+    const face a = face_of(m, tl_block_row_quiet(m, meet->a), meet->face_a);
+    const face b = face_of(m, tl_block_row_quiet(m, meet->b), meet->face_b);
+    bool enough = make_room(m, &a, &b);
+    for (size_t i = 0; enough && i < (a.part ? a.part_count : 1); i++)
+        for (size_t k = 0; enough && k < (b.part ? b.part_count : 1); k++)
+            enough = note_segment(m, l, number, &a, i, &b, k);
+    return enough;
+}
+
+tl_status tl_segments_find(tl_model *m)
+{
+    if (!tl_model_deforms(m))
+        return TL_OK;
+    if (!m->segments && !tl_segments_begin(m))
+        return tl_fail_memory(&m->error);
+    struct tl_segments *s = m->segments;
+    const bool anew = s->structure != m->structure || s->zones != m->zones->version || s->lists != m->detect->lists;
+    bool some = anew || s->laws != m->laws, enough = true;
+    tl_laying l;
+    tl_laying_begin(&l);
+    if (anew) {
+        size_t count;
+        tl_meet *list = list_meets(m, &count, &enough);
+        if (enough)
+            tl_laying_change_meets(&l, s, list, count);
+        else
+            free(list);
+    }
+    for (size_t row = 0; row < s->table.table.rows && !anew; row++)
+        if (s->table.of[row].meet != TL_NO_ROW && s->table.slid[row])
+            s->meet[s->table.of[row].meet].stale = true;
+    for (size_t k = 0; k < s->meet_count; k++)
+        some = some || s->meet[k].stale;
+    for (uint32_t k = 0; enough && some && k < s->meet_count; k++)
+        if (s->meet[k].stale)
+            enough = find_segments(m, &l, k);
+    if (enough && some)
+        enough = tl_lay_segments(m, &l);
+    tl_laying_end(&l);
+    if (!enough)
+        return tl_fail_memory(&m->error);
+    s->structure = m->structure;
+    s->laws = m->laws;
+    s->zones = m->zones->version;
+    s->lists = m->detect->lists;
+    return TL_OK;
+}

@@ -1,0 +1,107 @@
+/* segments.h - contact of deformable blocks that lie flush on others: tables of segments and their points.
+ *
+ * A segment is the polygon that a triangle of one surface has in common with a triangle of another one, or with the
+ * face of a rigid block. It has three points, which integrate over it (narrow/overlay.h). A point keeps to the material
+ * of both sides: on a deformable side it lies by three weights between the corners of the triangle, on a rigid one at a
+ * place in the body's frame.
+ *
+ * A meet is two faces, one of them of a deformable block, that may touch by segments. Its segments come by their
+ * triangles.
+ *
+ * Segments of one law lie in SIMD groups: the segment in lane l of group g has row TL_LANES g + l, and its point k the
+ * row TL_LANES (3 g + k) + l of the points. Lanes without a segment have area 0. */
+#ifndef TL_SEGMENT_SEGMENTS_H
+#define TL_SEGMENT_SEGMENTS_H
+
+#include "base/table.h"
+#include "model/model.h"
+#include "narrow/overlay.h"
+#include "zone/zones.h"
+
+/* Points of a segment. */
+#define TL_SEGMENT_POINTS 3
+
+/* One side of a segment: the gridpoints of its triangle, or of a rigid side the row of the body and TL_NO_ROW twice. */
+typedef struct tl_segment_side {
+    uint32_t at[3];
+} tl_segment_side;
+
+static inline bool tl_side_is_rigid(const tl_segment_side *s)
+{
+    return s->at[1] == TL_NO_ROW;
+}
+
+/* What a segment is: its meet, its sides and, of a rigid one, the outward normal in the body's frame. `key` tells the
+ * two parts of the surfaces, each counted from the first of its block; of a rigid side the face. */
+typedef struct tl_segment {
+    uint32_t meet;
+    tl_segment_side a, b;
+    uint32_t key[2];
+    tl_vec3 normal_a, normal_b;
+} tl_segment;
+
+typedef struct tl_segment_table {
+    tl_table table;
+    tl_segment *of;    /* an empty lane has no meet: TL_NO_ROW */
+    double *area;      /* m2 */
+    double *normal[3]; /* in the last step, from A to B */
+    double *push[2][9]; /* what it does to the corners of its sides, N; to a rigid side: force, and moment about its body */
+    double *bears;        /* sum of the sizes of the forces of its points, N */
+    double *stored, *heat; /* J: the latter in the last step */
+    uint8_t *slid;         /* its sides have slid or stretched: it is to be laid anew */
+} tl_segment_table;
+
+typedef struct tl_segment_points {
+    tl_table table;
+    double *at_a[3], *at_b[3]; /* weights, or a place in the body's frame, m */
+    double *area;              /* m2 */
+    double *f_n0, *reference;  /* N, and the closure that it belongs to, m; NULL: 0 everywhere */
+    double *f_n, *f_s[3];      /* N, on B */
+    uint32_t *flags;
+    double *state[TL_STATE_COLUMNS]; /* as many as the laws need; the others are NULL */
+    uint32_t state_columns;
+} tl_segment_points;
+
+/* Two faces that may touch by segments: of blocks a < b, by their ids, and the numbers of the faces. */
+typedef struct tl_meet {
+    tl_id a, b;
+    uint32_t face_a, face_b;
+    tl_tag tag;
+    uint32_t law; /* index into the model's joint_laws, or TL_NO_ROW */
+    bool stale;   /* its segments are to be laid anew: it is new, or its sides have slid or stretched */
+    double area;  /* m2 */
+} tl_meet;
+
+/* SIMD groups of one law. */
+typedef struct tl_segment_span {
+    uint32_t law, group_begin, group_end;
+} tl_segment_span;
+
+/* What a gridpoint or a body gets from one segment: its row, the side, and of a gridpoint the corner. */
+typedef struct tl_segment_use {
+    uint32_t segment;
+    uint8_t side, corner;
+} tl_segment_use;
+
+struct tl_segments {
+    tl_segment_table table;
+    tl_segment_points points;
+    tl_meet *meet;
+    size_t meet_count, meet_capacity;
+    tl_segment_span *span;
+    size_t span_count, span_capacity;
+    /* of gridpoint p: use[use_start[p]] .. use[use_start[p + 1] - 1]; of bodies likewise */
+    tl_segment_use *use, *body_use;
+    uint32_t *use_start, *body_start;
+    size_t use_capacity, use_start_capacity, body_use_capacity, body_start_capacity;
+    /* of the model, the zones and the pairs of the broad phase, when meets were listed */
+    uint64_t structure, laws, zones, lists;
+    tl_overlay_room room;
+    tl_point2 *room_memory;
+    tl_vec3 *corner; /* scratch: of a rigid face */
+    size_t corner_capacity;
+    uint64_t version; /* counts how often segments were laid */
+    double lost; /* shear that went when segments were laid: heat of the next step, J */
+};
+
+#endif
