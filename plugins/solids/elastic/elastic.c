@@ -2,6 +2,7 @@
  *
  *     d sigma = (K - 2 G / 3) tr(d eps) I + 2 G d eps,  U = s:s / (4 G) + p^2 / (2 K) */
 #include <talus/solid_kit.h>
+#include <talus/version.h>
 
 typedef struct params {
     double young, poisson, bulk, shear;

@@ -4,6 +4,7 @@
  * Surface, flow and return are those of talus/solid_returns.h. The strength of a step is that of its beginning, so
  * softening takes steps of a small part of the tables' strains. */
 #include <talus/solid_returns.h>
+#include <talus/version.h>
 
 static const tl_param param_table[] = {TL_PARAMS_MOHR_COULOMB};
 static const tl_state state_table[] = {TL_STATES_MOHR_COULOMB};
