@@ -7,8 +7,12 @@
 #include "model/joints.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "segment/lay.h"
+#include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "zone/grid.h"
+#include "zone/walk.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -50,6 +54,31 @@ static tl_status copy_detection(tl_model *to, const tl_model *from)
     return to->detect ? TL_OK : tl_fail_memory(&to->error);
 }
 
+/* Meshes and segments; the solids have been copied. */
+static tl_status copy_zones(tl_model *to, const tl_model *from)
+{
+    if (!from->zones)
+        return TL_OK;
+    tl_status status = tl_zones_begin(to);
+    if (status != TL_OK)
+        return status;
+    tl_entries entries = {.count = 0};
+    tl_zones_walk(from->zones, &(tl_walk){tl_entries_note, &entries});
+    tl_entries_copy copy = {.from = &entries};
+    tl_zones_walk(to->zones, &(tl_walk){tl_entries_take, &copy});
+    if (from->segments && !copy.failed) {
+        if (!tl_segments_begin(to))
+            return tl_fail_memory(&to->error);
+        entries.count = 0;
+        tl_segments_walk(from->segments, &(tl_walk){tl_entries_note, &entries});
+        copy = (tl_entries_copy){.from = &entries};
+        tl_segments_walk(to->segments, &(tl_walk){tl_entries_take, &copy});
+    }
+    return copy.failed || !tl_grow(&to->zones->slot, &to->zones->slot_capacity, to->zones->listed_count, sizeof *to->zones->slot)
+               ? tl_fail_memory(&to->error)
+               : TL_OK;
+}
+
 static tl_status copy_cycle(tl_model *to, const tl_model *from)
 {
     if (!from->cycle)
@@ -76,6 +105,8 @@ static tl_status fill(tl_model *to, tl_model *from, const tl_drives_again *again
         status = tl_drives_copy(to, from, again);
     if (status == TL_OK)
         status = copy_detection(to, from);
+    if (status == TL_OK)
+        status = copy_zones(to, from);
     return status == TL_OK ? copy_cycle(to, from) : status;
 }
 

@@ -7,6 +7,8 @@
 #include "geometry/make.h"
 #include "model/walk.h"
 #include "narrow/field_lanes.h"
+#include "segment/walk.h"
+#include "zone/walk.h"
 
 #include <string.h>
 
@@ -66,6 +68,10 @@ tl_memory tl_model_memory(const tl_model *m)
         memory.other += history_bytes(m->histories[i]);
     for (size_t row = 0; row < m->blocks.table.rows; row++)
         memory.shapes += m->blocks.stays[row] ? tl_poly_bytes(m->blocks.shape[row]) : 0;
+    if (m->zones)
+        tl_zones_walk(m->zones, &walk);
+    if (m->segments)
+        tl_segments_walk(m->segments, &walk);
     if (m->cycle) {
         tl_cycle_walk(m->cycle, &walk);
         memory.step += sizeof *m->cycle + tl_undo_bytes(m->cycle);

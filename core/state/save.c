@@ -7,8 +7,10 @@
 #include "cycle/undo.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "zone/walk.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -99,6 +101,10 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     tl_drives_save(m, w);
     if (tl_detect_lasting(m))
         tl_detect_walk(tl_detect_lasting(m), &walk);
+    if (m->zones)
+        tl_zones_walk(m->zones, &walk);
+    if (m->segments)
+        tl_segments_walk(m->segments, &walk);
     if (m->cycle)
         tl_cycle_walk(m->cycle, &walk);
 }

@@ -324,5 +324,63 @@ TEST(columns_on_a_joint_shorten_in_series)
     tl_model_destroy(m);
 }
 
+/* Half the blocks of a pair are zoned: a rigid cube on a zoned base, or a zoned cube on a rigid one, or both. */
+static tl_model *pair(int which, double friction, double young)
+{
+    const int n[3] = {3, 3, 2}, base[3] = {8, 4, 2};
+    tl_model *m = scene_model(2);
+    scene_box(m, tl_v3(-2, -1, -1), tl_v3(2, 1, 0));
+    scene_box(m, tl_v3(-1.5, -0.4, 0), tl_v3(-0.7, 0.4, 0.6));
+    scene_law(m, "coulomb", 1e9, 1e9, friction);
+    const tl_id floor = 1;
+    solid(m, young, 0.25);
+    if (which & 1)
+        zone_box(m, 1, base, tl_v3(-2, -1, -1), tl_v3(2, 1, 0), 2500);
+    else
+        scene_ok(m, tl_blocks_fix(m, &floor, 1, TL_FIX_ALL));
+    if (which & 2)
+        zone_box(m, 2, n, tl_v3(-1.5, -0.4, 0), tl_v3(-0.7, 0.4, 0.6), 2500);
+    tl_gridpoints *g = &m->zones->points;
+    for (size_t row = 0; row < g->table.rows; row++)
+        if (which & 1 && g->zones[row] > 0 && g->mesh[row] == 0 && g->ref[2][row] + m->origin.z < -1 + 1e-9)
+            g->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+    m->constraints++;
+    return m;
+}
+
+static tl_vec3 moved(const tl_model *m, int which)
+{
+    return m->bodies.pose[which].u;
+}
+
+TEST(a_cube_rests_and_slides_on_zones)
+{
+    for (int which = 1; which <= 3; which++) {
+        tl_model *m = pair(which, 20, 1e9);
+        tl_solve_result result;
+        tl_energy energy;
+        scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
+        scene_ok(m, tl_model_damping(m, "local", NULL));
+        scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-6, .velocity = NAN, .max_time = NAN, .max_cycles = 20000}, &result));
+        printf("which %d: rest after %d, reason %d, sinks %g\n", which, (int)result.cycles, (int)result.reason, moved(m, 1).z);
+        CHECK_INT(result.reason, TL_SOLVE_RATIO);
+        /* it slides: 30 degrees, friction 20 */
+        tl_damping_clear(m);
+        scene_ok(m, tl_model_set_gravity(m, tl_v3(5, 0, -10 * sqrt(0.75))));
+        const double begun = m->time, x = moved(m, 1).x;
+        double most = 0;
+        while (m->time < begun + 0.5) {
+            run(m, 20);
+            scene_ok(m, tl_model_energy(m, &energy));
+            most = fmax(most, fabs(energy.balance));
+        }
+        const double t = m->time - begun, a = 5 - 10 * sqrt(0.75) * tan(20 * TL_PI / 180);
+        printf("slid %g, right %g, balance %g\n", moved(m, 1).x - x, 0.5 * a * t * t, most);
+        CHECK_NEAR(moved(m, 1).x - x, 0.5 * a * t * t, 0.03 * 0.5 * a * t * t);
+        CHECK(most < 5e-3);
+        tl_model_destroy(m);
+    }
+}
+
 TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones_have_the_same_bits_on_any_threads(),
-          a_column_settles_under_its_weight(), columns_on_a_joint_shorten_in_series())
+          a_column_settles_under_its_weight(), columns_on_a_joint_shorten_in_series(), a_cube_rests_and_slides_on_zones())

@@ -420,6 +420,7 @@ TL_API tl_profile tl_model_profile(const tl_model *model);
     X(points, "columns of the contact points")                                                                         \
     X(index, "lists of each block's contacts, and of contacts by number")                                              \
     X(spare, "second set of tables of contacts and points")                                                            \
+    X(zones, "gridpoints, zones and segments of deformable blocks")                                                    \
     X(other, "rows by number, scratch of the threads, joints and laws")
 
 typedef struct tl_memory {
