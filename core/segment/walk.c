@@ -1,0 +1,27 @@
+/* walk.c - the entries of segments. */
+#include "segment/walk.h"
+
+#define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "segments.", s, member)
+#define LIST(keep, member, count, capacity)                                                                            \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "segments.", s, member, &s->count, &s->capacity, offsetof(tl_memory, zones))
+
+void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
+{
+    const size_t counts = offsetof(tl_memory, zones);
+    tl_walk_table(walk, TL_KEEP_STATE, "segments.table", &s->table.table, counts);
+    tl_walk_table(walk, TL_KEEP_STATE, "segments.points", &s->points.table, counts);
+    VALUE(STATE, points.state_columns);
+    LIST(STATE, meet, meet_count, meet_capacity);
+    LIST(STATE, span, span_count, span_capacity);
+    LIST(DERIVED, use, use_capacity, use_capacity);
+    LIST(DERIVED, body_use, body_use_capacity, body_use_capacity);
+    LIST(DERIVED, use_start, use_start_capacity, use_start_capacity);
+    LIST(DERIVED, body_start, body_start_capacity, body_start_capacity);
+    LIST(SCRATCH, corner, corner_capacity, corner_capacity);
+    VALUE(STATE, lost);
+    VALUE(CACHE, structure);
+    VALUE(CACHE, laws);
+    VALUE(CACHE, zones);
+    VALUE(CACHE, lists);
+    VALUE(CACHE, version);
+}
