@@ -2,7 +2,8 @@
 #include "cycle/contributors.h"
 
 #include "cycle/contact_forces.h"
-#include "cycle/gridpoints.h"
+#include "cycle/zone_forces.h"
+#include "zone/zones.h"
 
 /* Those of every model. */
 static const tl_contributor *const known[] = {&tl_contacts_act};

@@ -15,6 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Gridpoints that a thread takes at a time: a multiple of TL_LANES. */
+#define POINT_CHUNK 256
+
 /* Forces of the last step are those before the next. */
 static void note_forces(tl_bodies *b, size_t begin, size_t end)
 {
@@ -173,7 +176,7 @@ static void check_numbers(tl_model *m, size_t begin, size_t end, size_t chunk)
     }
 }
 
-bool tl_damping_call(tl_model *m, const tl_damping_batch *batch, size_t chunk)
+static bool call_plugin(tl_model *m, const tl_damping_batch *batch, size_t chunk)
 {
     const tl_damping_ops *ops = m->damping->ops;
     tl_report report = {.size = sizeof report};
@@ -225,10 +228,47 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         memset(batch.damping_force[k], 0, (end - begin) * sizeof *batch.damping_force[k]);
         memset(batch.damping_moment[k], 0, (end - begin) * sizeof *batch.damping_moment[k]);
     }
-    if (tl_damping_call(m, &batch, chunk))
+    if (call_plugin(m, &batch, chunk))
         check_numbers(m, begin, last, chunk);
     if (ops->before)
         note_forces(b, begin, last);
+}
+
+/* Gridpoints have neither moment nor turn. */
+static void damp_points(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)thread;
+    const damping_job *job = user;
+    tl_gridpoints *p = &job->m->zones->points;
+    double none[POINT_CHUNK] = {0}, one[POINT_CHUNK], scaled[POINT_CHUNK], out[3][POINT_CHUNK] = {{0}};
+    const bool scales = job->m->cycle->mass_scale > 0;
+    for (size_t i = 0; i < end - begin; i++) {
+        one[i] = 1;
+        scaled[i] = p->mass[begin + i] * tl_gridpoint_scale(job->m, begin + i);
+        p->alpha[begin + i] = 0;
+    }
+    tl_damping_batch batch = {.size = sizeof batch,
+                              .count = (uint32_t)(end - begin),
+                              .dt = job->dt,
+                              .mass = p->mass + begin,
+                              .inertia = one,
+                              .alpha = p->alpha + begin,
+                              .state = job->state,
+                              .moving_mass = scales ? scaled : p->mass + begin,
+                              .moving_inertia = one};
+    for (int k = 0; k < 3; k++) {
+        batch.velocity[k] = p->v[k] + begin;
+        batch.angular_velocity[k] = batch.moment[k] = none;
+        batch.force[k] = p->force[k] + begin;
+        batch.force_before[k] = p->force_before[k] ? p->force_before[k] + begin : NULL;
+        batch.moment_before[k] = none;
+        batch.damping_force[k] = p->damping[k] + begin;
+        batch.damping_moment[k] = out[k];
+        memset(batch.damping_force[k], 0, (end - begin) * sizeof *batch.damping_force[k]);
+    }
+    call_plugin(job->m, &batch, chunk);
+    for (int k = 0; k < 3 && p->force_before[k]; k++)
+        memcpy(p->force_before[k] + begin, p->force[k] + begin, (end - begin) * sizeof *p->force[k]);
 }
 
 static tl_status check_states(const tl_model *m, tl_error *error)
@@ -263,7 +303,8 @@ tl_status tl_damping_apply(tl_model *m, double dt)
     if (status == TL_OK) {
         damping_job job = {m, dt, state};
         tl_parallel_for(m->pool, c->table.rows, TL_BODY_CHUNK, damp_range, &job);
-        tl_gridpoints_damp(m, dt, state);
+        if (tl_model_deforms(m))
+            tl_parallel_for(m->pool, m->zones->points.table.rows, POINT_CHUNK, damp_points, &job);
         status = c->failure.error.status;
         if (status == TL_OK)
             status = check_states(m, &c->failure.error);

@@ -7,8 +7,6 @@
 /* Replaces the model's damping, with initial states. With `from`, params of the same kind, what is not given is taken
  * from it. */
 tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args, const void *from);
-/* Calls the plugin; false: it failed, which is noted as a failure of the chunk. */
-bool tl_damping_call(tl_model *m, const tl_damping_batch *batch, size_t chunk);
 tl_status tl_damping_apply(tl_model *m, double dt);
 
 #endif

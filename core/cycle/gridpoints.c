@@ -13,11 +13,8 @@
 
 #include "base/columns.h"
 #include "base/extremes.h"
-#include "cycle/damping.h"
-#include "cycle/rest.h"
 #include "cycle/turn.h"
 #include "segment/act.h"
-#include "zone/pass.h"
 #include "zone/stiffness.h"
 
 #include <math.h>
@@ -28,133 +25,6 @@
 
 /* All components of a gridpoint. */
 #define ALL (TL_FIX_X | TL_FIX_Y | TL_FIX_Z)
-
-/* Tolerance: strain of a zone in a step from which the next one is kept, and looked at before it is made. */
-#define FAST_STRAIN 1e-3
-
-/* ---------------------------------------------------------------- forces of zones -------- */
-
-static tl_status apply(tl_model *m)
-{
-    struct tl_cycle *c = m->cycle;
-    if (!tl_model_deforms(m))
-        return TL_OK;
-    tl_zones_pass(m, m->dt, &c->failure);
-    const tl_status status = c->failure.error.status;
-    if (status == TL_OK)
-        return TL_OK;
-    const struct tl_zones *z = m->zones;
-    const tl_parcel *of = &z->parcels.of[c->failure.chunk];
-    const tl_named_solid *solid = &z->solid[of->solid];
-    c->failure.error.status = TL_OK;
-    return tl_fail(&m->error, status, "cycle %lld, solid '%s' (%s) of block %u: %s", (long long)m->cycles + 1,
-                   solid->name, solid->of.kind->name, z->mesh[of->mesh].body, c->failure.error.text);
-}
-
-static tl_energies energies(tl_model *m)
-{
-    tl_energies sum = {0, 0};
-    const tl_parcels *p = m->zones ? &m->zones->parcels : NULL;
-    for (size_t k = 0; p && k < p->table.rows; k++) {
-        sum.stored += p->stored[k];
-        sum.heat += p->heat[k];
-    }
-    return sum;
-}
-
-static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
-{
-    if (!tl_model_deforms(m))
-        return 0;
-    table[0] = &m->zones->zones.table;
-    table[1] = &m->zones->parcels.table;
-    table[2] = &m->zones->points.table;
-    return 3;
-}
-
-static bool may_fail(const tl_model *m)
-{
-    const struct tl_zones *z = m->zones;
-    bool sure = true;
-    for (size_t k = 0; z && k < z->solid_count; k++)
-        sure = sure && ((const tl_solid_ops *)z->solid[k].of.kind->ops)->never_fails;
-    for (size_t k = 0; z && k < z->parcels.table.rows; k++)
-        sure = sure && z->parcels.most_strain[k] < FAST_STRAIN * FAST_STRAIN;
-    return !sure;
-}
-
-/* Room for what the damping gives. */
-static bool need_damping(tl_gridpoints *p, bool before)
-{
-    bool enough = TL_COLUMN_NEED(&p->table, p, alpha, 0);
-    for (int k = 0; k < 3; k++) {
-        enough = enough && TL_COLUMN_NEED(&p->table, p, damping[k], 0);
-        enough = enough && (!before || TL_COLUMN_NEED(&p->table, p, force_before[k], TL_COLUMN_STEP));
-    }
-    return enough;
-}
-
-static tl_status prepare(tl_model *m)
-{
-    if (!tl_model_deforms(m))
-        return TL_OK;
-    struct tl_zones *z = m->zones;
-    const bool before = m->damping && ((const tl_damping_ops *)m->damping->ops)->before;
-    const bool enough = tl_fit(&z->scratch, &z->scratch_capacity, tl_pool_threads(m->pool), sizeof *z->scratch) &&
-                        (!tl_is_damped(m) || need_damping(&z->points, before));
-    return enough ? TL_OK : tl_fail_memory(&m->error);
-}
-
-/* ---------------------------------------------------------------- segments --------------- */
-
-static tl_status apply_segments(tl_model *m)
-{
-    struct tl_cycle *c = m->cycle;
-    const tl_status status = tl_segments_apply(m, &c->failure);
-    c->failure.error.status = TL_OK;
-    return status == TL_OK ? status
-                           : tl_fail(&m->error, status, "cycle %lld, a law on a deformable block: %s",
-                                     (long long)m->cycles + 1, c->failure.error.text);
-}
-
-static void gather_segments(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
-{
-    for (uint32_t body = begin; m->segments && body < end; body++)
-        tl_segments_gather_body(m, body, &on[body - begin]);
-}
-
-static void hold_segments(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
-{
-    if (m->segments && points)
-        tl_segments_hold(m, body, sum);
-}
-
-static double stiffness_of_segments(const tl_model *m, uint32_t body)
-{
-    tl_holding sum = {{0, 0}, 0, false};
-    hold_segments(m, body, true, &sum);
-    return sum.stiffness.sum;
-}
-
-static size_t tables_of_segments(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
-{
-    if (!m->segments)
-        return 0;
-    table[0] = &m->segments->table.table;
-    table[1] = &m->segments->points.table;
-    return 2;
-}
-
-const tl_contributor tl_segments_act = {.name = "segments",
-                                        .apply = apply_segments,
-                                        .gather = gather_segments,
-                                        .stiffness = stiffness_of_segments,
-                                        .hold = hold_segments,
-                                        .energies = tl_segments_energies,
-                                        .tables = tables_of_segments};
-
-const tl_contributor tl_zones_act = {
-    .name = "zones", .prepare = prepare, .apply = apply, .energies = energies, .tables = tables, .may_fail = may_fail};
 
 /* ---------------------------------------------------------------- step ------------------- */
 
@@ -174,7 +44,7 @@ double tl_gridpoints_least(tl_model *m)
 }
 
 /* What mass scaling makes of a gridpoint's mass. */
-static double scale_of(const tl_model *m, size_t row)
+double tl_gridpoint_scale(const tl_model *m, size_t row)
 {
     const tl_gridpoints *p = &m->zones->points;
     const double scale = m->cycle->mass_scale * p->stiffness[row] / p->mass[row];
@@ -272,57 +142,7 @@ void tl_gridpoints_gather(tl_model *m)
         tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
 }
 
-/* ---------------------------------------------------------------- damping ---------------- */
-
-typedef struct damp_job {
-    tl_model *m;
-    double dt;
-    double *const *state;
-} damp_job;
-
-/* Gridpoints have neither moment nor turn. */
-static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)thread;
-    const damp_job *job = user;
-    tl_gridpoints *p = &job->m->zones->points;
-    double none[CHUNK] = {0}, one[CHUNK], scaled[CHUNK], out[3][CHUNK] = {{0}};
-    const bool scales = job->m->cycle->mass_scale > 0;
-    for (size_t i = 0; i < end - begin; i++) {
-        one[i] = 1;
-        scaled[i] = p->mass[begin + i] * scale_of(job->m, begin + i);
-        p->alpha[begin + i] = 0;
-    }
-    tl_damping_batch batch = {.size = sizeof batch,
-                              .count = (uint32_t)(end - begin),
-                              .dt = job->dt,
-                              .mass = p->mass + begin,
-                              .inertia = one,
-                              .alpha = p->alpha + begin,
-                              .state = job->state,
-                              .moving_mass = scales ? scaled : p->mass + begin,
-                              .moving_inertia = one};
-    for (int k = 0; k < 3; k++) {
-        batch.velocity[k] = p->v[k] + begin;
-        batch.angular_velocity[k] = batch.moment[k] = none;
-        batch.force[k] = p->force[k] + begin;
-        batch.force_before[k] = p->force_before[k] ? p->force_before[k] + begin : NULL;
-        batch.moment_before[k] = none;
-        batch.damping_force[k] = p->damping[k] + begin;
-        batch.damping_moment[k] = out[k];
-        memset(batch.damping_force[k], 0, (end - begin) * sizeof *batch.damping_force[k]);
-    }
-    tl_damping_call(job->m, &batch, chunk);
-    for (int k = 0; k < 3 && p->force_before[k]; k++)
-        memcpy(p->force_before[k] + begin, p->force[k] + begin, (end - begin) * sizeof *p->force[k]);
-}
-
-void tl_gridpoints_damp(tl_model *m, double dt, double *const *state)
-{
-    damp_job job = {m, dt, state};
-    if (tl_model_deforms(m))
-        tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, damp_range, &job);
-}
+/* ---------------------------------------------------------------- motion ----------------- */
 
 void tl_gridpoints_brake(tl_model *m, double alpha)
 {
@@ -332,8 +152,6 @@ void tl_gridpoints_brake(tl_model *m, double alpha)
         tl_columns_put(p->damping, row, tl_v3(0, 0, 0));
     }
 }
-
-/* ---------------------------------------------------------------- motion ----------------- */
 
 typedef struct move_job {
     tl_model *m;
@@ -350,7 +168,8 @@ static push push_of(const tl_model *m, size_t row)
 {
     const tl_gridpoints *p = &m->zones->points;
     const unsigned fixed = p->fixed[row];
-    push out = {tl_free_part(tl_columns_get(p->force, row), fixed), {0, 0, 0}, p->mass[row] * scale_of(m, row), 0};
+    push out = {
+        tl_free_part(tl_columns_get(p->force, row), fixed), {0, 0, 0}, p->mass[row] * tl_gridpoint_scale(m, row), 0};
     if (tl_is_damped(m) && p->alpha) {
         out.damping = tl_free_part(tl_columns_get(p->damping, row), fixed);
         out.alpha = p->alpha[row];
@@ -427,48 +246,8 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
                       (end - begin) / TL_LANES);
 }
 
-/* The means over a mesh, by mass, are those of its body. */
-static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)chunk, (void)thread;
-    const tl_model *m = user;
-    const tl_gridpoints *p = &m->zones->points;
-    for (size_t k = begin; k < end; k++) {
-        const tl_body_mesh *mesh = &m->zones->mesh[k];
-        tl_vec3 u = {0, 0, 0};
-        double mass = 0;
-        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
-            u = tl_v3_madd(u, p->mass[row], tl_columns_get(p->u, row));
-            mass += p->mass[row];
-        }
-        m->bodies.pose[mesh->row].u = tl_v3_scale(1 / mass, u);
-    }
-}
-
 void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
-    if (!tl_model_deforms(m))
-        return;
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
-    tl_parallel_for(m->pool, m->zones->mesh_count, 1, pose_range, m);
-}
-
-/* ---------------------------------------------------------------- rest ------------------- */
-
-uint32_t tl_gridpoints_moving(const tl_model *m, double ratio)
-{
-    uint32_t out = TL_NO_ROW;
-    for (size_t k = 0; m->zones && k < m->zones->mesh_count; k++) {
-        const tl_gridpoints *p = &m->zones->points;
-        const tl_body_mesh *mesh = &m->zones->mesh[k];
-        double kinetic = 0, stored = 0;
-        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
-            kinetic += 0.5 * p->mass[row] * tl_v3_norm2(tl_free_part(tl_columns_get(p->v, row), p->fixed[row]));
-            stored += p->stiffness[row] > 0 ? 0.5 * p->bears[row] * p->bears[row] / p->stiffness[row] : 0;
-        }
-        if (kinetic > 0 && !(kinetic < tl_kinetic_share(ratio) * stored) && mesh->row < out)
-            out = mesh->row;
-    }
-    return out;
 }

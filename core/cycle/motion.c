@@ -627,10 +627,31 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     sum_chunk(m, thread, &work, count * TL_LANES);
 }
 
+/* The means over a mesh, by mass, are those of its body. */
+static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const tl_model *m = user;
+    const tl_gridpoints *p = &m->zones->points;
+    for (size_t k = begin; k < end; k++) {
+        const tl_body_mesh *mesh = &m->zones->mesh[k];
+        tl_vec3 u = {0, 0, 0};
+        double mass = 0;
+        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
+            u = tl_v3_madd(u, p->mass[row], tl_columns_get(p->u, row));
+            mass += p->mass[row];
+        }
+        m->bodies.pose[mesh->row].u = tl_v3_scale(1 / mass, u);
+    }
+}
+
 void tl_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
     begin_books(m);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, move_range, &job);
+    if (!tl_model_deforms(m))
+        return;
     tl_gridpoints_move(m, dt);
+    tl_parallel_for(m->pool, m->zones->mesh_count, 1, pose_range, m);
 }

@@ -14,11 +14,22 @@
  * contacts has its share, by mass, of the energy stored in all contacts for U. */
 #include "cycle/rest.h"
 
+#include "base/columns.h"
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
-#include "cycle/gridpoints.h"
+#include "zone/zones.h"
 
 #include <stdatomic.h>
+
+/* Tolerance: how much softer than the contacts of one body the whole may swing, as a column of 30 blocks does. So much
+ * more energy goes with the same force. Test: lua/test_rest. */
+#define SOFTER 1e3
+
+/* Kinetic energy over the energy that it is compared with, up to which a ratio takes it for rest. */
+static double kinetic_share(double ratio)
+{
+    return ratio * (SOFTER * ratio < 1 ? SOFTER * ratio : 1);
+}
 
 /* Weight and loads of the bodies that can move. */
 static double weight_of_all(const tl_model *m)
@@ -76,7 +87,7 @@ static bool moves(const rest_job *job, uint32_t body)
     double bears = tl_borne(m, body, tl_weight_of(b, body, job->gravity));
     bears = fmax(bears, tl_least_borne(b, body, stiffness));
     double stored = stiffness > 0 ? 0.5 * bears * bears / stiffness : b->mass[body] * job->stored;
-    return !(kinetic < tl_kinetic_share(job->ratio) * stored);
+    return !(kinetic < kinetic_share(job->ratio) * stored);
 }
 
 static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -89,6 +100,25 @@ static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         body++;
     while (body < end && body < first && !atomic_compare_exchange_weak(&job->moving, &first, body)) {
     }
+}
+
+/* The first body with a mesh that moves by more than a ratio allows at rest, or TL_NO_ROW. A mesh swings more softly
+ * than one of its gridpoints by far, so energies are compared over the whole of it. */
+static uint32_t moving_mesh(const tl_model *m, double ratio)
+{
+    uint32_t out = TL_NO_ROW;
+    for (size_t k = 0; m->zones && k < m->zones->mesh_count; k++) {
+        const tl_gridpoints *p = &m->zones->points;
+        const tl_body_mesh *mesh = &m->zones->mesh[k];
+        double kinetic = 0, stored = 0;
+        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
+            kinetic += 0.5 * p->mass[row] * tl_v3_norm2(tl_free_part(tl_columns_get(p->v, row), p->fixed[row]));
+            stored += p->stiffness[row] > 0 ? 0.5 * p->bears[row] * p->bears[row] / p->stiffness[row] : 0;
+        }
+        if (kinetic > 0 && !(kinetic < kinetic_share(ratio) * stored) && mesh->row < out)
+            out = mesh->row;
+    }
+    return out;
 }
 
 /* Whether no body moves any more than `ratio` allows. The first that does is the worst. Looked at only when forces are
@@ -107,7 +137,7 @@ static bool all_rest(tl_model *m, double ratio)
                     .stored = mass > 0 ? energy.stored / mass : 0,
                     .moving = TL_NO_ROW};
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_READ_CHUNK, rest_range, &job);
-    const uint32_t mesh = tl_gridpoints_moving(m, ratio), moving = job.moving < mesh ? job.moving : mesh;
+    const uint32_t mesh = moving_mesh(m, ratio), moving = job.moving < mesh ? job.moving : mesh;
     if (moving == TL_NO_ROW)
         return true;
     m->cycle->sums.worst = moving;

@@ -8,16 +8,6 @@
  * overlaps are rounded at some 1e-16 of the radius. */
 #define TL_ROUNDED_OVERLAP 1e-10
 
-/* Tolerance: how much softer than the contacts of one body the whole may swing, as a column of 30 blocks does. So much
- * more energy goes with the same force. Test: lua/test_rest. */
-#define TL_SOFTER 1e3
-
-/* Kinetic energy over the energy that it is compared with, up to which a ratio takes it for rest. */
-static inline double tl_kinetic_share(double ratio)
-{
-    return ratio * (TL_SOFTER * ratio < 1 ? TL_SOFTER * ratio : 1);
-}
-
 /* Whether the model is at rest by a measure, to within a ratio. */
 bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio);
 /* Force that a body of a stiffness bears at the least: what its contacts carry at an overlap that is rounding. */

@@ -81,8 +81,8 @@ static const tl_param timestep_params[] = {
              "of it it falls to half of that, and the slopes are used for contacts at rest only",
              .def = {TL_BALANCE_ERROR}, .min = 0.0, .max = 1.0),
     TL_PARAM(TL_PARAM_REAL, tl_timestep, zone_fraction, "",
-             "of deformable blocks: share of the step up to which zones are stable, whatever their motion", .def = {1.0},
-             .min = TL_FRACTION_LEAST, .max = 1.0),
+             "of deformable blocks: share of the step up to which zones are stable, whatever their motion",
+             .def = {1.0}, .min = TL_FRACTION_LEAST, .max = 1.0),
 };
 
 static const tl_param mass_scaling_params[] = {

@@ -23,7 +23,8 @@ static tl_vec3 area_of(const tl_outer_face *f)
 {
     tl_vec3 sum = {0, 0, 0};
     for (size_t i = 1; i + 1 < f->count; i++)
-        sum = tl_v3_add(sum, tl_v3_cross(tl_v3_sub(f->corner[i], f->corner[0]), tl_v3_sub(f->corner[i + 1], f->corner[0])));
+        sum = tl_v3_add(sum,
+                        tl_v3_cross(tl_v3_sub(f->corner[i], f->corner[0]), tl_v3_sub(f->corner[i + 1], f->corner[0])));
     return tl_v3_scale(0.5, sum);
 }
 

@@ -1,8 +1,8 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
- * A side carries the three points of a segment with it: with x the places of the corners of its triangle and d how
- * these moved in the last step, a point of weights w lies at sum w x and has moved by sum w d. So it is with the normal,
- * and with the spin of the triangle about it,
+ * A side carries the three points of a segment with it. Let x be the places of the corners of its triangle, and d how
+ * they have moved in the last step. A point of weights w lies at sum w x and has moved by sum w d. The triangle spins
+ * about its normal by
  *
  *     spin . n = (g_1 x d_1 + g_2 x d_2) . n / 2,    g_1, g_2 reciprocal to the edges
  *
@@ -128,8 +128,9 @@ static void follow(tl_model *m, uint32_t row, size_t lane, lanes *l)
     double slid2 = 0;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t at = lane + k * TL_LANES;
-        const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + k) + row % TL_LANES;
-        const carried ca = carry(m, &a, tl_columns_get(p->at_a, point)), cb = carry(m, &b, tl_columns_get(p->at_b, point));
+        const size_t point = tl_segment_point_row(row, k);
+        const carried ca = carry(m, &a, tl_columns_get(p->at_a, point)),
+                      cb = carry(m, &b, tl_columns_get(p->at_b, point));
         const tl_vec3 apart = tl_v3_sub(cb.place, ca.place), du = tl_v3_sub(cb.moved, ca.moved);
         const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
         l->closure[at] = -gap - (p->reference ? p->reference[point] : 0);
@@ -216,7 +217,7 @@ static void push(tl_model *m, uint32_t row, size_t lane, const lanes *l)
     double sums[2][9] = {{0}}, bears = 0;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t at = lane + k * TL_LANES;
-        const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + k) + row % TL_LANES;
+        const size_t point = tl_segment_point_row(row, k);
         const tl_vec3 n = tl_v3(l->normal[0][at], l->normal[1][at], l->normal[2][at]);
         const tl_vec3 on_b = tl_v3_madd(tl_columns_get(p->f_s, point), p->f_n[point], n);
         bears += tl_v3_norm(on_b);
@@ -304,7 +305,7 @@ void tl_segments_stiffen(tl_model *m)
             continue;
         const double k = tl_law_stiffness(&m->joint_laws[s->meet[of->meet].law]);
         for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
-            const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + i) + row % TL_LANES;
+            const size_t point = tl_segment_point_row(row, i);
             for (int side = 0; side < 2; side++) {
                 const tl_segment_side *to = side ? &of->b : &of->a;
                 for (int c = 0; c < 3 && !tl_side_is_rigid(to); c++)
@@ -328,7 +329,7 @@ void tl_segments_hold(const tl_model *m, uint32_t body, tl_holding *sum)
         sum->presses = true;
         for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
             const uint32_t row = s->body_use[k].segment;
-            const size_t point = TL_LANES * (TL_SEGMENT_POINTS * (row / TL_LANES) + i) + row % TL_LANES;
+            const size_t point = tl_segment_point_row(row, i);
             double *const *at = s->body_use[k].side ? s->points.at_b : s->points.at_a;
             sum->stiffness.sum += stiff * s->points.area[point];
             sum->stiffness.r2 += stiff * s->points.area[point] * tl_v3_norm2(tl_columns_get(at, point));

@@ -7,7 +7,6 @@
 #include "contact/contacts.h"
 #include "contact/law_states.h"
 #include "model/joints.h"
-#include "segment/meets.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,8 +59,8 @@ void tl_segments_free(struct tl_segments *s)
 {
     tl_table_free(&s->table.table);
     tl_table_free(&s->points.table);
-    void *const owned[] = {s->meet,       s->span,  s->use,        s->body_use, s->use_start,
-                           s->body_start, s->corner, s->room_memory};
+    void *const owned[] = {s->meet,      s->span,       s->use,    s->body_use,
+                           s->use_start, s->body_start, s->corner, s->room_memory};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -140,7 +139,8 @@ static tl_vec3 keep_to(const tl_model *m, const tl_segment_side *side, tl_vec3 p
         return tl_body_local(&m->bodies, side->at[0], place);
     const tl_gridpoints *g = &m->zones->points;
     const tl_vec3 x = tl_gridpoint_place(g, side->at[0]);
-    const tl_vec3 a = tl_v3_sub(tl_gridpoint_place(g, side->at[1]), x), b = tl_v3_sub(tl_gridpoint_place(g, side->at[2]), x);
+    const tl_vec3 a = tl_v3_sub(tl_gridpoint_place(g, side->at[1]), x),
+                  b = tl_v3_sub(tl_gridpoint_place(g, side->at[2]), x);
     const tl_vec3 d = tl_v3_sub(place, x), n = tl_v3_cross(a, b);
     const double n2 = tl_v3_norm2(n);
     const double wb = tl_v3_dot(tl_v3_cross(d, b), n) / n2, wc = tl_v3_dot(tl_v3_cross(a, d), n) / n2;
@@ -164,11 +164,6 @@ static int compare_entries(const void *x, const void *y)
         if (p[k] != q[k])
             return p[k] < q[k] ? -1 : 1;
     return 0;
-}
-
-static size_t point_row(size_t segment, size_t k)
-{
-    return TL_LANES * (TL_SEGMENT_POINTS * (segment / TL_LANES) + k) + segment % TL_LANES;
 }
 
 static void copy_point(tl_segment_points *to, size_t at, const tl_segment_points *from, size_t row, double scale)
@@ -234,10 +229,10 @@ static size_t nearest_point(const old_segments *old, uint32_t meet, tl_vec3 plac
     double least = INFINITY;
     for (size_t i = first_from(old, &(entry){.meet = meet}); i < old->count && old->list[i].meet == meet; i++)
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-            const size_t row = point_row(old->list[i].old, k);
+            const size_t row = tl_segment_point_row(old->list[i].old, k);
             const tl_vec3 at = tl_v3(p->at_a[0][row], p->at_a[1][row], p->at_a[2][row]);
-            const double d2 = tl_v3_norm2(
-                tl_v3_sub(place, tl_segment_place(old->m, &old->s->table.of[old->list[i].old].a, at)));
+            const double d2 =
+                tl_v3_norm2(tl_v3_sub(place, tl_segment_place(old->m, &old->s->table.of[old->list[i].old].a, at)));
             if (d2 < least) {
                 least = d2;
                 found = row;
@@ -256,7 +251,7 @@ static void lay_points(const old_segments *old, struct tl_segments *to, size_t r
     const bool same = at < old->count && old->list[at].meet == of->meet && old->list[at].key[0] == of->key[0] &&
                       old->list[at].key[1] == of->key[1];
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t point = point_row(row, k);
+        const size_t point = tl_segment_point_row(row, k);
         const tl_vec3 a = keep_to(m, &made->a, made->over.on_a[k]), b = keep_to(m, &made->b, made->over.on_b[k]);
         const double gap = tl_v3_dot(tl_v3_sub(made->over.on_b[k], made->over.on_a[k]), made->over.n);
         p->at_a[0][point] = a.x;
@@ -267,7 +262,7 @@ static void lay_points(const old_segments *old, struct tl_segments *to, size_t r
         p->at_b[2][point] = b.z;
         p->area[point] = made->over.area / TL_SEGMENT_POINTS;
         const size_t from =
-            same ? point_row(old->list[at].old, k) : nearest_point(old, of->meet, made->over.on_a[k]);
+            same ? tl_segment_point_row(old->list[at].old, k) : nearest_point(old, of->meet, made->over.on_a[k]);
         const double size = from != TL_NO_ROW ? old->s->points.area[from] : 0;
         if (size > 0)
             copy_point(p, point, &old->s->points, from, p->area[point] / size);
@@ -283,7 +278,7 @@ static double shear_energy(const tl_segment_points *p, size_t segment)
 {
     double sum = 0;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t row = point_row(segment, k);
+        const size_t row = tl_segment_point_row(segment, k);
         double f2 = 0;
         for (int c = 0; c < 3; c++)
             f2 += p->f_s[c][row] * p->f_s[c][row];
@@ -310,7 +305,7 @@ static double keep_energy(const tl_model *m, const old_segments *old, struct tl_
         const double scale = sqrt(sum[2 * meet] / sum[2 * meet + 1]);
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
             for (int c = 0; c < 3; c++)
-                to->points.f_s[c][point_row(row, k)] *= scale;
+                to->points.f_s[c][tl_segment_point_row(row, k)] *= scale;
     }
     for (size_t k = 0; k < m->segments->meet_count; k++) {
         const uint32_t law = m->segments->meet[k].law;
@@ -361,7 +356,7 @@ static void lay_entry(const old_segments *old, const tl_laying *l, struct tl_seg
         for (int c = 0; c < 3; c++)
             to->table.normal[c][row] = s->table.normal[c][e->old];
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-            const size_t at = point_row(row, k), from = point_row(e->old, k);
+            const size_t at = tl_segment_point_row(row, k), from = tl_segment_point_row(e->old, k);
             for (int c = 0; c < 3; c++) {
                 to->points.at_a[c][at] = s->points.at_a[c][from];
                 to->points.at_b[c][at] = s->points.at_b[c][from];
@@ -372,8 +367,8 @@ static void lay_entry(const old_segments *old, const tl_laying *l, struct tl_seg
         return;
     }
     const tl_new_segment *made = &l->list[e->fresh];
-    to->table.of[row] = (tl_segment){made->meet, made->a,        made->b,
-                                     {made->key[0], made->key[1]}, made->normal_a, made->normal_b};
+    to->table.of[row] =
+        (tl_segment){made->meet, made->a, made->b, {made->key[0], made->key[1]}, made->normal_a, made->normal_b};
     to->table.area[row] = made->over.area;
     to->table.normal[0][row] = made->over.n.x;
     to->table.normal[1][row] = made->over.n.y;
@@ -422,7 +417,7 @@ static void fill_tables(const old_segments *old, const tl_laying *l, struct tl_s
 /* ---------------------------------------------------------------- who gets what ---------- */
 
 /* Lists the segments of each gridpoint and each body, in the order of their rows. There is room. */
-static void index_uses(const tl_model *m, struct tl_segments *s)
+static void list_uses(const tl_model *m, struct tl_segments *s)
 {
     const size_t points = m->zones->points.table.rows, bodies = m->bodies.table.rows;
     for (int pass = 0; pass < 2; pass++) {
@@ -484,8 +479,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
     const size_t rows = rows_of(list, count);
     enough = enough && tl_table_resize(&fresh.table.table, rows) &&
              tl_table_resize(&fresh.points.table, TL_SEGMENT_POINTS * rows) &&
-             tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) &&
-             index_room(m, s, count);
+             tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) && index_room(m, s, count);
     if (!enough) {
         tl_table_free(&fresh.table.table);
         tl_table_free(&fresh.points.table);
@@ -504,9 +498,29 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
             s->meet[k].stale = false;
         s->version++;
         sum_areas(s);
-        index_uses(m, s);
+        list_uses(m, s);
     }
     free(list);
     free(old.list);
+    return enough;
+}
+
+bool tl_segments_index(tl_model *m)
+{
+    const bool enough = index_room(m, m->segments, m->segments->table.table.rows);
+    if (enough)
+        list_uses(m, m->segments);
+    return enough;
+}
+
+bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns)
+{
+    tl_segment_points *p = &s->points;
+    tl_column more[TL_STATE_COLUMNS];
+    uint32_t count = 0;
+    for (uint32_t k = p->state_columns; k < columns; k++)
+        more[count++] = (tl_column)TL_COLUMN_NEW(p, state[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
+    const bool enough = count == 0 || tl_table_widen(&p->table, more, count);
+    p->state_columns += enough ? count : 0;
     return enough;
 }

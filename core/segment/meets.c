@@ -63,7 +63,8 @@ static void measure_parts(const tl_model *m, face *f)
 {
     double weight = 0;
     for (size_t k = 0; k < f->part_count; k++) {
-        const tl_vec3 a = corner_of(m, &f->part[k], 0), b = corner_of(m, &f->part[k], 1), c = corner_of(m, &f->part[k], 2);
+        const tl_vec3 a = corner_of(m, &f->part[k], 0), b = corner_of(m, &f->part[k], 1),
+                      c = corner_of(m, &f->part[k], 2);
         const tl_vec3 area = tl_v3_scale(0.5, tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a)));
         const double size = tl_v3_norm(area);
         f->area = tl_v3_add(f->area, area);
@@ -87,8 +88,9 @@ static void measure_rigid(const tl_model *m, face *f)
     const uint32_t count = tl_poly_face_size(m->blocks.shape[f->block], f->number);
     const tl_vec3 first = rigid_corner(m, f->block, f->number, 0);
     for (uint32_t k = 1; k + 1 < count; k++)
-        f->area = tl_v3_madd(f->area, 0.5, tl_v3_cross(tl_v3_sub(rigid_corner(m, f->block, f->number, k), first),
-                                                       tl_v3_sub(rigid_corner(m, f->block, f->number, k + 1), first)));
+        f->area = tl_v3_madd(f->area, 0.5,
+                             tl_v3_cross(tl_v3_sub(rigid_corner(m, f->block, f->number, k), first),
+                                         tl_v3_sub(rigid_corner(m, f->block, f->number, k + 1), first)));
     for (uint32_t k = 0; k < count; k++)
         f->centre = tl_v3_madd(f->centre, 1.0 / count, rigid_corner(m, f->block, f->number, k));
     for (uint32_t k = 0; k < count; k++)

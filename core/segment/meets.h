@@ -6,6 +6,5 @@
 
 /* Brings meets and their segments up to the present places. */
 tl_status tl_segments_find(tl_model *m);
-void tl_segments_free(struct tl_segments *s);
 
 #endif

@@ -1,14 +1,14 @@
 /* segments.h - contact of deformable blocks that lie flush on others: tables of segments and their points.
  *
- * A segment is the polygon that a triangle of one surface has in common with a triangle of another one, or with the
- * face of a rigid block. It has three points, which integrate over it (narrow/overlay.h). A point keeps to the material
- * of both sides: on a deformable side it lies by three weights between the corners of the triangle, on a rigid one at a
- * place in the body's frame.
+ * A segment is the polygon that two triangles of surfaces have in common, or a triangle and the face of a rigid block.
+ * It has three points, which integrate over it (narrow/overlay.h). A point keeps to the material of both sides. On a
+ * deformable side it lies by three weights between the corners of the triangle. On a rigid one it has a place in the
+ * body's frame.
  *
  * A meet is two faces, one of them of a deformable block, that may touch by segments. Its segments come by their
  * triangles.
  *
- * Segments of one law lie in SIMD groups: the segment in lane l of group g has row TL_LANES g + l, and its point k the
+ * Segments of one law lie in SIMD groups. The segment in lane l of group g has row TL_LANES g + l. Its point k has the
  * row TL_LANES (3 g + k) + l of the points. Lanes without a segment have area 0. */
 #ifndef TL_SEGMENT_SEGMENTS_H
 #define TL_SEGMENT_SEGMENTS_H
@@ -40,13 +40,20 @@ typedef struct tl_segment {
     tl_vec3 normal_a, normal_b;
 } tl_segment;
 
+/* The row of point k of a segment. */
+static inline size_t tl_segment_point_row(size_t segment, size_t k)
+{
+    return TL_LANES * (TL_SEGMENT_POINTS * (segment / TL_LANES) + k) + segment % TL_LANES;
+}
+
 typedef struct tl_segment_table {
     tl_table table;
     tl_segment *of;    /* an empty lane has no meet: TL_NO_ROW */
     double *area;      /* m2 */
     double *normal[3]; /* in the last step, from A to B */
-    double *push[2][9]; /* what it does to the corners of its sides, N; to a rigid side: force, and moment about its body */
-    double *bears;        /* sum of the sizes of the forces of its points, N */
+    double *
+        push[2][9]; /* what it does to the corners of its sides, N; to a rigid side: force, and moment about its body */
+    double *bears;  /* sum of the sizes of the forces of its points, N */
     double *stored, *heat; /* J: the latter in the last step */
     uint8_t *slid;         /* its sides have slid or stretched: it is to be laid anew */
 } tl_segment_table;
@@ -101,7 +108,7 @@ struct tl_segments {
     tl_vec3 *corner; /* scratch: of a rigid face */
     size_t corner_capacity;
     uint64_t version; /* counts how often segments were laid */
-    double lost; /* shear that went when segments were laid: heat of the next step, J */
+    double lost;      /* shear that went when segments were laid: heat of the next step, J */
 };
 
 #endif

@@ -74,7 +74,8 @@ static tl_status copy_zones(tl_model *to, const tl_model *from)
         copy = (tl_entries_copy){.from = &entries};
         tl_segments_walk(to->segments, &(tl_walk){tl_entries_take, &copy});
     }
-    return copy.failed || !tl_grow(&to->zones->slot, &to->zones->slot_capacity, to->zones->listed_count, sizeof *to->zones->slot)
+    return copy.failed || !tl_grow(&to->zones->slot, &to->zones->slot_capacity, to->zones->listed_count,
+                                   sizeof *to->zones->slot)
                ? tl_fail_memory(&to->error)
                : TL_OK;
 }

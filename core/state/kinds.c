@@ -1,12 +1,12 @@
-/* kinds.c - laws and damping in an archive.
+/* kinds.c - laws, damping and solids in an archive.
  *
  *     PREFIX.kind      name of the law or damping, "coulomb"
  *     PREFIX.plugin    id and version of its plugin, "talus.coulomb 1.0"
  *     PREFIX.param.X   parameter X: numbers, or the name of its choice
  *     PREFIX.states    names of its states, a line each
  *
- * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules. Parameters are checked as
- * those of a script are. */
+ * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules, or "solid.0", ... with
+ * PREFIX.name. A parameter that is a table is a list of its rows. Parameters are checked as those of a script are. */
 #include "state/kinds.h"
 
 #include "base/params.h"
@@ -14,7 +14,10 @@
 #include "cycle/cycle_data.h"
 #include "cycle/damping.h"
 #include "force/joint_laws.h"
+#include "zone/grid.h"
+#include "zone/solids.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,7 +50,11 @@ static void put_param(tl_archive_writer *w, const char *prefix, const tl_param *
     const char *at = (const char *)params + p->offset;
     int32_t choice;
     tl_chunk_name(name, "%s.param.%s", prefix, p->name);
-    if (p->type == TL_PARAM_ENUM) {
+    if (p->type == TL_PARAM_POINTS) {
+        tl_points rows;
+        memcpy(&rows, at, sizeof rows);
+        tl_archive_put(w, name, rows.at, sizeof *rows.at, rows.count);
+    } else if (p->type == TL_PARAM_ENUM) {
         memcpy(&choice, at, sizeof choice);
         tl_archive_put_text(w, name, p->choices[choice]);
     } else {
@@ -90,6 +97,20 @@ static void save_damping(const tl_model *m, tl_archive_writer *w)
     tl_archive_put(w, "damping.state", m->damping_state, sizeof *m->damping_state, m->damping->state_count);
 }
 
+static void save_solids(const tl_model *m, tl_archive_writer *w)
+{
+    const uint64_t count = m->zones ? m->zones->solid_count : 0;
+    if (count > 0)
+        tl_archive_put(w, "solids", &count, sizeof count, 1);
+    for (uint64_t k = 0; k < count; k++) {
+        const tl_named_solid *solid = &m->zones->solid[k];
+        char prefix[PREFIX], name[TL_CHUNK_NAME];
+        snprintf(prefix, sizeof prefix, "solid.%" PRIu64, k);
+        tl_archive_put_text(w, tl_chunk_name(name, "%s.name", prefix), solid->name);
+        put_kind(w, prefix, solid->of.kind, solid->of.params);
+    }
+}
+
 /* ---------------------------------------------------------------- restoring -------------- */
 
 /* Finds the law or damping of a prefix among the plugins, and sees that it is the same one. */
@@ -101,7 +122,7 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
     if (!tl_archive_text(a, tl_chunk_name(chunk, "%s.kind", prefix), name, sizeof name) ||
         !tl_archive_text(a, tl_chunk_name(chunk, "%s.plugin", prefix), plugin, sizeof plugin))
         return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
-    const char *what = type == TL_KIND_LAW ? "law" : "damping";
+    const char *what = type == TL_KIND_LAW ? "law" : type == TL_KIND_SOLID ? "solid" : "damping";
     *kind = tl_plugin_find(type, name);
     if (!*kind)
         return tl_fail(&m->error, TL_E_NOT_FOUND,
@@ -125,7 +146,26 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
 typedef struct read_param {
     double numbers[3];
     char text[PLUGIN_NAME];
+    double *rows; /* of a table; from malloc */
 } read_param;
+
+/* A table. An empty one was not given. */
+static bool read_rows(const tl_archive *a, const char *name, const tl_param *p, read_param *r, tl_value *value,
+                      bool *given)
+{
+    const tl_chunk *chunk = tl_archive_find(a, name);
+    if (!chunk || chunk->size != sizeof(tl_vec3) || chunk->items > SIZE_MAX / sizeof(tl_vec3))
+        return false;
+    const size_t count = (size_t)chunk->items;
+    *given = count > 0;
+    if (count == 0)
+        return true;
+    r->rows = malloc(count * sizeof(tl_vec3));
+    value->type = p->flags & TL_PARAM_FLAT ? TL_VALUE_FLAT : TL_VALUE_POINTS;
+    value->data = r->rows;
+    value->count = count;
+    return r->rows && tl_archive_get(a, name, r->rows, sizeof(tl_vec3), count);
+}
 
 /* Reads a parameter as a script would give it. false: it is not there. `*given` is false for one that was left out. */
 static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p, read_param *r, tl_value *value,
@@ -149,6 +189,7 @@ static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p,
             return false;
         value->number = yes != 0;
         return true;
+    case TL_PARAM_POINTS: return read_rows(a, name, p, r, value, given);
     case TL_PARAM_ENUM:
         value->type = TL_VALUE_STRING;
         value->text = r->text;
@@ -188,9 +229,9 @@ static tl_status tell_path(tl_model *m, const tl_archive *a, tl_status status)
                                                     : tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
 }
 
-/* Makes the law or damping of a prefix: a law into `law`, or the model's damping. */
+/* Makes the law, solid or damping of a prefix: a law into `law`, a solid of that name, or the model's damping. */
 static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix, tl_kind_type type, tl_tag tag,
-                              tl_law *law)
+                              tl_law *law, const char *solid)
 {
     const tl_kind *kind = NULL;
     tl_status status = find_kind(m, a, prefix, type, &kind);
@@ -204,8 +245,10 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
         const char *joint = tag.joint ? tl_tag_name(m, tag) : "*";
         status = tell_path(m, a, tl_law_make_for(m, tag, joint, kind, &args, NULL, law));
     } else if (status == TL_OK) {
-        status = tell_path(m, a, tl_damping_make(m, kind, &args, NULL));
+        status = tell_path(m, a, solid ? tl_solid_set(m, solid, kind, &args) : tl_damping_make(m, kind, &args, NULL));
     }
+    for (uint32_t k = 0; storage && k < kind->param_count; k++)
+        free(storage[k].rows);
     free(storage);
     free(values);
     return status;
@@ -226,7 +269,7 @@ static tl_status restore_laws(tl_model *m, const tl_archive *a)
         if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) ||
             tag.joint > m->joint_count || (tag.joint == 0 && tag.plane > 0))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
-        tl_status status = restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count]);
+        tl_status status = restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count], NULL);
         if (status != TL_OK)
             return status;
         m->joint_law_count++;
@@ -238,12 +281,31 @@ static tl_status restore_damping(tl_model *m, const tl_archive *a)
 {
     if (!tl_archive_find(a, "damping.kind"))
         return TL_OK;
-    tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL);
+    tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL, NULL);
     if (status != TL_OK)
         return status;
     if (!tl_archive_get(a, "damping.state", m->damping_state, sizeof *m->damping_state, m->damping->state_count))
         return tl_archive_bad(a, &m->error, "'damping.state' is missing");
     return TL_OK;
+}
+
+static tl_status restore_solids(tl_model *m, const tl_archive *a)
+{
+    uint64_t count;
+    if (!tl_archive_find(a, "solids"))
+        return TL_OK;
+    if (!tl_archive_get(a, "solids", &count, sizeof count, 1) || count > a->chunk_count)
+        return tl_archive_bad(a, &m->error, "'solids' does not fit");
+    tl_status status = tl_zones_begin(m);
+    for (uint64_t k = 0; k < count && status == TL_OK; k++) {
+        char prefix[PREFIX], chunk[TL_CHUNK_NAME], name[TL_SOLID_NAME];
+        snprintf(prefix, sizeof prefix, "solid.%" PRIu64, k);
+        if (!tl_archive_text(a, tl_chunk_name(chunk, "%s.name", prefix), name, sizeof name) ||
+            tl_solid_find(m, name) != TL_NO_ROW)
+            return tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", prefix);
+        status = restore_kind(m, a, prefix, TL_KIND_SOLID, (tl_tag){0, 0}, NULL, name);
+    }
+    return status;
 }
 
 /* ---------------------------------------------------------------- copying ---------------- */
@@ -277,5 +339,14 @@ static tl_status copy_damping(tl_model *to, const tl_model *from)
     return status;
 }
 
+static tl_status copy_solids(tl_model *to, const tl_model *from)
+{
+    tl_status status = from->zones ? tl_zones_begin(to) : TL_OK;
+    for (size_t k = 0; from->zones && k < from->zones->solid_count && status == TL_OK; k++)
+        status = tl_solid_copy(to, &from->zones->solid[k]);
+    return status;
+}
+
 const tl_state_part tl_laws_part = {save_laws, restore_laws, copy_laws};
 const tl_state_part tl_damping_part = {save_damping, restore_damping, copy_damping};
+const tl_state_part tl_solids_part = {save_solids, restore_solids, copy_solids};

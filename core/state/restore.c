@@ -17,8 +17,14 @@
 #include "model/loads.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "segment/lay.h"
+#include "segment/sound.h"
+#include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "zone/grid.h"
+#include "zone/sound.h"
+#include "zone/walk.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -529,6 +535,57 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
     return tl_detect_make_lanes(d, &d->layout) && (edited || tl_contacts_index(m)) ? TL_OK : tl_fail_memory(&m->error);
 }
 
+/* Makes the columns that few meshes have. */
+static bool hold_gridpoints(tl_gridpoints *p, const tl_archive *a)
+{
+    const bool load = tl_archive_find(a, "zones.points.load[k]"), damped = tl_archive_find(a, "zones.points.alpha");
+    const bool before = tl_archive_find(a, "zones.points.force_before[k]");
+    return (!load || tl_gridpoints_hold_loads(p)) && (!damped || tl_gridpoints_hold_damping(p, before));
+}
+
+static tl_status read_zones(tl_model *m, const tl_archive *a)
+{
+    if (!tl_archive_find(a, "zones.points.rows"))
+        return TL_OK;
+    tl_status status = tl_zones_begin(m);
+    if (status != TL_OK)
+        return status;
+    struct tl_zones *z = m->zones;
+    if (!hold_gridpoints(&z->points, a))
+        return tl_fail_memory(&m->error);
+    const uint32_t columns = z->zones.state_columns; /* that the solids need */
+    reader r = {.archive = a};
+    tl_zones_walk(z, &(tl_walk){read_entry, &r});
+    status = told(&r, m);
+    if (status != TL_OK)
+        return status;
+    z->zones.state_columns = columns;
+    const char *bad = tl_zones_unsound(m, z);
+    if (bad)
+        return unsound(a, m, bad);
+    const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+static tl_status read_segments(tl_model *m, const tl_archive *a)
+{
+    if (!m->zones || !tl_archive_find(a, "segments.table.rows"))
+        return TL_OK;
+    if (!tl_segments_begin(m) || !tl_segments_hold_states(m->segments, states_needed(m)))
+        return tl_fail_memory(&m->error);
+    const uint32_t columns = m->segments->points.state_columns;
+    reader r = {.archive = a};
+    tl_segments_walk(m->segments, &(tl_walk){read_entry, &r});
+    tl_status status = told(&r, m);
+    if (status != TL_OK)
+        return status;
+    m->segments->points.state_columns = columns;
+    const char *bad = tl_segments_unsound(m, m->segments);
+    if (bad)
+        return unsound(a, m, bad);
+    return tl_segments_index(m) ? TL_OK : tl_fail_memory(&m->error);
+}
+
 static tl_status read_cycle(tl_model *m, const tl_archive *a)
 {
     if (!tl_archive_find(a, "cycle.rows"))
@@ -558,6 +615,10 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = derive_rows(m);
     if (status == TL_OK)
         status = read_detection(m, a);
+    if (status == TL_OK)
+        status = read_zones(m, a);
+    if (status == TL_OK)
+        status = read_segments(m, a);
     return status == TL_OK ? read_cycle(m, a) : status;
 }
 

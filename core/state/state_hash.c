@@ -18,6 +18,7 @@
 #include "detect/detect.h"
 #include "model/loads.h"
 #include "model/walk.h"
+#include "segment/segments.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -238,6 +239,65 @@ static void hash_rock(tl_hash *hash, const tl_model *m)
             tl_hash_bytes(hash, &m->face_loads[i], sizeof m->face_loads[i]);
 }
 
+/* ---------------------------------------------------------------- deformable blocks ------ */
+
+static void hash_mesh(tl_hash *hash, const struct tl_zones *z, const tl_body_mesh *mesh)
+{
+    hash_rows(hash, &z->points.table, mesh->point_begin, mesh->point_end);
+    for (uint32_t k = mesh->parcel_begin; k < mesh->parcel_end; k++) {
+        const tl_parcel *of = &z->parcels.of[k];
+        const tl_named_solid *solid = &z->solid[of->solid];
+        hash_text(hash, solid->name);
+        hash_text(hash, solid->of.kind->name);
+        hash_rows(hash, &z->parcels.table, k, k + 1);
+        for (uint32_t g = of->group_begin; g < of->group_end; g++) {
+            const size_t begin = z->group[g].start, end = begin + (size_t)z->group[g].depth * TL_LANES;
+            for (int a = 0; a < 4; a++)
+                tl_hash_bytes(hash, z->zones.corner[a] + begin, (end - begin) * sizeof **z->zones.corner);
+            hash_rows(hash, &z->zones.table, begin, end);
+        }
+    }
+}
+
+/* In the order of the bodies. */
+static void hash_meshes(tl_hash *hash, const tl_model *m)
+{
+    tl_hash sum = {0, 0};
+    for (size_t k = 0; k < m->zones->mesh_count; k++) {
+        tl_hash one = tl_hash_start();
+        tl_hash_word(&one, m->zones->mesh[k].body);
+        hash_mesh(&one, m->zones, &m->zones->mesh[k]);
+        hash_any_order(&sum, &one);
+    }
+    tl_hash_word(hash, sum.a);
+    tl_hash_word(hash, sum.b);
+}
+
+/* In no order: which rows they have depends on the laws that there are. */
+static void hash_segments(tl_hash *hash, const tl_model *m)
+{
+    const struct tl_segments *s = m->segments;
+    tl_hash sum = {0, 0};
+    for (size_t row = 0; row < s->table.table.rows; row++) {
+        const tl_segment *of = &s->table.of[row];
+        if (of->meet == TL_NO_ROW)
+            continue;
+        const tl_meet *meet = &s->meet[of->meet];
+        tl_hash one = tl_hash_start();
+        tl_hash_word(&one, (uint64_t)meet->a << 32 | meet->b);
+        tl_hash_word(&one, (uint64_t)meet->face_a << 32 | meet->face_b);
+        tl_hash_word(&one, (uint64_t)of->key[0] << 32 | of->key[1]);
+        hash_rows(&one, &s->table.table, row, row + 1);
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+            const size_t point = tl_segment_point_row(row, k);
+            hash_rows(&one, &s->points.table, point, point + 1);
+        }
+        hash_any_order(&sum, &one);
+    }
+    tl_hash_word(hash, sum.a);
+    tl_hash_word(hash, sum.b);
+}
+
 /* ---------------------------------------------------------------- settings --------------- */
 
 static void hash_laws(tl_hash *hash, const tl_model *m)
@@ -283,6 +343,8 @@ static void hash_reals(tl_hash *hash, const tl_model *m, const tl_settings *of)
         const double *at = tl_setting_at(m, of, i), fraction = tl_timestep_fraction(m);
         if (at == &m->timestep.error && m->timestep.rule != TL_TIMESTEP_BALANCE)
             continue; /* it makes no difference then */
+        if (at == &m->timestep.zone_fraction && !tl_model_deforms(m))
+            continue;
         if (at && (type == TL_PARAM_REAL || type == TL_PARAM_VEC3))
             tl_hash_numbers(hash, at == &m->timestep.fraction ? &fraction : at, type == TL_PARAM_VEC3 ? 3 : 1);
     }
@@ -355,6 +417,10 @@ tl_status tl_state_hash(tl_model *m, char text[33])
         return status;
     hash_settings(&hash, m);
     hash_rock(&hash, m);
+    if (tl_model_deforms(m))
+        hash_meshes(&hash, m);
+    if (m->segments)
+        hash_segments(&hash, m);
     snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;
 }

@@ -73,6 +73,24 @@ void tl_zones_free(struct tl_zones *z)
     free(z);
 }
 
+bool tl_gridpoints_hold_damping(tl_gridpoints *p, bool before)
+{
+    bool enough = TL_COLUMN_NEED(&p->table, p, alpha, 0);
+    for (int k = 0; k < 3; k++) {
+        enough = enough && TL_COLUMN_NEED(&p->table, p, damping[k], 0);
+        enough = enough && (!before || TL_COLUMN_NEED(&p->table, p, force_before[k], TL_COLUMN_STEP));
+    }
+    return enough;
+}
+
+bool tl_gridpoints_hold_loads(tl_gridpoints *p)
+{
+    bool enough = true;
+    for (int k = 0; k < 3; k++)
+        enough = enough && TL_COLUMN_NEED(&p->table, p, load[k], TL_COLUMN_STATE);
+    return enough;
+}
+
 uint32_t tl_mesh_of(const tl_model *m, tl_id body)
 {
     const size_t count = m->zones ? m->zones->mesh_count : 0;
@@ -89,11 +107,11 @@ typedef struct laying {
     tl_model *m;
     struct tl_zones *z;
     const tl_grid *grid;
-    uint32_t *local;   /* of each of the mesh's points: its number in the parcel, or TL_NO_ROW */
-    uint32_t *sorted;  /* clusters of the parcel, by their sizes */
-    uint32_t points;   /* that the parcel has */
-    uint32_t first;    /* row of the mesh's first gridpoint */
-    uint32_t row;      /* of the body */
+    uint32_t *local;  /* of each of the mesh's points: its number in the parcel, or TL_NO_ROW */
+    uint32_t *sorted; /* clusters of the parcel, by their sizes */
+    uint32_t points;  /* that the parcel has */
+    uint32_t first;   /* row of the mesh's first gridpoint */
+    uint32_t row;     /* of the body */
 } laying;
 
 static size_t size_of(const tl_grid *g, uint32_t cluster)

@@ -11,7 +11,8 @@ typedef struct tl_grid {
     size_t point_count;
     const uint32_t (*zone)[4];
     size_t zone_count;
-    const uint32_t *cluster_start, *cluster_zone; /* cluster k: cluster_zone[cluster_start[k] .. cluster_start[k + 1]) */
+    const uint32_t *cluster_start,
+        *cluster_zone; /* cluster k: cluster_zone[cluster_start[k] .. cluster_start[k + 1]) */
     size_t cluster_count;
     double density; /* kg/m3 */
     /* of the surface, by block and face; corners are numbers of points */
@@ -23,11 +24,13 @@ typedef struct tl_grid {
 tl_status tl_zones_begin(tl_model *m);
 /* Gives a body that has none a mesh, all of one solid, free of stress. Nothing has changed when it fails. */
 tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid);
-/* Takes the mesh of a body away. */
-void tl_zones_remove(tl_model *m, uint32_t mesh);
 void tl_zones_free(struct tl_zones *z);
 /* Lists the slots of each gridpoint. false: out of memory. */
 bool tl_zones_index(struct tl_zones *z);
+/* Columns that are made when they are needed: what a damping gives, with the forces of the step before, and loads.
+ * false: out of memory. */
+bool tl_gridpoints_hold_damping(tl_gridpoints *p, bool before);
+bool tl_gridpoints_hold_loads(tl_gridpoints *p);
 /* The number of a body's mesh, or TL_NO_ROW. */
 uint32_t tl_mesh_of(const tl_model *m, tl_id body);
 

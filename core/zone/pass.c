@@ -1,6 +1,7 @@
 /* pass.c - zones follow their gridpoints: strain, stress, forces.
  *
- * Let v be the velocity of the last motion and h its duration, x the present places and x' = x - v h / 2 those half-way.
+ * Let v be the velocity of the last motion and h its duration, x the present places and x' = x - v h / 2 those
+ * half-way.
  * With the gradients g_a of the four shape functions and V the volume, in a zone
  *
  *     L = h sum_a v_a (x) g_a(x'),    strain = sym L,    w = the axial vector of skew L
@@ -104,9 +105,12 @@ TL_INLINE void turn_row(double *const stress[6], size_t row, size_t at, group_ro
         const double b0 = s * (x * y + z), b1 = 1 - s * (x * x + z * z), b2 = s * (y * z - x);
         const double c0 = s * (x * z - y), c1 = s * (y * z + x), c2 = 1 - s * (x * x + y * y);
         const double xx = sxx[l], yy = syy[l], zz = szz[l], xy = sxy[l], yz = syz[l], zx = szx[l];
-        const double p0 = a0 * xx + a1 * xy + a2 * zx, p1 = a0 * xy + a1 * yy + a2 * yz, p2 = a0 * zx + a1 * yz + a2 * zz;
-        const double q0 = b0 * xx + b1 * xy + b2 * zx, q1 = b0 * xy + b1 * yy + b2 * yz, q2 = b0 * zx + b1 * yz + b2 * zz;
-        const double t0 = c0 * xx + c1 * xy + c2 * zx, t1 = c0 * xy + c1 * yy + c2 * yz, t2 = c0 * zx + c1 * yz + c2 * zz;
+        const double p0 = a0 * xx + a1 * xy + a2 * zx, p1 = a0 * xy + a1 * yy + a2 * yz,
+                     p2 = a0 * zx + a1 * yz + a2 * zz;
+        const double q0 = b0 * xx + b1 * xy + b2 * zx, q1 = b0 * xy + b1 * yy + b2 * yz,
+                     q2 = b0 * zx + b1 * yz + b2 * zz;
+        const double t0 = c0 * xx + c1 * xy + c2 * zx, t1 = c0 * xy + c1 * yy + c2 * yz,
+                     t2 = c0 * zx + c1 * yz + c2 * zz;
         r->before[0][at + l] = p0 * a0 + p1 * a1 + p2 * a2;
         r->before[1][at + l] = q0 * b0 + q1 * b1 + q2 * b2;
         r->before[2][at + l] = t0 * c0 + t1 * c1 + t2 * c2;
@@ -148,7 +152,7 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         r->volume[at + l] = factor[l] * (area[0].of[0][l] * edge[0].of[0][l] + area[0].of[1][l] * edge[0].of[1][l] +
-                                      area[0].of[2][l] * edge[0].of[2][l]);
+                                         area[0].of[2][l] * edge[0].of[2][l]);
         r->extent[at + l] = g->extent[l];
     }
     for (int a = 0; a < 3; a++)
@@ -224,8 +228,8 @@ TL_INLINE double share_stress(group_rows *restrict r, double *const stress[6], s
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l, j = row + i;
-            const double change = (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) +
-                                  (stress[2][j] - r->before[2][i]);
+            const double change =
+                (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) + (stress[2][j] - r->before[2][i]);
             sum[l] += r->volume[i] * change;
             all[l] += r->volume[i];
         }
@@ -236,8 +240,8 @@ TL_INLINE double share_stress(group_rows *restrict r, double *const stress[6], s
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l, j = row + i;
-            const double change = (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) +
-                                  (stress[2][j] - r->before[2][i]);
+            const double change =
+                (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) + (stress[2][j] - r->before[2][i]);
             const double more = (sum[l] - change) / 3;
             for (int c = 0; c < 3; c++)
                 stress[c][j] += more;

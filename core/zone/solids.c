@@ -53,17 +53,17 @@ static bool turns(const tl_kind *kind)
     return some;
 }
 
-tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args)
+/* Sets a solid; what is not given is taken from `from`. */
+static tl_status set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args, const tl_solid *from)
 {
     struct tl_zones *z = m->zones;
     const uint32_t known = tl_solid_find(m, name);
-    tl_named_solid *old = known != TL_NO_ROW ? &z->solid[known] : NULL;
     tl_named_solid made = {.name = strdup(name)};
     char context[TL_ERROR_TEXT / 2];
     if (!made.name)
         return tl_fail_memory(&m->error);
-    snprintf(context, sizeof context, "solid '%.80s', of kind '%.40s'", name, kind ? kind->name : old->of.kind->name);
-    tl_status status = tl_solid_make(kind ? kind : old->of.kind, args, kind ? NULL : &old->of, context, &m->error, &made.of);
+    snprintf(context, sizeof context, "solid '%.80s', of kind '%.40s'", name, kind->name);
+    tl_status status = tl_solid_make(kind, args, from, context, &m->error, &made.of);
     if (status == TL_OK && !(tl_grow(&z->solid, &z->solid_capacity, z->solid_count + 1, sizeof *z->solid) &&
                              tl_solid_columns(z, &made.of)))
         status = tl_fail_memory(&m->error);
@@ -77,4 +77,17 @@ tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const
     z->solid[known != TL_NO_ROW ? known : z->solid_count++] = made;
     z->version++;
     return TL_OK;
+}
+
+tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args)
+{
+    const uint32_t known = tl_solid_find(m, name);
+    const tl_solid *old = known != TL_NO_ROW ? &m->zones->solid[known].of : NULL;
+    const bool same = old && (!kind || kind == old->kind);
+    return set(m, name, kind ? kind : old->kind, args, same ? old : NULL);
+}
+
+tl_status tl_solid_copy(tl_model *to, const tl_named_solid *from)
+{
+    return set(to, from->name, from->of.kind, &(tl_args){NULL, 0}, &from->of);
 }

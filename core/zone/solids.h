@@ -4,10 +4,15 @@
 
 #include "zone/zones.h"
 
+/* Bytes of a solid's name, with its end, at the most. */
+#define TL_SOLID_NAME 128
+
 /* The number of a solid, or TL_NO_ROW. */
 uint32_t tl_solid_find(const tl_model *m, const char *name);
 /* Sets a solid: with `kind` a new one or another in its place, without it only parameters of one that there is. */
 tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args);
+/* Gives a model a solid as another one has it. */
+tl_status tl_solid_copy(tl_model *to, const tl_named_solid *from);
 /* Gives the zones the columns of states that a solid needs. false: out of memory. */
 bool tl_solid_columns(struct tl_zones *z, const tl_solid *solid);
 void tl_solids_free(struct tl_zones *z);

@@ -4,8 +4,8 @@
 
 #include "zone/zones.h"
 
-/* Finds `stiffness` of all gridpoints, as their zones hold them, where meshes or solids have changed, or some steps have
- * been made since. false: it stands. */
+/* Finds `stiffness` of all gridpoints, as their zones hold them. It stands (false) where meshes and solids have not
+ * changed, and few steps have been made since. */
 bool tl_zones_stiffen(tl_model *m);
 /* Finds the gridpoints with the highest and the lowest rate of those that may move. */
 void tl_zones_rate(tl_model *m);

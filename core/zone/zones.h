@@ -41,18 +41,18 @@ static inline const tl_state *tl_solid_state(const tl_kind *kind, uint32_t k)
 
 typedef struct tl_gridpoints {
     tl_table table;
-    double *ref[3];   /* where it was made, from the model's origin, m */
-    double *u[3];     /* displacement since, m */
-    double *v[3];     /* velocity, half a step behind the place, m/s */
-    double *moved[3]; /* that of the last motion: since then v may have been set anew */
-    double *mass;     /* kg: a quarter of the mass of each of its zones */
-    double *force[3]; /* unbalanced: zones, contacts, weight, load; of held components it is what holds, reversed, N */
-    double *bears;    /* a bound of the sum of the sizes of the forces on it, N: pass.c */
+    double *ref[3];    /* where it was made, from the model's origin, m */
+    double *u[3];      /* displacement since, m */
+    double *v[3];      /* velocity, half a step behind the place, m/s */
+    double *moved[3];  /* that of the last motion: since then v may have been set anew */
+    double *mass;      /* kg: a quarter of the mass of each of its zones */
+    double *force[3];  /* unbalanced: zones, contacts, weight, load; of held components it is what holds, reversed, N */
+    double *bears;     /* a bound of the sum of the sizes of the forces on it, N: pass.c */
     uint32_t *zones;   /* that have it for a corner */
     double *stiffness; /* bound of the row of the stiffness matrix, N/m: stiffness.c */
     uint32_t *mesh;    /* its number */
     uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
-    double *load[3];  /* of the user's, N; NULL: none has ever been set */
+    double *load[3];   /* of the user's, N; NULL: none has ever been set */
     double *damping[3], *alpha; /* what the damping gave; NULL: there has been none */
     double *force_before[3];    /* in the last damped step; NULL: no damping has asked for them */
 } tl_gridpoints;
@@ -67,8 +67,8 @@ typedef struct tl_zone_table {
     uint32_t state_columns;
 } tl_zone_table;
 
-/* A SIMD group: its first row, the zones of its deepest cluster and of each lane's, and the cube roots of the volumes
- * that the lanes' clusters were made with, m. */
+/* A SIMD group: its first row, the zones of its deepest cluster, and those of each lane's. `extent`: cube roots of the
+ * volumes that the lanes' clusters were made with, m. */
 typedef struct tl_zone_group {
     uint32_t start;
     uint8_t depth, count[TL_LANES];
@@ -110,11 +110,11 @@ typedef struct tl_surface_part {
 /* The mesh of a body. */
 typedef struct tl_body_mesh {
     tl_id body;
-    uint32_t row; /* of the body */
-    uint32_t point_begin, point_end;   /* rows of gridpoints */
+    uint32_t row;                    /* of the body */
+    uint32_t point_begin, point_end; /* rows of gridpoints */
     uint32_t parcel_begin, parcel_end;
-    uint32_t zone_begin, zone_end;     /* in `row_of` */
-    uint32_t part_begin, part_end;     /* in `part` */
+    uint32_t zone_begin, zone_end; /* in `row_of` */
+    uint32_t part_begin, part_end; /* in `part` */
 } tl_body_mesh;
 
 struct tl_zones {
@@ -139,7 +139,7 @@ struct tl_zones {
     size_t solid_count, solid_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
-    uint64_t version; /* counts changes of meshes and solids */
+    uint64_t version;                 /* counts changes of meshes and solids */
     double highest_rate, lowest_rate; /* stiffness over mass of the gridpoints that may move, 1/s2; 0: there are none */
     uint32_t highest;                 /* row of that with the highest, or TL_NO_ROW */
     uint64_t rated_for;               /* version then; 0: not known */

@@ -102,7 +102,8 @@ TEST(broken_plugins_are_refused_with_the_reason)
 {
     refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.10, this Talus has 1.10");
     refused(bad_folder, "later_major", "it was built for plugin ABI 3.10, this Talus has 1.10: build it anew");
-    refused(bad_folder, "later_minor", "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.10");
+    refused(bad_folder, "later_minor",
+            "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.10");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
     refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.10)");

@@ -7,48 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---------------------------------------------------------------- an elastic solid ------- */
-
-typedef struct elastic {
-    double young, poisson;
-} elastic;
-
-static const tl_param elastic_params[] = {
-    TL_PARAM(TL_PARAM_REAL, elastic, young, "Pa", "Young's modulus", .min = 1.0, .max = 1e15),
-    TL_PARAM(TL_PARAM_REAL, elastic, poisson, "", "Poisson's ratio", .min = 0.0, .max = 0.4999),
-};
-
-static tl_status elastic_update(const void *self, const tl_solid_batch *b, tl_report *report)
-{
-    (void)report;
-    const elastic *e = self;
-    const double g = e->young / (2 * (1 + e->poisson)), l = 2 * g * e->poisson / (1 - 2 * e->poisson);
-    for (uint32_t i = 0; i < b->count; i++) {
-        const double t = l * (b->strain[0][i] + b->strain[1][i] + b->strain[2][i]);
-        for (int j = 0; j < 6; j++)
-            b->stress[j][i] += 2 * g * b->strain[j][i] + (j < 3 ? t : 0);
-    }
-    return TL_OK;
-}
-
-static void elastic_moduli(const void *self, double *constrained, double *shear)
-{
-    const elastic *e = self;
-    *shear = e->young / (2 * (1 + e->poisson));
-    *constrained = 2 * *shear * (1 - e->poisson) / (1 - 2 * e->poisson);
-}
-
-static const tl_solid_ops elastic_ops = {
-    .size = sizeof elastic_ops, .update = elastic_update, .moduli = elastic_moduli, .never_fails = 1};
-static const tl_kind elastic_kind = {.size = sizeof elastic_kind,
-                                     .type = TL_KIND_SOLID,
-                                     .name = "elastic",
-                                     .params = elastic_params,
-                                     .param_count = 2,
-                                     .param_stride = sizeof elastic_params[0],
-                                     .params_size = sizeof(elastic),
-                                     .ops = &elastic_ops};
-
 /* ---------------------------------------------------------------- a box of zones --------- */
 
 /* A box of n[0] x n[1] x n[2] cells, each of six zones about its diagonal, which are a cluster. */
@@ -152,7 +110,7 @@ static void solid(tl_model *m, double young, double poisson)
                                {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
     const tl_args args = {values, 2};
     CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", &elastic_kind, &args));
+    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
 }
 
 /* A box of zones, alone. */
@@ -190,9 +148,9 @@ TEST(a_uniform_strain_is_uniform)
     run(m, 2);
     const double g = 1e9 / 2.5, l = g * 0.5 / 0.5;
     const double trace = rate[0][0] + rate[1][1] + rate[2][2];
-    const double right[6] = {2 * g * rate[0][0] + l * trace,          2 * g * rate[1][1] + l * trace,
-                             2 * g * rate[2][2] + l * trace,          g * (rate[0][1] + rate[1][0]),
-                             g * (rate[1][2] + rate[2][1]),           g * (rate[2][0] + rate[0][2])};
+    const double right[6] = {2 * g * rate[0][0] + l * trace, 2 * g * rate[1][1] + l * trace,
+                             2 * g * rate[2][2] + l * trace, g * (rate[0][1] + rate[1][0]),
+                             g * (rate[1][2] + rate[2][1]),  g * (rate[2][0] + rate[0][2])};
     const tl_zone_table *t = &m->zones->zones;
     for (size_t row = 0; row < t->table.rows; row++)
         for (int j = 0; j < 6; j++)
@@ -265,7 +223,11 @@ TEST(a_column_settles_under_its_weight)
     m->constraints++;
     tl_solve_result result;
     scene_ok(m, tl_model_damping(m, "local", NULL));
-    scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-6, .velocity = NAN, .max_time = NAN, .max_cycles = 20000}, &result));
+    scene_ok(m, tl_model_solve(
+                    m,
+                    &(tl_solve){
+                        .size = sizeof(tl_solve), .ratio = 1e-6, .velocity = NAN, .max_time = NAN, .max_cycles = 20000},
+                    &result));
     double low = 0;
     for (size_t row = 0; row < p->table.rows; row++)
         low = fmin(low, p->u[2][row]);
@@ -289,14 +251,14 @@ TEST(columns_on_a_joint_shorten_in_series)
     zone_box(m, 2, n[1], tl_v3(0, 0, 2), tl_v3(1, 1, 4), 2500);
     tl_gridpoints *g = &m->zones->points;
     const double foot = -m->origin.z, top = 4 - m->origin.z;
-    for (int k = 0; k < 3; k++)
-        CHECK(tl_table_need(&g->table, "load", sizeof(double), TL_COLUMN_AT(g, load[k]), TL_COLUMN_STATE));
+    CHECK(tl_gridpoints_hold_loads(g));
     for (size_t row = 0; row < g->table.rows; row++) {
         if (g->zones[row] == 0)
             continue;
         g->fixed[row] = TL_FIX_X | TL_FIX_Y | (g->ref[2][row] < foot + 1e-9 ? TL_FIX_Z : 0);
     }
-    for (size_t k = 0; k < m->zones->part_count; k++) { /* a third of the load on each corner of the triangles at the top */
+    for (size_t k = 0; k < m->zones->part_count;
+         k++) { /* a third of the load on each corner of the triangles at the top */
         const uint32_t *c = m->zones->part[k].corner;
         if (g->ref[2][c[0]] < top - 1e-9 || g->ref[2][c[1]] < top - 1e-9 || g->ref[2][c[2]] < top - 1e-9)
             continue;
@@ -308,8 +270,13 @@ TEST(columns_on_a_joint_shorten_in_series)
     m->constraints++;
     tl_solve_result result;
     scene_ok(m, tl_model_damping(m, "local", NULL));
-    scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-8, .velocity = NAN, .max_time = NAN, .max_cycles = 20000}, &result));
-    printf("%d steps, reason %d, meets %zu segments %zu\n", (int)result.cycles, (int)result.reason, m->segments->meet_count, m->segments->table.table.rows);
+    scene_ok(m, tl_model_solve(
+                    m,
+                    &(tl_solve){
+                        .size = sizeof(tl_solve), .ratio = 1e-8, .velocity = NAN, .max_time = NAN, .max_cycles = 20000},
+                    &result));
+    printf("%d steps, reason %d, meets %zu segments %zu\n", (int)result.cycles, (int)result.reason,
+           m->segments->meet_count, m->segments->table.table.rows);
     const double right = p * (2 / modulus), joint = p / kn;
     for (size_t row = 0; row < g->table.rows; row++) {
         if (g->zones[row] == 0)
@@ -361,8 +328,14 @@ TEST(a_cube_rests_and_slides_on_zones)
         tl_energy energy;
         scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
         scene_ok(m, tl_model_damping(m, "local", NULL));
-        scene_ok(m, tl_model_solve(m, &(tl_solve){.size = sizeof(tl_solve), .ratio = 1e-6, .velocity = NAN, .max_time = NAN, .max_cycles = 20000}, &result));
-        printf("which %d: rest after %d, reason %d, sinks %g\n", which, (int)result.cycles, (int)result.reason, moved(m, 1).z);
+        scene_ok(
+            m, tl_model_solve(
+                   m,
+                   &(tl_solve){
+                       .size = sizeof(tl_solve), .ratio = 1e-6, .velocity = NAN, .max_time = NAN, .max_cycles = 20000},
+                   &result));
+        printf("which %d: rest after %d, reason %d, sinks %g\n", which, (int)result.cycles, (int)result.reason,
+               moved(m, 1).z);
         CHECK_INT(result.reason, TL_SOLVE_RATIO);
         /* it slides: 30 degrees, friction 20 */
         tl_damping_clear(m);
@@ -382,5 +355,32 @@ TEST(a_cube_rests_and_slides_on_zones)
     }
 }
 
+/* A copy, and a model that was saved and restored, go on to the same bits; their hash is the same. */
+TEST(zones_come_back)
+{
+    tl_model *m = pair(3, 20, 1e9), *copy, *again;
+    tl_error error = {0};
+    char text[3][33];
+    scene_ok(m, tl_model_set_gravity(m, tl_v3(5, 0, -10 * sqrt(0.75))));
+    run(m, 300);
+    scene_ok(m, tl_model_copy(m, NULL, NULL, &copy));
+    const char *path = "zones_come_back.talus";
+    scene_ok(m, tl_model_save(m, path));
+    CHECK_INT(tl_model_restore(path, 2, NULL, NULL, &again, &error), TL_OK);
+    CHECK_INT(remove(path), 0);
+    tl_model *all[3] = {m, copy, again};
+    for (int k = 0; k < 3; k++) {
+        run(all[k], 300);
+        scene_ok(all[k], tl_state_hash(all[k], text[k]));
+        CHECK_TEXT(text[k], text[0]);
+        CHECK_NEAR(moved(all[k], 1).x, moved(m, 1).x, 0);
+        tl_memory memory = tl_model_memory(all[k]);
+        CHECK(memory.zones > 10000);
+    }
+    for (int k = 0; k < 3; k++)
+        tl_model_destroy(all[k]);
+}
+
 TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones_have_the_same_bits_on_any_threads(),
-          a_column_settles_under_its_weight(), columns_on_a_joint_shorten_in_series(), a_cube_rests_and_slides_on_zones())
+          a_column_settles_under_its_weight(), columns_on_a_joint_shorten_in_series(),
+          a_cube_rests_and_slides_on_zones(), zones_come_back())

@@ -212,11 +212,11 @@ typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY, TL_TIMESTEP
 #define TL_STEP_LEAST 1e-100
 
 typedef struct tl_timestep {
-    uint32_t size;   /* sizeof(tl_timestep) */
-    double fraction; /* FRAC of (27); NaN: that of the rule */
-    int32_t rule;    /* tl_timestep_rule */
-    double dt;       /* fixed step, s; NaN: by the rule */
-    double error;    /* rule balance: of the energy balance, up to which the step is longer; 0: the default */
+    uint32_t size;        /* sizeof(tl_timestep) */
+    double fraction;      /* FRAC of (27); NaN: that of the rule */
+    int32_t rule;         /* tl_timestep_rule */
+    double dt;            /* fixed step, s; NaN: by the rule */
+    double error;         /* rule balance: of the energy balance, up to which the step is longer; 0: the default */
     double zone_fraction; /* of the critical step of zones, at most 1; 0: all of it */
 } tl_timestep;
 /* Sets how the time step is chosen; NULL: by the defaults. TL_E_ARGUMENT with a sentence for a fraction or a step out
