@@ -106,6 +106,24 @@ TL_IN_LOOP void tl_isotropic_energies(const tl_isotropic *elastic, uint32_t coun
         stored[i] = tl_isotropic_energy(bulk, shear, xx[i], yy[i], zz[i], xy[i], yz[i], zx[i]);
 }
 
+/* ---------------------------------------------------------------- axes ------------------- */
+
+/* Rows of the table of parameters of a struct `owner` with the members dip and dip_direction, of layers or of a plane. */
+#define TL_PARAMS_DIP(owner, of)                                                                                       \
+    TL_PARAM(TL_PARAM_REAL, owner, dip, "deg", "dip of " of " at the beginning", .min = 0, .max = 90),                 \
+        TL_PARAM(TL_PARAM_REAL, owner, dip_direction, "deg", "dip direction of " of " at the beginning", .min = 0,     \
+                 .max = 360)
+
+/* The axis of a zone, of unit length, whose first column is `column`; `own` where it has none yet. */
+TL_IN_LOOP void tl_axis_at(double *const *state, uint32_t column, uint32_t i, tl_vec3 own, double n[3])
+{
+    double x = state[column][i], y = state[column + 1][i], z = state[column + 2][i], size2 = x * x + y * y + z * z;
+    double by = 1 / sqrt(size2 > 0 ? size2 : 1);
+    n[0] = size2 > 0 ? x * by : own.x;
+    n[1] = size2 > 0 ? y * by : own.y;
+    n[2] = size2 > 0 ? z * by : own.z;
+}
+
 /* ---------------------------------------------------------------- results ---------------- */
 
 /* What a flag of this step, TL_ZONE_SHEAR and the like as a number, makes of the flags before: what yielded before has

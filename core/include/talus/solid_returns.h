@@ -80,14 +80,11 @@ TL_IN_LOOP tl_returned tl_return_tension(const tl_isotropic *elastic, double ten
     return to;
 }
 
-/* Onto the line on which both are met, s1 = T and s3 = S(T), or one of its ends. */
-TL_IN_LOOP tl_returned tl_return_both(const tl_isotropic *elastic, const tl_mohr_coulomb *y, double s1, double s2,
-                                      double s3)
+/* Onto the line on which both are met, s1 = tension and s3 = low, or one of its ends. `dilation`: sin psi there. */
+TL_IN_LOOP tl_returned tl_return_both(const tl_isotropic *elastic, double dilation, double tension, double low,
+                                      double s1, double s2, double s3)
 {
-    const double f = y->friction, d = y->dilation, lame = elastic->lame, shear = elastic->shear;
-    const double volume = 2 * lame * d;
-    double tension = y->tension, low = ((1 + f) * tension - y->cohesion) / (1 - f);
-    low = low < tension ? low : tension;
+    const double d = dilation, lame = elastic->lame, shear = elastic->shear, volume = 2 * lame * d;
     double over = s1 - tension, under = s3 - low;
     double shears = (over * lame - under * elastic->constrained) / (4 * shear * (1 - d) * (lame + shear));
     double tears = (over - shears * (volume + 2 * shear * (1 + d))) / elastic->constrained;
@@ -110,7 +107,9 @@ TL_IN_LOOP tl_returned tl_mohr_coulomb_return(const tl_isotropic *elastic, const
     int shears = (1 + f) * s1 - (1 - f) * s3 - y->cohesion > scale, tears = s1 - tension > scale;
     tl_returned by_shear = tl_return_shear(elastic, y, s1, s2, s3);
     tl_returned by_tension = tl_return_tension(elastic, tension, s1, s2, s3);
-    tl_returned by_both = tl_return_both(elastic, y, s1, s2, s3);
+    double low = ((1 + f) * tension - y->cohesion) / (1 - f);
+    low = low < tension ? low : tension;
+    tl_returned by_both = tl_return_both(elastic, y->dilation, tension, low, s1, s2, s3);
     double largest = by_shear.a > by_shear.c ? by_shear.a : by_shear.c;
     int shear_alone = shears && largest <= tension;
     int tension_alone = tears && (1 + f) * by_tension.a - (1 - f) * by_tension.c <= y->cohesion;
