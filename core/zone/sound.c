@@ -1,5 +1,5 @@
-/* sound.c - whether zones that were read from a file fit together. The file may hold anything. What is used as the number
- * of a row, a corner or a solid must be one. Places and masses are what they can be. */
+/* sound.c - whether zones that were read from a file fit together. The file may hold anything. What is used as the
+ * number of a row, a corner or a solid must be one. Places and masses are what they can be. */
 #include "zone/sound.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
  *
  *     k_a = sum over its zones of V M |g_a| sum_b |g_b|
  *
- * with the largest constrained modulus M of the solid and the gradients g of the shape functions. That is in the norm of
- * the 3 x 3 blocks. No eigenvalue of K x = w^2 m x is higher than the largest k_a / m_a (Gershgorin), so steps up to
+ * with the largest constrained modulus M of the solid and the gradients g of the shape functions. That is in the norm
+ * of the 3 x 3 blocks. No eigenvalue of K x = w^2 m x is higher than the largest k_a / m_a (Gershgorin), so steps up to
  * 2 / sqrt(k_a / m_a) are stable. Means over clusters take stiffness away only. */
 #include "zone/stiffness.h"
 
