@@ -218,20 +218,12 @@ static void note_birth(tl_births *births, const tl_birth *birth)
 /* Cost only: gap along a face, over the reach of the coarse test, from which on that test is spared. */
 #define FAR_APART 0.25
 
-/* Whether one of its blocks is deformable. */
-static bool pair_deforms(const tl_model *m, const tl_pair *p)
-{
-    const tl_bodies *b = &m->bodies;
-    return tl_model_deforms(m) && (tl_mesh_of(m, b->id[m->blocks.body[p->a]]) != TL_NO_ROW ||
-                                   tl_mesh_of(m, b->id[m->blocks.body[p->b]]) != TL_NO_ROW);
-}
-
 /* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of
  * memory. */
 static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_narrow_scratch *scratch)
 {
     const double reach = m->detect->reach;
-    if (pair_deforms(m, p))
+    if (tl_blocks_deform_either(m, p->a, p->b))
         return reach; /* it meets by segments */
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
     tl_face_pair moved;

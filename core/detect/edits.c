@@ -24,6 +24,7 @@
 #include "detect/update.h"
 #include "force/cut_parts.h"
 #include "model/joints.h"
+#include "zone/grid.h"
 
 #include <stdlib.h>
 
@@ -277,7 +278,7 @@ static bool keep_cut_contacts(tl_model *m, const rows_scratch *scratch)
     return true;
 }
 
-/* Ends a contact: a block of it has gone, or both have become one body. */
+/* Ends a contact: a block of it has gone or become deformable, or both have become one body. */
 static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t contact, uint32_t a, uint32_t b)
 {
     m->detect->contacts.pending[contact] = TL_PENDING_DIE;
@@ -312,7 +313,7 @@ static void keep_pairs(tl_model *m, const rows_scratch *scratch)
         if (tl_pair_is_apart(&p)) {
             if (parted || changed)
                 continue; /* the broad phase lists it anew */
-        } else if (parted || (changed && is_fresh(m, p.contact))) {
+        } else if (parted || (changed && is_fresh(m, p.contact)) || tl_blocks_deform_either(m, a, b)) {
             end_contact(m, scratch, p.contact, a, b);
             continue;
         } else {

@@ -121,11 +121,6 @@ static bool faces_meet(const tl_model *m, const face *a, const face *b)
 
 /* ---------------------------------------------------------------- meets ------------------ */
 
-static bool deforms(const tl_model *m, uint32_t block)
-{
-    return tl_mesh_of(m, m->bodies.id[m->blocks.body[block]]) != TL_NO_ROW;
-}
-
 /* Adds the meets of two blocks. false: out of memory. */
 static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list, size_t *count, size_t *capacity)
 {
@@ -174,7 +169,7 @@ static tl_meet *list_meets(const tl_model *m, size_t *count, bool *enough)
     for (size_t k = 0; *enough && k < m->detect->pair_count; k++) {
         const uint32_t a = m->detect->pairs[k].a, b = m->detect->pairs[k].b;
         const bool seen = !m->blocks.hidden[a] && !m->blocks.hidden[b] && m->blocks.body[a] != m->blocks.body[b];
-        if (seen && (deforms(m, a) || deforms(m, b)))
+        if (seen && tl_blocks_deform_either(m, a, b))
             *enough = list_pair(m, a, b, &list, count, &capacity);
     }
     if (*count > 0)

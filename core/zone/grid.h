@@ -33,5 +33,14 @@ bool tl_gridpoints_hold_damping(tl_gridpoints *p, bool before);
 bool tl_gridpoints_hold_loads(tl_gridpoints *p);
 /* The number of a body's mesh, or TL_NO_ROW. */
 uint32_t tl_mesh_of(const tl_model *m, tl_id body);
+/* Whether a block, or one of two, is deformable, by their rows. */
+static inline bool tl_block_deforms(const tl_model *m, uint32_t row)
+{
+    return tl_model_deforms(m) && tl_mesh_of(m, m->bodies.id[m->blocks.body[row]]) != TL_NO_ROW;
+}
+static inline bool tl_blocks_deform_either(const tl_model *m, uint32_t a, uint32_t b)
+{
+    return tl_block_deforms(m, a) || tl_block_deforms(m, b);
+}
 
 #endif

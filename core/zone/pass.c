@@ -51,138 +51,103 @@ typedef struct pass_job {
     tl_failure *failure;
 } pass_job;
 
-typedef struct lanes3 {
-    double of[3][TL_LANES];
-} lanes3;
-
 /* ---------------------------------------------------------------- strain ----------------- */
 
-TL_INLINE void load(lanes3 *to, const double (*from)[TL_PARCEL_POINTS], const uint16_t *corner)
+/* The corners of a row of zones: places, and ways in the last step. */
+typedef struct row_corners {
+    _Alignas(TL_ALIGN) double x[4][3][TL_LANES];
+    double way[4][3][TL_LANES];
+} row_corners;
+
+TL_INLINE void load_corners(const tl_parcel_points *p, uint16_t *const corner[4], size_t row, row_corners *restrict to)
 {
-    for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++)
-            to->of[i][l] = from[i][corner[l]];
+    for (int a = 0; a < 4; a++)
+        for (size_t l = 0; l < TL_LANES; l++) {
+            const double *from = p->of[corner[a][row + l]];
+            for (int i = 0; i < 3; i++) {
+                to->x[a][i][l] = from[i];
+                to->way[a][i][l] = from[3 + i];
+            }
+        }
 }
 
-TL_INLINE void take(lanes3 *from, const lanes3 *other)
+TL_INLINE tl_vec3 lane_of(double (*v)[TL_LANES], size_t l)
 {
-    for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++)
-            from->of[i][l] -= other->of[i][l];
+    return (tl_vec3){v[0][l], v[1][l], v[2][l]};
 }
 
-TL_INLINE void cross(lanes3 *out, const lanes3 *a, const lanes3 *b)
+/* Q stress Q^T of one zone. */
+TL_INLINE tl_sym3 turned(tl_sym3 s, tl_vec3 w)
 {
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        out->of[0][l] = a->of[1][l] * b->of[2][l] - a->of[2][l] * b->of[1][l];
-        out->of[1][l] = a->of[2][l] * b->of[0][l] - a->of[0][l] * b->of[2][l];
-        out->of[2][l] = a->of[0][l] * b->of[1][l] - a->of[1][l] * b->of[0][l];
-    }
+    const double x = 0.5 * w.x, y = 0.5 * w.y, z = 0.5 * w.z, f = 2 / (1 + (x * x + y * y + z * z));
+    const tl_vec3 a = {1 - f * (y * y + z * z), f * (x * y - z), f * (x * z + y)};
+    const tl_vec3 b = {f * (x * y + z), 1 - f * (x * x + z * z), f * (y * z - x)};
+    const tl_vec3 c = {f * (x * z - y), f * (y * z + x), 1 - f * (x * x + y * y)};
+    const tl_vec3 row_x = {s.xx, s.xy, s.zx}, row_y = {s.xy, s.yy, s.yz}, row_z = {s.zx, s.yz, s.zz};
+    const tl_vec3 p = {tl_v3_dot(a, row_x), tl_v3_dot(a, row_y), tl_v3_dot(a, row_z)};
+    const tl_vec3 q = {tl_v3_dot(b, row_x), tl_v3_dot(b, row_y), tl_v3_dot(b, row_z)};
+    const tl_vec3 t = {tl_v3_dot(c, row_x), tl_v3_dot(c, row_y), tl_v3_dot(c, row_z)};
+    return (tl_sym3){.xx = tl_v3_dot(p, a),
+                     .yy = tl_v3_dot(q, b),
+                     .zz = tl_v3_dot(t, c),
+                     .xy = tl_v3_dot(p, b),
+                     .yz = tl_v3_dot(q, c),
+                     .zx = tl_v3_dot(t, a)};
 }
 
-/* Q of the turn w. */
-static tl_mat3 turn_of(tl_vec3 w)
-{
-    const double x = 0.5 * w.x, y = 0.5 * w.y, z = 0.5 * w.z, s = 2 / (1 + (x * x + y * y + z * z));
-    return (tl_mat3){{{1 - s * (y * y + z * z), s * (x * y - z), s * (x * z + y)},
-                      {s * (x * y + z), 1 - s * (x * x + z * z), s * (y * z - x)},
-                      {s * (x * z - y), s * (y * z + x), 1 - s * (x * x + y * y)}}};
-}
-
-/* Turns the stresses of a row of zones: Q stress Q^T, with rows of Q stress on the way. */
-TL_INLINE void turn_row(double *const stress[6], size_t row, size_t at, group_rows *restrict r)
-{
-    const double *restrict sxx = stress[0] + row, *restrict syy = stress[1] + row, *restrict szz = stress[2] + row;
-    const double *restrict sxy = stress[3] + row, *restrict syz = stress[4] + row, *restrict szx = stress[5] + row;
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        const double x = 0.5 * r->spin[0][at + l], y = 0.5 * r->spin[1][at + l], z = 0.5 * r->spin[2][at + l];
-        const double s = 2 / (1 + (x * x + y * y + z * z));
-        const double a0 = 1 - s * (y * y + z * z), a1 = s * (x * y - z), a2 = s * (x * z + y);
-        const double b0 = s * (x * y + z), b1 = 1 - s * (x * x + z * z), b2 = s * (y * z - x);
-        const double c0 = s * (x * z - y), c1 = s * (y * z + x), c2 = 1 - s * (x * x + y * y);
-        const double xx = sxx[l], yy = syy[l], zz = szz[l], xy = sxy[l], yz = syz[l], zx = szx[l];
-        const double p0 = a0 * xx + a1 * xy + a2 * zx, p1 = a0 * xy + a1 * yy + a2 * yz,
-                     p2 = a0 * zx + a1 * yz + a2 * zz;
-        const double q0 = b0 * xx + b1 * xy + b2 * zx, q1 = b0 * xy + b1 * yy + b2 * yz,
-                     q2 = b0 * zx + b1 * yz + b2 * zz;
-        const double t0 = c0 * xx + c1 * xy + c2 * zx, t1 = c0 * xy + c1 * yy + c2 * yz,
-                     t2 = c0 * zx + c1 * yz + c2 * zz;
-        r->before[0][at + l] = p0 * a0 + p1 * a1 + p2 * a2;
-        r->before[1][at + l] = q0 * b0 + q1 * b1 + q2 * b2;
-        r->before[2][at + l] = t0 * c0 + t1 * c1 + t2 * c2;
-        r->before[3][at + l] = p0 * b0 + p1 * b1 + p2 * b2;
-        r->before[4][at + l] = q0 * c0 + q1 * c1 + q2 * c2;
-        r->before[5][at + l] = t0 * a0 + t1 * a1 + t2 * a2;
-    }
-}
-
-/* The zones of one row of a group: number k of their clusters. */
+/* The zones of one row of a group: number k of their clusters. All of a zone in one go, so that it stays in
+ * registers. */
 TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g, size_t k,
                           group_rows *restrict r)
 {
     const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
-    uint16_t *const *corner = z->zones.corner;
-    lanes3 x0, way0, edge[3], way[3], mid[3], area[3];
-    double factor[TL_LANES], per[TL_LANES], d[3][3][TL_LANES];
-    load(&x0, p->x, corner[0] + row);
-    load(&way0, p->way, corner[0] + row);
-    for (int a = 0; a < 3; a++) {
-        load(&edge[a], p->x, corner[a + 1] + row);
-        load(&way[a], p->way, corner[a + 1] + row);
-        take(&edge[a], &x0);
-        take(&way[a], &way0);
-        for (int i = 0; i < 3; i++)
-#pragma omp simd
-            for (size_t l = 0; l < TL_LANES; l++)
-                mid[a].of[i][l] = edge[a].of[i][l] - 0.5 * way[a].of[i][l];
-    }
-    for (int a = 0; a < 3; a++) {
-        cross(&area[a], &edge[(a + 1) % 3], &edge[(a + 2) % 3]);
-        for (int i = 0; i < 3; i++)
-#pragma omp simd
-            for (size_t l = 0; l < TL_LANES; l++)
-                r->area[a][i][at + l] = area[a].of[i][l];
-    }
+    double *const *s = z->zones.stress;
+    double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
+    double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
+    double factor[TL_LANES];
+    row_corners c;
+    load_corners(p, z->zones.corner, row, &c);
     for (size_t l = 0; l < TL_LANES; l++)
         factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        r->volume[at + l] = factor[l] * (area[0].of[0][l] * edge[0].of[0][l] + area[0].of[1][l] * edge[0].of[1][l] +
-                                         area[0].of[2][l] * edge[0].of[2][l]);
+        const tl_vec3 x0 = lane_of(c.x[0], l), w0 = lane_of(c.way[0], l);
+        const tl_vec3 e1 = tl_v3_sub(lane_of(c.x[1], l), x0), e2 = tl_v3_sub(lane_of(c.x[2], l), x0);
+        const tl_vec3 e3 = tl_v3_sub(lane_of(c.x[3], l), x0), w1 = tl_v3_sub(lane_of(c.way[1], l), w0);
+        const tl_vec3 w2 = tl_v3_sub(lane_of(c.way[2], l), w0), w3 = tl_v3_sub(lane_of(c.way[3], l), w0);
+        const tl_vec3 a1 = tl_v3_cross(e2, e3), a2 = tl_v3_cross(e3, e1), a3 = tl_v3_cross(e1, e2);
+        r->area[0][0][at + l] = a1.x, r->area[0][1][at + l] = a1.y, r->area[0][2][at + l] = a1.z;
+        r->area[1][0][at + l] = a2.x, r->area[1][1][at + l] = a2.y, r->area[1][2][at + l] = a2.z;
+        r->area[2][0][at + l] = a3.x, r->area[2][1][at + l] = a3.y, r->area[2][2][at + l] = a3.z;
+        r->volume[at + l] = factor[l] * tl_v3_dot(a1, e1);
         r->extent[at + l] = g->extent[l];
-    }
-    for (int a = 0; a < 3; a++)
-        cross(&area[a], &mid[(a + 1) % 3], &mid[(a + 2) % 3]);
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        const double six = area[0].of[0][l] * mid[0].of[0][l] + area[0].of[1][l] * mid[0].of[1][l] +
-                           area[0].of[2][l] * mid[0].of[2][l];
+        const tl_vec3 m1 = tl_v3_madd(e1, -0.5, w1), m2 = tl_v3_madd(e2, -0.5, w2), m3 = tl_v3_madd(e3, -0.5, w3);
+        const tl_vec3 b1 = tl_v3_cross(m2, m3), b2 = tl_v3_cross(m3, m1), b3 = tl_v3_cross(m1, m2);
+        const double six = tl_v3_dot(b1, m1), per = 1 / six;
+        const double dxy = per * (w1.x * b1.y + w2.x * b2.y + w3.x * b3.y);
+        const double dyx = per * (w1.y * b1.x + w2.y * b2.x + w3.y * b3.x);
+        const double dyz = per * (w1.y * b1.z + w2.y * b2.z + w3.y * b3.z);
+        const double dzy = per * (w1.z * b1.y + w2.z * b2.y + w3.z * b3.y);
+        const double dzx = per * (w1.z * b1.x + w2.z * b2.x + w3.z * b3.x);
+        const double dxz = per * (w1.x * b1.z + w2.x * b2.z + w3.x * b3.z);
         r->middle[at + l] = factor[l] * six;
-        per[l] = 1 / six;
+        r->strain[0][at + l] = per * (w1.x * b1.x + w2.x * b2.x + w3.x * b3.x);
+        r->strain[1][at + l] = per * (w1.y * b1.y + w2.y * b2.y + w3.y * b3.y);
+        r->strain[2][at + l] = per * (w1.z * b1.z + w2.z * b2.z + w3.z * b3.z);
+        r->strain[3][at + l] = 0.5 * (dxy + dyx);
+        r->strain[4][at + l] = 0.5 * (dyz + dzy);
+        r->strain[5][at + l] = 0.5 * (dzx + dxz);
+        const tl_vec3 spin = {0.5 * (dzy - dyz), 0.5 * (dxz - dzx), 0.5 * (dyx - dxy)};
+        r->spin[0][at + l] = spin.x, r->spin[1][at + l] = spin.y, r->spin[2][at + l] = spin.z;
+        const tl_sym3 was = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
+        const tl_sym3 now = turned(was, spin);
+        r->before[0][at + l] = sxx[l] = now.xx;
+        r->before[1][at + l] = syy[l] = now.yy;
+        r->before[2][at + l] = szz[l] = now.zz;
+        r->before[3][at + l] = sxy[l] = now.xy;
+        r->before[4][at + l] = syz[l] = now.yz;
+        r->before[5][at + l] = szx[l] = now.zx;
     }
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-#pragma omp simd
-            for (size_t l = 0; l < TL_LANES; l++)
-                d[i][j][l] = per[l] * (way[0].of[i][l] * area[0].of[j][l] + way[1].of[i][l] * area[1].of[j][l] +
-                                       way[2].of[i][l] * area[2].of[j][l]);
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        r->strain[0][at + l] = d[0][0][l];
-        r->strain[1][at + l] = d[1][1][l];
-        r->strain[2][at + l] = d[2][2][l];
-        r->strain[3][at + l] = 0.5 * (d[0][1][l] + d[1][0][l]);
-        r->strain[4][at + l] = 0.5 * (d[1][2][l] + d[2][1][l]);
-        r->strain[5][at + l] = 0.5 * (d[2][0][l] + d[0][2][l]);
-        r->spin[0][at + l] = 0.5 * (d[2][1][l] - d[1][2][l]);
-        r->spin[1][at + l] = 0.5 * (d[0][2][l] - d[2][0][l]);
-        r->spin[2][at + l] = 0.5 * (d[1][0][l] - d[0][1][l]);
-    }
-    turn_row(z->zones.stress, row, at, r);
 }
 
 /* ---------------------------------------------------------------- clusters --------------- */
@@ -338,9 +303,6 @@ TL_VECTORIZED static double strain_group(const struct tl_zones *z, const tl_parc
 {
     for (size_t k = 0; k < g->depth; k++)
         strain_row(z, p, g, k, r);
-    for (int j = 0; j < 6; j++)
-        for (size_t i = 0; i < (size_t)g->depth * TL_LANES; i++)
-            z->zones.stress[j][g->start + i] = r->before[j][i];
     return share_volume(r, g->depth);
 }
 
@@ -355,6 +317,15 @@ TL_VECTORIZED static double close_group(const struct tl_zones *z, const tl_zone_
 {
     *lost = share_stress(r, z->zones.stress, g->start, g->depth);
     return work_of(r, z->zones.stress, g->start, g->depth);
+}
+
+/* Q of the turn w. */
+static tl_mat3 turn_of(tl_vec3 w)
+{
+    const double x = 0.5 * w.x, y = 0.5 * w.y, z = 0.5 * w.z, s = 2 / (1 + (x * x + y * y + z * z));
+    return (tl_mat3){{{1 - s * (y * y + z * z), s * (x * y - z), s * (x * z + y)},
+                      {s * (x * y + z), 1 - s * (x * x + z * z), s * (y * z - x)},
+                      {s * (x * z - y), s * (y * z + x), 1 - s * (x * x + y * y)}}};
 }
 
 /* Turns column k and those after it, of a row: a vector's three, or a tensor's six. */
@@ -428,8 +399,8 @@ static void list_points(const pass_job *job, const tl_parcel *of, tl_parcel_poin
     for (uint32_t k = of->point_begin; k < of->point_end; k++) {
         const uint32_t row = job->zones->listed[k], at = k - of->point_begin;
         for (int i = 0; i < 3; i++) {
-            p->x[i][at] = g->ref[i][row] + g->u[i][row];
-            p->way[i][at] = job->dt * g->moved[i][row];
+            p->of[at][i] = g->ref[i][row] + g->u[i][row];
+            p->of[at][3 + i] = job->dt * g->moved[i][row];
         }
         job->zones->slot[k] = (tl_slot){{0}};
     }

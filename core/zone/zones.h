@@ -95,9 +95,10 @@ typedef struct tl_slot {
     double of[4];
 } tl_slot;
 
-/* Gridpoints of a parcel: where they are, m, and how they came there in the last step. Scratch of a thread. */
+/* Gridpoints of a parcel, a row each: where they are, m, and how they came there in the last step; up to a line of
+ * memory. Scratch of a thread. */
 typedef struct tl_parcel_points {
-    double x[3][TL_PARCEL_POINTS], way[3][TL_PARCEL_POINTS];
+    double of[TL_PARCEL_POINTS][8];
 } tl_parcel_points;
 
 /* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the block

@@ -23,7 +23,7 @@ MODULES = {
     "force": ("base", "plugin", "narrow", "model", "contact"),
     "segment": ("base", "geometry", "narrow", "model", "zone", "contact", "force"),
     "detect": ("base", "geometry", "narrow", "model", "zone", "contact", "force"),
-    "query": ("base", "geometry", "narrow", "model", "contact", "detect"),
+    "query": ("base", "geometry", "narrow", "model", "zone", "contact", "detect"),
     "edit": ("base", "geometry", "model", "contact", "detect", "query", "cycle"),
     "cycle": ("base", "geometry", "plugin", "model", "zone", "contact", "force", "segment", "detect"),
     "state": ("base", "geometry", "narrow", "plugin", "model", "zone", "contact", "force", "segment", "detect", "cycle"),

@@ -1,7 +1,9 @@
 /* test_zones.c - zones of a deformable body: uniform strain, energy, momentum, frequencies, the same bits on any threads. */
 #include "contact_scene.h"
+#include "query/zone_fields.h"
 #include "segment/segments.h"
 #include "zone/grid.h"
+#include "zone/gridpoints.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
@@ -109,6 +111,9 @@ static void solid(tl_model *m, double young, double poisson)
     const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
                                {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
     const tl_args args = {values, 2};
+    tl_error error = {0};
+    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
+        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
     CHECK_INT(tl_zones_begin(m), TL_OK);
     scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
 }
@@ -433,6 +438,64 @@ TEST(a_cube_rests_and_slides_on_zones)
     }
 }
 
+/* Zones and gridpoints are asked by names; gridpoints are held, loaded and pushed by them. */
+TEST(zones_tell_what_they_are)
+{
+    const int n[3] = {2, 2, 2};
+    tl_model *m = zoned(n, tl_v3(1, 1, 1), 1e9, 0.25, 2500, 1);
+    tl_zone_filter filter = {.size = sizeof filter, .plastic = -1};
+    tl_zone_name *zones, *points;
+    size_t zone_count, point_count, width;
+    double value[48 * 6], strain[48 * 6], volume = 0;
+    scene_ok(m, tl_zones_select(m, &filter, &zones, &zone_count));
+    scene_ok(m, tl_gridpoints_select(m, &filter, &points, &point_count));
+    CHECK_INT(zone_count, 48);
+    CHECK_INT(point_count, 27);
+    tl_vec3 velocity[27];
+    for (size_t k = 0; k < point_count; k++) {
+        scene_ok(m, tl_gridpoints_values(m, &points[k], 1, "position", value, &width));
+        velocity[k] = tl_v3(0.01 * value[0], 0, 0);
+    }
+    scene_ok(m, tl_gridpoints_fix(m, points, point_count, TL_FIX_X | TL_FIX_Y | TL_FIX_Z));
+    scene_ok(m, tl_gridpoints_velocity(m, points, point_count, velocity));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1}));
+    run(m, 2);
+    scene_ok(m, tl_zones_values(m, zones, zone_count, "stress", value, &width));
+    CHECK_INT(width, 6);
+    scene_ok(m, tl_zones_values(m, zones, zone_count, "strain", strain, &width));
+    for (size_t k = 0; k < zone_count; k++) {
+        CHECK_NEAR(value[6 * k], 1.2e9 * 0.01, 1.2e9 * 1e-4);
+        CHECK_NEAR(value[6 * k + 1], 0.4e9 * 0.01, 0.4e9 * 1e-4);
+        CHECK_NEAR(strain[6 * k], log(1.02), 1e-12); /* both steps have moved it; the stress is that of the first */
+        CHECK_NEAR(strain[6 * k + 1], 0, 1e-12);
+    }
+    scene_ok(m, tl_zones_values(m, zones, zone_count, "volume", value, &width));
+    for (size_t k = 0; k < zone_count; k++)
+        volume += value[k];
+    CHECK_NEAR(volume, 1.02, 1e-12);
+    scene_ok(m, tl_zones_values(m, zones, 1, "principal", value, &width));
+    CHECK(value[0] > value[1] && value[1] >= value[2]);
+    CHECK_INT(tl_zones_values(m, zones, 1, "solid", value, &width), TL_E_ARGUMENT);
+    CHECK_INT(tl_zones_values(m, zones, 1, "colour", value, &width), TL_E_NOT_FOUND);
+    CHECK_INT(tl_zones_values(m, &(tl_zone_name){1, 48}, 1, "mean", value, &width), TL_E_STALE);
+    tl_field_value field;
+    size_t fields;
+    CHECK_TEXT(tl_zone_fields(&fields)[2].name, "solid");
+    scene_ok(m, tl_zone_field(m, zones[0], 2, &field));
+    CHECK_TEXT(field.text, "rock");
+    tl_vec3 held;
+    size_t left = 0;
+    for (size_t k = 0; k < point_count; k++)
+        if (velocity[k].x < -1e-6) /* the face at xmin */
+            points[left++] = points[k];
+    scene_ok(m, tl_gridpoints_reaction(m, points, left, &held));
+    CHECK_NEAR(held.x, -1.2e9 * 0.01, 1.2e9 * 0.01 * 0.03);
+    CHECK_INT(tl_gridpoints_fix(m, points, 1, TL_FIX_ROTATION), TL_E_ARGUMENT);
+    free(zones);
+    free(points);
+    tl_model_destroy(m);
+}
+
 /* A copy, and a model that was saved and restored, go on to the same bits; their hash is the same. */
 TEST(zones_come_back)
 {
@@ -461,4 +524,4 @@ TEST(zones_come_back)
 
 TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones_have_the_same_bits_on_any_threads(),
           a_column_settles_under_its_weight(), columns_on_a_joint_shorten_in_series(), stress_turns_with_its_body(),
-          a_beam_does_not_lock(), a_cube_rests_and_slides_on_zones(), zones_come_back())
+          a_beam_does_not_lock(), a_cube_rests_and_slides_on_zones(), zones_come_back(), zones_tell_what_they_are())

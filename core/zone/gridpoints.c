@@ -1,0 +1,91 @@
+/* gridpoints.c - what a user does to gridpoints: holds and loads them, gives them velocities, asks what holds them. */
+#include "zone/gridpoints.h"
+
+#include "base/columns.h"
+#include "zone/grid.h"
+
+/* The row of a gridpoint, or TL_NO_ROW with a sentence. */
+static uint32_t row_of(tl_model *m, tl_zone_name name)
+{
+    const uint32_t mesh = tl_mesh_of(m, name.body);
+    const tl_body_mesh *of = mesh != TL_NO_ROW ? &m->zones->mesh[mesh] : NULL;
+    if (of && name.number < of->point_end - of->point_begin)
+        return of->point_begin + name.number;
+    tl_fail(&m->error, TL_E_STALE, "block %u has no gridpoint %u", name.body, name.number);
+    return TL_NO_ROW;
+}
+
+/* Whether all names are those of gridpoints, and the model may be changed. */
+static tl_status check(tl_model *m, const tl_zone_name *names, size_t count, const char *what)
+{
+    const tl_status status = tl_model_may_set(m, what);
+    for (size_t k = 0; status == TL_OK && k < count; k++)
+        if (row_of(m, names[k]) == TL_NO_ROW)
+            return m->error.status;
+    return status;
+}
+
+static tl_status change_fixing(tl_model *m, const tl_zone_name *names, size_t count, uint32_t hold, uint32_t let)
+{
+    const tl_status status = check(m, names, count, "hold gridpoints");
+    if (status != TL_OK)
+        return status;
+    if ((hold | let) > (TL_FIX_X | TL_FIX_Y | TL_FIX_Z))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "gridpoints are held along x, y and z alone: they have no rotation (%u was given)", hold | let);
+    for (size_t k = 0; k < count; k++) {
+        uint8_t *fixed = &m->zones->points.fixed[row_of(m, names[k])];
+        *fixed = (uint8_t)((*fixed | hold) & ~let);
+    }
+    m->constraints += count > 0;
+    return TL_OK;
+}
+
+tl_status tl_gridpoints_fix(tl_model *m, const tl_zone_name *names, size_t count, uint32_t what)
+{
+    return change_fixing(m, names, count, what, 0);
+}
+
+tl_status tl_gridpoints_free(tl_model *m, const tl_zone_name *names, size_t count, uint32_t what)
+{
+    return change_fixing(m, names, count, 0, what);
+}
+
+tl_status tl_gridpoints_load(tl_model *m, const tl_zone_name *names, size_t count, tl_vec3 force)
+{
+    tl_status status = check(m, names, count, "load gridpoints");
+    if (status == TL_OK && !tl_v3_finite(force))
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "a load on gridpoints must be a finite force");
+    if (status == TL_OK && count > 0 && !tl_gridpoints_hold_loads(&m->zones->points))
+        status = tl_fail_memory(&m->error);
+    for (size_t k = 0; status == TL_OK && k < count; k++)
+        tl_columns_put(m->zones->points.load, row_of(m, names[k]), force);
+    m->constraints += status == TL_OK && count > 0;
+    return status;
+}
+
+tl_status tl_gridpoints_velocity(tl_model *m, const tl_zone_name *names, size_t count, const tl_vec3 *velocity)
+{
+    tl_status status = check(m, names, count, "set velocities");
+    for (size_t k = 0; status == TL_OK && k < count; k++)
+        if (!tl_v3_finite(velocity[k]))
+            status = tl_fail(&m->error, TL_E_ARGUMENT, "the velocity of a gridpoint must be finite");
+    for (size_t k = 0; status == TL_OK && k < count; k++)
+        tl_columns_put(m->zones->points.v, row_of(m, names[k]), velocity[k]);
+    return status;
+}
+
+tl_status tl_gridpoints_reaction(tl_model *m, const tl_zone_name *names, size_t count, tl_vec3 *force)
+{
+    *force = tl_v3(0, 0, 0);
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t row = row_of(m, names[k]);
+        if (row == TL_NO_ROW)
+            return m->error.status;
+        const tl_vec3 f = tl_columns_get(m->zones->points.force, row);
+        const unsigned fixed = m->zones->points.fixed[row];
+        *force = tl_v3_sub(*force,
+                           tl_v3(fixed & TL_FIX_X ? f.x : 0, fixed & TL_FIX_Y ? f.y : 0, fixed & TL_FIX_Z ? f.z : 0));
+    }
+    return TL_OK;
+}
