@@ -83,6 +83,8 @@ tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const
 {
     const uint32_t known = tl_solid_find(m, name);
     const tl_solid *old = known != TL_NO_ROW ? &m->zones->solid[known].of : NULL;
+    if (!kind && !old)
+        return tl_fail(&m->error, TL_E_NOT_FOUND, "there is no solid '%.80s' in this model yet: name its kind", name);
     const bool same = old && (!kind || kind == old->kind);
     return set(m, name, kind ? kind : old->kind, args, same ? old : NULL);
 }
