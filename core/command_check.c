@@ -9,9 +9,9 @@
 
 #define USAGE                                                                                                          \
     "talus: usage: talus check FILE.so [NAME=VALUE...]\n"                                                              \
-    "Tries each law, damping, generator and screen of the file, with its defaults, the values "                        \
+    "Tries each law, damping, generator, screen and solid of the file, with its defaults, the values "                        \
     "given and\n"                                                                                                      \
-    "drawn ones: a number, true, false, a list as 1,2,3, points as 0,0,0;1,0,0 or a text.\n"
+    "drawn ones: a number, true, false, a list as 1,2,3, points as 0,0,0;1,0,0, tables as 0,1;2,3 or a text.\n"
 
 /* Numbers of a list. */
 #define MOST_NUMBERS 64
@@ -22,14 +22,19 @@ typedef struct word {
     double numbers[MOST_NUMBERS];
 } word;
 
-/* Reads "1,2,3", or "0,0,0;1,0,0" in rows; the count, or 0 when the text is something else. */
-static size_t read_numbers(const char *text, double *numbers)
+/* Reads "1,2,3", or "0,0,0;1,0,0" in rows; the count, or 0 when the text is something else. Rows of two, "0,1;2,3", are
+ * those of a table, `*flat`, and get a third number, 0. */
+static size_t read_numbers(const char *text, double *numbers, bool *flat)
 {
+    const char *row = strchr(text, ';'), *comma = strchr(text, ',');
     size_t count = 0;
+    *flat = row && comma && comma < row && !memchr(comma + 1, ',', (size_t)(row - comma - 1));
     while (count < MOST_NUMBERS) {
         const char *end;
         numbers[count] = tl_number_read(text, &end);
         count++;
+        if (*flat && count % 3 == 2 && count < MOST_NUMBERS)
+            numbers[count++] = 0;
         if (end == text || (*end && *end != ',' && *end != ';') || (*end == ';' && count % 3 != 0))
             return 0;
         if (!*end)
@@ -46,14 +51,15 @@ static bool read_word(const char *text, word *w, tl_value *value)
         return tl_command_fail("check: '%s' is not NAME=VALUE", text);
     memcpy(w->key, text, (size_t)(equals - text));
     w->key[equals - text] = '\0';
-    size_t count = read_numbers(equals + 1, w->numbers);
+    bool flat;
+    size_t count = read_numbers(equals + 1, w->numbers, &flat);
     if (count == 1)
         *value = tl_arg_number(w->key, w->numbers[0]);
     else if (count > 1 && !strchr(equals, ';'))
         *value = tl_arg_numbers(w->key, w->numbers, count);
     else if (count > 1 && count % 3 == 0) {
         *value = tl_arg_numbers(w->key, w->numbers, count / 3);
-        value->type = TL_VALUE_POINTS;
+        value->type = flat ? TL_VALUE_FLAT : TL_VALUE_POINTS;
     } else if (strcmp(equals + 1, "true") == 0 || strcmp(equals + 1, "false") == 0)
         *value = tl_arg_bool(w->key, equals[1] == 't');
     else
@@ -68,7 +74,7 @@ typedef struct listing {
 
 static void tell(void *user, const tl_check_finding *f)
 {
-    static const char *const types[] = {"law", "damping", "generator", "screen"};
+    static const char *const types[] = {"law", "damping", "generator", "screen", "solid"};
     listing *list = user;
     if (list->kind != f->kind) {
         const char *path;

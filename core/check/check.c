@@ -3,6 +3,7 @@
 #include "check/generator.h"
 #include "check/law.h"
 #include "check/screen.h"
+#include "check/solid.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -58,7 +59,8 @@ tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tel
     static const tl_check_type *const of[] = {[TL_KIND_LAW] = &tl_check_laws,
                                               [TL_KIND_DAMPING] = &tl_check_dampings,
                                               [TL_KIND_GENERATOR] = &tl_check_generators,
-                                              [TL_KIND_SCREEN] = &tl_check_screens};
+                                              [TL_KIND_SCREEN] = &tl_check_screens,
+                                              [TL_KIND_SOLID] = &tl_check_solids};
     *faults = 0;
     const tl_plugin *plugin = loaded_from(path);
     tl_status status = plugin ? TL_OK : tl_plugin_load(path, error);

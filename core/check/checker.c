@@ -19,6 +19,7 @@
 typedef struct param_storage {
     tl_value value;
     tl_vec3 vector;
+    tl_vec3 rows[3];
 } param_storage;
 
 /* Powers of ten between which a quantity of that unit is drawn. */
@@ -65,6 +66,16 @@ static double choice_of(const tl_param *p, uint64_t key)
     return floor(tl_uniform(key) * count);
 }
 
+/* A table of three rows over strains, from 0 on. */
+static void make_table(const tl_param *p, uint64_t key, bool draw, param_storage *d)
+{
+    double strain = draw ? tl_check_scale(tl_key(key, 20), -4, -1) : 0.01;
+    for (int k = 0; k < 3; k++)
+        d->rows[k] = tl_v3(k * strain, number_of(p, tl_key(key, 21 + (uint64_t)k), draw), 0);
+    d->value = tl_arg_numbers(p->name, &d->rows[0].x, 3);
+    d->value.type = TL_VALUE_FLAT;
+}
+
 /* A plausible value. `vectors` counts those of a set: the first is the origin, the second the other corner of a
  * cube. */
 static void make(const tl_param *p, uint64_t key, bool draw, int *vectors, param_storage *d)
@@ -82,6 +93,10 @@ static void make(const tl_param *p, uint64_t key, bool draw, int *vectors, param
         break;
     case TL_PARAM_STRING: d->value = tl_arg_text(p->name, "check"); break;
     case TL_PARAM_POINTS:
+        if (p->flags & TL_PARAM_FLAT) {
+            make_table(p, key, draw, d);
+            break;
+        }
         d->value = tl_arg_numbers(p->name, corners, 4);
         d->value.type = TL_VALUE_POINTS;
         break;
@@ -194,7 +209,7 @@ tl_status tl_check_create(tl_checker *c, tl_status (*create)(const void *, void 
 tl_status tl_check_sets(tl_checker *c, tl_status (*try_set)(tl_checker *c, void *params, void *user), void *user)
 {
     void *params = malloc(c->kind->params_size + 1), *held;
-    int tried = 0, most = 20 * TL_CHECK_SETS; /* kinds refuse some drawn sets */
+    int tried = 0, most = 200 * TL_CHECK_SETS; /* kinds refuse some drawn sets */
     tl_status status = params ? TL_OK : tl_fail_memory(c->error);
     for (int set = 0; status == TL_OK && set < most && tried < TL_CHECK_SETS; set++) {
         tl_status now = tl_check_params(c, set, TL_CHECK_NONE, params, &held);

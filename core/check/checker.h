@@ -1,4 +1,4 @@
-/* checker.h - what the conformance checks of the four types of plugins share: parameters, faults found, and random
+/* checker.h - what the conformance checks of the types of plugins share: parameters, faults found, and random
  * numbers. */
 #ifndef TL_CHECK_CHECKER_H
 #define TL_CHECK_CHECKER_H

@@ -270,6 +270,31 @@ static const tl_param law_leg_params[] = {
              .flags = TL_PARAM_OPTIONAL),
 };
 
+static const tl_param solid_test_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_solid_test, solid, "", "name of the solid", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_REAL, tl_solid_test, extent, "m",
+             "extent of the zone, the cube root of its volume, which solids may ask for", .def = {1.0}, .min = 0.0,
+             .max = INFINITY, .flags = TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_solid_test, steps, "", "steps of each leg of the path", .def = {100.0}, .min = 1.0,
+             .max = TL_SOLID_TEST_STEPS),
+    TL_PARAM(TL_PARAM_INT, tl_solid_test, every, "",
+             "steps from one point of the curve to the next; the end of a leg is always one", .def = {1.0}, .min = 1.0,
+             .max = TL_SOLID_TEST_STEPS),
+};
+
+static const tl_param solid_leg_params[] = {
+    TL_PARAM(TL_PARAM_INT, tl_solid_leg, steps, "", "in the place of the test's", .min = 1.0,
+             .max = TL_SOLID_TEST_STEPS, .flags = TL_PARAM_OPTIONAL),
+};
+
+#define COMPONENT(name, other)                                                                                         \
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, name, "Pa or 1", "component, tension positive", .alias = (other),                 \
+             .flags = TL_PARAM_OPTIONAL)
+static const tl_param components_params[] = {
+    COMPONENT(xx, NULL), COMPONENT(yy, NULL), COMPONENT(zz, NULL),
+    COMPONENT(xy, "yx"), COMPONENT(yz, "zy"), COMPONENT(zx, "xz"),
+};
+
 typedef struct model_function {
     const char *name, *doc;
     const tl_param *params;
@@ -329,6 +354,11 @@ static const model_function functions[] = {
      "surroundings of constant normal stiffness, and closure tests.",
      PARAMS(law_test_params)},
     {"law_leg", "One leg of the path of a law_test.", PARAMS(law_leg_params)},
+    {"solid_test",
+     "Tries a solid on one zone, without a model: any path of strains that are driven and stresses that are held.",
+     PARAMS(solid_test_params)},
+    {"solid_leg", "One leg of the path of a solid_test.", PARAMS(solid_leg_params)},
+    {"components", "Components of a stress or a strain, those that are meant.", PARAMS(components_params)},
 };
 
 #define FUNCTION_COUNT (sizeof functions / sizeof functions[0])

@@ -21,6 +21,7 @@
 #include <talus/plugin.h>
 #include <talus/plugins.h>
 #include <talus/settings.h>
+#include <talus/solid_test.h>
 #include <talus/state.h>
 #include <talus/types.h>
 #include <talus/values.h>

@@ -3,21 +3,15 @@
  *     rock    as solid "mohr_coulomb": talus/solid_returns.h
  *     plane   |t| + s tan(joint friction) <= joint cohesion,  s <= joint tension,  flow |t| + s tan(joint dilation)
  *
- * with s the normal stress on the plane, positive in tension, and t the shear stress. The return is implicit: what both
- * have taken off the elastic stress, each returns by itself,
- *
- *     off_rock = what the rock's return takes off (trial - off_plane)
- *     off_plane = what the plane's return takes off (trial - off_rock)
- *
- * by turns until nothing changes (Dykstra 1983). Where one of them yields alone that is at once. The normal of the plane
- * is a state: it turns with the zone. */
+ * with s the normal stress on the plane, positive in tension, and t the shear stress. Each return is implicit and exact:
+ * that of the rock, then that of the plane, by turns until both are met. Where only one of them yields that is at once.
+ * Where both do, each turn is a small plastic step of its own, so the parts that rock and plane have of the flow hang on
+ * the size of the steps to first order. The normal of the plane is a state: it turns with the zone. */
 #include <talus/solid_returns.h>
 #include <talus/version.h>
 
-/* Limit: turns of rock and plane; the plane's limits hold whenever it ends. Test: property/solid_returns. */
-#define MOST_TURNS 200
-/* Tolerance: change of a turn, relative to the stresses, that counts as none. Test: property/solid_returns. */
-#define SETTLED 1e-14
+/* Limit: turns of rock and plane; the plane's limits hold whenever they end. Test: property/solid_returns. */
+#define MOST_TURNS 100
 
 typedef struct params {
     tl_mohr_coulomb_params rock; /* first, as its rows need it */
@@ -109,62 +103,38 @@ TL_IN_LOOP void plane_return(const solid *self, const tl_lanes n[3], const tl_la
 
 /* What a group comes to in turns of rock and plane. */
 typedef struct turns {
-    tl_lanes6 off_rock, off_plane;
-    tl_lanes shear, tension, mark; /* of the rock */
-    tl_lanes yields;               /* the plane */
-    tl_lanes moving;               /* 1: the last turn has changed something */
+    tl_lanes6 stress;
+    tl_lanes shear, tension; /* measures of the rock's plastic strains */
+    tl_lanes shears, tears, slides;
 } turns;
-
-/* Takes over the lanes of a turn that had not come to an end. Gives whether any goes on. */
-TL_IN_LOOP int take_turn(const tl_lanes6 trial, const turns *next, turns *t)
-{
-    double any = 0;
-    TL_EACH_LANE(i)
-    {
-        double change = 0, scale = 0;
-        for (uint32_t k = 0; k < 6; k++) {
-            change += fabs(next->off_plane[k][i] - t->off_plane[k][i]);
-            scale += fabs(trial[k][i]);
-        }
-        int moves = t->moving[i] > 0;
-        for (uint32_t k = 0; k < 6; k++) {
-            t->off_rock[k][i] = moves ? next->off_rock[k][i] : t->off_rock[k][i];
-            t->off_plane[k][i] = moves ? next->off_plane[k][i] : t->off_plane[k][i];
-        }
-        t->shear[i] = moves ? next->shear[i] : t->shear[i];
-        t->tension[i] = moves ? next->tension[i] : t->tension[i];
-        t->mark[i] = moves ? next->mark[i] : t->mark[i];
-        t->yields[i] = moves ? next->yields[i] : t->yields[i];
-        t->moving[i] = moves && change > SETTLED * scale ? 1 : 0;
-        any += t->moving[i];
-    }
-    return any > 0;
-}
 
 TL_IN_LOOP void make_turns(const solid *self, const tl_strength_lanes *strength, const tl_lanes n[3],
                            const tl_lanes6 trial, turns *t)
 {
+    double any = 1;
     memset(t, 0, sizeof *t);
-    TL_EACH_LANE(i)
-    t->moving[i] = 1;
-    for (int turn = 0; turn < MOST_TURNS; turn++) {
-        turns next;
-        tl_lanes6 s, after;
-        tl_lanes may;
+    memcpy(t->stress, trial, sizeof t->stress);
+    /* a zone in which nothing yields any more stays what it is, to the bit, while others of its group go on */
+    for (int turn = 0; turn < MOST_TURNS && any > 0; turn++) {
+        tl_lanes6 after, off;
+        tl_lanes may, shear, tension, mark, yields;
+        (void)tl_may_yield((const tl_lanes *)t->stress, strength, may);
+        tl_group_return(&self->elastic, strength, may, (const tl_lanes *)t->stress, after, shear, tension, mark);
+        plane_return(self, n, (const tl_lanes *)after, off, yields);
+        any = 0;
         for (uint32_t k = 0; k < 6; k++)
             TL_EACH_LANE(i)
-        s[k][i] = trial[k][i] - t->off_plane[k][i];
-        (void)tl_may_yield((const tl_lanes *)s, strength, may);
-        tl_group_return(&self->elastic, strength, may, (const tl_lanes *)s, after, next.shear, next.tension, next.mark);
-        for (uint32_t k = 0; k < 6; k++)
-            TL_EACH_LANE(i)
-            {
-                next.off_rock[k][i] = s[k][i] - after[k][i];
-                s[k][i] = trial[k][i] - next.off_rock[k][i];
-            }
-        plane_return(self, n, (const tl_lanes *)s, next.off_plane, next.yields);
-        if (!take_turn(trial, &next, t))
-            return;
+        t->stress[k][i] = after[k][i] - off[k][i];
+        TL_EACH_LANE(i)
+        {
+            t->shear[i] += shear[i];
+            t->tension[i] += tension[i];
+            int both = mark[i] > TL_ZONE_TENSION, sheared = both || (mark[i] > 0 && mark[i] < TL_ZONE_TENSION);
+            t->shears[i] = sheared ? TL_ZONE_SHEAR : t->shears[i];
+            t->tears[i] = both || (mark[i] > 0 && !sheared) ? TL_ZONE_TENSION : t->tears[i];
+            t->slides[i] = yields[i] > 0 ? TL_ZONE_JOINT : t->slides[i];
+            any += yields[i];
+        }
     }
 }
 
@@ -196,13 +166,10 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_solid_batch *ba
         }
         turns t;
         make_turns(own, &strength, (const tl_lanes *)normal, (const tl_lanes *)trial, &t);
-        for (uint32_t k = 0; k < 6; k++)
-            TL_EACH_LANE(i)
-        off[k][i] = trial[k][i] - (t.off_rock[k][i] + t.off_plane[k][i]);
         TL_EACH_LANE(i)
-        mark[i] = t.mark[i] + (t.yields[i] > 0 ? TL_ZONE_JOINT : 0);
+        mark[i] = t.shears[i] + t.tears[i] + t.slides[i];
         tl_rock_wear(&own->rock, batch, begin, t.shear, t.tension);
-        tl_isotropic_put(batch, begin, &own->elastic, (const tl_lanes *)trial, (const tl_lanes *)off, mark);
+        tl_isotropic_put(batch, begin, &own->elastic, (const tl_lanes *)trial, (const tl_lanes *)t.stress, mark);
     }
     return TL_OK;
 }
