@@ -11,6 +11,7 @@
 #include "contact/places.h"
 #include "contact/store.h"
 #include "model/joints.h"
+#include "zone/grid.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -322,16 +323,18 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind, co
  * rest keeps its span followed. Whatever could change that wakes all such spans: blocks that are fixed, freed, driven
  * or given a velocity, that come or go, another law or initial stress, another contact in the span. */
 
-static bool is_still(const tl_bodies *b, uint32_t body)
+static bool is_still(const tl_model *m, uint32_t body)
 {
-    return b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && tl_v3_is_zero(b->v[body]) &&
+    const tl_bodies *b = &m->bodies;
+    const bool deforms = tl_model_deforms(m) && tl_mesh_of(m, b->id[body]) != TL_NO_ROW;
+    return !deforms && b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && tl_v3_is_zero(b->v[body]) &&
            tl_v3_is_zero(b->w[body]);
 }
 
 /* Whether the bodies of two blocks are held still. */
 static bool blocks_held_still(const tl_model *m, uint32_t a, uint32_t b)
 {
-    return is_still(&m->bodies, m->blocks.body[a]) && is_still(&m->bodies, m->blocks.body[b]);
+    return is_still(m, m->blocks.body[a]) && is_still(m, m->blocks.body[b]);
 }
 
 /* Bodies none of whose contacts can change the sum of their forces. */
@@ -340,7 +343,7 @@ static void find_idle(tl_model *m)
     tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        d->idle[body] = is_still(&m->bodies, body);
+        d->idle[body] = is_still(m, body);
     for (uint32_t i = 0; i < c->table.rows; i++) {
         if (c->held[i])
             continue;

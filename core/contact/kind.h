@@ -13,6 +13,7 @@
 #include "model/contributor.h"
 #include "narrow/manifold.h"
 #include "narrow/surface.h"
+#include "zone/grid.h"
 
 /* The frames of a contact's two bodies: axes of the model, A's centroid as zero. */
 typedef struct tl_body_frames {
@@ -93,7 +94,12 @@ static inline bool tl_kind_find(const tl_model *m, uint32_t block_a, uint32_t bl
         if (make->claims && make->claims(m, block_a, block_b))
             return make->find(m, view, scratch);
     }
-    return tl_manifold_find(view, region, rule, before, scratch);
+    const bool found = tl_manifold_find(view, region, rule, before, scratch);
+    /* deformable blocks that lie flush meet by segments */
+    if (found && tl_blocks_deform_either(m, block_a, block_b) &&
+        (tl_blocks_meet(m, block_a, block_b) || !tl_facet_is_field(&scratch->manifold.facet)))
+        scratch->manifold.point_count = 0;
+    return found;
 }
 
 /* Points of a contact that have an area of their own. */

@@ -23,7 +23,26 @@ static inline tl_sides tl_pair_sides(const tl_model *m, uint32_t block_a, uint32
 }
 static inline tl_sides tl_contact_sides(const tl_model *m, uint32_t contact)
 {
-    return tl_pair_sides(m, m->detect->contacts.a[contact], m->detect->contacts.b[contact]);
+    const tl_contacts *c = &m->detect->contacts;
+    tl_sides out = tl_pair_sides(m, c->a[contact], c->b[contact]);
+    if (c->carrier[0] && c->carrier[0][contact].on)
+        out.a = TL_CARRIED | 2 * contact;
+    if (c->carrier[0] && c->carrier[1][contact].on)
+        out.b = TL_CARRIED | (2 * contact + 1);
+    return out;
+}
+/* What carries a side; NULL: its body does. */
+static inline const tl_carrier *tl_side_carrier(const tl_model *m, uint32_t side)
+{
+    return side & TL_CARRIED ? &m->detect->contacts.carrier[side & 1][(side & ~TL_CARRIED) / 2] : NULL;
+}
+/* The body of a side. */
+static inline uint32_t tl_side_body(const tl_model *m, uint32_t side)
+{
+    const uint32_t contact = (side & ~TL_CARRIED) / 2;
+    if (!(side & TL_CARRIED))
+        return side;
+    return m->blocks.body[(side & 1 ? m->detect->contacts.b : m->detect->contacts.a)[contact]];
 }
 /* The bodies to whose sums the forces on the two sides are added. */
 static inline tl_sides tl_contact_bodies(const tl_model *m, uint32_t contact)
@@ -34,7 +53,8 @@ static inline tl_sides tl_contact_bodies(const tl_model *m, uint32_t contact)
 
 static inline const tl_pose *tl_side_pose(const tl_model *m, uint32_t side)
 {
-    return &m->bodies.pose[side];
+    const tl_carrier *by = tl_side_carrier(m, side);
+    return by ? &by->pose : &m->bodies.pose[side];
 }
 /* The rotation of a side as a matrix and as a quaternion. */
 static inline const tl_mat3 *tl_side_rotation(const tl_model *m, uint32_t side)
@@ -43,17 +63,19 @@ static inline const tl_mat3 *tl_side_rotation(const tl_model *m, uint32_t side)
 }
 static inline tl_quat tl_side_quaternion(const tl_model *m, uint32_t side)
 {
-    return m->bodies.q[side];
+    const tl_carrier *by = tl_side_carrier(m, side);
+    return by ? by->q : m->bodies.q[side];
 }
 /* Present place of a side's centroid, relative to the origin: arms of a contact begin at that of A. */
 static inline tl_vec3 tl_side_place(const tl_model *m, uint32_t side)
 {
-    return tl_body_place(&m->bodies, side);
+    const tl_pose *pose = tl_side_pose(m, side);
+    return tl_v3_add(pose->x_ref, pose->u);
 }
 /* A place relative to the origin in a side's frame. */
 static inline tl_vec3 tl_side_local(const tl_model *m, uint32_t side, tl_vec3 place)
 {
-    return tl_body_local(&m->bodies, side, place);
+    return tl_m3_tmul(tl_side_rotation(m, side), tl_v3_sub(place, tl_side_place(m, side)));
 }
 /* The arm of a point of a side's frame: from the centroid, in the model's axes. */
 static inline tl_vec3 tl_side_arm(const tl_model *m, uint32_t side, tl_vec3 local)
@@ -76,18 +98,21 @@ static inline tl_block_frame tl_block_frame_of(const tl_model *m, uint32_t block
 /* Velocity of a side at an arm. */
 static inline tl_vec3 tl_side_velocity(const tl_model *m, uint32_t side, tl_vec3 arm)
 {
-    return tl_v3_add(m->bodies.v[side], tl_v3_cross(m->bodies.w[side], arm));
+    const tl_carrier *by = tl_side_carrier(m, side);
+    const tl_vec3 v = by ? by->v : m->bodies.v[side], w = by ? by->w : m->bodies.w[side];
+    return tl_v3_add(v, tl_v3_cross(w, arm));
 }
 /* No point of a side is farther from its centroid. */
 static inline double tl_side_radius(const tl_model *m, uint32_t side)
 {
-    return m->bodies.radius[side];
+    return m->bodies.radius[tl_side_body(m, side)];
 }
 /* The odometers of both sides, summed. */
 static inline double tl_contact_odometer(const tl_model *m, uint32_t contact)
 {
     const tl_sides s = tl_contact_sides(m, contact);
-    return m->bodies.odometer[s.a] + m->bodies.odometer[s.b];
+    const tl_carrier *a = tl_side_carrier(m, s.a), *b = tl_side_carrier(m, s.b);
+    return (a ? a->odometer : m->bodies.odometer[s.a]) + (b ? b->odometer : m->bodies.odometer[s.b]);
 }
 
 /* Whether a block is on side B of its contact: a contact's force acts on B as it is, on A reversed. */

@@ -40,6 +40,7 @@
 #include "detect/overlap.h"
 #include "force/laws.h"
 #include "model/loads.h"
+#include "segment/carriers.h"
 #include "segment/meets.h"
 
 /* What acts on bodies makes room for the step, or finds, with `apply`, its forces at the present places. */
@@ -63,6 +64,8 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
         status = tl_detect_update(m);
     if (status == TL_OK)
         status = tl_segments_find(m);
+    if (status == TL_OK && !tl_carriers_begin(m))
+        status = tl_fail_memory(&m->error);
     if (status == TL_OK)
         status = tl_overlaps_check(m);
     tl_phase_ends(m, TL_PHASE_DETECT);

@@ -15,6 +15,7 @@
 #include "base/extremes.h"
 #include "cycle/turn.h"
 #include "segment/act.h"
+#include "segment/carriers.h"
 #include "zone/stiffness.h"
 
 #include <math.h>
@@ -28,18 +29,30 @@
 
 /* ---------------------------------------------------------------- step ------------------- */
 
+/* What holds each gridpoint: zones and, no less than the floor, segments and carriers. */
+static void find_holds(tl_model *m)
+{
+    tl_gridpoints *p = &m->zones->points;
+    for (size_t row = 0; row < p->table.rows; row++)
+        p->holds[row] = 0;
+    tl_segments_stiffen(m);
+    tl_carriers_stiffen(m);
+    for (size_t row = 0; row < p->table.rows; row++)
+        p->holds[row] = p->stiffness[row] + tl_larger(p->holds[row], p->floor[row]);
+}
+
 double tl_gridpoints_least(tl_model *m)
 {
     if (!tl_model_deforms(m))
         return INFINITY;
-    if (m->segments && m->segments->version != m->zones->segments_rated)
-        m->zones->rated_for = 0;
-    if (tl_zones_stiffen(m))
-        tl_segments_stiffen(m);
-    if (m->segments)
-        m->zones->segments_rated = m->segments->version;
-    tl_zones_rate(m);
-    const double rate = tl_scales_all(m) ? m->zones->lowest_rate : m->zones->highest_rate;
+    struct tl_zones *z = m->zones;
+    const bool carried = m->detect && m->detect->contacts.carrier[0];
+    if (tl_zones_stiffen(m) || carried || (m->segments && m->segments->version != z->segments_rated)) {
+        find_holds(m);
+        z->segments_rated = m->segments ? m->segments->version : 0;
+        tl_zones_rate(m);
+    }
+    const double rate = tl_scales_all(m) ? z->lowest_rate : z->highest_rate;
     return rate > 0 ? 1 / rate : INFINITY;
 }
 
@@ -47,8 +60,8 @@ double tl_gridpoints_least(tl_model *m)
 double tl_gridpoint_scale(const tl_model *m, size_t row)
 {
     const tl_gridpoints *p = &m->zones->points;
-    const double scale = m->cycle->mass_scale * p->stiffness[row] / p->mass[row];
-    return m->cycle->mass_scale > 0 && p->stiffness[row] > 0 ? scale : 1;
+    const double scale = m->cycle->mass_scale * p->holds[row] / p->mass[row];
+    return m->cycle->mass_scale > 0 && p->holds[row] > 0 ? scale : 1;
 }
 
 /* ---------------------------------------------------------------- gather ----------------- */
@@ -115,19 +128,27 @@ static void note_totals(const tl_model *m, size_t row, size_t at, addends *of)
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
+    (void)chunk, (void)thread;
+    const tl_model *m = user;
+    const double share = tl_loads_share(m);
+    for (size_t row = begin; row < end; row++)
+        gather_point(m, row, share);
+}
+
+static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
     (void)chunk;
-    tl_model *m = user;
+    const tl_model *m = user;
     const struct tl_zones *z = m->zones;
     const bool totals = m->relaxing || (m->damping && ((const tl_damping_ops *)m->damping->ops)->begin);
-    const double gravity = tl_v3_norm(m->config.gravity), share = tl_loads_share(m);
+    const double gravity = tl_v3_norm(m->config.gravity);
     tl_gathered *all = &m->cycle->gathered[thread];
     addends of;
     memset(&of, 0, sizeof of);
     for (size_t row = begin; row < end; row++) {
-        gather_point(m, row, share);
+        const size_t at = (row - begin) / TL_LANES;
         if (z->points.fixed[row] == ALL)
             continue;
-        const size_t at = (row - begin) / TL_LANES;
         note_ratio(m, row, at, gravity, z->mesh[z->points.mesh[row]].row, &of, all);
         if (totals)
             note_totals(m, row, at, &of);
@@ -138,8 +159,11 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
 
 void tl_gridpoints_gather(tl_model *m)
 {
-    if (tl_model_deforms(m))
-        tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
+    if (!tl_model_deforms(m))
+        return;
+    tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
+    tl_carriers_push(m);
+    tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, sum_range, m);
 }
 
 /* ---------------------------------------------------------------- motion ----------------- */

@@ -18,10 +18,13 @@
 #include "cycle/motion.h"
 
 #include "base/columns.h"
+#include "base/extremes.h"
 #include "base/parallel.h"
 #include "cycle/gridpoints.h"
 #include "cycle/loose.h"
 #include "cycle/turn.h"
+#include "geometry/polar.h"
+#include "segment/carriers.h"
 
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
  * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
@@ -627,21 +630,38 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     sum_chunk(m, thread, &work, count * TL_LANES);
 }
 
-/* The means over a mesh, by mass, are those of its body. */
+/* The mean motion of a mesh, by mass, is that of its body: with X the places as made, from the mean, and x those now,
+ * it has turned by the rotation in sum m x (x) X. */
 static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk, (void)thread;
-    const tl_model *m = user;
+    const move_job *job = user;
+    const tl_model *m = job->m;
     const tl_gridpoints *p = &m->zones->points;
     for (size_t k = begin; k < end; k++) {
         const tl_body_mesh *mesh = &m->zones->mesh[k];
+        tl_pose *pose = &m->bodies.pose[mesh->row];
         tl_vec3 u = {0, 0, 0};
-        double mass = 0;
+        double mass = 0, fastest2 = 0;
         for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
             u = tl_v3_madd(u, p->mass[row], tl_columns_get(p->u, row));
             mass += p->mass[row];
+            fastest2 = tl_larger(fastest2, tl_v3_norm2(tl_columns_get(p->v, row)));
         }
-        m->bodies.pose[mesh->row].u = tl_v3_scale(1 / mass, u);
+        pose->u = tl_v3_scale(1 / mass, u);
+        tl_mat3 turn = {{{0}}};
+        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
+            const tl_vec3 made = tl_v3_sub(tl_columns_get(p->ref, row), pose->x_ref);
+            const tl_vec3 now = tl_v3_add(made, tl_v3_sub(tl_columns_get(p->u, row), pose->u));
+            const double x[3] = {now.x, now.y, now.z}, y[3] = {made.x, made.y, made.z};
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++)
+                    turn.m[i][j] += p->mass[row] * x[i] * y[j];
+        }
+        const tl_mat3 r = tl_m3_polar(&turn);
+        m->bodies.q[mesh->row] = tl_q_trim(tl_q_of_matrix(&r));
+        pose->r = tl_q_matrix(m->bodies.q[mesh->row]);
+        m->bodies.odometer[mesh->row] += job->drift * sqrt(fastest2);
     }
 }
 
@@ -653,5 +673,6 @@ void tl_move(tl_model *m, double dt)
     if (!tl_model_deforms(m))
         return;
     tl_gridpoints_move(m, dt);
-    tl_parallel_for(m->pool, m->zones->mesh_count, 1, pose_range, m);
+    tl_parallel_for(m->pool, m->zones->mesh_count, 1, pose_range, &job);
+    tl_carriers_follow(m, dt);
 }

@@ -113,7 +113,7 @@ static uint32_t moving_mesh(const tl_model *m, double ratio)
         double kinetic = 0, stored = 0;
         for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
             kinetic += 0.5 * p->mass[row] * tl_v3_norm2(tl_free_part(tl_columns_get(p->v, row), p->fixed[row]));
-            stored += p->stiffness[row] > 0 ? 0.5 * p->bears[row] * p->bears[row] / p->stiffness[row] : 0;
+            stored += p->holds[row] > 0 ? 0.5 * p->bears[row] * p->bears[row] / p->holds[row] : 0;
         }
         if (kinetic > 0 && !(kinetic < kinetic_share(ratio) * stored) && mesh->row < out)
             out = mesh->row;

@@ -223,8 +223,8 @@ static void note_birth(tl_births *births, const tl_birth *birth)
 static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_narrow_scratch *scratch)
 {
     const double reach = m->detect->reach;
-    if (tl_blocks_deform_either(m, p->a, p->b))
-        return reach; /* it meets by segments */
+    if (tl_blocks_meet(m, p->a, p->b))
+        return reach; /* by segments */
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
     tl_face_pair moved;
     const tl_cut_contact *cut = tl_cut_contact_of(m, p->a, p->b);

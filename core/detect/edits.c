@@ -313,7 +313,7 @@ static void keep_pairs(tl_model *m, const rows_scratch *scratch)
         if (tl_pair_is_apart(&p)) {
             if (parted || changed)
                 continue; /* the broad phase lists it anew */
-        } else if (parted || (changed && is_fresh(m, p.contact)) || tl_blocks_deform_either(m, a, b)) {
+        } else if (parted || (changed && is_fresh(m, p.contact)) || (changed && tl_blocks_deform_either(m, a, b))) {
             end_contact(m, scratch, p.contact, a, b);
             continue;
         } else {

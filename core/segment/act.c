@@ -309,7 +309,7 @@ void tl_segments_stiffen(tl_model *m)
             for (int side = 0; side < 2; side++) {
                 const tl_segment_side *to = side ? &of->b : &of->a;
                 for (int c = 0; c < 3 && !tl_side_is_rigid(to); c++)
-                    m->zones->points.stiffness[to->at[c]] +=
+                    m->zones->points.holds[to->at[c]] +=
                         2 * k * s->points.area[point] * fabs((side ? s->points.at_b : s->points.at_a)[c][point]);
             }
         }

@@ -27,6 +27,9 @@
 /* Tolerance: distance over the size of the smaller block up to which faces meet. */
 #define NEAR 0.02
 
+/* Cost only: steps after which meets are listed again, for faces that have tilted or come near. */
+#define LIST_EVERY 16
+
 /* ---------------------------------------------------------------- faces ------------------ */
 
 /* A face of a block: its parts, or a rigid polygon; and its centre and vector area now. */
@@ -247,6 +250,22 @@ static bool find_segments(tl_model *m, tl_laying *l, uint32_t number)
     return enough;
 }
 
+/* Lists the pairs of blocks that meet. false: out of memory. */
+static bool list_meeting(tl_model *m)
+{
+    const struct tl_segments *s = m->segments;
+    struct tl_zones *z = m->zones;
+    if (!tl_grow(&z->meeting, &z->meeting_capacity, s->meet_count + 1, sizeof *z->meeting))
+        return false;
+    z->meeting_count = 0;
+    for (size_t k = 0; k < s->meet_count; k++) {
+        const uint64_t pair = (uint64_t)s->meet[k].a << 32 | s->meet[k].b;
+        if (s->meet[k].area > 0 && (z->meeting_count == 0 || z->meeting[z->meeting_count - 1] != pair))
+            z->meeting[z->meeting_count++] = pair;
+    }
+    return true;
+}
+
 tl_status tl_segments_find(tl_model *m)
 {
     if (!tl_model_deforms(m))
@@ -254,7 +273,8 @@ tl_status tl_segments_find(tl_model *m)
     if (!m->segments && !tl_segments_begin(m))
         return tl_fail_memory(&m->error);
     struct tl_segments *s = m->segments;
-    const bool anew = s->structure != m->structure || s->zones != m->zones->version || s->lists != m->detect->lists;
+    const bool anew = m->cycles % LIST_EVERY == 0 || s->structure != m->structure || s->zones != m->zones->version ||
+                      s->lists != m->detect->lists;
     bool some = anew || s->laws != m->laws, enough = true;
     tl_laying l;
     tl_laying_begin(&l);
@@ -275,7 +295,7 @@ tl_status tl_segments_find(tl_model *m)
         if (s->meet[k].stale)
             enough = find_segments(m, &l, k);
     if (enough && some)
-        enough = tl_lay_segments(m, &l);
+        enough = tl_lay_segments(m, &l) && list_meeting(m);
     tl_laying_end(&l);
     if (!enough)
         return tl_fail_memory(&m->error);

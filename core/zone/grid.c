@@ -29,6 +29,8 @@ static void add_columns(struct tl_zones *z)
     TL_COLUMN(&p->table, p, bears, TL_COLUMN_STEP);
     TL_COLUMN(&p->table, p, zones, 0);
     TL_COLUMN(&p->table, p, stiffness, 0);
+    TL_COLUMN(&p->table, p, floor, 0);
+    TL_COLUMN(&p->table, p, holds, 0);
     TL_COLUMN(&p->table, p, mesh, 0);
     TL_COLUMN(&p->table, p, fixed, TL_COLUMN_STATE);
 
@@ -66,7 +68,8 @@ void tl_zones_free(struct tl_zones *z)
     tl_table_free(&z->points.table);
     tl_table_free(&z->zones.table);
     tl_table_free(&z->parcels.table);
-    void *const owned[] = {z->group, z->listed, z->slot, z->use, z->use_start, z->row_of, z->part, z->mesh, z->scratch};
+    void *const owned[] = {z->group,  z->listed, z->slot, z->use,     z->use_start,
+                           z->row_of, z->part,   z->mesh, z->meeting, z->scratch};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     tl_solids_free(z);
@@ -98,6 +101,22 @@ uint32_t tl_mesh_of(const tl_model *m, tl_id body)
         if (m->zones->mesh[k].body == body)
             return (uint32_t)k;
     return TL_NO_ROW;
+}
+
+bool tl_blocks_meet(const tl_model *m, uint32_t a, uint32_t b)
+{
+    const struct tl_zones *z = m->zones;
+    const tl_id x = m->blocks.id[a], y = m->blocks.id[b];
+    const uint64_t pair = x < y ? (uint64_t)x << 32 | y : (uint64_t)y << 32 | x;
+    size_t low = 0, high = z ? z->meeting_count : 0;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (z->meeting[middle] < pair)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return z && low < z->meeting_count && z->meeting[low] == pair;
 }
 
 /* ---------------------------------------------------------------- parcels ---------------- */
@@ -365,6 +384,7 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
         *part = l->grid->part[k];
         for (int a = 0; a < 3; a++)
             part->corner[a] += l->first;
+        part->apex += l->first;
     }
     mesh->part_end = (uint32_t)z->part_count;
     z->version++;

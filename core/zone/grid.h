@@ -33,6 +33,8 @@ bool tl_gridpoints_hold_damping(tl_gridpoints *p, bool before);
 bool tl_gridpoints_hold_loads(tl_gridpoints *p);
 /* The number of a body's mesh, or TL_NO_ROW. */
 uint32_t tl_mesh_of(const tl_model *m, tl_id body);
+/* Whether two blocks meet by segments, by their rows. */
+bool tl_blocks_meet(const tl_model *m, uint32_t a, uint32_t b);
 /* Whether a block, or one of two, is deformable, by their rows. */
 static inline bool tl_block_deforms(const tl_model *m, uint32_t row)
 {

@@ -88,6 +88,7 @@ static bool parts_are_sound(const tl_model *m, const struct tl_zones *z)
         sound = row != TL_NO_ROW && part->face < m->blocks.shape[row]->face_count;
         for (int c = 0; c < 3; c++)
             sound = sound && part->corner[c] < z->points.table.rows;
+        sound = sound && part->apex < z->points.table.rows;
     }
     return sound;
 }

@@ -70,6 +70,25 @@ static void point_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     }
 }
 
+/* Twice the stiffness of a face of the stiffest joint, by thirds of each of its triangles: what lands on it or comes to
+ * lie on it holds it no stiffer, and the step does not shrink then. */
+static void find_floors(const tl_model *m, struct tl_zones *z)
+{
+    double stiffest = 0;
+    for (size_t k = 0; k < m->joint_law_count; k++)
+        stiffest = fmax(stiffest, fmax(m->joint_laws[k].kn, m->joint_laws[k].ks));
+    for (size_t row = 0; row < z->points.table.rows; row++)
+        z->points.floor[row] = 0;
+    for (size_t k = 0; k < z->part_count; k++) {
+        const uint32_t *c = z->part[k].corner;
+        const tl_vec3 x = tl_gridpoint_place(&z->points, c[0]);
+        const tl_vec3 a = tl_v3_sub(tl_gridpoint_place(&z->points, c[1]), x);
+        const double area = 0.5 * tl_v3_norm(tl_v3_cross(a, tl_v3_sub(tl_gridpoint_place(&z->points, c[2]), x)));
+        for (int i = 0; i < 3; i++)
+            z->points.floor[c[i]] += 2 * stiffest * area / 3;
+    }
+}
+
 bool tl_zones_stiffen(tl_model *m)
 {
     struct tl_zones *z = m->zones;
@@ -77,6 +96,7 @@ bool tl_zones_stiffen(tl_model *m)
         return false;
     tl_parallel_for(m->pool, z->parcels.table.rows, 1, parcel_range, z);
     tl_parallel_for(m->pool, z->points.table.rows, CHUNK, point_range, z);
+    find_floors(m, z);
     z->rated_for = z->version;
     z->rated_at = m->cycles;
     return true;
@@ -90,7 +110,7 @@ void tl_zones_rate(tl_model *m)
     z->lowest_rate = INFINITY;
     z->highest = TL_NO_ROW;
     for (uint32_t row = 0; row < p->table.rows; row++) {
-        const double rate = p->stiffness[row] / p->mass[row];
+        const double rate = p->holds[row] / p->mass[row];
         if (p->fixed[row] == (TL_FIX_X | TL_FIX_Y | TL_FIX_Z))
             continue;
         z->lowest_rate = rate < z->lowest_rate ? rate : z->lowest_rate;

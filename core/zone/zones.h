@@ -49,7 +49,9 @@ typedef struct tl_gridpoints {
     double *force[3];  /* unbalanced: zones, contacts, weight, load; of held components it is what holds, reversed, N */
     double *bears;     /* a bound of the sum of the sizes of the forces on it, N: pass.c */
     uint32_t *zones;   /* that have it for a corner */
-    double *stiffness; /* bound of the row of the stiffness matrix, N/m: stiffness.c */
+    double *stiffness; /* bound of the row of the stiffness matrix of the zones, N/m: stiffness.c */
+    double *floor;     /* stiffness of the stiffest joint on its share of outer faces, N/m */
+    double *holds;     /* of zones and what touches it, but at least the floor, N/m */
     uint32_t *mesh;    /* its number */
     uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
     double *load[3];   /* of the user's, N; NULL: none has ever been set */
@@ -101,10 +103,10 @@ typedef struct tl_parcel_points {
     double of[TL_PARCEL_POINTS][8];
 } tl_parcel_points;
 
-/* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the block
- * and its face that it is a part of. */
+/* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the fourth of
+ * its zone; the block and its face that it is a part of. */
 typedef struct tl_surface_part {
-    uint32_t corner[3], face;
+    uint32_t corner[3], apex, face;
     tl_id block;
 } tl_surface_part;
 
@@ -138,6 +140,8 @@ struct tl_zones {
     size_t mesh_count, mesh_capacity;
     tl_named_solid *solid;
     size_t solid_count, solid_capacity;
+    uint64_t *meeting; /* pairs of blocks that meet by segments, the lower id times 2^32 and the other, ascending */
+    size_t meeting_count, meeting_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
     uint64_t version;                 /* counts changes of meshes and solids */

@@ -1,0 +1,16 @@
+/* carriers.h - zones bear contacts that are no segments: edges, corners, faces askew. */
+#ifndef TL_SEGMENT_CARRIERS_H
+#define TL_SEGMENT_CARRIERS_H
+
+#include "zone/zones.h"
+
+/* Lets zones bear the sides of contacts of deformable blocks that have begun, or have run out of their zone. false: out
+ * of memory. */
+bool tl_carriers_begin(tl_model *m);
+/* Moves them with their zones, after a motion of dt. */
+void tl_carriers_follow(tl_model *m, double dt);
+/* Adds what their contacts do to the gridpoints, and how stiff these hold them, N/m. */
+void tl_carriers_push(tl_model *m);
+void tl_carriers_stiffen(tl_model *m);
+
+#endif
