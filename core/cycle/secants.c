@@ -184,7 +184,7 @@ static void secant_begin(const tl_model *m, uint32_t contact, tl_secant *s)
     const tl_contacts *c = &m->detect->contacts;
     const tl_law *law = &m->joint_laws[c->law[contact]];
     const tl_vec3 arm = place_of(m, contact);
-    *s = (tl_secant){.born = c->born[contact], .a = c->a[contact], .b = c->b[contact]};
+    *s = (tl_secant){.born = c->born[contact], .a = c->a[contact], .b = c->b[contact], .kind = c->kind[contact]};
     put_vec(s->arm_a, arm);
     put_vec(s->arm_b, tl_v3_sub(arm, tl_sides_apart(m, tl_contact_sides(m, contact))));
     if (tl_facet_is_field(&c->facet[contact]))
@@ -276,7 +276,8 @@ static void follow_range(void *user, size_t begin, size_t end, size_t chunk, uns
             s->born = -1;
             continue;
         }
-        if (job->anew || s->born != c->born[i] || s->a != c->a[i] || s->b != c->b[i]) {
+        const bool same = s->born == c->born[i] && s->a == c->a[i] && s->b == c->b[i] && s->kind == c->kind[i];
+        if (job->anew || !same) {
             secant_begin(m, i, s);
             continue;
         }

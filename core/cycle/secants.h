@@ -8,7 +8,8 @@
  * moment about the contact's place. */
 typedef struct tl_secant {
     int64_t born;              /* of the contact, */
-    uint32_t a, b;             /* and its blocks: of another one nothing is known */
+    uint32_t a, b;             /* and its blocks: of another one nothing is known, */
+    uint32_t kind;             /* nor of one whose points are of another kind */
     double root[6][6];         /* of the stiffness: K = root root^T */
     double force[6];           /* after the last step */
     double arm_a[3], arm_b[3]; /* from the bodies' centroids to the contact's place */
