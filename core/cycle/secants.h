@@ -19,13 +19,13 @@ typedef struct tl_secant {
 typedef struct tl_leap_link {
     uint32_t a, b; /* rows of bodies; of one that has no stiffness both are the same */
     tl_vec3 arm_a, arm_b;
-    double k[6][6];
+    double k[6][TL_LANES]; /* rows of six, and zeros */
 } tl_leap_link;
 
 /* A body in a leap: a way and a turn, or a force and a moment, each. */
 typedef struct tl_leap_body {
+    double block[6][6]; /* its own part of the stiffness: the inverse of its Cholesky factor */
     double hold[6];     /* what is added to the diagonal of the stiffness */
-    double block[6][6]; /* its own part of that, as its Cholesky factor */
     double motion[6], force[6], preconditioned[6], way[6], image[6];
 } tl_leap_body;
 
