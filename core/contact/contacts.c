@@ -6,6 +6,7 @@
 #include "contact/contacts.h"
 
 #include "base/columns.h"
+#include "base/inline.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
@@ -521,6 +522,13 @@ static uint32_t wanted_points(const tl_detect *d, uint32_t row)
     return want > have ? want : have;
 }
 
+/* Copies one column of a contact's points, of which each lies TL_LANES rows behind the one before. */
+TL_INLINE void copy_lane(char *to, const char *from, size_t size, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        memcpy(to + i * TL_LANES * size, from + i * TL_LANES * size, size);
+}
+
 /* Copies a contact's points from one table to other rows of another, or of the same. */
 static void copy_points(const tl_points_table *from, size_t row, tl_points_table *to, size_t start, uint32_t count)
 {
@@ -528,8 +536,12 @@ static void copy_points(const tl_points_table *from, size_t row, tl_points_table
         size_t size = from->table.columns[k].size;
         char *target = (char *)tl_table_data(&to->table, k) + start * size;
         const char *source = (const char *)tl_table_data(&from->table, k) + row * size;
-        for (uint32_t i = 0; i < count; i++)
-            memcpy(target + i * TL_LANES * size, source + i * TL_LANES * size, size);
+        if (size == sizeof(double)) /* as most have: a copy of a size that is known is no call */
+            copy_lane(target, source, sizeof(double), count);
+        else if (size == sizeof(uint32_t))
+            copy_lane(target, source, sizeof(uint32_t), count);
+        else
+            copy_lane(target, source, size, count);
     }
 }
 

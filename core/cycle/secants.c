@@ -25,6 +25,7 @@
 #include "cycle/secants.h"
 
 #include "base/columns.h"
+#include "base/inline.h"
 #include "base/parallel.h"
 #include "contact/facing.h"
 #include "contact/places.h"
@@ -85,19 +86,36 @@ static void factorise(double a[6][6])
     }
 }
 
-static void solve_by(double a[6][6], const double from[6], double x[6])
+/* Makes a Cholesky factor its inverse. A direction that has no stiffness gets none. */
+static void invert_factor(double a[6][6])
 {
-    for (int i = 0; i < 6; i++) {
-        double t = from[i];
-        for (int k = 0; k < i; k++)
-            t -= a[i][k] * x[k];
-        x[i] = a[i][i] > 0 ? t / a[i][i] : 0;
+    for (int j = 0; j < 6; j++) {
+        a[j][j] = a[j][j] > 0 ? 1 / a[j][j] : 0;
+        for (int i = j + 1; i < 6; i++) {
+            double t = 0;
+            for (int k = j; k < i; k++)
+                t -= a[i][k] * a[k][j];
+            a[i][j] = a[i][i] > 0 ? t / a[i][i] : 0;
+        }
     }
-    for (int i = 5; i >= 0; i--) {
-        double t = x[i];
-        for (int k = i + 1; k < 6; k++)
-            t -= a[k][i] * x[k];
-        x[i] = a[i][i] > 0 ? t / a[i][i] : 0;
+    for (int i = 0; i < 6; i++)
+        for (int j = i + 1; j < 6; j++)
+            a[i][j] = 0;
+}
+
+/* x = R^T R f, of R the lower half. */
+TL_INLINE void solve_by(double r[6][6], const double f[6], double x[6])
+{
+    double turned[6];
+    for (int i = 0; i < 6; i++) {
+        turned[i] = 0;
+        for (int k = 0; k <= i; k++)
+            turned[i] += r[i][k] * f[k];
+    }
+    for (int i = 0; i < 6; i++) {
+        x[i] = 0;
+        for (int k = i; k < 6; k++)
+            x[i] += r[k][i] * turned[k];
     }
 }
 
@@ -184,7 +202,7 @@ static void secant_begin(const tl_model *m, uint32_t contact, tl_secant *s)
     const tl_contacts *c = &m->detect->contacts;
     const tl_law *law = &m->joint_laws[c->law[contact]];
     const tl_vec3 arm = place_of(m, contact);
-    *s = (tl_secant){.born = c->born[contact], .a = c->a[contact], .b = c->b[contact]};
+    *s = (tl_secant){.born = c->born[contact], .a = c->a[contact], .b = c->b[contact], .kind = c->kind[contact]};
     put_vec(s->arm_a, arm);
     put_vec(s->arm_b, tl_v3_sub(arm, tl_sides_apart(m, tl_contact_sides(m, contact))));
     if (tl_facet_is_field(&c->facet[contact]))
@@ -276,7 +294,8 @@ static void follow_range(void *user, size_t begin, size_t end, size_t chunk, uns
             s->born = -1;
             continue;
         }
-        if (job->anew || s->born != c->born[i] || s->a != c->a[i] || s->b != c->b[i]) {
+        const bool same = s->born == c->born[i] && s->a == c->a[i] && s->b == c->b[i] && s->kind == c->kind[i];
+        if (job->anew || !same) {
             secant_begin(m, i, s);
             continue;
         }
@@ -339,6 +358,7 @@ static void link_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         link->b = on.b;
         link->arm_a = vec_of(s->arm_a);
         link->arm_b = vec_of(s->arm_b);
+        memset(link->k, 0, sizeof link->k);
         for (int j = 0; j < 6; j++)
             for (int k = 0; k <= j; k++)
                 link->k[j][k] = link->k[k][j] = dot(s->root[j], s->root[k]);
@@ -346,13 +366,13 @@ static void link_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 }
 
 /* The motion at a contact's place by that of a body; and the force on the body by that at the place. */
-static void at_place(const double x[6], tl_vec3 arm, double out[6])
+TL_INLINE void at_place(const double x[6], tl_vec3 arm, double out[6])
 {
     put_vec(out, tl_v3_add(vec_of(x), tl_v3_cross(vec_of(x + 3), arm)));
     put_vec(out + 3, vec_of(x + 3));
 }
 
-static void add_on_body(double to[6], double by, const double f[6], tl_vec3 arm)
+TL_INLINE void add_on_body(double to[6], double by, const double f[6], tl_vec3 arm)
 {
     const tl_vec3 moment = tl_v3_add(vec_of(f + 3), tl_v3_cross(arm, vec_of(f)));
     for (int i = 0; i < 3; i++)
@@ -360,15 +380,15 @@ static void add_on_body(double to[6], double by, const double f[6], tl_vec3 arm)
     put_vec(to + 3, tl_v3_madd(vec_of(to + 3), by, moment));
 }
 
-/* Adds T^T K T of one side of a contact to the body's rows. */
-static void add_block(double to[6][6], double k[6][6], tl_vec3 arm)
+/* Adds T^T K T of one side of a contact to the body's rows: what each unit motion of the body does to it. */
+static void add_block(double to[6][6], double k[6][TL_LANES], tl_vec3 arm)
 {
+    const tl_vec3 ways[3] = {{0, -arm.z, arm.y}, {arm.z, 0, -arm.x}, {-arm.y, arm.x, 0}}; /* of unit turns */
     for (int j = 0; j < 6; j++) {
-        double unit[6] = {0}, way[6], force[6], column[6] = {0};
-        unit[j] = 1;
-        at_place(unit, arm, way);
+        double force[6], column[6] = {0};
         for (int i = 0; i < 6; i++)
-            force[i] = dot(k[i], way);
+            force[i] =
+                j < 3 ? k[j][i] : ways[j - 3].x * k[0][i] + ways[j - 3].y * k[1][i] + ways[j - 3].z * k[2][i] + k[j][i];
         add_on_body(column, 1, force, arm);
         for (int i = 0; i < 6; i++)
             to[i][j] += column[i];
@@ -398,13 +418,12 @@ static void hold_body(const tl_model *m, uint32_t body, double by, tl_leap_body 
     }
     double ones[6] = {1, 1, 1, 1, 1, 1};
     free_rows(m, body, ones);
-    if (b->fixed[body] == TL_FIX_ALL)
-        memset(ones, 0, sizeof ones);
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 6; j++)
             if (ones[i] == 0 || ones[j] == 0)
                 of->block[i][j] = i == j;
     factorise(of->block);
+    invert_factor(of->block);
 }
 
 static void begin_bodies(const tl_model *m, double by)
@@ -422,87 +441,96 @@ static void begin_bodies(const tl_model *m, double by)
     }
     for (uint32_t body = 0; body < bodies; body++) {
         tl_leap_body *of = &c->leap[body];
-        hold_body(m, body, by, of);
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
+        hold_body(m, body, by, of);
         put_vec(of->force, b->force[body]);
         put_vec(of->force + 3, b->moment[body]);
         free_rows(m, body, of->force);
     }
 }
 
-/* image = (stiffness + hold) way */
-static void times_stiffness(const tl_model *m)
-{
-    const struct tl_cycle *c = m->cycle;
-    const uint32_t bodies = (uint32_t)m->bodies.table.rows;
-    for (uint32_t body = 0; body < bodies; body++)
-        for (int i = 0; i < 6; i++)
-            c->leap[body].image[i] = c->leap[body].hold[i] * c->leap[body].way[i];
-    for (size_t i = 0; i < m->detect->contacts.table.rows; i++) {
-        const tl_leap_link *link = &c->link[i];
-        if (link->a == link->b)
-            continue;
-        tl_leap_body *a = &c->leap[link->a], *b = &c->leap[link->b];
-        double way_a[6], way[6], force[6];
-        at_place(a->way, link->arm_a, way_a);
-        at_place(b->way, link->arm_b, way);
-        for (int k = 0; k < 6; k++)
-            way[k] -= way_a[k];
-        for (int k = 0; k < 6; k++)
-            force[k] = dot(link->k[k], way);
-        add_on_body(b->image, 1, force, link->arm_b);
-        add_on_body(a->image, -1, force, link->arm_a);
-    }
-    for (uint32_t body = 0; body < bodies; body++)
-        if (m->bodies.fixed[body] == TL_FIX_ALL)
-            memset(c->leap[body].image, 0, sizeof c->leap[body].image);
-        else
-            free_rows(m, body, c->leap[body].image);
-}
-
-/* preconditioned = block^-1 force; returns their product. */
-static double precondition(const tl_model *m)
+/* Goes `by` along the way. What force is left is preconditioned, block^-1 force; returns the product of both. */
+static double go_along(const tl_model *m, double by)
 {
     double sum = 0;
-    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         tl_leap_body *of = &m->cycle->leap[body];
         if (m->bodies.fixed[body] == TL_FIX_ALL)
             continue;
+        for (int i = 0; i < 6; i++) {
+            of->motion[i] += by * of->way[i];
+            of->force[i] -= by * of->image[i];
+        }
         solve_by(of->block, of->force, of->preconditioned);
-        free_rows(m, (uint32_t)body, of->preconditioned);
+        free_rows(m, body, of->preconditioned);
         sum += dot(of->force, of->preconditioned);
+    }
+    return sum;
+}
+
+/* The next way: what is preconditioned, and `turn` times the last one. Begins its image by what is held. */
+static void choose_way(const tl_model *m, double turn)
+{
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+        tl_leap_body *of = &m->cycle->leap[body];
+        for (int i = 0; i < 6; i++) {
+            of->way[i] = of->preconditioned[i] + turn * of->way[i];
+            of->image[i] = of->hold[i] * of->way[i];
+        }
+    }
+}
+
+/* Adds what the contacts do to the image of the way. */
+TL_VECTORIZED static void add_stiffness(tl_leap_body *leap, const tl_leap_link *links, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const tl_leap_link *link = &links[i];
+        if (link->a == link->b)
+            continue;
+        tl_leap_body *a = &leap[link->a], *b = &leap[link->b];
+        double way_a[6], way[6], force[TL_LANES] = {0};
+        at_place(a->way, link->arm_a, way_a);
+        at_place(b->way, link->arm_b, way);
+        for (int k = 0; k < 6; k++) {
+            const double by = way[k] - way_a[k];
+#pragma omp simd
+            for (int l = 0; l < TL_LANES; l++)
+                force[l] += link->k[k][l] * by;
+        }
+        add_on_body(b->image, 1, force, link->arm_b);
+        add_on_body(a->image, -1, force, link->arm_a);
+    }
+}
+
+/* image = (stiffness + hold) way; returns the product of both. */
+static double times_stiffness(const tl_model *m)
+{
+    tl_leap_body *leap = m->cycle->leap;
+    double sum = 0;
+    add_stiffness(leap, m->cycle->link, m->detect->contacts.table.rows);
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
+        free_rows(m, body, leap[body].image);
+        sum += dot(leap[body].way, leap[body].image);
     }
     return sum;
 }
 
 void tl_leap_find(tl_model *m, double dt, double hold)
 {
-    const struct tl_cycle *c = m->cycle;
-    const size_t bodies = m->bodies.table.rows;
     tl_parallel_for(m->pool, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, link_range, m);
     begin_bodies(m, hold / (dt * dt));
-    double left = precondition(m);
+    double left = go_along(m, 0);
     const double least = SOLVED * SOLVED * left;
-    for (size_t i = 0; i < bodies; i++)
-        memcpy(c->leap[i].way, c->leap[i].preconditioned, sizeof c->leap[i].way);
+    choose_way(m, 0);
     for (int k = 0; k < MOST_ITERATIONS && left > least; k++) {
-        double curve = 0;
-        times_stiffness(m);
-        for (size_t i = 0; i < bodies; i++)
-            curve += dot(c->leap[i].way, c->leap[i].image);
+        const double curve = times_stiffness(m);
         if (!(curve > 0))
             break;
-        const double by = left / curve;
-        for (size_t i = 0; i < bodies; i++)
-            for (int j = 0; j < 6; j++) {
-                c->leap[i].motion[j] += by * c->leap[i].way[j];
-                c->leap[i].force[j] -= by * c->leap[i].image[j];
-            }
-        const double next = precondition(m), turn = next / left;
+        const double next = go_along(m, left / curve), turn = next / left;
         left = next;
-        for (size_t i = 0; i < bodies; i++)
-            for (int j = 0; j < 6; j++)
-                c->leap[i].way[j] = c->leap[i].preconditioned[j] + turn * c->leap[i].way[j];
+        choose_way(m, turn);
     }
 }

@@ -8,7 +8,8 @@
  * moment about the contact's place. */
 typedef struct tl_secant {
     int64_t born;              /* of the contact, */
-    uint32_t a, b;             /* and its blocks: of another one nothing is known */
+    uint32_t a, b;             /* and its blocks: of another one nothing is known, */
+    uint32_t kind;             /* nor of one whose points are of another kind */
     double root[6][6];         /* of the stiffness: K = root root^T */
     double force[6];           /* after the last step */
     double arm_a[3], arm_b[3]; /* from the bodies' centroids to the contact's place */
@@ -18,13 +19,13 @@ typedef struct tl_secant {
 typedef struct tl_leap_link {
     uint32_t a, b; /* rows of bodies; of one that has no stiffness both are the same */
     tl_vec3 arm_a, arm_b;
-    double k[6][6];
+    double k[6][TL_LANES]; /* rows of six, and zeros */
 } tl_leap_link;
 
 /* A body in a leap: a way and a turn, or a force and a moment, each. */
 typedef struct tl_leap_body {
+    double block[6][6]; /* its own part of the stiffness: the inverse of its Cholesky factor */
     double hold[6];     /* what is added to the diagonal of the stiffness */
-    double block[6][6]; /* its own part of that, as its Cholesky factor */
     double motion[6], force[6], preconditioned[6], way[6], image[6];
 } tl_leap_body;
 

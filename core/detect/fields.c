@@ -281,7 +281,7 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
 {
     const tl_pair_pose place = {query->view->turn, query->view->shift};
     const bool told = query->slope && query->slope->known;
-    bool stays = tl_press_moved(press, &row->place, &place) <= 0.5 * TL_PRESS_NEAR;
+    bool stays = tl_press_stays(press, &row->place, &place, 0.5 * TL_PRESS_NEAR);
     const bool moves = told && m->detect->balance_left > 0;
     if (!stays || moves) {
         row->place = place;

@@ -13,9 +13,11 @@
 #include <math.h>
 #include <talus/vmath.h>
 
-/* What of a direction does not leave the planes that hold an apex. */
+/* What of a direction does not leave the planes that hold an apex: nothing of three. */
 static tl_vec3 within(const tl_apex *p, tl_vec3 way)
 {
+    if (p->count == 3)
+        return tl_v3(0, 0, 0);
     for (int i = 0; i < p->count; i++)
         way = tl_v3_madd(way, -p->per[i] * tl_v3_dot(p->held[i], way), p->held[i]);
     return way;
@@ -64,10 +66,23 @@ tl_apex_faces tl_apex_choose(const tl_field_faces *f, const uint16_t *face, uint
     return out;
 }
 
+/* The point in which three planes meet. */
+static tl_vec3 meeting(const tl_field_faces *f, const uint8_t face[3])
+{
+    const tl_vec3 a = tl_field_normal(f, face[0]), b = tl_field_normal(f, face[1]), c = tl_field_normal(f, face[2]);
+    const tl_vec3 bc = tl_v3_cross(b, c), ca = tl_v3_cross(c, a), ab = tl_v3_cross(a, b);
+    const tl_vec3 sum = tl_v3_madd(tl_v3_madd(tl_v3_scale(f->c[face[0]], bc), f->c[face[1]], ca), f->c[face[2]], ab);
+    return tl_v3_scale(1 / tl_v3_dot(a, bc), sum);
+}
+
 tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by)
 {
     tl_apex p = {.known = by->known, .strays = by->strays};
-    for (uint32_t k = 0; k < by->holds && by->known; k++)
+    if (by->known && by->holds == 3) {
+        p.x = meeting(f, by->held);
+        p.count = 3;
+    }
+    for (uint32_t k = 0; k < by->holds && by->known && p.count < 3; k++)
         hold(&p, f, by->held[k], 0);
     for (uint32_t k = 0; k < by->strays; k++)
         p.stray[k] = by->stray[k];

@@ -321,10 +321,30 @@ static bool add_polygon(const tl_field_faces *f, const mesh_draft *draft, uint32
     return true;
 }
 
+/* Where the labels of each polygon of a draft begin, and the order of the polygons in a mesh: those at borders last,
+ * and of each sort those with many sides first. For those side by side take as long as the one with the most. */
+static void order_polygons(const mesh_draft *draft, const tl_field_faces *faces, uint8_t begin[], uint8_t order[])
+{
+    uint32_t labels = 0;
+    for (uint32_t k = 0; k < draft->polygons; labels += draft->sides[k++]) {
+        const bool border = draft->own[k][1] >= real_faces(faces);
+        uint32_t at = k;
+        begin[k] = (uint8_t)labels;
+        for (; at > 0; at--) {
+            const uint8_t other = order[at - 1];
+            const bool other_border = draft->own[other][1] >= real_faces(faces);
+            if (border != other_border ? border : draft->sides[other] >= draft->sides[k])
+                break;
+            order[at] = other;
+        }
+        order[at] = (uint8_t)k;
+    }
+}
+
 /* Makes a mesh of all polygons of a field. It has none when they do not fit together, or are too many. */
 static void make_mesh(const mesh_draft *draft, const tl_field_faces *faces, tl_field_mesh *mesh)
 {
-    const uint8_t *label = draft->label;
+    uint8_t begin[TL_MESH_POLYGONS], order[TL_MESH_POLYGONS];
     uint8_t labels[TL_MESH_SIDES], *of_mesh = labels, *loop = mesh->loop;
     uint64_t bounding = mesh->bounding;
     memset(mesh, 0, sizeof *mesh);
@@ -332,8 +352,9 @@ static void make_mesh(const mesh_draft *draft, const tl_field_faces *faces, tl_f
     if (draft->full || draft->polygons == 0 || !faces->inner || faces->inner->count > TL_MESH_INNER)
         return;
     bool fits = true;
-    for (uint32_t k = 0; k < draft->polygons && fits; label += draft->sides[k++])
-        fits = add_polygon(faces, draft, k, label, mesh, &loop, &of_mesh);
+    order_polygons(draft, faces, begin, order);
+    for (uint32_t k = 0; k < draft->polygons && fits; k++)
+        fits = add_polygon(faces, draft, order[k], draft->label + begin[order[k]], mesh, &loop, &of_mesh);
     for (uint32_t k = 0; k < faces->inner->count && fits; k++) {
         const uint8_t *face = faces->inner->face[k];
         fits = corner_of(faces, mesh, face, face[2], TL_MESH_ZERO) < TL_MESH_CORNERS;

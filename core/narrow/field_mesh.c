@@ -36,7 +36,9 @@
 #include <string.h>
 #include <talus/vmath.h>
 
-#define LANES TL_LANES
+/* Cost only: corners, and polygons, side by side, as many as tl_lanes_turn turns. A field has some 11 and 8 of them. Of
+ * TL_LANES more would stand idle. */
+#define LANES 4u
 
 /* Cost only: determinant of a corner's three equations, with normals of length 1 and their differences, below which its
  * place is lost in roundings. */
@@ -56,26 +58,29 @@ typedef struct corners {
     double at[TL_MESH_CORNERS][4];
 } corners;
 
+enum { MOST_GROUPS = TL_MESH_CORNERS / LANES };
+
+/* Some corners side by side: the same, and how much larger roundings of offsets are there; NaN where planes hardly
+ * meet. */
+typedef struct corner_lanes {
+    double x[LANES], y[LANES], z[LANES], d[LANES], blur[LANES];
+} corner_lanes;
+
 /* The planes of a field, n and c in a row. */
 typedef struct plane_rows {
     double of[TL_FIELD_KNOWN + 1][4];
 } plane_rows;
 
-/* Places and depths of eight corners, and how much larger roundings of offsets are there; NaN where planes hardly
- * meet. The first plane of a corner is a face's. The others are as near, or are borders, numbers from `faces` on, and
- * hold it. */
+/* Places corners, also as rows. The first plane of a corner is a face's. The others are as near, or are borders,
+ * numbers from `faces` on, and hold it. */
 TL_INLINE void place_corners(const plane_rows *restrict rows, const uint8_t *restrict plane, uint32_t faces,
-                             bool seamed, double *restrict x, double *restrict y, double *restrict z,
-                             double *restrict d, double *restrict blur)
+                             bool seamed, corner_lanes *restrict at, double (*restrict to)[4])
 {
     double n[4][3][LANES], o[4][LANES], near[4][LANES];
     for (uint32_t k = 0; k < 4; k++) {
         const uint8_t *restrict of = plane + (size_t)k * TL_MESH_CORNERS;
-        for (uint32_t l = 0; l < LANES; l += 4) {
-            const double *const row[] = {rows->of[of[l]], rows->of[of[l + 1]], rows->of[of[l + 2]],
-                                         rows->of[of[l + 3]]};
-            tl_lanes_turn(row, n[k][0] + l, n[k][1] + l, n[k][2] + l, o[k] + l);
-        }
+        const double *const row[] = {rows->of[of[0]], rows->of[of[1]], rows->of[of[2]], rows->of[of[3]]};
+        tl_lanes_turn(row, n[k][0], n[k][1], n[k][2], o[k]);
         for (uint32_t l = 0; l < LANES && seamed; l++)
             near[k][l] = of[l] < faces || of[l] == TL_MESH_ZERO ? 1.0 : 0.0;
     }
@@ -94,103 +99,109 @@ TL_INLINE void place_corners(const plane_rows *restrict rows, const uint8_t *res
         double wx = ay * bz - az * by, wy = az * bx - ax * bz, wz = ax * by - ay * bx;
         double det = ax * ux + ay * uy + az * uz;
         double per = fabs(det) > SHARP ? 1 / det : NAN, far = 1 + fabs(per);
-        blur[l] = far < MOST_BLURRED ? far : MOST_BLURRED;
-        x[l] = (ao * ux + bo * vx + co * wx) * per;
-        y[l] = (ao * uy + bo * vy + co * wy) * per;
-        z[l] = (ao * uz + bo * vz + co * wz) * per;
-        d[l] = o[0][l] - (n[0][0][l] * x[l] + n[0][1][l] * y[l] + n[0][2][l] * z[l]);
+        double x = (ao * ux + bo * vx + co * wx) * per, y = (ao * uy + bo * vy + co * wy) * per;
+        double z = (ao * uz + bo * vz + co * wz) * per;
+        at->blur[l] = far < MOST_BLURRED ? far : MOST_BLURRED;
+        at->x[l] = x;
+        at->y[l] = y;
+        at->z[l] = z;
+        at->d[l] = o[0][l] - (n[0][0][l] * x + n[0][1][l] * y + n[0][2][l] * z);
     }
+    const double *const column[] = {at->x, at->y, at->z, at->d};
+    tl_lanes_turn(column, to[0], to[1], to[2], to[3]);
 }
 
 TL_VECTORIZED static void place_corners_of_faces(const plane_rows *restrict rows, const uint8_t *restrict plane,
-                                                 double *restrict x, double *restrict y, double *restrict z,
-                                                 double *restrict d, double *restrict blur)
+                                                 corner_lanes *restrict at, double (*restrict to)[4])
 {
-    place_corners(rows, plane, 0, false, x, y, z, d, blur);
+    place_corners(rows, plane, 0, false, at, to);
 }
 
 TL_VECTORIZED static void place_seamed_corners(const plane_rows *restrict rows, const uint8_t *restrict plane,
-                                               uint32_t faces, double *restrict x, double *restrict y,
-                                               double *restrict z, double *restrict d, double *restrict blur)
+                                               uint32_t faces, corner_lanes *restrict at, double (*restrict to)[4])
 {
-    place_corners(rows, plane, faces, true, x, y, z, d, blur);
+    place_corners(rows, plane, faces, true, at, to);
 }
 
-/* Eight columns of four become rows, and four columns of so many planes. */
-TL_VECTORIZED static void put_corners(const double *restrict x, const double *restrict y, const double *restrict z,
-                                      const double *restrict d, double (*restrict to)[4])
+/* Four columns of so many planes become rows, with those that fill up the last lanes. */
+TL_VECTORIZED static void put_planes(const tl_field_faces *restrict f, uint32_t count, plane_rows *restrict rows)
 {
-    for (uint32_t l = 0; l < LANES; l += 4) {
-        const double *const column[] = {x + l, y + l, z + l, d + l};
-        tl_lanes_turn(column, to[l], to[l + 1], to[l + 2], to[l + 3]);
+    for (uint32_t k = 0; k < count; k += LANES) {
+        const double *const column[] = {f->n[0] + k, f->n[1] + k, f->n[2] + k, f->c + k};
+        tl_lanes_turn(column, rows->of[k], rows->of[k + 1], rows->of[k + 2], rows->of[k + 3]);
     }
+    for (uint32_t axis = 0; axis < 4; axis++)
+        rows->of[TL_MESH_ZERO][axis] = 0;
 }
 
-static void put_planes(const tl_field_faces *f, uint32_t count, plane_rows *rows)
+/* The largest of some offsets. */
+TL_VECTORIZED static double largest_offset(const double *restrict c, uint32_t count)
 {
-    const double *x = f->n[0], *y = f->n[1], *z = f->n[2], *c = f->c;
+    double largest = 0;
+#pragma omp simd reduction(max : largest)
     for (uint32_t k = 0; k < count; k++) {
-        double *row = rows->of[k];
-        row[0] = x[k];
-        row[1] = y[k];
-        row[2] = z[k];
-        row[3] = c[k];
+        const double far = fabs(c[k]);
+        largest = far > largest ? far : largest;
     }
-    memset(rows->of[TL_MESH_ZERO], 0, sizeof rows->of[0]);
+    return largest;
 }
 
-/* Whether none of the planes from `first` to before `end` is nearer to any of eight corners than d. Allowed is a slack
- * that grows with the roundings. */
-TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_t first, uint32_t end,
-                                       const double *restrict x, const double *restrict y, const double *restrict z,
-                                       const double *restrict d, const double *restrict blur, double slack)
+/* By how much the nearest of some planes is farther from each corner than d, before that is compared. */
+TL_VECTORIZED static void find_nearest(const plane_rows *restrict rows, uint32_t first, uint32_t end,
+                                       const corner_lanes *restrict at, uint32_t groups,
+                                       double (*restrict least)[LANES])
 {
-    double least[LANES];
-    for (uint32_t l = 0; l < LANES; l++)
-        least[l] = INFINITY;
+    for (uint32_t g = 0; g < groups; g++)
+        for (uint32_t l = 0; l < LANES; l++)
+            least[g][l] = INFINITY;
     for (uint32_t k = first; k < end; k++) {
-        const double nx = f->n[0][k], ny = f->n[1][k], nz = f->n[2][k], c = f->c[k];
+        const double nx = rows->of[k][0], ny = rows->of[k][1], nz = rows->of[k][2], c = rows->of[k][3];
+        for (uint32_t g = 0; g < groups; g++)
 #pragma omp simd
-        for (uint32_t l = 0; l < LANES; l++) {
-            double over = c - (nx * x[l] + ny * y[l] + nz * z[l]);
-            least[l] = least[l] < over ? least[l] : over;
-        }
+            for (uint32_t l = 0; l < LANES; l++) {
+                double over = c - (nx * at[g].x[l] + ny * at[g].y[l] + nz * at[g].z[l]);
+                least[g][l] = least[g][l] < over ? least[g][l] : over;
+            }
     }
+}
+
+/* Whether none of the planes from `first` to before `end` is nearer to any corner than d, or than 0 where they are
+ * borders. Allowed is a slack that grows with the roundings. */
+static bool corners_hold(const plane_rows *rows, uint32_t first, uint32_t end, bool borders, const corner_lanes *at,
+                         uint32_t groups, double slack)
+{
+    double least[MOST_GROUPS][LANES];
     bool all = true;
-    for (uint32_t l = 0; l < LANES; l++)
-        all &= least[l] - d[l] >= -slack * blur[l];
+    find_nearest(rows, first, end, at, groups, least);
+    for (uint32_t g = 0; g < groups; g++)
+        for (uint32_t l = 0; l < LANES; l++)
+            all &= least[g][l] - (borders ? 0 : at[g].d[l]) >= -slack * at[g].blur[l];
     return all;
 }
 
-/* Whether the mesh stands; then its corners are in `at`. */
-static bool mesh_holds(const tl_field_faces *f, corners *at)
+/* Whether the mesh stands; then its corners are in `at`, and the planes in `rows`. */
+static bool mesh_holds(const tl_field_faces *f, plane_rows *rows, corners *at)
 {
-    const double none[LANES] = {0};
     const tl_field_mesh *mesh = f->mesh;
     const uint32_t planes = f->a + f->b, all = planes + f->border_a + f->border_b;
-    double x[LANES], y[LANES], z[LANES], d[LANES], blur[LANES], largest = 0;
-    plane_rows rows;
-    put_planes(f, all, &rows);
-    for (uint32_t k = 0; k < all; k++) {
-        const double far = fabs(f->c[k]);
-        largest = far > largest ? far : largest;
-    }
-    for (uint32_t i = 0; i < mesh->corners; i += LANES) {
+    const uint32_t groups = (mesh->corners + LANES - 1) / LANES;
+    const double slack = SLACK * largest_offset(f->c, all);
+    corner_lanes lanes[MOST_GROUPS];
+    put_planes(f, all, rows);
+    for (uint32_t g = 0; g < groups; g++) {
+        const uint8_t *plane = mesh->plane[0] + (size_t)g * LANES;
         if (f->seamed)
-            place_seamed_corners(&rows, mesh->plane[0] + i, planes, x, y, z, d, blur);
+            place_seamed_corners(rows, plane, planes, &lanes[g], at->at + (size_t)g * LANES);
         else
-            place_corners_of_faces(&rows, mesh->plane[0] + i, x, y, z, d, blur);
-        put_corners(x, y, z, d, at->at + i);
-        if (!corners_hold(f, 0, planes, x, y, z, d, blur, SLACK * largest) ||
-            (all > planes && !corners_hold(f, planes, all, x, y, z, none, blur, SLACK * largest)))
-            return false;
+            place_corners_of_faces(rows, plane, &lanes[g], at->at + (size_t)g * LANES);
     }
-    return true;
+    return corners_hold(rows, 0, planes, false, lanes, groups, slack) &&
+           (all == planes || corners_hold(rows, planes, all, true, lanes, groups, slack));
 }
 
 /* ---------------------------------------------------------------- polygons --------------- */
 
-/* A corner of each of eight polygons. */
+/* A corner of each of some polygons side by side. */
 typedef struct polygon_corner {
     double x[3][LANES], d[LANES];
 } polygon_corner;
@@ -200,15 +211,18 @@ typedef struct integrals {
     double area[LANES], d[LANES], dd[LANES], x[3][LANES], dx[3][LANES], xx[LANES];
 } integrals;
 
-/* Second moments of eight polygons: xx, yy, zz, xy, yz, zx. */
+/* Second moments of these: xx, yy, zz, xy, yz, zx. */
 typedef struct second_moments {
     double of[6][LANES];
 } second_moments;
 
-/* Eight polygons. */
+/* Some polygons side by side. */
 typedef struct polygons {
     const uint8_t *loop[LANES];
     uint32_t sides[LANES], most;
+    uint8_t own[LANES][2];             /* the two planes */
+    double on[LANES];                  /* 0: what fills up the lanes */
+    double face[2][3][LANES];          /* n_i and n_j */
     double n[3][LANES], length[LANES]; /* n_i - n_j, then divided by its length, and that */
     double
         gradient[LANES]; /* 1: of S, 0: between cells of one block; of a border the sign of its part in the gradient */
@@ -216,15 +230,13 @@ typedef struct polygons {
     integrals of;
 } polygons;
 
-/* The k-th corners of eight polygons; of one that has fewer, its last. */
+/* The k-th corners of polygons; of one that has fewer, its last. */
 TL_INLINE void take_corner(const corners *at, const polygons *p, uint32_t k, polygon_corner *out)
 {
-    for (uint32_t l = 0; l < LANES; l += 4) {
-        const double *row[4];
-        for (uint32_t i = 0; i < 4; i++)
-            row[i] = at->at[p->loop[l + i][k < p->sides[l + i] ? k : p->sides[l + i] - 1]];
-        tl_lanes_turn(row, out->x[0] + l, out->x[1] + l, out->x[2] + l, out->d + l);
-    }
+    const double *row[LANES];
+    for (uint32_t l = 0; l < LANES; l++)
+        row[l] = at->at[p->loop[l][k < p->sides[l] ? k : p->sides[l] - 1]];
+    tl_lanes_turn(row, out->x[0], out->x[1], out->x[2], out->d);
 }
 
 /* Adds a triangle of each polygon. */
@@ -332,7 +344,7 @@ TL_VECTORIZED static void integrate_powers(const corners *restrict at, const pol
     *out = s;
 }
 
-/* Integrates over eight polygons by triangles from their first corners; their second moments, too, if they are wanted.
+/* Integrates over polygons by triangles from their first corners; their second moments, too, if they are wanted.
  */
 TL_INLINE void integrate_triangles(const corners *restrict at, polygons *restrict p, second_moments *restrict second)
 {
@@ -391,7 +403,7 @@ enum {
     BY_SWEPT,
     ENERGY,
     VOLUME,
-    GIVEN
+    GIVEN = (VOLUME + 4) / 4 * 4 /* with what fills up four: sum_lanes */
 };
 
 /* Adds it to what others have given. */
@@ -505,18 +517,23 @@ TL_VECTORIZED static void add_slopes(const polygons *restrict p, const second_mo
     }
 }
 
-/* Sum of eight lanes. */
+TL_VECTORIZED static void clear_lanes(uint32_t count, double (*restrict given)[LANES])
+{
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t l = 0; l < LANES; l++)
+            given[k][l] = 0;
+}
+
+/* Sums of all lanes of some columns, as many as fours have. */
 TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES], double *restrict sum)
 {
-    for (int k = 0; k < count; k++) {
-        double four[4], two[2];
+    for (int k = 0; k < count; k += 4) {
+        double x[4], y[4], z[4], w[4];
+        const double *const column[] = {given[k], given[k + 1], given[k + 2], given[k + 3]};
+        tl_lanes_turn(column, x, y, z, w);
 #pragma omp simd
-        for (uint32_t l = 0; l < 4; l++)
-            four[l] = given[k][l] + given[k][l + 4];
-#pragma omp simd
-        for (uint32_t l = 0; l < 2; l++)
-            two[l] = four[l] + four[l + 2];
-        sum[k] = two[0] + two[1];
+        for (uint32_t i = 0; i < 4; i++)
+            sum[k + (int)i] = (x[i] + y[i]) + (z[i] + w[i]);
     }
 }
 
@@ -525,34 +542,62 @@ TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES], 
 static uint32_t begin_loops(const tl_field_mesh *mesh, uint32_t first, uint32_t end, const uint8_t **loop, polygons *p)
 {
     const uint32_t count = end - first < LANES ? end - first : LANES;
+    const uint8_t *next = *loop;
     p->most = 0;
-    for (uint32_t l = 0; l < LANES; l++) {
-        uint32_t k = first + (l < count ? l : count - 1);
+    for (uint32_t l = 0; l < count; l++) {
+        const uint32_t k = first + l;
+        p->loop[l] = next;
         p->sides[l] = mesh->sides[k];
         p->most = p->sides[l] > p->most ? p->sides[l] : p->most;
-        p->loop[l] = *loop;
-        *loop += l + 1 < count || l + 1 == LANES ? p->sides[l] : 0;
+        next += p->sides[l];
+        p->own[l][0] = mesh->own[k][0];
+        p->own[l][1] = mesh->own[k][1];
+        p->on[l] = 1;
+    }
+    *loop = next;
+    for (uint32_t l = count; l < LANES; l++) {
+        p->loop[l] = p->loop[count - 1];
+        p->sides[l] = p->sides[count - 1];
+        p->own[l][0] = p->own[count - 1][0];
+        p->own[l][1] = p->own[count - 1][1];
+        p->on[l] = 0;
     }
     return count;
 }
 
-/* The same with the planes of polygons between cells. */
-static uint32_t begin_polygons(const tl_field_faces *f, const tl_apex apex[2], uint32_t first, uint32_t end,
-                               const uint8_t **loop, polygons *p)
+/* The normals of one of the two planes of each polygon in the lanes. */
+TL_INLINE void take_normals(const plane_rows *restrict rows, const polygons *restrict p, int which,
+                            double (*restrict n)[LANES])
 {
-    const tl_field_mesh *mesh = f->mesh;
-    const uint32_t count = begin_loops(mesh, first, end, loop, p);
+    double offset[LANES];
+    const double *const row[] = {rows->of[p->own[0][which]], rows->of[p->own[1][which]], rows->of[p->own[2][which]],
+                                 rows->of[p->own[3][which]]};
+    tl_lanes_turn(row, n[0], n[1], n[2], offset);
+}
+
+/* n_i - n_j of the polygons in the lanes, and both. */
+TL_VECTORIZED static void put_normals(const plane_rows *restrict rows, polygons *restrict p)
+{
+    take_normals(rows, p, 0, p->face[0]);
+    take_normals(rows, p, 1, p->face[1]);
+    for (int axis = 0; axis < 3; axis++)
+#pragma omp simd
+        for (uint32_t l = 0; l < LANES; l++)
+            p->n[axis][l] = p->face[0][axis][l] - p->face[1][axis][l];
+}
+
+/* The same with the planes of polygons between cells. */
+static uint32_t begin_polygons(const tl_field_faces *f, const plane_rows *rows, const tl_apex apex[2], uint32_t first,
+                               uint32_t end, const uint8_t **loop, polygons *p)
+{
+    const double cell[] = {apex[0].known ? 0.0 : 1.0, apex[1].known ? 0.0 : 1.0};
+    const uint32_t count = begin_loops(f->mesh, first, end, loop, p);
     for (uint32_t l = 0; l < LANES; l++) {
-        uint32_t k = first + (l < count ? l : count - 1);
-        uint32_t i = mesh->own[k][0], j = mesh->own[k][1];
-        tl_vec3 w = tl_v3_sub(tl_field_normal(f, i), tl_field_normal(f, j));
-        p->n[0][l] = w.x;
-        p->n[1][l] = w.y;
-        p->n[2][l] = w.z;
-        double cells = (apex[i >= f->a].known ? 0 : 1) + (apex[j >= f->a].known ? 0 : 1);
-        p->cells[l] = l < count ? cells : 0.0;
-        p->gradient[l] = i < f->a && j >= f->a && l < count ? 1.0 : 0.0;
+        const bool i_of_b = p->own[l][0] >= f->a, j_of_b = p->own[l][1] >= f->a;
+        p->cells[l] = p->on[l] * (cell[i_of_b] + cell[j_of_b]);
+        p->gradient[l] = i_of_b == j_of_b ? 0.0 : p->on[l]; /* the first plane has the lower number */
     }
+    put_normals(rows, p);
     return count;
 }
 
@@ -581,33 +626,33 @@ static void begin_borders(const tl_field_faces *f, uint32_t first, const uint8_t
     }
 }
 
+static bool is_stray(const tl_apex *apex, uint32_t face)
+{
+    bool found = false;
+    for (uint32_t k = 0; k < apex->strays; k++)
+        found |= apex->stray[k] == face;
+    return found;
+}
+
 /* Adds the sides of cells that pass by an apex. */
 static void add_strays(const tl_field_faces *f, const polygons *p, uint32_t first, uint32_t count, tl_apex apex[2])
 {
     for (uint32_t l = 0; l < count; l++) {
         uint32_t i = f->mesh->own[first + l][0], j = f->mesh->own[first + l][1];
-        tl_vec3 n = {p->n[0][l], p->n[1][l], p->n[2][l]};
-        if (!(p->of.area[l] > 0))
+        if (!(p->of.area[l] > 0) || !(is_stray(&apex[i >= f->a], i) || is_stray(&apex[j >= f->a], j)))
             continue;
+        tl_vec3 n = {p->n[0][l], p->n[1][l], p->n[2][l]};
         tl_apex_add_side(&apex[i >= f->a], f, i, n, p->of.d[l]);
         tl_apex_add_side(&apex[j >= f->a], f, j, n, -p->of.d[l]);
     }
 }
 
-/* Integrates over polygons, from number `first` on, with their slopes. */
-static void integrate_slopes(const tl_field_faces *f, const corners *at, uint32_t first, uint32_t count, polygons *p,
-                             double slopes[SLOPES][LANES])
+/* Integrates over polygons with their slopes. */
+static void integrate_slopes(const corners *at, polygons *p, double slopes[SLOPES][LANES])
 {
     second_moments second;
-    double n[2][3][LANES];
-    for (uint32_t l = 0; l < LANES; l++)
-        for (int own = 0; own < 2; own++) {
-            uint32_t face = f->mesh->own[first + (l < count ? l : count - 1)][own];
-            for (int axis = 0; axis < 3; axis++)
-                n[own][axis][l] = f->n[axis][face];
-        }
     integrate_second_moments(at, p, &second);
-    add_slopes(p, &second, n[0], n[1], slopes);
+    add_slopes(p, &second, p->face[0], p->face[1], slopes);
 }
 
 static void put_slopes(double slopes[SLOPES][LANES], tl_field_slope *out)
@@ -621,20 +666,27 @@ static void put_slopes(double slopes[SLOPES][LANES], tl_field_slope *out)
     out->known = true;
 }
 
-/* The deepest corner of S: faces of both blocks meet there. The four planes are in ascending order. */
-static void find_deepest(const tl_field_faces *f, const corners *at, tl_field_sums *sums)
+/* Whether a corner lies on S: faces of both blocks meet there. The four planes are in ascending order. */
+static bool is_on_surface(const tl_field_faces *f, uint32_t corner)
 {
     const tl_field_mesh *mesh = f->mesh;
-    for (uint32_t k = 0; k < mesh->corners; k++) {
-        bool both = false;
-        for (int i = 1; i < 4; i++)
-            both = both || mesh->plane[i][k] - f->a < f->b; /* false where the number is less */
-        both = both && mesh->plane[0][k] < f->a;
-        if (!both || !(at->at[k][3] > sums->deepest))
-            continue;
-        sums->deepest = at->at[k][3];
-        sums->deepest_at = tl_v3(at->at[k][0], at->at[k][1], at->at[k][2]);
-    }
+    bool of_b = false;
+    for (int i = 1; i < 4; i++)
+        of_b = of_b || mesh->plane[i][corner] - f->a < f->b; /* false where the number is less */
+    return of_b && mesh->plane[0][corner] < f->a;
+}
+
+/* The deepest corner of S. */
+static void find_deepest(const tl_field_faces *f, const corners *at, tl_field_sums *sums)
+{
+    uint32_t deepest = TL_MESH_CORNERS;
+    for (uint32_t k = 0; k < f->mesh->corners; k++)
+        if (at->at[k][3] > sums->deepest && is_on_surface(f, k)) {
+            sums->deepest = at->at[k][3];
+            deepest = k;
+        }
+    if (deepest < TL_MESH_CORNERS)
+        sums->deepest_at = tl_v3(at->at[deepest][0], at->at[deepest][1], at->at[deepest][2]);
 }
 
 static tl_vec3 vector_of(const double sum[GIVEN], int column)
@@ -685,6 +737,7 @@ static uint32_t between_cells(const tl_field_faces *f)
 bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
 {
     const tl_field_mesh *mesh = f->mesh;
+    plane_rows rows;
     corners at;
     polygons p;
     double given[GIVEN][LANES], sum[GIVEN], by_power[TL_FIELD_POWERS];
@@ -693,20 +746,20 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     if (!mesh || mesh->polygons == 0)
         return false;
     bool strays = mesh->apex[0].strays || mesh->apex[1].strays;
-    if ((strays && !f->energy_only) || !mesh_holds(f, &at)) /* their cells tell no volume */
+    if ((strays && !f->energy_only) || !mesh_holds(f, &rows, &at)) /* their cells tell no volume */
         return false;
     const uint8_t *loop = mesh->loop;
     tl_apex apex[] = {tl_apex_find(f, &mesh->apex[0]), tl_apex_find(f, &mesh->apex[1])};
-    memset(given, 0, sizeof given);
+    clear_lanes(GIVEN, given);
     if (f->powers)
-        memset(powers, 0, sizeof powers);
+        clear_lanes(TL_FIELD_POWERS * POWER_GIVEN, powers[0]);
     if (slope)
-        memset(slopes, 0, sizeof slopes);
+        clear_lanes(SLOPES, slopes);
     const uint32_t between = between_cells(f);
     for (uint32_t first = 0; first < between; first += LANES) {
-        uint32_t count = begin_polygons(f, apex, first, between, &loop, &p);
+        uint32_t count = begin_polygons(f, &rows, apex, first, between, &loop, &p);
         if (slope)
-            integrate_slopes(f, &at, first, count, &p, slopes);
+            integrate_slopes(&at, &p, slopes);
         else
             integrate_polygons(&at, &p);
         add_given(&p, given);

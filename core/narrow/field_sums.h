@@ -66,6 +66,9 @@ typedef struct tl_field_slope {
     bool known;
 } tl_field_slope;
 
+/* Planes behind the last one that are read, whatever they are: for planes are read several at a time. */
+enum { TL_FIELD_SPARE = 3 };
+
 /* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among
  * them. Of blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a
  * border all faces are needed, for beyond it the nearest need not bound K. Of blocks that are apart the faces left may
@@ -73,7 +76,7 @@ typedef struct tl_field_slope {
 typedef struct tl_field_faces {
     uint32_t a, b, border_a, border_b; /* how many of each */
     uint32_t seam_a, seam_b;           /* so many borders, the last of A's and of B's, are seams to other parts */
-    double *n[3], *c;                  /* [all of them] */
+    double *n[3], *c;                  /* [all of them and TL_FIELD_SPARE] */
     /* What is known of another place; NULL: nobody keeps it. It is of use for up to TL_FIELD_KNOWN planes. The bits
      * must be of all faces that bounded K. They must be forgotten when a corner of one block lies in the other, and on
      * or beyond a face that is not among them. The function leaves what it finds here. */

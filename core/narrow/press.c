@@ -22,6 +22,7 @@
  * apart, without A_m, and the force follows from the gradients of all. */
 #include "narrow/press.h"
 
+#include "base/inline.h"
 #include "base/table.h"
 #include "narrow/corner_sums.h"
 #include "narrow/field.h"
@@ -52,7 +53,7 @@ static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query
     uint32_t faces[TL_FIELD_PAIRS];
     for (uint32_t k = 0; k < count; k++) {
         const tl_region *r = query[k].region;
-        faces[k] = r->a + r->b + r->border_a + r->border_b;
+        faces[k] = r->a + r->b + r->border_a + r->border_b + TL_FIELD_SPARE;
         all += faces[k];
     }
     if (!tl_grow(&scratch->press, &scratch->press_capacity, 4 * all, sizeof(double)))
@@ -96,6 +97,15 @@ tl_plane tl_pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
     return is_moved(of, of_b, face) ? moved_plane(of, of_b) : tl_view_plane(of->view, of_b, face);
 }
 
+TL_INLINE void put_plane(tl_plane plane, tl_vec3 origin, double *restrict x, double *restrict y, double *restrict z,
+                         double *restrict c)
+{
+    *x = plane.normal.x;
+    *y = plane.normal.y;
+    *z = plane.normal.z;
+    *c = plane.offset - tl_v3_dot(plane.normal, origin);
+}
+
 static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin, uint32_t count)
 {
     if (count == 0)
@@ -105,13 +115,12 @@ static uint32_t add_faces(press_planes *p, const tl_press_query *of, bool of_b, 
     const bool moved = of->shift != 0 || of->lean;
     double *restrict x = p->faces.n[0] + p->count, *restrict y = p->faces.n[1] + p->count;
     double *restrict z = p->faces.n[2] + p->count, *restrict c = p->faces.c + p->count;
-    for (uint32_t k = 0; k < count; k++) {
-        const tl_plane plane = moved ? tl_pressing_plane(of, of_b, face[k]) : tl_view_plane(of->view, of_b, face[k]);
-        x[k] = plane.normal.x;
-        y[k] = plane.normal.y;
-        z[k] = plane.normal.z;
-        c[k] = plane.offset - tl_v3_dot(plane.normal, origin);
-    }
+    for (uint32_t k = 0; k < count && moved; k++)
+        put_plane(tl_pressing_plane(of, of_b, face[k]), origin, x + k, y + k, z + k, c + k);
+    for (uint32_t k = 0; k < count && !moved && !of_b; k++)
+        put_plane(of->view->a->plane[face[k]], origin, x + k, y + k, z + k, c + k);
+    for (uint32_t k = 0; k < count && !moved && of_b; k++)
+        put_plane(tl_view_plane(of->view, true, face[k]), origin, x + k, y + k, z + k, c + k);
     p->count += count;
     return count;
 }

@@ -35,10 +35,14 @@ static double over_depth(const tl_press *at, const motion *by)
     return (tl_v3_norm(by->way) + tl_press_lever(at) * tl_v3_norm(by->turn)) / at->deepest;
 }
 
-double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to)
+bool tl_press_stays(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to, double reach)
 {
+    const tl_vec3 then = tl_m3_tmul(&from->turn, tl_v3_sub(at->point, from->shift)); /* the point in B's frame */
+    const tl_vec3 way = tl_v3_sub(tl_v3_add(tl_m3_mul(&to->turn, then), to->shift), at->point);
+    if (!(tl_v3_norm(way) <= reach * at->deepest)) /* as mostly in motion */
+        return false;
     const motion by = motion_between(at->point, from, to);
-    return over_depth(at, &by);
+    return over_depth(at, &by) <= reach;
 }
 
 /* The view after B has moved along an axis, or turned about it. */

@@ -19,8 +19,9 @@ enum { TL_PRESS_SLOPE_COST = 12 };
 tl_press_slope tl_press_slope_of(const tl_press *at, const tl_field_slope *field);
 /* Way at the rim of the area for a turn of 1. Of a corner the area is smaller than its overlap. */
 double tl_press_lever(const tl_press *at);
-/* How far B has moved between two places, over the overlap of the press: along, and by turns at the rim of its area. */
-double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to);
+/* Whether B has moved between two places by no more than `reach` times the overlap of the press: along, and by turns at
+ * the rim of its area. */
+bool tl_press_stays(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to, double reach);
 /* Slopes at a place where the press was found for a query. false: out of memory. */
 bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_narrow_scratch *scratch,
                          tl_press_slope *slope);

@@ -81,6 +81,30 @@ function inclines.try(case, joint)
     end
 end
 
+inclines.RELAXED = { 0.5, 0.8, 0.9, 0.96, inclines.BEYOND } -- of the limit
+
+-- Gives a sentence on what relaxing tells wrong of a block to which gravity comes at once, or nil.
+function inclines.relax(case, joint, shares)
+    for _, share in ipairs(shares or inclines.RELAXED) do
+        local limit = share > 1 and joint.curved and case.width / case.height or case.limit
+        local model = build(case, joint)
+        incline(case, model, share * limit)
+        local run = model:relax { max_cycles = MOST_CYCLES, stop_at_failure = true }
+        local wrong = share < 1 and "failure" or "rest"
+        if run.reason == wrong and (share < 1 or joint.tension == 0) then
+            return ("on %g of the limit: relax tells %s"):format(share, wrong)
+        end
+    end
+end
+
+-- A model that is not drawn.
+function inclines.of(width, height, depth, kn)
+    local case = { number = 0, width = width, height = height, depth = depth, kn = kn, attitude = shapes.turn({ 0, 0, 1 }, 0) }
+    case.pressure = DENSITY * GRAVITY * height
+    case.limit = no_tension.toppling(width, height, case.pressure / kn)
+    return case
+end
+
 -- What tells a model in a message.
 function inclines.title(case)
     return ("model %d (%.2f x %.2f x %.2f m, kn %.1e, limit %.4f)"):format(case.number, case.width, case.depth, case.height,

@@ -43,6 +43,7 @@ local TITLES = {
     { "LAW.columns", "columns under loads beside their middle, on joints of every law" },
     { "LAW.cuts", "cuts that change nothing, on joints of every law" },
     { "LAW.inclines", "slender blocks on inclines, on joints of every law" },
+    { "LAW.relaxed", "slender blocks on inclines, relaxed at once" },
     { "LAW.cohesive.I", "law cohesive: opening" },
     { "LAW.cohesive.II", "law cohesive: shear" },
     { "LAW.cohesive.mixed", "law cohesive: opening and as much shear" },
