@@ -5,6 +5,8 @@
  * and by blocks. Contacts of a law that has no span yet get one behind the others, and nothing else moves. */
 #include "contact/contacts.h"
 
+#include "contact/sides.h"
+
 #include "base/columns.h"
 #include "base/inline.h"
 #include "contact/index.h"

@@ -21,20 +21,20 @@ static inline tl_sides tl_pair_sides(const tl_model *m, uint32_t block_a, uint32
 {
     return (tl_sides){tl_block_side(m, block_a), tl_block_side(m, block_b)};
 }
+/* Those of a contact some of whose sides may be carried. */
+tl_sides tl_carried_sides(const tl_contacts *c, uint32_t contact, tl_sides own);
 static inline tl_sides tl_contact_sides(const tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
-    tl_sides out = tl_pair_sides(m, c->a[contact], c->b[contact]);
-    if (c->carrier[0] && c->carrier[0][contact].on)
-        out.a = TL_CARRIED | 2 * contact;
-    if (c->carrier[0] && c->carrier[1][contact].on)
-        out.b = TL_CARRIED | (2 * contact + 1);
-    return out;
+    const tl_sides out = tl_pair_sides(m, c->a[contact], c->b[contact]);
+    return __builtin_expect(c->carrier[0] != NULL, 0) ? tl_carried_sides(c, contact, out) : out;
 }
 /* What carries a side; NULL: its body does. */
 static inline const tl_carrier *tl_side_carrier(const tl_model *m, uint32_t side)
 {
-    return side & TL_CARRIED ? &m->detect->contacts.carrier[side & 1][(side & ~TL_CARRIED) / 2] : NULL;
+    if (__builtin_expect(!(side & TL_CARRIED), 1))
+        return NULL;
+    return &m->detect->contacts.carrier[side & 1][(side & ~TL_CARRIED) / 2];
 }
 /* The body of a side. */
 static inline uint32_t tl_side_body(const tl_model *m, uint32_t side)
@@ -85,7 +85,11 @@ static inline tl_vec3 tl_side_arm(const tl_model *m, uint32_t side, tl_vec3 loca
 /* From A's centroid to B's. */
 static inline tl_vec3 tl_sides_apart(const tl_model *m, tl_sides sides)
 {
-    const tl_pose *a = tl_side_pose(m, sides.a), *b = tl_side_pose(m, sides.b);
+    const tl_pose *a = &m->bodies.pose[sides.a], *b = &m->bodies.pose[sides.b];
+    if (__builtin_expect((sides.a | sides.b) & TL_CARRIED, 0)) {
+        a = tl_side_pose(m, sides.a);
+        b = tl_side_pose(m, sides.b);
+    }
     return tl_apart(a->x_ref, a->u, b->x_ref, b->u);
 }
 
@@ -108,11 +112,13 @@ static inline double tl_side_radius(const tl_model *m, uint32_t side)
     return m->bodies.radius[tl_side_body(m, side)];
 }
 /* The odometers of both sides, summed. */
+double tl_carried_odometer(const tl_model *m, uint32_t contact);
 static inline double tl_contact_odometer(const tl_model *m, uint32_t contact)
 {
-    const tl_sides s = tl_contact_sides(m, contact);
-    const tl_carrier *a = tl_side_carrier(m, s.a), *b = tl_side_carrier(m, s.b);
-    return (a ? a->odometer : m->bodies.odometer[s.a]) + (b ? b->odometer : m->bodies.odometer[s.b]);
+    const tl_contacts *c = &m->detect->contacts;
+    if (__builtin_expect(c->carrier[0] != NULL, 0))
+        return tl_carried_odometer(m, contact);
+    return m->bodies.odometer[m->blocks.body[c->a[contact]]] + m->bodies.odometer[m->blocks.body[c->b[contact]]];
 }
 
 /* Whether a block is on side B of its contact: a contact's force acts on B as it is, on A reversed. */

@@ -103,8 +103,8 @@ typedef struct tl_parcel_points {
     double of[TL_PARCEL_POINTS][8];
 } tl_parcel_points;
 
-/* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the fourth of
- * its zone; the block and its face that it is a part of. */
+/* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the fourth
+ * of its zone; the block and its face that it is a part of. */
 typedef struct tl_surface_part {
     uint32_t corner[3], apex, face;
     tl_id block;
