@@ -1,0 +1,427 @@
+/* zoning.c - a convex block is divided into tetrahedra, its zones.
+ *
+ * Points are laid on edges (zone_edges.c), on faces (zone_faces.c), and inside (zone_inside.c), and put on a grid of
+ * 2^-40 of the block's size. Zones are the tetrahedra of Delaunay of these (delaunay.c). Points inside are then moved
+ * (zone_repair.c), and the outcome is checked:
+ *
+ *     every zone has a positive volume
+ *     the triangles of each face are turned the right way and add up to its area
+ *     the zones add up to the volume of the block
+ *
+ * Faces may be bent a little, as those of meshes are. Points of such a block are moved before they go onto
+ * the grid, corners inwards the most, so that no face is hollow:
+ *
+ *     x' = c + (x - c) (1 - bulge |x - c|^2 / R^2)
+ *
+ * c is the centroid and R the largest distance from it. Only what lies on the grid is moved so. Where a check fails, a
+ * larger bulge is tried, and another unit of the grid: which of several flat zones are made hangs on its rounding. */
+#include "geometry/zoning.h"
+
+#include "base/table.h"
+#include "geometry/measure.h"
+#include "geometry/zone_edges.h"
+#include "geometry/zone_faces.h"
+#include "geometry/zone_inside.h"
+#include "geometry/zone_repair.h"
+#include "geometry/zone_weight.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/vmath.h>
+
+#define NONE UINT32_MAX
+
+/* Tolerance: the zones of a block add up to its volume within this share, beside the roundings of coordinates. */
+#define FILLED 1e-12
+/* Tolerance: roundings of coordinates that a volume may be off by, times the surface. */
+#define ROUNDINGS (16 * DBL_EPSILON)
+/* Tolerance: triangles of a face add up to its area within this share, and within so many units of the grid all around
+ * it: points on its edges are rounded. */
+#define COVERED 1e-9
+#define RIM 4
+/* Tolerance: faces bent by less than this share of the extent count as flat. Far from zero coordinates are rounded so.
+ */
+#define FLAT 1e-8
+/* Constant: the bulge of a bent block is this many times its bend at first, and each next one as many times that. */
+#define BULGE_OF_BEND 3
+#define MORE_BULGE 10
+#define MOST_BULGE 3e-2
+/* Constant: the share of altitudes below which zones are so flat that a block is tried again. */
+#define FLATTEST 1e-6
+/* Constant: the factor of weights after a point has been hidden by them. */
+#define LIGHTER 1e-2
+/* Constant: how often a block is tried, and the share by which each has a coarser grid. */
+#define TRIES 5
+#define COARSER 0.07
+
+/* How a block is tried. */
+typedef struct attempt {
+    double bulge, stretch; /* of the places on the grid, and of its unit */
+    double light;          /* factor of the weights */
+    double least_share;    /* refused are zones that have less */
+} attempt;
+
+struct tl_zone_scratch {
+    tl_zone_points points;
+    tl_zone_near near;
+    tl_delaunay delaunay;
+    tl_zone_repair repair;
+    tl_site *site;
+    tl_zone_lists lists;
+    uint32_t *number; /* of the zone of a tetrahedron */
+    tl_zone_triangle *triangle;
+    uint32_t *triangle_at; /* [face + 1] */
+    size_t site_room, number_room, triangle_room, triangle_at_room;
+    uint32_t triangle_count;
+};
+
+tl_zone_scratch *tl_zone_scratch_create(void)
+{
+    return calloc(1, sizeof(tl_zone_scratch));
+}
+
+void tl_zone_scratch_free(tl_zone_scratch *s)
+{
+    if (!s)
+        return;
+    tl_zone_points_free(&s->points);
+    tl_zone_near_free(&s->near);
+    tl_delaunay_free(&s->delaunay);
+    tl_zone_repair_free(&s->repair);
+    free(s->site);
+    tl_zone_lists_free(&s->lists);
+    free(s->number);
+    free(s->triangle);
+    free(s->triangle_at);
+    free(s);
+}
+
+void tl_zone_mesh_free(tl_zone_mesh *m)
+{
+    free(m->point);
+    free(m->zone);
+    free(m->beside);
+    free(m->triangle);
+    *m = (tl_zone_mesh){0};
+}
+
+double tl_zoning_expected(double volume, double surface, double edge)
+{
+    /* 12 tetrahedra in two thirds of a cube of the lattice each, and a layer of smaller ones on the surface */
+    const double inside = 8.5 * volume / (edge * edge * edge), layer = 2.5 * surface / (edge * edge);
+    return 12 + inside + layer;
+}
+
+/* ---- points on the grid ---- */
+
+static tl_vec3 bulged(const tl_zone_points *p, tl_vec3 place, double bulge)
+{
+    const tl_vec3 arm = tl_v3_sub(place, p->centroid);
+    return tl_v3_madd(place, -bulge * tl_v3_norm2(arm) / (p->extent * p->extent), arm);
+}
+
+static bool put_on_grid(tl_zone_scratch *s, const attempt *a)
+{
+    const tl_zone_points *p = &s->points;
+    if (!tl_grow(&s->site, &s->site_room, p->count, sizeof *s->site))
+        return false;
+    const tl_bounds b = tl_points_bounds(p->place, p->corner_end);
+    const tl_vec3 sides = tl_v3_sub(b.max, b.min);
+    int exponent;
+    (void)frexp(fmax(sides.x, fmax(sides.y, sides.z)), &exponent);
+    /* no point of a bulge is farther out than the corners were */
+    const double unit = a->stretch * ldexp(1, TL_GRID_BITS - exponent);
+    for (uint32_t i = 0; i < p->count; i++) {
+        const tl_vec3 at = tl_v3_sub(a->bulge > 0 ? bulged(p, p->place[i], a->bulge) : p->place[i], b.min);
+        s->site[i] = (tl_site){
+            floor(unit * at.x + 0.5), floor(unit * at.y + 0.5), floor(unit * at.z + 0.5),
+            floor(a->light * tl_zone_weight(i < p->edge_end, unit * p->size[i], unit * p->shortest, p->chance[i]))};
+    }
+    return true;
+}
+
+/* ---- zones and triangles of tetrahedra ---- */
+
+static void list_zones(tl_zone_scratch *s)
+{
+    const tl_delaunay *d = &s->delaunay;
+    s->lists.count = 0;
+    for (uint32_t t = 0; t < d->used; t++) {
+        const tl_tetrahedron *here = &d->tetrahedron[t];
+        s->number[t] = NONE;
+        if (!tl_is_there(here) || tl_is_ghost(here))
+            continue;
+        s->number[t] = s->lists.count;
+        memcpy(s->lists.zone[s->lists.count++], here->corner, sizeof here->corner);
+    }
+    for (uint32_t t = 0; t < d->used; t++)
+        for (int i = 0; s->number[t] != NONE && i < 4; i++)
+            s->lists.beside[s->number[t]][i] = s->number[d->tetrahedron[t].next[i] / 4];
+}
+
+/* Triangles by face, in the order of the ghosts. */
+static void list_triangles(tl_zone_scratch *s)
+{
+    const tl_delaunay *d = &s->delaunay;
+    const uint32_t faces = s->points.poly->face_count;
+    memset(s->triangle_at, 0, (faces + 2) * sizeof *s->triangle_at);
+    for (uint32_t t = 0; t < d->used; t++)
+        if (tl_is_there(&d->tetrahedron[t]) && tl_is_ghost(&d->tetrahedron[t]))
+            s->triangle_at[d->tetrahedron[t].corner[3] - TL_GHOST + 2]++;
+    for (uint32_t f = 0; f < faces; f++)
+        s->triangle_at[f + 2] += s->triangle_at[f + 1];
+    for (uint32_t t = 0; t < d->used; t++) {
+        const tl_tetrahedron *ghost = &d->tetrahedron[t];
+        if (!tl_is_there(ghost) || !tl_is_ghost(ghost))
+            continue;
+        const uint32_t face = ghost->corner[3] - TL_GHOST;
+        s->triangle[s->triangle_at[face + 1]++] =
+            (tl_zone_triangle){{ghost->corner[0], ghost->corner[1], ghost->corner[2]}, face};
+    }
+}
+
+static bool take_over(tl_zone_scratch *s)
+{
+    const tl_delaunay *d = &s->delaunay;
+    uint32_t zones = 0, ghosts = 0;
+    for (uint32_t t = 0; t < d->used; t++)
+        if (tl_is_there(&d->tetrahedron[t])) {
+            zones += !tl_is_ghost(&d->tetrahedron[t]);
+            ghosts += tl_is_ghost(&d->tetrahedron[t]);
+        }
+    const size_t faces = s->points.poly->face_count;
+    if (!tl_zone_lists_room(&s->lists, zones) || !tl_grow(&s->number, &s->number_room, d->used, sizeof *s->number) ||
+        !tl_grow(&s->triangle, &s->triangle_room, ghosts, sizeof *s->triangle) ||
+        !tl_grow(&s->triangle_at, &s->triangle_at_room, faces + 2, sizeof *s->triangle_at))
+        return false;
+    s->triangle_count = ghosts;
+    list_zones(s);
+    list_triangles(s);
+    return true;
+}
+
+/* ---- checks ---- */
+
+static const tl_site2 *place_in(const tl_zone_points *p, uint32_t point, uint32_t face)
+{
+    uint32_t i = p->start[point];
+    while (i + 1 < p->start[point + 1] && p->in_face[i].face != face)
+        i++;
+    return &p->in_face[i].at;
+}
+
+static double twice_area(const tl_site2 *a, const tl_site2 *b, const tl_site2 *c)
+{
+    return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
+}
+
+/* Whether the triangles of a face cover it. */
+static bool is_covered(const tl_zone_scratch *s, uint32_t face)
+{
+    const tl_zone_points *p = &s->points;
+    const tl_poly *poly = p->poly;
+    double sum = 0, all = 0;
+    for (uint32_t i = s->triangle_at[face]; i < s->triangle_at[face + 1]; i++) {
+        const uint32_t *v = s->triangle[i].corner;
+        const double area =
+            p->turn[face] * twice_area(place_in(p, v[0], face), place_in(p, v[1], face), place_in(p, v[2], face));
+        if (!(area > 0))
+            return false;
+        sum += area;
+    }
+    const tl_site2 *first = place_in(p, poly->loop[poly->start[face]], face);
+    for (uint32_t h = poly->start[face] + 1u; h + 1 < poly->start[face + 1]; h++)
+        all +=
+            p->turn[face] * twice_area(first, place_in(p, poly->loop[h], face), place_in(p, poly->loop[h + 1], face));
+    return fabs(sum - all) <= COVERED * all + RIM * ldexp(1, TL_GRID_BITS);
+}
+
+static tl_status check_faces(const tl_zone_scratch *s, tl_error *error)
+{
+    for (uint32_t f = 0; f < s->points.poly->face_count; f++)
+        if (!is_covered(s, f))
+            return tl_fail(error, TL_E_GEOMETRY,
+                           "the zones do not cover its face %u: its corners are too close together", f + 1);
+    return TL_OK;
+}
+
+/* What volumes may be off by where faces are bent. */
+static double bent_volume(const tl_zone_points *p)
+{
+    double off = 0;
+    for (uint32_t f = 0; f < p->poly->face_count; f++)
+        off += 2 * p->bend[f] * tl_poly_face_area(p->poly, f);
+    return off;
+}
+
+static double surface_of(const tl_poly *poly)
+{
+    double area = 0;
+    for (uint32_t f = 0; f < poly->face_count; f++)
+        area += tl_poly_face_area(poly, f);
+    return area;
+}
+
+static double volume_of(const tl_zone_mesh *m, uint32_t zone)
+{
+    const uint32_t *v = m->zone[zone];
+    const tl_vec3 a = m->point[v[0]];
+    const tl_vec3 b = tl_v3_sub(m->point[v[1]], a), c = tl_v3_sub(m->point[v[2]], a), d = tl_v3_sub(m->point[v[3]], a);
+    return tl_v3_dot(b, tl_v3_cross(c, d)) / 6;
+}
+
+/* Measures the zones: altitudes in the frame, where places are not rounded by where the block is. */
+static void measure(const tl_zone_points *p, tl_zone_mesh *m)
+{
+    m->least_altitude = m->least_share = INFINITY;
+    double left = 0;
+    for (uint32_t z = 0; z < m->zone_count; z++) {
+        const uint32_t *v = m->zone[z];
+        const double altitude = tl_zone_altitude(p->place[v[0]], p->place[v[1]], p->place[v[2]], p->place[v[3]]);
+        const double share = tl_zone_share(p, v);
+        m->least_altitude = fmin(m->least_altitude, altitude);
+        if (share < m->least_share)
+            m->least_share = share, m->worst = z;
+        /* what rounding leaves out of the sum is added to the next */
+        const double next = volume_of(m, z) + left, sum = m->volume + next;
+        left = next - (sum - m->volume);
+        m->volume = sum;
+    }
+}
+
+static tl_status check_zones(const tl_zone_points *p, const tl_zone_mesh *m, double least_share, tl_error *error)
+{
+    if (!(m->least_share > least_share))
+        return tl_fail(error, TL_E_GEOMETRY, "its zone %u would have no volume: its faces lie too close together",
+                       m->worst);
+    const tl_poly *poly = p->poly;
+    const tl_bounds bounds = tl_poly_bounds(poly);
+    const double reach = fmax(tl_v3_norm(bounds.min), tl_v3_norm(bounds.max));
+    const double whole = tl_poly_mass(poly).volume;
+    const double allowed = FILLED * whole + ROUNDINGS * reach * surface_of(poly) + bent_volume(p);
+    if (!(fabs(m->volume - whole) <= allowed))
+        return tl_fail(error, TL_E_GEOMETRY, "its zones have a volume of %.17g, but it has %.17g", m->volume, whole);
+    return TL_OK;
+}
+
+/* ---- all ---- */
+
+static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_zoning *zoning, tl_error *error)
+{
+    tl_status status = tl_zone_points_begin(&s->points, poly, zoning, error);
+    if (!status)
+        status = tl_zone_edges_lay(&s->points, error);
+    if (!status)
+        status = tl_zone_faces_lay(&s->points, &s->near, error);
+    if (!status)
+        status = tl_zone_inside_lay(&s->points, &s->near, error);
+    return status;
+}
+
+/* Zones of the points with a bulge, whose faces are covered. */
+static tl_status divide(tl_zone_scratch *s, const attempt *a, tl_error *error)
+{
+    const tl_zone_points *p = &s->points;
+    if (!put_on_grid(s, a))
+        return tl_fail_memory(error);
+    const tl_delaunay_points points = {.count = p->count,
+                                       .site = s->site,
+                                       .corner_count = p->corner_end,
+                                       .surface_count = p->face_end,
+                                       .start = p->start,
+                                       .in_face = p->in_face,
+                                       .turn = p->turn};
+    const tl_status status = tl_delaunay_make(&s->delaunay, &points, error);
+    if (status)
+        return status;
+    return take_over(s) ? check_faces(s, error) : tl_fail_memory(error);
+}
+
+static bool make_mesh(const tl_zone_scratch *s, tl_zone_mesh *m)
+{
+    const tl_zone_points *p = &s->points;
+    *m = (tl_zone_mesh){.point_count = p->count,
+                        .zone_count = s->lists.count,
+                        .triangle_count = s->triangle_count,
+                        .corner_end = p->corner_end,
+                        .edge_end = p->edge_end,
+                        .face_end = p->face_end};
+    m->point = malloc(m->point_count * sizeof *m->point);
+    m->zone = malloc(m->zone_count * sizeof *m->zone);
+    m->beside = malloc(m->zone_count * sizeof *m->beside);
+    m->triangle = malloc(m->triangle_count * sizeof *m->triangle);
+    if (!m->point || !m->zone || !m->beside || !m->triangle)
+        return false;
+    memcpy(m->point, p->real, p->face_end * sizeof *m->point);
+    for (uint32_t i = p->edge_end; i < p->count; i++)
+        if (i >= p->face_end || (p->zoning->face_free && p->zoning->face_free[p->in_face[p->start[i]].face]))
+            m->point[i] = tl_zone_out_of_frame(p, p->place[i]);
+    memcpy(m->zone, s->lists.zone, m->zone_count * sizeof *m->zone);
+    memcpy(m->beside, s->lists.beside, m->zone_count * sizeof *m->beside);
+    memcpy(m->triangle, s->triangle, m->triangle_count * sizeof *m->triangle);
+    return true;
+}
+
+static tl_status make_once(tl_zone_scratch *s, const attempt *a, tl_zone_mesh *m, tl_error *error)
+{
+    tl_status status = divide(s, a, error);
+    if (!status)
+        status = tl_zone_repair_make(&s->repair, &s->points, &s->lists, error);
+    if (!status && !make_mesh(s, m))
+        status = tl_fail_memory(error);
+    if (!status) {
+        measure(&s->points, m);
+        status = check_zones(&s->points, m, a->least_share, error);
+    }
+    if (status)
+        tl_zone_mesh_free(m);
+    return status;
+}
+
+/* The bulge with which a block is tried first: 0 where its faces are flat. */
+static double first_bulge(const tl_zone_points *p)
+{
+    double bend = 0;
+    for (uint32_t f = 0; f < p->poly->face_count; f++)
+        bend = fmax(bend, p->bend[f]);
+    bend /= p->extent;
+    return bend > FLAT ? fmin(BULGE_OF_BEND * bend, MOST_BULGE) : 0;
+}
+
+/* Whether zones have a volume with places as far from zero as they are. */
+static tl_status check_rounding(const tl_zone_mesh *m, tl_error *error)
+{
+    for (uint32_t z = 0; z < m->zone_count; z++)
+        if (!(volume_of(m, z) > 0))
+            return tl_fail(error, TL_E_GEOMETRY,
+                           "its zone %u has no volume in coordinates of %g: move the model nearer to the origin", z,
+                           tl_v3_norm(m->point[m->zone[z][0]]));
+    return TL_OK;
+}
+
+tl_status tl_zoning_make(const tl_poly *poly, const tl_zoning *zoning, tl_zone_scratch *scratch, tl_zone_mesh *mesh,
+                         tl_error *error)
+{
+    *mesh = (tl_zone_mesh){0};
+    tl_status status = lay_points(scratch, poly, zoning, error);
+    if (status)
+        return status;
+    attempt a = {.bulge = first_bulge(&scratch->points), .stretch = 1, .light = 1, .least_share = FLATTEST};
+    status = make_once(scratch, &a, mesh, error);
+    for (int again = 1; status == TL_E_GEOMETRY && again < TRIES; again++) {
+        /* repaired places are no places of lattices: all are laid anew */
+        a.bulge = fmin(MORE_BULGE * a.bulge, MOST_BULGE);
+        a.stretch = 1 - again * COARSER;
+        a.light *= scratch->delaunay.hidden > 0 ? LIGHTER : 1;
+        a.least_share = again < TRIES - 1 ? FLATTEST : 0;
+        status = lay_points(scratch, poly, zoning, error);
+        if (!status)
+            status = make_once(scratch, &a, mesh, error);
+    }
+    if (!status)
+        status = check_rounding(mesh, error);
+    if (status)
+        tl_zone_mesh_free(mesh);
+    return status;
+}
