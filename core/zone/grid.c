@@ -409,3 +409,21 @@ tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t so
     free(l.sorted);
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }
+
+void tl_zones_end_at(struct tl_zones *z, uint32_t meshes)
+{
+    if (meshes >= z->mesh_count)
+        return;
+    const tl_body_mesh *first = &z->mesh[meshes];
+    const tl_parcel *parcel = &z->parcels.of[first->parcel_begin];
+    tl_table_resize(&z->zones.table, z->group[parcel->group_begin].start);
+    z->group_count = parcel->group_begin;
+    z->listed_count = parcel->point_begin;
+    tl_table_resize(&z->parcels.table, first->parcel_begin);
+    tl_table_resize(&z->points.table, first->point_begin);
+    z->row_of_count = first->zone_begin;
+    z->part_count = first->part_begin;
+    z->mesh_count = meshes;
+    z->version++;
+    tl_zones_index(z); /* there is room: it was made for more */
+}

@@ -24,6 +24,8 @@ typedef struct tl_grid {
 tl_status tl_zones_begin(tl_model *m);
 /* Gives a body that has none a mesh, all of one solid, free of stress. Nothing has changed when it fails. */
 tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid);
+/* Takes back the meshes from a number on. */
+void tl_zones_end_at(struct tl_zones *z, uint32_t meshes);
 void tl_zones_free(struct tl_zones *z);
 /* Lists the slots of each gridpoint. false: out of memory. */
 bool tl_zones_index(struct tl_zones *z);

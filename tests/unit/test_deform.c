@@ -1,0 +1,233 @@
+/* test_deform.c - blocks of a cut rock get zones: what these fill, share, take over, and how they stand. */
+#include "contact_scene.h"
+#include "segment/segments.h"
+#include "zone/deform.h"
+#include "zone/grid.h"
+#include "zone/solids.h"
+
+#include <string.h>
+
+/* ---------------------------------------------------------------- scenes ----------------- */
+
+static void solid(tl_model *m, double young, double poisson)
+{
+    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
+                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
+    const tl_args args = {values, 2};
+    tl_error error = {0};
+    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
+        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
+    CHECK_INT(tl_zones_begin(m), TL_OK);
+    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
+}
+
+/* A box of 2 m, cut by random planes near its centre. */
+static tl_model *cut_rock(uint64_t seed, int cuts)
+{
+    tl_model *m = scene_model(2);
+    scene_box(m, tl_v3(-1, -1, -1), tl_v3(1, 1, 1));
+    for (int k = 0; k < cuts; k++)
+        scene_cut(m, "joint", scene_direction(&seed), tl_v3_scale(0.5, scene_direction(&seed)));
+    return m;
+}
+
+/* Divides all blocks from one row on. */
+static tl_divided divide(tl_model *m, uint32_t from, double edge)
+{
+    const tl_dividing how = {.edge = edge, .solid = "rock"};
+    tl_divided made = {0};
+    scene_ok(m, tl_blocks_divide(m, m->blocks.id + from, m->blocks.table.rows - from, &how, &made));
+    return made;
+}
+
+/* ---------------------------------------------------------------- tests ------------------ */
+
+/* Gridpoints have the mass of their block, and its centroid. */
+static void check_mass(const tl_model *m)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    for (size_t k = 0; k < m->zones->mesh_count; k++) {
+        const tl_body_mesh *mesh = &m->zones->mesh[k];
+        double mass = 0;
+        tl_vec3 at = {0, 0, 0};
+        for (uint32_t row = mesh->point_begin; row < mesh->point_end; row++) {
+            mass += p->mass[row];
+            at = tl_v3_madd(at, p->mass[row], tl_gridpoint_place(p, row));
+        }
+        CHECK_NEAR(mass / m->bodies.mass[mesh->row], 1, 1e-12);
+        CHECK(scene_apart(tl_v3_scale(1 / mass, at), tl_body_place(&m->bodies, mesh->row)) < 1e-12);
+    }
+}
+
+TEST(zones_fill_the_blocks_of_cut_rock)
+{
+    for (uint64_t seed = 1; seed <= 10; seed++) {
+        tl_model *m = cut_rock(seed, 5);
+        solid(m, 1e9, 0.25);
+        const size_t blocks = m->blocks.table.rows;
+        const tl_divided made = divide(m, 0, 0.4);
+        CHECK_INT(made.blocks, blocks);
+        CHECK(made.zones > 12 * blocks && made.gridpoints > 5 * blocks && made.clusters * 10 >= made.zones);
+        CHECK(made.least_altitude > 0 && made.least_share > 0);
+        check_mass(m);
+        tl_model_destroy(m);
+    }
+}
+
+/* The corner of a surface triangle. */
+static tl_vec3 corner(const tl_model *m, const tl_surface_part *part, int k)
+{
+    return tl_gridpoint_place(&m->zones->points, part->corner[k]);
+}
+
+static bool is_same(const tl_model *m, const tl_surface_part *a, const tl_surface_part *b)
+{
+    int same = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            same += scene_apart(corner(m, a, i), corner(m, b, j)) < 1e-10;
+    return same == 3;
+}
+
+/* Two blocks of one cut have the same triangles on both sides, at any attitude and place. */
+TEST(both_sides_of_a_cut_have_the_same_triangles)
+{
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        uint64_t random = seed;
+        tl_model *m = cut_rock(seed, 0);
+        scene_cut(m, "joint", scene_direction(&random), tl_v3_scale(0.3, scene_direction(&random)));
+        solid(m, 1e9, 0.25);
+        divide(m, 0, 0.5);
+        const struct tl_zones *z = m->zones;
+        size_t shared = 0, parts[2] = {0, 0};
+        for (int side = 0; side < 2; side++)
+            for (uint32_t k = z->mesh[side].part_begin; k < z->mesh[side].part_end; k++)
+                parts[side] += m->blocks.shape[side]->tag[z->part[k].face].joint != 0;
+        for (uint32_t i = z->mesh[0].part_begin; i < z->mesh[0].part_end; i++)
+            for (uint32_t j = z->mesh[1].part_begin; j < z->mesh[1].part_end; j++)
+                shared += is_same(m, &z->part[i], &z->part[j]);
+        CHECK(parts[0] > 3);
+        CHECK_INT(shared, parts[0]);
+        CHECK_INT(shared, parts[1]);
+        tl_model_destroy(m);
+    }
+}
+
+/* A linear velocity strains all zones of a rock of many blocks alike: no stress of their own, no gap, no force. */
+TEST(cut_rock_is_strained_alike)
+{
+    tl_model *m = cut_rock(7, 4);
+    solid(m, 1e9, 0.25);
+    scene_law(m, "coulomb", 1e10, 1e10, 30);
+    divide(m, 0, 0.5);
+    tl_gridpoints *p = &m->zones->points;
+    const double rate[3][3] = {{-1e-3, 2e-4, -3e-4}, {5e-4, -2e-3, 1e-4}, {3e-4, 6e-4, -7e-4}};
+    for (size_t row = 0; row < p->table.rows; row++) {
+        p->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+        for (int i = 0; i < 3; i++)
+            p->v[i][row] = rate[i][0] * p->ref[0][row] + rate[i][1] * p->ref[1][row] + rate[i][2] * p->ref[2][row];
+    }
+    m->constraints++;
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-3}));
+    tl_solve_result result;
+    scene_ok(m, tl_model_cycle(m, 2, &result));
+    const double g = 1e9 / 2.5, trace = rate[0][0] + rate[1][1] + rate[2][2];
+    const double right[6] = {2 * g * rate[0][0] + g * trace, 2 * g * rate[1][1] + g * trace,
+                             2 * g * rate[2][2] + g * trace, g * (rate[0][1] + rate[1][0]),
+                             g * (rate[1][2] + rate[2][1]),  g * (rate[2][0] + rate[0][2])};
+    const tl_zone_table *t = &m->zones->zones;
+    for (size_t row = 0; row < t->table.rows; row++)
+        for (int j = 0; j < 6 && t->number[row] != TL_NO_ROW; j++) {
+            CHECK_NEAR(t->stress[j][row], 1e-3 * right[j], 1e-3 * 1e6 * 3e-6);
+            CHECK_NEAR(t->stress[j][row], t->stress[j][m->zones->row_of[0]], 1e-6);
+        }
+    tl_model_destroy(m);
+}
+
+/* Gridpoints go on as their block went: a turning, flying block keeps its momentum. */
+TEST(gridpoints_go_on_as_their_block_went)
+{
+    tl_model *m = cut_rock(3, 3);
+    solid(m, 1e9, 0.25);
+    m->bodies.v[0] = tl_v3(1, -2, 0.5);
+    m->bodies.w[0] = tl_v3(0.1, 0.2, -0.3);
+    m->bodies.fixed[1] = TL_FIX_X | TL_FIX_Z;
+    const tl_vec3 centre = tl_body_place(&m->bodies, 0);
+    divide(m, 0, 0.6);
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_body_mesh *mesh = m->zones->mesh;
+    for (uint32_t row = mesh[0].point_begin; row < mesh[0].point_end; row++) {
+        const tl_vec3 arm = tl_v3_sub(tl_gridpoint_place(p, row), centre);
+        const tl_vec3 v = tl_v3_add(tl_v3(1, -2, 0.5), tl_v3_cross(tl_v3(0.1, 0.2, -0.3), arm));
+        CHECK(scene_apart(tl_columns_get(p->v, row), v) < 1e-12);
+        CHECK_INT(p->fixed[row], 0);
+    }
+    for (uint32_t row = mesh[1].point_begin; row < mesh[1].point_end; row++)
+        CHECK_INT(p->fixed[row], TL_FIX_X | TL_FIX_Z);
+    CHECK_INT(m->bodies.fixed[0], TL_FIX_ALL);
+    CHECK_NEAR(tl_v3_norm(m->bodies.v[0]), 0, 0);
+    tl_model_destroy(m);
+}
+
+/* A call that is refused changes nothing. */
+TEST(what_cannot_be_divided_is_refused)
+{
+    tl_model *m = cut_rock(5, 2);
+    solid(m, 1e9, 0.25);
+    tl_divided made;
+    const tl_id good[2] = {m->blocks.id[0], m->blocks.id[1]}, stale[2] = {m->blocks.id[0], 999};
+    tl_dividing how = {.edge = 0.5, .solid = "rock"};
+    CHECK_INT(tl_blocks_divide(m, stale, 2, &how, &made), TL_E_STALE);
+    how.edge = -1;
+    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_ARGUMENT);
+    how.edge = NAN;
+    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_ARGUMENT);
+    how = (tl_dividing){.edge = 0.5, .solid = "stone"};
+    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_ARGUMENT);
+    CHECK(strstr(m->error.text, "there is no solid 'stone'") != NULL);
+    CHECK_INT(m->zones->mesh_count, 0);
+    CHECK_INT(m->bodies.fixed[0], 0);
+    how.solid = "rock";
+    scene_ok(m, tl_blocks_divide(m, good, 1, &how, &made));
+    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_STATE);
+    CHECK(strstr(m->error.text, "it has zones already") != NULL);
+    CHECK_INT(m->zones->mesh_count, 1);
+    CHECK_INT(m->bodies.fixed[1], 0);
+    tl_model_destroy(m);
+}
+
+/* Cut rock on a rigid floor comes to rest, with its weight on the floor. */
+TEST(cut_rock_of_zones_stands)
+{
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        uint64_t random = seed;
+        const tl_id floor = 1;
+        tl_model *m = scene_model(2);
+        scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
+        scene_box(m, tl_v3(-1, -1, 0), tl_v3(1, 1, 2));
+        solid(m, 1e10, 0.25);
+        for (int k = 0; k < 2; k++) {
+            const tl_vec3 tilt = tl_v3_scale(0.2, scene_direction(&random));
+            const tl_vec3 normal = tl_v3_unit(tl_v3(tilt.x, tilt.y, 1)), at = {0, 0, 0.6 + 0.7 * k};
+            scene_cut(m, "joint", normal, at);
+        }
+        scene_law(m, "coulomb", 1e10, 1e10, 40);
+        scene_ok(m, tl_blocks_fix(m, &floor, 1, TL_FIX_ALL));
+        scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
+        divide(m, 1, 0.5);
+        tl_solve_result result;
+        tl_energy energy;
+        const tl_solve solve = {
+            .size = sizeof solve, .ratio = 1e-5, .velocity = NAN, .max_time = NAN, .max_cycles = 100000};
+        scene_ok(m, tl_model_damping(m, "local", NULL));
+        scene_ok(m, tl_model_solve(m, &solve, &result));
+        CHECK_INT(result.reason, TL_SOLVE_RATIO);
+        scene_ok(m, tl_model_energy(m, &energy));
+        CHECK(fabs(energy.balance) < 2e-3);
+        tl_model_destroy(m);
+    }
+}
+
+TEST_MAIN(zones_fill_the_blocks_of_cut_rock(), both_sides_of_a_cut_have_the_same_triangles(),
+          cut_rock_is_strained_alike(), gridpoints_go_on_as_their_block_went(), what_cannot_be_divided_is_refused(),
+          cut_rock_of_zones_stands())
