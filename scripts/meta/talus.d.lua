@@ -680,29 +680,35 @@ function Model:groups() end
 ---@field parameters string[] list of the names of its parameters
 ---@field states string[] list of the names of its states
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.laws() end
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.dampings() end
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.generators() end
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.screens() end
+
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---@return talus.Kind[]
+function talus.solids() end
 
 ---@class (exact) talus.ParametersResult
 ---@field gravity talus.Vector and all others that talus.model{...} takes
@@ -752,6 +758,34 @@ function Model:parameters() end
 ---@param options talus.LawTestOptions
 ---@return talus.LawTestResult
 function talus.law_test(options) end
+
+---@class (exact) talus.SolidTestOptions
+---@field solid string name of the solid
+---@field extent? number m, > 0, default 1: extent of the zone, the cube root of its volume, which solids may ask for
+---@field steps? integer in [1, 1e+07], default 100: steps of each leg of the path
+---@field every? integer in [1, 1e+07], default 1: steps from one point of the curve to the next; the end of a leg is always one
+---@field params? table<string, number|string|boolean|talus.Vector> parameters of the solid, as for model:solid
+---@field path? { strain: table<string, number>?, stress: table<string, number>?, steps: integer? }[] tables {strain = {zz = -0.01}, stress = {xx = -1e6, yy = -1e6}, steps =}: components that are driven to strains, and those that are held at stresses, at the end of the leg. A component that is not named keeps its stress
+---@field stress? talus.Tensor stress at the start, Pa; 0 where it is left out
+
+---@class (exact) talus.SolidTestResult
+---@field stress { xx: number[], xy: number[], yy: number[], yz: number[], zx: number[], zz: number[] } tables of lists by component, curve.stress.zz[i], Pa; tension positive, shear strains those of the tensor; the first point is the start
+---@field strain { xx: number[], xy: number[], yy: number[], yz: number[], zx: number[], zz: number[] } tables of lists by component, curve.stress.zz[i], Pa; tension positive, shear strains those of the tensor; the first point is the start
+---@field work number[] list, J/m3: work of the stresses, and what was stored at the start
+---@field stored number[] lists, J/m3: elastic energy, and energy turned to heat, as the solid tells them. Work - stored - dissipated is the error of the solid's energies and of the steps
+---@field dissipated number[] lists, J/m3: elastic energy, and energy turned to heat, as the solid tells them. Work - stored - dissipated is the error of the solid's energies and of the steps
+---@field shear boolean[] lists of true and false: how the zone yields in the step
+---@field tension boolean[] lists of true and false: how the zone yields in the step
+---@field joint boolean[] lists of true and false: how the zone yields in the step
+---@field states table a list for each state of the solid, by its name; of lists where it is an axis or a tensor
+---@field ends integer[] for each leg, the place of its last point in the lists
+
+--- Tries a solid on one zone, without a model: any path of strains that are driven and stresses that are held.
+---
+---     curve = talus.solid_test{solid = "elastic", params = {young = 1e10, poisson = 0.25}, path = {{stress = {xx = -1e6, yy = -1e6}, strain = {zz = -0.01}}}}
+---@param options talus.SolidTestOptions
+---@return talus.SolidTestResult
+function talus.solid_test(options) end
 
 ---@class (exact) talus.BoundaryOptions
 ---@field side? string faces in this plane of the box about all blocks: "xmin", "xmax", "ymin", "ymax", "zmin" or "zmax"

@@ -1,12 +1,13 @@
-/* solid_returns.h - Mohr-Coulomb with a tension cut-off: strength, tables and the exact return, for solids that yield so.
+/* solid_returns.h - Mohr-Coulomb with a tension cut-off: strength, tables and the exact return, for solids that
+ * yield so.
  *
  *     f = (1 + sin phi) s1 - (1 - sin phi) s3 - 2 c cos phi <= 0,  s1 <= T
  *     g = (1 + sin psi) s1 - (1 - sin psi) s3
  *
  * with principal stresses s1 >= s2 >= s3, positive in tension. f and g are a plane and its flow for each pair of
- * principal stresses. The return is implicit: the stress after the step is on the surface, and the plastic strain is a
- * sum of flows, none of them backward, of the planes it lies on (Koiter 1953; Clausen, Damkilde and Andersen 2006). With
- * psi = phi it is the closest point in the elastic energy. */
+ * principal stresses. The return is implicit: the stress after the step is on the surface. The plastic strain is a
+ * sum of flows, none of them backward, of the planes it lies on (Koiter 1953; Clausen, Damkilde and Andersen 2006).
+ * With psi = phi it is the closest point in the elastic energy. */
 #ifndef TALUS_SOLID_RETURNS_H
 #define TALUS_SOLID_RETURNS_H
 

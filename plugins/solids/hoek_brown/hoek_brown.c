@@ -1,12 +1,13 @@
-/* hoek_brown.c - solid "hoek_brown": elastic to the generalized criterion of Hoek, Carranza-Torres and Corkum (2002), with
- * a tension cut-off.
+/* hoek_brown.c - solid "hoek_brown": elastic to the generalized criterion of Hoek, Carranza-Torres and Corkum
+ * (2002), with a tension cut-off.
  *
  *     f = s1 - s3 - F(s1) <= 0,  F(s1) = sigma_ci (s - mb s1 / sigma_ci)^a,  s1 <= T <= s sigma_ci / mb
  *
- * with principal stresses s1 >= s2 >= s3, positive in tension. The flow is that of Mohr-Coulomb of the angle of dilation,
- * or of the angle of friction of f's tangent where that is smaller. The return is implicit and goes to the surface, to
- * an edge of it where two principal stresses come out equal, to the cut-off, or to where they meet. It finds the strength
- * F at its end by false position, since s1 - s3 = F and s1 = (s sigma_ci - sigma_ci (F / sigma_ci)^(1/a)) / mb. */
+ * with principal stresses s1 >= s2 >= s3, positive in tension. The flow is that of Mohr-Coulomb of the angle of
+ * dilation, or of the angle of friction of f's tangent where that is smaller. The return is implicit. It goes to the
+ * surface, to an edge of it where two principal stresses come out equal, to the cut-off, or to where they meet. It
+ * finds the strength F at its end by false position, since s1 - s3 = F and s1 = (s sigma_ci - sigma_ci (F /
+ * sigma_ci)^(1/a)) / mb. */
 #include <talus/solid_returns.h>
 #include <talus/version.h>
 
@@ -84,7 +85,8 @@ TL_IN_LOOP double strength_at(const mass *m, double s1)
     return m->sigma * power_of(x > 0 ? x : 0, m->a);
 }
 
-/* sin psi of the flow where f has the strength F = sigma y, y^(1/a) = x: its tangent is s3 = N s1 with N = 1 + a mb y / x.
+/* sin psi of the flow where f has the strength F = sigma y, y^(1/a) = x: its tangent is s3 = N s1 with N = 1 + a mb
+ * y / x.
  */
 TL_IN_LOOP double dilation_at(const mass *m, double x, double y)
 {
@@ -93,8 +95,8 @@ TL_IN_LOOP double dilation_at(const mass *m, double x, double y)
     return m->dilation < friction ? m->dilation : friction;
 }
 
-/* A return to f along one flow, or that of two planes that share it: `u` and `w`, the stresses that come to s1 and s3, are
- * means of `many_u` and `many_w` principal stresses. */
+/* A return to f along one flow, or that of two planes that share it: `u` and `w`, the stresses that come to s1 and
+ * s3, are means of `many_u` and `many_w` principal stresses. */
 typedef struct line {
     double u, w, many_u, many_w;
 } line;

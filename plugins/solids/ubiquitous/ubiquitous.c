@@ -3,10 +3,11 @@
  *     rock    as solid "mohr_coulomb": talus/solid_returns.h
  *     plane   |t| + s tan(joint friction) <= joint cohesion,  s <= joint tension,  flow |t| + s tan(joint dilation)
  *
- * with s the normal stress on the plane, positive in tension, and t the shear stress. Each return is implicit and exact:
- * that of the rock, then that of the plane, by turns until both are met. Where only one of them yields that is at once.
- * Where both do, each turn is a small plastic step of its own, so the parts that rock and plane have of the flow hang on
- * the size of the steps to first order. The normal of the plane is a state: it turns with the zone. */
+ * with s the normal stress on the plane, positive in tension, and t the shear stress. Each return is implicit and
+ * exact: that of the rock, then that of the plane, by turns until both are met. Where only one of them yields that
+ * is at once. Where both do, each turn is a small plastic step of its own. The parts that rock and plane have of the
+ * flow then hang on the size of the steps, to first order. The normal of the plane is a state: it turns with the
+ * zone. */
 #include <talus/solid_returns.h>
 #include <talus/version.h>
 

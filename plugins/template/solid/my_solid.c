@@ -2,8 +2,8 @@
  *
  *     sqrt(J2) <= k,  k = residual + (peak - residual) max(0, 1 - flowed / distance)
  *
- * Tension is positive. The strength of a step is that of its beginning. The flow has no volume, so the deviator is scaled
- * down (radial return); `flowed` grows by what that takes off it, over 2 G. */
+ * Tension is positive. The strength of a step is that of its beginning. The flow has no volume, so the deviator is
+ * scaled down (radial return); `flowed` grows by what that takes off it, over 2 G. */
 #include <talus/solid_kit.h>
 
 /* What a script gives; the host fills it in from the table below, checked and with defaults. */
