@@ -249,18 +249,38 @@ TL_IN_LOOP tl_returned choose(const mass *m, const group *g, uint32_t i)
     return by_both;
 }
 
+/* Whether a zone may yield, 1 or 0, by bounds in the mean stress p and J2: s1 <= p + sqrt(4 J2 / 3), and s1 - s3 <=
+ * 2 sqrt(J2). Gives whether any may. */
+TL_IN_LOOP int may_yield(const mass *m, const tl_lanes6 s, tl_lanes may)
+{
+    double any = 0;
+    TL_EACH_LANE(i)
+    {
+        double p = (s[0][i] + s[1][i] + s[2][i]) / 3, xx = s[0][i] - p, yy = s[1][i] - p, zz = s[2][i] - p;
+        double shear = s[3][i] * s[3][i] + s[4][i] * s[4][i] + s[5][i] * s[5][i];
+        double j2 = 0.5 * (xx * xx + yy * yy + zz * zz) + shear, highest = p + sqrt(4. / 3 * j2);
+        int stays = (highest <= m->tension) & (2 * sqrt(j2) <= strength_at(m, highest));
+        may[i] = stays ? 0 : 1;
+        any += may[i];
+    }
+    return any > 0;
+}
+
 /* The stresses of a group brought back; 0: none yields. */
 TL_IN_LOOP int bring_back(const mass *m, const tl_lanes6 s, tl_lanes6 after, tl_lanes mark)
 {
     group g;
+    tl_lanes may;
     double any = 0;
+    if (!may_yield(m, s, may))
+        return 0;
     TL_EACH_LANE(i)
     {
         g.at[i] = tl_principal_of(s[0][i], s[1][i], s[2][i], s[3][i], s[4][i], s[5][i]);
         const double *p = g.at[i].s, strength = strength_at(m, p[0]);
         double scale = TL_YIELD_ROUNDING * (fabs(p[0]) + fabs(p[2]) + strength);
-        g.shears[i] = p[0] - p[2] - strength > scale ? 1 : 0;
-        g.tears[i] = p[0] - m->tension > scale ? 1 : 0;
+        g.shears[i] = may[i] > 0 && p[0] - p[2] - strength > scale ? 1 : 0;
+        g.tears[i] = may[i] > 0 && p[0] - m->tension > scale ? 1 : 0;
         any += g.shears[i] + g.tears[i];
     }
     if (!(any > 0))
