@@ -240,6 +240,94 @@ function talus.help(topic) end
 ---@class (exact) talus.screen.Browser
 ---@field port? integer in [0, 65535], default 0: port of 127.0.0.1; 0: any that is free, which the address tells
 
+--- Drucker-Prager's cone with a cut-off of the mean stress.
+---@class (exact) talus.solid.DruckerPrager
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field cohesion number Pa, >= 0: cohesion
+---@field friction number deg, in [0, 90): angle of friction
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction
+---@field tension? number Pa, >= 0: largest mean stress; no more than that of the apex, which it is when left out
+---@field meridian? "outer"|"inner" default "outer": where cone and Mohr-Coulomb meet: in compression (outer) or extension (inner)
+
+--- Isotropic and elastic.
+---@class (exact) talus.solid.Elastic
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+
+--- Generalized Hoek-Brown criterion of 2002 with a tension cut-off.
+---@class (exact) talus.solid.HoekBrown
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field sigma_ci number Pa, > 0: uniaxial strength of the intact rock
+---@field mb? number > 0: constant of the rock mass; with s, or gsi and mi in their place
+---@field s? number in [0, 1]: constant of the rock mass, 1 of intact rock
+---@field a? number in [0.5, 1]: exponent; with mb and s
+---@field gsi? number in [0, 100]: geological strength index; with mi
+---@field mi? number > 0: constant of the intact rock; with gsi
+---@field disturbance? number in [0, 1]: factor D of blasting and relief; with gsi
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction at the stress
+---@field tension? number Pa, >= 0: tensile strength; no more than s sigma_ci / mb, which it is when left out
+
+--- Mohr-Coulomb with a tension cut-off, and strength over plastic strain.
+---@class (exact) talus.solid.MohrCoulomb
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field cohesion? number Pa, >= 0: cohesion, where no table gives it
+---@field friction? number deg, in [0, 90): angle of friction, where no table gives it
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction
+---@field tension? number Pa, >= 0: tensile strength; no more than cohesion / tan(friction), which it is when left out
+---@field cohesion_table? number[][] cohesion over plastic shear: rows {plastic shear, cohesion}, straight between them
+---@field friction_table? number[][] friction over plastic shear
+---@field dilation_table? number[][] dilation over plastic shear
+---@field tension_table? number[][] tensile strength over plastic tension
+---@field table_extent? number m, > 0: extent of zones that the tables are for: in zones twice as large plastic strain counts twice, so that a crack takes the same energy; left out: tables hold for zones of any size
+
+--- Elastic and layered: alike in all directions of a plane.
+---@class (exact) talus.solid.Transverse
+---@field young_plane number Pa, > 0: Young's modulus along the layers
+---@field young_across number Pa, > 0: Young's modulus across the layers
+---@field poisson_plane number in (-1, 1): Poisson's ratio within the layers
+---@field poisson_across number in (-1, 1): strain along the layers by that across them, under a stress across them
+---@field shear_across number Pa, > 0: shear modulus of shear along the layers
+---@field dip? number deg, in [0, 90], default 0: dip of the layers at the beginning
+---@field dip_direction? number deg, in [0, 360], default 0: dip direction of the layers at the beginning
+
+--- Mohr-Coulomb with a weak plane of one attitude everywhere, as of schistosity.
+---@class (exact) talus.solid.Ubiquitous
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field cohesion? number Pa, >= 0: cohesion, where no table gives it
+---@field friction? number deg, in [0, 90): angle of friction, where no table gives it
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction
+---@field tension? number Pa, >= 0: tensile strength; no more than cohesion / tan(friction), which it is when left out
+---@field cohesion_table? number[][] cohesion over plastic shear: rows {plastic shear, cohesion}, straight between them
+---@field friction_table? number[][] friction over plastic shear
+---@field dilation_table? number[][] dilation over plastic shear
+---@field tension_table? number[][] tensile strength over plastic tension
+---@field table_extent? number m, > 0: extent of zones that the tables are for: in zones twice as large plastic strain counts twice, so that a crack takes the same energy; left out: tables hold for zones of any size
+---@field joint_cohesion? number Pa, >= 0, default 0: cohesion of the weak plane
+---@field joint_friction number deg, in [0, 90): angle of friction of the weak plane
+---@field joint_dilation? number deg, in [0, 90), default 0: angle of dilation of the weak plane, at most that of its friction
+---@field joint_tension? number Pa, >= 0: tensile strength of the weak plane; no more than its cohesion / tan(friction), which it is when left out
+---@field dip? number deg, in [0, 90], default 0: dip of the weak plane at the beginning
+---@field dip_direction? number deg, in [0, 360], default 0: dip direction of the weak plane at the beginning
+
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
 ---@field rotation string "exact" or "paper"; may be assigned
@@ -766,8 +854,8 @@ function talus.law_test(options) end
 ---@field steps? integer in [1, 1e+07], default 100: steps of each leg of the path
 ---@field every? integer in [1, 1e+07], default 1: steps from one point of the curve to the next; the end of a leg is always one
 ---@field params? table<string, number|string|boolean|talus.Vector> parameters of the solid, as for model:solid
----@field path? any tables {strain = {zz = -0.01}, stress = {xx = -1e6, yy = -1e6}, steps =}: components that are driven to strains, and those that are held at stresses, at the end of the leg. A component that is not named keeps its stress
----@field stress? { xx: number } stress at the start; 0 where it is left out
+---@field path? { strain: table<string, number>?, stress: table<string, number>?, steps: integer? }[] tables {strain = {zz = -0.01}, stress = {xx = -1e6, yy = -1e6}, steps =}: components that are driven to strains, and those that are held at stresses, at the end of the leg. A component that is not named keeps its stress
+---@field stress? talus.Tensor stress at the start, Pa; 0 where it is left out
 
 ---@class (exact) talus.SolidTestResult
 ---@field stress { xx: number[], xy: number[], yy: number[], yz: number[], zx: number[], zz: number[] } tables of lists by component, curve.stress.zz[i], Pa; tension positive, shear strains those of the tensor; the first point is the start
