@@ -9,9 +9,9 @@
 
 #define USAGE                                                                                                          \
     "talus: usage: talus check FILE.so [NAME=VALUE...]\n"                                                              \
-    "Tries each law, damping, generator, screen and solid of the file, with its defaults, the values "                 \
-    "given and\n"                                                                                                      \
-    "drawn ones: a number, true, false, a list as 1,2,3, points as 0,0,0;1,0,0, tables as 0,1;2,3 or a text.\n"
+    "Tries each law, damping, generator, screen and solid of the file, with its defaults, the values\n"                \
+    "given and drawn ones: a number, true, false, a list as 1,2,3, points as 0,0,0;1,0,0, tables as\n"                 \
+    "0,1;2,3 or a text.\n"
 
 /* Numbers of a list. */
 #define MOST_NUMBERS 64

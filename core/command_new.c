@@ -1,4 +1,4 @@
-/* command_new.c - `talus new law|damping|generator NAME [FOLDER]`: a folder with a plugin that builds and works.
+/* command_new.c - `talus new law|damping|generator|solid NAME [FOLDER]`: a folder with a plugin that builds and works.
  *
  * The files are those of share/talus/templates/TYPE of an installation, or of templates/TYPE beside the program of a
  * build. NAME stands in the place of my_TYPE in names and texts. */
@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #define USAGE                                                                                                          \
-    "talus: usage: talus new law|damping|generator NAME [FOLDER]\n"                                                    \
+    "talus: usage: talus new law|damping|generator|solid NAME [FOLDER]\n"                                              \
     "Writes a plugin that builds and works into the new folder FOLDER, or NAME: CMakeLists.txt,\n"                     \
     "NAME.c, test_NAME.lua and README.md.\n"
 
@@ -25,7 +25,9 @@
 /* Bytes of the longest template. */
 #define MOST_TEXT (1 << 16)
 
-static const char *const types[] = {"law", "damping", "generator"};
+/* Types that have a template; NULL: one that has none. */
+static const char *const types[] = {
+    [TL_KIND_LAW] = "law", [TL_KIND_DAMPING] = "damping", [TL_KIND_GENERATOR] = "generator", [TL_KIND_SOLID] = "solid"};
 
 typedef struct project {
     tl_kind_type type;
@@ -39,12 +41,12 @@ typedef struct project {
 
 static bool read_type(const char *word, tl_kind_type *type)
 {
-    for (int i = 0; i < 3; i++)
-        if (strcmp(word, types[i]) == 0) {
+    for (int i = 0; i <= TL_KIND_SOLID; i++)
+        if (types[i] && strcmp(word, types[i]) == 0) {
             *type = (tl_kind_type)i;
             return true;
         }
-    return tl_command_fail("new: '%s' is not law, damping or generator", word);
+    return tl_command_fail("new: '%s' is not law, damping, generator or solid", word);
 }
 
 /* A name of a kind, that no kind has, and that CMake lets a target have. */

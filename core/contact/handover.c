@@ -23,23 +23,23 @@
 
 #include <string.h>
 
-/* An arm of a contact before A's last turn. The forces are as they were then: so must the arms be, or the torsion is
- * another one for B. */
-static tl_vec3 arm_before(const tl_model *m, uint32_t c, tl_vec3 arm)
+/* An arm of a contact before the last turn, which was B's by the share `ride`, and A's by the rest. The forces are as
+ * they were then: so must the arms be, or the torsion is another one for B. */
+static tl_vec3 arm_before(const tl_model *m, uint32_t c, double ride, tl_vec3 arm)
 {
-    tl_vec3 turned = tl_side_pose(m, tl_contact_sides(m, c).a)->w_moved;
+    const tl_sides s = tl_contact_sides(m, c);
+    const tl_vec3 a = tl_side_pose(m, s.a)->w_moved, b = tl_side_pose(m, s.b)->w_moved;
+    const tl_vec3 turned = tl_v3_madd(a, ride, tl_v3_sub(b, a));
     return tl_v3_sub(arm, tl_v3_scale(m->dt, tl_v3_cross(turned, arm)));
 }
 
-/* From the centre of the new points to that of the old, before their last turns. The old one has gone half with
- * A and half with B, so it is the same whichever block is A. */
-static tl_vec3 arm_of_old(const tl_model *m, uint32_t c, tl_vec3 old, tl_vec3 centre)
+/* From the centre of the new points to that of the old, before their last turns. The old one is carried by B by the
+ * share `ride`; the new one comes half from A and half from B. So it is the same whichever block is A. */
+static tl_vec3 arm_of_old(const tl_model *m, uint32_t c, double ride, tl_vec3 old, tl_vec3 centre)
 {
     tl_contact_motion moved = tl_contact_moved(m, c);
     tl_vec3 passed = tl_v3_add(moved.way, tl_v3_cross(moved.turn, old));
-    tl_vec3 arm = tl_v3_sub(tl_v3_madd(old, 0.5, passed), centre);
-    tl_vec3 back = tl_v3_scale(-0.5, moved.turn);
-    return tl_v3_add(arm_before(m, c, arm), tl_v3_cross(back, arm));
+    return arm_before(m, c, 0.5, tl_v3_sub(tl_v3_madd(old, 0.5 - ride, passed), centre));
 }
 
 /* The centroid of a contact's points, whose arms are in the lanes: of a field contact its centre of pressure. */
@@ -81,7 +81,8 @@ static tl_shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *la
     }
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         tl_vec3 force = tl_columns_get(p->f_s, tl_point_row(contacts, c, k));
-        tl_vec3 arm = arm_before(m, c, tl_v3_sub(tl_columns_get(lanes->arm, k), out.centre));
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), out.centre);
+        arm = arm_before(m, c, contacts->facet[c].ride, arm);
         out.torsion += tl_v3_dot(out.normal, tl_v3_cross(arm, force));
     }
     return out;
@@ -116,9 +117,9 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
 double tl_contact_lost(const tl_model *m, uint32_t c, tl_vec3 force, tl_vec3 moment, double stored)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_contact_motion by = tl_contact_moved(m, c);
-    double work = 0.5 * (tl_v3_dot(tl_v3_add(contacts->force[c], force), by.way) +
-                         tl_v3_dot(tl_v3_add(contacts->moment[c], moment), by.turn));
+    const tl_contact_motion after = tl_contact_moved(m, c), before = tl_contact_moved_from(m, c);
+    double work = 0.5 * (tl_v3_dot(contacts->force[c], before.way) + tl_v3_dot(force, after.way) +
+                         tl_v3_dot(tl_v3_add(contacts->moment[c], moment), after.turn));
     return isnan(contacts->stored[c]) ? 0 : contacts->stored[c] - stored - work;
 }
 
@@ -349,7 +350,7 @@ static void hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool refram
     tl_contact_places(m, c, lanes);
     tl_shear old = shear_of(m, c, lanes);
     tl_old_point mean = mean_point(m, c);
-    double kept = tl_shear_kept(m, c);
+    const double kept = tl_shear_kept(m, c), ride = contacts->facet[c].ride;
     if (row && held && !tl_facet_is_field(&m->detect->contacts.facet[c]))
         lift_faces(m, c, lanes);
     double lift = row ? row->shift - row->opening[TL_FIELD_SHEAR] : 0;
@@ -369,7 +370,7 @@ static void hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool refram
     contacts->handed_over[c] = held && g->point_count > 0;
     if (!contacts->handed_over[c])
         return;
-    tl_vec3 centre = centre_of(m, c, lanes), arm = arm_of_old(m, c, old.centre, centre);
+    tl_vec3 centre = centre_of(m, c, lanes), arm = arm_of_old(m, c, ride, old.centre, centre);
     if (reframed) {
         old.torsion = 0;
         arm = tl_v3(0, 0, 0);

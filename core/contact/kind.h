@@ -28,12 +28,12 @@ typedef struct tl_kind_place {
     tl_facing_place (*place)(const tl_facet *facet, const tl_body_frames *frames);
     /* How many of its points have an area of their own: the first ones. */
     uint32_t (*areas)(uint32_t points);
-    /* For the time step: area, m2, as far as it counts, and its second moment about a place in A's frame, m4. `quick`:
-     * it is known at once. Of others the step first tries a bound, by their area alone. */
-    tl_spread (*bounds)(const tl_model *m, uint32_t contact, tl_vec3 centre);
+    /* For the time step: area, m2, as far as it counts, and its second moment about the centroid of A's side or of B's,
+     * m4. `quick`: it is known at once. Of others the step first tries a bound, by their area alone. */
+    tl_spread (*bounds)(const tl_model *m, uint32_t contact, bool of_b);
     bool quick;
-    /* Where it presses in A's frame, and how far it is pressed in under a law of that stiffness. */
-    double (*pressed)(const tl_model *m, uint32_t contact, double law, tl_vec3 *at);
+    /* Where it presses, from A's centroid, and how far it is pressed in under a law of that stiffness. */
+    double (*pressed)(const tl_model *m, uint32_t contact, double law, tl_vec3 *arm);
     /* Adds the polygons on which it acts, in A's frame. false: out of memory. */
     bool (*show)(tl_model *m, uint32_t contact, const tl_pair_view *view, tl_narrow_scratch *scratch,
                  tl_surface *surface);

@@ -25,9 +25,11 @@ static uint32_t patch_areas(uint32_t points)
     return points;
 }
 
-static tl_spread patch_bounds(const tl_model *m, uint32_t c, tl_vec3 centre)
+/* As the points were laid: what blocks have moved since would count for one side only. */
+static tl_spread patch_bounds(const tl_model *m, uint32_t c, bool of_b)
 {
     const tl_points_table *p = &m->detect->points;
+    const tl_vec3 centre = of_b ? m->detect->contacts.facet[c].laid.shift : tl_v3(0, 0, 0);
     tl_spread out = {0, 0};
     for (uint32_t k = 0; k < m->detect->contacts.point_count[c]; k++) {
         size_t i = tl_point_row(&m->detect->contacts, c, k);
@@ -39,13 +41,17 @@ static tl_spread patch_bounds(const tl_model *m, uint32_t c, tl_vec3 centre)
 
 /* A patch, whose area counts before it touches, has besides its overlap the gap at which it is born: with that, blocks
  * that come faster may press on by other faces. */
-static double patch_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
+static double patch_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *arm)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t count = contacts->point_count[c];
-    *at = tl_v3(0, 0, 0);
+    tl_vec3 mean = {0, 0, 0};
     for (uint32_t k = 0; k < count; k++)
-        *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)));
+        mean = tl_v3_madd(mean, 1.0 / count, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)));
+    const tl_sides s = tl_contact_sides(m, c);
+    const tl_body_frames frames = {tl_side_rotation(m, s.a), tl_side_rotation(m, s.b), tl_sides_apart(m, s)};
+    const tl_facing_place place = patch_place(&contacts->facet[c], &frames);
+    *arm = tl_v3_add(tl_m3_mul(&place.to, mean), place.at);
     double size = tl_contact_size(m, c);
     return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
 }
@@ -103,19 +109,23 @@ static uint32_t field_areas(uint32_t points)
     return points ? 1 : 0;
 }
 
-static tl_spread field_bounds(const tl_model *m, uint32_t c, tl_vec3 centre)
+static tl_spread field_bounds(const tl_model *m, uint32_t c, bool of_b)
 {
     const tl_press *press = &m->detect->press[m->detect->contacts.press[c]].press;
+    const tl_sides s = tl_contact_sides(m, c);
+    tl_vec3 centre = {0, 0, 0};
+    if (of_b)
+        centre = tl_m3_tmul(tl_side_rotation(m, s.a), tl_sides_apart(m, s));
     double r2 = tl_v3_norm2(tl_v3_sub(press->point, centre)) + press->radius * press->radius;
     double stiffness = TWICE_AS_DEEP * press->stiffness;
     return (tl_spread){stiffness, stiffness * r2};
 }
 
-static double field_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
+static double field_pressed(const tl_model *m, uint32_t c, double law, tl_vec3 *arm)
 {
     (void)law;
     const tl_press *press = &m->detect->press[m->detect->contacts.press[c]].press;
-    *at = press->point;
+    *arm = tl_side_arm(m, tl_contact_sides(m, c).a, press->point);
     return press->overlap;
 }
 

@@ -46,12 +46,32 @@ tl_vec3 tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_la
     return to.n;
 }
 
-tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t c)
+/* The motion of B against A in the last step, about A's centroid as B's centroid was seen from it `back` s before the
+ * end. */
+static tl_contact_motion moved(const tl_model *m, uint32_t c, double back)
 {
     const tl_sides s = tl_contact_sides(m, c);
     const tl_pose *a = tl_side_pose(m, s.a), *b = tl_side_pose(m, s.b);
-    tl_vec3 way = tl_v3_sub(tl_v3_sub(b->v_moved, tl_v3_cross(b->w_moved, tl_sides_apart(m, s))), a->v_moved);
+    const tl_vec3 centroids = tl_v3_sub(b->v_moved, a->v_moved);
+    const tl_vec3 apart = tl_v3_madd(tl_sides_apart(m, s), -back, centroids);
+    const tl_vec3 way = tl_v3_sub(centroids, tl_v3_cross(b->w_moved, apart));
     return (tl_contact_motion){tl_v3_scale(m->dt, way), tl_v3_scale(m->dt, tl_v3_sub(b->w_moved, a->w_moved))};
+}
+
+tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t c)
+{
+    return moved(m, c, 0);
+}
+
+tl_contact_motion tl_contact_moved_from(const tl_model *m, uint32_t c)
+{
+    return moved(m, c, m->dt);
+}
+
+tl_facing_place tl_contact_place(const tl_model *m, uint32_t contact)
+{
+    const tl_body_frames frames = body_frames_of(m, contact);
+    return place_of(m, contact, &frames);
 }
 
 tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k)

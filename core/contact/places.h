@@ -18,6 +18,10 @@ typedef struct tl_contact_motion {
 } tl_contact_motion;
 
 tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t contact);
+/* The same about the place where A's centroid was before it: for a force and a moment about that. */
+tl_contact_motion tl_contact_moved_from(const tl_model *m, uint32_t contact);
+/* Where points of A's frame are in the present place. */
+tl_facing_place tl_contact_place(const tl_model *m, uint32_t contact);
 /* Area-weighted normal and point (coordinates relative to the origin), and the smallest gap. */
 void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point, double *gap);
 

@@ -18,11 +18,12 @@ tl_shear tl_shear_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    const tl_mat3 *turn = tl_side_rotation(m, tl_contact_sides(m, c).a);
+    const tl_facing_place place = tl_contact_place(m, c);
     tl_shear sum = {0};
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        tl_shear_add(&sum, p->area[i], tl_m3_mul(turn, tl_columns_get(p->p, i)), tl_columns_get(p->f_s, i));
+        tl_vec3 arm = tl_v3_add(tl_m3_mul(&place.to, tl_columns_get(p->p, i)), place.at);
+        tl_shear_add(&sum, p->area[i], arm, tl_columns_get(p->f_s, i));
     }
     return sum;
 }

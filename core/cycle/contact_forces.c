@@ -163,11 +163,7 @@ static double stiffness(const tl_model *m, uint32_t body)
 /* The area of a contact for the time step, about the centroid of the side that a block is on. */
 static tl_spread bounds_of(const tl_model *m, uint32_t c, uint32_t block)
 {
-    const tl_sides s = tl_contact_sides(m, c);
-    tl_vec3 centre = {0, 0, 0};
-    if (tl_contact_is_b(&m->detect->contacts, c, block))
-        centre = tl_m3_tmul(tl_side_rotation(m, s.a), tl_sides_apart(m, s));
-    return tl_contact_kind_of(m->detect, c)->place->bounds(m, c, centre);
+    return tl_contact_kind_of(m->detect, c)->place->bounds(m, c, tl_contact_is_b(&m->detect->contacts, c, block));
 }
 
 /* Contacts without area have a law, too. */
@@ -217,9 +213,9 @@ static void hold_most(const tl_model *m, uint32_t body, tl_holding *sum)
 static double approach_of(const tl_model *m, uint32_t c, double law)
 {
     const tl_sides s = tl_contact_sides(m, c);
-    tl_vec3 point;
-    double overlap = tl_contact_kind_of(m->detect, c)->place->pressed(m, c, law, &point);
-    tl_vec3 arm = tl_side_arm(m, s.a, point), arm_b = tl_v3_sub(arm, tl_sides_apart(m, s));
+    tl_vec3 arm;
+    double overlap = tl_contact_kind_of(m->detect, c)->place->pressed(m, c, law, &arm);
+    tl_vec3 arm_b = tl_v3_sub(arm, tl_sides_apart(m, s));
     tl_vec3 away = tl_v3_sub(tl_side_velocity(m, s.a, arm), tl_side_velocity(m, s.b, arm_b));
     double closing = tl_v3_dot(away, m->detect->contacts.facet[c].last);
     return overlap > 0 ? fabs(closing) / overlap : INFINITY;

@@ -61,6 +61,11 @@ static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 
 /* ---------------------------------------------------------------- looking at all ---------- */
 
+static bool is_patch(const tl_contacts *contacts, uint32_t c)
+{
+    return tl_facet_is_patch(&contacts->facet[c]) && contacts->point_count[c] > 0;
+}
+
 /* Ends a contact whose blocks have parted. */
 static void part(tl_model *m, uint32_t c, double way)
 {
@@ -128,7 +133,9 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
         return false;
     contacts->faces_valid_to[c] = scratch->reframed ? TL_OUTDATED : odometer + g->valid;
     contacts->spot[c] = tl_spot_of(m, tl_contact_sides(m, c), g->valid);
-    const double over = row ? TL_PARTED * before.reach : before.holds ? 0 : before.over;
+    /* a patch that is to be a field may have a row before it is one: it must not part for that */
+    const bool patch = is_patch(contacts, c);
+    const double over = row && !patch ? TL_PARTED * before.reach : before.holds ? 0 : before.over;
     if (g->point_count == 0 && !is_near(&view, region.gap, over, &way)) {
         part(m, c, way);
         return true;
@@ -207,11 +214,6 @@ static bool have_run(const tl_model *m, uint32_t c, const tl_manifold *g)
     for (size_t k = 0; k < g->point_count; k++)
         run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)), g->points[k].p);
     return has_run(&run, TL_MERGE * tl_contact_size(m, c));
-}
-
-static bool is_patch(const tl_contacts *contacts, uint32_t c)
-{
-    return tl_facet_is_patch(&contacts->facet[c]) && contacts->point_count[c] > 0;
 }
 
 /* What a contact without points stays. A patch that is lifted becomes a field whose faces are moved so: they press

@@ -601,23 +601,23 @@ static uint32_t open_parts(const tl_model *m, const tl_law *law, const tl_simd_g
     return opened;
 }
 
-/* Finds the cells of those of the lanes `held` in which a bond may have broken in this step. Gives these lanes. */
+/* Finds the cells of those of the lanes `held` in which a bond has broken in this step. Gives these lanes. What points
+ * hold after the law is known; before, all held all of it. */
 static uint32_t break_held(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
                            uint32_t held)
 {
     uint32_t out = 0;
     for (uint32_t left = held; left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
-        double heat = 0;
         tl_cell_patch of;
-        for (size_t k = 0; k < group->slots; k++)
-            heat += t->dissipated[lane + l + k * TL_LANES];
-        if (!(heat > 0) || !tl_cell_patch_of(m, group->contact[l], t, lane + l, TL_LANES, &of))
+        if (!tl_cell_patch_of(m, group->contact[l], t, lane + l, TL_LANES, &of) || holds_of(&of).least >= 1)
             continue;
         out |= 1u << l;
         find_cells(&of, false);
-        for (size_t k = 0; k <= 2 * of.corners; k++)
+        for (size_t k = 0; k <= 2 * of.corners; k++) {
+            t->cell[tl_cell_lane(&of, k)].hold = 1;
             leave_found(&of, k, 0, false);
+        }
     }
     return out;
 }
@@ -656,11 +656,11 @@ tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law, cons
                                       const tl_point_lanes *t, size_t lane, tl_part_lanes lanes, const tl_vec3 *turn,
                                       tl_part_sums *out)
 {
-    tl_found_lanes found = {break_held(m, group, t, lane, lanes.held), 0};
     const bool opens = tl_law_opens(law);
     if (law->pulls != TL_PULL_NONE || (opens && lanes.parts))
         tl_points_across_gap(law, &m->detect->points, group->start, (size_t)group->slots * TL_LANES, t->lift + lane,
                              t->hold + lane);
+    tl_found_lanes found = {break_held(m, group, t, lane, lanes.held), 0};
     if (opens)
         found.opened = open_parts(m, law, group, t, lane, lanes.parts);
     found.parts |= lanes.parts;

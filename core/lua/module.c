@@ -87,7 +87,7 @@ static int module_kinds(lua_State *L)
     return 1;
 }
 
-/* Puts talus.laws, talus.dampings, talus.generators, talus.screens and talus.solids into the module at the top of the stack. */
+/* Puts talus.laws, talus.dampings and so on into the module at the top of the stack. */
 static void put_kinds(lua_State *L)
 {
     static const char *const lists[] = {[TL_KIND_LAW] = "laws",

@@ -15,7 +15,7 @@ static const tl_lua_key solid_test_keys[] = {
     {"path", "list of legs",
      "tables {strain = {zz = -0.01}, stress = {xx = -1e6, yy = -1e6}, steps =}: components that are driven to strains, "
      "and those that are held at stresses, at the end of the leg. A component that is not named keeps its stress"},
-    {"stress", "{xx = Pa, ...}", "stress at the start; 0 where it is left out"},
+    {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}", "stress at the start, Pa; 0 where it is left out"},
     {NULL, NULL, NULL},
 };
 

@@ -23,6 +23,9 @@
  * lua/test_corner_springs. */
 #define WHOLLY 0.99
 
+/* Cost only: way over the size, after which a patch that only its bonds keep one is looked at again. */
+#define LOOK_AGAIN 1e-6
+
 /* The press of what is no field contact. */
 static const tl_press none;
 
@@ -67,9 +70,10 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     return true;
 }
 
-/* Whether the faces of a patch with bonds are still one. */
+/* Whether the faces of a patch with bonds are still one. `way`: how far the pair may move until they would be none
+ * without bonds, which may break on the way. */
 static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule, const tl_manifold_before *before,
-                        tl_narrow_scratch *scratch)
+                        double way, tl_narrow_scratch *scratch)
 {
     const tl_face_pair f = before->faces;
     double left = INFINITY;
@@ -78,8 +82,18 @@ static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule, con
     if (!(left > 0) || !(tl_patch_add(view, f.a, f.b, rule, scratch) > 0))
         return false;
     tl_manifold *m = &scratch->manifold;
-    m->valid = fmin(m->valid, 0.5 * left * view->size);
+    m->valid = fmin(fmin(m->valid, way), 0.5 * left * view->size);
     return true;
+}
+
+/* How far a pair may move until the faces of a patch with bonds would be none without them. */
+static double way_without_bonds(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
+                                const tl_manifold_before *before, tl_narrow_scratch *scratch)
+{
+    if (before->most_tilt == INFINITY)
+        return INFINITY;
+    const bool same = r->flush && r->flush_a == before->faces.a && r->flush_b == before->faces.b;
+    return same && is_patch(view, r, rule, before, scratch) ? scratch->manifold.valid : LOOK_AGAIN * view->size;
 }
 
 /* ---------------------------------------------------------------- fields ----------------- */
@@ -139,8 +153,12 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
     m->press = &none;
     m->extra = NULL;
     m->valid = TL_LIST_MARGIN * view->size;
-    if (before->holds && stays_patch(view, rule, before, scratch))
-        return true;
+    if (before->holds) {
+        const double way = way_without_bonds(view, r, rule, before, scratch);
+        m->valid = TL_LIST_MARGIN * view->size;
+        if (!m->failed && stays_patch(view, rule, before, way, scratch))
+            return true;
+    }
     if (m->failed || ((before->calm || !was_field) && is_patch(view, r, rule, before, scratch)))
         return !m->failed;
     m->point_count = 0;

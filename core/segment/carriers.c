@@ -223,12 +223,12 @@ void tl_carriers_stiffen(tl_model *m)
             const tl_carrier *by = &c->carrier[side][i];
             if (!by->on || c->law[i] == TL_NO_ROW)
                 continue;
-            const tl_spread on = tl_contact_kind_of(m->detect, i)->place->bounds(m, i, tl_v3(0, 0, 0));
+            const tl_spread on = tl_contact_kind_of(m->detect, i)->place->bounds(m, i, side);
             const double k = tl_law_stiffness(&m->joint_laws[c->law[i]]) * on.sum;
             double all = 0;
             for (int a = 0; a < 4; a++)
                 all += fabs(by->weight[a]);
             for (int a = 0; a < 4; a++)
-                m->zones->points.stiffness[by->point[a]] += 2 * k * all * fabs(by->weight[a]);
+                m->zones->points.holds[by->point[a]] += 2 * k * all * fabs(by->weight[a]);
         }
 }

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Mass of a row without a gridpoint, kg: it is divided by. */
+/* Constant: mass of a row without a gridpoint, kg: it is divided by. */
 #define NO_MASS 1.0
 
 static void add_columns(struct tl_zones *z)

@@ -1,14 +1,14 @@
 /* solid_bench.c - a solid on one zone: any path of held stresses and driven strains (talus/solid_test.h).
  *
  * The solid gets a batch of TL_LANES zones. The first makes the step; the others make it with a little more of one
- * held strain each, so that one call gives the stresses and their derivatives J. With r the stresses that are missing at
- * the held components, each pass of a step adds
+ * held strain each, so that one call gives the stresses and their derivatives J. With r the stresses that are
+ * missing at the held components, each pass of a step adds
  *
  *     d eps = (J^T J + m I)^-1 J^T r
  *
  * to the held strains (Levenberg 1944). m is small, and decides between strains that do not change the stresses: on an
- * edge of a yield surface it takes the least ones. A pass that brings r no nearer is halved, then replaced by one of the
- * elastic moduli. Work is summed by the trapezoidal rule. */
+ * edge of a yield surface it takes the least ones. A pass that brings r no nearer is halved, then replaced by one of
+ * the elastic moduli. Work is summed by the trapezoidal rule. */
 #include "base/solid_columns.h"
 #include "plugin/loader.h"
 #include "zone/solid.h"
@@ -198,8 +198,8 @@ static void add_held(const bench *b, const double from[6], double share, const d
         to[b->list[k]] += share * step[k];
 }
 
-/* The step in which the held components have their stresses. `d`: in, the driven strains, and those of the held ones that
- * are tried first; out, the strains found. */
+/* The step in which the held components have their stresses. `d`: in, the driven strains, and those of the held ones
+ * that are tried first; out, the strains found. */
 static tl_status balance(const bench *b, double d[6], sample *out)
 {
     double r[6], size = 0;

@@ -240,6 +240,94 @@ function talus.help(topic) end
 ---@class (exact) talus.screen.Browser
 ---@field port? integer in [0, 65535], default 0: port of 127.0.0.1; 0: any that is free, which the address tells
 
+--- Drucker-Prager's cone with a cut-off of the mean stress.
+---@class (exact) talus.solid.DruckerPrager
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field cohesion number Pa, >= 0: cohesion
+---@field friction number deg, in [0, 90): angle of friction
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction
+---@field tension? number Pa, >= 0: largest mean stress; no more than that of the apex, which it is when left out
+---@field meridian? "outer"|"inner" default "outer": where cone and Mohr-Coulomb meet: in compression (outer) or extension (inner)
+
+--- Isotropic and elastic.
+---@class (exact) talus.solid.Elastic
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+
+--- Generalized Hoek-Brown criterion of 2002 with a tension cut-off.
+---@class (exact) talus.solid.HoekBrown
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field sigma_ci number Pa, > 0: uniaxial strength of the intact rock
+---@field mb? number > 0: constant of the rock mass; with s, or gsi and mi in their place
+---@field s? number in [0, 1]: constant of the rock mass, 1 of intact rock
+---@field a? number in [0.5, 1]: exponent; with mb and s
+---@field gsi? number in [0, 100]: geological strength index; with mi
+---@field mi? number > 0: constant of the intact rock; with gsi
+---@field disturbance? number in [0, 1]: factor D of blasting and relief; with gsi
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction at the stress
+---@field tension? number Pa, >= 0: tensile strength; no more than s sigma_ci / mb, which it is when left out
+
+--- Mohr-Coulomb with a tension cut-off, and strength over plastic strain.
+---@class (exact) talus.solid.MohrCoulomb
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field cohesion? number Pa, >= 0: cohesion, where no table gives it
+---@field friction? number deg, in [0, 90): angle of friction, where no table gives it
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction
+---@field tension? number Pa, >= 0: tensile strength; no more than cohesion / tan(friction), which it is when left out
+---@field cohesion_table? number[][] cohesion over plastic shear: rows {plastic shear, cohesion}, straight between them
+---@field friction_table? number[][] friction over plastic shear
+---@field dilation_table? number[][] dilation over plastic shear
+---@field tension_table? number[][] tensile strength over plastic tension
+---@field table_extent? number m, > 0: extent of zones that the tables are for: in zones twice as large plastic strain counts twice, so that a crack takes the same energy; left out: tables hold for zones of any size
+
+--- Elastic and layered: alike in all directions of a plane.
+---@class (exact) talus.solid.Transverse
+---@field young_plane number Pa, > 0: Young's modulus along the layers
+---@field young_across number Pa, > 0: Young's modulus across the layers
+---@field poisson_plane number in (-1, 1): Poisson's ratio within the layers
+---@field poisson_across number in (-1, 1): strain along the layers by that across them, under a stress across them
+---@field shear_across number Pa, > 0: shear modulus of shear along the layers
+---@field dip? number deg, in [0, 90], default 0: dip of the layers at the beginning
+---@field dip_direction? number deg, in [0, 360], default 0: dip direction of the layers at the beginning
+
+--- Mohr-Coulomb with a weak plane of one attitude everywhere, as of schistosity.
+---@class (exact) talus.solid.Ubiquitous
+---@field young? number Pa, > 0: Young's modulus; with poisson
+---@field poisson? number in (-1, 0.5): Poisson's ratio; with young
+---@field nu? number in (-1, 0.5): Poisson's ratio; with young (another name)
+---@field bulk? number Pa, > 0: bulk modulus; with shear, in the place of young and poisson
+---@field shear? number Pa, > 0: shear modulus; with bulk
+---@field cohesion? number Pa, >= 0: cohesion, where no table gives it
+---@field friction? number deg, in [0, 90): angle of friction, where no table gives it
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation, at most that of friction
+---@field tension? number Pa, >= 0: tensile strength; no more than cohesion / tan(friction), which it is when left out
+---@field cohesion_table? number[][] cohesion over plastic shear: rows {plastic shear, cohesion}, straight between them
+---@field friction_table? number[][] friction over plastic shear
+---@field dilation_table? number[][] dilation over plastic shear
+---@field tension_table? number[][] tensile strength over plastic tension
+---@field table_extent? number m, > 0: extent of zones that the tables are for: in zones twice as large plastic strain counts twice, so that a crack takes the same energy; left out: tables hold for zones of any size
+---@field joint_cohesion? number Pa, >= 0, default 0: cohesion of the weak plane
+---@field joint_friction number deg, in [0, 90): angle of friction of the weak plane
+---@field joint_dilation? number deg, in [0, 90), default 0: angle of dilation of the weak plane, at most that of its friction
+---@field joint_tension? number Pa, >= 0: tensile strength of the weak plane; no more than its cohesion / tan(friction), which it is when left out
+---@field dip? number deg, in [0, 90], default 0: dip of the weak plane at the beginning
+---@field dip_direction? number deg, in [0, 360], default 0: dip direction of the weak plane at the beginning
+
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
 ---@field rotation string "exact" or "paper"; may be assigned
@@ -487,6 +575,7 @@ function Model:damping(damping, options) end
 ---@field rule? "paper"|"body"|"balance" default "body": critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and stiffness (body). balance is for collapses: the critical step of body, and field contacts in motion by slopes of their force, both as far as the energy balance allows; with dt the slopes only
 ---@field dt? number s, in [1e-100, 1e+100]: a fixed time step instead of the rule
 ---@field error? number in [0, 1], default 0.0001: rule balance: up to half of this error of the energy balance the step is the longest; from there to all of it it falls to half of that, and the slopes are used for contacts at rest only
+---@field zone_fraction? number in [1e-09, 1], default 1: of deformable blocks: share of the step up to which zones are stable, whatever their motion
 
 ---@class (exact) talus.TimestepResult
 ---@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set
@@ -680,29 +769,35 @@ function Model:groups() end
 ---@field parameters string[] list of the names of its parameters
 ---@field states string[] list of the names of its states
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.laws() end
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.dampings() end
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.generators() end
 
---- Lists the laws, dampings, generators or screens that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.screens() end
+
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---@return talus.Kind[]
+function talus.solids() end
 
 ---@class (exact) talus.ParametersResult
 ---@field gravity talus.Vector and all others that talus.model{...} takes
@@ -752,6 +847,34 @@ function Model:parameters() end
 ---@param options talus.LawTestOptions
 ---@return talus.LawTestResult
 function talus.law_test(options) end
+
+---@class (exact) talus.SolidTestOptions
+---@field solid string name of the solid
+---@field extent? number m, > 0, default 1: extent of the zone, the cube root of its volume, which solids may ask for
+---@field steps? integer in [1, 1e+07], default 100: steps of each leg of the path
+---@field every? integer in [1, 1e+07], default 1: steps from one point of the curve to the next; the end of a leg is always one
+---@field params? table<string, number|string|boolean|talus.Vector> parameters of the solid, as for model:solid
+---@field path? { strain: table<string, number>?, stress: table<string, number>?, steps: integer? }[] tables {strain = {zz = -0.01}, stress = {xx = -1e6, yy = -1e6}, steps =}: components that are driven to strains, and those that are held at stresses, at the end of the leg. A component that is not named keeps its stress
+---@field stress? talus.Tensor stress at the start, Pa; 0 where it is left out
+
+---@class (exact) talus.SolidTestResult
+---@field stress { xx: number[], xy: number[], yy: number[], yz: number[], zx: number[], zz: number[] } tables of lists by component, curve.stress.zz[i], Pa; tension positive, shear strains those of the tensor; the first point is the start
+---@field strain { xx: number[], xy: number[], yy: number[], yz: number[], zx: number[], zz: number[] } tables of lists by component, curve.stress.zz[i], Pa; tension positive, shear strains those of the tensor; the first point is the start
+---@field work number[] list, J/m3: work of the stresses, and what was stored at the start
+---@field stored number[] lists, J/m3: elastic energy, and energy turned to heat, as the solid tells them. Work - stored - dissipated is the error of the solid's energies and of the steps
+---@field dissipated number[] lists, J/m3: elastic energy, and energy turned to heat, as the solid tells them. Work - stored - dissipated is the error of the solid's energies and of the steps
+---@field shear boolean[] lists of true and false: how the zone yields in the step
+---@field tension boolean[] lists of true and false: how the zone yields in the step
+---@field joint boolean[] lists of true and false: how the zone yields in the step
+---@field states table a list for each state of the solid, by its name; of lists where it is an axis or a tensor
+---@field ends integer[] for each leg, the place of its last point in the lists
+
+--- Tries a solid on one zone, without a model: any path of strains that are driven and stresses that are held.
+---
+---     curve = talus.solid_test{solid = "elastic", params = {young = 1e10, poisson = 0.25}, path = {{stress = {xx = -1e6, yy = -1e6}, strain = {zz = -0.01}}}}
+---@param options talus.SolidTestOptions
+---@return talus.SolidTestResult
+function talus.solid_test(options) end
 
 ---@class (exact) talus.BoundaryOptions
 ---@field side? string faces in this plane of the box about all blocks: "xmin", "xmax", "ymin", "ymax", "zmin" or "zmax"
@@ -1101,6 +1224,7 @@ function Model:profile(on) end
 ---@field points integer columns of the contact points
 ---@field index integer lists of each block's contacts, and of contacts by number
 ---@field spare integer second set of tables of contacts and points
+---@field zones integer gridpoints, zones and segments of deformable blocks
 ---@field other integer rows by number, scratch of the threads, joints and laws
 ---@field total integer all of them
 

@@ -11,7 +11,7 @@ local pages = require "help_pages"
 local MARK = "<!-- Below this line: written by scripts/tools/c_api.lua. -->"
 local FOLDER = "core/include/talus/"
 local HEADERS = { "talus", "boundary", "fields", "history", "keyblocks", "settings", "state", "output", "view", "views", "watch", "values", "defaults",
-    "plugins", "types", "check", "law_test" }
+    "plugins", "types", "check", "law_test", "solid_test" }
 
 -- Text of a comment as Markdown. Lines that stand further in, as in a list or a formula, stay lines.
 local function prose(comment)

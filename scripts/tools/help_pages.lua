@@ -7,7 +7,7 @@ local pages = {}
 -- Column in which the help begins the text beside a name.
 local TEXT_COLUMN = 21
 -- Titles of the overview, and what the plugins under them are.
-pages.kinds = { Laws = "law", Dampings = "damping", Generators = "generator", Screens = "screen" }
+pages.kinds = { Laws = "law", Dampings = "damping", Generators = "generator", Screens = "screen", Solids = "solid" }
 
 function pages.print(topic)
     local program = os.getenv("TALUS_PROGRAM") or "build/release/talus"
@@ -89,7 +89,8 @@ function pages.split_row(section, row)
 end
 
 local function is_kind(line)
-    return line:match("^law '") or line:match("^damping '") or line:match("^generator '") or line:match("^screen '")
+    return line:match("^law '") or line:match("^damping '") or line:match("^generator '") or line:match("^screen '") or
+        line:match("^solid '")
 end
 
 -- The topics and plugins in the order of the overview: sections { title =, rows = }.
@@ -107,7 +108,7 @@ function pages.topic(name)
     return read_topic(lines, 1, last or #lines)
 end
 
--- A plugin's help: type is "law", "damping", "generator" or "screen".
+-- A plugin's help: type is "law", "damping", "generator", "screen" or "solid".
 function pages.plugin(type, name)
     local lines, first = pages.print(name), 1
     while lines[first] ~= ("%s '%s'"):format(type, name) do

@@ -69,6 +69,7 @@ local WORDS = {
     ["list of numbers"] = "number[]",
     ["list of numbers or legs"] = "(number|{ shear: number?, closure: number?, normal_stress: number?, time: number?, " ..
         "speed: number?, steps: integer? })[]",
+    ["list of legs"] = "{ strain: table<string, number>?, stress: table<string, number>?, steps: integer? }[]",
     ["list of whole numbers"] = "integer[]",
     ["list of names"] = "string[]",
     ["list of keyblocks"] = "talus.Keyblock[]",

@@ -94,13 +94,13 @@ refused("--plugin " .. folder .. "/no_such_plugin.so -e 'x = 1'", "no_such_plugi
 check.equal(run("--quiet -e 'x = 1'"), 0)
 
 -- Plugins that must be refused, with path and reason; one of them is of another major version. Those
--- in `loads` load: half_way fails when it is used, single_blocks, failing, liar, unfit, crasher and mumbles when they are told to,
+-- in `loads` load: half_way fails when it is used, single_blocks, failing, liar, unfit, unfit_solid, crasher and mumbles when told to,
 -- older_minor, blank_screen and halving never.
 local bad = os.getenv("TALUS_BAD_PLUGIN_DIR")
 if bad then
-    local reasons = { wrong_major = "ABI 2.9", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
+    local reasons = { wrong_major = "ABI 2.10", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
     local loads = { half_way = true, single_blocks = true, failing = true, older_minor = true, liar = true, crasher = true,
-        mumbles = true, unfit = true, blank_screen = true, halving = true }
+        mumbles = true, unfit = true, unfit_solid = true, blank_screen = true, halving = true }
     local refusals = 0
     local list = io.popen("ls '" .. bad .. "'/*.so")
     for path in list:lines() do

@@ -216,10 +216,136 @@ TEST(returns_are_those_of_the_nine_planes)
            worst_off, worst_over, by_flag[0], by_flag[1], by_flag[2], by_flag[3]);
 }
 
+/* ---------------------------------------------------------------- the other surfaces ----- */
+
+/* Principal plastic strains of a return: what it has taken off the principal stresses, over the moduli. */
+static void plastic_of(double bulk, double shear, const double trial[3], const double got[3], double out[3])
+{
+    double mean = (trial[0] - got[0] + trial[1] - got[1] + trial[2] - got[2]) / 3;
+    for (int k = 0; k < 3; k++)
+        out[k] = (trial[k] - got[k] - mean) / (2 * shear) + mean / (3 * bulk);
+}
+
+/* Hoek-Brown: the stress is on the surface; the flow has the dilation that it should have, none is backward, and s2 takes
+ * part only where it equals another. */
+static void check_hoek_brown(const double trial[3], const double got[3], uint32_t flags, double sine)
+{
+    const double bulk = 1e10 / 1.5, shear = 4e9, sigma = 5e7, m = 3, s = 0.01, a = 0.52;
+    double x = s - m * got[0] / sigma, strength = sigma * pow(x > 0 ? x : 0, a), plastic[3];
+    double scale = fabs(trial[0]) + fabs(trial[2]) + strength;
+    /* at the apex the surface is so steep that roundings of s1 count */
+    double rounded = x + m * 1e-14 * scale / sigma, reach = sigma * pow(rounded > 0 ? rounded : 0, a);
+    CHECK(got[0] - got[2] - reach <= 1e-12 * scale && got[0] <= s * sigma / m + 1e-12 * scale);
+    plastic_of(bulk, shear, trial, got, plastic);
+    double size = fabs(plastic[0]) + fabs(plastic[2]), enough = 1e-9 * size + 1e-11 * scale / shear;
+    if (!(flags & (TL_ZONE_SHEAR | TL_ZONE_TENSION))) {
+        CHECK(size <= 1e-12 * scale / shear);
+        return;
+    }
+    CHECK(plastic[0] >= -enough);
+    if (flags & TL_ZONE_TENSION) {
+        CHECK_NEAR(got[0], s * sigma / m, 1e-12 * scale);
+        CHECK(plastic[0] + plastic[1] + plastic[2] >= -enough);
+        return;
+    }
+    double slope = 1 + a * m * pow(x, a - 1), tangent = (slope - 1) / (slope + 1),
+           flow = sine < tangent ? sine : tangent;
+    double up = plastic[0] + fmax(plastic[1], 0), down = -plastic[2] - fmin(plastic[1], 0);
+    CHECK_NEAR(up * (1 - flow), down * (1 + flow), 1e-7 * size + enough);
+    CHECK(fabs(plastic[1]) <= 1e-7 * size + enough ||
+          fabs(got[1] - (plastic[1] > 0 ? got[0] : got[2])) <= 1e-9 * scale);
+}
+
+TEST(returns_of_hoek_brown_flow_as_they_should)
+{
+    static const double angles[] = {0, 12, 70};
+    uint64_t seed = 2002;
+    for (int n = 0; n < check_cases(600); n++) {
+        zones z;
+        double before[ZONES][6], angle = angles[n % 3];
+        const tl_value values[] = {tl_arg_number("young", 1e10),    tl_arg_number("poisson", 0.25),
+                                   tl_arg_number("sigma_ci", 5e7),  tl_arg_number("mb", 3),
+                                   tl_arg_number("s", 0.01),        tl_arg_number("a", 0.52),
+                                   tl_arg_number("dilation", angle)};
+        if (!zones_make(&z, "hoek_brown", values, sizeof values / sizeof *values))
+            return;
+        for (size_t i = 0; i < ZONES; i++) {
+            begin_zone(&z, i, &seed);
+            for (int k = 0; k < 6; k++)
+                before[i][k] = STRESS(&z, k, i);
+        }
+        zones_step(&z);
+        for (size_t i = 0; i < ZONES; i++) {
+            double after[6], trial[3], got[3];
+            for (int k = 0; k < 6; k++)
+                after[k] = STRESS(&z, k, i);
+            zones_principal(before[i], trial);
+            zones_principal(after, got);
+            check_hoek_brown(trial, got, z.flags[i], sin(angle * DEGREE));
+        }
+        tl_solid_clear(&z.solid);
+    }
+}
+
+/* Rock and weak plane: neither is exceeded, and a second return changes nothing. */
+TEST(returns_of_rock_and_weak_plane_meet_both)
+{
+    uint64_t seed = 1987;
+    int both = 0, short_of = 0;
+    double worst = 0;
+    for (int n = 0; n < check_cases(1000); n++) {
+        zones z;
+        rock r = any_rock(&seed);
+        planes p;
+        double t = tan(40 * check_random(&seed) * DEGREE), c = 5e5 * check_random(&seed);
+        const tl_value values[] = {tl_arg_number("bulk", r.bulk),
+                                   tl_arg_number("shear", r.shear),
+                                   tl_arg_number("cohesion", r.cohesion),
+                                   tl_arg_number("friction", r.friction),
+                                   tl_arg_number("dilation", r.dilation),
+                                   tl_arg_number("tension", r.tension),
+                                   tl_arg_number("joint_cohesion", c),
+                                   tl_arg_number("joint_friction", atan(t) / DEGREE),
+                                   tl_arg_number("dip", 90)};
+        if (!zones_make(&z, "ubiquitous", values, sizeof values / sizeof *values))
+            return;
+        for (size_t i = 0; i < ZONES; i++)
+            begin_zone(&z, i, &seed);
+        double scales[ZONES];
+        for (size_t i = 0; i < ZONES; i++) {
+            scales[i] = r.cohesion;
+            for (int k = 0; k < 6; k++)
+                scales[i] += fabs(STRESS(&z, k, i));
+        }
+        zones_step(&z);
+        list_planes(&r, &p);
+        for (size_t i = 0; i < ZONES; i++) {
+            /* the plane dips towards north: its normal is y */
+            double after[6], got[3], shear = hypot(STRESS(&z, 3, i), STRESS(&z, 4, i)), most = 0;
+            CHECK(shear + STRESS(&z, 1, i) * t - c <= 1e-12 * scales[i]);
+            for (int k = 0; k < 6; k++)
+                after[k] = STRESS(&z, k, i);
+            zones_principal(after, got);
+            for (int k = 0; k < 9; k++)
+                most = fmax(most, over(&p, k, got));
+            int yields = (z.flags[i] & TL_ZONE_JOINT) && (z.flags[i] & (TL_ZONE_SHEAR | TL_ZONE_TENSION));
+            both += yields;
+            short_of += most > 1e-12 * scales[i];
+            worst = fmax(worst, most / scales[i]);
+        }
+        tl_solid_clear(&z.solid);
+    }
+    CHECK(both > 0 && short_of <= both / 20 && worst < 0.01);
+    printf("%d zones yield in both, %d of them end beyond the rock's surface, by %.2g at the most\n", both, short_of,
+           worst);
+}
+
 int main(void)
 {
     tl_plugins_load_default();
     RUN(returns_are_those_of_the_nine_planes);
+    RUN(returns_of_hoek_brown_flow_as_they_should);
+    RUN(returns_of_rock_and_weak_plane_meet_both);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
     return check_failed != 0;
 }

@@ -16,7 +16,7 @@ from package import ROOT, build_project, install, run
 
 PAGE = (ROOT / "docs/writing_a_plugin.md").read_text(encoding="utf-8")
 STRICT = "-DCMAKE_C_FLAGS=-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror"
-KINDS = {"law": "weakening", "damping": "drag", "generator": "bricks"}
+KINDS = {"law": "weakening", "damping": "drag", "generator": "bricks", "solid": "putty"}
 
 faults = []
 

@@ -5,6 +5,7 @@
 #include <talus/talus.h>
 
 #define UNFIT TALUS_BAD_PLUGIN_DIR "/unfit.so"
+#define UNFIT_SOLID TALUS_BAD_PLUGIN_DIR "/unfit_solid.so"
 
 /* What was told of one run. */
 typedef struct findings {
@@ -40,6 +41,53 @@ static findings run_unfit(const char *param, const char *fault)
         printf("  %s\n", error.text);
     CHECK_INT(faults, h.faults);
     return h;
+}
+
+/* One fault of the solid that has them all. */
+static findings run_solid(const char *fault)
+{
+    findings h = {0};
+    size_t faults;
+    tl_error error;
+    const tl_value value = tl_arg_text("solid_fault", fault);
+    const tl_args args = {&value, 1};
+    if (!CHECK_INT(tl_plugin_check(UNFIT_SOLID, &args, hear, &h, &faults, &error), TL_OK))
+        printf("  %s\n", error.text);
+    CHECK_INT(faults, h.faults);
+    return h;
+}
+
+TEST(each_check_of_solids_finds_what_breaks_it)
+{
+    static const char *const cases[][2] = {{"none", ""},
+                                           {"runs", "runs; "},
+                                           {"alone", "one by one; split; "},
+                                           {"split", "one by one; split; "},
+                                           {"energies", "energies; "},
+                                           {"writes_input", "writes; "},
+                                           {"writes_behind", "writes; "},
+                                           {"writes_state", "writes; "},
+                                           {"adds_state", "writes; "},
+                                           {"reads", "reads; "},
+                                           {"finite", "finite; "},
+                                           {"soft_moduli", "moduli; "},
+                                           {"shear_moduli", "moduli; "},
+                                           {"stored", "balance; "},
+                                           {"energy", "stored; "},
+                                           {"heat", "balance; "},
+                                           {"cold", "balance; heat; "},
+                                           {"flags", "flags; "},
+                                           {"states", "states; "}};
+    static const char *const among[][2] = {
+        {"repeats", "repeats; "}, {"still", "no strain; "}, {"turned", "turned; "}, {"cycle", "closed cycle; "}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        findings h = check_takes(i) ? run_solid(cases[i][0]) : (findings){0};
+        if (check_takes(i) && !CHECK_TEXT(h.list, cases[i][1]))
+            printf("  %s: %s\n", cases[i][0], h.fault);
+    }
+    for (size_t i = 0; i < sizeof among / sizeof *among; i++)
+        if (check_takes(i))
+            CHECK_CONTAINS(run_solid(among[i][0]).list, among[i][1]);
 }
 
 TEST(each_check_finds_what_breaks_it)
@@ -147,6 +195,12 @@ TEST(the_plugins_of_talus_pass)
                    {"adaptive", 14},
                    {"combined", 14},
                    {"kinetic", 14},
+                   {"solid_elastic", 18},
+                   {"solid_transverse", 18},
+                   {"solid_mohr_coulomb", 18},
+                   {"solid_ubiquitous", 18},
+                   {"solid_drucker_prager", 18},
+                   {"solid_hoek_brown", 18},
                    {"box", 3},
                    {"tetrahedron", 3},
                    {"polyhedron", 3},
@@ -215,6 +269,6 @@ TEST(what_cannot_be_tried_is_told)
     CHECK_CONTAINS(error.text, "file");
 }
 
-TEST_MAIN(RUN(each_check_finds_what_breaks_it), RUN(others_are_found_among_the_rest), RUN(a_fault_tells_its_parameters),
-          RUN(the_plugins_of_talus_pass), RUN(a_screen_that_is_there_passes), RUN(points_are_parameters_too),
-          RUN(what_cannot_be_tried_is_told))
+TEST_MAIN(RUN(each_check_of_solids_finds_what_breaks_it), RUN(each_check_finds_what_breaks_it),
+          RUN(others_are_found_among_the_rest), RUN(a_fault_tells_its_parameters), RUN(the_plugins_of_talus_pass),
+          RUN(a_screen_that_is_there_passes), RUN(points_are_parameters_too), RUN(what_cannot_be_tried_is_told))

@@ -61,12 +61,13 @@ static size_t kinds_of(tl_kind_type type)
 }
 
 /* Kinds found by the search, to be compared with those at the end. */
-static size_t found[TL_KIND_SCREEN + 1];
+static size_t found[TL_KIND_SOLID + 1];
 
 TEST(default_search_finds_every_plugin_once_in_order)
 {
-    static const char *const known[] = {"coulomb", "adaptive", "box"}; /* a screen need not be there */
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
+    static const char *const known[] = {"coulomb", "adaptive", "box", NULL,
+                                        "mohr_coulomb"}; /* a screen need not be there */
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
         found[type] = kinds_of((tl_kind_type)type);
         CHECK(found[type] >= 3 || type == TL_KIND_SCREEN);
         CHECK(type == TL_KIND_SCREEN || tl_plugin_find((tl_kind_type)type, known[type]) != NULL);
@@ -84,7 +85,7 @@ TEST(default_search_finds_every_plugin_once_in_order)
         kinds += r.plugin ? r.plugin->kind_count : 0;
         CHECK(strncmp(r.path, good_folder, strlen(good_folder)) == 0);
     }
-    CHECK_INT(found[0] + found[1] + found[2] + found[3], kinds);
+    CHECK_INT(found[0] + found[1] + found[2] + found[3] + found[4], kinds);
     tl_plugins_load_default();
     CHECK_INT(tl_plugin_record_count(), files);
     CHECK(tl_plugin_record_at(files).path == NULL);
@@ -127,6 +128,13 @@ TEST(broken_plugins_are_refused_with_the_reason)
     refused(bad_folder, "only_unknown", "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
     refused(bad_folder, "deaf_screen", "screen 'deaf_screen': its operation 'take' is missing");
     refused(bad_folder, "begun_energy", "state 'some' is an energy: it must be a scalar that begins at 0");
+    refused(bad_folder, "solid_space", "parameter 'table' is a list of points in space: a solid takes tables");
+    refused(bad_folder, "solid_tangent", "state 'slip' of a solid must be a scalar, an axis or a tensor");
+    refused(bad_folder, "solid_axis", "state 'axis' is an axis: it must begin at 0");
+    refused(bad_folder, "solid_split", "state 'heat' of a solid must have TL_TRANSFER_COPY");
+    refused(bad_folder, "solid_states",
+            "its states take 18 columns (a scalar 1, an axis 3, a tensor 6); 16 at the most");
+    refused(bad_folder, "solid_moduli", "solid 'solid_moduli': its operation 'moduli' is missing");
     refused(bad_folder, "two_energies", "states 'one' and 'two' are both energies of shear");
     refused(bad_folder, "screen_states", "a screen has no states, this one declares 1");
     refused(
@@ -213,7 +221,7 @@ TEST(a_pipe_is_refused_and_not_waited_for)
 
 TEST(refusals_leave_the_kinds_as_they_were)
 {
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++)
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++)
         CHECK_INT(kinds_of((tl_kind_type)type), found[type]);
 }
 

@@ -2,8 +2,10 @@
  * sliver of next to nothing, and between them with its gradient. */
 #include "check.h"
 
-#include "narrow/press.h"
+#include "narrow/flush.h"
+#include "narrow/share.h"
 
+#include <math.h>
 #include <talus/vmath.h>
 
 static const tl_vec3 up = {0, 0, 1}, down = {0, 0, -1};
@@ -55,5 +57,59 @@ TEST(between_them_the_gradient_is_that_of_the_share)
         }
 }
 
+/* Sums of springs at four corners, whose overlaps go with x at the rates given. A corner that is open has none. */
+static tl_field_sums corners_at(double first, double x)
+{
+    const double overlap[4] = {0.12, 0.09, 0.05, first}, rate[4] = {0.3, -0.2, 0.1, 0.5};
+    tl_field_sums out = {.energy = 0};
+    for (int k = 0; k < 4; k++) {
+        const double area = 0.2 + 0.03 * k, o = overlap[k] + rate[k] * x;
+        if (!(o > 0))
+            continue;
+        out.energy += 0.25 * area * o * o;
+        out.volume += area * o;
+        out.powers[0].whole += area * o * o * o / 12;
+        out.force.x -= 0.5 * area * o * rate[k];
+        out.swept.x -= area * rate[k];
+        out.powers[0].force.x -= 0.25 * area * o * o * rate[k];
+    }
+    return out;
+}
+
+static tl_patch_share corner_share_at(double first, double shift, double x)
+{
+    const tl_field_sums patch = corners_at(first, x);
+    tl_field_sums field = patch;
+    field.energy *= 1.2;
+    field.force.x *= 1.2;
+    return tl_patch_share_of(&up, &down, true, shift, &patch, &field);
+}
+
+TEST(of_springs_at_corners_it_has_no_kink_where_one_parts)
+{
+    const double h = 1e-7;
+    for (double shift = 0; shift < 0.02; shift += 0.008) {
+        tl_patch_share closed = corner_share_at(1e-9, shift, 0), open = corner_share_at(-1e-9, shift, 0);
+        CHECK(closed.share > 0 && closed.share < 1 && fabs(closed.push.x) > 0.1);
+        CHECK_NEAR(closed.push.x, open.push.x, 1e-6);
+        for (double first = -0.02; first < 0.05; first += 0.02) {
+            double more = corner_share_at(first, shift, h).share, less = corner_share_at(first, shift, -h).share;
+            CHECK_NEAR(corner_share_at(first, shift, 0).push.x, (more - less) / (2 * h), 1e-5);
+        }
+    }
+}
+
+TEST(of_an_even_overlap_corners_count_as_a_patch_does)
+{
+    const double area = 0.7, o = 0.12, depth = o / sqrt(area);
+    const tl_field_sums patch = {
+        .energy = 0.25 * area * o * o, .volume = area * o, .powers = {{.whole = area * o * o * o / 12}}};
+    const double t = (depth - TL_CORNERS_DEPTH) / (TL_CORNERS_FIELD_DEPTH - TL_CORNERS_DEPTH);
+    tl_patch_share s = tl_patch_share_of(&up, &down, true, 0, &patch, &patch);
+    CHECK_NEAR(s.share, 1 - t * t * (3 - 2 * t), 1e-12);
+}
+
 TEST_MAIN(RUN(a_patch_that_is_the_field_is_all_of_it), RUN(a_sliver_is_none),
-          RUN(between_them_the_gradient_is_that_of_the_share))
+          RUN(between_them_the_gradient_is_that_of_the_share),
+          RUN(of_springs_at_corners_it_has_no_kink_where_one_parts),
+          RUN(of_an_even_overlap_corners_count_as_a_patch_does))

@@ -5,9 +5,9 @@
  *     const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor);
  *
  * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a plugin creates
- * nothing. The descriptor lists *kinds*: laws, dampings, generators, screens and solids, each with its parameters, states
- * and operations. The host checks, defaults and documents parameters from one table. It owns states, carries them over,
- * saves and writes them.
+ * nothing. The descriptor lists *kinds*: laws, dampings, generators, screens and solids, each with its parameters,
+ * states and operations. The host checks, defaults and documents parameters from one table. It owns states, carries
+ * them over, saves and writes them.
  *
  * Growth: every struct begins with its `size` and every array carries a stride, so a newer host
  * reads an older plugin. The major version must match; a minor version only appends.
@@ -129,8 +129,8 @@ typedef struct tl_param {
 typedef enum tl_state_kind {
     TL_STATE_SCALAR,  /* one column */
     TL_STATE_TANGENT, /* of laws, three columns: a vector in the common plane, turned with it by the host */
-    /* since 1.10, of solids, three columns: a vector, turned with the zone by the host. A new one is 0, and 0 stays 0: a
-     * solid whose axis is 0 takes the one that its parameters give. */
+    /* since 1.10, of solids, three columns: a vector, turned with the zone by the host. A new one is 0, and 0 stays
+     * 0: a solid whose axis is 0 takes the one that its parameters give. */
     TL_STATE_AXIS,
     TL_STATE_TENSOR /* since 1.10, of solids, six columns xx yy zz xy yz zx, turned with the zone by the host */
 } tl_state_kind;

@@ -108,7 +108,8 @@ TL_IN_LOOP void tl_isotropic_energies(const tl_isotropic *elastic, uint32_t coun
 
 /* ---------------------------------------------------------------- axes ------------------- */
 
-/* Rows of the table of parameters of a struct `owner` with the members dip and dip_direction, of layers or of a plane. */
+/* Rows of the table of parameters of a struct `owner` with the members dip and dip_direction, of layers or of a
+ * plane. */
 #define TL_PARAMS_DIP(owner, of)                                                                                       \
     TL_PARAM(TL_PARAM_REAL, owner, dip, "deg", "dip of " of " at the beginning", .min = 0, .max = 90),                 \
         TL_PARAM(TL_PARAM_REAL, owner, dip_direction, "deg", "dip direction of " of " at the beginning", .min = 0,     \

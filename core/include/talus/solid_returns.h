@@ -1,12 +1,13 @@
-/* solid_returns.h - Mohr-Coulomb with a tension cut-off: strength, tables and the exact return, for solids that yield so.
+/* solid_returns.h - Mohr-Coulomb with a tension cut-off: strength, tables and the exact return, for solids that
+ * yield so.
  *
  *     f = (1 + sin phi) s1 - (1 - sin phi) s3 - 2 c cos phi <= 0,  s1 <= T
  *     g = (1 + sin psi) s1 - (1 - sin psi) s3
  *
  * with principal stresses s1 >= s2 >= s3, positive in tension. f and g are a plane and its flow for each pair of
- * principal stresses. The return is implicit: the stress after the step is on the surface, and the plastic strain is a
- * sum of flows, none of them backward, of the planes it lies on (Koiter 1953; Clausen, Damkilde and Andersen 2006). With
- * psi = phi it is the closest point in the elastic energy. */
+ * principal stresses. The return is implicit: the stress after the step is on the surface. The plastic strain is a
+ * sum of flows, none of them backward, of the planes it lies on (Koiter 1953; Clausen, Damkilde and Andersen 2006).
+ * With psi = phi it is the closest point in the elastic energy. */
 #ifndef TALUS_SOLID_RETURNS_H
 #define TALUS_SOLID_RETURNS_H
 
@@ -71,7 +72,7 @@ TL_IN_LOOP tl_returned tl_return_tension(const tl_isotropic *elastic, double ten
     double over = (s1 - tension) / constrained;
     double b = s2 - lame * over, c = s3 - lame * over;
     double c_two = s3 - lame * (s1 + s2 - 2 * tension) / (constrained + lame);
-    int two = b > tension, three = two && c_two > tension;
+    int two = b > tension, three = two & (c_two > tension);
     tl_returned to;
     to.a = tension;
     to.b = two ? tension : b;
@@ -111,14 +112,14 @@ TL_IN_LOOP tl_returned tl_mohr_coulomb_return(const tl_isotropic *elastic, const
     low = low < tension ? low : tension;
     tl_returned by_both = tl_return_both(elastic, y->dilation, tension, low, s1, s2, s3);
     double largest = by_shear.a > by_shear.c ? by_shear.a : by_shear.c;
-    int shear_alone = shears && largest <= tension;
-    int tension_alone = tears && (1 + f) * by_tension.a - (1 - f) * by_tension.c <= y->cohesion;
+    int shear_alone = shears & (largest <= tension);
+    int tension_alone = tears & ((1 + f) * by_tension.a - (1 - f) * by_tension.c <= y->cohesion);
     tl_returned to;
     to.a = shear_alone ? by_shear.a : tension_alone ? by_tension.a : by_both.a;
     to.b = shear_alone ? by_shear.b : tension_alone ? by_tension.b : by_both.b;
     to.c = shear_alone ? by_shear.c : tension_alone ? by_tension.c : by_both.c;
     to.mark = shear_alone ? by_shear.mark : tension_alone ? by_tension.mark : by_both.mark;
-    int yields = shears || tears;
+    int yields = shears | tears;
     to.a = yields ? to.a : s1;
     to.b = yields ? to.b : s2;
     to.c = yields ? to.c : s3;
@@ -284,7 +285,8 @@ TL_IN_LOOP int tl_may_yield(const tl_lanes6 s, const tl_strength_lanes *y, tl_la
         double twice = xx * xx + yy * yy + zz * zz + 2 * shear, f = y->friction[i]; /* 2 J2 */
         double most = 2 * f * p + sqrt(twice * (2 + 2. / 3 * f * f));
         double highest = p + sqrt(2. / 3 * twice);
-        may[i] = most <= y->cohesion[i] && highest <= y->tension[i] ? 0 : 1;
+        int stays = (most <= y->cohesion[i]) & (highest <= y->tension[i]);
+        may[i] = stays ? 0 : 1;
         any += may[i];
     }
     return any > 0;
@@ -296,7 +298,7 @@ TL_IN_LOOP void tl_group_return(const tl_isotropic *elastic, const tl_strength_l
                                 const tl_lanes6 s, tl_lanes6 after, tl_lanes shear, tl_lanes tension, tl_lanes mark)
 {
     const double by_shear = 0.5 / elastic->shear, by_bulk = 1 / (3 * elastic->bulk);
-    TL_EACH_ALONE
+    /* without TL_EACH_ALONE, which would have the compiler keep the directions of all lanes in memory */
     TL_EACH_LANE(i)
     {
         tl_principal p = tl_principal_of(s[0][i], s[1][i], s[2][i], s[3][i], s[4][i], s[5][i]);
@@ -311,7 +313,8 @@ TL_IN_LOOP void tl_group_return(const tl_isotropic *elastic, const tl_strength_l
         double squares = (a - mean) * (a - mean) + (b - mean) * (b - mean) + (c - mean) * (c - mean);
         double torn = (a - mean) * by_shear + mean * by_bulk;
         shear[i] = sqrt(0.5 * squares) * by_shear;
-        tension[i] = marked >= TL_ZONE_TENSION && torn > 0 ? torn : 0;
+        torn = torn > 0 ? torn : 0;
+        tension[i] = marked >= TL_ZONE_TENSION ? torn : 0;
         mark[i] = marked;
         after[0][i] = s[0][i] - tl_principal_part(&p, a, b, c, 0, 0);
         after[1][i] = s[1][i] - tl_principal_part(&p, a, b, c, 1, 1);

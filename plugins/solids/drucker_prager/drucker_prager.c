@@ -68,10 +68,10 @@ TL_IN_LOOP void bring_back(const cone *c, const tl_lanes6 s, tl_lanes6 after, tl
         double over = size + slope * p - cohesion, rounding = TL_YIELD_ROUNDING * (size + fabs(p) + cohesion);
         int shears = over > rounding, tears = p - tension > rounding;
         double length = over / both, at = p - bulk * flow * length;
-        int shear_alone = shears && at <= tension, tension_alone = tears && size + slope * tension <= cohesion;
+        int shear_alone = shears & (at <= tension), tension_alone = tears & (size + slope * tension <= cohesion);
         double to = shear_alone ? size - shear * length : tension_alone ? size : cohesion - slope * tension;
         double mean = shear_alone ? at : tension;
-        int yields = shears || tears;
+        int yields = shears | tears;
         /* the cone's radius at the apex may be a rounding below 0 */
         double kept = yields ? (to > 0 ? to : 0) / (size > 0 ? size : 1) : 1, off = yields ? p - mean : 0;
         double marked = shear_alone ? TL_ZONE_SHEAR : tension_alone ? TL_ZONE_TENSION : TL_ZONE_SHEAR | TL_ZONE_TENSION;

@@ -1,12 +1,13 @@
-/* hoek_brown.c - solid "hoek_brown": elastic to the generalized criterion of Hoek, Carranza-Torres and Corkum (2002), with
- * a tension cut-off.
+/* hoek_brown.c - solid "hoek_brown": elastic to the generalized criterion of Hoek, Carranza-Torres and Corkum
+ * (2002), with a tension cut-off.
  *
  *     f = s1 - s3 - F(s1) <= 0,  F(s1) = sigma_ci (s - mb s1 / sigma_ci)^a,  s1 <= T <= s sigma_ci / mb
  *
- * with principal stresses s1 >= s2 >= s3, positive in tension. The flow is that of Mohr-Coulomb of the angle of dilation,
- * or of the angle of friction of f's tangent where that is smaller. The return is implicit and goes to the surface, to
- * an edge of it where two principal stresses come out equal, to the cut-off, or to where they meet. It finds the strength
- * F at its end by false position, since s1 - s3 = F and s1 = (s sigma_ci - sigma_ci (F / sigma_ci)^(1/a)) / mb. */
+ * with principal stresses s1 >= s2 >= s3, positive in tension. The flow is that of Mohr-Coulomb of the angle of
+ * dilation, or of the angle of friction of f's tangent where that is smaller. The return is implicit. It goes to the
+ * surface, to an edge of it where two principal stresses come out equal, to the cut-off, or to where they meet. It
+ * finds the strength F at its end by false position, since s1 - s3 = F and s1 = (s sigma_ci - sigma_ci (F /
+ * sigma_ci)^(1/a)) / mb. */
 #include <talus/solid_returns.h>
 #include <talus/version.h>
 
@@ -84,7 +85,8 @@ TL_IN_LOOP double strength_at(const mass *m, double s1)
     return m->sigma * power_of(x > 0 ? x : 0, m->a);
 }
 
-/* sin psi of the flow where f has the strength F = sigma y, y^(1/a) = x: its tangent is s3 = N s1 with N = 1 + a mb y / x.
+/* sin psi of the flow where f has the strength F = sigma y, y^(1/a) = x: its tangent is s3 = N s1 with N = 1 + a mb
+ * y / x.
  */
 TL_IN_LOOP double dilation_at(const mass *m, double x, double y)
 {
@@ -93,8 +95,8 @@ TL_IN_LOOP double dilation_at(const mass *m, double x, double y)
     return m->dilation < friction ? m->dilation : friction;
 }
 
-/* A return to f along one flow, or that of two planes that share it: `u` and `w`, the stresses that come to s1 and s3, are
- * means of `many_u` and `many_w` principal stresses. */
+/* A return to f along one flow, or that of two planes that share it: `u` and `w`, the stresses that come to s1 and
+ * s3, are means of `many_u` and `many_w` principal stresses. */
 typedef struct line {
     double u, w, many_u, many_w;
 } line;
@@ -247,18 +249,38 @@ TL_IN_LOOP tl_returned choose(const mass *m, const group *g, uint32_t i)
     return by_both;
 }
 
+/* Whether a zone may yield, 1 or 0, by bounds in the mean stress p and J2: s1 <= p + sqrt(4 J2 / 3), and s1 - s3 <=
+ * 2 sqrt(J2). Gives whether any may. */
+TL_IN_LOOP int may_yield(const mass *m, const tl_lanes6 s, tl_lanes may)
+{
+    double any = 0;
+    TL_EACH_LANE(i)
+    {
+        double p = (s[0][i] + s[1][i] + s[2][i]) / 3, xx = s[0][i] - p, yy = s[1][i] - p, zz = s[2][i] - p;
+        double shear = s[3][i] * s[3][i] + s[4][i] * s[4][i] + s[5][i] * s[5][i];
+        double j2 = 0.5 * (xx * xx + yy * yy + zz * zz) + shear, highest = p + sqrt(4. / 3 * j2);
+        int stays = (highest <= m->tension) & (2 * sqrt(j2) <= strength_at(m, highest));
+        may[i] = stays ? 0 : 1;
+        any += may[i];
+    }
+    return any > 0;
+}
+
 /* The stresses of a group brought back; 0: none yields. */
 TL_IN_LOOP int bring_back(const mass *m, const tl_lanes6 s, tl_lanes6 after, tl_lanes mark)
 {
     group g;
+    tl_lanes may;
     double any = 0;
+    if (!may_yield(m, s, may))
+        return 0;
     TL_EACH_LANE(i)
     {
         g.at[i] = tl_principal_of(s[0][i], s[1][i], s[2][i], s[3][i], s[4][i], s[5][i]);
         const double *p = g.at[i].s, strength = strength_at(m, p[0]);
         double scale = TL_YIELD_ROUNDING * (fabs(p[0]) + fabs(p[2]) + strength);
-        g.shears[i] = p[0] - p[2] - strength > scale ? 1 : 0;
-        g.tears[i] = p[0] - m->tension > scale ? 1 : 0;
+        g.shears[i] = may[i] > 0 && p[0] - p[2] - strength > scale ? 1 : 0;
+        g.tears[i] = may[i] > 0 && p[0] - m->tension > scale ? 1 : 0;
         any += g.shears[i] + g.tears[i];
     }
     if (!(any > 0))

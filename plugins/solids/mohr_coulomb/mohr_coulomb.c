@@ -1,5 +1,5 @@
-/* mohr_coulomb.c - solid "mohr_coulomb": elastic to Mohr-Coulomb's surface with a tension cut-off, and to tables of what
- * strength is left over plastic strain.
+/* mohr_coulomb.c - solid "mohr_coulomb": elastic to Mohr-Coulomb's surface with a tension cut-off, and to tables of
+ * what strength is left over plastic strain.
  *
  * Surface, flow and return are those of talus/solid_returns.h. The strength of a step is that of its beginning, so
  * softening takes steps of a small part of the tables' strains. */

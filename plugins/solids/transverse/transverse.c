@@ -47,8 +47,7 @@ static five five_of(double c11, double c33, double c12, double c13, double twice
     return f;
 }
 
-/* Half the trace and the root of the discriminant of the two waves that are no pure shear, whose normal has the sine
- * and cosine to the axis: the larger eigenvalue of n.C.n. */
+/* The larger eigenvalue of n.C.n but for pure shear, of waves whose normal n has this sine and cosine to the axis. */
 static double fastest(double c11, double c33, double c13, double c44, double sine2, double cosine2)
 {
     double xx = c11 * sine2 + c44 * cosine2, zz = c44 * sine2 + c33 * cosine2;

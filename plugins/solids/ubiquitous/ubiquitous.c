@@ -3,10 +3,11 @@
  *     rock    as solid "mohr_coulomb": talus/solid_returns.h
  *     plane   |t| + s tan(joint friction) <= joint cohesion,  s <= joint tension,  flow |t| + s tan(joint dilation)
  *
- * with s the normal stress on the plane, positive in tension, and t the shear stress. Each return is implicit and exact:
- * that of the rock, then that of the plane, by turns until both are met. Where only one of them yields that is at once.
- * Where both do, each turn is a small plastic step of its own, so the parts that rock and plane have of the flow hang on
- * the size of the steps to first order. The normal of the plane is a state: it turns with the zone. */
+ * with s the normal stress on the plane, positive in tension, and t the shear stress. Each return is implicit and
+ * exact: that of the rock, then that of the plane, by turns until both are met. Where only one of them yields that
+ * is at once. Where both do, each turn is a small plastic step of its own. The parts that rock and plane have of the
+ * flow then hang on the size of the steps, to first order. The normal of the plane is a state: it turns with the
+ * zone. */
 #include <talus/solid_returns.h>
 #include <talus/version.h>
 
@@ -88,9 +89,10 @@ TL_IN_LOOP void plane_return(const solid *self, const tl_lanes n[3], const tl_la
         double corner = p->cohesion - p->tension * p->friction;
         double left = shear_alone ? size - shear * flow : tension_alone ? size : corner > 0 ? corner : 0;
         double pull = shear_alone ? at : p->tension;
-        yields[i] = shears || tears ? 1 : 0;
-        double slid = yields[i] > 0 ? (size - left) / (size > 0 ? size : 1) : 0;
-        double opened = yields[i] > 0 ? (normal - pull) / constrained : 0;
+        int yield = shears || tears;
+        yields[i] = yield ? 1 : 0;
+        double slid = yield ? (size - left) / (size > 0 ? size : 1) : 0;
+        double opened = yield ? (normal - pull) / constrained : 0;
         double volume = lame * opened, axial = 2 * shear * opened;
         off[0][i] = 2 * slid * x * nx + volume + axial * nx * nx;
         off[1][i] = 2 * slid * y * ny + volume + axial * ny * ny;
@@ -118,8 +120,14 @@ TL_IN_LOOP void make_turns(const solid *self, const tl_strength_lanes *strength,
     for (int turn = 0; turn < MOST_TURNS && any > 0; turn++) {
         tl_lanes6 after, off;
         tl_lanes may, shear, tension, mark, yields;
-        (void)tl_may_yield((const tl_lanes *)t->stress, strength, may);
-        tl_group_return(&self->elastic, strength, may, (const tl_lanes *)t->stress, after, shear, tension, mark);
+        if (tl_may_yield((const tl_lanes *)t->stress, strength, may)) {
+            tl_group_return(&self->elastic, strength, may, (const tl_lanes *)t->stress, after, shear, tension, mark);
+        } else {
+            memcpy(after, t->stress, sizeof after);
+            memset(shear, 0, sizeof shear);
+            memset(tension, 0, sizeof tension);
+            memset(mark, 0, sizeof mark);
+        }
         plane_return(self, n, (const tl_lanes *)after, off, yields);
         any = 0;
         for (uint32_t k = 0; k < 6; k++)
@@ -129,9 +137,9 @@ TL_IN_LOOP void make_turns(const solid *self, const tl_strength_lanes *strength,
         {
             t->shear[i] += shear[i];
             t->tension[i] += tension[i];
-            int both = mark[i] > TL_ZONE_TENSION, sheared = both || (mark[i] > 0 && mark[i] < TL_ZONE_TENSION);
-            t->shears[i] = sheared ? TL_ZONE_SHEAR : t->shears[i];
-            t->tears[i] = both || (mark[i] > 0 && !sheared) ? TL_ZONE_TENSION : t->tears[i];
+            double tears = mark[i] >= TL_ZONE_TENSION ? TL_ZONE_TENSION : 0, shears = mark[i] - tears;
+            t->tears[i] = tears > 0 ? tears : t->tears[i];
+            t->shears[i] = shears > 0 ? shears : t->shears[i];
             t->slides[i] = yields[i] > 0 ? TL_ZONE_JOINT : t->slides[i];
             any += yields[i];
         }
