@@ -4,6 +4,7 @@
 #include "cycle/cycle_data.h"
 #include "segment/act.h"
 #include "zone/grid.h"
+#include "zone/life.h"
 #include "zone/pass.h"
 
 /* Tolerance: strain of a zone in a step from which the next one is kept, and looked at before it is made. */

@@ -81,6 +81,10 @@ void tl_rows_tidy(tl_model *m)
     if (m->gone)
         rows_keep(m, m->blocks.stays); /* what is read of it has not moved yet */
     m->gone = 0;
+    if (m->zones_follow)
+        m->zones_follow(m);
+    if (m->segments_follow)
+        m->segments_follow(m);
 }
 
 /* Derives a block's size and mean face from its shape, whose volume is given. */

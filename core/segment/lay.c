@@ -7,6 +7,7 @@
 #include "contact/contacts.h"
 #include "contact/law_states.h"
 #include "model/joints.h"
+#include "segment/follow.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -51,6 +52,7 @@ bool tl_segments_begin(tl_model *m)
     if (!m->segments)
         return false;
     m->segments_destroy = tl_segments_free;
+    m->segments_follow = tl_segments_follow;
     add_columns(m->segments, 0);
     return true;
 }

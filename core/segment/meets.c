@@ -41,22 +41,6 @@ typedef struct face {
     double reach; /* no corner is farther from the centre, m */
 } face;
 
-/* The parts of a face of a block; none: it is rigid. */
-static const tl_surface_part *parts_of(const tl_model *m, tl_id block, uint32_t number, size_t *count)
-{
-    const struct tl_zones *z = m->zones;
-    const uint32_t mesh = tl_mesh_of(m, m->bodies.id[m->blocks.body[tl_block_row_quiet(m, block)]]);
-    *count = 0;
-    if (mesh == TL_NO_ROW)
-        return NULL;
-    const tl_surface_part *at = z->part + z->mesh[mesh].part_begin, *end = z->part + z->mesh[mesh].part_end;
-    while (at < end && (at->block < block || (at->block == block && at->face < number)))
-        at++;
-    while (at + *count < end && at[*count].block == block && at[*count].face == number)
-        ++*count;
-    return at;
-}
-
 static tl_vec3 corner_of(const tl_model *m, const tl_surface_part *part, int k)
 {
     return tl_gridpoint_place(&m->zones->points, part->corner[k]);
@@ -103,7 +87,7 @@ static void measure_rigid(const tl_model *m, face *f)
 static face face_of(const tl_model *m, uint32_t block, uint32_t number)
 {
     face f = {.block = block, .number = number};
-    f.part = parts_of(m, m->blocks.id[block], number, &f.part_count);
+    f.part = tl_face_parts(m, m->blocks.id[block], number, &f.part_count);
     if (f.part)
         measure_parts(m, &f);
     else
@@ -266,6 +250,17 @@ static bool list_meeting(tl_model *m)
     return true;
 }
 
+/* Meets of blocks that have got other shapes, or zones, are laid anew. */
+static void mark_changed(tl_model *m)
+{
+    struct tl_segments *s = m->segments;
+    for (size_t k = 0; k < s->meet_count; k++) {
+        const uint32_t a = tl_block_row_quiet(m, s->meet[k].a), b = tl_block_row_quiet(m, s->meet[k].b);
+        s->meet[k].stale =
+            s->meet[k].stale || m->blocks.changed[a] > s->structure || m->blocks.changed[b] > s->structure;
+    }
+}
+
 tl_status tl_segments_find(tl_model *m)
 {
     if (!tl_model_deforms(m))
@@ -285,6 +280,7 @@ tl_status tl_segments_find(tl_model *m)
             tl_laying_change_meets(&l, s, list, count);
         else
             free(list);
+        mark_changed(m);
     }
     for (size_t row = 0; row < s->table.table.rows && !anew; row++)
         if (s->table.of[row].meet != TL_NO_ROW && s->table.slid[row])

@@ -103,6 +103,7 @@ struct tl_segments {
     size_t use_capacity, use_start_capacity, body_use_capacity, body_start_capacity;
     /* of the model, the zones and the pairs of the broad phase, when meets were listed */
     uint64_t structure, laws, zones, lists;
+    uint64_t followed; /* structure of the model for which sides have their rows */
     tl_overlay_room room;
     tl_point2 *room_memory;
     tl_vec3 *corner; /* scratch: of a rigid face */

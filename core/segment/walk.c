@@ -20,6 +20,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     LIST(SCRATCH, corner, corner_capacity, corner_capacity);
     VALUE(STATE, lost);
     VALUE(CACHE, structure);
+    VALUE(CACHE, followed);
     VALUE(CACHE, laws);
     VALUE(CACHE, zones);
     VALUE(CACHE, lists);

@@ -12,6 +12,7 @@
 #include "state/drives.h"
 #include "state/parts.h"
 #include "zone/grid.h"
+#include "zone/life.h"
 #include "zone/walk.h"
 
 #include <stdlib.h>

@@ -15,6 +15,7 @@
 #include "cycle/damping.h"
 #include "force/joint_laws.h"
 #include "zone/grid.h"
+#include "zone/life.h"
 #include "zone/solids.h"
 
 #include <inttypes.h>

@@ -23,6 +23,7 @@
 #include "state/drives.h"
 #include "state/parts.h"
 #include "zone/grid.h"
+#include "zone/life.h"
 #include "zone/sound.h"
 #include "zone/walk.h"
 

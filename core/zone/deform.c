@@ -6,6 +6,7 @@
 #include "base/columns.h"
 #include "geometry/zone_clusters.h"
 #include "geometry/zoning.h"
+#include "model/rows.h"
 #include "zone/corner_keys.h"
 #include "zone/grid.h"
 #include "zone/solids.h"
@@ -89,6 +90,8 @@ static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint3
 {
     tl_model *m = d->m;
     tl_status status = tl_model_may_change(m, "give blocks zones");
+    if (status == TL_OK)
+        tl_rows_tidy(m);
     if (status == TL_OK && !d->how->size && !(d->how->edge > 0))
         status = tl_fail(&m->error, TL_E_ARGUMENT, "the edge of zones must be > 0 m (it is %g)", d->how->edge);
     *solid = status == TL_OK && m->zones && d->how->solid ? tl_solid_find(m, d->how->solid) : TL_NO_ROW;
@@ -227,6 +230,7 @@ static void take_over_motion(tl_model *m, const tl_body_mesh *mesh, uint8_t fixe
         p->fixed[row] = held;
     }
     b->v[mesh->row] = b->w[mesh->row] = tl_v3(0, 0, 0);
+    tl_block_changes(m, *tl_body_blocks(m, mesh->row));
 }
 
 static tl_status lay(dividing *d, const part *of, uint32_t solid)
@@ -263,6 +267,8 @@ static tl_status lay_all(dividing *d, uint32_t solid)
             m->bodies.fixed[m->zones->mesh[k].row] = fixed[k - meshes];
     if (status != TL_OK)
         tl_zones_end_at(m->zones, meshes);
+    else
+        m->structure++;
     free(fixed);
     return status;
 }

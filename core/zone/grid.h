@@ -20,21 +20,16 @@ typedef struct tl_grid {
     size_t part_count;
 } tl_grid;
 
-/* Makes the model's zones, without any; nothing when they are there. */
-tl_status tl_zones_begin(tl_model *m);
 /* Gives a body that has none a mesh, all of one solid, free of stress. Nothing has changed when it fails. */
 tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid);
 /* Takes back the meshes from a number on. */
 void tl_zones_end_at(struct tl_zones *z, uint32_t meshes);
-void tl_zones_free(struct tl_zones *z);
 /* Lists the slots of each gridpoint. false: out of memory. */
 bool tl_zones_index(struct tl_zones *z);
-/* Columns that are made when they are needed: what a damping gives, with the forces of the step before, and loads.
- * false: out of memory. */
-bool tl_gridpoints_hold_damping(tl_gridpoints *p, bool before);
-bool tl_gridpoints_hold_loads(tl_gridpoints *p);
 /* The number of a body's mesh, or TL_NO_ROW. */
 uint32_t tl_mesh_of(const tl_model *m, tl_id body);
+/* The triangles of a face of a block; NULL: it is rigid. */
+const tl_surface_part *tl_face_parts(const tl_model *m, tl_id block, uint32_t number, size_t *count);
 /* Whether two blocks meet by segments, by their rows. */
 bool tl_blocks_meet(const tl_model *m, uint32_t a, uint32_t b);
 /* Whether a block, or one of two, is deformable, by their rows. */

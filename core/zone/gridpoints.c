@@ -3,6 +3,7 @@
 
 #include "base/columns.h"
 #include "zone/grid.h"
+#include "zone/life.h"
 
 /* The row of a gridpoint, or TL_NO_ROW with a sentence. */
 static uint32_t row_of(tl_model *m, tl_zone_name name)

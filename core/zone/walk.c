@@ -22,6 +22,7 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     LIST(SCRATCH, slot, slot_capacity, slot_capacity);
     LIST(SCRATCH, scratch, scratch_capacity, scratch_capacity);
     VALUE(CACHE, version);
+    VALUE(CACHE, followed);
     VALUE(CACHE, highest_rate);
     VALUE(CACHE, lowest_rate);
     VALUE(CACHE, highest);

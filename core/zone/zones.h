@@ -145,6 +145,7 @@ struct tl_zones {
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
     uint64_t version;                 /* counts changes of meshes and solids */
+    uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */
     double highest_rate, lowest_rate; /* stiffness over mass of the gridpoints that may move, 1/s2; 0: there are none */
     uint32_t highest;                 /* row of that with the highest, or TL_NO_ROW */
     uint64_t rated_for;               /* version then; 0: not known */

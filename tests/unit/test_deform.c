@@ -3,6 +3,7 @@
 #include "segment/segments.h"
 #include "zone/deform.h"
 #include "zone/grid.h"
+#include "zone/life.h"
 #include "zone/solids.h"
 
 #include <string.h>

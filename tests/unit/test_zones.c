@@ -4,6 +4,7 @@
 #include "segment/segments.h"
 #include "zone/grid.h"
 #include "zone/gridpoints.h"
+#include "zone/life.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
