@@ -324,6 +324,12 @@ static void keys_by(const tl_poly *newer, const tl_poly *older, uint64_t *key)
     }
 }
 
+/* A wanted edge that doubles with the distance from the origin. */
+static double farther_is_coarser(const void *edge, tl_vec3 place)
+{
+    return *(const double *)edge * (1 + tl_v3_norm(place));
+}
+
 TEST(both_sides_of_a_joint_have_the_same_triangles)
 {
     enum { MOST = 4000 };
@@ -342,8 +348,10 @@ TEST(both_sides_of_a_joint_have_the_same_triangles)
         uint64_t key[512];
         keys_by(cut.above, cut.below, key);
         tl_zone_mesh below, above = {0};
-        if (divide(cut.below, &(tl_zoning){.edge = edge}, &below) &&
-            divide(cut.above, &(tl_zoning){.edge = edge, .corner_key = key}, &above)) {
+        tl_zoning zoning = {.edge = edge, .size = i % 3 ? NULL : farther_is_coarser, .user = &edge};
+        const bool divided = divide(cut.below, &zoning, &below);
+        zoning.corner_key = key;
+        if (divided && divide(cut.above, &zoning, &above)) {
             const uint32_t count = places_of(&below, cap_of(cut.below, cut.above), ours, MOST);
             CHECK(count > 0);
             CHECK_INT(places_of(&above, cap_of(cut.above, cut.below), theirs, MOST), count);
