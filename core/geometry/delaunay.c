@@ -7,8 +7,8 @@
  * Signs are exact, so what is made is the Delaunay triangulation of the points on the grid, whatever the order. Where
  * points lie on one sphere it depends on the order, unless their weights decide.
  *
- * Of a block, points of one face lie in one plane but for the rounding of the grid. So three rules take the place of
- * signs that rounding would decide:
+ * Of a block with flat faces, points of one lie in a plane but for the rounding of the grid. So three rules take the
+ * place of signs that rounding would decide:
  *
  *     a ghost on face f, p in f        by the circle of its triangle in the coordinates of the face
  *     a ghost on face f, p not in f    not inside, as a block is convex
@@ -95,7 +95,7 @@ static bool in_ghost(const tl_delaunay *d, const tl_tetrahedron *ghost, uint32_t
 {
     const tl_delaunay_points *points = d->points;
     const uint32_t face = ghost->corner[3] - TL_GHOST;
-    if (face != TL_NO_FACE) {
+    if (points->flat && face != TL_NO_FACE) {
         const tl_site2 *at = place_in(points, p, face);
         return at && in_circle(points, ghost, at);
     }
@@ -122,7 +122,7 @@ TL_INLINE bool is_in(const tl_delaunay *d, uint32_t t, uint32_t p)
     const tl_tetrahedron *here = &d->tetrahedron[t];
     if (tl_is_ghost(here))
         return in_ghost(d, here, p);
-    if (p < points->surface_count) {
+    if (points->flat && p < points->surface_count) {
         const tl_tetrahedron *ghost = ghost_beside(d, here, p);
         if (ghost)
             return in_circle(points, ghost, place_in(points, p, ghost->corner[3] - TL_GHOST));
@@ -137,7 +137,7 @@ TL_INLINE bool is_beyond(const tl_delaunay *d, const tl_tetrahedron *here, uint3
 {
     /* a block has points beyond its hull only while corners are missing */
     const tl_tetrahedron *next = &d->tetrahedron[here->next[i] / 4];
-    if (tl_is_ghost(next) && next->corner[3] != TL_GHOST + TL_NO_FACE)
+    if (d->points->flat && tl_is_ghost(next) && next->corner[3] != TL_GHOST + TL_NO_FACE)
         return false;
     uint32_t v[4] = {here->corner[0], here->corner[1], here->corner[2], here->corner[3]};
     v[i] = p;
@@ -544,7 +544,7 @@ static tl_status put_all_in(tl_delaunay *d, const uint32_t four[4], tl_error *er
     for (uint32_t p = 0; !status && p < points->corner_count; p++)
         if (p != four[0] && p != four[1] && p != four[2] && p != four[3])
             status = put_in(d, p, error);
-    if (!status && points->corner_count && !is_closed(d))
+    if (!status && points->flat && !is_closed(d))
         return no_block(error);
     const size_t count = put_in_order(d, points->corner_count);
     for (size_t i = 0; !status && i < count; i++) {

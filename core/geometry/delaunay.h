@@ -39,7 +39,8 @@ typedef struct tl_delaunay_points {
     uint32_t corner_count, surface_count;
     const uint32_t *start;     /* [surface_count + 1] into in_face */
     const tl_in_face *in_face; /* each point's faces */
-    const signed char *turn;   /* [face] 1: counter-clockwise in its coordinates is so as seen from outside; -1: not */
+    bool flat; /* the faces count as exactly flat. Else as the grid has them, which must then make no face hollow */
+    const signed char *turn; /* [face] 1: counter-clockwise in its coordinates is so as seen from outside; -1: not */
 } tl_delaunay_points;
 
 /* What is made, and space that the next use has again. All zeros to begin with. */

@@ -6,7 +6,8 @@
  *     best(i, j) = most over k between of   min(best(i, k), best(k, j), worst of (p_i p_k p_j with a, with b))
  *
  * (Klincsek 1980; Freitag and Ollivier-Gooch 1997). The other way round, two zones with a side in common become three
- * around the edge of their far corners. Either is done when the worst share of the zones rises by GAIN.
+ * around the edge of their far corners. Either is done when the worst share of the zones is
+ * positive then and rises by GAIN.
  *
  * Zones with all corners on the surface may stay flat. They get a point near the middle of an edge, which divides all
  * zones around that. */
@@ -216,7 +217,8 @@ static bool take_edge(flips *f, uint32_t zone, uint32_t i, uint32_t k, bool *don
     double worst = INFINITY;
     for (uint32_t m = 0; m < r.count; m++)
         worst = fmin(worst, tl_zone_share(f->points, f->lists->zone[r.zone[m]]));
-    if (triangulate(f, &r) < worst + GAIN)
+    const double best = triangulate(f, &r);
+    if (!(best > 0) || best < worst + GAIN)
         return true;
     change c = {.old_count = r.count};
     memcpy(c.old, r.zone, r.count * sizeof *c.old);
@@ -248,7 +250,7 @@ static bool take_side(flips *f, uint32_t zone, uint32_t i, bool *done)
         memcpy(c.made[m], (uint32_t[]){far, near, p[m], p[(m + 1) % 3]}, sizeof c.made[m]);
         best = fmin(best, tl_zone_share(f->points, c.made[m]));
     }
-    if (best < worst + GAIN)
+    if (!(best > 0) || best < worst + GAIN)
         return true;
     *done = true;
     return make_change(f, &c);

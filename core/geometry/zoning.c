@@ -8,13 +8,15 @@
  *     the triangles of each face are turned the right way and add up to its area
  *     the zones add up to the volume of the block
  *
- * Faces may be bent a little, as those of meshes are. Points of such a block are moved before they go onto
- * the grid, corners inwards the most, so that no face is hollow:
+ * Faces may be bent a little, as those of meshes are. Points of such a block are moved before they go onto the grid.
+ * Corners go inwards the most, so that no face is hollow, and with the weights w of points (zone_weight.h):
  *
- *     x' = c + (x - c) (1 - bulge |x - c|^2 / R^2)
+ *     x' = c + (x - c) (1 - bulge (|x - c|^2 - w) / R^2)
  *
- * c is the centroid and R the largest distance from it. Only what lies on the grid is moved so. Where a check fails, a
- * larger bulge is tried, and another unit of the grid: which of several flat zones are made hangs on its rounding. */
+ * c is the centroid and R the largest distance from it. The hull of a face moved so has the Delaunay triangles of the
+ * flat face, as far as the bulge is more than the bend. Only what lies on the grid is moved. Where a check fails,
+ * another bulge is tried, and another unit of the grid: which flat zones are made among points on a sphere hangs on
+ * rounding. */
 #include "geometry/zoning.h"
 
 #include "base/table.h"
@@ -43,17 +45,23 @@
 /* Tolerance: faces bent by less than this share of the extent count as flat. Far from zero coordinates are rounded so.
  */
 #define FLAT 1e-8
-/* Constant: the bulge of a bent block is this many times its bend at first, and each next one as many times that. */
-#define BULGE_OF_BEND 3
-#define MORE_BULGE 10
-#define MOST_BULGE 3e-2
+/* Limit: the shortest edge, as a share of the extent: some hundred units of the grid. */
+#define SHORTEST 1e-10
+/* Constant: the bulge of a bent block is this many times its bend at first. Then less and more of it is tried in turn:
+ * a large one may turn an edge between two faces that are nearly one, a small one leave a face hollow. */
+#define BULGE_OF_BEND 3e3
+#define OTHER_BULGE 0.2
+#define MOST_BULGE 0.05
+/* Constant: so many tries of a flat block have no bulge, the others this one. */
+#define FLAT_TRIES 4
+#define FLAT_BULGE 1e-3
 /* Constant: the share of altitudes below which zones are so flat that a block is tried again. */
 #define FLATTEST 1e-6
 /* Constant: the factor of weights after a point has been hidden by them. */
 #define LIGHTER 1e-2
 /* Constant: how often a block is tried, and the share by which each has a coarser grid. */
-#define TRIES 5
-#define COARSER 0.07
+#define TRIES 9
+#define COARSER 0.04
 
 /* How a block is tried. */
 typedef struct attempt {
@@ -115,10 +123,16 @@ double tl_zoning_expected(double volume, double surface, double edge)
 
 /* ---- points on the grid ---- */
 
-static tl_vec3 bulged(const tl_zone_points *p, tl_vec3 place, double bulge)
+static double weight_of(const tl_zone_points *p, uint32_t i, double unit)
 {
-    const tl_vec3 arm = tl_v3_sub(place, p->centroid);
-    return tl_v3_madd(place, -bulge * tl_v3_norm2(arm) / (p->extent * p->extent), arm);
+    return tl_zone_weight(i < p->edge_end, unit * p->size[i], unit * p->shortest, p->chance[i]);
+}
+
+static tl_vec3 bulged(const tl_zone_points *p, uint32_t i, double bulge, double unit)
+{
+    const tl_vec3 arm = tl_v3_sub(p->place[i], p->centroid);
+    const double power = tl_v3_norm2(arm) - weight_of(p, i, unit) / (unit * unit);
+    return tl_v3_madd(p->place[i], -bulge * power / (p->extent * p->extent), arm);
 }
 
 static bool put_on_grid(tl_zone_scratch *s, const attempt *a)
@@ -133,10 +147,9 @@ static bool put_on_grid(tl_zone_scratch *s, const attempt *a)
     /* no point of a bulge is farther out than the corners were */
     const double unit = a->stretch * ldexp(1, TL_GRID_BITS - exponent);
     for (uint32_t i = 0; i < p->count; i++) {
-        const tl_vec3 at = tl_v3_sub(a->bulge > 0 ? bulged(p, p->place[i], a->bulge) : p->place[i], b.min);
-        s->site[i] = (tl_site){
-            floor(unit * at.x + 0.5), floor(unit * at.y + 0.5), floor(unit * at.z + 0.5),
-            floor(a->light * tl_zone_weight(i < p->edge_end, unit * p->size[i], unit * p->shortest, p->chance[i]))};
+        const tl_vec3 at = tl_v3_sub(a->bulge > 0 ? bulged(p, i, a->bulge, unit) : p->place[i], b.min);
+        s->site[i] = (tl_site){floor(unit * at.x + 0.5), floor(unit * at.y + 0.5), floor(unit * at.z + 0.5),
+                               floor(a->light * weight_of(p, i, unit))};
     }
     return true;
 }
@@ -312,6 +325,9 @@ static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_zo
     tl_status status = tl_zone_points_begin(&s->points, poly, zoning, error);
     if (!status)
         status = tl_zone_edges_lay(&s->points, error);
+    if (!status && s->points.shortest < SHORTEST * s->points.extent)
+        return tl_fail(error, TL_E_GEOMETRY, "its shortest edge is %.3g, which is nothing beside its size of %.3g",
+                       s->points.shortest, poly->size);
     if (!status)
         status = tl_zone_faces_lay(&s->points, &s->near, error);
     if (!status)
@@ -331,6 +347,7 @@ static tl_status divide(tl_zone_scratch *s, const attempt *a, tl_error *error)
                                        .surface_count = p->face_end,
                                        .start = p->start,
                                        .in_face = p->in_face,
+                                       .flat = a->bulge == 0,
                                        .turn = p->turn};
     const tl_status status = tl_delaunay_make(&s->delaunay, &points, error);
     if (status)
@@ -389,6 +406,17 @@ static double first_bulge(const tl_zone_points *p)
     return bend > FLAT ? fmin(BULGE_OF_BEND * bend, MOST_BULGE) : 0;
 }
 
+/* That with which it is tried again: the first, less, more, still less, still more, and so on. */
+static double bulge_of(double first, int again)
+{
+    if (first == 0)
+        return again < FLAT_TRIES ? 0 : FLAT_BULGE;
+    double factor = 1;
+    for (int i = 0; i < (again + 1) / 2; i++)
+        factor *= again % 2 ? OTHER_BULGE : 1 / OTHER_BULGE;
+    return fmin(first * factor, MOST_BULGE);
+}
+
 /* Whether zones have a volume with places as far from zero as they are. */
 static tl_status check_rounding(const tl_zone_mesh *m, tl_error *error)
 {
@@ -407,11 +435,12 @@ tl_status tl_zoning_make(const tl_poly *poly, const tl_zoning *zoning, tl_zone_s
     tl_status status = lay_points(scratch, poly, zoning, error);
     if (status)
         return status;
-    attempt a = {.bulge = first_bulge(&scratch->points), .stretch = 1, .light = 1, .least_share = FLATTEST};
+    const double bulge = first_bulge(&scratch->points);
+    attempt a = {.bulge = bulge, .stretch = 1, .light = 1, .least_share = FLATTEST};
     status = make_once(scratch, &a, mesh, error);
     for (int again = 1; status == TL_E_GEOMETRY && again < TRIES; again++) {
         /* repaired places are no places of lattices: all are laid anew */
-        a.bulge = fmin(MORE_BULGE * a.bulge, MOST_BULGE);
+        a.bulge = bulge_of(bulge, again);
         a.stretch = 1 - again * COARSER;
         a.light *= scratch->delaunay.hidden > 0 ? LIGHTER : 1;
         a.least_share = again < TRIES - 1 ? FLATTEST : 0;

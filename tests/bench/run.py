@@ -4,7 +4,7 @@
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
 NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest edits output examples
-yade beside million cuts); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
+yade beside million cuts zones); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
 
@@ -222,9 +222,14 @@ def cuts(r):
         r.program("cuts")
 
 
+def zones(r):
+    """Dividing blocks into zones, timed in C."""
+    r.program("zones", *(["quick"] if r.quick else []))
+
+
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest, edits,
                                       output,
-                                      examples, yade, beside, million, cuts)}
+                                      examples, yade, beside, million, cuts, zones)}
 
 
 # ---------------------------------------------------------------------- figures

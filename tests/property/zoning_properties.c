@@ -184,6 +184,36 @@ TEST(random_blocks_are_filled)
     }
 }
 
+/* Blocks with coordinates of six digits, whose faces are bent. Hardly any is refused. */
+TEST(bent_blocks_are_filled)
+{
+    const int cases = check_cases(300);
+    int refused = 0;
+    for (int i = 0; i < cases; i++) {
+        tl_poly *p = random_block(), *bent = NULL;
+        const double step = 1e-6 * p->size;
+        for (uint32_t v = 0; v < p->vertex_count; v++) {
+            tl_vec3 *x = &p->vertex[v];
+            *x = tl_v3(step * floor(x->x / step), step * floor(x->y / step), step * floor(x->z / step));
+        }
+        if (!tl_poly_hull(p->vertex, p->vertex_count, TL_HULL_OF_CORNERS, &bent, &error)) {
+            tl_zone_mesh m;
+            const double edge = random_edge(bent);
+            if (tl_zoning_make(bent, &(tl_zoning){.edge = edge}, scratch, &m, &error)) {
+                refused++;
+            } else {
+                CHECK_NEAR(m.volume, tl_poly_mass(bent).volume, 1e-5 * p->size * p->size * p->size);
+                CHECK(m.least_altitude > 0);
+                check_neighbours(&m);
+            }
+            tl_zone_mesh_free(&m);
+        }
+        tl_poly_free(bent);
+        tl_poly_free(p);
+    }
+    CHECK(refused <= cases / 100);
+}
+
 /* ---- the same elsewhere, and larger ---- */
 
 static bool same_lists(const tl_zone_mesh *a, const tl_zone_mesh *b)
@@ -294,6 +324,12 @@ static void keys_by(const tl_poly *newer, const tl_poly *older, uint64_t *key)
     }
 }
 
+/* A wanted edge that doubles with the distance from the origin. */
+static double farther_is_coarser(const void *edge, tl_vec3 place)
+{
+    return *(const double *)edge * (1 + tl_v3_norm(place));
+}
+
 TEST(both_sides_of_a_joint_have_the_same_triangles)
 {
     enum { MOST = 4000 };
@@ -312,8 +348,10 @@ TEST(both_sides_of_a_joint_have_the_same_triangles)
         uint64_t key[512];
         keys_by(cut.above, cut.below, key);
         tl_zone_mesh below, above = {0};
-        if (divide(cut.below, &(tl_zoning){.edge = edge}, &below) &&
-            divide(cut.above, &(tl_zoning){.edge = edge, .corner_key = key}, &above)) {
+        tl_zoning zoning = {.edge = edge, .size = i % 3 ? NULL : farther_is_coarser, .user = &edge};
+        const bool divided = divide(cut.below, &zoning, &below);
+        zoning.corner_key = key;
+        if (divided && divide(cut.above, &zoning, &above)) {
             const uint32_t count = places_of(&below, cap_of(cut.below, cut.above), ours, MOST);
             CHECK(count > 0);
             CHECK_INT(places_of(&above, cap_of(cut.above, cut.below), theirs, MOST), count);
@@ -365,6 +403,7 @@ int main(void)
 {
     scratch = tl_zone_scratch_create();
     RUN(random_blocks_are_filled);
+    RUN(bent_blocks_are_filled);
     RUN(the_same_anywhere_and_of_any_size);
     RUN(both_sides_of_a_joint_have_the_same_triangles);
     RUN(triangles_are_those_of_delaunay);
