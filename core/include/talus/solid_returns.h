@@ -189,7 +189,9 @@ TL_IN_LOOP double tl_tension_within(double tension, double cohesion, double fric
 static inline tl_mohr_coulomb tl_mohr_coulomb_of(double cohesion, double friction, double dilation, double tension)
 {
     double sine = tl_sin_degrees(friction), flow = tl_sin_degrees(dilation);
-    tl_mohr_coulomb y = {.friction = sine, .dilation = flow < sine ? flow : sine};
+    tl_mohr_coulomb y;
+    y.friction = sine;
+    y.dilation = flow < sine ? flow : sine;
     y.cohesion = 2 * cohesion * tl_cos_degrees(friction);
     y.tension = tl_tension_within(tension, y.cohesion, sine);
     return y;
@@ -197,7 +199,8 @@ static inline tl_mohr_coulomb tl_mohr_coulomb_of(double cohesion, double frictio
 
 static inline tl_status tl_rock_of(const tl_mohr_coulomb_params *p, tl_rock *out, tl_report *report)
 {
-    *out = (tl_rock){.given = *p};
+    memset(out, 0, sizeof *out);
+    out->given = *p;
     tl_status status = tl_isotropic_of(p->young, p->poisson, p->bulk, p->shear, &out->elastic, report);
     if (status == TL_OK && isnan(p->cohesion) && p->cohesion_table.count == 0)
         status = tl_refuse(report, "give cohesion or cohesion_table");
@@ -314,7 +317,7 @@ TL_IN_LOOP void tl_group_return(const tl_isotropic *elastic, const tl_strength_l
         double torn = (a - mean) * by_shear + mean * by_bulk;
         shear[i] = sqrt(0.5 * squares) * by_shear;
         torn = torn > 0 ? torn : 0;
-        tension[i] = marked >= TL_ZONE_TENSION ? torn : 0;
+        tension[i] = marked >= (double)TL_ZONE_TENSION ? torn : 0;
         mark[i] = marked;
         after[0][i] = s[0][i] - tl_principal_part(&p, a, b, c, 0, 0);
         after[1][i] = s[1][i] - tl_principal_part(&p, a, b, c, 1, 1);
