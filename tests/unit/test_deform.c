@@ -229,6 +229,72 @@ TEST(cut_rock_of_zones_stands)
     }
 }
 
+/* Two cubes of zones on a rigid floor, and two blocks far away: a rigid one with a lower number, and zones with a higher
+ * one. Both are held. */
+static tl_model *cubes_and_far_blocks(void)
+{
+    const tl_id held[3] = {1, 2, 5};
+    tl_model *m = scene_model(2);
+    scene_box(m, tl_v3(9, 9, 9), tl_v3(10, 10, 10));
+    scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
+    scene_box(m, tl_v3(-1, -1, 0), tl_v3(1, 1, 1));
+    scene_box(m, tl_v3(-1, -1, 1), tl_v3(1, 1, 2));
+    scene_box(m, tl_v3(5, 5, 5), tl_v3(6, 6, 6));
+    solid(m, 1e9, 0.25);
+    scene_law(m, "coulomb", 1e10, 1e10, 40);
+    scene_ok(m, tl_blocks_fix(m, held, 3, TL_FIX_ALL));
+    scene_ok(m, tl_model_set_gravity(m, tl_v3(1, 0, -10)));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 2e-5}));
+    return m;
+}
+
+/* How far the points of two meshes are from each other, m. */
+static double apart(const tl_model *a, const tl_model *b, uint32_t mesh_a, uint32_t mesh_b)
+{
+    const tl_body_mesh *p = &a->zones->mesh[mesh_a], *q = &b->zones->mesh[mesh_b];
+    double most = 0;
+    CHECK_INT(p->point_end - p->point_begin, q->point_end - q->point_begin);
+    for (uint32_t k = 0; k < p->point_end - p->point_begin; k++)
+        most = fmax(most, scene_apart(tl_columns_get(a->zones->points.u, p->point_begin + k),
+                                      tl_columns_get(b->zones->points.u, q->point_begin + k)));
+    return most;
+}
+
+/* Meshes and segments follow when rows move and blocks go: what stays goes on as if nothing had gone. */
+TEST(meshes_follow_when_blocks_go)
+{
+    tl_model *m[2] = {cubes_and_far_blocks(), cubes_and_far_blocks()}, *again;
+    tl_solve_result result;
+    tl_error error;
+    const tl_id far[2] = {1, 5}, above = 4;
+    const tl_id of[3] = {5, 3, 4};
+    const char *path = "meshes_follow.talus";
+    const tl_dividing how = {.edge = 0.5, .solid = "rock"};
+    tl_divided made;
+    for (int k = 0; k < 2; k++) {
+        for (int b = 0; b < 3; b++) /* the mesh of the far block comes first */
+            scene_ok(m[k], tl_blocks_divide(m[k], of + b, 1, &how, &made));
+        scene_ok(m[k], tl_model_cycle(m[k], 100, &result));
+    }
+    scene_ok(m[1], tl_blocks_delete(m[1], far, 2));
+    scene_ok(m[1], tl_model_save(m[1], path));
+    CHECK_INT(tl_model_restore(path, 2, NULL, NULL, &again, &error), TL_OK);
+    CHECK_INT(remove(path), 0);
+    CHECK_INT(m[1]->zones->mesh_count, 2);
+    tl_model *all[3] = {m[0], m[1], again};
+    for (int k = 0; k < 3; k++)
+        scene_ok(all[k], tl_model_cycle(all[k], 100, &result));
+    for (uint32_t mesh = 0; mesh < 2; mesh++)
+        for (int k = 1; k < 3; k++)
+            CHECK_NEAR(apart(m[0], all[k], mesh + 1, mesh), 0, 0);
+    scene_ok(m[1], tl_blocks_delete(m[1], &above, 1));
+    scene_ok(m[1], tl_model_cycle(m[1], 100, &result));
+    CHECK_INT(m[1]->zones->mesh_count, 1);
+    CHECK_INT(m[1]->segments->meet_count, 1);
+    for (int k = 0; k < 3; k++)
+        tl_model_destroy(all[k]);
+}
+
 TEST_MAIN(zones_fill_the_blocks_of_cut_rock(), both_sides_of_a_cut_have_the_same_triangles(),
           cut_rock_is_strained_alike(), gridpoints_go_on_as_their_block_went(), what_cannot_be_divided_is_refused(),
-          cut_rock_of_zones_stands())
+          cut_rock_of_zones_stands(), meshes_follow_when_blocks_go())
