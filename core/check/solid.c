@@ -165,10 +165,17 @@ static void next_strain(trial *t, int step)
 
 /* ---------------------------------------------------------------- one call --------------- */
 
+/* How many entries of columns are filled and looked at, for a batch of so many padded zones. Of a whole batch all that
+ * there are. */
+static size_t end_of(size_t padded)
+{
+    return padded < ZONES ? padded + GUARD : MOST;
+}
+
 static void fill(const trial *t, const zones *in, const size_t *order, size_t begin, size_t count, size_t padded,
                  buffer *b)
 {
-    for (size_t l = 0; l < MOST; l++) {
+    for (size_t l = 0; l < end_of(padded); l++) {
         size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
         for (int k = 0; k < COLUMNS; k++) {
             int state = k - TL_ZONE_AT_STATE;
@@ -183,16 +190,17 @@ static void fill(const trial *t, const zones *in, const size_t *order, size_t be
 /* Sees to it that nothing has been written that is not the solid's. */
 static void check_writes(trial *t, const buffer *now, const buffer *before, size_t padded)
 {
+    const size_t end = end_of(padded);
     for (int k = 0; k < COLUMNS; k++) {
         bool states = k >= TL_ZONE_AT_STATE + (int)t->columns, given = k < TL_ZONE_AT_STRESS;
         size_t from = states || given ? 0 : padded;
-        if (memcmp(now->c[k] + from, before->c[k] + from, (MOST - from) * sizeof now->c[k][0]) != 0)
+        if (memcmp(now->c[k] + from, before->c[k] + from, (end - from) * sizeof now->c[k][0]) != 0)
             tl_check_note(t->c, WRITES, "update() writes to %s",
                           given    ? "a column of what it is given"
                           : states ? "a state that the solid does not declare"
                                    : "what lies behind the batch");
     }
-    if (memcmp(now->flags + padded, before->flags + padded, (MOST - padded) * sizeof now->flags[0]) != 0)
+    if (memcmp(now->flags + padded, before->flags + padded, (end - padded) * sizeof now->flags[0]) != 0)
         tl_check_note(t->c, WRITES, "update() writes to flags behind the batch");
 }
 
@@ -203,7 +211,9 @@ static bool call_some(trial *t, const zones *in, zones *out, const size_t *order
     double *state[2 * TL_SOLID_COLUMNS];
     size_t padded = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
     fill(t, in, order, begin, count, padded, &now);
-    memcpy(&before, &now, sizeof now);
+    for (int k = 0; k < COLUMNS; k++)
+        memcpy(before.c[k], now.c[k], end_of(padded) * sizeof now.c[k][0]);
+    memcpy(before.flags, now.flags, end_of(padded) * sizeof now.flags[0]);
     tl_solid_batch batch = tl_solid_batch_of(now.c[0], MOST, now.flags, state, 2 * TL_SOLID_COLUMNS);
     batch.count = (uint32_t)padded;
     batch.dt = DT;

@@ -329,7 +329,7 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind, co
 static bool is_still(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
-    const bool deforms = tl_model_deforms(m) && tl_mesh_of(m, b->id[body]) != TL_NO_ROW;
+    const bool deforms = b->mesh[body] != 0;
     return !deforms && b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && tl_v3_is_zero(b->v[body]) &&
            tl_v3_is_zero(b->w[body]);
 }

@@ -472,9 +472,21 @@ static bool keep_others(const tl_model *m, const body_sum *sums, bool add, face_
     return true;
 }
 
+/* Refuses to hold or load the bodies of deformable blocks. */
+static tl_status check_rigid(tl_model *m, const uint8_t *fix, const body_sum *sums)
+{
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        if (tl_block_deforms(m, row) && (fix[row] || sums[m->blocks.body[row]].weight > 0))
+            return tl_fail(&m->error, TL_E_STATE, "boundary: block %u is deformable; hold or load its gridpoints",
+                           m->blocks.id[row]);
+    return TL_OK;
+}
+
 static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add, face_loads *loads)
 {
-    tl_status status = check_loads(m, sums, add);
+    tl_status status = check_rigid(m, fix, sums);
+    if (status == TL_OK)
+        status = check_loads(m, sums, add);
     size_t replaced = 0;
     if (status == TL_OK && loads->count && !keep_others(m, sums, add, loads))
         status = tl_fail_memory(&m->error);

@@ -857,6 +857,20 @@ static tl_status check_turned(const tl_stage *stage)
     return status;
 }
 
+/* Refuses to cut blocks that have zones. */
+static tl_status check_zones(const tl_stage *stage)
+{
+    tl_model *m = stage->model;
+    for (size_t i = 0; i < stage->count; i++) {
+        const tl_stage_block *block = &stage->blocks[i];
+        if (tl_stage_made(block) && block->source != TL_NO_ROW && tl_block_deforms(m, block->source))
+            return tl_fail(&m->error, TL_E_STATE,
+                           "block %u is deformable and cannot be cut; cut it before it gets zones",
+                           m->blocks.id[block->source]);
+    }
+    return TL_OK;
+}
+
 tl_status tl_stage_commit(tl_stage *stage)
 {
     tl_model *m = stage->model;
@@ -867,6 +881,8 @@ tl_status tl_stage_commit(tl_stage *stage)
     tl_status status = tl_stage_settle(stage);
     if (status == TL_OK)
         status = check_turned(stage);
+    if (status == TL_OK)
+        status = check_zones(stage);
     if (status == TL_OK && !reserve_scratch(stage, old, made, &scratch))
         status = tl_fail_memory(&m->error);
     if (status != TL_OK) {

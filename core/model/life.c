@@ -43,6 +43,7 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, round, 0);
     TL_COLUMN(t, b, radius, 0);
     TL_COLUMN(t, b, fixed, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, mesh, 0);
     TL_COLUMN(t, b, force, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(t, b, moment, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(t, b, drive, 0);

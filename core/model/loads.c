@@ -132,7 +132,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     bool placed = !isnan(load.at.x);
     if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) || (placed && !tl_v3_finite(load.at)))
         return tl_fail(&m->error, TL_E_ARGUMENT, "load: force, moment and at must be finite numbers");
-    status = tl_blocks_check(m, ids, count);
+    status = tl_blocks_check_rigid(m, ids, count, "load blocks", "load its gridpoints");
     if (status != TL_OK)
         return status;
     if (count && (!tl_bodies_hold_loads(&m->bodies) || !face_loads_forget(m, ids, count)))
@@ -244,7 +244,7 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
         return status;
     status = tl_check_motion(&m->error, "drive", drive.velocity, drive.angular_velocity);
     if (status == TL_OK)
-        status = tl_blocks_check(m, ids, count);
+        status = tl_blocks_check_rigid(m, ids, count, "drive blocks", "give its gridpoints velocities");
     if (status != TL_OK)
         return status;
     if (count == 0) {
@@ -338,7 +338,7 @@ static tl_status change_fixing(tl_model *m, const tl_id *ids, size_t count, cons
 {
     tl_status status = tl_model_may_set(m, verb);
     if (status == TL_OK)
-        status = tl_blocks_check(m, ids, count);
+        status = tl_blocks_check_rigid(m, ids, count, verb, "hold or let go of its gridpoints");
     bool changed = false;
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];

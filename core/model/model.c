@@ -230,6 +230,15 @@ tl_status tl_blocks_check(tl_model *m, const tl_id *ids, size_t count)
     return TL_OK;
 }
 
+tl_status tl_blocks_check_rigid(tl_model *m, const tl_id *ids, size_t count, const char *verb, const char *instead)
+{
+    tl_status status = tl_blocks_check(m, ids, count);
+    for (size_t i = 0; status == TL_OK && i < count; i++)
+        if (tl_block_deforms(m, tl_block_row_quiet(m, ids[i])))
+            status = tl_fail(&m->error, TL_E_STATE, "cannot %s: block %u is deformable; %s", verb, ids[i], instead);
+    return status;
+}
+
 tl_status tl_block_check(tl_model *m, tl_id block)
 {
     return tl_block_row(m, block) == TL_NO_ROW ? m->error.status : TL_OK;

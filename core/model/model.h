@@ -95,6 +95,7 @@ typedef struct tl_bodies {
     double *round;    /* the paper's one moment of inertia (20) */
     double *radius;   /* farthest vertex from the centroid */
     uint8_t *fixed;   /* TL_FIX_* */
+    uint32_t *mesh;   /* number of its mesh + 1; 0: it is rigid */
     tl_vec3 *force;   /* unbalanced: contacts, weight, loads */
     tl_vec3 *moment;
     /* unbalanced, in the last damped step; NULL: no damping has asked for them */
@@ -274,6 +275,12 @@ static inline bool tl_blocks_fixed(const tl_model *m, uint32_t a, uint32_t b)
     return fixed[m->blocks.body[a]] == TL_FIX_ALL && fixed[m->blocks.body[b]] == TL_FIX_ALL;
 }
 
+/* Whether a block's body is deformable, by the row of the block. */
+static inline bool tl_block_deforms(const tl_model *m, uint32_t row)
+{
+    return m->bodies.mesh[m->blocks.body[row]] != 0;
+}
+
 /* Present place of a body's centroid, relative to the origin. */
 static inline tl_vec3 tl_body_place(const tl_bodies *b, uint32_t body)
 {
@@ -369,6 +376,9 @@ tl_id tl_split_of(const tl_model *m, tl_id block);
 /* Row of a block id, or TL_NO_ROW with a sentence in the model's error. Whether several have rows. */
 uint32_t tl_block_row(tl_model *m, tl_id id);
 tl_status tl_blocks_check(tl_model *m, const tl_id *ids, size_t count);
+/* The same of blocks that are to be rigid: TL_E_STATE where one has zones. `verb`: "fix blocks"; `instead`: what is to be
+ * done. */
+tl_status tl_blocks_check_rigid(tl_model *m, const tl_id *ids, size_t count, const char *verb, const char *instead);
 /* Row of an id known to live, or TL_NO_ROW. */
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
 

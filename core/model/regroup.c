@@ -335,10 +335,20 @@ static void finish_body(tl_model *m, const regroup *r, const new_body *one)
     }
 }
 
+/* Refuses to make bodies of zones anew. */
+static tl_status check_zones(tl_model *m, const regroup *r)
+{
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        if (m->bodies.mesh[body] && !r->stays[body])
+            return tl_fail(&m->error, TL_E_STATE, "block %u is deformable and cannot be joined to others, nor parted",
+                           m->bodies.id[body]);
+    return TL_OK;
+}
+
 tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
 {
     regroup r = {0};
-    tl_status status = sort_bodies(m, group, &r) ? TL_OK : tl_fail_memory(&m->error);
+    tl_status status = sort_bodies(m, group, &r) ? check_zones(m, &r) : tl_fail_memory(&m->error);
     bool changes = status == TL_OK && r.new_body_count > 0;
     if (changes && !(list_made(m, group, &r) && reserve_rows(m, &r)))
         status = tl_fail_memory(&m->error);
@@ -474,6 +484,8 @@ static tl_status check_parts(tl_model *m, const tl_id *ids, size_t count, const 
     tl_status status = tl_model_may_change(m, verb);
     if (status == TL_OK)
         tl_rows_tidy(m);
+    if (status == TL_OK)
+        status = tl_blocks_check_rigid(m, ids, count, verb, "join blocks before they get zones");
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t row = tl_block_row(m, ids[i]);
         if (row == TL_NO_ROW)
@@ -710,8 +722,11 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     tl_status status = TL_OPTIONS_READ(tl_block_set, values, &read, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set properties of blocks");
-    if (status == TL_OK)
+    const bool moves = given(set->velocity) || given(set->angular_velocity);
+    if (status == TL_OK && !moves && isnan(set->density))
         status = tl_blocks_check(m, ids, count);
+    else if (status == TL_OK)
+        status = tl_blocks_check_rigid(m, ids, count, "set density or velocities", "set them before it gets zones");
     if (status == TL_OK)
         status = check_set(m, ids, count, set);
     if (status != TL_OK)

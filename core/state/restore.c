@@ -22,6 +22,7 @@
 #include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "zone/follow.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/sound.h"
@@ -565,6 +566,9 @@ static tl_status read_zones(tl_model *m, const tl_archive *a)
     if (bad)
         return unsound(a, m, bad);
     const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z);
+    z->followed = m->structure - 1; /* as if rows had moved */
+    if (enough)
+        tl_zones_follow(m);
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 

@@ -46,7 +46,7 @@ static tl_status check_block(tl_model *m, uint32_t row)
     const tl_bodies *b = &m->bodies;
     const uint32_t body = m->blocks.body[row];
     const tl_id block = m->blocks.id[row];
-    if (tl_mesh_of(m, b->id[body]) != TL_NO_ROW)
+    if (b->mesh[body])
         return refuse(m, block, "it has zones already");
     if (b->member_count[body] > 1)
         return refuse(m, block, "it is joined to others; bodies of one block can be divided");
@@ -266,7 +266,7 @@ static tl_status lay_all(dividing *d, uint32_t solid)
         else
             m->bodies.fixed[m->zones->mesh[k].row] = fixed[k - meshes];
     if (status != TL_OK)
-        tl_zones_end_at(m->zones, meshes);
+        tl_zones_end_at(m, meshes);
     else
         m->structure++;
     free(fixed);

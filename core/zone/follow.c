@@ -151,7 +151,11 @@ void tl_zones_follow(tl_model *m)
     if (z->followed == m->structure)
         return;
     keep_meshes(m, z);
-    for (size_t k = 0; k < z->mesh_count; k++)
+    for (uint32_t row = 0; row < m->bodies.table.rows; row++)
+        m->bodies.mesh[row] = 0;
+    for (uint32_t k = 0; k < z->mesh_count; k++) {
         z->mesh[k].row = m->blocks.body[tl_block_row_quiet(m, z->mesh[k].body)];
+        m->bodies.mesh[z->mesh[k].row] = k + 1;
+    }
     z->followed = m->structure;
 }

@@ -16,11 +16,8 @@
 
 uint32_t tl_mesh_of(const tl_model *m, tl_id body)
 {
-    const size_t count = m->zones ? m->zones->mesh_count : 0;
-    for (size_t k = 0; k < count; k++)
-        if (m->zones->mesh[k].body == body)
-            return (uint32_t)k;
-    return TL_NO_ROW;
+    const uint32_t row = tl_block_row_quiet(m, body);
+    return row == TL_NO_ROW ? TL_NO_ROW : m->bodies.mesh[m->blocks.body[row]] - 1;
 }
 
 const tl_surface_part *tl_face_parts(const tl_model *m, tl_id block, uint32_t number, size_t *count)
@@ -338,6 +335,7 @@ tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t so
         lay_mesh(&l, body, solid, &more);
         tl_zones_index(z);
         m->bodies.fixed[l.row] = TL_FIX_ALL; /* its gridpoints move it */
+        m->bodies.mesh[l.row] = (uint32_t)z->mesh_count;
         m->constraints++;
     }
     free(l.local);
@@ -345,8 +343,9 @@ tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t so
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
-void tl_zones_end_at(struct tl_zones *z, uint32_t meshes)
+void tl_zones_end_at(tl_model *m, uint32_t meshes)
 {
+    struct tl_zones *z = m->zones;
     if (meshes >= z->mesh_count)
         return;
     const tl_body_mesh *first = &z->mesh[meshes];
@@ -358,6 +357,8 @@ void tl_zones_end_at(struct tl_zones *z, uint32_t meshes)
     tl_table_resize(&z->points.table, first->point_begin);
     z->row_of_count = first->zone_begin;
     z->part_count = first->part_begin;
+    for (uint32_t k = meshes; k < z->mesh_count; k++)
+        m->bodies.mesh[z->mesh[k].row] = 0;
     z->mesh_count = meshes;
     z->version++;
     tl_zones_index(z); /* there is room: it was made for more */

@@ -23,7 +23,7 @@ typedef struct tl_grid {
 /* Gives a body that has none a mesh, all of one solid, free of stress. Nothing has changed when it fails. */
 tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid);
 /* Takes back the meshes from a number on. */
-void tl_zones_end_at(struct tl_zones *z, uint32_t meshes);
+void tl_zones_end_at(tl_model *m, uint32_t meshes);
 /* Lists the slots of each gridpoint. false: out of memory. */
 bool tl_zones_index(struct tl_zones *z);
 /* The number of a body's mesh, or TL_NO_ROW. */
@@ -32,11 +32,7 @@ uint32_t tl_mesh_of(const tl_model *m, tl_id body);
 const tl_surface_part *tl_face_parts(const tl_model *m, tl_id block, uint32_t number, size_t *count);
 /* Whether two blocks meet by segments, by their rows. */
 bool tl_blocks_meet(const tl_model *m, uint32_t a, uint32_t b);
-/* Whether a block, or one of two, is deformable, by their rows. */
-static inline bool tl_block_deforms(const tl_model *m, uint32_t row)
-{
-    return tl_model_deforms(m) && tl_mesh_of(m, m->bodies.id[m->blocks.body[row]]) != TL_NO_ROW;
-}
+/* Whether one of two blocks is deformable, by their rows. */
 static inline bool tl_blocks_deform_either(const tl_model *m, uint32_t a, uint32_t b)
 {
     return tl_block_deforms(m, a) || tl_block_deforms(m, b);

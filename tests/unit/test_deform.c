@@ -295,6 +295,41 @@ TEST(meshes_follow_when_blocks_go)
         tl_model_destroy(all[k]);
 }
 
+/* What would move a deformable block as a whole, part or join it is refused, and names it. */
+TEST(deformable_blocks_refuse_what_is_for_rigid_ones)
+{
+    tl_model *m = cut_rock(5, 1);
+    solid(m, 1e9, 0.25);
+    const tl_id both[2] = {m->blocks.id[0], m->blocks.id[1]};
+    const tl_dividing how = {.edge = 0.5, .solid = "rock"};
+    tl_divided made;
+    char before[64], after[64];
+    scene_ok(m, tl_blocks_divide(m, both + 1, 1, &how, &made));
+    tl_load load = tl_load_default();
+    load.force = tl_v3(1, 0, 0);
+    tl_block_set set = tl_block_set_default();
+    set.velocity = tl_v3(1, 0, 0);
+    const tl_drive drive = tl_drive_default();
+    scene_ok(m, tl_state_hash(m, before));
+    CHECK_INT(tl_blocks_fix(m, both, 2, TL_FIX_ALL), TL_E_STATE);
+    CHECK(strstr(m->error.text, "is deformable; hold or let go of its gridpoints") != NULL);
+    CHECK_INT(tl_blocks_free(m, both, 2), TL_E_STATE);
+    CHECK_INT(tl_blocks_load(m, both, 2, &load), TL_E_STATE);
+    CHECK_INT(tl_blocks_drive(m, both, 2, &drive), TL_E_STATE);
+    CHECK_INT(tl_blocks_join(m, both, 2), TL_E_STATE);
+    CHECK_INT(tl_blocks_unjoin(m, both, 2), TL_E_STATE);
+    CHECK_INT(tl_blocks_set(m, both, 2, &set), TL_E_STATE);
+    tl_stage stage;
+    scene_ok(m, stage_begin(m, &stage));
+    scene_ok(m, stage_cut(&stage, tl_v3(1, 0, 0), tl_v3(0, 0, 0), (tl_tag){.joint = 1, .plane = 9}, 1));
+    CHECK_INT(tl_stage_commit(&stage), TL_E_STATE);
+    CHECK(strstr(m->error.text, "is deformable and cannot be cut") != NULL);
+    scene_ok(m, tl_state_hash(m, after));
+    CHECK_TEXT(before, after);
+    scene_ok(m, tl_blocks_hide(m, both, 2, true));
+    tl_model_destroy(m);
+}
+
 TEST_MAIN(zones_fill_the_blocks_of_cut_rock(), both_sides_of_a_cut_have_the_same_triangles(),
           cut_rock_is_strained_alike(), gridpoints_go_on_as_their_block_went(), what_cannot_be_divided_is_refused(),
-          cut_rock_of_zones_stands(), meshes_follow_when_blocks_go())
+          cut_rock_of_zones_stands(), meshes_follow_when_blocks_go(), deformable_blocks_refuse_what_is_for_rigid_ones())
