@@ -7,6 +7,7 @@
 #include "base/groups.h"
 #include "contact/sides.h"
 #include "model/body_shape.h"
+#include "model/regroup.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -328,13 +328,6 @@ static inline const char *tl_words(const tl_model *m, const char *lua, const cha
     return m->speaks_lua ? lua : c;
 }
 
-/* Whether two bodies may become one unasked: nothing but their own weight and contacts tells them apart. */
-static inline bool tl_bodies_may_join(const tl_bodies *b, uint32_t one, uint32_t other)
-{
-    return one != other && b->fixed[one] == b->fixed[other] && !b->drive[one] && !b->drive[other] &&
-           !tl_body_loaded(b, one) && !tl_body_loaded(b, other);
-}
-
 /* A block's centroid in its body's frame. */
 static inline tl_vec3 tl_block_local(const tl_model *m, uint32_t row)
 {
@@ -376,8 +369,8 @@ tl_id tl_split_of(const tl_model *m, tl_id block);
 /* Row of a block id, or TL_NO_ROW with a sentence in the model's error. Whether several have rows. */
 uint32_t tl_block_row(tl_model *m, tl_id id);
 tl_status tl_blocks_check(tl_model *m, const tl_id *ids, size_t count);
-/* The same of blocks that are to be rigid: TL_E_STATE where one has zones. `verb`: "fix blocks"; `instead`: what is to be
- * done. */
+/* The same of blocks that are to be rigid: TL_E_STATE where one has zones. `verb`: "fix blocks"; `instead`: what is to
+ * be done. */
 tl_status tl_blocks_check_rigid(tl_model *m, const tl_id *ids, size_t count, const char *verb, const char *instead);
 /* Row of an id known to live, or TL_NO_ROW. */
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);

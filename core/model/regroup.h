@@ -22,6 +22,12 @@ void tl_rows_settle(tl_model *m, tl_aside *aside, bool changed);
  * body. Bodies that stay as they are are not touched; others get the mass, momentum and angular
  * momentum of their parts. TL_E_MEMORY leaves the model as it was. */
 tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group);
+/* Whether two bodies may become one unasked: nothing but their own weight and contacts tells them apart. */
+static inline bool tl_bodies_may_join(const tl_bodies *b, uint32_t one, uint32_t other)
+{
+    return one != other && !b->mesh[one] && !b->mesh[other] && b->fixed[one] == b->fixed[other] && !b->drive[one] &&
+           !b->drive[other] && !tl_body_loaded(b, one) && !tl_body_loaded(b, other);
+}
 /* group[row] of the bodies as they are. */
 void tl_bodies_groups(const tl_model *m, uint32_t *group);
 /* A block's inertia about its centroid, in the axes of the model. */
