@@ -495,7 +495,7 @@ TL_VECTORIZED static void add_stiffness(tl_leap_body *leap, const tl_leap_link *
         for (int k = 0; k < 6; k++) {
             const double by = way[k] - way_a[k];
 #pragma omp simd
-            for (int l = 0; l < TL_LANES; l++)
+            for (unsigned l = 0; l < TL_LANES; l++)
                 force[l] += link->k[k][l] * by;
         }
         add_on_body(b->image, 1, force, link->arm_b);

@@ -137,12 +137,15 @@ TL_VECTORIZED static void put_planes(const tl_field_faces *restrict f, uint32_t 
 /* The largest of some offsets. */
 TL_VECTORIZED static double largest_offset(const double *restrict c, uint32_t count)
 {
-    double largest = 0;
-#pragma omp simd reduction(max : largest)
-    for (uint32_t k = 0; k < count; k++) {
-        const double far = fabs(c[k]);
-        largest = far > largest ? far : largest;
-    }
+    const uint32_t whole = count / LANES * LANES;
+    double most[LANES] = {0}, largest = 0;
+    for (uint32_t k = 0; k < whole; k += LANES)
+        for (uint32_t l = 0; l < LANES; l++)
+            most[l] = fabs(c[k + l]) > most[l] ? fabs(c[k + l]) : most[l];
+    for (uint32_t l = 0; l < LANES; l++)
+        largest = most[l] > largest ? most[l] : largest;
+    for (uint32_t k = whole; k < count; k++)
+        largest = fabs(c[k]) > largest ? fabs(c[k]) : largest;
     return largest;
 }
 
