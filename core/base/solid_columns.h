@@ -2,7 +2,7 @@
 #ifndef TL_BASE_SOLID_COLUMNS_H
 #define TL_BASE_SOLID_COLUMNS_H
 
-#include <talus/plugin.h>
+#include "base/kind_states.h"
 
 /* Columns of a batch. */
 enum {
@@ -15,12 +15,6 @@ enum {
     TL_ZONE_AT_STATE,
     TL_ZONE_AT_COUNT = TL_ZONE_AT_STATE + TL_SOLID_COLUMNS
 };
-
-/* Columns of a state of that kind. */
-static inline uint32_t tl_state_width(uint32_t kind)
-{
-    return kind == TL_STATE_SCALAR ? 1 : kind == TL_STATE_TENSOR ? 6 : 3;
-}
 
 /* A batch of the columns from `first` on, `stride` numbers apart. `state` gets where the columns of `states` states
  * are. */

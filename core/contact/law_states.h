@@ -2,13 +2,7 @@
 #ifndef TL_CONTACT_LAW_STATES_H
 #define TL_CONTACT_LAW_STATES_H
 
-#include <talus/plugin.h>
-
-/* State descriptor k of a kind. */
-static inline const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
-{
-    return (const tl_state *)(const void *)((const char *)kind->states + (size_t)k * kind->state_stride);
-}
+#include "base/kind_states.h"
 
 /* A state of a kind: its descriptor, and its columns, three of a vector and one of a scalar. */
 typedef struct tl_state_columns {
@@ -25,7 +19,7 @@ static inline bool tl_state_next(const tl_kind *kind, uint32_t columns, tl_state
     if (!kind || at->next == kind->state_count || at->begin >= columns)
         return false;
     at->state = tl_kind_state(kind, at->next++);
-    at->count = at->state->kind == TL_STATE_TANGENT ? 3 : 1;
+    at->count = tl_state_width(at->state->kind);
     return true;
 }
 

@@ -311,7 +311,7 @@ static tl_status begin(bench *b)
     uint32_t column = 0;
     for (uint32_t k = 0; k < b->law.kind->state_count && b->law.columns > 0; k++) {
         const tl_state *state = tl_kind_state(b->law.kind, k);
-        for (uint32_t c = state->kind == TL_STATE_TANGENT ? 3 : 1; c > 0; c--)
+        for (uint32_t c = tl_state_width(state->kind); c > 0; c--)
             now->c[TL_AT_STATE + column++][0] = state->initial;
     }
     b->stress = by_stress(b->test) ? b->test->normal_stress : 0;

@@ -8,6 +8,8 @@
 
 /* Steps of the iteration: a gradient stretched by 1000 takes 14. */
 #define STEPS 20
+/* Tolerance: change of a component of R in a step with which the iteration ends: what is left is its square. */
+#define SETTLED 1e-9
 
 static tl_vec3 row_of(const tl_mat3 *a, int i)
 {
@@ -40,8 +42,7 @@ tl_mat3 tl_m3_polar(const tl_mat3 *f)
                 change = fmax(change, fabs(next - r.m[i][j]));
                 r.m[i][j] = next;
             }
-        /* the inverse belongs to the matrix before: what it changes last is the square of this */
-        if (change < 1e-9)
+        if (change < SETTLED)
             break;
     }
     return r;

@@ -348,8 +348,8 @@ static bool find_state(const tl_kind *kind, const char *name, uint32_t *begin, u
 {
     *begin = 0;
     for (uint32_t k = 0; k < kind->state_count; k++) {
-        *width = tl_state_width(tl_solid_state(kind, k)->kind);
-        if (strcmp(tl_solid_state(kind, k)->name, name) == 0)
+        *width = tl_state_width(tl_kind_state(kind, k)->kind);
+        if (strcmp(tl_kind_state(kind, k)->name, name) == 0)
             return true;
         *begin += *width;
     }

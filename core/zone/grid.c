@@ -7,9 +7,9 @@
 
 #include "zone/solids.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/elementary.h>
 
 /* Constant: mass of a row without a gridpoint, kg: it is divided by. */
 #define NO_MASS 1.0
@@ -74,7 +74,7 @@ static size_t size_of(const tl_grid *g, uint32_t cluster)
 static uint32_t new_points(const laying *l, uint32_t cluster, bool add)
 {
     const tl_grid *g = l->grid;
-    uint32_t found = l->points, all = 0, seen[4 * TL_CLUSTER_ZONES];
+    uint32_t found = l->points, all = 0, seen[4 * TL_CLUSTER_MOST];
     for (uint32_t k = g->cluster_start[cluster]; k < g->cluster_start[cluster + 1]; k++)
         for (int a = 0; a < 4; a++) {
             const uint32_t point = g->zone[g->cluster_zone[k]][a];
@@ -116,7 +116,7 @@ static uint32_t gather_clusters(laying *l, uint32_t first)
 static void sort_clusters(laying *l, uint32_t first, uint32_t end)
 {
     uint32_t at = 0;
-    for (size_t size = TL_CLUSTER_ZONES; size > 0; size--)
+    for (size_t size = TL_CLUSTER_MOST; size > 0; size--)
         for (uint32_t k = first; k < end; k++)
             if (size_of(l->grid, k) == size)
                 l->sorted[at++] = k;
@@ -142,17 +142,6 @@ static void put_zone(const laying *l, size_t row, uint32_t zone, bool inert)
         l->z->row_of[l->z->row_of_count + zone] = (uint32_t)row;
 }
 
-/* Cube root of a volume, by Newton's method: the same bits everywhere. */
-static double cube_root(double volume)
-{
-    int power;
-    const double part = frexp(volume, &power), shift = power >= 0 ? (power + 2) / 3 : power / 3;
-    double root = ldexp(1, (int)shift);
-    for (int k = 0; k < 60 && part > 0; k++)
-        root = (2 * root + volume / (root * root)) / 3;
-    return root;
-}
-
 /* Fills a group, from a row on, with up to TL_LANES clusters of a parcel. */
 static void lay_group(const laying *l, const uint32_t *cluster, uint32_t count, size_t *row)
 {
@@ -170,7 +159,7 @@ static void lay_group(const laying *l, const uint32_t *cluster, uint32_t count, 
         for (size_t k = 0; k < size; k++)
             volume += volume_of(g, g->cluster_zone[begin + k]);
         group->count[lane] = (uint8_t)size;
-        group->extent[lane] = size > 0 ? cube_root(volume) : 1;
+        group->extent[lane] = size > 0 ? tl_cbrt(volume) : 1;
     }
 }
 

@@ -5,7 +5,7 @@
 #include "zone/zones.h"
 
 /* Tetrahedra that fill a body. Corners 0, 1, 2 of each are counter-clockwise as seen from the side without corner 3.
- * Clusters are lists of zones that hang together, of 1 to TL_CLUSTER_ZONES; what follows each other lies together. */
+ * Clusters are lists of zones that hang together, of 1 to TL_CLUSTER_MOST; what follows each other lies together. */
 typedef struct tl_grid {
     const tl_vec3 *point; /* from the model's origin, m */
     size_t point_count;

@@ -32,7 +32,7 @@
 #include <string.h>
 
 /* Rows of a SIMD group. */
-#define ROWS (TL_CLUSTER_ZONES * TL_LANES)
+#define ROWS (TL_CLUSTER_MOST * TL_LANES)
 
 /* What the rows of a group have. */
 typedef struct group_rows {
@@ -358,7 +358,7 @@ static void turn_states(const struct tl_zones *z, const tl_kind *kind, const tl_
         const tl_mat3 q = turn_of(tl_v3(r->spin[0][i], r->spin[1][i], r->spin[2][i]));
         double *const *state = z->zones.state;
         for (uint32_t k = 0; k < kind->state_count; k++) {
-            const uint32_t form = tl_solid_state(kind, k)->kind;
+            const uint32_t form = tl_kind_state(kind, k)->kind;
             if (form != TL_STATE_SCALAR)
                 turn_state(&q, state, form, g->start + i);
             state += tl_state_width(form);

@@ -351,7 +351,7 @@ static tl_status begin(bench *b)
     double d[6] = {0};
     uint32_t column = TL_ZONE_AT_STATE;
     for (uint32_t k = 0; k < b->solid.kind->state_count; k++) {
-        const tl_state *state = &b->solid.kind->states[k];
+        const tl_state *state = tl_kind_state(b->solid.kind, k);
         for (uint32_t c = tl_state_width(state->kind); c > 0; c--)
             now->c[column++][0] = state->initial;
     }

@@ -49,7 +49,7 @@ static bool turns(const tl_kind *kind)
 {
     bool some = false;
     for (uint32_t k = 0; k < kind->state_count; k++)
-        some = some || tl_solid_state(kind, k)->kind != TL_STATE_SCALAR;
+        some = some || tl_kind_state(kind, k)->kind != TL_STATE_SCALAR;
     return some;
 }
 

@@ -32,7 +32,7 @@ static bool groups_are_sound(const struct tl_zones *z)
     bool sound = true;
     for (size_t k = 0; sound && k < z->group_count; k++) {
         const tl_zone_group *g = &z->group[k];
-        sound = g->start == row && g->depth > 0 && g->depth <= TL_CLUSTER_ZONES;
+        sound = g->start == row && g->depth > 0 && g->depth <= TL_CLUSTER_MOST;
         row += (size_t)g->depth * TL_LANES;
         for (size_t l = 0; l < TL_LANES; l++)
             sound = sound && g->count[l] <= g->depth && isfinite(g->extent[l]);

@@ -15,12 +15,12 @@
 #ifndef TL_ZONE_ZONES_H
 #define TL_ZONE_ZONES_H
 
+#include "base/kind_states.h"
 #include "base/table.h"
+#include "geometry/zone_clusters.h"
 #include "model/model.h"
 #include "zone/solid.h"
 
-/* Zones of a cluster, at the most. */
-#define TL_CLUSTER_ZONES 10
 /* Rows of a parcel, at the most: its gridpoints are numbered by 16 bits. */
 #define TL_PARCEL_ZONES 4096
 /* Gridpoints of a parcel, at the most. */
@@ -32,12 +32,6 @@ typedef struct tl_named_solid {
     tl_solid of;
     bool turns; /* some of its states turn with the zones */
 } tl_named_solid;
-
-/* State descriptor k of a kind of solids. */
-static inline const tl_state *tl_solid_state(const tl_kind *kind, uint32_t k)
-{
-    return (const tl_state *)(const void *)((const char *)kind->states + (size_t)k * kind->state_stride);
-}
 
 typedef struct tl_gridpoints {
     tl_table table;
