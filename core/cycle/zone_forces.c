@@ -7,7 +7,7 @@
 #include "zone/life.h"
 #include "zone/pass.h"
 
-/* Tolerance: strain of a zone in a step from which the next one is kept, and looked at before it is made. */
+/* Tolerance: strain of a zone in a step from which the next one can be undone, for it may turn zones inside out. */
 #define FAST_STRAIN 1e-3
 
 /* ---------------------------------------------------------------- forces of zones -------- */
@@ -19,9 +19,11 @@ static tl_status apply(tl_model *m)
         return TL_OK;
     tl_zones_pass(m, m->dt, &c->failure);
     const tl_status status = c->failure.error.status;
-    if (status == TL_OK)
+    struct tl_zones *z = m->zones;
+    if (status == TL_OK) {
+        z->steps_kept -= z->steps_kept > 0;
         return TL_OK;
-    const struct tl_zones *z = m->zones;
+    }
     const tl_parcel *of = &z->parcels.of[c->failure.chunk];
     const tl_named_solid *solid = &z->solid[of->solid];
     c->failure.error.status = TL_OK;
@@ -53,7 +55,7 @@ static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
 static bool may_fail(const tl_model *m)
 {
     const struct tl_zones *z = m->zones;
-    bool sure = true;
+    bool sure = !z || z->steps_kept == 0;
     for (size_t k = 0; z && k < z->solid_count; k++)
         sure = sure && ((const tl_solid_ops *)z->solid[k].of.kind->ops)->never_fails;
     for (size_t k = 0; z && k < z->parcels.table.rows; k++)

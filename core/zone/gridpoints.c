@@ -73,6 +73,8 @@ tl_status tl_gridpoints_velocity(tl_model *m, const tl_zone_name *names, size_t 
             status = tl_fail(&m->error, TL_E_ARGUMENT, "the velocity of a gridpoint must be finite");
     for (size_t k = 0; status == TL_OK && k < count; k++)
         tl_columns_put(m->zones->points.v, row_of(m, names[k]), velocity[k]);
+    if (status == TL_OK && count > 0)
+        m->zones->steps_kept = TL_STEPS_KEPT;
     return status;
 }
 

@@ -40,7 +40,7 @@ static void add_columns(struct tl_zones *z)
     TL_COLUMN(&parcels->table, parcels, of, 0);
     TL_COLUMN(&parcels->table, parcels, stored, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(&parcels->table, parcels, heat, TL_COLUMN_STEP);
-    TL_COLUMN(&parcels->table, parcels, most_strain, TL_COLUMN_STEP);
+    TL_COLUMN(&parcels->table, parcels, most_strain, TL_COLUMN_STATE | TL_COLUMN_STEP);
 }
 
 tl_status tl_zones_begin(tl_model *m)

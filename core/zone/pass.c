@@ -21,6 +21,8 @@
  * the adjoint of its strain: work is V (stress* + stress) / 2 : strain'. The volume times a gradient is a vector area
  * over 3: no division. What the mean of dp changes is heat, V (P - dp)^2 / (2 K), beside what the solid tells.
  *
+ * A zone whose volume is not positive, half-way or now, is turned inside out, and the step fails.
+ *
  * A corner bears at the most sum |f| <= sqrt(n sum f^2) of n zones. That is what rest compares forces with: it needs no
  * root for each zone. */
 #include "zone/pass.h"
@@ -29,6 +31,7 @@
 #include "base/inline.h"
 #include "base/solid_columns.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Rows of a SIMD group. */
@@ -151,6 +154,22 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
 }
 
 /* ---------------------------------------------------------------- clusters --------------- */
+
+/* Whether no zone is turned inside out. Rows that are inert have the volume 0. */
+TL_INLINE bool is_outside_out(const tl_zone_group *g, const group_rows *restrict r)
+{
+    int bad[TL_LANES] = {0};
+    for (size_t k = 0; k < g->depth; k++)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            const size_t i = TL_LANES * k + l;
+            bad[l] |= (k < g->count[l]) & (!(r->volume[i] > 0) | !(r->middle[i] > 0));
+        }
+    int any = 0;
+    for (size_t l = 0; l < TL_LANES; l++)
+        any |= bad[l];
+    return any == 0;
+}
 
 /* Each zone gets the mean change of volume of its cluster. The square of the largest strain. */
 TL_INLINE double share_volume(group_rows *restrict r, size_t depth)
@@ -298,12 +317,14 @@ TL_INLINE void push_row(const struct tl_zones *z, const tl_zone_group *g, size_t
 
 /* ---------------------------------------------------------------- groups and parcels ----- */
 
-TL_VECTORIZED static double strain_group(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g,
-                                         group_rows *r)
+/* false: a zone is turned inside out. `most`: the square of the largest strain. */
+TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g,
+                                       group_rows *r, double *most)
 {
     for (size_t k = 0; k < g->depth; k++)
         strain_row(z, p, g, k, r);
-    return share_volume(r, g->depth);
+    *most = share_volume(r, g->depth);
+    return is_outside_out(g, r);
 }
 
 TL_VECTORIZED static void push_group(const struct tl_zones *z, const tl_zone_group *g, const group_rows *r,
@@ -406,6 +427,31 @@ static void list_points(const pass_job *job, const tl_parcel *of, tl_parcel_poin
     }
 }
 
+/* Says which zone of a group is turned inside out. */
+static void note_inside_out(const pass_job *job, const tl_parcel_points *p, const tl_zone_group *g, const group_rows *r,
+                            size_t parcel)
+{
+    const tl_zone_table *t = &job->zones->zones;
+    for (size_t i = 0; i < (size_t)g->depth * TL_LANES; i++) {
+        const size_t row = g->start + i;
+        if (t->number[row] == TL_NO_ROW || (r->volume[i] > 0 && r->middle[i] > 0))
+            continue;
+        tl_vec3 at = job->m->origin;
+        for (int a = 0; a < 4; a++) {
+            const double *x = p->of[t->corner[a][row]];
+            at = tl_v3_madd(at, 0.25, tl_v3(x[0], x[1], x[2]));
+        }
+        char text[TL_ERROR_TEXT / 2];
+        snprintf(
+            text, sizeof text,
+            "zone %u at (%.4g, %.4g, %.4g) is turned inside out: give stiffer joints or solids, lower velocities or "
+            "a shorter time step",
+            t->number[row], at.x, at.y, at.z);
+        tl_failure_note(job->failure, parcel, TL_E_NUMERIC, row, text);
+        return;
+    }
+}
+
 static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
 {
     struct tl_zones *z = job->zones;
@@ -418,9 +464,13 @@ static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
     for (uint32_t k = of->group_begin; k < of->group_end; k++) {
         const tl_zone_group *g = &z->group[k];
         group_rows r;
-        double lost;
+        double lost, strain2;
         memset(r.dissipated, 0, sizeof r.dissipated);
-        most = tl_larger(most, strain_group(z, p, g, &r));
+        if (!strain_group(z, p, g, &r, &strain2)) {
+            note_inside_out(job, p, g, &r, parcel);
+            return;
+        }
+        most = tl_larger(most, strain2);
         if (named->turns)
             turn_states(z, solid->kind, g, &r);
         if (!call_solid(job, solid, g, &r, parcel))

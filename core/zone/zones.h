@@ -21,6 +21,8 @@
 #include "model/model.h"
 #include "zone/solid.h"
 
+/* Steps until zones have strained by velocities that are set: the first moves by them, the second sees it. */
+#define TL_STEPS_KEPT 2
 /* Rows of a parcel, at the most: its gridpoints are numbered by 16 bits. */
 #define TL_PARCEL_ZONES 4096
 /* Gridpoints of a parcel, at the most. */
@@ -138,6 +140,7 @@ struct tl_zones {
     size_t meeting_count, meeting_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
+    uint32_t steps_kept;              /* steps to come that can be undone, for velocities were set */
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */
     double highest_rate, lowest_rate; /* stiffness over mass of the gridpoints that may move, 1/s2; 0: there are none */

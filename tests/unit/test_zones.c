@@ -603,7 +603,53 @@ TEST(zones_come_back)
         tl_model_destroy(all[k]);
 }
 
+/* A step that finds a zone turned inside out is undone, and says where. */
+TEST(a_zone_turned_inside_out_is_told)
+{
+    const int n[3] = {2, 2, 2};
+    for (int goes = 0; goes < 2; goes++) {
+        tl_model *m = zoned(n, tl_v3(1, 1, 1), 1e9, 0.25, 2500, 2);
+        const tl_zone_name name = {1, 0};
+        const tl_vec3 fast = {4e4, 4e4, 4e4};
+        tl_solve_result result;
+        tl_status status;
+        char before[33], after[33];
+        if (goes)
+            run(m, 5);
+        scene_ok(m, tl_gridpoints_velocity(m, &name, 1, &fast));
+        for (int step = 0; step < 4; step++) {
+            scene_ok(m, tl_state_hash(m, before));
+            if ((status = tl_model_cycle(m, 1, &result)) != TL_OK)
+                break;
+        }
+        CHECK_INT(status, TL_E_NUMERIC);
+        CHECK(strstr(m->error.text, "of block 1: zone ") && strstr(m->error.text, "is turned inside out"));
+        scene_ok(m, tl_state_hash(m, after));
+        CHECK_TEXT(before, after);
+        tl_model_destroy(m);
+    }
+}
+
+/* What carries a contact holds no stiffer as steps go on: the step does not shrink. */
+TEST(carried_contacts_do_not_shorten_the_step)
+{
+    tl_model *m = falling(true, scene_turn(tl_v3(0, 1, 0), 0.7), tl_v3(0, 0, -0.5));
+    double first = 0, last = 0;
+    for (int k = 0; k < 20000 && first == 0; k++) {
+        run(m, 1);
+        first = m->detect->contacts.table.rows > 0 && m->detect->contacts.carrier[0] ? m->dt : 0;
+    }
+    for (int k = 0; k < 15; k++) {
+        run(m, 1);
+        last = m->dt;
+    }
+    CHECK(first > 0);
+    CHECK(last > 0.9 * first);
+    tl_model_destroy(m);
+}
+
 TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones_have_the_same_bits_on_any_threads(),
           a_column_settles_under_its_weight(), columns_on_a_joint_shorten_in_series(), stress_turns_with_its_body(),
           a_beam_does_not_lock(), a_cube_rests_and_slides_on_zones(), a_stiff_cube_falls_as_a_rigid_one(),
-          a_cube_comes_to_rest_on_a_face(), zones_come_back(), zones_tell_what_they_are())
+          a_cube_comes_to_rest_on_a_face(), zones_come_back(), a_zone_turned_inside_out_is_told(),
+          carried_contacts_do_not_shorten_the_step(), zones_tell_what_they_are())
