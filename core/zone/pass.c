@@ -31,8 +31,8 @@
 #include "base/inline.h"
 #include "base/solid_columns.h"
 
-#include <stdio.h>
 #include <string.h>
+#include <talus/text.h>
 
 /* Rows of a SIMD group. */
 #define ROWS (TL_CLUSTER_MOST * TL_LANES)
@@ -442,7 +442,7 @@ static void note_inside_out(const pass_job *job, const tl_parcel_points *p, cons
             at = tl_v3_madd(at, 0.25, tl_v3(x[0], x[1], x[2]));
         }
         char text[TL_ERROR_TEXT / 2];
-        snprintf(
+        tl_text_print(
             text, sizeof text,
             "zone %u at (%.4g, %.4g, %.4g) is turned inside out: give stiffer joints or solids, lower velocities or "
             "a shorter time step",
