@@ -32,7 +32,7 @@
 #include "base/solid_columns.h"
 
 #include <string.h>
-#include <talus/text.h>
+#include <talus/number.h>
 
 /* Rows of a SIMD group. */
 #define ROWS (TL_CLUSTER_MOST * TL_LANES)
