@@ -14,8 +14,11 @@
 #include "base/columns.h"
 #include "base/extremes.h"
 #include "cycle/turn.h"
+#include "geometry/polar.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
+#include "zone/held.h"
+#include "zone/outer.h"
 #include "zone/stiffness.h"
 
 #include <math.h>
@@ -100,7 +103,7 @@ static void note_ratio(const tl_model *m, size_t row, size_t at, double gravity,
                        tl_gathered *all)
 {
     const tl_gridpoints *p = &m->zones->points;
-    const tl_vec3 force = tl_free_part(tl_columns_get(p->force, row), p->fixed[row]), v = tl_columns_get(p->v, row);
+    const tl_vec3 force = tl_gridpoint_free_part(p, row, tl_columns_get(p->force, row)), v = tl_columns_get(p->v, row);
     const double size = tl_v3_norm(force), weight = p->mass[row] * gravity + tl_v3_norm(load_of(p, row));
     const double bears = tl_larger(p->bears[row], weight), ratio = bears > 0 ? size / bears : size > 0;
     of->number[TL_SUM_UNBALANCED][at] += size;
@@ -122,8 +125,8 @@ static void note_totals(const tl_model *m, size_t row, size_t at, addends *of)
     const tl_vec3 v = tl_columns_get(p->v, row), force = tl_columns_get(p->force, row);
     const double mass = p->mass[row];
     of->number[TL_SUM_KINETIC][at] += 0.5 * mass * tl_v3_norm2(v);
-    of->number[TL_SUM_DAMPED][at] += 0.5 * mass * tl_v3_norm2(tl_free_part(v, p->fixed[row]));
-    of->number[TL_SUM_POWER][at] += tl_v3_dot(tl_free_part(force, p->fixed[row]), v);
+    of->number[TL_SUM_DAMPED][at] += 0.5 * mass * tl_v3_norm2(tl_gridpoint_free_part(p, row, v));
+    of->number[TL_SUM_POWER][at] += tl_v3_dot(tl_gridpoint_free_part(p, row, force), v);
 }
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -163,6 +166,8 @@ void tl_gridpoints_gather(tl_model *m)
         return;
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
     tl_carriers_push(m);
+    if (m->zones->outer_count > 0)
+        tl_outer_push(m, tl_loads_share(m));
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, sum_range, m);
 }
 
@@ -191,28 +196,75 @@ typedef struct push {
 static push push_of(const tl_model *m, size_t row)
 {
     const tl_gridpoints *p = &m->zones->points;
-    const unsigned fixed = p->fixed[row];
-    push out = {
-        tl_free_part(tl_columns_get(p->force, row), fixed), {0, 0, 0}, p->mass[row] * tl_gridpoint_scale(m, row), 0};
+    push out = {tl_gridpoint_free_part(p, row, tl_columns_get(p->force, row)),
+                {0, 0, 0},
+                p->mass[row] * tl_gridpoint_scale(m, row),
+                0};
     if (tl_is_damped(m) && p->alpha) {
-        out.damping = tl_free_part(tl_columns_get(p->damping, row), fixed);
+        out.damping = tl_gridpoint_free_part(p, row, tl_columns_get(p->damping, row));
         out.alpha = p->alpha[row];
     }
     if (tl_loads_lag(m)) {
         const tl_vec3 lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
-        out.force = tl_v3_sub(out.force, tl_free_part(tl_v3_scale(p->mass[row], lag), fixed));
+        out.force = tl_v3_sub(out.force, tl_gridpoint_free_part(p, row, tl_v3_scale(p->mass[row], lag)));
     }
     return out;
 }
 
+/* Whether a quiet boundary resists its motion. */
+static bool is_quiet(const tl_gridpoints *p, size_t row)
+{
+    return p->quiet[0] && p->quiet[0][row] + p->quiet[1][row] + p->quiet[2][row] > 0;
+}
+
+/* What resists a velocity there, N. */
+static tl_vec3 resistance(const tl_gridpoints *p, size_t row, tl_vec3 v)
+{
+    double *const *c = p->quiet;
+    return tl_v3(c[0][row] * v.x + c[3][row] * v.y + c[5][row] * v.z, c[3][row] * v.x + c[1][row] * v.y + c[4][row] * v.z,
+                 c[5][row] * v.x + c[4][row] * v.y + c[2][row] * v.z);
+}
+
 /* The velocity after the kick: that of held components stays. */
-static tl_vec3 kicked(const tl_model *m, size_t row, const push *by, double kick)
+static tl_vec3 kicked_freely(const tl_model *m, size_t row, const push *by, double kick)
 {
     const tl_gridpoints *p = &m->zones->points;
-    const unsigned fixed = p->fixed[row];
     const tl_vec3 v0 = tl_columns_get(p->v, row);
     const tl_vec3 v1 = tl_kick(v0, tl_v3_add(by->force, by->damping), kick / by->mass, by->alpha, kick);
-    return tl_v3_add(tl_v3_sub(v0, tl_free_part(v0, fixed)), tl_free_part(v1, fixed));
+    return tl_v3_add(tl_v3_sub(v0, tl_gridpoint_free_part(p, row, v0)), tl_gridpoint_free_part(p, row, v1));
+}
+
+/* The same where the resistance C acts with the mean velocity. Let P take the free part, v0 = w0 + s with s held, and h
+ * be the kick. With the mass M times 1 + a h / 2 for a damping of a,
+ *
+ *     (M (1 + a h / 2) + h P C P / 2) w1 = M (1 - a h / 2) w0 + h F - h P C (w0 + 2 s) / 2,    v1 = w1 + s
+ */
+static tl_vec3 kicked_quietly(const tl_model *m, size_t row, const push *by, double kick)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 v0 = tl_columns_get(p->v, row), w0 = tl_gridpoint_free_part(p, row, v0), s = tl_v3_sub(v0, w0);
+    const double half = 0.5 * kick;
+    tl_mat3 matrix;
+    for (int j = 0; j < 3; j++) {
+        const tl_vec3 axis = tl_v3(j == 0, j == 1, j == 2);
+        const tl_vec3 moved = resistance(p, row, tl_gridpoint_free_part(p, row, axis));
+        const tl_vec3 column =
+            tl_v3_madd(tl_v3_scale(by->mass * (1 + by->alpha * half), axis), half, tl_gridpoint_free_part(p, row, moved));
+        matrix.m[0][j] = column.x;
+        matrix.m[1][j] = column.y;
+        matrix.m[2][j] = column.z;
+    }
+    const tl_vec3 slowed = tl_gridpoint_free_part(p, row, resistance(p, row, tl_v3_madd(w0, 2, s)));
+    tl_vec3 right = tl_v3_scale(by->mass * (1 - by->alpha * half), w0);
+    right = tl_v3_madd(right, kick, tl_v3_add(by->force, by->damping));
+    right = tl_v3_madd(right, -half, slowed);
+    const tl_mat3 inverse = tl_m3_inverse(&matrix);
+    return tl_v3_add(s, tl_gridpoint_free_part(p, row, tl_m3_mul(&inverse, right)));
+}
+
+static tl_vec3 kicked(const tl_model *m, size_t row, const push *by, double kick)
+{
+    return is_quiet(&m->zones->points, row) ? kicked_quietly(m, row, by, kick) : kicked_freely(m, row, by, kick);
 }
 
 /* What is booked of a chunk (energy.c): a number for each row of lanes. */
@@ -241,10 +293,16 @@ static void book_point(const tl_model *m, size_t row, size_t at, const push *by,
     work->book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][at] += share * mass * tl_v3_dot(tl_v3_sub(v0, moved), dv);
     book_work(work, at, TL_WORK_GRAVITY, tl_v3_scale(mass, m->cycle->gravity), moved, v1);
     book_work(work, at, TL_WORK_EXTERNAL, load_of(p, row), moved, v1);
-    book_work(work, at, TL_WORK_EXTERNAL, tl_v3_sub(tl_free_part(held, p->fixed[row]), held), moved, v1);
+    book_work(work, at, TL_WORK_EXTERNAL, tl_v3_sub(tl_gridpoint_free_part(p, row, held), held), moved, v1);
+    if (p->pushed[0])
+        book_work(work, at, TL_WORK_EXTERNAL, tl_columns_get(p->pushed, row), moved, v1);
+    if (is_quiet(p, row)) {
+        const tl_vec3 by_quiet = tl_v3_scale(-0.5, resistance(p, row, tl_v3_add(v0, v1)));
+        book_work(work, at, TL_WORK_DAMPING, tl_gridpoint_free_part(p, row, by_quiet), moved, v1);
+    }
     if (!tl_is_damped(m))
         return;
-    const tl_vec3 slowed = tl_free_part(tl_v3_add(v0, v1), p->fixed[row]);
+    const tl_vec3 slowed = tl_gridpoint_free_part(p, row, tl_v3_add(v0, v1));
     book_work(work, at, TL_WORK_DAMPING, tl_v3_madd(by->damping, -0.5 * by->alpha * by->mass, slowed), moved, v1);
 }
 
@@ -270,8 +328,59 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
                       (end - begin) / TL_LANES);
 }
 
+/* The velocity with which a point on an arm goes, in dt, to where a turn brings it. */
+static tl_vec3 turning(tl_quat turn, tl_vec3 arm, double dt)
+{
+    const tl_vec3 v = tl_v3(turn.x, turn.y, turn.z);
+    return tl_v3_scale(2 / dt, tl_v3_cross(v, tl_v3_madd(tl_v3_cross(v, arm), turn.w, arm)));
+}
+
+/* Gives the gridpoints of driven bodies the motion of a rigid one about their mean by mass. */
+static void drive_bodies(tl_model *m, double dt)
+{
+    tl_gridpoints *p = &m->zones->points;
+    for (size_t k = 0; k < m->zones->mesh_count && dt > 0; k++) {
+        const tl_body_mesh *mesh = &m->zones->mesh[k];
+        if (!m->bodies.drive[mesh->row])
+            continue;
+        const tl_drive_record *drive = &m->drives[m->bodies.drive[mesh->row] - 1];
+        const tl_quat turn = tl_turn_by(tl_v3_scale(dt, drive->angular_velocity));
+        const tl_vec3 at = tl_body_place(&m->bodies, mesh->row);
+        for (uint32_t row = mesh->point_begin; row < mesh->point_end; row++) {
+            const tl_vec3 arm = tl_v3_sub(tl_gridpoint_place(p, row), at);
+            tl_columns_put(p->v, row, tl_v3_add(drive->velocity, turning(turn, arm, dt)));
+        }
+    }
+}
+
+static void drive_points(tl_model *m, double dt)
+{
+    if (!tl_model_deforms(m) || m->drive_count == 0)
+        return;
+    const tl_gridpoints *p = &m->zones->points;
+    drive_bodies(m, dt);
+    for (size_t row = 0; p->drive && row < p->table.rows; row++)
+        if (p->drive[row])
+            tl_columns_put(p->v, row, m->drives[p->drive[row] - 1].velocity);
+}
+
+/* A velocity that jumps may turn zones inside out: the steps until that is seen can be undone. */
+void tl_gridpoints_expect(tl_model *m)
+{
+    if (!tl_model_deforms(m))
+        return;
+    const tl_gridpoints *p = &m->zones->points;
+    for (size_t row = 0; p->drive && row < p->table.rows; row++) {
+        const tl_vec3 v = tl_columns_get(p->v, row);
+        if (p->drive[row] &&
+            tl_v3_norm2(tl_v3_sub(m->drives[p->drive[row] - 1].velocity, v)) > tl_v3_norm2(v))
+            m->zones->steps_kept = TL_STEPS_KEPT;
+    }
+}
+
 void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
+    drive_points(m, dt);
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
 }

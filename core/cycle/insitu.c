@@ -1,4 +1,5 @@
-/* insitu.c - initial stress put on the contacts of a model: tractions sigma n on the face patches that exist now.
+/* insitu.c - initial stress put on the contacts of a model: tractions sigma n on the face patches that exist now; and
+ * on zones and segments of deformable blocks (insitu_zones.c).
  *
  * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets f_n = -(n .
  * sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now. Field contacts begin
@@ -12,11 +13,13 @@
 #include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
+#include "cycle/insitu_zones.h"
 #include "cycle/undo.h"
 #include "detect/detect.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
 #include "model/options.h"
+#include "segment/meets.h"
 
 /* Tolerance: a traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9
@@ -257,15 +260,18 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
         return status;
     /* in the present places, where a step that failed has left the contacts already */
     status = tl_detect_update(m);
+    if (status == TL_OK)
+        status = tl_segments_find(m);
     outer_blocks outer;
     if (status == TL_OK)
         status = find_outer(m, &insitu, &outer);
     if (status != TL_OK)
         return status;
-    if (!tl_detect_hold_initial(m->detect))
+    if (!tl_detect_hold_initial(m->detect) || !tl_insitu_zones_prepare(m))
         return tl_fail_memory(&m->error);
     for (uint32_t i = 0; i < m->detect->contacts.table.rows; i++)
         load_contact(m, &insitu, i);
+    tl_insitu_zones(m, &insitu);
     m->split_count = 0; /* new faces carry what the stress says, and no longer what holds parts as the whole went on */
     m->laws++;          /* contacts hold another energy */
     tl_undo_by_hand(m);

@@ -17,7 +17,7 @@
 #include "base/columns.h"
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
-#include "zone/zones.h"
+#include "zone/held.h"
 
 #include <stdatomic.h>
 
@@ -112,7 +112,7 @@ static uint32_t moving_mesh(const tl_model *m, double ratio)
         const tl_body_mesh *mesh = &m->zones->mesh[k];
         double kinetic = 0, stored = 0;
         for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
-            kinetic += 0.5 * p->mass[row] * tl_v3_norm2(tl_free_part(tl_columns_get(p->v, row), p->fixed[row]));
+            kinetic += 0.5 * p->mass[row] * tl_v3_norm2(tl_gridpoint_free_part(p, row, tl_columns_get(p->v, row)));
             stored += p->holds[row] > 0 ? 0.5 * p->bears[row] * p->bears[row] / p->holds[row] : 0;
         }
         if (kinetic > 0 && !(kinetic < kinetic_share(ratio) * stored) && mesh->row < out)

@@ -10,6 +10,7 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "model/loads.h"
 #include "model/options.h"
@@ -695,6 +696,10 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     tl_bodies *b = &m->bodies;
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        if (b->mesh[body]) {
+            m->zone_verbs->move(m, body, set->velocity, set->angular_velocity);
+            continue;
+        }
         if (given(set->velocity) && moved) {
             double mass = m->blocks.density[row] * m->blocks.volume[row];
             tl_vec3 arm = tl_m3_mul(&b->pose[body].r, tl_block_local(m, row));
@@ -708,6 +713,8 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     }
     for (size_t i = 0; i < count && given(set->velocity); i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        if (b->mesh[body])
+            continue;
         b->v[body] = set->velocity;
         if (moved && b->member_count[body] > 1)
             b->v[body] = tl_v3_sub(set->velocity,
@@ -722,11 +729,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     tl_status status = TL_OPTIONS_READ(tl_block_set, values, &read, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set properties of blocks");
-    const bool moves = given(set->velocity) || given(set->angular_velocity);
-    if (status == TL_OK && !moves && isnan(set->density))
+    if (status == TL_OK && isnan(set->density))
         status = tl_blocks_check(m, ids, count);
     else if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, "set density or velocities", "set them before it gets zones");
+        status = tl_blocks_check_rigid(m, ids, count, "set density", "set it before it gets zones");
     if (status == TL_OK)
         status = check_set(m, ids, count, set);
     if (status != TL_OK)

@@ -268,6 +268,29 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
     return failure->error.status;
 }
 
+/* ---------------------------------------------------------------- initial stress --------- */
+
+void tl_segment_preload(tl_model *m, uint32_t row, tl_sym3 (*stress)(const void *user, tl_vec3 place), const void *user)
+{
+    struct tl_segments *s = m->segments;
+    const tl_segment *of = &s->table.of[row];
+    tl_segment_points *p = &s->points;
+    const side_now a = side_of(m, &of->a, of->normal_a), b = side_of(m, &of->b, of->normal_b);
+    const tl_vec3 n = tl_v3_unit(tl_v3_sub(a.normal, b.normal));
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t point = tl_segment_point_row(row, k);
+        const carried ca = carry(m, &a, tl_columns_get(p->at_a, point)),
+                      cb = carry(m, &b, tl_columns_get(p->at_b, point));
+        const tl_vec3 traction = tl_s3_mul(stress(user, ca.place), n);
+        const double normal = tl_v3_dot(n, traction);
+        p->reference[point] = -tl_v3_dot(tl_v3_sub(cb.place, ca.place), n);
+        p->f_n0[point] = p->f_n[point] = -normal * p->area[point];
+        tl_columns_put(p->f_s, point, tl_v3_scale(-p->area[point], tl_v3_madd(traction, -normal, n)));
+        p->flags[point] = 0;
+    }
+    tl_columns_put(s->table.normal, row, n);
+}
+
 /* ---------------------------------------------------------------- who gets what ---------- */
 
 void tl_segments_gather(const tl_model *m, uint32_t gridpoint, tl_vec3 *force, double *bears)

@@ -6,14 +6,20 @@
 #include "base/columns.h"
 #include "geometry/zone_clusters.h"
 #include "geometry/zoning.h"
+#include "model/deformable.h"
+#include "model/loads.h"
 #include "model/rows.h"
 #include "zone/corner_keys.h"
 #include "zone/grid.h"
+#include "zone/life.h"
 #include "zone/solids.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Tolerance: distance over the block's size up to which a loaded point outside counts as one of the surface. */
+#define TOUCHES 1e-6
 
 /* The zones of one block on their way. */
 typedef struct part {
@@ -41,6 +47,21 @@ static tl_status refuse(tl_model *m, tl_id block, const char *why)
     return tl_fail(&m->error, TL_E_STATE, "block %u cannot get zones: %s", block, why);
 }
 
+/* A load goes over to the zone at its point, or without one to all gridpoints by mass. */
+static tl_status check_load(tl_model *m, uint32_t row)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    const tl_id block = m->blocks.id[row];
+    const tl_vec3 at = m->bodies.load[m->blocks.body[row]].arm;
+    for (size_t k = 0; k < m->face_load_count; k++)
+        if (m->face_loads[k].block == block)
+            return refuse(m, block, "its faces are loaded; take the load off, and put it on when it has zones");
+    for (uint32_t f = 0; f < shape->face_count; f++)
+        if (tl_v3_dot(shape->plane[f].normal, at) > shape->plane[f].offset + TOUCHES * m->blocks.size[row])
+            return refuse(m, block, "it carries a load at a point outside of it; take that off");
+    return tl_gridpoints_hold_loads(&m->zones->points) ? TL_OK : tl_fail_memory(&m->error);
+}
+
 static tl_status check_block(tl_model *m, uint32_t row)
 {
     const tl_bodies *b = &m->bodies;
@@ -50,11 +71,7 @@ static tl_status check_block(tl_model *m, uint32_t row)
         return refuse(m, block, "it has zones already");
     if (b->member_count[body] > 1)
         return refuse(m, block, "it is joined to others; bodies of one block can be divided");
-    if (b->drive[body])
-        return refuse(m, block, "it is driven; drive gridpoints instead");
-    if (tl_body_loaded(b, body))
-        return refuse(m, block, "it carries a load; load gridpoints instead");
-    return TL_OK;
+    return tl_body_loaded(b, body) ? check_load(m, row) : TL_OK;
 }
 
 static int by_row(const void *a, const void *b)
@@ -215,6 +232,22 @@ static tl_status divide_block(dividing *d, part *of)
 
 /* ---------------------------------------------------------------- laying ----------------- */
 
+/* The load of a block acts on its gridpoints, and no longer on the block. */
+static void take_over_load(tl_model *m, uint32_t body)
+{
+    if (!tl_body_loaded(&m->bodies, body))
+        return;
+    const tl_body_load had = m->bodies.load[body];
+    tl_load load = tl_load_default();
+    load.force = had.force;
+    load.moment = had.moment;
+    if (!tl_v3_is_zero(had.arm))
+        load.at = tl_model_point(m, body, had.arm);
+    m->bodies.load[body] = (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    tl_load_begins_anew(m, body);
+    m->zone_verbs->load(m, body, &load);
+}
+
 /* Gridpoints move and are held as their block was, whose own motion ends. */
 static void take_over_motion(tl_model *m, const tl_body_mesh *mesh, uint8_t fixed)
 {
@@ -230,6 +263,7 @@ static void take_over_motion(tl_model *m, const tl_body_mesh *mesh, uint8_t fixe
         p->fixed[row] = held;
     }
     b->v[mesh->row] = b->w[mesh->row] = tl_v3(0, 0, 0);
+    take_over_load(m, mesh->row);
     tl_block_changes(m, *tl_body_blocks(m, mesh->row));
 }
 

@@ -22,11 +22,12 @@ typedef struct tl_divided {
 } tl_divided;
 
 /* Gives blocks zones, free of stress where the blocks are, with the blocks' velocities. A block that is held, in some
- * components or all, has gridpoints that are held so. Where faces of two blocks are the same polygon, the triangles of
- * both are. Nothing has changed when it fails:
+ * components or all, has gridpoints that are held so. A drive drives all gridpoints as before; a load acts on the zone
+ * at its point. Where faces of two blocks are the same polygon, the triangles of both are. Nothing has changed when it
+ * fails:
  *
  * TL_E_ARGUMENT: the edge is not positive, or makes too many zones; there is no such solid. TL_E_STALE: no such block.
- * TL_E_STATE: a block has zones, is joined to others, or is driven or loaded. TL_E_GEOMETRY: a block cannot be divided.
+ * TL_E_STATE: a block has zones, is joined to others, or is loaded on its faces or outside of it. TL_E_GEOMETRY: a block cannot be divided.
  */
 tl_status tl_blocks_divide(tl_model *m, const tl_id *blocks, size_t count, const tl_dividing *how, tl_divided *made);
 

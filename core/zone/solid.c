@@ -126,6 +126,17 @@ void tl_solid_clear(tl_solid *solid)
     *solid = (tl_solid){0};
 }
 
+void tl_solid_energy(const tl_solid *solid, uint32_t count, const double *const stress[6], double *const *state,
+                     double *stored)
+{
+    const tl_solid_ops *ops = solid->kind->ops;
+    if (!ops->energy)
+        return;
+    tl_enter(solid->kind, "energy");
+    ops->energy(solid->self, count, stress, state, stored);
+    tl_leave();
+}
+
 tl_status tl_solid_update(const tl_solid *solid, const tl_solid_batch *batch, tl_report *report)
 {
     const tl_solid_ops *ops = solid->kind->ops;

@@ -1,0 +1,89 @@
+/* insitu_zones.c - initial stress in deformable blocks: sigma at the centroids of zones, sigma n at points of segments.
+ *
+ * Forces on gridpoints are integrals of shape functions that are linear. So a stress that is linear in space is in
+ * equilibrium with weight and with tractions on the surface (zone/outer.c), to rounding. What the zones store is what
+ * their solids tell of the stress; from those that tell nothing it counts from 0. */
+#include "cycle/insitu_zones.h"
+
+#include "segment/act.h"
+#include "segment/lay.h"
+#include "zone/zones.h"
+
+/* An initial stress, with the height of the model's origin over `at`. */
+typedef struct field {
+    const tl_insitu *insitu;
+    double height;
+} field;
+
+static tl_sym3 stress_at(const void *user, tl_vec3 place)
+{
+    const field *of = user;
+    return tl_s3_madd(of->insitu->stress, of->height + place.z, of->insitu->gradient);
+}
+
+/* The corners of a zone. */
+static void corners_of(const struct tl_zones *z, const tl_parcel *of, size_t row, tl_vec3 x[4])
+{
+    for (int a = 0; a < 4; a++)
+        x[a] = tl_gridpoint_place(&z->points, z->listed[of->point_begin + z->zones.corner[a][row]]);
+}
+
+static void load_row(struct tl_zones *z, const tl_parcel *of, size_t row, const field *from)
+{
+    tl_vec3 x[4];
+    corners_of(z, of, row, x);
+    const tl_vec3 centre = tl_v3_scale(0.25, tl_v3_add(tl_v3_add(x[0], x[1]), tl_v3_add(x[2], x[3])));
+    const tl_sym3 s = stress_at(from, centre);
+    const double number[6] = {s.xx, s.yy, s.zz, s.xy, s.yz, s.zx};
+    for (int k = 0; k < 6; k++)
+        z->zones.stress[k][row] = number[k];
+}
+
+/* What the zones of a group store, J. */
+static double stored_in(const struct tl_zones *z, const tl_parcel *of, const tl_zone_group *g)
+{
+    const tl_solid *solid = &z->solid[of->solid].of;
+    double each[TL_CLUSTER_MOST * TL_LANES] = {0}, sum = 0;
+    const double *stress[6];
+    double *state[TL_SOLID_COLUMNS];
+    for (int k = 0; k < 6; k++)
+        stress[k] = z->zones.stress[k] + g->start;
+    for (uint32_t k = 0; k < solid->columns; k++)
+        state[k] = z->zones.state[k] + g->start;
+    tl_solid_energy(solid, (uint32_t)(g->depth * TL_LANES), stress, state, each);
+    for (size_t i = 0; i < (size_t)g->depth * TL_LANES; i++) {
+        tl_vec3 x[4];
+        corners_of(z, of, g->start + i, x);
+        const tl_vec3 a = tl_v3_sub(x[1], x[0]), b = tl_v3_sub(x[2], x[0]), c = tl_v3_sub(x[3], x[0]);
+        if (z->zones.number[g->start + i] != TL_NO_ROW)
+            sum += each[i] * tl_v3_dot(a, tl_v3_cross(b, c)) / 6;
+    }
+    return sum;
+}
+
+bool tl_insitu_zones_prepare(tl_model *m)
+{
+    return !m->segments || tl_segments_hold_initial(m->segments);
+}
+
+void tl_insitu_zones(tl_model *m, const tl_insitu *insitu)
+{
+    struct tl_zones *z = m->zones;
+    const field from = {insitu, m->origin.z - insitu->at.z};
+    if (!tl_model_deforms(m))
+        return;
+    for (size_t k = 0; k < z->parcels.table.rows; k++) {
+        const tl_parcel *of = &z->parcels.of[k];
+        z->parcels.stored[k] = 0;
+        for (uint32_t g = of->group_begin; g < of->group_end; g++) {
+            const size_t begin = z->group[g].start, end = begin + (size_t)z->group[g].depth * TL_LANES;
+            for (size_t row = begin; row < end; row++)
+                load_row(z, of, row, &from);
+            z->parcels.stored[k] += stored_in(z, of, &z->group[g]);
+        }
+    }
+    for (uint32_t row = 0; m->segments && row < m->segments->table.table.rows; row++)
+        if (m->segments->table.of[row].meet != TL_NO_ROW)
+            tl_segment_preload(m, row, stress_at, &from);
+    z->steps_kept = TL_STEPS_KEPT;
+}

@@ -1,0 +1,37 @@
+/* held.h - in which directions gridpoints are held. */
+#ifndef TL_ZONE_HELD_H
+#define TL_ZONE_HELD_H
+
+#include "base/columns.h"
+#include "zone/zones.h"
+
+/* Tolerance: sine of the angle between a direction and what is held already, below which it holds nothing more. Faces
+ * that bend by less than that hold their gridpoints along one direction. Test: unit/test_zone_boundaries. */
+#define TL_HELD_ALREADY 1e-2
+
+/* The components of a vector that `fixed` leaves free. */
+static inline tl_vec3 tl_free_axes(tl_vec3 v, unsigned fixed)
+{
+    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y, fixed & TL_FIX_Z ? 0 : v.z);
+}
+
+/* The part of a vector along which a gridpoint is not held. The directions come one after the other, each without what
+ * is held before it. */
+static inline tl_vec3 tl_gridpoint_free_part(const tl_gridpoints *p, size_t row, tl_vec3 v)
+{
+    const unsigned fixed = p->fixed[row];
+    tl_vec3 before = {0, 0, 0};
+    v = tl_free_axes(v, fixed);
+    for (int k = 0; p->held[0][0] && k < 2; k++) {
+        tl_vec3 n = tl_free_axes(tl_columns_get(p->held[k], row), fixed);
+        n = tl_v3_madd(n, -tl_v3_dot(n, before), before);
+        const double size = tl_v3_norm(n);
+        if (size < TL_HELD_ALREADY)
+            continue;
+        before = tl_v3_scale(1 / size, n);
+        v = tl_v3_madd(v, -tl_v3_dot(v, before), before);
+    }
+    return v;
+}
+
+#endif
