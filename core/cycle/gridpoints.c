@@ -221,7 +221,8 @@ static bool is_quiet(const tl_gridpoints *p, size_t row)
 static tl_vec3 resistance(const tl_gridpoints *p, size_t row, tl_vec3 v)
 {
     double *const *c = p->quiet;
-    return tl_v3(c[0][row] * v.x + c[3][row] * v.y + c[5][row] * v.z, c[3][row] * v.x + c[1][row] * v.y + c[4][row] * v.z,
+    return tl_v3(c[0][row] * v.x + c[3][row] * v.y + c[5][row] * v.z,
+                 c[3][row] * v.x + c[1][row] * v.y + c[4][row] * v.z,
                  c[5][row] * v.x + c[4][row] * v.y + c[2][row] * v.z);
 }
 
@@ -248,8 +249,8 @@ static tl_vec3 kicked_quietly(const tl_model *m, size_t row, const push *by, dou
     for (int j = 0; j < 3; j++) {
         const tl_vec3 axis = tl_v3(j == 0, j == 1, j == 2);
         const tl_vec3 moved = resistance(p, row, tl_gridpoint_free_part(p, row, axis));
-        const tl_vec3 column =
-            tl_v3_madd(tl_v3_scale(by->mass * (1 + by->alpha * half), axis), half, tl_gridpoint_free_part(p, row, moved));
+        const tl_vec3 column = tl_v3_madd(tl_v3_scale(by->mass * (1 + by->alpha * half), axis), half,
+                                          tl_gridpoint_free_part(p, row, moved));
         matrix.m[0][j] = column.x;
         matrix.m[1][j] = column.y;
         matrix.m[2][j] = column.z;
@@ -372,8 +373,7 @@ void tl_gridpoints_expect(tl_model *m)
     const tl_gridpoints *p = &m->zones->points;
     for (size_t row = 0; p->drive && row < p->table.rows; row++) {
         const tl_vec3 v = tl_columns_get(p->v, row);
-        if (p->drive[row] &&
-            tl_v3_norm2(tl_v3_sub(m->drives[p->drive[row] - 1].velocity, v)) > tl_v3_norm2(v))
+        if (p->drive[row] && tl_v3_norm2(tl_v3_sub(m->drives[p->drive[row] - 1].velocity, v)) > tl_v3_norm2(v))
             m->zones->steps_kept = TL_STEPS_KEPT;
     }
 }

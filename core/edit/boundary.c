@@ -369,9 +369,8 @@ static tl_status add_triangles(plan *p, const tl_boundary_action *a, const tl_fa
         return tl_fail(&m->error, TL_E_STATE,
                        "boundary: block %u is driven as a whole, so its faces cannot be held; let it go first",
                        m->blocks.id[f->row]);
-    return tl_bare_act(m, a, filter, p->now, f->row, &p->bare, &f->bare, &p->outer, result)
-               ? TL_OK
-               : tl_fail_memory(&m->error);
+    return tl_bare_act(m, a, filter, p->now, f->row, &p->bare, &f->bare, &p->outer, result) ? TL_OK
+                                                                                            : tl_fail_memory(&m->error);
 }
 
 /* Writes what was found; false when out of memory. Faces are in order of rows, and so of ids. */

@@ -57,7 +57,8 @@ static const tl_lua_key boundary_keys[] = {
     {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "stress, Pa, tension positive: the traction on a face is stress times its outward normal"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}", "change of the stress with height z, Pa/m"},
-    {"velocity", "{x, y, z} or function(t)", "prescribes the velocity of the faces, m/s; rigid bodies move with it whole"},
+    {"velocity", "{x, y, z} or function(t)",
+     "prescribes the velocity of the faces, m/s; rigid bodies move with it whole"},
     {"xmin, xmax", "\"roller\", \"fixed\" or a table of what is to be done", "several sides in one call"},
     {"ymin, ymax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {"zmin, zmax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
@@ -66,8 +67,9 @@ static const tl_lua_key boundary_keys[] = {
 
 /* The keys as they stand in a table. */
 static const tl_lua_key table_keys[] = {
-    {"plane", "", ""}, {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""}, {"velocity", "", ""}, {"xmin", "", ""},
-    {"xmax", "", ""},  {"ymin", "", ""}, {"ymax", "", ""},   {"zmin", "", ""},     {"zmax", "", ""},     {NULL, NULL, NULL},
+    {"plane", "", ""},    {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""},
+    {"velocity", "", ""}, {"xmin", "", ""}, {"xmax", "", ""},   {"ymin", "", ""},
+    {"ymax", "", ""},     {"zmin", "", ""}, {"zmax", "", ""},   {NULL, NULL, NULL},
 };
 
 static const tl_lua_spec boundary_spec = {"boundary", boundary_params, TL_LUA_COUNT(boundary_params), boundary_keys};

@@ -249,7 +249,7 @@ struct tl_model {
     struct tl_zones *zones; /* meshes of deformable bodies and their materials, or NULL: module zone */
     void (*zones_destroy)(struct tl_zones *);
     const struct tl_zone_verbs *zone_verbs; /* what is done to their bodies: deformable.h; NULL: there are no zones */
-    struct tl_segments *segments;            /* their flush contacts, or NULL: module segment */
+    struct tl_segments *segments;           /* their flush contacts, or NULL: module segment */
     void (*segments_destroy)(struct tl_segments *);
     void (*segments_follow)(struct tl_model *); /* lets them follow rows that have moved */
     struct tl_outputs *outputs;                 /* of the module state: files written so far */

@@ -523,7 +523,8 @@ bool tl_segments_index(tl_model *m)
 bool tl_segments_hold_initial(struct tl_segments *s)
 {
     tl_segment_points *p = &s->points;
-    return TL_COLUMN_NEED(&p->table, p, reference, TL_COLUMN_STATE) && TL_COLUMN_NEED(&p->table, p, f_n0, TL_COLUMN_STATE);
+    return TL_COLUMN_NEED(&p->table, p, reference, TL_COLUMN_STATE) &&
+           TL_COLUMN_NEED(&p->table, p, f_n0, TL_COLUMN_STATE);
 }
 
 bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns)

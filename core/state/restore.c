@@ -543,7 +543,8 @@ static bool hold_gridpoints(tl_gridpoints *p, const tl_archive *a)
 {
     const bool load = tl_archive_find(a, "zones.points.load[k]"), damped = tl_archive_find(a, "zones.points.alpha");
     const bool before = tl_archive_find(a, "zones.points.force_before[k]");
-    const bool pushed = tl_archive_find(a, "zones.points.pushed[k]"), quiet = tl_archive_find(a, "zones.points.quiet[k]");
+    const bool pushed = tl_archive_find(a, "zones.points.pushed[k]"),
+               quiet = tl_archive_find(a, "zones.points.quiet[k]");
     const bool held = tl_archive_find(a, "zones.points.held[d][k]"), drive = tl_archive_find(a, "zones.points.drive");
     return (!load || tl_gridpoints_hold_loads(p)) && (!damped || tl_gridpoints_hold_damping(p, before)) &&
            (!pushed || tl_gridpoints_hold_pushed(p)) && (!quiet || tl_gridpoints_hold_quiet(p)) &&

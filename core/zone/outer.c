@@ -269,12 +269,8 @@ static uint32_t zone_of(const struct tl_zones *z, const tl_surface_part *part, u
 static void rest_on_stress(const struct tl_zones *z, tl_outer_part *of, uint32_t zone)
 {
     double *const *s = z->zones.stress;
-    const tl_sym3 stress = {.xx = s[0][zone],
-                            .yy = s[1][zone],
-                            .zz = s[2][zone],
-                            .xy = s[3][zone],
-                            .yz = s[4][zone],
-                            .zx = s[5][zone]};
+    const tl_sym3 stress = {
+        .xx = s[0][zone], .yy = s[1][zone], .zz = s[2][zone], .xy = s[3][zone], .yz = s[4][zone], .zx = s[5][zone]};
     tl_vec3 x[3];
     corners_of(z, of, x);
     for (int a = 0; a < 3; a++)

@@ -99,9 +99,9 @@ static bool outer_is_sound(const struct tl_zones *z)
     for (size_t k = 0; sound && k < z->outer_count; k++) {
         const tl_outer_part *of = &z->outer[k];
         const tl_vec3 all = tl_v3(of->share + of->density, of->at, tl_v3_norm2(of->along));
-        sound = of->part < z->part_count && (k == 0 || of->part > z->outer[k - 1].part) &&
-                of->solid < z->solid_count && of->fixed <= (TL_FIX_X | TL_FIX_Y | TL_FIX_Z) && of->density >= 0 &&
-                tl_v3_finite(all) && z->points.pushed[0] && (!of->quiet || z->points.quiet[0]) &&
+        sound = of->part < z->part_count && (k == 0 || of->part > z->outer[k - 1].part) && of->solid < z->solid_count &&
+                of->fixed <= (TL_FIX_X | TL_FIX_Y | TL_FIX_Z) && of->density >= 0 && tl_v3_finite(all) &&
+                z->points.pushed[0] && (!of->quiet || z->points.quiet[0]) &&
                 (tl_v3_norm2(of->along) == 0 || z->points.held[0][0]) && (!of->drive || z->points.drive);
     }
     return sound;

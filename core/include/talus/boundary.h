@@ -47,8 +47,9 @@ typedef struct tl_boundary_action {
     bool loads;
     tl_sym3 stress, gradient;
     tl_vec3 at, traction;
-    bool quiet;            /* deformable blocks only: lets waves out, and bears what it bore until now */
-    const tl_drive *drive; /* prescribes velocities, without turning; NULL: none. Functions are the model's from then on */
+    bool quiet; /* deformable blocks only: lets waves out, and bears what it bore until now */
+    const tl_drive
+        *drive; /* prescribes velocities, without turning; NULL: none. Functions are the model's from then on */
 } tl_boundary_action;
 
 /* All outer faces, and nothing is done. */
