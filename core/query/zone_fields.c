@@ -1,11 +1,10 @@
 /* zone_fields.c - what can be asked of zones and gridpoints: which ones, their named fields, states of their solids. */
-#include "query/zone_fields.h"
-
 #include "base/columns.h"
 #include "base/error.h"
 #include "base/solid_columns.h"
 #include "geometry/measure.h"
 #include "model/fields.h"
+#include "model/rows.h"
 #include "zone/grid.h"
 #include "zone/solids.h"
 
@@ -14,6 +13,7 @@
 #include <string.h>
 #include <talus/elementary.h>
 #include <talus/fields.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- one zone --------------- */
 
@@ -159,9 +159,24 @@ static double state_number(const place *at)
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
+/* A number of its own among all zones, or gridpoints: its body's id times 2^32, and its number. */
+static double id_of(tl_id body, uint32_t number)
+{
+    return 4294967296.0 * body + number;
+}
+
+/* The number of a body's group: that of its first block. */
+static double group_of(const tl_model *m, const tl_body_mesh *mesh)
+{
+    return m->blocks.group[tl_body_blocks(m, mesh->row)[0]];
+}
+
 #define ZONE_FIELDS(FIELD)                                                                                             \
+    FIELD(id, COUNT, "", "of its own among all zones: 4294967296 times its block, and its number",                     \
+          id_of(at->mesh->body, z->zones.number[at->row]))                                                             \
     FIELD(block, COUNT, "", "block that it is of: the lowest of a body of several", at->mesh->body)                    \
     FIELD(number, COUNT, "", "its number in the block, from 0", z->zones.number[at->row])                              \
+    FIELD(group, TEXT, "", "group of the block", group_of(at->m, at->mesh))                                            \
     FIELD(solid, TEXT, "", "name of its solid", at->parcel->solid)                                                     \
     FIELD(centroid, VEC3, "m", "present place of its centroid", centroid_of(at))                                       \
     FIELD(volume, SCALAR, "m3", "present volume", volume_of(at->x))                                                    \
@@ -175,14 +190,18 @@ static double state_number(const place *at)
     FIELD(plastic, BOOL, "", "whether it has ever yielded", z->zones.flags[at->row] != 0)
 
 #define POINT_FIELDS(FIELD)                                                                                            \
+    FIELD(id, COUNT, "", "of its own among all gridpoints: 4294967296 times its block, and its number",                \
+          id_of(mesh->body, row - mesh->point_begin))                                                                  \
     FIELD(block, COUNT, "", "block that it is of: the lowest of a body of several", mesh->body)                        \
     FIELD(number, COUNT, "", "its number in the block, from 0", row - mesh->point_begin)                               \
+    FIELD(group, TEXT, "", "group of the block", group_of(m, mesh))                                                    \
     FIELD(position, VEC3, "m", "present place", tl_v3_add(m->origin, tl_gridpoint_place(p, row)))                      \
     FIELD(displacement, VEC3, "m", "since it was made", tl_columns_get(p->u, row))                                     \
     FIELD(velocity, VEC3, "m/s", "half a step ago", tl_columns_get(p->v, row))                                         \
     FIELD(force, VEC3, "N", "unbalanced", tl_columns_get(p->force, row))                                               \
     FIELD(mass, SCALAR, "kg", "a quarter of that of each of its zones", p->mass[row])                                  \
-    FIELD(fixed, COUNT, "", "components that are held: 1 x, 2 y, 4 z, added up", p->fixed[row])
+    FIELD(fixed, COUNT, "", "components that are held: 1 x, 2 y, 4 z, added up", p->fixed[row])                        \
+    FIELD(surface, BOOL, "", "whether it is on the surface of its body", p->bare[row] != 0)
 
 #define NUMBER(prefix, name) prefix##name,
 #define ZONE_NUMBER(name, kind, unit, doc, value) NUMBER(Z_, name)
@@ -233,24 +252,89 @@ static void point_numbers(const tl_model *m, const tl_body_mesh *mesh, uint32_t 
 
 /* ---------------------------------------------------------------- selections ------------- */
 
-/* Whether a mesh has one of the blocks. */
-static bool has_block(const tl_model *m, const tl_body_mesh *mesh, const tl_zone_filter *f)
+/* A selection on its way. */
+typedef struct search {
+    tl_model *m;
+    const tl_zone_filter *f;
+    bool points;     /* gridpoints are looked for, not zones */
+    uint32_t solid;  /* of which zones are to be */
+    uint8_t *wanted; /* of each mesh, whether it has a block that is asked for */
+} search;
+
+static bool block_passes(const tl_model *m, uint32_t row, const tl_zone_filter *f)
 {
-    bool some = f->blocks == NULL;
-    for (size_t k = 0; k < f->block_count && !some; k++) {
-        const uint32_t row = tl_block_row_quiet(m, f->blocks[k]);
-        some = row != TL_NO_ROW && m->blocks.body[row] == mesh->row;
-    }
+    const bool grouped = !f->group || strcmp(tl_group_name(m, m->blocks.group[row]), f->group) == 0;
+    return grouped && (f->blocks || !m->blocks.hidden[row]);
+}
+
+static bool mesh_passes(const tl_model *m, const tl_body_mesh *mesh, const tl_zone_filter *f)
+{
+    const uint32_t *blocks = tl_body_blocks(m, mesh->row);
+    bool some = false;
+    for (uint32_t k = 0; k < m->bodies.member_count[mesh->row]; k++)
+        some = some || block_passes(m, blocks[k], f);
     return some;
 }
 
-static bool passes(const tl_model *m, const tl_body_mesh *mesh, uint32_t number, const tl_zone_filter *f,
-                   uint32_t solid)
+/* Marks the meshes of which parts may pass. */
+static tl_status mark_meshes(search *s)
 {
-    const struct tl_zones *z = m->zones;
-    const uint32_t row = z->row_of[mesh->zone_begin + number];
-    return (f->plastic < 0 || (f->plastic != 0) == (z->zones.flags[row] != 0)) &&
-           (!f->solid || parcel_of(z, mesh, row)->solid == solid);
+    const struct tl_zones *z = s->m->zones;
+    s->wanted = calloc(z->mesh_count + 1, 1);
+    if (!s->wanted)
+        return tl_fail_memory(&s->m->error);
+    for (size_t k = 0; !s->f->blocks && k < z->mesh_count; k++)
+        s->wanted[k] = mesh_passes(s->m, &z->mesh[k], s->f);
+    for (size_t k = 0; s->f->blocks && k < s->f->block_count; k++) {
+        const uint32_t row = tl_block_row(s->m, s->f->blocks[k]);
+        if (row == TL_NO_ROW)
+            return s->m->error.status;
+        const uint32_t mesh = tl_mesh_of(s->m, s->m->bodies.id[s->m->blocks.body[row]]);
+        if (mesh != TL_NO_ROW)
+            s->wanted[mesh] = mesh_passes(s->m, &z->mesh[mesh], s->f);
+    }
+    return TL_OK;
+}
+
+static bool in_box(const tl_bounds *box, tl_vec3 p)
+{
+    return p.x >= box->min.x && p.y >= box->min.y && p.z >= box->min.z && p.x <= box->max.x && p.y <= box->max.y &&
+           p.z <= box->max.z;
+}
+
+/* Whether a point lies in a zone, or on a side of it. */
+static bool zone_contains(const place *at, tl_vec3 p)
+{
+    const tl_vec3 q = tl_v3_sub(p, at->m->origin);
+    const double least = -1e-12 * volume_of(at->x);
+    bool inside = true;
+    for (int a = 0; a < 4; a++) {
+        tl_vec3 x[4];
+        memcpy(x, at->x, sizeof x);
+        x[a] = q;
+        inside = inside && volume_of(x) >= least;
+    }
+    return inside;
+}
+
+static bool zone_passes(const search *s, const tl_body_mesh *mesh, uint32_t number, tl_vec3 *where)
+{
+    const place at = place_of(s->m, mesh, number);
+    const tl_zone_filter *f = s->f;
+    *where = centroid_of(&at);
+    return (f->plastic < 0 || (f->plastic != 0) == (s->m->zones->zones.flags[at.row] != 0)) &&
+           (!f->solid || at.parcel->solid == s->solid) && (!f->inside || in_box(f->inside, *where)) &&
+           (!f->containing || zone_contains(&at, *f->containing));
+}
+
+static bool point_passes(const search *s, const tl_body_mesh *mesh, uint32_t number, tl_vec3 *where)
+{
+    const tl_gridpoints *p = &s->m->zones->points;
+    const uint32_t row = mesh->point_begin + number;
+    const tl_zone_filter *f = s->f;
+    *where = tl_v3_add(s->m->origin, tl_gridpoint_place(p, row));
+    return p->zones[row] > 0 && (f->fixed < 0 || (f->fixed != 0) == (p->fixed[row] != 0)) &&
+           (f->surface < 0 || (f->surface != 0) == (p->bare[row] != 0)) && (!f->inside || in_box(f->inside, *where));
 }
 
 /* Meshes in the order of their bodies: a list of their numbers, from malloc. */
@@ -266,31 +350,75 @@ static uint32_t *meshes_in_order(const struct tl_zones *z)
     return list;
 }
 
+/* Takes in what passes of a mesh: all, or what is nearer to a point than what was found. false: out of memory. */
+static bool take_mesh(const search *s, const tl_body_mesh *mesh, tl_zone_name **names, size_t *count, size_t *capacity,
+                      double *nearest)
+{
+    const uint32_t end = s->points ? mesh->point_end - mesh->point_begin : mesh->zone_end - mesh->zone_begin;
+    if (!tl_grow(names, capacity, *count + end + 1, sizeof **names))
+        return false;
+    for (uint32_t number = 0; number < end; number++) {
+        tl_vec3 where;
+        if (!(s->points ? point_passes : zone_passes)(s, mesh, number, &where))
+            continue;
+        const double far = s->f->near ? tl_v3_norm2(tl_v3_sub(where, *s->f->near)) : 0;
+        if (s->f->near && *count > 0 && !(far < *nearest))
+            continue;
+        *count = s->f->near ? 0 : *count;
+        *nearest = far;
+        (*names)[(*count)++] = (tl_zone_name){mesh->body, number};
+    }
+    return true;
+}
+
+static tl_status take_all(const search *s, tl_zone_name **names, size_t *count)
+{
+    const struct tl_zones *z = s->m->zones;
+    uint32_t *order = meshes_in_order(z);
+    size_t capacity = 0;
+    double nearest = INFINITY;
+    bool enough = order != NULL;
+    for (size_t k = 0; enough && k < z->mesh_count; k++)
+        if (s->wanted[order[k]])
+            enough = take_mesh(s, &z->mesh[order[k]], names, count, &capacity, &nearest);
+    free(order);
+    return enough ? TL_OK : tl_fail_memory(&s->m->error);
+}
+
+/* Finds what is asked for among the meshes that there are. */
+static tl_status find_parts(search *s, tl_zone_name **names, size_t *count)
+{
+    const char *solid = s->f->solid;
+    s->solid = solid ? tl_solid_find(s->m, solid) : TL_NO_ROW;
+    if (solid && s->solid == TL_NO_ROW)
+        return tl_fail(&s->m->error, TL_E_NOT_FOUND, "there is no solid '%.80s' in this model", solid);
+    if (!s->m->zones)
+        return TL_OK;
+    tl_status status = mark_meshes(s);
+    return status == TL_OK ? take_all(s, names, count) : status;
+}
+
 static tl_status select_parts(tl_model *m, const tl_zone_filter *f, bool points, tl_zone_name **names, size_t *count)
 {
-    const struct tl_zones *z = m->zones;
-    size_t capacity = 0;
+    search s = {.m = m, .f = f, .points = points};
     *names = NULL;
     *count = 0;
-    const uint32_t solid = f->solid ? tl_solid_find(m, f->solid) : TL_NO_ROW;
-    if (f->solid && solid == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_NOT_FOUND, "there is no solid '%.80s' in this model", f->solid);
-    uint32_t *order = z ? meshes_in_order(z) : NULL;
-    bool enough = !z || order;
-    for (size_t k = 0; enough && z && k < z->mesh_count; k++) {
-        const tl_body_mesh *mesh = &z->mesh[order[k]];
-        const uint32_t end = points ? mesh->point_end - mesh->point_begin : mesh->zone_end - mesh->zone_begin;
-        if (!has_block(m, mesh, f))
-            continue;
-        enough = tl_grow(names, &capacity, *count + end + 1, sizeof **names);
-        for (uint32_t number = 0; enough && number < end; number++)
-            if (points || passes(m, mesh, number, f, solid))
-                (*names)[(*count)++] = (tl_zone_name){mesh->body, number};
+    tl_rows_tidy(m);
+    tl_status status = find_parts(&s, names, count);
+    if (status == TL_OK && !*names && !(*names = malloc(sizeof **names)))
+        status = tl_fail_memory(&m->error);
+    free(s.wanted);
+    if (status != TL_OK) {
+        free(*names);
+        *names = NULL;
+        *count = 0;
     }
-    free(order);
-    if (enough && !*names)
-        enough = tl_grow(names, &capacity, 1, sizeof **names);
-    return enough ? TL_OK : tl_fail_memory(&m->error);
+    return status;
+}
+
+tl_zone_filter tl_zone_filter_default(void)
+{
+    return (tl_zone_filter){.size = sizeof(tl_zone_filter), .plastic = -1, .surface = -1, .fixed = -1};
 }
 
 tl_status tl_zones_select(tl_model *m, const tl_zone_filter *filter, tl_zone_name **names, size_t *count)
@@ -328,6 +456,8 @@ tl_status tl_zone_field(tl_model *m, tl_zone_name zone, size_t index, tl_field_v
     zone_numbers(&at, index, value->number);
     if (index == Z_solid)
         value->text = m->zones->solid[at.parcel->solid].name;
+    if (index == Z_group)
+        value->text = tl_group_name(m, (size_t)value->number[0]);
     if (index == Z_state)
         value->text = state_names[(size_t)value->number[0]];
     return TL_OK;
@@ -340,6 +470,8 @@ tl_status tl_gridpoint_field(tl_model *m, tl_zone_name gridpoint, size_t index, 
         return m->error.status;
     *value = (tl_field_value){{0}, NULL};
     point_numbers(m, mesh, mesh->point_begin + gridpoint.number, index, value->number);
+    if (index == P_group)
+        value->text = tl_group_name(m, (size_t)value->number[0]);
     return TL_OK;
 }
 
@@ -417,8 +549,9 @@ tl_status tl_gridpoints_values(tl_model *m, const tl_zone_name *names, size_t co
                                size_t *width)
 {
     const size_t field = field_named(point_fields, P_COUNT, name);
-    if (field == P_COUNT)
-        return no_column(m, "gridpoint", name, false);
+    const bool text = field < P_COUNT && point_fields[field].kind == TL_FIELD_TEXT;
+    if (text || field == P_COUNT)
+        return no_column(m, "gridpoint", name, text);
     *width = tl_field_width(point_fields[field].kind);
     for (size_t k = 0; out && k < count; k++) {
         const tl_body_mesh *mesh = mesh_of(m, names[k], true);
