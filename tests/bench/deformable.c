@@ -61,18 +61,21 @@ static void quiet(void *user, const char *text)
 
 /* ---------------------------------------------------------------- scenes ----------------- */
 
-/* What there is of a scene beside its blocks. */
+/* A scene: cubes of 1 m, `apart` from each other, of zones of an edge, m, and what their solid is given. `rate`: that
+ * of velocity, 1/s, which all gridpoints are held to, so that all zones yield; 0: they are free. */
 typedef struct scene {
     const char *workload, *size, *solid;
-    tl_value parameter[3];
-    size_t parameters;
-    int side[3];        /* cubes of 1 m along x, y and z */
-    double apart, edge; /* m: between the cubes, and of their zones */
+    double friction, dilation, tension; /* deg, Pa; 0: not given */
+    int side[3];
+    double apart, edge;
+    double rate[3][3];
     unsigned threads;
-    double rate[3][3]; /* of velocity, 1/s, that all gridpoints are held to; 0: they are free */
-    uint32_t flag;     /* that all zones shall have in each step, or 0 */
-    int64_t before;    /* steps until they have it */
 } scene;
+
+static bool yields(const scene *s)
+{
+    return s->rate[0][0] != 0;
+}
 
 /* Cubes in a row, a wall or a heap. */
 static void add_cubes(tl_model *m, const scene *s)
@@ -103,9 +106,22 @@ static void add_cubes(tl_model *m, const scene *s)
 
 static void set_solid(tl_model *m, const scene *s)
 {
-    tl_value values[5] = {tl_arg_number("young", YOUNG), tl_arg_number("poisson", POISSON)};
-    memcpy(values + 2, s->parameter, sizeof s->parameter);
-    const tl_args args = {values, 2 + s->parameters};
+    tl_value values[8] = {tl_arg_number("young", YOUNG), tl_arg_number("poisson", POISSON)};
+    size_t n = 2;
+    if (strcmp(s->solid, "hoek_brown") == 0) {
+        values[n++] = tl_arg_number("sigma_ci", 1e5);
+        values[n++] = tl_arg_number("mb", 2);
+        values[n++] = tl_arg_number("s", 0.01);
+        values[n++] = tl_arg_number("a", 0.51);
+    } else if (yields(s)) {
+        values[n++] = tl_arg_number("cohesion", 1e4);
+        values[n++] = tl_arg_number("friction", s->friction);
+    }
+    if (s->dilation > 0)
+        values[n++] = tl_arg_number("dilation", s->dilation);
+    if (s->tension > 0)
+        values[n++] = tl_arg_number("tension", s->tension);
+    const tl_args args = {values, n};
     const tl_kind *kind = tl_plugin_find(TL_KIND_SOLID, s->solid);
     if (!kind) {
         fprintf(stderr, "deformable: there is no solid '%s'\n", s->solid);
@@ -123,7 +139,7 @@ static void set_velocities(tl_model *m, const scene *s)
     for (size_t row = 0; row < p->table.rows; row++)
         for (int i = 0; i < 3; i++) {
             random = random * 6364136223846793005u + 1442695040888963407u;
-            if (s->flag == 0) {
+            if (!yields(s)) {
                 p->v[i][row] = 1e-6 * ((double)(random >> 40) / (1 << 24) - 0.5);
                 continue;
             }
@@ -154,19 +170,19 @@ static tl_model *make(const scene *s, size_t *zones, double *bytes)
     *zones = made.zones;
     *bytes = ((double)tl_model_memory(m).total - before) / (double)made.zones;
     set_velocities(m, s);
-    if (s->flag != 0)
+    if (yields(s))
         ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-6}));
-    ok(m, tl_model_cycle(m, s->before > 2 ? s->before : 2, &result));
+    ok(m, tl_model_cycle(m, yields(s) ? 100 : 2, &result));
     return m;
 }
 
-/* Zones without a flag that all shall have. */
-static size_t without(const tl_model *m, uint32_t flag)
+/* Zones that have not yielded in the last step. */
+static size_t elastic(const tl_model *m)
 {
     const tl_zone_table *t = &m->zones->zones;
     size_t out = 0;
     for (size_t row = 0; row < t->table.rows; row++)
-        out += t->number[row] != TL_NO_ROW && (t->flags[row] & flag) != flag;
+        out += t->number[row] != TL_NO_ROW && (t->flags[row] & (TL_ZONE_SHEAR | TL_ZONE_TENSION)) == 0;
     return out;
 }
 
@@ -198,7 +214,7 @@ static void run_zones(const scene *s)
     double bytes, taken[MOST_ROUNDS], share[MOST_ROUNDS];
     tl_solve_result result;
     tl_model *m = make(s, &zones, &bytes);
-    bare b = bare_of(m->zones, m->dt, YOUNG, POISSON, s->flag != 0);
+    bare b = bare_of(m->zones, m->dt, YOUNG, POISSON, yields(s));
     const int64_t steps = steps_of(zones);
     bare_step(&b, m->pool);
     for (int r = 0; r < rounds; r++) {
@@ -210,10 +226,10 @@ static void run_zones(const scene *s)
             bare_step(&b, m->pool);
         share[r] = (seconds(m) - began) / taken[r];
     }
-    if (s->flag != 0 && without(m, s->flag) > 0)
-        fprintf(stderr, "deformable: %s: %zu of %zu zones do not yield\n", s->workload, without(m, s->flag), zones);
+    if (yields(s) && elastic(m) > 0)
+        fprintf(stderr, "deformable: %s: %zu of %zu zones do not yield\n", s->workload, elastic(m), zones);
     row(s, s->solid, zones, (double)zones * (double)steps / median(taken, rounds), "zones/s", median(share, rounds),
-        s->flag == 0 ? bytes : 0);
+        !yields(s) ? bytes : 0);
     bare_free(&b);
     tl_model_destroy(m);
 }
@@ -269,74 +285,40 @@ static void run_jointed(const scene *s)
         }                                                                                                              \
     }
 
-static void run(scene s, unsigned threads, bool jointed)
-{
-    s.threads = threads;
-    (jointed ? run_jointed : run_zones)(&s);
-}
+static const scene scenes[] = {
+    {.workload = "zones", .size = "in cache", .solid = "elastic", .side = {1, 1, 1}, .apart = 1, .edge = 0.139},
+    {.workload = "zones", .size = "out of cache", .solid = "elastic", .side = {20, 20, 1}, .apart = 1, .edge = 0.131},
+    {.workload = "plastic plane", .solid = "mohr_coulomb", .friction = 30, .dilation = 10, .rate = PLANE},
+    {.workload = "plastic edge", .solid = "mohr_coulomb", .friction = 30, .dilation = 10, .rate = EDGE},
+    {.workload = "plastic torn", .solid = "mohr_coulomb", .friction = 30, .tension = 1e3, .rate = TORN},
+    {.workload = "plastic", .solid = "hoek_brown", .dilation = 10, .rate = PLANE},
+    {.workload = "plastic", .solid = "drucker_prager", .friction = 30, .dilation = 10, .rate = PLANE},
+    {.workload = "jointed", .size = "in cache", .solid = "elastic", .side = {2, 1, 1}, .edge = 0.07},
+    {.workload = "jointed", .size = "out of cache", .solid = "elastic", .side = {10, 10, 10}, .edge = 0.23},
+};
 
+/* "deformable [quick] [WORD]": only scenes whose workload, place or solid has the word in it. */
 int main(int count, char **words)
 {
     const bool small = count > 1 && strcmp(words[1], "quick") == 0;
-    const char *only = count > 2 ? words[2] : "";
+    const char *only = count > 1 + small ? words[1 + small] : "";
     if (small)
         rounds = 5;
     if (tl_plugins_load_default() != TL_OK)
         return 1;
-    const tl_value weak = tl_arg_number("cohesion", 1e4), steep = tl_arg_number("friction", 30);
-    const tl_value soft = tl_arg_number("tension", 1e3), flat = tl_arg_number("dilation", 10);
-    const scene zones[] = {
-        {"zones", "in cache", "elastic", {{0}}, 0, {1, 1, 1}, 1, 0.139, 1, {{0}}, 0, 2},
-        {"zones", "out of cache", "elastic", {{0}}, 0, {20, small ? 2 : 20, 1}, 1, 0.131, 1, {{0}}, 0, 2},
-        {"plastic plane",
-         "in cache",
-         "mohr_coulomb",
-         {weak, steep, flat},
-         3,
-         {1, 1, 1},
-         1,
-         0.139,
-         1,
-         PLANE,
-         TL_ZONE_SHEAR,
-         100},
-        {"plastic edge",
-         "in cache",
-         "mohr_coulomb",
-         {weak, steep, flat},
-         3,
-         {1, 1, 1},
-         1,
-         0.139,
-         1,
-         EDGE,
-         TL_ZONE_SHEAR,
-         100},
-        {"plastic torn",
-         "in cache",
-         "mohr_coulomb",
-         {weak, steep, soft},
-         3,
-         {1, 1, 1},
-         1,
-         0.139,
-         1,
-         TORN,
-         TL_ZONE_TENSION,
-         100},
-    };
-    const scene jointed[] = {
-        {"jointed", "in cache", "elastic", {{0}}, 0, {2, 1, 1}, 0, 0.07, 1, {{0}}, 0, 2},
-        {"jointed", "out of cache", "elastic", {{0}}, 0, {10, 10, small ? 1 : 10}, 0, 0.23, 1, {{0}}, 0, 2},
-    };
     printf("workload,size,zones,threads,rate,unit,of_bare,bytes\n");
-    for (unsigned threads = 1; threads <= 2; threads++) {
-        for (size_t k = 0; k < sizeof zones / sizeof *zones; k++)
-            if (strstr(zones[k].workload, only))
-                run(zones[k], threads, false);
-        for (size_t k = 0; k < sizeof jointed / sizeof *jointed; k++)
-            if (strstr(jointed[k].workload, only))
-                run(jointed[k], threads, true);
-    }
+    for (unsigned threads = 1; threads <= 2; threads++)
+        for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+            scene s = scenes[k];
+            s.threads = threads;
+            if (strcmp(s.workload, "jointed") != 0 && s.side[0] == 0) {
+                s.size = "in cache";
+                s.side[0] = s.side[1] = s.side[2] = 1;
+                s.edge = 0.139;
+            } else if (small && s.side[1] > 1)
+                s.side[1] = 2;
+            if (strstr(s.workload, only) || strstr(s.size, only) || strstr(s.solid, only))
+                strcmp(s.workload, "jointed") == 0 ? run_jointed(&s) : run_zones(&s);
+        }
     return 0;
 }
