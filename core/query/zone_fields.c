@@ -461,3 +461,18 @@ tl_status tl_gridpoints_values(tl_model *m, const tl_zone_name *names, size_t co
     }
     return TL_OK;
 }
+
+tl_status tl_zones_corners(tl_model *m, const tl_zone_name *names, size_t count, uint32_t (*corners)[4])
+{
+    for (size_t k = 0; k < count; k++) {
+        const tl_body_mesh *mesh = mesh_of(m, names[k], false);
+        if (!mesh)
+            return m->error.status;
+        const tl_zone_at at = tl_zone_at_number(m, mesh, names[k].number);
+        for (int a = 0; a < 4; a++) {
+            const uint16_t local = m->zones->zones.corner[a][at.row];
+            corners[k][a] = m->zones->listed[at.parcel->point_begin + local] - mesh->point_begin;
+        }
+    }
+    return TL_OK;
+}
