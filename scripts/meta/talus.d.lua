@@ -634,6 +634,8 @@ function Model:contact_area(options) end
 ---@field damping number taken out by the damping, J
 ---@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
 ---@field balance number error of the sum over the largest change of a term so far
+---@field strain number elastic, in all zones of deformable blocks, J
+---@field plastic number turned to heat in zones, by yielding, J
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
@@ -1017,7 +1019,7 @@ function Model:relax(options) end
 ---@field field? string field of numbers of what `of` gives ("displacement", "normal_force")
 ---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its blocks or contacts
 ---@field remove? boolean default false: ends the history of that name, with all its samples
----@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
+---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external", "strain", "plastic" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
 ---@field of? talus.Block|talus.Contact|talus.Blocks|talus.Contacts what the field is sampled of, in the place of `value`. Blocks and contacts that no longer exist are left out; where none is left the value is nan
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.
