@@ -19,7 +19,7 @@ typedef struct tl_zone_parts {
     double shortest;         /* edge of all the joined blocks: their weights are alike */
 } tl_zone_parts;
 
-typedef struct tl_zoning {
+typedef struct tl_shape_zoning {
     double edge;          /* the wanted edge h of zones; larger than the block: corners and centroid alone */
     tl_zone_size_fn size; /* or a function of place. NULL: `edge` everywhere */
     const void *user;     /* of it */
@@ -31,9 +31,9 @@ typedef struct tl_zoning {
      * none. */
     const uint8_t *face_free;
     const tl_zone_parts *parts; /* NULL: no face is given in parts */
-} tl_zoning;
+} tl_shape_zoning;
 
-static inline double tl_zoning_size(const tl_zoning *z, tl_vec3 place)
+static inline double tl_zoning_size(const tl_shape_zoning *z, tl_vec3 place)
 {
     return z->size ? z->size(z->user, place) : z->edge;
 }

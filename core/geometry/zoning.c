@@ -448,7 +448,7 @@ const tl_vec3 *tl_zoning_crossed(const tl_zone_scratch *s, size_t *count)
 
 /* ---- all ---- */
 
-static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_zoning *zoning, tl_error *error)
+static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_shape_zoning *zoning, tl_error *error)
 {
     tl_status status = tl_zone_points_begin(&s->points, poly, zoning, error);
     if (!status)
@@ -559,8 +559,8 @@ static tl_status check_rounding(const tl_zone_mesh *m, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_zoning_make(const tl_poly *poly, const tl_zoning *zoning, tl_zone_scratch *scratch, tl_zone_mesh *mesh,
-                         tl_error *error)
+tl_status tl_zoning_make(const tl_poly *poly, const tl_shape_zoning *zoning, tl_zone_scratch *scratch,
+                         tl_zone_mesh *mesh, tl_error *error)
 {
     *mesh = (tl_zone_mesh){0};
     scratch->crossed_count = 0;

@@ -61,7 +61,7 @@ static uint32_t apex_of(const tl_zone_mesh *mesh, const free_sides *sides, const
 }
 
 /* Lists the triangles of the surface. `inside`: parts of faces that lie on other blocks, or NULL. */
-static tl_status list_surface(tl_block_zones *of, const tl_zoning *zoning, const uint8_t *inside, tl_error *error)
+static tl_status list_surface(tl_block_zones *of, const tl_shape_zoning *zoning, const uint8_t *inside, tl_error *error)
 {
     const tl_zone_mesh *mesh = &of->mesh;
     free_sides sides;
@@ -87,7 +87,7 @@ static tl_status list_surface(tl_block_zones *of, const tl_zoning *zoning, const
     return enough ? TL_OK : tl_fail_memory(error);
 }
 
-tl_status tl_block_zones_make(tl_block_zones *of, tl_id block, const tl_poly *shape, const tl_zoning *zoning,
+tl_status tl_block_zones_make(tl_block_zones *of, tl_id block, const tl_poly *shape, const tl_shape_zoning *zoning,
                               const uint8_t *inside, tl_zone_scratch *scratch, tl_error *error)
 {
     *of = (tl_block_zones){.block = block};

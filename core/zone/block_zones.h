@@ -15,7 +15,7 @@ typedef struct tl_block_zones {
 
 /* Divides a block of this shape. No triangle of a face with inside[face] is of the surface; NULL: all are. Sentences
  * begin with the block. Free *zones in any case. */
-tl_status tl_block_zones_make(tl_block_zones *zones, tl_id block, const tl_poly *shape, const tl_zoning *zoning,
+tl_status tl_block_zones_make(tl_block_zones *zones, tl_id block, const tl_poly *shape, const tl_shape_zoning *zoning,
                               const uint8_t *inside, tl_zone_scratch *scratch, tl_error *error);
 void tl_block_zones_free(tl_block_zones *zones);
 

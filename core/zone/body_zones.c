@@ -24,7 +24,7 @@ typedef struct joining {
     tl_model *m;
     const uint32_t *rows; /* of the blocks */
     size_t count;
-    const tl_zoning *zoning;
+    const tl_shape_zoning *zoning;
     const tl_corner_keys *keys;
     tl_zone_scratch *scratch;
     const tl_poly **shape;
@@ -74,7 +74,7 @@ static tl_status divide_block(joining *j, size_t b, bool *again)
 {
     tl_model *m = j->m;
     const tl_joined_block *of = &j->splits.block[b];
-    tl_zoning zoning = *j->zoning;
+    tl_shape_zoning zoning = *j->zoning;
     uint64_t *key = malloc((of->poly->vertex_count + 1) * sizeof *key);
     if (!key)
         return tl_fail_memory(&m->error);
@@ -344,7 +344,7 @@ static tl_status divide_alone(const joining *j, tl_body_zones *to)
 {
     tl_model *m = j->m;
     const uint32_t row = j->rows[0];
-    tl_zoning zoning = *j->zoning;
+    tl_shape_zoning zoning = *j->zoning;
     tl_block_zones made;
     zoning.corner_key = j->keys->of + j->keys->start[row];
     to->block = malloc(sizeof *to->block);
@@ -377,7 +377,7 @@ static tl_status divide_alone(const joining *j, tl_body_zones *to)
     return status;
 }
 
-tl_status tl_body_zones_make(tl_model *m, uint32_t body, const tl_zoning *zoning, const tl_corner_keys *keys,
+tl_status tl_body_zones_make(tl_model *m, uint32_t body, const tl_shape_zoning *zoning, const tl_corner_keys *keys,
                              tl_zone_scratch *scratch, tl_body_zones *zones)
 {
     joining j = {.m = m,

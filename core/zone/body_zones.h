@@ -23,7 +23,7 @@ typedef struct tl_body_zones {
 
 /* Divides the blocks of a body. Of several, those that lie on each other share gridpoints there. `zoning` tells the
  * wanted edge. Nothing of the model changes. Free *zones in any case. */
-tl_status tl_body_zones_make(tl_model *m, uint32_t body, const tl_zoning *zoning, const tl_corner_keys *keys,
+tl_status tl_body_zones_make(tl_model *m, uint32_t body, const tl_shape_zoning *zoning, const tl_corner_keys *keys,
                              tl_zone_scratch *scratch, tl_body_zones *zones);
 void tl_body_zones_free(tl_body_zones *zones);
 
