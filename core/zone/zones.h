@@ -7,7 +7,7 @@
  * table. A cluster of fewer zones than the deepest of its group, and a lane without a cluster, has inert rows: copies
  * of a zone whose volume counts as 0.
  *
- * A parcel is some groups of one body and one solid, with a list of the gridpoints that they use. A thread takes one
+ * A parcel is some groups of one block and one solid, with a list of the gridpoints that they use. A thread takes one
  * parcel at a time. What the zones of a parcel do to a gridpoint is summed in a slot of the parcel; a gridpoint adds
  * its slots in their order. So sums do not depend on threads.
  *
@@ -76,6 +76,7 @@ typedef struct tl_zone_group {
 
 typedef struct tl_parcel {
     uint32_t mesh, solid;
+    tl_id block;
     uint32_t group_begin, group_end;
     uint32_t point_begin, point_end; /* in `listed`, and its slots */
 } tl_parcel;
