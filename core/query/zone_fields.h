@@ -9,6 +9,10 @@
 const tl_field *tl_zone_fields(size_t *count);
 const tl_field *tl_gridpoint_fields(size_t *count);
 
+/* The number of a zone's state by its flags, and the name of a number: "elastic" is 0. NULL: there is no such number. */
+uint32_t tl_zone_state(uint32_t flags);
+const char *tl_zone_state_name(uint32_t number);
+
 /* Which zones; all that is set must hold. */
 typedef struct tl_zone_filter {
     uint32_t size;       /* sizeof(tl_zone_filter) */
