@@ -6,9 +6,7 @@
 #include "check.h"
 
 #include "query/zone_fields.h"
-#include "zone/deform.h"
-#include "zone/life.h"
-#include "zone/solids.h"
+#include "zoned_column.h"
 
 #include <dirent.h>
 #include <signal.h>
@@ -155,36 +153,10 @@ TEST(two_frames_for_the_reader)
 
 /* ---------------------------------------------------------------- zones ------------------ */
 
-static tl_id add_block(tl_model *m, const double min[3], const double max[3])
-{
-    const tl_value values[] = {vector("min", min), vector("max", max), number("density", 2500)};
-    generate(m, "box", values, 3);
-    return (tl_id)tl_block_count(m);
-}
-
-/* A column of 2 x 1 x 3 of zones between a floor that is held and a block that presses it. */
 static tl_model *column(void)
 {
-    const double floor_min[] = {-1, -1, -1}, floor_max[] = {3, 2, 0}, min[] = {0, 0, 0}, max[] = {2, 1, 3};
-    const double top_min[] = {0, 0, 3}, top_max[] = {2, 1, 4};
     tl_model *m = empty_model();
-    const tl_id floor = add_block(m, floor_min, floor_max), middle = add_block(m, min, max);
-    add_block(m, top_min, top_max);
-    const tl_value law[] = {number("kn", 1e10), number("ks", 1e10), number("friction", 30)};
-    const tl_args args = {law, 3};
-    CHECK_INT(tl_joint_law(m, "*", "coulomb", &args), TL_OK);
-    CHECK_INT(tl_blocks_fix(m, &floor, 1, TL_FIX_ALL), TL_OK);
-    const tl_value rock[] = {number("young", 1e9), number("poisson", 0.3), number("cohesion", 2e4),
-                             number("friction", 20), number("tension", 1e4)};
-    const tl_args of_rock = {rock, 5};
-    tl_error error = {0};
-    if (!tl_plugin_find(TL_KIND_SOLID, "mohr_coulomb"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_mohr_coulomb.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    CHECK_INT(tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "mohr_coulomb"), &of_rock), TL_OK);
-    const tl_dividing how = {.edge = 0.7, .solid = "rock"};
-    tl_divided made;
-    CHECK_INT(tl_blocks_divide(m, &middle, 1, &how, &made), TL_OK);
+    zoned_column(m, 0.7);
     return m;
 }
 
