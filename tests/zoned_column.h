@@ -4,11 +4,7 @@
 
 #include "check.h"
 
-#include "zone/deform.h"
-#include "zone/life.h"
-#include "zone/solids.h"
-
-#include <talus/talus.h>
+#include <talus/zones.h>
 
 static tl_id column_block(tl_model *m, const double min[3], const double max[3])
 {
@@ -44,11 +40,12 @@ static void zoned_column(tl_model *m, double edge)
     tl_error error = {0};
     if (!tl_plugin_find(TL_KIND_SOLID, "mohr_coulomb"))
         CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_mohr_coulomb.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    CHECK_INT(tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "mohr_coulomb"), &of_rock), TL_OK);
-    const tl_dividing how = {.edge = edge, .solid = "rock"};
-    tl_divided made;
-    CHECK_INT(tl_blocks_divide(m, &middle, 1, &how, &made), TL_OK);
+    CHECK_INT(tl_model_solid(m, "rock", "mohr_coulomb", &of_rock), TL_OK);
+    tl_zoning how = tl_zoning_default();
+    how.edge = edge;
+    how.solid = "rock";
+    tl_zoned made;
+    CHECK_INT(tl_blocks_deform(m, &middle, 1, &how, &made), TL_OK);
 }
 
 #endif

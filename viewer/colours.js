@@ -109,9 +109,10 @@ export function zoneColours(model) {
  */
 function signed(low, high) {
     const most = Math.max(-low, high), steps = 64;
+    const warm = low < 0 ? [COOL[0], ...WARM.slice(1)] : WARM;
     return Array.from({length: steps + 1}, (_v, i) => {
         const value = low + i / steps * (high - low);
-        return value < 0 ? ramp(COOL, -value / most) : ramp(WARM, value / most);
+        return value < 0 ? ramp(COOL, -value / most) : ramp(warm, value / most);
     });
 }
 

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/zones.h>
 
 /* Limit: zones of a model up to which all are sent. A page that is turned and cut with more is slow. */
 #define MOST 400000

@@ -14,9 +14,9 @@
 #include "io/vtk_file.h"
 #include "io/vtk_series.h"
 #include "io/vtk_zones.h"
-#include "model/fields.h"
 #include "model/options.h"
 #include "model/rows.h"
+#include "query/block_fields.h"
 #include "state/outputs.h"
 #include "zone/zones.h"
 

@@ -31,6 +31,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/zones.h>
 
 #define CONTEXT "write_vtk: zone_fields"
 /* Zones, or gridpoints, whose values are asked for at a time. */

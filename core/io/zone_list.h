@@ -4,7 +4,6 @@
 #define TL_IO_ZONE_LIST_H
 
 #include "base/kind_states.h"
-#include "zone/name.h"
 #include "zone/zones.h"
 
 typedef struct tl_zone_list {

@@ -50,6 +50,7 @@ typedef struct tl_gridpoints {
     double *holds;     /* of zones and what touches it, but at least the floor, N/m */
     uint32_t *mesh;    /* its number */
     uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
+    uint8_t *bare;     /* 1: it is on the surface of its body */
     double *load[3];   /* of the user's, N; NULL: none has ever been set */
     double *damping[3], *alpha; /* what the damping gave; NULL: there has been none */
     double *force_before[3];    /* in the last damped step; NULL: no damping has asked for them */

@@ -6,6 +6,7 @@
 #include "io/page.h"
 #include "io/pieces.h"
 #include "io/scene.h"
+#include "zone/zones.h"
 #include "zoned_column.h"
 
 #include <talus/talus.h>

@@ -5,7 +5,7 @@
 #define _GNU_SOURCE /* usleep */
 #include "check.h"
 
-#include "query/zone_fields.h"
+#include "zone/zones.h"
 #include "zoned_column.h"
 
 #include <dirent.h>
@@ -160,15 +160,13 @@ static tl_model *column(void)
     return m;
 }
 
-static const tl_zone_filter any_zone = {.size = sizeof(tl_zone_filter), .plastic = -1};
-
 /* What the reader is to find of the zones: how many, and sums over them, weighted by their volumes. */
 static void note_zones(tl_model *m, const char *path)
 {
     tl_zone_name *names = NULL;
     size_t count = 0, width, plastic = 0;
     double sum[6] = {0}, volume = 0;
-    CHECK_INT(tl_zones_select(m, &any_zone, &names, &count), TL_OK);
+    CHECK_INT(tl_zones_select(m, NULL, &names, &count), TL_OK);
     for (size_t k = 0; k < count; k++) {
         double v, s[6], yields;
         tl_zones_values(m, names + k, 1, "volume", &v, &width);

@@ -30,7 +30,7 @@ typedef struct tl_vtk_parts {
     const tl_extra_field *block_fields, *contact_fields; /* the latter go to contacts and joints */
     size_t block_field_count, contact_field_count;
     int32_t zones;                     /* since 1.10: of deformable blocks, where there are any */
-    const tl_extra_field *zone_fields; /* since 1.10: of each zone, in the order of tl_zones_select, of all */
+    const tl_extra_field *zone_fields; /* since 1.10: of each zone of all blocks, as tl_zones_select gives them */
     size_t zone_field_count;           /* since 1.10 */
 } tl_vtk_parts;
 /* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_, _joints_ and, where blocks are
