@@ -3,16 +3,15 @@
  * A gridpoint is a point of mass m. Its zones, contacts, weight and load push it, and it moves by central differences
  * as bodies do: v <- (D1 v + F/m h) D2, x <- x + v dt. Components that are held keep the velocity they were given.
  *
- * Rest asks of a gridpoint what it asks of a body (rest.c), with B = sqrt(n sum f^2) for the n forces of its zones. A
- * mesh swings more softly than one of its gridpoints by far. So kinetic energy is compared over the whole of it:
- *
- *     sum m v.v / 2  <  the smaller of ratio and 1000 ratio^2, times sum B^2 / (2 k)
+ * Rest asks of a gridpoint what it asks of a body (rest.c), with B = sqrt(n sum f^2) for the n forces of its zones.
  *
  * Rows of a mesh are padded to whole lanes, so lanes add up in one order, whoever takes them. */
 #include "cycle/gridpoints.h"
 
 #include "base/columns.h"
 #include "base/extremes.h"
+#include "cycle/gridpoint.h"
+#include "cycle/meshes.h"
 #include "cycle/turn.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
@@ -23,9 +22,6 @@
 
 /* Rows that a thread takes at a time: a multiple of TL_LANES. */
 #define CHUNK 256
-
-/* All components of a gridpoint. */
-#define ALL (TL_FIX_X | TL_FIX_Y | TL_FIX_Z)
 
 /* ---------------------------------------------------------------- step ------------------- */
 
@@ -56,20 +52,7 @@ double tl_gridpoints_least(tl_model *m)
     return rate > 0 ? 1 / rate : INFINITY;
 }
 
-/* What mass scaling makes of a gridpoint's mass. */
-double tl_gridpoint_scale(const tl_model *m, size_t row)
-{
-    const tl_gridpoints *p = &m->zones->points;
-    const double scale = m->cycle->mass_scale * p->holds[row] / p->mass[row];
-    return m->cycle->mass_scale > 0 && p->holds[row] > 0 ? scale : 1;
-}
-
 /* ---------------------------------------------------------------- gather ----------------- */
-
-static tl_vec3 load_of(const tl_gridpoints *p, size_t row)
-{
-    return p->load[0] ? tl_columns_get(p->load, row) : tl_v3(0, 0, 0);
-}
 
 static void gather_point(const tl_model *m, size_t row, double share)
 {
@@ -86,8 +69,9 @@ static void gather_point(const tl_model *m, size_t row, double share)
     if (m->segments)
         tl_segments_gather(m, (uint32_t)row, &force, &touched);
     force = tl_v3_madd(force, share * p->mass[row], m->config.gravity);
-    tl_columns_put(p->force, row, tl_v3_madd(force, share, load_of(p, row)));
+    tl_columns_put(p->force, row, tl_v3_madd(force, share, tl_gridpoint_load(p, row)));
     p->bears[row] = sqrt((double)p->zones[row] * square) + touched;
+    p->touched[row] = touched;
 }
 
 /* What is summed of a chunk: a number for each row of lanes. */
@@ -101,8 +85,8 @@ static void note_ratio(const tl_model *m, size_t row, size_t at, double gravity,
 {
     const tl_gridpoints *p = &m->zones->points;
     const tl_vec3 force = tl_free_part(tl_columns_get(p->force, row), p->fixed[row]), v = tl_columns_get(p->v, row);
-    const double size = tl_v3_norm(force), weight = p->mass[row] * gravity + tl_v3_norm(load_of(p, row));
-    const double bears = tl_larger(p->bears[row], weight), ratio = bears > 0 ? size / bears : size > 0;
+    const double size = tl_v3_norm(force), bears = tl_gridpoint_borne(m, row, gravity);
+    const double ratio = bears > 0 ? size / bears : size > 0;
     of->number[TL_SUM_UNBALANCED][at] += size;
     of->number[TL_SUM_CONTACT_FORCE][at] += bears;
     all->largest = tl_larger(all->largest, size);
@@ -120,10 +104,11 @@ static void note_totals(const tl_model *m, size_t row, size_t at, addends *of)
 {
     const tl_gridpoints *p = &m->zones->points;
     const tl_vec3 v = tl_columns_get(p->v, row), force = tl_columns_get(p->force, row);
-    const double mass = p->mass[row];
+    const double mass = p->mass[row] * tl_gridpoint_energy_scale(m, row);
     of->number[TL_SUM_KINETIC][at] += 0.5 * mass * tl_v3_norm2(v);
     of->number[TL_SUM_DAMPED][at] += 0.5 * mass * tl_v3_norm2(tl_free_part(v, p->fixed[row]));
-    of->number[TL_SUM_POWER][at] += tl_v3_dot(tl_free_part(force, p->fixed[row]), v);
+    const bool alone = m->relaxing && m->zones->goes[p->mesh[row]] != TL_MESH_GOES_ALONG; /* settle.c */
+    of->number[TL_SUM_POWER][at] += alone ? 0 : tl_v3_dot(tl_free_part(force, p->fixed[row]), v);
 }
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -147,7 +132,7 @@ static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     memset(&of, 0, sizeof of);
     for (size_t row = begin; row < end; row++) {
         const size_t at = (row - begin) / TL_LANES;
-        if (z->points.fixed[row] == ALL)
+        if (tl_gridpoint_is_held(&z->points, row))
             continue;
         note_ratio(m, row, at, gravity, z->mesh[z->points.mesh[row]].row, &of, all);
         if (totals)
@@ -163,17 +148,29 @@ void tl_gridpoints_gather(tl_model *m)
         return;
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
     tl_carriers_push(m);
+    if (m->relaxing)
+        tl_meshes_judge(m);
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, sum_range, m);
 }
 
 /* ---------------------------------------------------------------- motion ----------------- */
 
-void tl_gridpoints_brake(tl_model *m, double alpha)
+void tl_gridpoints_brake(tl_model *m, double alpha, double lost)
 {
     tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
     for (size_t row = 0; p && row < p->table.rows; row++) {
-        p->alpha[row] = alpha;
+        const tl_mesh_way way = m->zones->goes[p->mesh[row]];
+        p->alpha[row] = way == TL_MESH_GOES_ALONG ? alpha : way == TL_MESH_TURNS_BACK ? lost : 0;
         tl_columns_put(p->damping, row, tl_v3(0, 0, 0));
+    }
+}
+
+void tl_gridpoints_stop(tl_model *m)
+{
+    tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
+    for (size_t row = 0; p && row < p->table.rows; row++) {
+        const tl_vec3 v = tl_columns_get(p->v, row);
+        tl_columns_put(p->v, row, tl_v3_sub(v, tl_free_part(v, p->fixed[row])));
     }
 }
 
@@ -232,15 +229,16 @@ static void book_point(const tl_model *m, size_t row, size_t at, const push *by,
 {
     const tl_gridpoints *p = &m->zones->points;
     const tl_vec3 v0 = tl_columns_get(p->v, row), moved = tl_columns_get(p->moved, row), dv = tl_v3_sub(v1, v0);
-    const double mass = p->mass[row], share = work->until / (work->until + work->after), dv2 = tl_v3_norm2(dv);
+    const double mass = p->mass[row] * tl_gridpoint_energy_scale(m, row),
+                 share = work->until / (work->until + work->after), dv2 = tl_v3_norm2(dv);
     const tl_vec3 v = tl_v3_madd(v0, share, dv), held = tl_columns_get(p->force, row);
     work->book[TL_BOOK_KINETIC][at] += 0.5 * mass * (tl_v3_norm2(v) - share * (1 - share) * dv2);
     work->book[TL_BOOK_FIRST][at] += 0.5 * mass * dv2;
     work->book[TL_BOOK_MOTION0][at] += 0.5 * mass * tl_v3_norm2(v0);
     work->book[TL_BOOK_MOTION2][at] += 0.5 * mass * tl_v3_norm2(v1);
     work->book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][at] += share * mass * tl_v3_dot(tl_v3_sub(v0, moved), dv);
-    book_work(work, at, TL_WORK_GRAVITY, tl_v3_scale(mass, m->cycle->gravity), moved, v1);
-    book_work(work, at, TL_WORK_EXTERNAL, load_of(p, row), moved, v1);
+    book_work(work, at, TL_WORK_GRAVITY, tl_v3_scale(p->mass[row], m->cycle->gravity), moved, v1);
+    book_work(work, at, TL_WORK_EXTERNAL, tl_gridpoint_load(p, row), moved, v1);
     book_work(work, at, TL_WORK_EXTERNAL, tl_v3_sub(tl_free_part(held, p->fixed[row]), held), moved, v1);
     if (!tl_is_damped(m))
         return;
