@@ -44,8 +44,7 @@ static inline double tl_gridpoint_borne(const tl_model *m, size_t row, double gr
 {
     const tl_gridpoints *p = &m->zones->points;
     const double weight = tl_gridpoint_weight(p, row, gravity);
-    const double least = tl_least_borne(&m->bodies, m->zones->mesh[p->mesh[row]].row, p->holds[row]);
-    return tl_larger(tl_larger(p->bears[row], weight), least);
+    return tl_larger(tl_larger(p->bears[row], weight), p->rounded[row]);
 }
 
 /* Whether all components of a gridpoint are held. */

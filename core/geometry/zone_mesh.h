@@ -10,7 +10,7 @@
 /* The wanted edge of zones at a place, in the coordinates of the block's vertices. Positive. */
 typedef double (*tl_zone_size_fn)(const void *user, tl_vec3 place);
 
-typedef struct tl_zoning {
+typedef struct tl_shape_zoning {
     double edge;          /* the wanted edge h of zones; larger than the block: corners and centroid alone */
     tl_zone_size_fn size; /* or a function of place. NULL: `edge` everywhere */
     const void *user;     /* of it */
@@ -20,9 +20,9 @@ typedef struct tl_zoning {
     const uint64_t *corner_key;
     /* [face_count] Not 0: points on the face may be moved by the repair, for no other zones lie on it. NULL: none. */
     const uint8_t *face_free;
-} tl_zoning;
+} tl_shape_zoning;
 
-static inline double tl_zoning_size(const tl_zoning *z, tl_vec3 place)
+static inline double tl_zoning_size(const tl_shape_zoning *z, tl_vec3 place)
 {
     return z->size ? z->size(z->user, place) : z->edge;
 }

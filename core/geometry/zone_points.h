@@ -12,7 +12,7 @@
 /* Cost only: first rooms. All arrays are kept between blocks. */
 typedef struct tl_zone_points {
     const tl_poly *poly;
-    const tl_zoning *zoning;
+    const tl_shape_zoning *zoning;
     /* The frame: origin at the first vertex, x along the longest edge, y in a face beside it. Rows of `axes`. */
     tl_mat3 axes;
     tl_vec3 centroid; /* in the frame */
@@ -44,7 +44,8 @@ typedef struct tl_zone_points {
 } tl_zone_points;
 
 /* Begins with the corners: frame, planes, centroid. */
-tl_status tl_zone_points_begin(tl_zone_points *points, const tl_poly *poly, const tl_zoning *zoning, tl_error *error);
+tl_status tl_zone_points_begin(tl_zone_points *points, const tl_poly *poly, const tl_shape_zoning *zoning,
+                               tl_error *error);
 /* Adds a point inside, or on the surface. */
 bool tl_zone_points_add(tl_zone_points *points, tl_vec3 place, double size, uint64_t key);
 bool tl_zone_points_add_outer(tl_zone_points *points, tl_vec3 place, tl_vec3 real, tl_point2 flat, double size,

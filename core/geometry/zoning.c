@@ -320,7 +320,7 @@ static tl_status check_zones(const tl_zone_points *p, const tl_zone_mesh *m, dou
 
 /* ---- all ---- */
 
-static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_zoning *zoning, tl_error *error)
+static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_shape_zoning *zoning, tl_error *error)
 {
     tl_status status = tl_zone_points_begin(&s->points, poly, zoning, error);
     if (!status)
@@ -428,8 +428,8 @@ static tl_status check_rounding(const tl_zone_mesh *m, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_zoning_make(const tl_poly *poly, const tl_zoning *zoning, tl_zone_scratch *scratch, tl_zone_mesh *mesh,
-                         tl_error *error)
+tl_status tl_zoning_make(const tl_poly *poly, const tl_shape_zoning *zoning, tl_zone_scratch *scratch,
+                         tl_zone_mesh *mesh, tl_error *error)
 {
     *mesh = (tl_zone_mesh){0};
     tl_status status = lay_points(scratch, poly, zoning, error);

@@ -26,6 +26,7 @@
 #include <string.h>
 #include <talus/history.h>
 #include <talus/vmath.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- what is new ------------ */
 
@@ -97,9 +98,11 @@ static const struct {
 static const char *unit_of(const tl_history *h)
 {
     size_t count = 0;
-    const tl_field *fields = h->source == TL_FROM_BLOCKS     ? tl_block_fields(&count)
-                             : h->source == TL_FROM_CONTACTS ? tl_contact_fields(&count)
-                                                             : NULL;
+    const tl_field *fields = h->source == TL_FROM_BLOCKS       ? tl_block_fields(&count)
+                             : h->source == TL_FROM_CONTACTS   ? tl_contact_fields(&count)
+                             : h->source == TL_FROM_ZONES      ? tl_zone_fields(&count)
+                             : h->source == TL_FROM_GRIDPOINTS ? tl_gridpoint_fields(&count)
+                                                               : NULL;
     for (size_t i = 0; i < count; i++)
         if (strcmp(fields[i].name, h->asked) == 0)
             return fields[i].unit;

@@ -128,7 +128,7 @@ static int ask(lua_State *L)
         lua_call(L, 1, 1);
         if (lua_type(L, -1) != LUA_TNUMBER && !lua_isnil(L, -1))
             return luaL_error(L, "it must give a number or nil, not %s for %s %I", tl_lua_describe(L, -1),
-                              r->kind->item, tl_lua_item_number(&item));
+                              r->kind->item, r->kind->number(&item.name));
         values[i] = lua_isnil(L, -1) ? NAN : lua_tonumber(L, -1);
         lua_settop(L, AT_OWNER);
     }
@@ -178,12 +178,12 @@ static const tl_lua_selection *push_all(lua_State *L, const tl_lua_kind *kind)
     tl_model *model = ((const tl_lua_model *)lua_touserdata(L, 1))->model;
     tl_lua_selection *all = tl_lua_selection_push(L, kind, 1);
     if (kind == &tl_lua_contact_kind) {
-        tl_lua_ok(L, model, tl_contacts_select(model, NULL, &all->contacts, &all->count));
+        tl_lua_contacts_select(L, model, NULL, all);
         return all;
     }
     tl_block_filter any = tl_block_filter_default();
     any.hidden = -1;
-    tl_lua_ok(L, model, tl_blocks_select(model, &any, &all->ids, &all->count));
+    tl_lua_blocks_select(L, model, &any, all);
     return all;
 }
 

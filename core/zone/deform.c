@@ -1,8 +1,6 @@
 /* deform.c - rigid blocks become deformable: their zones are made, and laid into the tables.
  *
  * All blocks are divided before any is changed. Then each gets its mesh, in the order of the rows. */
-#include "zone/deform.h"
-
 #include "base/columns.h"
 #include "geometry/zone_clusters.h"
 #include "geometry/zoning.h"
@@ -10,10 +8,12 @@
 #include "zone/corner_keys.h"
 #include "zone/grid.h"
 #include "zone/solids.h"
+#include "zone/stiffness.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/zones.h>
 
 /* The zones of one block on their way. */
 typedef struct part {
@@ -26,7 +26,7 @@ typedef struct part {
 /* One call. */
 typedef struct dividing {
     tl_model *m;
-    const tl_dividing *how;
+    const tl_zoning *how;
     part *part; /* ascending rows */
     size_t count;
     uint32_t body; /* of the block that is being divided */
@@ -92,7 +92,7 @@ static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint3
     tl_status status = tl_model_may_change(m, "give blocks zones");
     if (status == TL_OK)
         tl_rows_tidy(m);
-    if (status == TL_OK && !d->how->size && !(d->how->edge > 0))
+    if (status == TL_OK && !d->how->edge_at && !(d->how->edge > 0))
         status = tl_fail(&m->error, TL_E_ARGUMENT, "the edge of zones must be > 0 m (it is %g)", d->how->edge);
     *solid = status == TL_OK && m->zones && d->how->solid ? tl_solid_find(m, d->how->solid) : TL_NO_ROW;
     if (status == TL_OK && *solid == TL_NO_ROW)
@@ -107,7 +107,7 @@ static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint3
 static double edge_at(const void *user, tl_vec3 local)
 {
     const dividing *d = user;
-    return d->how->size(d->how->user, tl_model_point(d->m, d->body, local));
+    return d->how->edge_at(d->how->user, tl_model_point(d->m, d->body, local));
 }
 
 /* Lists of the free sides of zones by their lowest points: side `4 zone + corner` lies opposite the corner. */
@@ -197,10 +197,10 @@ static void place_points(const dividing *d, part *of)
 static tl_status divide_block(dividing *d, part *of)
 {
     tl_model *m = d->m;
-    const tl_zoning zoning = {.edge = d->how->edge,
-                              .size = d->how->size ? edge_at : NULL,
-                              .user = d,
-                              .corner_key = d->keys.of + d->keys.start[of->row]};
+    const tl_shape_zoning zoning = {.edge = d->how->edge,
+                                    .size = d->how->edge_at ? edge_at : NULL,
+                                    .user = d,
+                                    .corner_key = d->keys.of + d->keys.start[of->row]};
     d->body = m->blocks.body[of->row];
     tl_status status = tl_zoning_make(m->blocks.shape[of->row], &zoning, d->scratch, &of->mesh, &m->error);
     if (status == TL_OK)
@@ -273,9 +273,37 @@ static tl_status lay_all(dividing *d, uint32_t solid)
     return status;
 }
 
-static void report(const dividing *d, tl_divided *made)
+/* The trace of the inertia of a body's gridpoints about its centroid, over that of the body. */
+static double inertia_ratio(const tl_model *m, const tl_body_mesh *mesh)
 {
-    *made = (tl_divided){.blocks = d->count, .least_altitude = INFINITY, .least_share = INFINITY};
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 at = tl_body_place(&m->bodies, mesh->row), own = m->bodies.moments[mesh->row];
+    double sum = 0;
+    for (uint32_t row = mesh->point_begin; row < mesh->point_end; row++)
+        sum += 2 * p->mass[row] * tl_v3_norm2(tl_v3_sub(tl_gridpoint_place(p, row), at));
+    return sum / (own.x + own.y + own.z);
+}
+
+/* The step that the gridpoints of meshes allow, free as they are: 2 / sqrt(k / m) of the stiffest. */
+static double step_of(tl_model *m, size_t from)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    double most = 0;
+    tl_zones_stiffen(m);
+    for (uint32_t row = m->zones->mesh[from].point_begin; row < p->table.rows; row++)
+        if (p->zones[row] > 0)
+            most = fmax(most, p->stiffness[row] / p->mass[row]);
+    return most > 0 ? 2 / sqrt(most) : 0;
+}
+
+static void report(const dividing *d, tl_zoned *made)
+{
+    tl_model *m = d->m;
+    *made = (tl_zoned){.blocks = d->count, .least_altitude = INFINITY, .least_share = INFINITY};
+    const size_t from = m->zones->mesh_count - d->count;
+    for (size_t k = from; k < m->zones->mesh_count; k++)
+        made->inertia = fmax(made->inertia, inertia_ratio(m, &m->zones->mesh[k]));
+    made->time_step = d->count > 0 ? step_of(m, from) : 0;
     for (size_t k = 0; k < d->count; k++) {
         const part *of = &d->part[k];
         made->zones += of->mesh.zone_count;
@@ -284,7 +312,7 @@ static void report(const dividing *d, tl_divided *made)
         made->least_altitude = fmin(made->least_altitude, of->mesh.least_altitude);
         if (of->mesh.least_share < made->least_share) {
             made->least_share = of->mesh.least_share;
-            made->worst = d->m->blocks.id[of->row];
+            made->worst = m->blocks.id[of->row];
         }
     }
 }
@@ -301,7 +329,12 @@ static void end(dividing *d)
     tl_zone_scratch_free(d->scratch);
 }
 
-tl_status tl_blocks_divide(tl_model *m, const tl_id *blocks, size_t count, const tl_dividing *how, tl_divided *made)
+tl_zoning tl_zoning_default(void)
+{
+    return (tl_zoning){.size = sizeof(tl_zoning), .edge = NAN};
+}
+
+tl_status tl_blocks_deform(tl_model *m, const tl_id *blocks, size_t count, const tl_zoning *how, tl_zoned *made)
 {
     dividing d = {.m = m, .how = how};
     uint32_t solid = TL_NO_ROW;

@@ -223,6 +223,9 @@ bool tl_zones_index(struct tl_zones *z)
         z->use[z->use_start[z->listed[k]]++] = (uint32_t)k;
     memmove(z->use_start + 1, z->use_start, points * sizeof *z->use_start);
     z->use_start[0] = 0;
+    for (size_t k = 0; k < z->part_count; k++)
+        for (int a = 0; a < 3; a++)
+            z->points.bare[z->part[k].corner[a]] = 1;
     return true;
 }
 

@@ -24,7 +24,7 @@ typedef struct tl_grid {
 tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid);
 /* Takes back the meshes from a number on. */
 void tl_zones_end_at(tl_model *m, uint32_t meshes);
-/* Lists the slots of each gridpoint. false: out of memory. */
+/* Lists the slots of each gridpoint, and marks those on surfaces. false: out of memory. */
 bool tl_zones_index(struct tl_zones *z);
 /* The number of a body's mesh, or TL_NO_ROW. */
 uint32_t tl_mesh_of(const tl_model *m, tl_id body);

@@ -24,8 +24,10 @@ static void add_columns(struct tl_zones *z)
     TL_COLUMN(&p->table, p, stiffness, 0);
     TL_COLUMN(&p->table, p, floor, 0);
     TL_COLUMN(&p->table, p, holds, 0);
+    TL_COLUMN(&p->table, p, rounded, 0);
     TL_COLUMN(&p->table, p, mesh, 0);
     TL_COLUMN(&p->table, p, fixed, TL_COLUMN_STATE);
+    TL_COLUMN(&p->table, p, bare, 0);
 
     tl_zone_table *t = &z->zones;
     tl_table_init(&t->table, t);

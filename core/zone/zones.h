@@ -49,8 +49,10 @@ typedef struct tl_gridpoints {
     double *stiffness; /* bound of the row of the stiffness matrix of the zones, N/m: stiffness.c */
     double *floor;     /* stiffness of the stiffest joint on its share of outer faces, N/m */
     double *holds;     /* of zones and what touches it, but at least the floor, N/m */
+    double *rounded;   /* force that rounding of its place brings, N */
     uint32_t *mesh;    /* its number */
     uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
+    uint8_t *bare;     /* 1: it is on the surface of its body */
     double *load[3];   /* of the user's, N; NULL: none has ever been set */
     double *damping[3], *alpha; /* what the damping gave; NULL: there has been none */
     double *force_before[3];    /* in the last damped step; NULL: no damping has asked for them */
@@ -94,10 +96,15 @@ typedef struct tl_slot {
     double of[4];
 } tl_slot;
 
-/* Gridpoints of a parcel, a row each: where they are, m, and how they came there in the last step; up to a line of
- * memory. Scratch of a thread. */
+/* A gridpoint of a parcel: where it is, m, and how it came there in the last step. A line of memory. */
+typedef struct tl_parcel_point {
+    _Alignas(TL_ALIGN) double place[4];
+    double way[4];
+} tl_parcel_point;
+
+/* Those of a parcel. Scratch of a thread. */
 typedef struct tl_parcel_points {
-    double of[TL_PARCEL_POINTS][8];
+    tl_parcel_point of[TL_PARCEL_POINTS];
 } tl_parcel_points;
 
 /* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the fourth

@@ -24,7 +24,7 @@ MODULES = {
     "segment": ("base", "geometry", "narrow", "model", "zone", "contact", "force"),
     "detect": ("base", "geometry", "narrow", "model", "zone", "contact", "force"),
     "query": ("base", "geometry", "narrow", "model", "zone", "contact", "detect"),
-    "edit": ("base", "geometry", "model", "contact", "detect", "query", "cycle"),
+    "edit": ("base", "geometry", "plugin", "model", "zone", "contact", "detect", "query", "cycle"),
     "cycle": ("base", "geometry", "plugin", "model", "zone", "contact", "force", "segment", "detect"),
     "state": ("base", "geometry", "narrow", "plugin", "model", "zone", "contact", "force", "segment", "detect", "cycle"),
     "io": ("base", "geometry", "model", "contact", "force", "query", "cycle", "state"),
@@ -60,6 +60,7 @@ PUBLIC = {
                 "version.h", "verdict.h", "view.h", "defaults.h"},
     "defaults.h": {"talus.h"},
     "fields.h": {"talus.h"},
+    "zones.h": {"talus.h"},
     "views.h": {"talus.h"},
     "boundary.h": {"talus.h"},
 }
