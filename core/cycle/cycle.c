@@ -26,7 +26,7 @@
 #include "cycle/damping.h"
 #include "cycle/energy.h"
 #include "cycle/gather.h"
-#include "cycle/gridpoints.h"
+#include "cycle/held_gridpoints.h"
 #include "cycle/limits.h"
 #include "cycle/motion.h"
 #include "cycle/prepare.h"

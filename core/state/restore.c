@@ -22,6 +22,7 @@
 #include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "zone/columns.h"
 #include "zone/follow.h"
 #include "zone/grid.h"
 #include "zone/life.h"

@@ -15,9 +15,9 @@
 #include "base/columns.h"
 #include "base/error.h"
 #include "geometry/polar.h"
+#include "zone/columns.h"
 #include "zone/follow.h"
 #include "zone/held.h"
-#include "zone/life.h"
 #include "zone/outer.h"
 
 #include <math.h>
@@ -104,10 +104,8 @@ void tl_mesh_reaction(const tl_model *m, uint32_t mesh, tl_vec3 *force)
 {
     const tl_gridpoints *p = &m->zones->points;
     const tl_body_mesh *of = &m->zones->mesh[mesh];
-    for (uint32_t row = of->point_begin; row < of->point_end; row++) {
-        const tl_vec3 f = tl_columns_get(p->force, row);
-        *force = tl_v3_add(*force, tl_v3_sub(tl_gridpoint_free_part(p, row, f), f));
-    }
+    for (uint32_t row = of->point_begin; row < of->point_end; row++)
+        *force = tl_v3_add(*force, tl_gridpoint_reaction(p, row));
 }
 
 /* ---------------------------------------------------------------- loads ------------------ */

@@ -1,10 +1,10 @@
 /* gridpoints.c - what a user does to gridpoints: holds and loads them, gives them velocities, asks what holds them. */
-#include "zone/gridpoints.h"
-
 #include "base/columns.h"
+#include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/held.h"
-#include "zone/life.h"
+
+#include <talus/zones.h>
 
 /* The row of a gridpoint, or TL_NO_ROW with a sentence. */
 static uint32_t row_of(tl_model *m, tl_zone_name name)
@@ -105,8 +105,7 @@ tl_status tl_gridpoints_reaction(tl_model *m, const tl_zone_name *names, size_t 
         const uint32_t row = row_of(m, names[k]);
         if (row == TL_NO_ROW)
             return m->error.status;
-        const tl_vec3 f = tl_columns_get(m->zones->points.force, row);
-        *force = tl_v3_add(*force, tl_v3_sub(tl_gridpoint_free_part(&m->zones->points, row, f), f));
+        *force = tl_v3_add(*force, tl_gridpoint_reaction(&m->zones->points, row));
     }
     return TL_OK;
 }

@@ -34,4 +34,19 @@ static inline tl_vec3 tl_gridpoint_free_part(const tl_gridpoints *p, size_t row,
     return v;
 }
 
+/* The part of a vector along which directions hold a gridpoint, beside axes. */
+static inline tl_vec3 tl_gridpoint_held_along(const tl_gridpoints *p, size_t row, tl_vec3 v)
+{
+    return tl_v3_sub(tl_free_axes(v, p->fixed[row]), tl_gridpoint_free_part(p, row, v));
+}
+
+/* The force with which what holds a gridpoint acts on it, N: its unbalanced force has what directions do in it, and has
+ * not what axes do. */
+static inline tl_vec3 tl_gridpoint_reaction(const tl_gridpoints *p, size_t row)
+{
+    const tl_vec3 force = tl_columns_get(p->force, row);
+    const tl_vec3 axes = tl_v3_sub(tl_free_axes(force, p->fixed[row]), force);
+    return p->held[0][0] ? tl_v3_add(axes, tl_columns_get(p->rolled, row)) : axes;
+}
+
 #endif

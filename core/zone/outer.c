@@ -21,42 +21,11 @@
 
 #include "base/columns.h"
 #include "model/loads.h"
+#include "zone/columns.h"
 #include "zone/held.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* ---------------------------------------------------------------- columns ---------------- */
-
-bool tl_gridpoints_hold_pushed(tl_gridpoints *p)
-{
-    bool enough = true;
-    for (int k = 0; k < 3; k++)
-        enough = enough && TL_COLUMN_NEED(&p->table, p, pushed[k], 0);
-    return enough;
-}
-
-bool tl_gridpoints_hold_quiet(tl_gridpoints *p)
-{
-    bool enough = true;
-    for (int k = 0; k < 6; k++)
-        enough = enough && TL_COLUMN_NEED(&p->table, p, quiet[k], 0);
-    return enough;
-}
-
-bool tl_gridpoints_hold_directions(tl_gridpoints *p)
-{
-    bool enough = true;
-    for (int d = 1; d >= 0; d--) /* the first component of the first one comes last: it tells that all are there */
-        for (int k = 2; k >= 0; k--)
-            enough = enough && TL_COLUMN_NEED(&p->table, p, held[d][k], TL_COLUMN_STATE);
-    return enough;
-}
-
-bool tl_gridpoints_hold_drives(tl_gridpoints *p)
-{
-    return TL_COLUMN_NEED(&p->table, p, drive, 0);
-}
 
 void tl_outer_forget(tl_gridpoints *p)
 {
@@ -64,6 +33,8 @@ void tl_outer_forget(tl_gridpoints *p)
         memset(p->pushed[k], 0, p->table.rows * sizeof *p->pushed[k]);
     for (int k = 0; k < 6 && p->quiet[k]; k++)
         memset(p->quiet[k], 0, p->table.rows * sizeof *p->quiet[k]);
+    for (int k = 0; k < 3 && p->rolled[k]; k++)
+        memset(p->rolled[k], 0, p->table.rows * sizeof *p->rolled[k]);
 }
 
 /* ---------------------------------------------------------------- triangles -------------- */
@@ -124,9 +95,24 @@ static void begin_push(const struct tl_zones *z)
         for (int a = 0; a < 3; a++) {
             const uint32_t row = z->part[z->outer[i].part].corner[a];
             tl_columns_put(p->pushed, row, tl_v3(0, 0, 0));
+            if (p->held[0][0])
+                tl_columns_put(p->rolled, row, tl_v3(0, 0, 0));
             for (int k = 0; k < 6 && p->quiet[0]; k++)
                 p->quiet[k][row] = 0;
         }
+}
+
+/* Directions hold the corners of a triangle, when all else has pushed them. */
+static void push_back(struct tl_zones *z, const tl_outer_part *of)
+{
+    tl_gridpoints *p = &z->points;
+    for (int a = 0; a < 3; a++) {
+        const uint32_t row = z->part[of->part].corner[a];
+        const tl_vec3 force = tl_columns_get(p->force, row), along = tl_gridpoint_held_along(p, row, force);
+        tl_columns_put(p->force, row, tl_v3_sub(force, along));
+        tl_columns_put(p->rolled, row, tl_v3_sub(tl_columns_get(p->rolled, row), along));
+        p->touched[row] += tl_v3_norm(along);
+    }
 }
 
 void tl_outer_push(tl_model *m, double share)
@@ -150,6 +136,9 @@ void tl_outer_push(tl_model *m, double share)
             p->bears[row] += tl_v3_norm(f);
         }
     }
+    for (size_t i = 0; i < z->outer_count && z->points.held[0][0]; i++)
+        if (tl_v3_norm2(z->outer[i].along) > 0)
+            push_back(z, &z->outer[i]);
 }
 
 /* ---------------------------------------------------------------- holding ---------------- */
@@ -300,8 +289,8 @@ static void begin_quiet(const tl_model *m, tl_outer_part *of, const tl_outer_par
         corners_of(z, of, x);
         const double own = tl_v3_norm(area_of(x));
         for (int a = 0; a < 3; a++) {
-            const tl_vec3 acting = held_part(old, tl_columns_get(p->force, part->corner[a]));
-            of->rest[a] = tl_v3_madd(of->rest[a], -own / area[part->corner[a]], acting);
+            const tl_vec3 held = held_part(old, tl_gridpoint_reaction(p, part->corner[a]));
+            of->rest[a] = tl_v3_madd(of->rest[a], own / area[part->corner[a]], held);
         }
     } else if (!(old && (old->loaded || old->quiet)) && zone != TL_NO_ROW) {
         rest_on_stress(z, of, zone);

@@ -17,10 +17,5 @@ void tl_outer_push(tl_model *m, double share);
 void tl_outer_let_go(tl_model *m, uint32_t mesh);
 /* Forces of the last step count no more: rows have moved, or conditions changed. */
 void tl_outer_forget(tl_gridpoints *p);
-/* Makes the columns that conditions need. false: out of memory. */
-bool tl_gridpoints_hold_pushed(tl_gridpoints *p);
-bool tl_gridpoints_hold_quiet(tl_gridpoints *p);
-bool tl_gridpoints_hold_directions(tl_gridpoints *p);
-bool tl_gridpoints_hold_drives(tl_gridpoints *p);
 
 #endif

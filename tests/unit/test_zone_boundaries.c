@@ -2,15 +2,14 @@
  * velocities, quiet faces; loads and drives of whole blocks. */
 #include "contact_scene.h"
 #include "segment/segments.h"
-#include "zone/deform.h"
 #include "zone/grid.h"
-#include "zone/gridpoints.h"
 #include "zone/life.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <talus/boundary.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- scenes ----------------- */
 
@@ -28,9 +27,9 @@ static void solid(tl_model *m, double young, double poisson)
 
 static void divide(tl_model *m, uint32_t from, double edge)
 {
-    const tl_dividing how = {.edge = edge, .solid = "rock"};
-    tl_divided made = {0};
-    scene_ok(m, tl_blocks_divide(m, m->blocks.id + from, m->blocks.table.rows - from, &how, &made));
+    const tl_zoning how = {.size = sizeof how, .edge = edge, .solid = "rock"};
+    tl_zoned made = {0};
+    scene_ok(m, tl_blocks_deform(m, m->blocks.id + from, m->blocks.table.rows - from, &how, &made));
 }
 
 /* A box of zones of 2000 kg/m3, alone. */
@@ -577,9 +576,9 @@ TEST(loads_and_drives_go_over_to_zones)
     a.loads = true;
     a.stress.zz = -1e3;
     put(m, a);
-    const tl_dividing how = {.edge = 0.5, .solid = "rock"};
-    tl_divided made;
-    CHECK_INT(tl_blocks_divide(m, &loaded, 1, &how, &made), TL_E_STATE);
+    const tl_zoning how = {.size = sizeof how, .edge = 0.5, .solid = "rock"};
+    tl_zoned made;
+    CHECK_INT(tl_blocks_deform(m, &loaded, 1, &how, &made), TL_E_STATE);
     CHECK(strstr(m->error.text, "its faces are loaded") != NULL);
     CHECK_INT(pressed, 3);
     tl_model_destroy(m);
