@@ -4,8 +4,8 @@
  *
  *     f_a = N_a F + M x g_a / 2,    sum f_a = F,    the moment of f_a about the point is M
  *
- * Without a point it acts on all gridpoints, by their masses m_a, with arms r_a from their mean by mass and J the sum
- * of m_a (r_a.r_a I - r_a r_a^T):
+ * Without a point it acts on all gridpoints by their masses m_a. Their arms from their mean by mass are r_a, and J is
+ * the sum of m_a (r_a.r_a I - r_a r_a^T):
  *
  *     f_a = m_a (F / sum m + J^-1 M x r_a)
  *
