@@ -21,6 +21,8 @@
 #include "model/options.h"
 #include "segment/meets.h"
 
+#include <stdlib.h>
+
 /* Tolerance: a traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9
 /* Tolerance: a mean tension on a contact below this share of the largest stress on any is none. At a free surface the
@@ -113,6 +115,12 @@ static void say_tension(tl_model *m, const tl_insitu *s)
                 b = m->blocks.id[d->contacts.b[c]];
             }
         }
+    const tl_id zoned = pulled ? TL_NO_ID : tl_insitu_pulls(m, PULL);
+    if (zoned != TL_NO_ID && tl_model_says(m, TL_REMARK_TENSION))
+        tl_model_say(m,
+                     "insitu: the mean stress in block %u is tension, which is positive; give compression as negative "
+                     "numbers",
+                     zoned);
     if (pulled && tl_model_says(m, TL_REMARK_TENSION))
         tl_model_say(m,
                      "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is positive in "
@@ -243,6 +251,40 @@ static tl_status check_gradient(tl_model *m, const tl_insitu *s)
     return TL_OK;
 }
 
+/* Lists which rows of blocks are meant, 1 each, or NULL for all. */
+static tl_status choose_blocks(tl_model *m, const tl_insitu *s, uint8_t **chosen)
+{
+    *chosen = NULL;
+    if (!s->blocks)
+        return TL_OK;
+    const tl_status status = tl_blocks_check(m, s->blocks, s->block_count);
+    if (status != TL_OK)
+        return status;
+    *chosen = calloc(m->blocks.table.rows + 1, 1);
+    if (!*chosen)
+        return tl_fail_memory(&m->error);
+    for (size_t k = 0; k < s->block_count; k++)
+        (*chosen)[tl_block_row_quiet(m, s->blocks[k])] = 1;
+    return TL_OK;
+}
+
+/* Puts the stress on what is meant. Rows of blocks have been tidied. */
+static tl_status put_stress(tl_model *m, const tl_insitu *s)
+{
+    uint8_t *chosen;
+    const tl_contacts *c = &m->detect->contacts;
+    tl_status status = choose_blocks(m, s, &chosen);
+    if (status == TL_OK && !(tl_detect_hold_initial(m->detect) && tl_insitu_zones_prepare(m)))
+        status = tl_fail_memory(&m->error);
+    for (uint32_t i = 0; status == TL_OK && i < c->table.rows; i++)
+        if (!chosen || chosen[c->a[i]] || chosen[c->b[i]])
+            load_contact(m, s, i);
+    if (status == TL_OK)
+        tl_insitu_zones(m, s, chosen);
+    free(chosen);
+    return status;
+}
+
 tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
 {
     tl_insitu insitu;
@@ -265,13 +307,10 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
     outer_blocks outer;
     if (status == TL_OK)
         status = find_outer(m, &insitu, &outer);
+    if (status == TL_OK)
+        status = put_stress(m, &insitu);
     if (status != TL_OK)
         return status;
-    if (!tl_detect_hold_initial(m->detect) || !tl_insitu_zones_prepare(m))
-        return tl_fail_memory(&m->error);
-    for (uint32_t i = 0; i < m->detect->contacts.table.rows; i++)
-        load_contact(m, &insitu, i);
-    tl_insitu_zones(m, &insitu);
     m->split_count = 0; /* new faces carry what the stress says, and no longer what holds parts as the whole went on */
     m->laws++;          /* contacts hold another energy */
     tl_undo_by_hand(m);

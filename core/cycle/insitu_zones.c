@@ -9,6 +9,8 @@
 #include "segment/lay.h"
 #include "zone/zones.h"
 
+#include <math.h>
+
 /* An initial stress, with the height of the model's origin over `at`. */
 typedef struct field {
     const tl_insitu *insitu;
@@ -66,7 +68,34 @@ bool tl_insitu_zones_prepare(tl_model *m)
     return !m->segments || tl_segments_hold_initial(m->segments);
 }
 
-void tl_insitu_zones(tl_model *m, const tl_insitu *insitu)
+tl_id tl_insitu_pulls(const tl_model *m, double share)
+{
+    const struct tl_zones *z = m->zones;
+    double most = 0;
+    for (int pass = 0; z && pass < 2; pass++)
+        for (size_t k = 0; k < z->parcels.table.rows; k++) {
+            const tl_parcel *of = &z->parcels.of[k];
+            const size_t begin = z->group[of->group_begin].start;
+            const size_t end = of->group_end < z->group_count ? z->group[of->group_end].start : z->zones.table.rows;
+            for (size_t row = begin; row < end; row++) {
+                double *const *s = z->zones.stress;
+                const double mean = (s[0][row] + s[1][row] + s[2][row]) / 3;
+                if (pass == 0)
+                    most = fmax(most, fabs(mean));
+                else if (mean > share * most)
+                    return of->block;
+            }
+        }
+    return TL_NO_ID;
+}
+
+/* Whether a block is meant. */
+static bool is_meant(const tl_model *m, const uint8_t *chosen, tl_id block)
+{
+    return !chosen || chosen[tl_block_row_quiet(m, block)];
+}
+
+void tl_insitu_zones(tl_model *m, const tl_insitu *insitu, const uint8_t *chosen)
 {
     struct tl_zones *z = m->zones;
     const field from = {insitu, m->origin.z - insitu->at.z};
@@ -74,6 +103,8 @@ void tl_insitu_zones(tl_model *m, const tl_insitu *insitu)
         return;
     for (size_t k = 0; k < z->parcels.table.rows; k++) {
         const tl_parcel *of = &z->parcels.of[k];
+        if (!is_meant(m, chosen, of->block))
+            continue;
         z->parcels.stored[k] = 0;
         for (uint32_t g = of->group_begin; g < of->group_end; g++) {
             const size_t begin = z->group[g].start, end = begin + (size_t)z->group[g].depth * TL_LANES;
@@ -82,8 +113,11 @@ void tl_insitu_zones(tl_model *m, const tl_insitu *insitu)
             z->parcels.stored[k] += stored_in(z, of, &z->group[g]);
         }
     }
-    for (uint32_t row = 0; m->segments && row < m->segments->table.table.rows; row++)
-        if (m->segments->table.of[row].meet != TL_NO_ROW)
+    for (uint32_t row = 0; m->segments && row < m->segments->table.table.rows; row++) {
+        const uint32_t number = m->segments->table.of[row].meet;
+        const tl_meet *meet = number != TL_NO_ROW ? &m->segments->meet[number] : NULL;
+        if (meet && (is_meant(m, chosen, meet->a) || is_meant(m, chosen, meet->b)))
             tl_segment_preload(m, row, stress_at, &from);
+    }
     z->steps_kept = TL_STEPS_KEPT;
 }

@@ -27,6 +27,23 @@ for _, point in ipairs(model:gridpoints()) do
 end
 check.holds(model:energy().strain > 1000, "zones store what their stress stores")
 
+-- In chosen blocks alone, and on their joints.
+local three = talus.model { gravity = { 0, 0, 0 } }
+three:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500, group = "a" },
+    { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2500, group = "b" },
+    { min = { 0, 0, 2 }, max = { 1, 1, 3 }, density = 2500, group = "c" } })
+three:joint("*", "elastic", { kn = 1e10, ks = 1e10 })
+three:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+three:blocks():deformable { zone = 0.6, solid = "rock" }
+three:insitu { stress = { zz = -1e6 }, blocks = three:blocks { group = "a" } }
+for _, zone in ipairs(three:zones()) do
+    check.near(zone.stress.zz, zone.group == "a" and -1e6 or 0, 1e-6)
+end
+three:cycle(1)
+check.holds(three:energy().stored > 1, "a joint of a chosen block is pressed")
+check.refused(three, function() three:insitu { stress = { zz = 1 }, blocks = 3 } end, "blocks must be a selection")
+check.refused(three, function() three:insitu { stress = { zz = 1 }, blocks = model:blocks() } end, "another model")
+
 -- ---------------------------------------------------------------- rollers and tractions
 
 model = cube { 1, 1, 4 }
