@@ -1,8 +1,8 @@
 /* held_gridpoints.c - gridpoints that follow drives, are held along any direction, or are pushed at the surface.
  *
  * Few gridpoints do. All are moved lane by lane first (gridpoints.c), then these are mended. Let P take the part of a
- * vector that is free, v0 = w0 + s with s held, and v* be the velocity after the kick h as if nothing else held it. With
- * the resistance C of a quiet face (zone/outer.c), mass M and damping a
+ * vector that is free. Before the kick h the velocity is v0 = w0 + s with s held. After it, it is v* if nothing else
+ * holds the gridpoint. A quiet face has the resistance C (zone/outer.c), the gridpoint mass M and damping a:
  *
  *     (A I + h P C P / 2) w1 = A P v* - h P C (w0 + 2 s) / 2,    A = M (1 + a h / 2),    v1 = w1 + s
  *

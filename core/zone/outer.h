@@ -5,10 +5,10 @@
 #include "zone/zones.h"
 
 /* Puts conditions on triangles, each in the place of an earlier one or, with `add`, beside it: loads add up, and what
- * holds gridpoints holds together. Several of one triangle count as one. Gridpoints that an earlier condition held, and
- * none holds any more, go free. A quiet one without a load keeps that of the earlier one, and the force by which that
- * held the gridpoints in the last step. Without an earlier one it keeps the stress of its zone. TL_E_MEMORY: nothing has
- * changed. */
+ * holds gridpoints holds together. Several of one triangle count as one. Gridpoints go free that an earlier condition
+ * held, and none holds any more. A quiet one without a load keeps that of the earlier one. It also keeps the force by
+ * which that held the gridpoints in the last step. Without an earlier one it keeps the stress of its zone. TL_E_MEMORY:
+ * nothing has changed. */
 tl_status tl_outer_put(tl_model *m, const tl_outer_part *list, size_t count, bool add);
 /* The forces of its load on the corners of a triangle at its present place, N. */
 void tl_outer_forces(const tl_model *m, const tl_outer_part *of, tl_vec3 force[3]);
