@@ -1,4 +1,6 @@
 /* zone_fields.c - what can be asked of zones and gridpoints: which ones, their named fields, states of their solids. */
+#include "query/zone_fields.h"
+
 #include "base/columns.h"
 #include "base/error.h"
 #include "base/solid_columns.h"
@@ -40,19 +42,33 @@ static double deviator_of(const tl_zone_at *at)
     return sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
 }
 
-enum { ELASTIC, SHEAR, TENSION, JOINT, SHEAR_PAST, TENSION_PAST, JOINT_PAST };
-static const char *const state_names[] = {"elastic",    "shear",        "tension",   "joint",
-                                          "shear past", "tension past", "joint past"};
+/* In the order in which a zone is told to be in one of them. */
+static const struct {
+    uint32_t flag;
+    const char *name;
+} states[] = {
+    {0, "elastic"},
+    {TL_ZONE_SHEAR, "shear"},
+    {TL_ZONE_TENSION, "tension"},
+    {TL_ZONE_JOINT, "joint"},
+    {TL_ZONE_SHEAR_PAST, "shear past"},
+    {TL_ZONE_TENSION_PAST, "tension past"},
+    {TL_ZONE_JOINT_PAST, "joint past"},
+};
 
-static double state_number(const tl_zone_at *at)
+enum { STATES = sizeof states / sizeof *states };
+
+uint32_t tl_zone_state(uint32_t flags)
 {
-    const uint32_t flags = at->m->zones->zones.flags[at->row];
-    static const uint32_t order[] = {
-        0, TL_ZONE_SHEAR, TL_ZONE_TENSION, TL_ZONE_JOINT, TL_ZONE_SHEAR_PAST, TL_ZONE_TENSION_PAST, TL_ZONE_JOINT_PAST};
-    for (int k = 1; k < (int)(sizeof order / sizeof *order); k++)
-        if (flags & order[k])
+    for (uint32_t k = 1; k < STATES; k++)
+        if (flags & states[k].flag)
             return k;
-    return ELASTIC;
+    return 0;
+}
+
+const char *tl_zone_state_name(uint32_t number)
+{
+    return number < STATES ? states[number].name : NULL;
 }
 
 /* ---------------------------------------------------------------- fields ----------------- */
@@ -85,7 +101,7 @@ static double group_of(const tl_model *m, tl_id block)
     FIELD(mean, SCALAR, "Pa", "mean stress", mean_of(at))                                                              \
     FIELD(deviator, SCALAR, "Pa", "sqrt(3 J2): of a uniaxial stress its size", deviator_of(at))                        \
     FIELD(state, TEXT, "", "\"elastic\", \"shear\", \"tension\" or \"joint\" now, or \"shear past\" ...",              \
-          state_number(at))                                                                                            \
+          tl_zone_state(z->zones.flags[at->row]))                                                                      \
     FIELD(plastic, BOOL, "", "whether it has ever yielded", z->zones.flags[at->row] != 0)
 
 #define POINT_FIELDS(FIELD)                                                                                            \
@@ -382,7 +398,7 @@ tl_status tl_zone_field(tl_model *m, tl_zone_name zone, size_t index, tl_field_v
     if (index == Z_group)
         value->text = tl_group_name(m, (size_t)value->number[0]);
     if (index == Z_state)
-        value->text = state_names[(size_t)value->number[0]];
+        value->text = tl_zone_state_name((uint32_t)value->number[0]);
     return TL_OK;
 }
 
@@ -483,6 +499,21 @@ tl_status tl_gridpoints_values(tl_model *m, const tl_zone_name *names, size_t co
             return m->error.status;
         point_numbers(m, mesh, mesh->point_begin + names[k].number, field, all);
         memcpy(out + k * *width, all, *width * sizeof *out);
+    }
+    return TL_OK;
+}
+
+tl_status tl_zones_corners(tl_model *m, const tl_zone_name *names, size_t count, uint32_t (*corners)[4])
+{
+    for (size_t k = 0; k < count; k++) {
+        const tl_body_mesh *mesh = mesh_of(m, names[k], false);
+        if (!mesh)
+            return m->error.status;
+        const tl_zone_at at = tl_zone_at_number(m, mesh, names[k].number);
+        for (int a = 0; a < 4; a++) {
+            const uint16_t local = m->zones->zones.corner[a][at.row];
+            corners[k][a] = m->zones->listed[at.parcel->point_begin + local] - mesh->point_begin;
+        }
     }
     return TL_OK;
 }

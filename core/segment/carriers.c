@@ -201,6 +201,7 @@ static void push(tl_model *m, const tl_carrier *by, tl_vec3 force, tl_vec3 momen
         const tl_vec3 f = tl_v3_madd(tl_v3_scale(0.5, tl_v3_cross(moment, g[a])), by->weight[a], force);
         tl_columns_put(p->force, by->point[a], tl_v3_add(tl_columns_get(p->force, by->point[a]), f));
         p->bears[by->point[a]] += tl_v3_norm(f);
+        p->touched[by->point[a]] += tl_v3_norm(f);
     }
 }
 

@@ -301,6 +301,8 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
     tl_body_mesh *mesh = &z->mesh[number];
     *mesh = (tl_body_mesh){.body = body,
                            .row = l->row,
+                           .made_u = l->m->bodies.pose[l->row].u,
+                           .made_q = l->m->bodies.q[l->row],
                            .point_begin = (uint32_t)z->points.table.rows,
                            .parcel_begin = (uint32_t)z->parcels.table.rows,
                            .zone_begin = (uint32_t)z->row_of_count,

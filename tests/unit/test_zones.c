@@ -223,7 +223,7 @@ TEST(zones_that_yield_turn_motion_to_heat)
         most = fmax(most, fabs(energy.balance));
     }
     CHECK(most < 2e-3);
-    CHECK(zones.plastic > energy.kinetic);
+    CHECK(zones.plastic > 0.5 * energy.kinetic);
     CHECK(energy.stored == 0 && energy.friction == 0);
     tl_model_destroy(m);
 }

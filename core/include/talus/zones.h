@@ -114,6 +114,10 @@ TL_API tl_status tl_zones_values(tl_model *model, const tl_zone_name *names, siz
 TL_API tl_status tl_gridpoints_values(tl_model *model, const tl_zone_name *names, size_t count, const char *name,
                                       double *out, size_t *width);
 
+/* Writes the corners of zones: numbers of gridpoints of the same body, those of names[i] to corners[i]. Corners 0, 1, 2
+ * are counter-clockwise as seen from the side without corner 3. */
+TL_API tl_status tl_zones_corners(tl_model *model, const tl_zone_name *names, size_t count, uint32_t (*corners)[4]);
+
 /* ---------------------------------------------------------------- gridpoints ------------- */
 
 /* Hold components of gridpoints (TL_FIX_X, _Y, _Z, added up) where they are, or let them go. */
