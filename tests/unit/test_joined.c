@@ -381,6 +381,11 @@ TEST(bodies_get_zones_whole_and_stay_whole)
     CHECK(strstr(m->error.text, "join or unjoin blocks before they get zones") != NULL);
     CHECK_INT(tl_blocks_unjoin(m, all, 1), TL_E_STATE);
     CHECK_INT(tl_blocks_deform(m, all, 8, &how, &made), TL_E_STATE);
+    tl_stage stage;
+    scene_ok(m, stage_begin(m, &stage));
+    stage.count = 5; /* a generator takes the others away */
+    CHECK_INT(tl_stage_commit(&stage), TL_E_STATE);
+    CHECK(strstr(m->error.text, "is deformable and joined to block 1, which stays") != NULL);
     scene_ok(m, tl_state_hash(m, after));
     CHECK_TEXT(before, after);
     scene_ok(m, tl_blocks_delete(m, all, 8));
