@@ -61,10 +61,11 @@ static tl_status check_bodies(const tl_stage *stage)
             continue;
         for (uint32_t k = 0; k < m->bodies.member_count[body] && status == TL_OK; k++)
             if (kept[rows[k]])
-                status = tl_fail(&m->error, TL_E_STATE,
-                                 "block %u is deformable and joined to block %u, which stays: it cannot be taken away; take "
-                                 "it away before it gets zones",
-                                 m->blocks.id[row], m->blocks.id[rows[k]]);
+                status =
+                    tl_fail(&m->error, TL_E_STATE,
+                            "block %u is deformable and joined to block %u, which stays: it cannot be taken away; take "
+                            "it away before it gets zones",
+                            m->blocks.id[row], m->blocks.id[rows[k]]);
     }
     free(kept);
     return status;

@@ -25,6 +25,8 @@
 
 #include <talus/vmath.h>
 
+#define NONE UINT32_MAX
+
 /* Tolerance: lengths that differ by less than this share count as equal. */
 #define TIE 1e-9
 /* Constant: how near an edge a point on a face may be, and graded ones each other, in parts of the wanted edge. A point
@@ -33,8 +35,6 @@
 #define APART (0.8 * (1 - 1e-7))
 /* Cost only: a lattice is tried where the wanted edge is less than this times its own. */
 #define WORTH 2.0
-#define NONE UINT32_MAX
-
 /* Limit: lattices of a face. */
 #define MOST_LEVELS 20
 /* Constant: height of an equilateral triangle of edge 1. */

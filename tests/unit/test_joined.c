@@ -327,6 +327,49 @@ TEST(a_joined_body_turns_ten_times_without_stress_of_its_own)
     tl_model_destroy(m);
 }
 
+/* A stiff cube of two joined blocks, turned, falls on a rigid floor: with zones, and rigid. */
+static tl_model *falling(bool deforms, tl_quat turn)
+{
+    const tl_id floor = 1, both[2] = {2, 3};
+    tl_model *m = scene_model(2);
+    scene_box(m, tl_v3(-4, -4, -2), tl_v3(4, 4, 0));
+    scene_block(m, scene_box_shape(1, 1, 0.4), turn, tl_v3_add(tl_v3(0, 0, 1), tl_q_rotate(turn, tl_v3(0, 0, -0.3))));
+    scene_block(m, scene_box_shape(1, 1, 0.6), turn, tl_v3_add(tl_v3(0, 0, 1), tl_q_rotate(turn, tl_v3(0, 0, 0.2))));
+    solid(m, 1e10, 0.2);
+    scene_ok(m, tl_blocks_fix(m, &floor, 1, TL_FIX_ALL));
+    scene_law(m, "coulomb", 1e8, 1e8, 30);
+    scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
+    scene_ok(m, tl_blocks_join(m, both, 2));
+    m->bodies.v[1] = tl_v3(0.3, 0, -1);
+    if (deforms)
+        join_and_divide(m, 1, 0.4);
+    return m;
+}
+
+/* On an edge, a corner, askew: the contact is that of one of its blocks, and zones of that carry it. */
+TEST(a_stiff_joined_cube_falls_as_a_rigid_one)
+{
+    const tl_vec3 axis[2] = {{1, 1, 0}, {0, 1, 0}};
+    const double angle[2] = {0.95, 0.7}, until[2] = {0.16, 0.21};
+    for (int k = 0; k < 2; k++) {
+        const tl_quat turn = scene_turn(tl_v3_unit(axis[k]), angle[k]);
+        tl_model *m[2] = {falling(false, turn), falling(true, turn)};
+        tl_solve_result result;
+        for (int which = 0; which < 2; which++)
+            while (m[which]->time < until[k])
+                scene_ok(m[which], tl_model_cycle(m[which], 1, &result));
+        CHECK_INT(m[1]->detect->contacts.table.rows, 1);
+        tl_energy energy;
+        scene_ok(m[1], tl_model_energy(m[1], &energy));
+        CHECK(fabs(energy.balance) < 1e-4);
+        CHECK(energy.stored > 0);
+        const tl_vec3 rigid = m[0]->bodies.pose[1].u, zoned = m[1]->bodies.pose[1].u;
+        CHECK(scene_apart(rigid, zoned) < 0.03 * tl_v3_norm(rigid));
+        for (int which = 0; which < 2; which++)
+            tl_model_destroy(m[which]);
+    }
+}
+
 /* Blocks of a body come all at once, and go all at once; nothing parts them or joins them to others. */
 TEST(bodies_get_zones_whole_and_stay_whole)
 {
@@ -415,5 +458,5 @@ TEST(joined_blocks_with_a_gap_are_refused)
 
 TEST_MAIN(blocks_of_cut_boxes_are_strained_as_one(), a_small_block_on_a_large_one(), eight_blocks_about_a_tunnel(),
           two_joined_cubes_are_as_stiff_as_one_block(), joined_blocks_have_the_same_bits_on_any_threads(),
-          a_joined_body_turns_ten_times_without_stress_of_its_own(), bodies_get_zones_whole_and_stay_whole(),
-          joined_blocks_with_a_gap_are_refused())
+          a_joined_body_turns_ten_times_without_stress_of_its_own(), a_stiff_joined_cube_falls_as_a_rigid_one(),
+          bodies_get_zones_whole_and_stay_whole(), joined_blocks_with_a_gap_are_refused())
