@@ -274,4 +274,14 @@ void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
+    m->zones->moved_dt = dt;
+}
+
+void tl_gridpoints_stop(tl_model *m)
+{
+    tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
+    for (size_t row = 0; p && row < p->table.rows; row++) {
+        const tl_vec3 v = tl_columns_get(p->v, row);
+        tl_columns_put(p->v, row, tl_v3_sub(v, tl_free_part(v, p->fixed[row])));
+    }
 }

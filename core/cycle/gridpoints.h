@@ -14,6 +14,8 @@ void tl_gridpoints_gather(tl_model *m);
 double tl_gridpoint_scale(const tl_model *m, size_t row);
 /* In a relaxation: takes velocities back by alpha, 1/s. */
 void tl_gridpoints_brake(tl_model *m, double alpha);
+/* Velocities of components that are free end. Their last motion strains zones all the same. */
+void tl_gridpoints_stop(tl_model *m);
 /* Velocities and places one step on. */
 void tl_gridpoints_move(tl_model *m, double dt);
 

@@ -3,6 +3,7 @@
  * While `relaxing` is set, damping, time step and masses of the steps are those of a relaxation (settle.c), whatever
  * the user has set: that stays and is not touched. Time stands still: functions of time keep their values. A save made
  * meanwhile holds both, and the next call goes on where it was. */
+#include "base/columns.h"
 #include "contact/body_contacts.h"
 #include "cycle/cycle_data.h"
 #include "cycle/prepare.h"
@@ -10,12 +11,29 @@
 #include "cycle/solve.h"
 #include "model/options.h"
 #include "model/rows.h"
+#include "zone/zones.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
+
+/* Refuses a model whose gridpoints are driven. */
+static tl_status check_gridpoints(tl_model *m)
+{
+    const tl_gridpoints *p = tl_model_deforms(m) ? &m->zones->points : NULL;
+    for (size_t row = 0; p && row < p->table.rows; row++) {
+        const tl_vec3 v = tl_columns_get(p->v, row), held = tl_v3_sub(v, tl_free_part(v, p->fixed[row]));
+        if (tl_v3_norm2(held) > 0)
+            return tl_fail(&m->error, TL_E_STATE,
+                           "relax: gridpoints of block %u are driven at %.3g m/s, so there is nothing to come to rest: "
+                           "set their velocity to 0 first, or use %s",
+                           m->zones->mesh[p->mesh[row]].body, tl_v3_norm(held),
+                           tl_words(m, "model:solve", "tl_model_solve()"));
+    }
+    return TL_OK;
+}
 
 /* Refuses a model that something drives: there is no rest then. */
 static tl_status check_driven(tl_model *m)
@@ -36,7 +54,7 @@ static tl_status check_driven(tl_model *m)
                            b->id[body], speed > 0 ? speed : turn, speed > 0 ? "m/s" : "rad/s",
                            tl_words(m, "model:solve", "tl_model_solve()"));
     }
-    return TL_OK;
+    return check_gridpoints(m);
 }
 
 /* ---------------------------------------------------------------- what moved before ------- */
@@ -44,6 +62,7 @@ static tl_status check_driven(tl_model *m)
 /* What a relaxation that makes no step gives back. */
 typedef struct motion {
     tl_vec3 *v, *w; /* [bodies]; NULL: a relaxation that goes on */
+    tl_vec3 *point; /* [gridpoints]: their velocities */
     double dt, step;
 } motion;
 
@@ -53,12 +72,16 @@ static tl_status keep_motion(tl_model *m, motion *kept)
     const size_t bodies = b->table.rows;
     kept->v = malloc((bodies + 1) * sizeof *kept->v);
     kept->w = malloc((bodies + 1) * sizeof *kept->w);
-    if (!kept->v || !kept->w)
+    const size_t points = tl_model_deforms(m) ? m->zones->points.table.rows : 0;
+    kept->point = malloc((points + 1) * sizeof *kept->point);
+    if (!kept->v || !kept->w || !kept->point)
         return tl_fail_memory(&m->error);
     if (bodies > 0) {
         memcpy(kept->v, b->v, bodies * sizeof *kept->v);
         memcpy(kept->w, b->w, bodies * sizeof *kept->w);
     }
+    for (size_t row = 0; row < points; row++)
+        kept->point[row] = tl_columns_get(m->zones->points.v, row);
     kept->dt = m->dt;
     kept->step = m->cycle->dt;
     return TL_OK;
@@ -75,6 +98,8 @@ static void give_back(tl_model *m, const motion *kept)
         memcpy(m->bodies.v, kept->v, bodies * sizeof *kept->v);
         memcpy(m->bodies.w, kept->w, bodies * sizeof *kept->w);
     }
+    for (size_t row = 0; tl_model_deforms(m) && row < m->zones->points.table.rows; row++)
+        tl_columns_put(m->zones->points.v, row, kept->point[row]);
     m->dt = kept->dt;
     m->cycle->dt = kept->step;
 }
@@ -213,6 +238,7 @@ tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wa
     }
     free(kept.v);
     free(kept.w);
+    free(kept.point);
     return status;
 }
 

@@ -107,6 +107,7 @@ void tl_settle_end(tl_model *m)
         if (!(b->fixed[i] & TL_FIX_ROTATION))
             b->w[i] = tl_v3(0, 0, 0);
     }
+    tl_gridpoints_stop(m);
     m->relaxing = false;
     m->still = 0;
     m->dt = 0; /* what follows begins from rest */
