@@ -13,7 +13,7 @@
 #include "io/pieces.h"
 #include "io/vtk_contacts.h"
 #include "io/vtk_file.h"
-#include "model/fields.h"
+#include "query/block_fields.h"
 #include "model/options.h"
 #include "model/rows.h"
 #include "state/outputs.h"

@@ -3,141 +3,39 @@
 #include "base/error.h"
 #include "base/solid_columns.h"
 #include "geometry/measure.h"
-#include "model/fields.h"
 #include "model/rows.h"
+#include "query/block_fields.h"
+#include "query/zone_at.h"
 #include "zone/grid.h"
 #include "zone/solids.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/elementary.h>
 #include <talus/fields.h>
 #include <talus/zones.h>
 
 /* ---------------------------------------------------------------- one zone --------------- */
 
-/* A zone where it is: its mesh, row and parcel, and the places of its corners now and as made. */
-typedef struct place {
-    const tl_model *m;
-    const tl_body_mesh *mesh;
-    const tl_parcel *parcel;
-    uint32_t row;
-    tl_vec3 x[4], ref[4];
-} place;
-
-/* The parcel that has a row: they ascend. */
-static const tl_parcel *parcel_of(const struct tl_zones *z, const tl_body_mesh *mesh, uint32_t row)
-{
-    uint32_t low = mesh->parcel_begin, high = mesh->parcel_end;
-    while (high - low > 1) {
-        const uint32_t middle = (low + high) / 2;
-        if (z->group[z->parcels.of[middle].group_begin].start <= row)
-            low = middle;
-        else
-            high = middle;
-    }
-    return &z->parcels.of[low];
-}
-
-static place place_of(const tl_model *m, const tl_body_mesh *mesh, uint32_t number)
-{
-    const struct tl_zones *z = m->zones;
-    place at = {.m = m, .mesh = mesh, .row = z->row_of[mesh->zone_begin + number]};
-    at.parcel = parcel_of(z, mesh, at.row);
-    for (int a = 0; a < 4; a++) {
-        const uint32_t point = z->listed[at.parcel->point_begin + z->zones.corner[a][at.row]];
-        at.x[a] = tl_gridpoint_place(&z->points, point);
-        at.ref[a] = tl_columns_get(z->points.ref, point);
-    }
-    return at;
-}
-
-static double volume_of(const tl_vec3 x[4])
-{
-    return tl_v3_dot(tl_v3_sub(x[1], x[0]), tl_v3_cross(tl_v3_sub(x[2], x[0]), tl_v3_sub(x[3], x[0]))) / 6;
-}
-
-static tl_vec3 centroid_of(const place *at)
-{
-    const tl_vec3 sum = tl_v3_add(tl_v3_add(at->x[0], at->x[1]), tl_v3_add(at->x[2], at->x[3]));
-    return tl_v3_madd(at->m->origin, 0.25, sum);
-}
-
-static tl_sym3 stress_of(const place *at)
-{
-    double *const *s = at->m->zones->zones.stress;
-    const uint32_t row = at->row;
-    return (tl_sym3){s[0][row], s[1][row], s[2][row], s[3][row], s[4][row], s[5][row]};
-}
-
-/* How the zone has stretched and turned since it was made: edges now by those then. */
-static tl_mat3 gradient_of(const place *at)
-{
-    tl_mat3 f = {{{0}}};
-    const double six = 6 * volume_of(at->ref);
-    tl_vec3 e[3], r[3];
-    for (int a = 0; a < 3; a++) {
-        e[a] = tl_v3_sub(at->x[a + 1], at->x[0]);
-        r[a] = tl_v3_sub(at->ref[a + 1], at->ref[0]);
-    }
-    for (int a = 0; a < 3; a++) {
-        const tl_vec3 g = tl_v3_scale(1 / six, tl_v3_cross(r[(a + 1) % 3], r[(a + 2) % 3]));
-        const double x[3] = {e[a].x, e[a].y, e[a].z}, y[3] = {g.x, g.y, g.z};
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                f.m[i][j] += x[i] * y[j];
-    }
-    return f;
-}
-
-/* A tensor of principal values about axes. */
-static tl_sym3 about(tl_quat axes, const double value[3])
-{
-    const tl_mat3 q = tl_q_matrix(axes);
-    double t[3][3] = {{0}};
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                t[i][j] += value[k] * q.m[i][k] * q.m[j][k];
-    return (tl_sym3){t[0][0], t[1][1], t[2][2], t[0][1], t[1][2], t[2][0]};
-}
-
-/* Logarithmic strain, ln V of F = V R, in the axes of the model. */
-static tl_sym3 strain_of(const place *at)
-{
-    const tl_mat3 f = gradient_of(at);
-    double b[3][3] = {{0}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                b[i][j] += f.m[i][k] * f.m[j][k];
-    tl_vec3 squares;
-    tl_quat axes;
-    tl_principal_axes((tl_sym3){b[0][0], b[1][1], b[2][2], b[0][1], b[1][2], b[2][0]}, &squares, &axes);
-    const double ln[3] = {0.5 * tl_log1p(squares.x - 1), 0.5 * tl_log1p(squares.y - 1), 0.5 * tl_log1p(squares.z - 1)};
-    return about(axes, ln);
-}
-
 /* Principal stresses, the largest (tension) first. */
-static tl_vec3 principal_of(const place *at)
+static tl_vec3 principal_of(const tl_zone_at *at)
 {
     tl_vec3 ascending;
     tl_quat axes;
-    tl_principal_axes(stress_of(at), &ascending, &axes);
+    tl_principal_axes(tl_zone_stress(at), &ascending, &axes);
     return tl_v3(ascending.z, ascending.y, ascending.x);
 }
 
-static double mean_of(const place *at)
+static double mean_of(const tl_zone_at *at)
 {
-    const tl_sym3 s = stress_of(at);
+    const tl_sym3 s = tl_zone_stress(at);
     return (s.xx + s.yy + s.zz) / 3;
 }
 
 /* sqrt(3 J2), of the deviator: that of a uniaxial stress is the stress. */
-static double deviator_of(const place *at)
+static double deviator_of(const tl_zone_at *at)
 {
-    const tl_sym3 s = stress_of(at);
+    const tl_sym3 s = tl_zone_stress(at);
     const double a = s.xx - s.yy, b = s.yy - s.zz, c = s.zz - s.xx;
     return sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
 }
@@ -146,7 +44,7 @@ enum { ELASTIC, SHEAR, TENSION, JOINT, SHEAR_PAST, TENSION_PAST, JOINT_PAST };
 static const char *const state_names[] = {"elastic",    "shear",        "tension",   "joint",
                                           "shear past", "tension past", "joint past"};
 
-static double state_number(const place *at)
+static double state_number(const tl_zone_at *at)
 {
     const uint32_t flags = at->m->zones->zones.flags[at->row];
     static const uint32_t order[] = {
@@ -178,10 +76,10 @@ static double group_of(const tl_model *m, const tl_body_mesh *mesh)
     FIELD(number, COUNT, "", "its number in the block, from 0", z->zones.number[at->row])                              \
     FIELD(group, TEXT, "", "group of the block", group_of(at->m, at->mesh))                                            \
     FIELD(solid, TEXT, "", "name of its solid", at->parcel->solid)                                                     \
-    FIELD(centroid, VEC3, "m", "present place of its centroid", centroid_of(at))                                       \
-    FIELD(volume, SCALAR, "m3", "present volume", volume_of(at->x))                                                    \
-    FIELD(stress, SYM3, "Pa", "Cauchy stress, tension positive", stress_of(at))                                        \
-    FIELD(strain, SYM3, "", "logarithmic strain since it was made", strain_of(at))                                     \
+    FIELD(centroid, VEC3, "m", "present place of its centroid", tl_zone_centroid(at))                                  \
+    FIELD(volume, SCALAR, "m3", "present volume", tl_tetrahedron_volume(at->x))                                        \
+    FIELD(stress, SYM3, "Pa", "Cauchy stress, tension positive", tl_zone_stress(at))                                   \
+    FIELD(strain, SYM3, "", "logarithmic strain since it was made", tl_zone_strain(at))                                \
     FIELD(principal, VEC3, "Pa", "principal stresses, the largest first", principal_of(at))                            \
     FIELD(mean, SCALAR, "Pa", "mean stress", mean_of(at))                                                              \
     FIELD(deviator, SCALAR, "Pa", "sqrt(3 J2): of a uniaxial stress its size", deviator_of(at))                        \
@@ -232,7 +130,7 @@ const tl_field *tl_gridpoint_fields(size_t *count)
     return point_fields;
 }
 
-static void zone_numbers(const place *at, size_t field, double out[6])
+static void zone_numbers(const tl_zone_at *at, size_t field, double out[6])
 {
     const struct tl_zones *z = at->m->zones;
     switch (field) {
@@ -303,25 +201,25 @@ static bool in_box(const tl_bounds *box, tl_vec3 p)
 }
 
 /* Whether a point lies in a zone, or on a side of it. */
-static bool zone_contains(const place *at, tl_vec3 p)
+static bool zone_contains(const tl_zone_at *at, tl_vec3 p)
 {
     const tl_vec3 q = tl_v3_sub(p, at->m->origin);
-    const double least = -1e-12 * volume_of(at->x);
+    const double least = -1e-12 * tl_tetrahedron_volume(at->x);
     bool inside = true;
     for (int a = 0; a < 4; a++) {
         tl_vec3 x[4];
         memcpy(x, at->x, sizeof x);
         x[a] = q;
-        inside = inside && volume_of(x) >= least;
+        inside = inside && tl_tetrahedron_volume(x) >= least;
     }
     return inside;
 }
 
 static bool zone_passes(const search *s, const tl_body_mesh *mesh, uint32_t number, tl_vec3 *where)
 {
-    const place at = place_of(s->m, mesh, number);
+    const tl_zone_at at = tl_zone_at_number(s->m, mesh, number);
     const tl_zone_filter *f = s->f;
-    *where = centroid_of(&at);
+    *where = tl_zone_centroid(&at);
     return (f->plastic < 0 || (f->plastic != 0) == (s->m->zones->zones.flags[at.row] != 0)) &&
            (!f->solid || at.parcel->solid == s->solid) && (!f->inside || in_box(f->inside, *where)) &&
            (!f->containing || zone_contains(&at, *f->containing));
@@ -451,7 +349,7 @@ tl_status tl_zone_field(tl_model *m, tl_zone_name zone, size_t index, tl_field_v
     const tl_body_mesh *mesh = mesh_of(m, zone, false);
     if (!mesh)
         return m->error.status;
-    const place at = place_of(m, mesh, zone.number);
+    const tl_zone_at at = tl_zone_at_number(m, mesh, zone.number);
     *value = (tl_field_value){{0}, NULL};
     zone_numbers(&at, index, value->number);
     if (index == Z_solid)
@@ -498,7 +396,7 @@ static size_t state_width(const tl_model *m, const char *name)
     return 0;
 }
 
-static void put_state(const place *at, const char *name, size_t width, double *out)
+static void put_state(const tl_zone_at *at, const char *name, size_t width, double *out)
 {
     const struct tl_zones *z = at->m->zones;
     uint32_t begin, own;
@@ -535,7 +433,7 @@ tl_status tl_zones_values(tl_model *m, const tl_zone_name *names, size_t count, 
         double all[6] = {0};
         if (!mesh)
             return m->error.status;
-        const place at = place_of(m, mesh, names[k].number);
+        const tl_zone_at at = tl_zone_at_number(m, mesh, names[k].number);
         if (field < Z_COUNT)
             zone_numbers(&at, field, all);
         else

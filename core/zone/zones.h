@@ -94,10 +94,15 @@ typedef struct tl_slot {
     double of[4];
 } tl_slot;
 
-/* Gridpoints of a parcel, a row each: where they are, m, and how they came there in the last step; up to a line of
- * memory. Scratch of a thread. */
+/* A gridpoint of a parcel: where it is, m, and how it came there in the last step. A line of memory. */
+typedef struct tl_parcel_point {
+    _Alignas(TL_ALIGN) double place[4];
+    double way[4];
+} tl_parcel_point;
+
+/* Those of a parcel. Scratch of a thread. */
 typedef struct tl_parcel_points {
-    double of[TL_PARCEL_POINTS][8];
+    tl_parcel_point of[TL_PARCEL_POINTS];
 } tl_parcel_points;
 
 /* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the fourth

@@ -360,6 +360,11 @@ local Model = {}
 ---@field body integer id of its rigid body: the lowest id of its blocks
 ---@field speed number m/s: length of the velocity
 ---@field kinetic_energy number J: of the block alone
+---@field deformable boolean whether it has zones
+---@field zones integer of its body
+---@field gridpoints integer of its body
+---@field stress talus.Tensor Pa: mean over the zones of its body, by volume; nan of a rigid block
+---@field strain talus.Tensor mean logarithmic strain of these zones; nan of a rigid block
 ---@field vertices talus.Vector[] vertices in their present place
 ---@field faces { vertices: integer[], normal: talus.Vector, joint: string? }[] faces: vertex numbers from 1, outward normal, name of the joint plane or nil
 ---@field neighbours talus.Block[] blocks it is in contact with
