@@ -1,5 +1,5 @@
 -- check_zones.lua - what the tests of deformable blocks share: a model of one solid, gridpoints on a plane, motions that
--- are driven to an end exactly, and means of stress.
+-- end where they are to, and means of stress.
 local talus = require "talus"
 
 local zones = {}
@@ -13,7 +13,8 @@ local ON_PLANE = 1e-9
 -- A model without gravity whose solid "rock" is elastic, unless options name another kind with its parameters.
 function zones.model(options)
     local model = talus.model { gravity = options.gravity or { 0, 0, 0 }, threads = options.threads }
-    model:solid("rock", options.solid or "elastic", options.params or { young = options.young, poisson = options.poisson })
+    local elastic = { young = options.young, poisson = options.poisson }
+    model:solid("rock", options.solid or "elastic", options.params or elastic)
     return model
 end
 
@@ -42,8 +43,8 @@ function zones.hull(model, min, max)
     end }
 end
 
--- Moves gridpoints along a field of displacements by `steps` steps of equal parts and stops there: the zones have seen all of
--- it after the next step. `field` gives the displacement of a place.
+-- Moves gridpoints along a field of displacements, a function of the place, by `steps` equal steps, and stops them there. The
+-- zones have seen all of it at the end.
 function zones.displace(model, points, field, steps, dt)
     dt = dt or model.dt
     local way = {}
@@ -59,6 +60,46 @@ function zones.displace(model, points, field, steps, dt)
     model:timestep { dt = dt }
     model:cycle(steps)
     points:set { velocity = { 0, 0, 0 } }
+    model:cycle(1)
+end
+
+-- The inverse of a 3 x 3 matrix.
+local function inverse(m)
+    local out, cofactor = { {}, {}, {} }, function(i, k)
+        local a, b, c, d = i % 3 + 1, (i + 1) % 3 + 1, k % 3 + 1, (k + 1) % 3 + 1
+        return m[a][c] * m[b][d] - m[a][d] * m[b][c]
+    end
+    local det = m[1][1] * cofactor(1, 1) + m[1][2] * cofactor(1, 2) + m[1][3] * cofactor(1, 3)
+    for i = 1, 3 do
+        for k = 1, 3 do
+            out[k][i] = cofactor(i, k) / det
+        end
+    end
+    return out
+end
+
+-- Strains all zones of a model in one step by exactly the six components of `by`, without a turn. Zones take the gradient half
+-- way, e = H (I + H / 2)^-1, so H = (I - e / 2)^-1 e. All gridpoints must be held.
+function zones.strain(model, points, by, dt)
+    local e = { { by[1], by[4], by[6] }, { by[4], by[2], by[5] }, { by[6], by[5], by[3] } }
+    local half, h = {}, {}
+    for i = 1, 3 do
+        half[i] = {}
+        for k = 1, 3 do
+            half[i][k] = (i == k and 1 or 0) - e[i][k] / 2
+        end
+    end
+    half = inverse(half)
+    for i = 1, 3 do
+        h[i] = {}
+        for k = 1, 3 do
+            h[i][k] = (half[i][1] * e[1][k] + half[i][2] * e[2][k] + half[i][3] * e[3][k]) / dt
+        end
+    end
+    points:set { velocity = function(p)
+        return { h[1][1] * p[1] + h[1][2] * p[2] + h[1][3] * p[3], h[2][1] * p[1] + h[2][2] * p[2] + h[2][3] * p[3],
+            h[3][1] * p[1] + h[3][2] * p[2] + h[3][3] * p[3] }
+    end }
     model:cycle(1)
 end
 
