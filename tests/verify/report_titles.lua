@@ -36,6 +36,7 @@ local TITLES = {
     { "DF.hoek_brown", "solids: triaxial test of Hoek and Brown" },
     { "DF.drucker_prager", "solids: Drucker and Prager on both meridians" },
     { "DF.transverse", "solids: modulus of layered rock over the angle" },
+    { "DF.beam_modes_nu([%d.]+)", "zones: free beam that rings, Poisson's ratio %1" },
     { "E1.dipscan", "paper's wedge, friction at failure over the dip of a plane" },
     { "E1.run(%d)", "paper's wedge, run %1" },
     { "E2", "paper's roof pyramid, cut and under stress" },
