@@ -13,7 +13,7 @@ void tl_gridpoints_gather(tl_model *m);
 /* In a relaxation: takes velocities back by alpha, 1/s, of meshes that go along. Those that go their own way lose them
  * by `lost`, 1/s, where they turn back. */
 void tl_gridpoints_brake(tl_model *m, double alpha, double lost);
-/* Free gridpoints do not move. */
+/* Velocities of components that are free end. Their last motion strains zones all the same. */
 void tl_gridpoints_stop(tl_model *m);
 /* Velocities and places one step on. */
 void tl_gridpoints_move(tl_model *m, double dt);

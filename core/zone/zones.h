@@ -156,6 +156,7 @@ struct tl_zones {
     size_t meeting_count, meeting_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
+    double moved_dt;                  /* of the last motion of the gridpoints, s; 0: they have not moved yet */
     uint32_t steps_kept;              /* steps to come that can be undone, for velocities were set */
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */
