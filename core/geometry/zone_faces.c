@@ -12,8 +12,8 @@
  * Those nearer than NEAR h to an edge are left out. Where h is a function of place, lattices of p / 2^k follow each
  * other, coarse ones first. A point is taken when none that was taken is nearer than APART h.
  *
- * A face of a block that is given in parts (joined_faces.c) has points on each part, in the frame of that. Their places in
- * the face are then those in the frame of its first part.
+ * A face of a block that is given in parts (joined_faces.c) has points on each part, in the frame of that. Their
+ * places in the face are then those in the frame of its first part.
  *
  * Triangles are those of Delaunay in these coordinates, put on a grid (delaunay.c). Weights decide among points on one
  * circle. They are random by keys, and the same on both sides (zone_weight.h). */
