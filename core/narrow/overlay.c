@@ -1,7 +1,9 @@
 /* overlay.c - the polygon that two faces have in common, and three points that integrate over it.
  *
- * Both faces are projected on the plane of the bisecting normal n = (n_A - n_B) / |n_A - n_B|. Their common polygon
- * has the area A, the centroid c and the second moments S = int (x - c)(x - c)^T dA / A = L L^T (Cholesky). The points
+ * Both faces are projected along n = p / |p|, p = s n_A - (1 - s) n_B. The share s is 1 where the outline of what they
+ * have in common is B's, and 0 where it is A's. Then the polygon keeps to the face with the outline, however the other
+ * one tilts. Its area A is measured on that face. With the centroid c and the second moments
+ * S = int (x - c)(x - c)^T dA / A = L L^T (Cholesky) the points
  *
  *     c + sqrt(2) L e_k,    e_k = (cos a, sin a),    a = 0, 120, 240 degrees
  *
@@ -70,10 +72,12 @@ static void project(const tl_outer_face *f, tl_vec3 from, tl_vec3 e, tl_vec3 g, 
     }
 }
 
-bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, tl_overlay_room *room, tl_overlay *out)
+bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, double share, tl_overlay_room *room,
+                     tl_overlay *out)
 {
     const tl_vec3 area_a = area_of(a), area_b = area_of(b), origin = a->corner[0];
-    const tl_vec3 n = tl_v3_unit(tl_v3_sub(tl_v3_unit(area_a), tl_v3_unit(area_b)));
+    const tl_vec3 na = tl_v3_unit(area_a), nb = tl_v3_unit(area_b);
+    const tl_vec3 n = tl_v3_unit(tl_v3_madd(tl_v3_scale(share, na), share - 1, nb));
     if (!(tl_v3_dot(area_a, n) > 0) || !(tl_v3_dot(area_b, n) < 0))
         return false;
     const tl_vec3 e = tl_v3_perpendicular(n), g = tl_v3_cross(n, e);
@@ -84,7 +88,7 @@ bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, tl_overlay_
     if (!(m.area > NO_AREA * fmin(tl_v3_norm(area_a), tl_v3_norm(area_b))))
         return false;
     const double l11 = sqrt(fmax(m.xx, 0)), l21 = l11 > 0 ? m.xy / l11 : 0, l22 = sqrt(fmax(m.yy - l21 * l21, 0));
-    out->area = m.area;
+    out->area = m.area * ((1 - share) / tl_v3_dot(na, n) - share / tl_v3_dot(nb, n));
     out->n = n;
     for (int k = 0; k < 3; k++) {
         const double x = room->now[0].x + m.x + l11 * around[k][0];

@@ -38,6 +38,7 @@ typedef struct face {
     const tl_surface_part *part; /* NULL: rigid */
     size_t part_count;
     tl_vec3 centre, area;
+    double size;  /* of all its parts, m2 */
     double reach; /* no corner is farther from the centre, m */
 } face;
 
@@ -48,7 +49,6 @@ static tl_vec3 corner_of(const tl_model *m, const tl_surface_part *part, int k)
 
 static void measure_parts(const tl_model *m, face *f)
 {
-    double weight = 0;
     for (size_t k = 0; k < f->part_count; k++) {
         const tl_vec3 a = corner_of(m, &f->part[k], 0), b = corner_of(m, &f->part[k], 1),
                       c = corner_of(m, &f->part[k], 2);
@@ -56,9 +56,9 @@ static void measure_parts(const tl_model *m, face *f)
         const double size = tl_v3_norm(area);
         f->area = tl_v3_add(f->area, area);
         f->centre = tl_v3_madd(f->centre, size / 3, tl_v3_add(a, tl_v3_add(b, c)));
-        weight += size;
+        f->size += size;
     }
-    f->centre = tl_v3_scale(1 / weight, f->centre);
+    f->centre = tl_v3_scale(1 / f->size, f->centre);
     for (size_t k = 0; k < f->part_count; k++)
         for (int i = 0; i < 3; i++)
             f->reach = fmax(f->reach, tl_v3_norm(tl_v3_sub(corner_of(m, &f->part[k], i), f->centre)));
@@ -78,6 +78,7 @@ static void measure_rigid(const tl_model *m, face *f)
         f->area = tl_v3_madd(f->area, 0.5,
                              tl_v3_cross(tl_v3_sub(rigid_corner(m, f->block, f->number, k), first),
                                          tl_v3_sub(rigid_corner(m, f->block, f->number, k + 1), first)));
+    f->size = tl_v3_norm(f->area);
     for (uint32_t k = 0; k < count; k++)
         f->centre = tl_v3_madd(f->centre, 1.0 / count, rigid_corner(m, f->block, f->number, k));
     for (uint32_t k = 0; k < count; k++)
@@ -127,7 +128,8 @@ static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list,
                                             .face_a = i,
                                             .face_b = k,
                                             .tag = tl_flush_tag(pa->tag[i], pb->tag[k]),
-                                            .stale = true};
+                                            .stale = true,
+                                            .share = 0.5};
         }
     }
     return true;
@@ -166,10 +168,9 @@ static tl_meet *list_meets(const tl_model *m, size_t *count, bool *enough)
 
 /* ---------------------------------------------------------------- segments --------------- */
 
-/* Notes a segment of two parts, or of a part and a rigid face, that lie over each other. false: out of memory. */
-static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a, size_t i, const face *b, size_t k)
+/* Finds what two parts, or a part and a rigid face, have in common. false: they do not lie over each other. */
+static bool lay_over(tl_model *m, double share, const face *a, size_t i, const face *b, size_t k, tl_overlay *over)
 {
-    tl_overlay over;
     tl_vec3 ca[3], cb[3];
     const face *of[2] = {a, b};
     const size_t at[2] = {i, k};
@@ -187,9 +188,17 @@ static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a
             outer[s] = (tl_outer_face){m->segments->corner, count};
         }
     }
-    if (!tl_overlay_find(&outer[0], &outer[1], &m->segments->room, &over))
+    return tl_overlay_find(&outer[0], &outer[1], share, &m->segments->room, over);
+}
+
+/* Notes a segment of two parts, or of a part and a rigid face, that lie over each other. false: out of memory. */
+static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a, size_t i, const face *b, size_t k)
+{
+    tl_new_segment made = {.meet = meet, .key = {(uint32_t)i, (uint32_t)k}};
+    if (!lay_over(m, m->segments->meet[meet].share, a, i, b, k, &made.over))
         return true;
-    tl_new_segment made = {.meet = meet, .key = {(uint32_t)i, (uint32_t)k}, .over = over};
+    const face *of[2] = {a, b};
+    const size_t at[2] = {i, k};
     for (int s = 0; s < 2; s++) {
         const uint32_t body = m->blocks.body[of[s]->block];
         tl_segment_side *side = s ? &made.b : &made.a;
@@ -221,13 +230,37 @@ static bool make_room(tl_model *m, const face *a, const face *b)
     return true;
 }
 
+/* Tolerance: share of a face that counts as left out when all is covered: two faces that cover each other share their
+ * outline. */
+#define LEFT_OUT 1e-6
+
+/* How far the outline of an area that two faces have in common is B's: by what of each is left out. */
+static double share_of(double common, const face *a, const face *b)
+{
+    const double out_a = fmax(1 - common / a->size, 0) + LEFT_OUT, out_b = fmax(1 - common / b->size, 0) + LEFT_OUT;
+    return out_a / (out_a + out_b);
+}
+
+/* The area that two faces have in common, m2. */
+static double common_area(tl_model *m, const face *a, const face *b)
+{
+    double sum = 0;
+    tl_overlay over;
+    for (size_t i = 0; i < (a->part ? a->part_count : 1); i++)
+        for (size_t k = 0; k < (b->part ? b->part_count : 1); k++)
+            sum += lay_over(m, 0.5, a, i, b, k, &over) ? over.area : 0;
+    return sum;
+}
+
 /* Notes the segments of a meet. */
 static bool find_segments(tl_model *m, tl_laying *l, uint32_t number)
 {
-    const tl_meet *meet = &m->segments->meet[number];
+    tl_meet *meet = &m->segments->meet[number];
     const face a = face_of(m, tl_block_row_quiet(m, meet->a), meet->face_a);
     const face b = face_of(m, tl_block_row_quiet(m, meet->b), meet->face_b);
     bool enough = make_room(m, &a, &b);
+    if (enough)
+        meet->share = share_of(meet->area > 0 ? meet->area : common_area(m, &a, &b), &a, &b);
     for (size_t i = 0; enough && i < (a.part ? a.part_count : 1); i++)
         for (size_t k = 0; enough && k < (b.part ? b.part_count : 1); k++)
             enough = note_segment(m, l, number, &a, i, &b, k);

@@ -77,6 +77,7 @@ typedef struct tl_meet {
     uint32_t law; /* index into the model's joint_laws, or TL_NO_ROW */
     bool stale;   /* its segments are to be laid anew: it is new, or its sides have slid or stretched */
     double area;  /* m2 */
+    double share; /* 1: the outline of what the faces have in common is B's; 0: it is A's */
 } tl_meet;
 
 /* SIMD groups of one law. */

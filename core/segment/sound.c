@@ -17,7 +17,7 @@ static bool side_is_sound(const tl_model *m, const tl_segment_side *side)
 static bool meet_is_sound(const tl_model *m, const tl_meet *meet)
 {
     return meet->a < meet->b && meet->b < m->next_id && meet->tag.joint <= m->joint_count && tl_is_flag(&meet->stale) &&
-           (meet->law < m->joint_law_count || meet->law == TL_NO_ROW);
+           meet->share >= 0 && meet->share <= 1 && (meet->law < m->joint_law_count || meet->law == TL_NO_ROW);
 }
 
 /* Spans of groups follow each other, up to all of them. */
