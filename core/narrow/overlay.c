@@ -7,7 +7,8 @@
  *
  *     c + sqrt(2) L e_k,    e_k = (cos a, sin a),    a = 0, 120, 240 degrees
  *
- * with a third of the area each integrate every function of the second degree exactly, and lie in the polygon. */
+ * with a third of the area each integrate every function of the second degree exactly, and lie in the polygon. The axes
+ * of the plane go by an edge of the face, so the same polygon has the same points. */
 #include "narrow/overlay.h"
 
 #include <math.h>
@@ -72,6 +73,17 @@ static void project(const tl_outer_face *f, tl_vec3 from, tl_vec3 e, tl_vec3 g, 
     }
 }
 
+/* Tolerance: share of the outline from which on the points are laid along an edge of B: far from those of outlines that
+ * are one side's or both's. */
+#define RIDES_ON_B 0.75
+
+/* The direction of the first edge of a face, across n. Points laid by it keep to the face. */
+static tl_vec3 first_edge(const tl_outer_face *f, tl_vec3 n)
+{
+    const tl_vec3 edge = tl_v3_sub(f->corner[1], f->corner[0]);
+    return tl_v3_unit(tl_v3_madd(edge, -tl_v3_dot(edge, n), n));
+}
+
 bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, double share, tl_overlay_room *room,
                      tl_overlay *out)
 {
@@ -80,7 +92,7 @@ bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, double shar
     const tl_vec3 n = tl_v3_unit(tl_v3_madd(tl_v3_scale(share, na), share - 1, nb));
     if (!(tl_v3_dot(area_a, n) > 0) || !(tl_v3_dot(area_b, n) < 0))
         return false;
-    const tl_vec3 e = tl_v3_perpendicular(n), g = tl_v3_cross(n, e);
+    const tl_vec3 e = first_edge(share > RIDES_ON_B ? b : a, n), g = tl_v3_cross(n, e);
     project(a, origin, e, g, room->now);
     project(b, origin, e, g, room->by);
     const size_t count = tl_polygon_common(&room->now, &room->next, a->count, room->by, b->count);
