@@ -1,11 +1,5 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
- * A side carries the three points of a segment with it. Let x be the places of the corners of its triangle, and d how
- * they have moved in the last step. A point of weights w lies at sum w x and has moved by sum w d. With the in-plane
- * slopes g of the weights and the normal m of the triangle it turns by
- *
- *     turn = m (sum g x d) . m / 2 + sum (m . d) (g x m)
- *
  * Let s be the share of the outline that is B's (overlay.h), and p = s n_A - (1 - s) n_B. Then the common normal is
  * n = p / |p|, and the gap n . e, e = x_B - x_A. So a point on the side with the outline presses along the normal of
  * the other side, by its distance from that: the gradient of the energy, however far the sides tilt.
@@ -26,11 +20,12 @@
 #include "contact/contacts.h"
 #include "contact/plane_turn.h"
 #include "force/joint_laws.h"
+#include "segment/blend.h"
 #include "segment/lay.h"
+#include "segment/side.h"
 
 #include <math.h>
 #include <string.h>
-#include <talus/elementary.h>
 
 /* SIMD groups that a law gets at a time. */
 #define TILE 4
@@ -40,87 +35,15 @@
 /* Tolerance: slide or stretch of a segment over its size, from which on it is laid anew. */
 #define SLID 1e-3
 
-/* A side now: places of its corners and their motion in the last step, or a rigid body's; its outward normal. */
-typedef struct side_now {
-    bool rigid;
-    uint32_t body;
-    tl_vec3 x[3], d[3];
-    tl_vec3 slope[3]; /* of the weights, 1/m */
-    tl_vec3 shift;    /* of a rigid side: of its centroid in the last step, m */
-    tl_mat3 back;     /* and what a point has moved beside that, on its arm */
-    tl_vec3 normal, turn;
-} side_now;
-
 /* What is known of a tile's points only in a step. */
 typedef struct lanes {
     _Alignas(TL_ALIGN) double closure[TILE_POINTS];
     double du_n[TILE_POINTS], normal[3][TILE_POINTS], du_s[3][TILE_POINTS];
     double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
     double apart[3][TILE_POINTS];                          /* e */
-    side_now side[TILE * TL_LANES][2];                     /* of the segments */
+    tl_side_now side[TILE * TL_LANES][2];                  /* of the segments */
     double share[TILE * TL_LANES], per_p[TILE * TL_LANES]; /* s, and 1 / |p| */
 } lanes;
-
-/* ---------------------------------------------------------------- sides ------------------ */
-
-/* What a point has moved beside the centroid as the body turned by w, as it acts on its arm now (force/follow.c). */
-static tl_mat3 turned_back(tl_vec3 w)
-{
-    const double a = tl_v3_norm(w);
-    const tl_vec3 h = tl_v3_scale(a > 0 ? tl_tan(0.5 * a) / a : 0.5, w), s = tl_v3_scale(2 / (1 + tl_v3_norm2(h)), h);
-    return (tl_mat3){{{s.y * h.y + s.z * h.z, -s.x * h.y - s.z, -s.x * h.z + s.y},
-                      {-s.y * h.x + s.z, s.z * h.z + s.x * h.x, -s.y * h.z - s.x},
-                      {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
-}
-
-static side_now side_of(const tl_model *m, const tl_segment_side *side, tl_vec3 normal)
-{
-    side_now out = {.rigid = tl_side_is_rigid(side), .body = side->at[0]};
-    if (out.rigid) {
-        const tl_pose *pose = &m->bodies.pose[out.body];
-        out.shift = tl_v3_scale(m->dt, pose->v_moved);
-        out.turn = tl_v3_scale(m->dt, pose->w_moved);
-        out.back = turned_back(out.turn);
-        out.normal = tl_m3_mul(&pose->r, normal);
-        return out;
-    }
-    const tl_gridpoints *g = &m->zones->points;
-    for (int k = 0; k < 3; k++) {
-        out.x[k] = tl_gridpoint_place(g, side->at[k]);
-        out.d[k] = tl_v3_scale(m->dt, tl_columns_get(g->moved, side->at[k]));
-    }
-    const tl_vec3 a = tl_v3_sub(out.x[1], out.x[0]), b = tl_v3_sub(out.x[2], out.x[0]), area = tl_v3_cross(a, b);
-    const double size = tl_v3_norm(area);
-    out.normal = tl_v3_scale(1 / size, area);
-    out.slope[1] = tl_v3_scale(1 / size, tl_v3_cross(b, out.normal));
-    out.slope[2] = tl_v3_scale(1 / size, tl_v3_cross(out.normal, a));
-    out.slope[0] = tl_v3_neg(tl_v3_add(out.slope[1], out.slope[2]));
-    double spin = 0;
-    for (int k = 0; k < 3; k++) {
-        const tl_vec3 d = tl_v3_sub(out.d[k], out.d[0]);
-        spin += 0.5 * tl_v3_dot(out.normal, tl_v3_cross(out.slope[k], d));
-        out.turn = tl_v3_madd(out.turn, tl_v3_dot(out.normal, d), tl_v3_cross(out.slope[k], out.normal));
-    }
-    out.turn = tl_v3_madd(out.turn, spin, out.normal);
-    return out;
-}
-
-/* Where a point of the side is. */
-static tl_vec3 place_of(const tl_model *m, const side_now *s, tl_vec3 at)
-{
-    if (s->rigid)
-        return tl_body_point(&m->bodies, s->body, at);
-    return tl_v3_madd(tl_v3_madd(tl_v3_scale(at.x, s->x[0]), at.y, s->x[1]), at.z, s->x[2]);
-}
-
-/* How a point of the side has moved that lies `off` it, at a place. */
-static tl_vec3 motion_of(const tl_model *m, const side_now *s, tl_vec3 at, tl_vec3 off, tl_vec3 place)
-{
-    if (s->rigid)
-        return tl_v3_add(s->shift, tl_m3_mul(&s->back, tl_v3_sub(place, tl_body_place(&m->bodies, s->body))));
-    const tl_vec3 d = tl_v3_madd(tl_v3_madd(tl_v3_scale(at.x, s->d[0]), at.y, s->d[1]), at.z, s->d[2]);
-    return tl_v3_add(d, tl_v3_cross(s->turn, off));
-}
 
 /* ---------------------------------------------------------------- following -------------- */
 
@@ -144,9 +67,9 @@ static void follow(tl_model *m, uint32_t row, size_t number, lanes *l)
     struct tl_segments *s = m->segments;
     const tl_segment *of = &s->table.of[row];
     tl_segment_points *p = &s->points;
-    side_now *sides = l->side[number], *a = &sides[0], *b = &sides[1];
-    *a = side_of(m, &of->a, of->normal_a);
-    *b = side_of(m, &of->b, of->normal_b);
+    tl_side_now *sides = l->side[number], *a = &sides[0], *b = &sides[1];
+    *a = tl_side_now_of(m, &of->a, of->normal_a);
+    *b = tl_side_now_of(m, &of->b, of->normal_b);
     const double share = s->meet[of->meet].share;
     const tl_vec3 mixed = tl_v3_madd(tl_v3_scale(share, a->normal), share - 1, b->normal);
     l->share[number] = share;
@@ -158,10 +81,11 @@ static void follow(tl_model *m, uint32_t row, size_t number, lanes *l)
         const size_t at = lane + k * TL_LANES;
         const size_t point = tl_segment_point_row(row, k);
         const tl_vec3 at_a = tl_columns_get(p->at_a, point), at_b = tl_columns_get(p->at_b, point);
-        const tl_vec3 on_a = place_of(m, a, at_a), apart = tl_v3_sub(place_of(m, b, at_b), on_a);
+        const tl_vec3 on_a = tl_side_now_place(m, a, at_a), apart = tl_v3_sub(tl_side_now_place(m, b, at_b), on_a);
         const tl_vec3 off_a = tl_v3_scale(share, apart), off_b = tl_v3_scale(share - 1, apart);
         const tl_vec3 place = tl_v3_add(on_a, off_a);
-        const tl_vec3 du = tl_v3_sub(motion_of(m, b, at_b, off_b, place), motion_of(m, a, at_a, off_a, place));
+        const tl_vec3 du =
+            tl_v3_sub(tl_side_now_motion(m, b, at_b, off_b, place), tl_side_now_motion(m, a, at_a, off_a, place));
         const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
         l->closure[at] = -gap - (p->reference ? p->reference[point] : 0);
         l->du_n[at] = du_n;
@@ -219,47 +143,13 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
     return status == TL_OK;
 }
 
-static void add(double *sum, tl_vec3 v)
-{
-    sum[0] += v.x;
-    sum[1] += v.y;
-    sum[2] += v.z;
-}
-
-/* Adds a couple to what a side gets: the transpose of the turn of a triangle. */
-static void turn_side(const side_now *s, tl_vec3 couple, double sum[9])
-{
-    if (s->rigid) {
-        add(sum + 3, couple);
-        return;
-    }
-    const double spin = 0.5 * tl_v3_dot(couple, s->normal);
-    for (int k = 0; k < 3; k++) {
-        const tl_vec3 f = tl_v3_scale(spin, tl_v3_cross(s->normal, s->slope[k]));
-        add(sum + 3 * k, tl_v3_madd(f, tl_v3_dot(couple, tl_v3_cross(s->slope[k], s->normal)), s->normal));
-    }
-}
-
-/* Adds the force of a point to what its side gets: the corners by their weights, or a body force and moment. */
-static void push_side(const tl_model *m, const tl_segment_side *side, tl_vec3 at, tl_vec3 force, double sum[9])
-{
-    if (tl_side_is_rigid(side)) {
-        add(sum, force);
-        add(sum + 3, tl_v3_cross(tl_m3_mul(&m->bodies.pose[side->at[0]].r, at), force));
-        return;
-    }
-    add(sum, tl_v3_scale(at.x, force));
-    add(sum + 3, tl_v3_scale(at.y, force));
-    add(sum + 6, tl_v3_scale(at.z, force));
-}
-
 /* What a segment does to its sides. */
 static void push(tl_model *m, uint32_t row, size_t number, const lanes *l)
 {
     struct tl_segments *s = m->segments;
     const tl_segment *of = &s->table.of[row];
     const tl_segment_points *p = &s->points;
-    const side_now *a = &l->side[number][0], *b = &l->side[number][1];
+    const tl_side_now *a = &l->side[number][0], *b = &l->side[number][1];
     const double share = l->share[number];
     const size_t lane = lane_of(number);
     double sums[2][9] = {{0}}, bears = 0;
@@ -272,11 +162,11 @@ static void push(tl_model *m, uint32_t row, size_t number, const lanes *l)
         const tl_vec3 along = tl_v3_madd(apart, -tl_v3_dot(apart, n), n), couple = tl_v3_cross(apart, shear);
         const double tilts = p->f_n[point] * l->per_p[number];
         bears += tl_v3_norm(on_b);
-        push_side(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
-        push_side(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
+        tl_side_push(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
+        tl_side_push(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
         const tl_vec3 on_normal_a = tl_v3_cross(a->normal, along), on_normal_b = tl_v3_cross(b->normal, along);
-        turn_side(a, tl_v3_madd(tl_v3_scale(-share, couple), tilts * share, on_normal_a), sums[0]);
-        turn_side(b, tl_v3_scale(share - 1, tl_v3_madd(couple, tilts, on_normal_b)), sums[1]);
+        tl_side_turn(a, tl_v3_madd(tl_v3_scale(-share, couple), tilts * share, on_normal_a), sums[0]);
+        tl_side_turn(b, tl_v3_scale(share - 1, tl_v3_madd(couple, tilts, on_normal_b)), sums[1]);
     }
     for (int side = 0; side < 2; side++)
         for (int c = 0; c < 9; c++)
@@ -319,6 +209,8 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
         if (job.span->law != TL_NO_ROW)
             tl_parallel_for(m->pool, job.span->group_end - job.span->group_begin, TILE, act_range, &job);
     }
+    if (s && failure->error.status == TL_OK)
+        tl_blends_apply(m);
     return failure->error.status;
 }
 

@@ -14,8 +14,10 @@
 #include "contact/contacts.h"
 #include "contact/kind.h"
 #include "contact/sides.h"
+#include "contact/store.h"
 #include "force/joint_laws.h"
 #include "geometry/polar.h"
+#include "segment/blend.h"
 #include "zone/grid.h"
 
 #include <math.h>
@@ -121,21 +123,18 @@ static bool has_left(const tl_model *m, const tl_carrier *by, tl_vec3 place)
     return least_of(weight) < OUTSIDE && least_of(weight) < least_of(by->weight) - 0.25;
 }
 
-static bool need_columns(tl_contacts *c)
-{
-    return TL_COLUMN_NEED(&c->table, c, carrier[0], 0) && TL_COLUMN_NEED(&c->table, c, carrier[1], 0);
-}
-
 bool tl_carriers_begin(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;
-    for (uint32_t i = 0; tl_model_deforms(m) && i < c->table.rows; i++) {
+    if (!tl_model_deforms(m) || c->table.rows == 0)
+        return true;
+    if (!tl_detect_hold_carriers(m->detect))
+        return false;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
         const bool carried = c->point_count[i] > 0 && tl_facet_is_field(&c->facet[i]);
         for (int side = 0; side < 2; side++) {
             if (!tl_block_deforms(m, (side ? c->b : c->a)[i]))
                 continue;
-            if (!need_columns(c))
-                return false;
             tl_carrier *by = &c->carrier[side][i];
             if (!carried)
                 by->on = 0;
@@ -143,6 +142,7 @@ bool tl_carriers_begin(tl_model *m)
                 begin(m, i, side, place_of(m, i));
         }
     }
+    tl_blends_share(m);
     return true;
 }
 

@@ -61,8 +61,8 @@ void tl_segments_free(struct tl_segments *s)
 {
     tl_table_free(&s->table.table);
     tl_table_free(&s->points.table);
-    void *const owned[] = {s->meet,      s->span,       s->use,    s->body_use,
-                           s->use_start, s->body_start, s->corner, s->room_memory};
+    void *const owned[] = {s->meet,       s->span,   s->use,         s->body_use, s->use_start,
+                           s->body_start, s->corner, s->room_memory, s->blend};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -111,8 +111,12 @@ bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, 
             at++;
         const bool same = at < count && order_of(&list[at], &s->meet[k]) == 0;
         l->now[k] = same ? (uint32_t)at : TL_NO_ROW;
-        if (same)
+        if (same) {
+            const bool tilted = list[at].tilted, stale = s->meet[k].area == 0; /* its faces may overlap by now */
             list[at] = s->meet[k];
+            list[at].tilted = tilted;
+            list[at].stale = list[at].stale || stale;
+        }
     }
     free(s->meet);
     s->meet = list;
@@ -458,13 +462,21 @@ static bool index_room(const tl_model *m, struct tl_segments *s, size_t segments
            tl_grow(&s->body_start, &s->body_start_capacity, m->bodies.table.rows + 1, sizeof *s->body_start);
 }
 
-static void sum_areas(struct tl_segments *s)
+/* Rows and areas of all meets. The segments of one follow each other. */
+static void sum_meets(struct tl_segments *s)
 {
-    for (size_t k = 0; k < s->meet_count; k++)
+    for (size_t k = 0; k < s->meet_count; k++) {
         s->meet[k].area = 0;
-    for (size_t row = 0; row < s->table.table.rows; row++)
-        if (s->table.of[row].meet != TL_NO_ROW)
-            s->meet[s->table.of[row].meet].area += s->table.area[row];
+        s->meet[k].begin = s->meet[k].end = 0;
+    }
+    for (uint32_t row = 0; row < s->table.table.rows; row++) {
+        if (s->table.of[row].meet == TL_NO_ROW)
+            continue;
+        tl_meet *meet = &s->meet[s->table.of[row].meet];
+        meet->begin = meet->end > 0 ? meet->begin : row;
+        meet->end = row + 1;
+        meet->area += s->table.area[row];
+    }
 }
 
 bool tl_lay_segments(tl_model *m, const tl_laying *l)
@@ -499,7 +511,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
         for (size_t k = 0; k < s->meet_count; k++)
             s->meet[k].stale = false;
         s->version++;
-        sum_areas(s);
+        sum_meets(s);
         list_uses(m, s);
     }
     free(list);

@@ -15,6 +15,7 @@
 #include "force/joint_laws.h"
 #include "model/joints.h"
 #include "narrow/manifold.h"
+#include "segment/blend.h"
 #include "segment/lay.h"
 #include "zone/grid.h"
 
@@ -22,10 +23,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: cos of 10 degrees, up to which faces that meet may be tilted. */
-#define LEAST_FACING 0.98480775301220806
+/* Tolerance: cos of 12 degrees, up to which faces that meet may be tilted: beyond 10 a field contact has all
+ * (blend.c). */
+#define LEAST_FACING 0.97814760073380563
 /* Tolerance: distance over the size of the smaller block up to which faces meet. */
 #define NEAR 0.02
+/* Tolerance: sine of the tilt with which a centre may be farther from the other face: of 12 degrees. */
+#define TILTS_BY 0.21
+/* Tolerance: cos of 3 degrees, up to which faces are not tilted: a step in which meets are listed comes before 5. */
+#define NOT_TILTED 0.99862953475457383
 
 /* Cost only: steps after which meets are listed again, for faces that have tilted or come near. */
 #define LIST_EVERY 16
@@ -96,6 +102,12 @@ static face face_of(const tl_model *m, uint32_t block, uint32_t number)
     return f;
 }
 
+/* The cosine of the tilt between the mean planes of two faces. */
+static double tilt_cosine(const face *a, const face *b)
+{
+    return -tl_v3_dot(tl_v3_unit(a->area), tl_v3_unit(b->area));
+}
+
 /* Whether two faces look at each other and are near. */
 static bool faces_meet(const tl_model *m, const face *a, const face *b)
 {
@@ -103,7 +115,7 @@ static bool faces_meet(const tl_model *m, const face *a, const face *b)
     const double near = NEAR * fmin(m->blocks.size[a->block], m->blocks.size[b->block]);
     const tl_vec3 n = tl_v3_unit(tl_v3_sub(na, nb));
     const double gap = tl_v3_dot(apart, n), aside = tl_v3_norm(tl_v3_madd(apart, -gap, n));
-    return -tl_v3_dot(na, nb) > LEAST_FACING && fabs(gap) < near + 0.2 * fmin(a->reach, b->reach) &&
+    return tilt_cosine(a, b) > LEAST_FACING && fabs(gap) < near + TILTS_BY * fmin(a->reach, b->reach) &&
            aside < a->reach + b->reach;
 }
 
@@ -129,7 +141,10 @@ static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list,
                                             .face_b = k,
                                             .tag = tl_flush_tag(pa->tag[i], pb->tag[k]),
                                             .stale = true,
-                                            .share = 0.5};
+                                            .share = 0.5,
+                                            .tilted = tilt_cosine(&fa, &fb) < NOT_TILTED,
+                                            .alone = true,
+                                            .left = 1};
         }
     }
     return true;
@@ -267,7 +282,7 @@ static bool find_segments(tl_model *m, tl_laying *l, uint32_t number)
     return enough;
 }
 
-/* Lists the pairs of blocks that meet. false: out of memory. */
+/* Lists the pairs of blocks that meet by segments alone. false: out of memory. */
 static bool list_meeting(tl_model *m)
 {
     const struct tl_segments *s = m->segments;
@@ -277,7 +292,8 @@ static bool list_meeting(tl_model *m)
     z->meeting_count = 0;
     for (size_t k = 0; k < s->meet_count; k++) {
         const uint64_t pair = (uint64_t)s->meet[k].a << 32 | s->meet[k].b;
-        if (s->meet[k].area > 0 && (z->meeting_count == 0 || z->meeting[z->meeting_count - 1] != pair))
+        if (s->meet[k].area > 0 && s->meet[k].alone &&
+            (z->meeting_count == 0 || z->meeting[z->meeting_count - 1] != pair))
             z->meeting[z->meeting_count++] = pair;
     }
     return true;
@@ -323,8 +339,10 @@ tl_status tl_segments_find(tl_model *m)
     for (uint32_t k = 0; enough && some && k < s->meet_count; k++)
         if (s->meet[k].stale)
             enough = find_segments(m, &l, k);
-    if (enough && some)
-        enough = tl_lay_segments(m, &l) && list_meeting(m);
+    enough = enough && (!some || tl_lay_segments(m, &l)) &&
+             tl_grow(&s->blend, &s->blend_capacity, s->meet_count + 1, sizeof *s->blend);
+    if (enough && (tl_blends_find(m) || some))
+        enough = list_meeting(m);
     tl_laying_end(&l);
     if (!enough)
         return tl_fail_memory(&m->error);

@@ -14,10 +14,12 @@ static bool side_is_sound(const tl_model *m, const tl_segment_side *side)
     return sound;
 }
 
-static bool meet_is_sound(const tl_model *m, const tl_meet *meet)
+static bool meet_is_sound(const tl_model *m, const struct tl_segments *s, const tl_meet *meet)
 {
-    return meet->a < meet->b && meet->b < m->next_id && meet->tag.joint <= m->joint_count && tl_is_flag(&meet->stale) &&
-           meet->share >= 0 && meet->share <= 1 && (meet->law < m->joint_law_count || meet->law == TL_NO_ROW);
+    return tl_is_flag(&meet->tilted) && tl_is_flag(&meet->alone) && meet->begin <= meet->end &&
+           meet->end <= s->table.table.rows && meet->a < meet->b && meet->b < m->next_id &&
+           meet->tag.joint <= m->joint_count && tl_is_flag(&meet->stale) && meet->share >= 0 && meet->share <= 1 &&
+           (meet->law < m->joint_law_count || meet->law == TL_NO_ROW);
 }
 
 /* Spans of groups follow each other, up to all of them. */
@@ -37,7 +39,7 @@ static bool spans_are_sound(const tl_model *m, const struct tl_segments *s)
 const char *tl_segments_unsound(const tl_model *m, const struct tl_segments *s)
 {
     for (size_t k = 0; k < s->meet_count; k++)
-        if (!meet_is_sound(m, &s->meet[k]))
+        if (!meet_is_sound(m, s, &s->meet[k]))
             return "faces that meet have an impossible value";
     if (!spans_are_sound(m, s))
         return "segments do not fit their laws";

@@ -491,7 +491,8 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
     if (!tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) || columns > TL_STATE_COLUMNS ||
         !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) || !tl_is_flag(&initial))
         return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
-    bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d));
+    bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d)) &&
+                (!tl_archive_find(a, "detect.contacts.whole") || tl_detect_hold_carriers(d));
     return held ? TL_OK : tl_fail_memory(&m->error);
 }
 
