@@ -17,6 +17,7 @@
 #include "model/loads.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "segment/carriers.h"
 #include "segment/lay.h"
 #include "segment/sound.h"
 #include "segment/walk.h"
@@ -625,6 +626,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = read_zones(m, a);
     if (status == TL_OK)
         status = read_segments(m, a);
+    if (status == TL_OK)
+        status = unsound(a, m, tl_carriers_unsound(m));
     return status == TL_OK ? read_cycle(m, a) : status;
 }
 
