@@ -102,12 +102,19 @@ bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, double shar
     const double l11 = sqrt(fmax(m.xx, 0)), l21 = l11 > 0 ? m.xy / l11 : 0, l22 = sqrt(fmax(m.yy - l21 * l21, 0));
     out->area = m.area * ((1 - share) / tl_v3_dot(na, n) - share / tl_v3_dot(nb, n));
     out->n = n;
+    const tl_point2 first = room->now[0];
     for (int k = 0; k < 3; k++) {
-        const double x = room->now[0].x + m.x + l11 * around[k][0];
-        const double y = room->now[0].y + m.y + l21 * around[k][0] + l22 * around[k][1];
+        const double x = first.x + m.x + l11 * around[k][0];
+        const double y = first.y + m.y + l21 * around[k][0] + l22 * around[k][1];
         const tl_vec3 at = tl_v3_madd(tl_v3_madd(origin, x, e), y, g);
         out->on_a[k] = raised(at, n, a->corner[0], area_a);
         out->on_b[k] = raised(at, n, b->corner[0], area_b);
+    }
+    out->outline = room->now;
+    out->corners = l11 > 0 && l22 > 0 ? count : 0;
+    for (size_t i = 0; i < out->corners; i++) {
+        const double x = (room->now[i].x - first.x - m.x) / l11;
+        room->now[i] = (tl_point2){x, (room->now[i].y - first.y - m.y - l21 * x) / l22};
     }
     return true;
 }

@@ -15,10 +15,13 @@ typedef struct tl_outer_face {
 } tl_outer_face;
 
 /* What the common polygon stands for: its area, the normal from A to B along which it was found, and the places of its
- * three points on the planes of A's face and of B's. */
+ * three points on the planes of A's face and of B's. Its outline in y, x = c + L y: the room has it until it is used
+ * again. */
 typedef struct tl_overlay {
     double area;
     tl_vec3 n, on_a[3], on_b[3];
+    const tl_point2 *outline;
+    size_t corners;
 } tl_overlay;
 
 /* Room for two polygons of as many corners as both faces have, and for one of those of the second. */

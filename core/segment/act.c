@@ -15,12 +15,14 @@
 #include "segment/act.h"
 
 #include "base/columns.h"
+#include "base/inside.h"
 #include "base/parallel.h"
 #include "base/series.h"
 #include "contact/contacts.h"
 #include "contact/plane_turn.h"
 #include "force/joint_laws.h"
 #include "segment/blend.h"
+#include "segment/closed.h"
 #include "segment/lay.h"
 #include "segment/side.h"
 
@@ -35,6 +37,10 @@
 /* Tolerance: slide or stretch of a segment over its size, from which on it is laid anew. */
 #define SLID 1e-3
 
+/* Tolerance: how far corners of a segment may be beyond its points, over the largest difference of these: of a triangle
+ * 1, of slivers cut off of one somewhat more. */
+#define CORNERS_BEYOND 4.0
+
 /* What is known of a tile's points only in a step. */
 typedef struct lanes {
     _Alignas(TL_ALIGN) double closure[TILE_POINTS];
@@ -43,6 +49,8 @@ typedef struct lanes {
     double apart[3][TILE_POINTS];                          /* e */
     tl_side_now side[TILE * TL_LANES][2];                  /* of the segments */
     double share[TILE * TL_LANES], per_p[TILE * TL_LANES]; /* s, and 1 / |p| */
+    bool partly[TILE * TL_LANES];                          /* a part of it is closed, and a part is apart: */
+    tl_closed closed[TILE * TL_LANES];
 } lanes;
 
 /* ---------------------------------------------------------------- following -------------- */
@@ -143,6 +151,91 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
     return status == TL_OK;
 }
 
+/* ---------------------------------------------------------------- partly closed ---------- */
+
+/* Whether the points of a segment that are apart do not pull. */
+static bool pulls_not(const tl_law *law, const tl_segment_points *p, uint32_t row)
+{
+    bool none = law->pulls != TL_PULL_ANY;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS && law->pulls == TL_PULL_BONDED; k++)
+        none = none && (p->flags[tl_segment_point_row(row, k)] & TL_POINT_FAILED);
+    return none;
+}
+
+/* How far slip and initial stress have lifted the walls of points. */
+static void find_lifts(const act_job *job, size_t first, size_t count, lanes *l, double *lift)
+{
+    const tl_segment_points *p = &job->m->segments->points;
+    const tl_law *law = &job->m->joint_laws[job->span->law];
+    const tl_law_ops *ops = law->kind->ops;
+    double hold[TILE_POINTS], *state[TL_STATE_COLUMNS];
+    memset(lift, 0, count * sizeof *lift);
+    memset(l->zero, 0, count * sizeof *l->zero);
+    if (!ops->across_gap)
+        return;
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = k < p->state_columns ? p->state[k] + first : l->zero;
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = (uint32_t)count,
+                                .area = p->area + first,
+                                .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,
+                                .state = state,
+                                .flags = p->flags + first};
+    tl_enter(law->kind, "across_gap");
+    ops->across_gap(law->self, &batch, lift, hold);
+    tl_leave();
+}
+
+/* Whether the closure of some point is below 0, or may be at a corner. */
+static bool may_be_apart(const lanes *l, size_t lane)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        low = fmin(low, l->closure[lane + k * TL_LANES]);
+        high = fmax(high, l->closure[lane + k * TL_LANES]);
+    }
+    return low - CORNERS_BEYOND * (high - low) < 0;
+}
+
+/* Gives points of segments that are closed in part the closures of what presses. */
+static void close_parts(const act_job *job, size_t first, size_t count, lanes *l)
+{
+    const struct tl_segments *s = job->m->segments;
+    const tl_law *law = &job->m->joint_laws[job->span->law];
+    double lift[TILE_POINTS];
+    bool known = false;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t row = (uint32_t)(first + i);
+        const size_t lane = lane_of(i);
+        double u[TL_SEGMENT_POINTS];
+        l->partly[i] = false;
+        if (s->table.of[row].meet == TL_NO_ROW || !may_be_apart(l, lane) || !pulls_not(law, &s->points, row))
+            continue;
+        if (!known)
+            find_lifts(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, l, lift);
+        known = true;
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+            u[k] = l->closure[lane + k * TL_LANES] + lift[lane + k * TL_LANES];
+        l->partly[i] = tl_closed_part(s->outline + s->table.outline[row], s->table.corners[row], u, &l->closed[i]);
+        for (size_t k = 0; k < TL_SEGMENT_POINTS && l->partly[i]; k++)
+            l->closure[lane + k * TL_LANES] = l->closed[i].even[k] - lift[lane + k * TL_LANES];
+    }
+}
+
+/* The stiffness, N/m3, with which the law presses on a segment that is closed in part; 0 for others. */
+static double stiffness_of(const tl_segment_points *p, uint32_t row, const lanes *l, size_t number)
+{
+    double force = 0, closed = 0;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS && l->partly[number]; k++) {
+        const size_t point = tl_segment_point_row(row, k);
+        force += p->f_n[point];
+        closed += p->area[point] * l->closed[number].even[k];
+    }
+    return closed > 0 ? force / closed : 0;
+}
+
+/* ---------------------------------------------------------------- forces ----------------- */
+
 /* What a segment does to its sides. */
 static void push(tl_model *m, uint32_t row, size_t number, const lanes *l)
 {
@@ -152,15 +245,18 @@ static void push(tl_model *m, uint32_t row, size_t number, const lanes *l)
     const tl_side_now *a = &l->side[number][0], *b = &l->side[number][1];
     const double share = l->share[number];
     const size_t lane = lane_of(number);
+    const double stiffness = stiffness_of(p, row, l, number);
     double sums[2][9] = {{0}}, bears = 0;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t at = lane + k * TL_LANES;
         const size_t point = tl_segment_point_row(row, k);
         const tl_vec3 n = tl_v3(l->normal[0][at], l->normal[1][at], l->normal[2][at]);
-        const tl_vec3 shear = tl_columns_get(p->f_s, point), on_b = tl_v3_madd(shear, p->f_n[point], n);
+        const double more = stiffness > 0 ? stiffness * p->area[point] * l->closed[number].rest[k] : 0;
+        const double normal = p->f_n[point] + more;
+        const tl_vec3 shear = tl_columns_get(p->f_s, point), on_b = tl_v3_madd(shear, normal, n);
         const tl_vec3 apart = {l->apart[0][at], l->apart[1][at], l->apart[2][at]};
         const tl_vec3 along = tl_v3_madd(apart, -tl_v3_dot(apart, n), n), couple = tl_v3_cross(apart, shear);
-        const double tilts = p->f_n[point] * l->per_p[number];
+        const double tilts = normal * l->per_p[number];
         bears += tl_v3_norm(on_b);
         tl_side_push(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
         tl_side_push(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
@@ -186,6 +282,7 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     for (size_t k = 0; k < count; k++)
         if (s->table.of[first + k].meet != TL_NO_ROW)
             follow(m, (uint32_t)(first + k), k, &l);
+    close_parts(job, first, count, &l);
     if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))
         return;
     for (size_t k = 0; k < count; k++) {
@@ -193,7 +290,9 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
         if (s->table.of[first + k].meet == TL_NO_ROW)
             continue;
         push(m, (uint32_t)(first + k), k, &l);
-        s->table.stored[first + k] = s->table.heat[first + k] = 0;
+        const double stiffness = stiffness_of(&s->points, (uint32_t)(first + k), &l, k);
+        s->table.stored[first + k] = 0.5 * stiffness * s->table.area[first + k] * l.closed[k].second;
+        s->table.heat[first + k] = 0;
         for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
             s->table.stored[first + k] += l.stored[lane + i * TL_LANES];
             s->table.heat[first + k] += l.dissipated[lane + i * TL_LANES];

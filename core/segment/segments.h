@@ -48,9 +48,10 @@ static inline size_t tl_segment_point_row(size_t segment, size_t k)
 
 typedef struct tl_segment_table {
     tl_table table;
-    tl_segment *of;    /* an empty lane has no meet: TL_NO_ROW */
-    double *area;      /* m2 */
-    double *normal[3]; /* in the last step, from A to B */
+    tl_segment *of;              /* an empty lane has no meet: TL_NO_ROW */
+    double *area;                /* m2 */
+    uint32_t *outline, *corners; /* in the list of outlines */
+    double *normal[3];           /* in the last step, from A to B */
     double *
         push[2][9]; /* what it does to the corners of its sides, N; to a rigid side: force, and moment about its body */
     double *bears;  /* sum of the sizes of the forces of its points, N */
@@ -108,6 +109,8 @@ typedef struct tl_segment_use {
 struct tl_segments {
     tl_segment_table table;
     tl_segment_points points;
+    tl_point2 *outline; /* of all segments, as of tl_overlay */
+    size_t outline_count, outline_capacity;
     tl_meet *meet;
     size_t meet_count, meet_capacity;
     tl_segment_span *span;

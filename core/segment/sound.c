@@ -45,8 +45,9 @@ const char *tl_segments_unsound(const tl_model *m, const struct tl_segments *s)
         return "segments do not fit their laws";
     for (size_t row = 0; row < s->table.table.rows; row++) {
         const tl_segment *of = &s->table.of[row];
-        if (of->meet != TL_NO_ROW &&
-            (of->meet >= s->meet_count || !side_is_sound(m, &of->a) || !side_is_sound(m, &of->b)))
+        if (of->meet != TL_NO_ROW && (of->meet >= s->meet_count || s->table.outline[row] > s->outline_count ||
+                                      s->table.corners[row] > s->outline_count - s->table.outline[row] ||
+                                      !side_is_sound(m, &of->a) || !side_is_sound(m, &of->b)))
             return "a segment has an impossible value";
     }
     return NULL;
