@@ -462,4 +462,5 @@ void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt, 0.5 * m->dt, 0.5 * dt};
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
+    m->zones->moved_dt = dt;
 }

@@ -13,7 +13,7 @@ void tl_gridpoints_gather(tl_model *m);
 /* In a relaxation, with a kick of that span, s: velocities are lost, by `lost`, 1/s, where all stop. Else meshes lose
  * those beside their motion as a whole, each when its forces work against them. */
 void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick);
-/* Free gridpoints do not move. */
+/* Velocities of components that are free end. Their last motion strains zones all the same. */
 void tl_gridpoints_stop(tl_model *m);
 /* Velocities and places one step on. */
 void tl_gridpoints_move(tl_model *m, double dt);

@@ -17,7 +17,7 @@ static tl_status apply(tl_model *m)
     struct tl_cycle *c = m->cycle;
     if (!tl_model_deforms(m))
         return TL_OK;
-    tl_zones_pass(m, m->dt, &c->failure);
+    tl_zones_pass(m, m->zones->moved_dt, &c->failure);
     const tl_status status = c->failure.error.status;
     struct tl_zones *z = m->zones;
     if (status == TL_OK) {

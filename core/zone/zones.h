@@ -7,7 +7,7 @@
  * table. A cluster of fewer zones than the deepest of its group, and a lane without a cluster, has inert rows: copies
  * of a zone whose volume counts as 0.
  *
- * A parcel is some groups of one body and one solid, with a list of the gridpoints that they use. A thread takes one
+ * A parcel is some groups of one block and one solid, with a list of the gridpoints that they use. A thread takes one
  * parcel at a time. What the zones of a parcel do to a gridpoint is summed in a slot of the parcel; a gridpoint adds
  * its slots in their order. So sums do not depend on threads.
  *
@@ -78,6 +78,7 @@ typedef struct tl_zone_group {
 
 typedef struct tl_parcel {
     uint32_t mesh, solid;
+    tl_id block;
     uint32_t group_begin, group_end;
     uint32_t point_begin, point_end; /* in `listed`, and its slots */
 } tl_parcel;
@@ -160,6 +161,7 @@ struct tl_zones {
     size_t meeting_count, meeting_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
+    double moved_dt;                  /* of the last motion of the gridpoints, s; 0: they have not moved yet */
     uint32_t steps_kept;              /* steps to come that can be undone, for velocities were set */
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */
