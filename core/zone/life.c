@@ -2,6 +2,7 @@
 #include "zone/life.h"
 
 #include "zone/follow.h"
+#include "zone/resolid.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
@@ -55,6 +56,7 @@ tl_status tl_zones_begin(tl_model *m)
         return tl_fail_memory(&m->error);
     m->zones_destroy = tl_zones_free;
     m->zones_follow = tl_zones_follow;
+    m->zones_resolid = tl_blocks_resolid;
     add_columns(m->zones);
     return TL_OK;
 }
