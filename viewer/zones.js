@@ -198,6 +198,21 @@ class MeshWriter {
     }
 }
 
+/**
+ * The size of triangles by which their edges fade: that of the mean one, for edges of the whole lie along small ones
+ * too.
+ * @param {number} count
+ * @param {(t: number, c: number) => number[]} corner
+ */
+function meanSize(count, corner) {
+    let sum = 0;
+    for (let t = 0; t < count; t++) {
+        const a = corner(t, 0);
+        sum += norm(cross(sub(corner(t, 1), a), sub(corner(t, 2), a)));
+    }
+    return 0.6 * Math.sqrt(sum / Math.max(1, count));
+}
+
 /** Where a corner's colour is: the colours and a place in them. @param {Paint} paint @param {number} row */
 function ownColour(paint, row) { return paint.own && paint.blocks[4 * row + 3] > 0; }
 
@@ -212,6 +227,11 @@ function ownColour(paint, row) { return paint.own && paint.blocks[4 * row + 3] >
 export function surfaceMesh(model, frame, shown, paint, mesh) {
     const surface = /** @type {Surface} */ (frame.surface), x = /** @type {Float32Array} */ (shown.points);
     const out = new MeshWriter(surface.T), counts = [0, 0], face = new Uint8Array(3);
+    const corner = (/** @type {number} */ t, /** @type {number} */ c) => {
+        const i = 3 * surface.triangle[3 * t + c];
+        return [x[i], x[i + 1], x[i + 2]];
+    };
+    const small = meanSize(surface.T, corner);
     /** @type {Map<number, number>} */ const rows = new Map();
     for (const kind of [1, 2]) {
         for (let t = 0; t < surface.T; t++) {
@@ -219,10 +239,9 @@ export function surfaceMesh(model, frame, shown, paint, mesh) {
             let row = rows.get(id);
             if (row === undefined) rows.set(id, row = model.rowOf(id, frame.since));
             if (row < 0 || shown.kind[row] !== kind) continue;
-            const k = [0, 1, 2].map((c) => 3 * surface.triangle[3 * t + c]);
-            const p = k.map((i) => [x[i], x[i + 1], x[i + 2]]);
-            const area = cross(sub(p[1], p[0]), sub(p[2], p[0])), size = 0.6 * Math.sqrt(norm(area));
-            const normal = unit(area);
+            const k = [0, 1, 2].map((c) => 3 * surface.triangle[3 * t + c]), first = corner(t, 0);
+            const normal = unit(cross(sub(corner(t, 1), first), sub(corner(t, 2), first)));
+            const size = mesh ? small : model.shape[row].radius;
             const name = faceName(row, mesh ? t % FACES : surface.face[t] % FACES);
             const zone = surface.zone[t], own = ownColour(paint, row);
             if (paint.faces && !own) {
@@ -298,17 +317,19 @@ export function cutZones(model, frame, shown, plane) {
 
 /**
  * A section of zones as the picture reads it: flat, in the colours of the legend.
+ * @param {Model} model
  * @param {ZoneCut} cut
  * @param {number[]} normal
  * @param {Paint} paint
  * @param {boolean} mesh
  */
-export function capMesh(cut, normal, paint, mesh) {
+export function capMesh(model, cut, normal, paint, mesh) {
     const out = new MeshWriter(cut.count), mixed = new Uint8Array(3), {place, from, share} = cut;
+    const small =
+        meanSize(cut.count, (t, c) => [place[9 * t + 3 * c], place[9 * t + 3 * c + 1], place[9 * t + 3 * c + 2]]);
     for (let t = 0; t < cut.count; t++) {
         const row = cut.row[t], name = faceName(row, mesh ? cut.zone[t] % FACES : CAP_FACE);
-        const p = [0, 1, 2].map((c) => Array.from(place.subarray(9 * t + 3 * c, 9 * t + 3 * c + 3)));
-        const size = 0.6 * Math.sqrt(norm(cross(sub(p[1], p[0]), sub(p[2], p[0]))));
+        const size = mesh ? small : model.shape[row].radius;
         for (let c = 0; c < 3; c++) {
             const k = 3 * t + c, at = 9 * t + 3 * c;
             if (!ownColour(paint, row) && paint.points) {
@@ -327,12 +348,12 @@ export function capMesh(cut, normal, paint, mesh) {
     return {data: out.data, solid: 3 * cut.count, ghosts: 0};
 }
 
-export const PRESSED = [20, 70, 170], PULLED = [190, 30, 40]; // compression, tension
+export const PRESSED = [30, 80, 255], PULLED = [230, 20, 60]; // compression, tension
 const ACROSS = 28;                                            // crosses across the model, at the most
 const LEAST = 0.04;  // arms shorter than this share of the longest are left out
 const LONGEST = 0.8; // of an arm, as a share of the distance of crosses
 const ABOVE = 0.01;  // of a cross over its surface, likewise
-const WIDTH = 0.03;  // half that of an arm, likewise
+const WIDTH = 0.045; // half that of an arm, likewise
 
 /**
  * Places where crosses may stand: centres of the section's triangles, or of the surfaces', thinned.
