@@ -92,7 +92,7 @@ static bool compare(tl_scene *scene, const tl_model *m, news *found)
 static const struct {
     const char *name, *unit;
 } quantities[] = {
-    TL_ENERGY(TERM){"max_velocity", "m/s"},
+    TL_ENERGY(TERM) TL_ZONE_ENERGY(TERM){"max_velocity", "m/s"},
 };
 #undef TERM
 
