@@ -34,7 +34,7 @@ typedef struct tl_zone_points {
 
     tl_plane *plane;     /* [face_count] in the frame, by the corners */
     double *bend;        /* [face_count] by how much corners miss it */
-    signed char *turn;   /* [face_count] as in tl_delaunay_points */
+    signed char *turn;   /* [faces of the block] as in tl_delaunay_points */
     uint32_t *face_from; /* [face_count + 1] the first point inside each face */
     size_t plane_room, bend_room, turn_room, face_from_room;
 
@@ -64,6 +64,15 @@ static inline tl_vec3 tl_zone_into_frame(const tl_zone_points *p, tl_vec3 real)
 static inline uint64_t tl_zone_corner_key(const tl_zone_points *p, uint32_t corner)
 {
     return p->zoning->corner_key ? p->zoning->corner_key[corner] : corner;
+}
+/* The face of the block that a face is a part of, and how many the block has. */
+static inline uint32_t tl_zone_block_face(const tl_zone_points *p, uint32_t face)
+{
+    return p->zoning->parts ? p->zoning->parts->face_of[face] : face;
+}
+static inline uint32_t tl_zone_block_faces(const tl_zone_points *p)
+{
+    return p->zoning->parts ? p->zoning->parts->face_count : p->poly->face_count;
 }
 /* The least altitude of a zone: 3 volumes over its largest triangle. Negative where it is turned inside out. */
 static inline double tl_zone_altitude(tl_vec3 a, tl_vec3 b, tl_vec3 c, tl_vec3 d)

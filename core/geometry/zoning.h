@@ -18,6 +18,8 @@ void tl_zone_scratch_free(tl_zone_scratch *scratch);
 tl_status tl_zoning_make(const tl_poly *poly, const tl_shape_zoning *zoning, tl_zone_scratch *scratch,
                          tl_zone_mesh *mesh, tl_error *error);
 void tl_zone_mesh_free(tl_zone_mesh *mesh);
+/* Places on edges between parts of faces at which the last block, which was not divided for that, needs corners. */
+const tl_vec3 *tl_zoning_crossed(const tl_zone_scratch *scratch, size_t *count);
 
 /* About how many zones of an edge fill a volume with a surface: for a limit before the work. */
 double tl_zoning_expected(double volume, double surface, double edge);

@@ -44,7 +44,8 @@ static const tl_param history_params[] = {
 static const tl_lua_key history_keys[] = {
     {"value", "function(model) or text",
      "gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but "
-     "not change it. Or one of \"kinetic\", \"potential\", \"stored\", \"friction\", \"damping\", \"external\" (J), "
+     "not change it. Or one of \"kinetic\", \"potential\", \"stored\", \"friction\", \"damping\", \"external\", "
+     "\"strain\", \"plastic\" (J), "
      "\"balance\", \"ratio\", \"ratio_maximum\", \"ratio_local\", \"max_velocity\" (m/s), \"contacts\", \"slipping\", "
      "\"open\" (numbers of contacts in the last step)"},
     {"of", "block, contact, zone, gridpoint or selection",
@@ -81,15 +82,16 @@ static void history_set_function(lua_State *L, int model_index, const char *name
  * Takes the samples of histories: of functions, of the model, of fields of blocks and contacts. */
 
 /* What a model can be asked for by name. */
-typedef enum origin { OF_ENERGY, OF_BALANCE, OF_CONTACTS } origin;
+typedef enum origin { OF_ENERGY, OF_ZONES, OF_BALANCE, OF_CONTACTS } origin;
 
 #define TERM(name, unit, doc) {#name, OF_ENERGY, offsetof(tl_energy, name)},
+#define ZONE_TERM(name, unit, doc) {#name, OF_ZONES, offsetof(tl_zone_energy, name)},
 static const struct {
     const char *name;
     origin origin;
     size_t offset;
 } quantities[] = {
-    TL_ENERGY(TERM){"ratio", OF_BALANCE, offsetof(tl_balance, ratio)},
+    TL_ENERGY(TERM) TL_ZONE_ENERGY(ZONE_TERM){"ratio", OF_BALANCE, offsetof(tl_balance, ratio)},
     {"ratio_maximum", OF_BALANCE, offsetof(tl_balance, ratio_maximum)},
     {"ratio_local", OF_BALANCE, offsetof(tl_balance, ratio_local)},
     {"max_velocity", OF_BALANCE, offsetof(tl_balance, max_velocity)},
@@ -98,6 +100,7 @@ static const struct {
     {"open", OF_CONTACTS, offsetof(tl_contact_counts, open)},
 };
 #undef TERM
+#undef ZONE_TERM
 
 enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 
@@ -203,11 +206,15 @@ static void ask_model(lua_State *L, tl_model *model, const tl_history *h, latest
         return;
     }
     tl_energy energy;
+    tl_zone_energy zones;
     tl_balance balance = tl_model_balance(model);
     const void *from = &balance;
     if (quantities[index].origin == OF_ENERGY) {
         tl_lua_ok(L, model, tl_model_energy(model, &energy));
         from = &energy;
+    } else if (quantities[index].origin == OF_ZONES) {
+        tl_lua_ok(L, model, tl_model_zone_energy(model, &zones));
+        from = &zones;
     }
     memcpy(now->number, (const char *)from + offset, sizeof *now->number);
 }

@@ -62,10 +62,10 @@ static double gridpoints_of(const tl_model *m, uint32_t body)
     FIELD(deformable, BOOL, "", "whether it has zones", mesh_of(m, body) != NULL)                                      \
     FIELD(zones, COUNT, "", "of its body", zones_of(m, body))                                                          \
     FIELD(gridpoints, COUNT, "", "of its body", gridpoints_of(m, body))                                                \
-    FIELD(stress, SYM3, "Pa", "mean over the zones of its body, by volume; nan of a rigid block",                      \
-          tl_mesh_mean(m, mesh_of(m, body), tl_zone_stress))                                                           \
+    FIELD(stress, SYM3, "Pa", "mean over its zones, by volume; nan of a rigid block",                                  \
+          tl_mesh_mean(m, mesh_of(m, body), b->id[row], tl_zone_stress))                                               \
     FIELD(strain, SYM3, "", "mean logarithmic strain of these zones; nan of a rigid block",                            \
-          tl_mesh_mean(m, mesh_of(m, body), tl_zone_strain))
+          tl_mesh_mean(m, mesh_of(m, body), b->id[row], tl_zone_strain))
 
 /* What else files show. */
 #define BLOCK_ARRAYS(FIELD)                                                                                            \

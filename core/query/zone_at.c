@@ -100,12 +100,14 @@ tl_sym3 tl_zone_strain(const tl_zone_at *at)
     return about(axes, ln);
 }
 
-tl_sym3 tl_mesh_mean(const tl_model *m, const tl_body_mesh *mesh, tl_sym3 (*of)(const tl_zone_at *))
+tl_sym3 tl_mesh_mean(const tl_model *m, const tl_body_mesh *mesh, tl_id block, tl_sym3 (*of)(const tl_zone_at *))
 {
     tl_sym3 sum = {0, 0, 0, 0, 0, 0};
     double volume = 0;
     for (uint32_t k = 0; mesh && k < mesh->zone_end - mesh->zone_begin; k++) {
         const tl_zone_at at = tl_zone_at_number(m, mesh, k);
+        if (at.parcel->block != block)
+            continue;
         const double own = tl_tetrahedron_volume(at.x);
         const tl_sym3 t = of(&at);
         volume += own;

@@ -20,7 +20,7 @@ tl_vec3 tl_zone_centroid(const tl_zone_at *at);
 tl_sym3 tl_zone_stress(const tl_zone_at *at);
 /* Logarithmic strain, ln V of F = V R, in the axes of the model. */
 tl_sym3 tl_zone_strain(const tl_zone_at *at);
-/* The mean of stress or strain over a mesh, by volume; NaN of none. */
-tl_sym3 tl_mesh_mean(const tl_model *m, const tl_body_mesh *mesh, tl_sym3 (*of)(const tl_zone_at *));
+/* The mean of stress or strain over the zones of a block in a mesh, by volume; NaN of none. */
+tl_sym3 tl_mesh_mean(const tl_model *m, const tl_body_mesh *mesh, tl_id block, tl_sym3 (*of)(const tl_zone_at *));
 
 #endif

@@ -1,4 +1,6 @@
 /* zone_fields.c - what can be asked of zones and gridpoints: which ones, their named fields, states of their solids. */
+#include "query/zone_fields.h"
+
 #include "base/columns.h"
 #include "base/error.h"
 #include "base/solid_columns.h"
@@ -40,19 +42,33 @@ static double deviator_of(const tl_zone_at *at)
     return sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
 }
 
-enum { ELASTIC, SHEAR, TENSION, JOINT, SHEAR_PAST, TENSION_PAST, JOINT_PAST };
-static const char *const state_names[] = {"elastic",    "shear",        "tension",   "joint",
-                                          "shear past", "tension past", "joint past"};
+/* In the order in which a zone is told to be in one of them. */
+static const struct {
+    uint32_t flag;
+    const char *name;
+} states[] = {
+    {0, "elastic"},
+    {TL_ZONE_SHEAR, "shear"},
+    {TL_ZONE_TENSION, "tension"},
+    {TL_ZONE_JOINT, "joint"},
+    {TL_ZONE_SHEAR_PAST, "shear past"},
+    {TL_ZONE_TENSION_PAST, "tension past"},
+    {TL_ZONE_JOINT_PAST, "joint past"},
+};
 
-static double state_number(const tl_zone_at *at)
+enum { STATES = sizeof states / sizeof *states };
+
+uint32_t tl_zone_state(uint32_t flags)
 {
-    const uint32_t flags = at->m->zones->zones.flags[at->row];
-    static const uint32_t order[] = {
-        0, TL_ZONE_SHEAR, TL_ZONE_TENSION, TL_ZONE_JOINT, TL_ZONE_SHEAR_PAST, TL_ZONE_TENSION_PAST, TL_ZONE_JOINT_PAST};
-    for (int k = 1; k < (int)(sizeof order / sizeof *order); k++)
-        if (flags & order[k])
+    for (uint32_t k = 1; k < STATES; k++)
+        if (flags & states[k].flag)
             return k;
-    return ELASTIC;
+    return 0;
+}
+
+const char *tl_zone_state_name(uint32_t number)
+{
+    return number < STATES ? states[number].name : NULL;
 }
 
 /* ---------------------------------------------------------------- fields ----------------- */
@@ -63,18 +79,19 @@ static double id_of(tl_id body, uint32_t number)
     return 4294967296.0 * body + number;
 }
 
-/* The number of a body's group: that of its first block. */
-static double group_of(const tl_model *m, const tl_body_mesh *mesh)
+/* The number of a block's group. */
+static double group_of(const tl_model *m, tl_id block)
 {
-    return m->blocks.group[tl_body_blocks(m, mesh->row)[0]];
+    return m->blocks.group[tl_block_row_quiet(m, block)];
 }
 
 #define ZONE_FIELDS(FIELD)                                                                                             \
-    FIELD(id, COUNT, "", "of its own among all zones: 4294967296 times its block, and its number",                     \
+    FIELD(id, COUNT, "", "of its own among all zones: 4294967296 times the first block of its body, and its number",   \
           id_of(at->mesh->body, z->zones.number[at->row]))                                                             \
-    FIELD(block, COUNT, "", "block that it is of: the lowest of a body of several", at->mesh->body)                    \
-    FIELD(number, COUNT, "", "its number in the block, from 0", z->zones.number[at->row])                              \
-    FIELD(group, TEXT, "", "group of the block", group_of(at->m, at->mesh))                                            \
+    FIELD(block, COUNT, "", "block that it is of", at->parcel->block)                                                  \
+    FIELD(number, COUNT, "", "its number in the block, or in the body of several joined blocks, from 0",               \
+          z->zones.number[at->row])                                                                                    \
+    FIELD(group, TEXT, "", "group of the block", group_of(at->m, at->parcel->block))                                   \
     FIELD(solid, TEXT, "", "name of its solid", at->parcel->solid)                                                     \
     FIELD(centroid, VEC3, "m", "present place of its centroid", tl_zone_centroid(at))                                  \
     FIELD(volume, SCALAR, "m3", "present volume", tl_tetrahedron_volume(at->x))                                        \
@@ -84,15 +101,17 @@ static double group_of(const tl_model *m, const tl_body_mesh *mesh)
     FIELD(mean, SCALAR, "Pa", "mean stress", mean_of(at))                                                              \
     FIELD(deviator, SCALAR, "Pa", "sqrt(3 J2): of a uniaxial stress its size", deviator_of(at))                        \
     FIELD(state, TEXT, "", "\"elastic\", \"shear\", \"tension\" or \"joint\" now, or \"shear past\" ...",              \
-          state_number(at))                                                                                            \
+          tl_zone_state(z->zones.flags[at->row]))                                                                      \
     FIELD(plastic, BOOL, "", "whether it has ever yielded", z->zones.flags[at->row] != 0)
 
 #define POINT_FIELDS(FIELD)                                                                                            \
-    FIELD(id, COUNT, "", "of its own among all gridpoints: 4294967296 times its block, and its number",                \
+    FIELD(id, COUNT, "",                                                                                               \
+          "of its own among all gridpoints: 4294967296 times the first block of its body, and its number",             \
           id_of(mesh->body, row - mesh->point_begin))                                                                  \
-    FIELD(block, COUNT, "", "block that it is of: the lowest of a body of several", mesh->body)                        \
-    FIELD(number, COUNT, "", "its number in the block, from 0", row - mesh->point_begin)                               \
-    FIELD(group, TEXT, "", "group of the block", group_of(m, mesh))                                                    \
+    FIELD(block, COUNT, "", "block that it is of: the first one of a body of several", mesh->body)                     \
+    FIELD(number, COUNT, "", "its number in the block, or in the body of several joined blocks, from 0",               \
+          row - mesh->point_begin)                                                                                     \
+    FIELD(group, TEXT, "", "group of the block", group_of(m, mesh->body))                                              \
     FIELD(position, VEC3, "m", "present place", tl_v3_add(m->origin, tl_gridpoint_place(p, row)))                      \
     FIELD(displacement, VEC3, "m", "since it was made", tl_columns_get(p->u, row))                                     \
     FIELD(velocity, VEC3, "m/s", "half a step ago", tl_columns_get(p->v, row))                                         \
@@ -154,9 +173,10 @@ static void point_numbers(const tl_model *m, const tl_body_mesh *mesh, uint32_t 
 typedef struct search {
     tl_model *m;
     const tl_zone_filter *f;
-    bool points;     /* gridpoints are looked for, not zones */
-    uint32_t solid;  /* of which zones are to be */
-    uint8_t *wanted; /* of each mesh, whether it has a block that is asked for */
+    bool points;      /* gridpoints are looked for, not zones */
+    uint32_t solid;   /* of which zones are to be */
+    uint8_t *wanted;  /* of each row of blocks, whether it is asked for */
+    uint8_t *reached; /* of each row of gridpoints, whether a zone of such a block has it */
 } search;
 
 static bool block_passes(const tl_model *m, uint32_t row, const tl_zone_filter *f)
@@ -165,33 +185,52 @@ static bool block_passes(const tl_model *m, uint32_t row, const tl_zone_filter *
     return grouped && (f->blocks || !m->blocks.hidden[row]);
 }
 
-static bool mesh_passes(const tl_model *m, const tl_body_mesh *mesh, const tl_zone_filter *f)
+static bool parcel_passes(const search *s, const tl_parcel *parcel)
 {
-    const uint32_t *blocks = tl_body_blocks(m, mesh->row);
-    bool some = false;
-    for (uint32_t k = 0; k < m->bodies.member_count[mesh->row]; k++)
-        some = some || block_passes(m, blocks[k], f);
-    return some;
+    return s->wanted[tl_block_row_quiet(s->m, parcel->block)];
 }
 
-/* Marks the meshes of which parts may pass. */
-static tl_status mark_meshes(search *s)
+/* Marks the gridpoints of zones of the blocks that are asked for. */
+static void reach_points(search *s)
 {
     const struct tl_zones *z = s->m->zones;
-    s->wanted = calloc(z->mesh_count + 1, 1);
-    if (!s->wanted)
+    for (size_t k = 0; k < z->parcels.table.rows; k++) {
+        const tl_parcel *parcel = &z->parcels.of[k];
+        for (uint32_t p = parcel->point_begin; p < parcel->point_end && parcel_passes(s, parcel); p++)
+            s->reached[z->listed[p]] = 1;
+    }
+}
+
+/* Marks the blocks of which zones may pass, and their gridpoints. */
+static tl_status mark_blocks(search *s)
+{
+    const struct tl_zones *z = s->m->zones;
+    const size_t rows = s->m->blocks.table.rows;
+    s->wanted = calloc(rows + 1, 1);
+    s->reached = calloc(z->points.table.rows + 1, 1);
+    if (!s->wanted || !s->reached)
         return tl_fail_memory(&s->m->error);
-    for (size_t k = 0; !s->f->blocks && k < z->mesh_count; k++)
-        s->wanted[k] = mesh_passes(s->m, &z->mesh[k], s->f);
+    for (uint32_t row = 0; !s->f->blocks && row < rows; row++)
+        s->wanted[row] = block_passes(s->m, row, s->f);
     for (size_t k = 0; s->f->blocks && k < s->f->block_count; k++) {
         const uint32_t row = tl_block_row(s->m, s->f->blocks[k]);
         if (row == TL_NO_ROW)
             return s->m->error.status;
-        const uint32_t mesh = tl_mesh_of(s->m, s->m->bodies.id[s->m->blocks.body[row]]);
-        if (mesh != TL_NO_ROW)
-            s->wanted[mesh] = mesh_passes(s->m, &z->mesh[mesh], s->f);
+        s->wanted[row] = block_passes(s->m, row, s->f);
     }
+    if (s->points)
+        reach_points(s);
     return TL_OK;
+}
+
+/* Whether some block of a mesh is asked for. */
+static bool mesh_passes(const search *s, const tl_body_mesh *mesh)
+{
+    const uint32_t *rows = tl_body_blocks(s->m, mesh->row);
+    bool some = false;
+    for (uint32_t k = 0; k < s->m->bodies.member_count[mesh->row]; k++)
+        some = some || s->wanted[rows[k]];
+    return some;
 }
 
 static bool in_box(const tl_bounds *box, tl_vec3 p)
@@ -220,7 +259,8 @@ static bool zone_passes(const search *s, const tl_body_mesh *mesh, uint32_t numb
     const tl_zone_at at = tl_zone_at_number(s->m, mesh, number);
     const tl_zone_filter *f = s->f;
     *where = tl_zone_centroid(&at);
-    return (f->plastic < 0 || (f->plastic != 0) == (s->m->zones->zones.flags[at.row] != 0)) &&
+    return parcel_passes(s, at.parcel) &&
+           (f->plastic < 0 || (f->plastic != 0) == (s->m->zones->zones.flags[at.row] != 0)) &&
            (!f->solid || at.parcel->solid == s->solid) && (!f->inside || in_box(f->inside, *where)) &&
            (!f->containing || zone_contains(&at, *f->containing));
 }
@@ -231,7 +271,7 @@ static bool point_passes(const search *s, const tl_body_mesh *mesh, uint32_t num
     const uint32_t row = mesh->point_begin + number;
     const tl_zone_filter *f = s->f;
     *where = tl_v3_add(s->m->origin, tl_gridpoint_place(p, row));
-    return p->zones[row] > 0 && (f->fixed < 0 || (f->fixed != 0) == (p->fixed[row] != 0)) &&
+    return s->reached[row] && p->zones[row] > 0 && (f->fixed < 0 || (f->fixed != 0) == (p->fixed[row] != 0)) &&
            (f->surface < 0 || (f->surface != 0) == (p->bare[row] != 0)) && (!f->inside || in_box(f->inside, *where));
 }
 
@@ -277,7 +317,7 @@ static tl_status take_all(const search *s, tl_zone_name **names, size_t *count)
     double nearest = INFINITY;
     bool enough = order != NULL;
     for (size_t k = 0; enough && k < z->mesh_count; k++)
-        if (s->wanted[order[k]])
+        if (mesh_passes(s, &z->mesh[order[k]]))
             enough = take_mesh(s, &z->mesh[order[k]], names, count, &capacity, &nearest);
     free(order);
     return enough ? TL_OK : tl_fail_memory(&s->m->error);
@@ -292,7 +332,7 @@ static tl_status find_parts(search *s, tl_zone_name **names, size_t *count)
         return tl_fail(&s->m->error, TL_E_NOT_FOUND, "there is no solid '%.80s' in this model", solid);
     if (!s->m->zones)
         return TL_OK;
-    tl_status status = mark_meshes(s);
+    tl_status status = mark_blocks(s);
     return status == TL_OK ? take_all(s, names, count) : status;
 }
 
@@ -306,6 +346,7 @@ static tl_status select_parts(tl_model *m, const tl_zone_filter *f, bool points,
     if (status == TL_OK && !*names && !(*names = malloc(sizeof **names)))
         status = tl_fail_memory(&m->error);
     free(s.wanted);
+    free(s.reached);
     if (status != TL_OK) {
         free(*names);
         *names = NULL;
@@ -357,7 +398,7 @@ tl_status tl_zone_field(tl_model *m, tl_zone_name zone, size_t index, tl_field_v
     if (index == Z_group)
         value->text = tl_group_name(m, (size_t)value->number[0]);
     if (index == Z_state)
-        value->text = state_names[(size_t)value->number[0]];
+        value->text = tl_zone_state_name((uint32_t)value->number[0]);
     return TL_OK;
 }
 
@@ -458,6 +499,21 @@ tl_status tl_gridpoints_values(tl_model *m, const tl_zone_name *names, size_t co
             return m->error.status;
         point_numbers(m, mesh, mesh->point_begin + names[k].number, field, all);
         memcpy(out + k * *width, all, *width * sizeof *out);
+    }
+    return TL_OK;
+}
+
+tl_status tl_zones_corners(tl_model *m, const tl_zone_name *names, size_t count, uint32_t (*corners)[4])
+{
+    for (size_t k = 0; k < count; k++) {
+        const tl_body_mesh *mesh = mesh_of(m, names[k], false);
+        if (!mesh)
+            return m->error.status;
+        const tl_zone_at at = tl_zone_at_number(m, mesh, names[k].number);
+        for (int a = 0; a < 4; a++) {
+            const uint16_t local = m->zones->zones.corner[a][at.row];
+            corners[k][a] = m->zones->listed[at.parcel->point_begin + local] - mesh->point_begin;
+        }
     }
     return TL_OK;
 }

@@ -55,19 +55,22 @@ static double least_of(const double weight[4])
     return fmin(fmin(weight[0], weight[1]), fmin(weight[2], weight[3]));
 }
 
-/* The zone at the surface of a block that a place lies in, or the least outside of. */
+/* The zone at the surface of a block that a place lies in, or the least outside of. A block inside of its body has none:
+ * then that of another block. */
 static void find_zone(const tl_model *m, tl_id block, tl_vec3 place, uint32_t point[4], double weight[4])
 {
     const struct tl_zones *z = m->zones;
-    const uint32_t row = tl_block_row_quiet(m, block);
-    const tl_body_mesh *mesh = &z->mesh[tl_mesh_of(m, m->bodies.id[m->blocks.body[row]])];
+    const tl_body_mesh *mesh = &z->mesh[tl_mesh_of(m, block)];
     double best = -INFINITY;
+    bool own_surface = false;
+    for (uint32_t k = mesh->part_begin; k < mesh->part_end; k++)
+        own_surface = own_surface || z->part[k].block == block;
     for (uint32_t k = mesh->part_begin; k < mesh->part_end; k++) {
         const tl_surface_part *part = &z->part[k];
         const uint32_t own[4] = {part->apex, part->corner[0], part->corner[1], part->corner[2]};
         tl_vec3 x[4];
         double w[4];
-        if (part->block != block)
+        if (own_surface && part->block != block)
             continue;
         corners_of(m, own, x);
         weigh(x, place, w);
@@ -198,6 +201,7 @@ static void push(tl_model *m, const tl_carrier *by, tl_vec3 force, tl_vec3 momen
         const tl_vec3 f = tl_v3_madd(tl_v3_scale(0.5, tl_v3_cross(moment, g[a])), by->weight[a], force);
         tl_columns_put(p->force, by->point[a], tl_v3_add(tl_columns_get(p->force, by->point[a]), f));
         p->bears[by->point[a]] += tl_v3_norm(f);
+        p->touched[by->point[a]] += tl_v3_norm(f);
     }
 }
 

@@ -58,7 +58,7 @@ static void measure_parts(const tl_model *m, face *f)
         f->centre = tl_v3_madd(f->centre, size / 3, tl_v3_add(a, tl_v3_add(b, c)));
         weight += size;
     }
-    f->centre = tl_v3_scale(1 / weight, f->centre);
+    f->centre = tl_v3_scale(weight > 0 ? 1 / weight : 0, f->centre);
     for (size_t k = 0; k < f->part_count; k++)
         for (int i = 0; i < 3; i++)
             f->reach = fmax(f->reach, tl_v3_norm(tl_v3_sub(corner_of(m, &f->part[k], i), f->centre)));
@@ -95,6 +95,12 @@ static face face_of(const tl_model *m, uint32_t block, uint32_t number)
     return f;
 }
 
+/* Whether a face lies on other blocks of its body with all of its triangles. */
+static bool is_inside(const face *f)
+{
+    return f->part && f->part_count == 0;
+}
+
 /* Whether two faces look at each other and are near. */
 static bool faces_meet(const tl_model *m, const face *a, const face *b)
 {
@@ -118,7 +124,7 @@ static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list,
             if (pb->covered[k])
                 continue;
             const face fb = face_of(m, b, k);
-            if (!faces_meet(m, &fa, &fb))
+            if (is_inside(&fa) || is_inside(&fb) || !faces_meet(m, &fa, &fb))
                 continue;
             if (!tl_grow(list, capacity, *count + 1, sizeof **list))
                 return false;

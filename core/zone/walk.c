@@ -22,6 +22,7 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     LIST(SCRATCH, slot, slot_capacity, slot_capacity);
     LIST(SCRATCH, scratch, scratch_capacity, scratch_capacity);
     VALUE(STATE, moved_dt);
+    LIST(SCRATCH, goes, goes_capacity, goes_capacity);
     VALUE(STATE, steps_kept);
     VALUE(CACHE, version);
     VALUE(CACHE, followed);

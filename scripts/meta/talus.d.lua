@@ -1429,8 +1429,10 @@ function Model:write_html(path, options) end
 ---@field blocks? boolean default true: whether the frame has a file of the blocks
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
 ---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
+---@field zone_fields? { NAME: number } numbers of each zone, likewise: fields of zones, states of their solids, functions
 
 --- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
 ---

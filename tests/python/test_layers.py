@@ -27,7 +27,7 @@ MODULES = {
     "edit": ("base", "geometry", "plugin", "model", "zone", "contact", "detect", "query", "cycle"),
     "cycle": ("base", "geometry", "plugin", "model", "zone", "contact", "force", "segment", "detect"),
     "state": ("base", "geometry", "narrow", "plugin", "model", "zone", "contact", "force", "segment", "detect", "cycle"),
-    "io": ("base", "geometry", "model", "contact", "force", "query", "cycle", "state"),
+    "io": ("base", "geometry", "model", "zone", "contact", "force", "query", "cycle", "state"),
     "check": ("base",),
     "lua": (),
     "main": ("lua",),

@@ -95,7 +95,8 @@ TEST(shapes_of_zones)
 TEST(the_same_with_any_scratch)
 {
     tl_poly *box = box_of(2, 1, 1), *other = box_of(5, 4, 3);
-    tl_zone_mesh used = zones_of(other, &(tl_shape_zoning){.edge = 0.4}), again = zones_of(box, &(tl_shape_zoning){.edge = 0.2});
+    tl_zone_mesh used = zones_of(other, &(tl_shape_zoning){.edge = 0.4}),
+                 again = zones_of(box, &(tl_shape_zoning){.edge = 0.2});
     tl_zone_scratch_free(scratch);
     scratch = tl_zone_scratch_create();
     tl_zone_mesh m = zones_of(box, &(tl_shape_zoning){.edge = 0.2});

@@ -61,11 +61,12 @@ typedef struct tl_zoned {
 
 /* Gives blocks zones, free of stress where the blocks are, with the blocks' velocities. A block that is held, in some
  * components or all, has gridpoints that are held so. Where faces of two blocks are the same polygon, the triangles of
- * both are. Nothing has changed when it fails:
+ * both are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed when
+ * it fails:
  *
  * TL_E_ARGUMENT: the edge is not positive, or makes too many zones; there is no such solid. TL_E_STALE: no such block.
- * TL_E_STATE: a block has zones, is joined to others, or is driven or loaded. TL_E_GEOMETRY: a block cannot be divided.
- */
+ * TL_E_STATE: a block has zones, is joined to one that is not given, or is driven or loaded. TL_E_GEOMETRY: a block
+ * cannot be divided, or joined blocks do not lie flat on each other. */
 TL_API tl_status tl_blocks_deform(tl_model *model, const tl_id *blocks, size_t count, const tl_zoning *how,
                                   tl_zoned *made);
 
@@ -112,6 +113,10 @@ TL_API tl_status tl_zones_values(tl_model *model, const tl_zone_name *names, siz
                                  double *out, size_t *width);
 TL_API tl_status tl_gridpoints_values(tl_model *model, const tl_zone_name *names, size_t count, const char *name,
                                       double *out, size_t *width);
+
+/* Writes the corners of zones: numbers of gridpoints of the same body, those of names[i] to corners[i]. Corners 0, 1, 2
+ * are counter-clockwise as seen from the side without corner 3. */
+TL_API tl_status tl_zones_corners(tl_model *model, const tl_zone_name *names, size_t count, uint32_t (*corners)[4]);
 
 /* ---------------------------------------------------------------- gridpoints ------------- */
 

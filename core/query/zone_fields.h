@@ -1,0 +1,11 @@
+/* zone_fields.h - the states of zones by number. */
+#ifndef TL_QUERY_ZONE_FIELDS_H
+#define TL_QUERY_ZONE_FIELDS_H
+
+#include <stdint.h>
+
+/* The number of a zone's state by its flags, and the name of a number: "elastic" is 0. NULL: there is no such number. */
+uint32_t tl_zone_state(uint32_t flags);
+const char *tl_zone_state_name(uint32_t number);
+
+#endif
