@@ -215,6 +215,12 @@ static tl_vec3 kicked(const tl_model *m, size_t row, const push *by, double kick
     return tl_v3_add(tl_v3_sub(v0, tl_free_part(v0, fixed)), tl_free_part(v1, fixed));
 }
 
+tl_vec3 tl_gridpoint_to_come(const tl_model *m, size_t row, double dt)
+{
+    const push by = push_of(m, row);
+    return kicked(m, row, &by, 0.5 * (m->dt + dt));
+}
+
 /* What is booked of a chunk (energy.c): a number for each row of lanes. */
 typedef struct chunk_work {
     double book[TL_BOOK_COUNT][CHUNK / TL_LANES];
@@ -274,4 +280,5 @@ void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
+    m->zones->steps_kept -= m->zones->steps_kept > 0;
 }

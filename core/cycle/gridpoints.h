@@ -14,6 +14,8 @@ void tl_gridpoints_gather(tl_model *m);
 double tl_gridpoint_scale(const tl_model *m, size_t row);
 /* In a relaxation: takes velocities back by alpha, 1/s. */
 void tl_gridpoints_brake(tl_model *m, double alpha);
+/* The velocity with which a gridpoint goes through the next step, of dt. */
+tl_vec3 tl_gridpoint_to_come(const tl_model *m, size_t row, double dt);
 /* Velocities and places one step on. */
 void tl_gridpoints_move(tl_model *m, double dt);
 

@@ -419,7 +419,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     hash_rock(&hash, m);
     if (tl_model_deforms(m))
         hash_meshes(&hash, m);
-    if (m->segments)
+    if (m->segments && m->segments->meet_count > 0)
         hash_segments(&hash, m);
     snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;
