@@ -287,6 +287,7 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
         tl_hash_word(&one, (uint64_t)meet->a << 32 | meet->b);
         tl_hash_word(&one, (uint64_t)meet->face_a << 32 | meet->face_b);
         tl_hash_word(&one, (uint64_t)of->key[0] << 32 | of->key[1]);
+        tl_hash_numbers(&one, &meet->share, 1);
         hash_rows(&one, &s->table.table, row, row + 1);
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
             const size_t point = tl_segment_point_row(row, k);
