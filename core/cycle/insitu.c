@@ -257,9 +257,6 @@ static tl_status choose_blocks(tl_model *m, const tl_insitu *s, uint8_t **chosen
     *chosen = NULL;
     if (!s->blocks)
         return TL_OK;
-    const tl_status status = tl_blocks_check(m, s->blocks, s->block_count);
-    if (status != TL_OK)
-        return status;
     *chosen = calloc(m->blocks.table.rows + 1, 1);
     if (!*chosen)
         return tl_fail_memory(&m->error);
@@ -298,6 +295,10 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
                        "insitu: stress, Pa, gradient, Pa/m, and at must be finite numbers, the first two of at most %g",
                        MOST_STRESS);
     status = check_gradient(m, &insitu);
+    if (status != TL_OK)
+        return status;
+    if (insitu.blocks)
+        status = tl_blocks_check(m, insitu.blocks, insitu.block_count);
     if (status != TL_OK)
         return status;
     /* in the present places, where a step that failed has left the contacts already */

@@ -2,12 +2,12 @@
  *
  * Forces on gridpoints are integrals of shape functions that are linear. So a stress that is linear in space is in
  * equilibrium with weight and with tractions on the surface (zone/outer.c), to rounding. What the zones store is what
- * their solids tell of the stress; from those that tell nothing it counts from 0. */
+ * their solids tell of the stress. */
 #include "cycle/insitu_zones.h"
 
 #include "segment/act.h"
 #include "segment/lay.h"
-#include "zone/zones.h"
+#include "zone/solids.h"
 
 #include <math.h>
 
@@ -39,28 +39,6 @@ static void load_row(struct tl_zones *z, const tl_parcel *of, size_t row, const 
     const double number[6] = {s.xx, s.yy, s.zz, s.xy, s.yz, s.zx};
     for (int k = 0; k < 6; k++)
         z->zones.stress[k][row] = number[k];
-}
-
-/* What the zones of a group store, J. */
-static double stored_in(const struct tl_zones *z, const tl_parcel *of, const tl_zone_group *g)
-{
-    const tl_solid *solid = &z->solid[of->solid].of;
-    double each[TL_CLUSTER_MOST * TL_LANES] = {0}, sum = 0;
-    const double *stress[6];
-    double *state[TL_SOLID_COLUMNS];
-    for (int k = 0; k < 6; k++)
-        stress[k] = z->zones.stress[k] + g->start;
-    for (uint32_t k = 0; k < solid->columns; k++)
-        state[k] = z->zones.state[k] + g->start;
-    tl_solid_energy(solid, (uint32_t)(g->depth * TL_LANES), stress, state, each);
-    for (size_t i = 0; i < (size_t)g->depth * TL_LANES; i++) {
-        tl_vec3 x[4];
-        corners_of(z, of, g->start + i, x);
-        const tl_vec3 a = tl_v3_sub(x[1], x[0]), b = tl_v3_sub(x[2], x[0]), c = tl_v3_sub(x[3], x[0]);
-        if (z->zones.number[g->start + i] != TL_NO_ROW)
-            sum += each[i] * tl_v3_dot(a, tl_v3_cross(b, c)) / 6;
-    }
-    return sum;
 }
 
 bool tl_insitu_zones_prepare(tl_model *m)
@@ -105,13 +83,12 @@ void tl_insitu_zones(tl_model *m, const tl_insitu *insitu, const uint8_t *chosen
         const tl_parcel *of = &z->parcels.of[k];
         if (!is_meant(m, chosen, of->block))
             continue;
-        z->parcels.stored[k] = 0;
         for (uint32_t g = of->group_begin; g < of->group_end; g++) {
             const size_t begin = z->group[g].start, end = begin + (size_t)z->group[g].depth * TL_LANES;
             for (size_t row = begin; row < end; row++)
                 load_row(z, of, row, &from);
-            z->parcels.stored[k] += stored_in(z, of, &z->group[g]);
         }
+        z->parcels.stored[k] = tl_parcel_stored(z, of);
     }
     for (uint32_t row = 0; m->segments && row < m->segments->table.table.rows; row++) {
         const uint32_t number = m->segments->table.of[row].meet;

@@ -85,8 +85,7 @@ static const tl_lua_key insitu_keys[] = {
      "are the same as xy, yz and zx"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "change of the stress with height z, Pa/m; components left out are 0"},
-    {"blocks", "a selection of blocks",
-     "puts the stress in their zones, and on their contacts with any; all without it"},
+    {"blocks", "selection of blocks", "puts the stress in their zones, and on their contacts with any; all without it"},
     {NULL, NULL, NULL},
 };
 

@@ -22,6 +22,8 @@ typedef struct tl_zone_verbs {
     void (*move)(tl_model *m, uint32_t body, tl_vec3 velocity, tl_vec3 angular_velocity);
     /* Adds to each drive what follows it in meshes. */
     void (*count_drives)(tl_model *m);
+    /* Gives the zones of blocks another solid, by its name. Nothing has changed when it fails. */
+    tl_status (*resolid)(tl_model *m, const tl_id *blocks, size_t count, const char *solid);
 } tl_zone_verbs;
 
 #endif

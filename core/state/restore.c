@@ -17,6 +17,7 @@
 #include "model/loads.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "segment/carriers.h"
 #include "segment/lay.h"
 #include "segment/sound.h"
 #include "segment/walk.h"
@@ -493,7 +494,8 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
     if (!tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) || columns > TL_STATE_COLUMNS ||
         !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) || !tl_is_flag(&initial))
         return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
-    bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d));
+    bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d)) &&
+                (!tl_archive_find(a, "detect.contacts.whole") || tl_detect_hold_carriers(d));
     return held ? TL_OK : tl_fail_memory(&m->error);
 }
 
@@ -585,7 +587,7 @@ static tl_status read_zones(tl_model *m, const tl_archive *a)
         bad = "a gridpoint follows no drive";
     if (bad)
         return unsound(a, m, bad);
-    const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z);
+    const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z, 0);
     z->followed = m->structure - 1; /* as if rows had moved */
     if (enough)
         tl_zones_follow(m);
@@ -644,6 +646,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = read_zones(m, a);
     if (status == TL_OK)
         status = read_segments(m, a);
+    if (status == TL_OK)
+        status = unsound(a, m, tl_carriers_unsound(m));
     if (status == TL_OK) /* gridpoints may follow them */
         status = tl_drives_restore(m, a, again);
     return status == TL_OK ? read_cycle(m, a) : status;

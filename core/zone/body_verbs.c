@@ -19,6 +19,7 @@
 #include "zone/follow.h"
 #include "zone/held.h"
 #include "zone/outer.h"
+#include "zone/resolid.h"
 
 #include <math.h>
 
@@ -231,4 +232,5 @@ const tl_zone_verbs tl_zone_body_verbs = {.follow = tl_zones_follow,
                                           .fix = fix,
                                           .free = let_go,
                                           .move = move,
-                                          .count_drives = count_drives};
+                                          .count_drives = count_drives,
+                                          .resolid = tl_blocks_resolid};

@@ -160,7 +160,7 @@ static void keep_meshes(tl_model *m, struct tl_zones *z)
     z->outer_count = outer;
     tl_outer_forget(&z->points);
     tl_drives_recount(m);
-    tl_zones_index(z); /* there is room: there were more */
+    tl_zones_index(z, 0); /* there is room: there were more */
     z->version++;
 }
 

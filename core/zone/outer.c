@@ -254,6 +254,13 @@ static uint32_t zone_of(const struct tl_zones *z, const tl_surface_part *part, u
     return TL_NO_ROW;
 }
 
+void tl_outer_find_solids(struct tl_zones *z)
+{
+    for (size_t i = 0; i < z->outer_count; i++)
+        if (z->outer[i].quiet)
+            zone_of(z, &z->part[z->outer[i].part], &z->outer[i].solid);
+}
+
 /* What the stress of the zone puts on the corners. */
 static void rest_on_stress(const struct tl_zones *z, tl_outer_part *of, uint32_t zone)
 {

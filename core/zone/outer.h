@@ -14,6 +14,8 @@ tl_status tl_outer_put(tl_model *m, const tl_outer_part *list, size_t count, boo
 void tl_outer_forces(const tl_model *m, const tl_outer_part *of, tl_vec3 force[3]);
 /* Adds the forces of all loads, times `share`, to those of the gridpoints; notes how quiet ones resist. */
 void tl_outer_push(tl_model *m, double share);
+/* Zones have got other solids: quiet triangles resist by those. */
+void tl_outer_find_solids(struct tl_zones *z);
 /* Ends what holds and drives the gridpoints of a mesh. */
 void tl_outer_let_go(tl_model *m, uint32_t mesh);
 /* Forces of the last step count no more: rows have moved, or conditions changed. */

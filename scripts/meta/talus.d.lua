@@ -864,7 +864,7 @@ function Model:solid(name, name, options) end
 ---@field inertia number largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an edge. Blocks that topple or rock in time want 8 zones to an edge, or stay rigid
 ---@field memory integer bytes memory that the model has grown by
 
---- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Nothing is done where one block cannot be divided.
+--- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share gridpoints, so zones go on over the faces between them. Nothing is done where one block cannot be divided.
 ---
 ---     report = selection:deformable{zone = 1.0, solid = "granite"}
 ---@param options talus.DeformableOptions
