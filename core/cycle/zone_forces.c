@@ -70,7 +70,7 @@ static tl_status prepare(tl_model *m)
     struct tl_zones *z = m->zones;
     const bool before = m->damping && ((const tl_damping_ops *)m->damping->ops)->before;
     const bool enough = tl_fit(&z->scratch, &z->scratch_capacity, tl_pool_threads(m->pool), sizeof *z->scratch) &&
-                        tl_fit(&z->goes, &z->goes_capacity, z->mesh_count, sizeof *z->goes) &&
+                        tl_fit(&z->motion, &z->motion_capacity, z->mesh_count, sizeof *z->motion) &&
                         (!tl_is_damped(m) || tl_gridpoints_hold_damping(&z->points, before));
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }

@@ -1,7 +1,7 @@
 /* vtk_zones.c - the zones of a frame, and the surfaces of deformable blocks.
  *
- * Zones are an UNSTRUCTURED_GRID of tetrahedra (cell type 10). Their points are the gridpoints where they are now. Bodies
- * share none.
+ * Zones are an UNSTRUCTURED_GRID of tetrahedra (cell type 10). Their points are the gridpoints where they are now.
+ * Bodies share none.
  *
  * Cell data   mean      mean stress, Pa, tension positive: what ParaView colours by first
  *             block_id  id of the block that it is of
@@ -13,8 +13,8 @@
  *             deviator  sqrt(3 J2), Pa
  *             state     0 elastic, 1 shear, 2 tension, 3 joint; 4, 5, 6 the same of steps before
  *             plastic   1 when it has ever yielded
- *             and each state of the solids by its name, one called as an array above with solid_ in front; NaN where the
- *             zone's solid has no such state
+ *             and each state of the solids by its name, one called as an array above with solid_ in front; NaN where
+ *             the zone's solid has no such state
  * Point data  displacement  m        velocity  m/s        force  unbalanced, N
  *             fixed     components that are held: 1 x, 2 y, 4 z, added up
  *
