@@ -358,6 +358,14 @@ static void find_movers(const tl_model *m, size_t begin, size_t count, movers *o
         out->lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
 }
 
+/* A component of the velocity after a kick; `more`: m/s2 by which the force has more than its share. */
+TL_INLINE double kicked(double v, double force, double mass, double more, double damping, double moving, double alpha,
+                        double kick)
+{
+    const double f = (force - mass * more) + damping, slow = 0.5 * alpha * kick;
+    return ((1 - slow) * v + kick / moving * f) * (1 / (1 + slow));
+}
+
 /* Kicks velocities: those of held components stay. Then places follow. */
 TL_VECTORIZED static void move_chunk(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
                                      const move_job *job, movers *by)
@@ -371,13 +379,31 @@ TL_VECTORIZED static void move_chunk(const tl_gridpoints *p, const free_parts *f
         const double more = lag[c];
 #pragma omp simd
         for (size_t i = 0; i < count; i++) {
-            const double f = (force[i] - mass[i] * more) + damping[i], slow = 0.5 * alpha[i] * kick;
-            const double v1 = ((1 - slow) * v[i] + kick / moving[i] * f) * (1 / (1 + slow));
+            const double v1 = kicked(v[i], force[i], mass[i], more, damping[i], moving[i], alpha[i], kick);
             v0[i] = v[i];
             v[i] = may[i] > 0 ? v1 : v[i];
             u[i] += drift * v[i];
         }
     }
+}
+
+tl_vec3 tl_gridpoint_to_come(const tl_model *m, size_t row, double dt)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const double kick = 0.5 * (m->dt + dt), moving = p->mass[row] * tl_gridpoint_scale(m, row);
+    const bool damped = tl_is_damped(m) && p->alpha;
+    tl_vec3 lag = {0, 0, 0};
+    if (tl_loads_lag(m))
+        lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
+    const double more[3] = {lag.x, lag.y, lag.z};
+    double v[3];
+    for (int c = 0; c < 3; c++) {
+        const double damping = damped ? p->damping[c][row] : 0, alpha = damped ? p->alpha[row] : 0;
+        v[c] = p->v[c][row];
+        if (!(p->fixed[row] & TL_FIX_X << c))
+            v[c] = kicked(v[c], p->force[c][row], p->mass[row], more[c], damping, moving, alpha, kick);
+    }
+    return (tl_vec3){v[0], v[1], v[2]};
 }
 
 TL_INLINE double dot_of(tl_vec3 a, tl_vec3 b)
@@ -463,4 +489,5 @@ void tl_gridpoints_move(tl_model *m, double dt)
     move_job job = {m, 0.5 * (m->dt + dt), dt, 0.5 * m->dt, 0.5 * dt};
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
     m->zones->moved_dt = dt;
+    m->zones->steps_kept -= m->zones->steps_kept > 0;
 }
