@@ -307,7 +307,7 @@ void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick)
     struct tl_zones *z = m->zones;
     for (size_t k = 0; z && k < z->mesh_count; k++) {
         const tl_mesh_motion *of = &z->motion[k];
-        const bool ends = of->loose ? of->power < 0 : stop, calms = of->strain_power < 0;
+        const bool ends = of->loose ? of->power < 0 : stop && !of->goes_on, calms = stop || of->strain_power < 0;
         brake_mesh(m, &z->mesh[k], ends || !calms ? NULL : of, ends || calms ? lost : 0, kick);
     }
 }

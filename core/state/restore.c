@@ -341,6 +341,8 @@ static bool hold_columns(tl_model *m, const tl_archive *a)
         held = held && tl_bodies_hold_loads(&m->bodies);
     if (tl_archive_find(a, "bodies.fall"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, fall, TL_COLUMN_STEP);
+    if (tl_archive_find(a, "bodies.going"))
+        held = held && TL_COLUMN_NEED(bodies, &m->bodies, going, TL_COLUMN_STEP);
     if (tl_archive_find(a, "bodies.force_before"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, moment_before, TL_COLUMN_STEP) &&
                TL_COLUMN_NEED(bodies, &m->bodies, force_before, TL_COLUMN_STEP);

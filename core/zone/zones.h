@@ -143,7 +143,8 @@ typedef struct tl_outer_part {
 typedef struct tl_mesh_motion {
     tl_vec3 velocity, turn;
     double power, strain_power;
-    bool loose; /* next to nothing bears it: it goes its own way */
+    bool loose;   /* next to nothing bears it: it goes its own way */
+    bool goes_on; /* where others stop */
 } tl_mesh_motion;
 
 /* The mesh of a body. */
