@@ -44,6 +44,8 @@ local TITLES = {
     { "DF.bars_impact", "zones: bars that strike each other" },
     { "DF.ledger.joints", "zones: energy of tones that meet joints" },
     { "DF.ledger.waves", "zones: energy of waves along bars" },
+    { "DF.gravity_column", "zones: column that settles under its weight" },
+    { "DF.series_column_(%d)", "zones: column with joints across, %1 of them" },
     { "E1.dipscan", "paper's wedge, friction at failure over the dip of a plane" },
     { "E1.run(%d)", "paper's wedge, run %1" },
     { "E2", "paper's roof pyramid, cut and under stress" },
