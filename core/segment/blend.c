@@ -3,21 +3,23 @@
  * Faces that lie flush meet by segments, blocks askew by a field contact. Between them one energy, with the smoothstep
  * S(x) = x^2 (3 - 2 x), x between the two limits. Of the field U_f, and of the segments U_k of each pair of faces,
  *
- *     U = w U_f + sum l_k U_k,    l_k = (1 - S(sin tilt; 5, 10 degrees)) S(r_k; 0.1, 0.5),    w = prod (1 - l_k)
+ *     U = w U_f + sum l_k U_k,    l_k = f_k S(r; 0.1, 0.5),    w = prod (1 - l_k)
+ *     f_k = 1 - S(sin tilt; 5, 10 degrees),    r = sum f_k U_k / U_f
  *
- * with r_k = U_k / U_f: faces that bear much less than the field are none. Segments and the field contact go by their
- * laws as if they bore all. What acts is the gradient of the whole. With E_k = U_k - U_f prod_(j != k) (1 - l_j)
+ * so faces that bear much less than the field are none. Segments and the field contact go by their laws as if they bore
+ * all. What acts is the gradient of the whole. With S' = dS/dr, E_k = U_k - U_f prod_(j != k) (1 - l_j) and
+ * G = S' sum E_k f_k
  *
- *     forces of segments, and their heat, count by  l_k + E_k dl_k/dr_k / U_f,
- *     those of the field contact by                 w - sum E_k dl_k/dr_k r_k / U_f,
+ *     forces of segments, and their heat, count by  l_k + G f_k / U_f,
+ *     those of the field contact by                 w - G r / U_f,
  *
- * and a couple M = -E_k dl_k/d(tilt) turns the segments of the faces. The tilt is that between the means, by area, of the
+ * and a couple M = -(E_k S + G U_k / U_f) df_k/d(tilt) turns the segments of the faces. The tilt is that between the means, by area, of the
  * normals of both sides of the segments. With the mean vector areas N_A, N_B and c = -N_A . N_B / (|N_A| |N_B|), its
  * cosine,
  *
  *     dc/dN_A = -(n_B + c n_A) / |N_A|,    dc/dN_B = -(n_A + c n_B) / |N_B|
  *
- * so a segment of area A and normal n turns its side A by -E_k dl_k/dc A n x dc/dN_A. */
+ * so a segment of area A and normal n turns its side A by -(E_k S + G U_k / U_f) df_k/dc A n x dc/dN_A. */
 #include "segment/blend.h"
 
 #include "contact/detection.h"
@@ -188,30 +190,39 @@ static void turn_segment(tl_model *m, uint32_t row, const tl_meet *meet, double 
 #define LEAST_PART 0.1
 #define MOST_PART 0.5
 
-/* How much of a meet counts: its energy, its share, and the change of that by the energy over the field's. */
-typedef struct part {
-    double energy, share, slope, ratio;
-} part;
+/* The meets of two blocks: their energies, and how much of them counts. */
+typedef struct parts {
+    uint32_t count;
+    double energy[MOST_BLENDED], share[MOST_BLENDED];
+    double field, ratio, step, slope; /* U_f, r, S and S' */
+} parts;
 
-static part part_of(const struct tl_segments *s, const tl_meet *meet, double field)
+static parts parts_of(const struct tl_segments *s, const tl_blend *blend, double field)
 {
-    part out = {.energy = stored_by(s, meet), .share = meet->flat};
-    if (!(field > 0))
-        return out;
-    out.ratio = out.energy / field;
-    const double x = fmin(fmax((out.ratio - LEAST_PART) / (MOST_PART - LEAST_PART), 0), 1);
-    out.slope = meet->flat * 6 * x * (1 - x) / (MOST_PART - LEAST_PART);
-    out.share = meet->flat * x * x * (3 - 2 * x);
+    parts out = {.count = blend->end - blend->first, .field = field, .step = 1};
+    double sum = 0;
+    out.count = out.count < MOST_BLENDED ? out.count : MOST_BLENDED;
+    for (uint32_t k = 0; k < out.count; k++) {
+        out.energy[k] = stored_by(s, &s->meet[blend->first + k]);
+        sum += s->meet[blend->first + k].flat * out.energy[k];
+    }
+    if (field > 0) {
+        out.ratio = sum / field;
+        const double x = fmin(fmax((out.ratio - LEAST_PART) / (MOST_PART - LEAST_PART), 0), 1);
+        out.step = x * x * (3 - 2 * x);
+        out.slope = 6 * x * (1 - x) / (MOST_PART - LEAST_PART);
+    }
+    for (uint32_t k = 0; k < out.count; k++)
+        out.share[k] = s->meet[blend->first + k].area > 0 ? s->meet[blend->first + k].flat * out.step : 0;
     return out;
 }
 
-/* What the meets of two blocks leave to the field, but for one of them, or TL_NO_ROW. */
-static double rest_of(const struct tl_segments *s, const tl_blend *blend, double field, uint32_t without)
+/* What the meets leave to the field, but for one of them, or TL_NO_ROW. */
+static double rest_of(const parts *of, uint32_t without)
 {
     double rest = 1;
-    for (uint32_t k = blend->first; k < blend->end; k++)
-        if (k != without && s->meet[k].area > 0)
-            rest *= 1 - part_of(s, &s->meet[k], field).share;
+    for (uint32_t k = 0; k < of->count; k++)
+        rest *= k != without ? 1 - of->share[k] : 1;
     return rest;
 }
 
@@ -224,31 +235,28 @@ static void apply_blend(tl_model *m, const tl_blend *blend)
     if (alone && i == TL_NO_ROW && blend->end == blend->first + 1)
         return; /* as most */
     const bool pressed = i != TL_NO_ROW && !alone && c->point_count[i] > 0 && c->law[i] != TL_NO_ROW;
-    const double field = pressed ? c->stored[i] : 0, rest = alone ? 0 : rest_of(s, blend, field, TL_NO_ROW);
-    double by_field = rest;
-    part parts[MOST_BLENDED];
-    double more[MOST_BLENDED];
-    const uint32_t count = blend->end - blend->first < MOST_BLENDED ? blend->end - blend->first : MOST_BLENDED;
-    for (uint32_t k = 0; k < count; k++) {
-        const uint32_t meet = blend->first + k;
-        parts[k] = part_of(s, &s->meet[meet], field);
-        more[k] = parts[k].energy - (alone ? 0 : field * rest_of(s, blend, field, meet));
-        by_field -= field > 0 ? more[k] * parts[k].slope * parts[k].ratio / field : 0;
+    const parts of = parts_of(s, blend, pressed ? c->stored[i] : 0);
+    const double rest = alone ? 0 : rest_of(&of, TL_NO_ROW), per = of.field > 0 ? 1 / of.field : 0;
+    double more[MOST_BLENDED], grows = 0;
+    for (uint32_t k = 0; k < of.count; k++) {
+        more[k] = of.energy[k] - (alone ? 0 : of.field * rest_of(&of, k));
+        grows += of.slope * more[k] * s->meet[blend->first + k].flat;
     }
-    for (uint32_t k = 0; k < count; k++) {
+    for (uint32_t k = 0; k < of.count; k++) {
         const tl_meet *meet = &s->meet[blend->first + k];
-        const double forces = parts[k].share + (field > 0 ? more[k] * parts[k].slope / field : 0);
-        const double turns = meet->flat > 0 ? more[k] * meet->steep * parts[k].share / meet->flat : 0;
+        const double forces = of.share[k] + per * grows * meet->flat;
+        const double turns = meet->steep * (more[k] * of.step + per * grows * of.energy[k]);
         for (uint32_t row = meet->begin; row < meet->end; row++) {
             if (s->table.of[row].meet == TL_NO_ROW)
                 continue;
-            scale_segment(s, row, forces, parts[k].share);
+            scale_segment(s, row, forces, of.share[k]);
             if (turns != 0)
                 turn_segment(m, row, meet, turns);
         }
     }
     if (i == TL_NO_ROW)
         return;
+    const double by_field = rest - per * grows * of.ratio;
     c->share[i] = rest;
     c->force[i] = tl_v3_scale(by_field, c->force[i]);
     c->moment[i] = tl_v3_scale(by_field, c->moment[i]);
