@@ -411,6 +411,10 @@ tl_energies tl_segments_energies(tl_model *m)
 {
     struct tl_segments *s = m->segments;
     tl_energies sum = {0, s ? s->lost : 0};
+    if (s) {
+        sum.stored -= s->blend_stored;
+        sum.heat -= s->blend_heat;
+    }
     for (size_t row = 0; s && row < s->table.table.rows; row++)
         if (s->table.of[row].meet != TL_NO_ROW) {
             sum.stored += s->table.stored[row];

@@ -121,9 +121,11 @@ bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, 
         const bool same = at < count && order_of(&list[at], &s->meet[k]) == 0;
         l->now[k] = same ? (uint32_t)at : TL_NO_ROW;
         if (same) {
+            const double size = list[at].size;
             const bool tilted = list[at].tilted, stale = s->meet[k].area == 0; /* its faces may overlap by now */
             list[at] = s->meet[k];
             list[at].tilted = tilted;
+            list[at].size = size;
             list[at].stale = list[at].stale || stale;
         }
     }

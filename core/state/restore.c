@@ -497,7 +497,7 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
         !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) || !tl_is_flag(&initial))
         return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
     bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d)) &&
-                (!tl_archive_find(a, "detect.contacts.whole") || tl_detect_hold_carriers(d));
+                (!tl_archive_find(a, "detect.contacts.heat") || tl_detect_hold_carriers(d));
     return held ? TL_OK : tl_fail_memory(&m->error);
 }
 
