@@ -105,9 +105,23 @@ TL_INLINE void tl_lanes_turn(const double *const row[4], double *restrict x, dou
 TL_INLINE void tl_lanes_apart(const double *rows, const uint16_t of[4], const uint16_t from[4], double *restrict xyz)
 {
     typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-#define TL_ROWS_APART(i) (*(const four *)(rows + TL_ROW * of[i]) - *(const four *)(rows + TL_ROW * from[i]))
+#define TL_ROWS_APART(i)                                                                                               \
+    (*(const four *)(rows + TL_ROW * (size_t)of[i]) - *(const four *)(rows + TL_ROW * (size_t)from[i]))
     const four a = TL_ROWS_APART(0), b = TL_ROWS_APART(1), c = TL_ROWS_APART(2), d = TL_ROWS_APART(3);
 #undef TL_ROWS_APART
+    const four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(four *)xyz = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(four *)(xyz + TL_LANES) = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(four *)(xyz + 2 * TL_LANES) = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+}
+
+/* The same of rows that nothing is taken from. */
+TL_INLINE void tl_lanes_turn3(const double *rows, const uint32_t of[4], double *restrict xyz)
+{
+    typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+    const four a = *(const four *)(rows + TL_ROW * (size_t)of[0]), b = *(const four *)(rows + TL_ROW * (size_t)of[1]);
+    const four c = *(const four *)(rows + TL_ROW * (size_t)of[2]), d = *(const four *)(rows + TL_ROW * (size_t)of[3]);
     const four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
     const four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
     *(four *)xyz = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);

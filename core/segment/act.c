@@ -1,5 +1,7 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
+ * A SIMD group of segments is taken at a time.
+ *
  * A side carries the three points of a segment with it. Let x be the places of the corners of its triangle, and d how
  * they have moved in the last step. A point of weights w lies at sum w x and has moved by sum w d. The triangle spins
  * about its normal by
@@ -7,11 +9,13 @@
  *     spin . n = (g_1 x d_1 + g_2 x d_2) . n / 2,    g_1, g_2 reciprocal to the edges
  *
  * The common normal n bisects those of both sides. The gap is n . (x_B - x_A), its closure what a law gets, the motion
- * d_B - d_A. Shear turns from the last normal to this one and by the mean spin about it. What a point bears acts on the
+ * d_B - d_A. A rigid side carries its points likewise: x are then the axes of its frame, from its centroid. Shear turns
+ * from the last normal to this one and by the mean spin about it. What a point bears acts on the
  * corners by the same weights, so work, forces and energy agree whatever the triangles do. */
 #include "segment/act.h"
 
 #include "base/columns.h"
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/series.h"
 #include "contact/contacts.h"
@@ -25,6 +29,8 @@
 
 /* SIMD groups that a law gets at a time. */
 #define TILE 4
+/* Gridpoints that a thread takes at a time. */
+#define CHUNK 1024
 /* Points of a group, and of a tile. */
 #define GROUP_POINTS (TL_SEGMENT_POINTS * TL_LANES)
 #define TILE_POINTS (TILE * GROUP_POINTS)
@@ -38,17 +44,32 @@ typedef struct lanes {
     double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
 } lanes;
 
+/* The reference of a group of points where there are none. */
+static const double none[TL_LANES];
+
 /* ---------------------------------------------------------------- sides ------------------ */
 
-/* A side now: places of its corners and their motion in the last step, or a rigid body's; its outward normal. */
-typedef struct side_now {
-    bool rigid;
-    uint32_t body;
-    tl_vec3 x[3], d[3];
-    tl_vec3 shift; /* of a rigid side: of its centroid in the last step, m */
-    tl_mat3 back;  /* and what a point has moved beside that, on its arm */
-    tl_vec3 normal, turn;
-} side_now;
+/* One side of a SIMD group of segments now. A point of weights w lies at origin + sum w x, and has moved by shift +
+ * sum w d. Of a triangle x are the places of its corners, and d how they have moved in the last step. Of a rigid body
+ * they are the axes of its frame, and what the ends of these have moved beside its centroid. */
+typedef struct side_lanes {
+    _Alignas(TL_ALIGN) double x[3][3][TL_LANES]; /* by corner, component */
+    double d[3][3][TL_LANES];
+    double origin[3][TL_LANES], shift[3][TL_LANES];
+    double normal[3][TL_LANES], turn[3][TL_LANES]; /* outward */
+} side_lanes;
+
+static void put(double (*to)[TL_LANES], size_t lane, tl_vec3 v)
+{
+    to[0][lane] = v.x;
+    to[1][lane] = v.y;
+    to[2][lane] = v.z;
+}
+
+TL_INLINE tl_vec3 get(double (*from)[TL_LANES], size_t lane)
+{
+    return (tl_vec3){from[0][lane], from[1][lane], from[2][lane]};
+}
 
 /* What a point has moved beside the centroid as the body turned by w, as it acts on its arm now (force/follow.c). */
 static tl_mat3 turned_back(tl_vec3 w)
@@ -60,89 +81,157 @@ static tl_mat3 turned_back(tl_vec3 w)
                       {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
 }
 
-static side_now side_of(const tl_model *m, const tl_segment_side *side, tl_vec3 normal)
+/* An axis of a body's frame. */
+static tl_vec3 axis_of(const tl_mat3 *r, int k)
 {
-    side_now out = {.rigid = tl_side_is_rigid(side), .body = side->at[0]};
-    if (out.rigid) {
-        const tl_pose *pose = &m->bodies.pose[out.body];
-        out.shift = tl_v3_scale(m->dt, pose->v_moved);
-        out.turn = tl_v3_scale(m->dt, pose->w_moved);
-        out.back = turned_back(out.turn);
-        out.normal = tl_m3_mul(&pose->r, normal);
-        return out;
-    }
-    const tl_gridpoints *g = &m->zones->points;
-    for (int k = 0; k < 3; k++) {
-        out.x[k] = tl_gridpoint_place(g, side->at[k]);
-        out.d[k] = tl_v3_scale(m->dt, tl_columns_get(g->moved, side->at[k]));
-    }
-    const tl_vec3 a = tl_v3_sub(out.x[1], out.x[0]), b = tl_v3_sub(out.x[2], out.x[0]), area = tl_v3_cross(a, b);
-    const double size = tl_v3_norm(area);
-    out.normal = tl_v3_scale(1 / size, area);
-    const tl_vec3 ga = tl_v3_scale(1 / size, tl_v3_cross(b, out.normal));
-    const tl_vec3 gb = tl_v3_scale(1 / size, tl_v3_cross(out.normal, a));
-    const tl_vec3 da = tl_v3_sub(out.d[1], out.d[0]), db = tl_v3_sub(out.d[2], out.d[0]);
-    out.turn = tl_v3_scale(0.5, tl_v3_add(tl_v3_cross(ga, da), tl_v3_cross(gb, db)));
-    return out;
+    return tl_v3(r->m[0][k], r->m[1][k], r->m[2][k]);
 }
 
-/* Where a point of the side is, and how it has moved. */
-typedef struct carried {
-    tl_vec3 place, moved;
-} carried;
-
-static carried carry(const tl_model *m, const side_now *s, tl_vec3 at)
+/* A rigid side, whose normal in the body's frame is given, once the others are known. */
+static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t lane, side_lanes *to)
 {
-    if (s->rigid) {
-        const tl_vec3 place = tl_body_point(&m->bodies, s->body, at);
-        const tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, s->body));
-        return (carried){place, tl_v3_add(s->shift, tl_m3_mul(&s->back, arm))};
-    }
-    const double w[3] = {at.x, at.y, at.z};
-    carried out = {{0, 0, 0}, {0, 0, 0}};
+    const tl_pose *pose = &m->bodies.pose[body];
+    const tl_vec3 turn = tl_v3_scale(m->dt, pose->w_moved);
+    const tl_mat3 back = turned_back(turn);
     for (int k = 0; k < 3; k++) {
-        out.place = tl_v3_madd(out.place, w[k], s->x[k]);
-        out.moved = tl_v3_madd(out.moved, w[k], s->d[k]);
+        const tl_vec3 axis = axis_of(&pose->r, k);
+        put(to->x[k], lane, axis);
+        put(to->d[k], lane, tl_m3_mul(&back, axis));
     }
-    return out;
+    put(to->origin, lane, tl_body_place(&m->bodies, body));
+    put(to->shift, lane, tl_v3_scale(m->dt, pose->v_moved));
+    put(to->normal, lane, tl_m3_mul(&pose->r, normal));
+    put(to->turn, lane, turn);
+}
+
+/* The corners of triangles. */
+TL_INLINE void load_corners(const struct tl_segments *s, size_t row, bool is_b, side_lanes *restrict to)
+{
+    const double *place = tl_gridpoints_aligned(s->now)->place, *way = tl_gridpoints_aligned(s->now)->way;
+    for (int k = 0; k < 3; k++) {
+        const uint32_t *corner = s->table.corner[is_b][k] + row;
+        for (size_t l = 0; l < TL_LANES; l += 4) {
+            tl_lanes_turn3(place, corner + l, to->x[k][0] + l);
+            tl_lanes_turn3(way, corner + l, to->d[k][0] + l);
+        }
+    }
+}
+
+/* The sides A, or B, of the group whose first segment has a row, as if all were triangles. false: some are not. */
+TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bool is_b, side_lanes *to)
+{
+    uint32_t least = UINT32_MAX;
+    load_corners(s, row, is_b, to);
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_vec3 x = get(to->x[0], l), d = get(to->d[0], l);
+        const tl_vec3 a = tl_v3_sub(get(to->x[1], l), x), b = tl_v3_sub(get(to->x[2], l), x);
+        const tl_vec3 area = tl_v3_cross(a, b);
+        const double per = 1 / sqrt(area.x * area.x + area.y * area.y + area.z * area.z);
+        const tl_vec3 n = {per * area.x, per * area.y, per * area.z};
+        const tl_vec3 ga = tl_v3_cross(b, n), gb = tl_v3_cross(n, a); /* over per, the reciprocal edges */
+        const tl_vec3 da = tl_v3_sub(get(to->d[1], l), d), db = tl_v3_sub(get(to->d[2], l), d);
+        const tl_vec3 of_a = tl_v3_cross(ga, da), of_b = tl_v3_cross(gb, db);
+        to->normal[0][l] = n.x, to->normal[1][l] = n.y, to->normal[2][l] = n.z;
+        to->turn[0][l] = 0.5 * per * (of_a.x + of_b.x);
+        to->turn[1][l] = 0.5 * per * (of_a.y + of_b.y);
+        to->turn[2][l] = 0.5 * per * (of_a.z + of_b.z);
+        to->origin[0][l] = to->origin[1][l] = to->origin[2][l] = 0;
+        to->shift[0][l] = to->shift[1][l] = to->shift[2][l] = 0;
+    }
+    for (size_t l = 0; l < TL_LANES; l++)
+        least = s->table.corner[is_b][0][row + l] < least ? s->table.corner[is_b][0][row + l] : least;
+    return least >= TL_SEGMENT_DUMMIES;
+}
+
+/* Rigid sides of a group take their lanes. */
+static void put_rigid_sides(const tl_model *m, size_t row, bool is_b, side_lanes *to)
+{
+    const tl_segment *of = &m->segments->table.of[row];
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_segment_side *side = is_b ? &of[l].b : &of[l].a;
+        if (of[l].meet != TL_NO_ROW && tl_side_is_rigid(side))
+            put_rigid(m, side->at[0], is_b ? of[l].normal_b : of[l].normal_a, l, to);
+    }
 }
 
 /* ---------------------------------------------------------------- following -------------- */
 
-static void put(double (*to)[TILE_POINTS], size_t at, tl_vec3 v)
+/* Where a point of a side is, or with `d` and `shift` how it has moved. */
+TL_INLINE tl_vec3 carried(double (*x)[3][TL_LANES], double (*from)[TL_LANES], tl_vec3 w, size_t l)
 {
-    to[0][at] = v.x;
-    to[1][at] = v.y;
-    to[2][at] = v.z;
+    return (tl_vec3){from[0][l] + w.x * x[0][0][l] + w.y * x[1][0][l] + w.z * x[2][0][l],
+                     from[1][l] + w.x * x[0][1][l] + w.y * x[1][1][l] + w.z * x[2][1][l],
+                     from[2][l] + w.x * x[0][2][l] + w.y * x[1][2][l] + w.z * x[2][2][l]};
 }
 
-/* Follows a segment: its points' lanes, and their shear. Notes when it has slid. */
-static void follow(tl_model *m, uint32_t row, size_t lane, lanes *l)
+/* The common normals of a group, and how shear turns: g and 2 / (1 + g.g), and whether it does. */
+typedef struct turn_lanes {
+    _Alignas(TL_ALIGN) double normal[3][TL_LANES], g[3][TL_LANES], scale[TL_LANES], turns[TL_LANES];
+} turn_lanes;
+
+TL_INLINE void turn_normals(tl_segment_table *t, size_t row, side_lanes *a, side_lanes *b, turn_lanes *restrict to)
 {
-    struct tl_segments *s = m->segments;
-    const tl_segment *of = &s->table.of[row];
-    tl_segment_points *p = &s->points;
-    const side_now a = side_of(m, &of->a, of->normal_a), b = side_of(m, &of->b, of->normal_b);
-    const tl_vec3 n = tl_v3_unit(tl_v3_sub(a.normal, b.normal)), last = tl_columns_get(s->table.normal, row);
-    const tl_vec3 half = tl_v3_scale(0.25, tl_v3_add(a.turn, b.turn)); /* of the mean turn */
-    double slid2 = 0;
-    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t at = lane + k * TL_LANES;
-        const size_t point = tl_segment_point_row(row, k);
-        const carried ca = carry(m, &a, tl_columns_get(p->at_a, point)),
-                      cb = carry(m, &b, tl_columns_get(p->at_b, point));
-        const tl_vec3 apart = tl_v3_sub(cb.place, ca.place), du = tl_v3_sub(cb.moved, ca.moved);
-        const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
-        l->closure[at] = -gap - (p->reference ? p->reference[point] : 0);
-        l->du_n[at] = du_n;
-        const tl_vec3 du_s = tl_v3_madd(du, -du_n, n);
-        put(l->normal, at, n);
-        put(l->du_s, at, du_s);
-        tl_columns_put(p->f_s, point, tl_turn_one(tl_columns_get(p->f_s, point), last, n, half));
-        slid2 = fmax(slid2, tl_v3_norm2(tl_v3_madd(apart, -gap, n)));
+    double *restrict nx = t->normal[0] + row, *restrict ny = t->normal[1] + row, *restrict nz = t->normal[2] + row;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_vec3 both = tl_v3_sub(get(a->normal, l), get(b->normal, l)), last = {nx[l], ny[l], nz[l]};
+        const double per = 1 / sqrt(both.x * both.x + both.y * both.y + both.z * both.z);
+        const tl_vec3 n = {per * both.x, per * both.y, per * both.z};
+        const tl_vec3 turn = tl_v3_add(get(a->turn, l), get(b->turn, l)); /* a quarter is half of the mean */
+        const tl_vec3 g = tl_turn_between(last, n, 0.25 * (turn.x * n.x + turn.y * n.y + turn.z * n.z));
+        const double g2 = g.x * g.x + g.y * g.y + g.z * g.z;
+        nx[l] = to->normal[0][l] = n.x;
+        ny[l] = to->normal[1][l] = n.y;
+        nz[l] = to->normal[2][l] = n.z;
+        to->g[0][l] = g.x, to->g[1][l] = g.y, to->g[2][l] = g.z;
+        to->scale[l] = 2 / (1 + g2);
+        to->turns[l] = g2 > 0 ? 1 : 0;
     }
-    tl_columns_put(s->table.normal, row, n);
-    s->table.slid[row] = slid2 > SLID * SLID * s->table.area[row];
+}
+
+/* Point k of each segment of a group: what a law gets of it, from `at` on, and its shear. `slid2`: the square of the
+ * farthest that the points of a segment have slid. */
+TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lanes *a, side_lanes *b, turn_lanes *turn,
+                             size_t at, lanes *restrict to, double slid2[TL_LANES])
+{
+    const double *restrict ax = p->at_a[0] + point, *restrict ay = p->at_a[1] + point,
+                           *restrict az = p->at_a[2] + point;
+    const double *restrict bx = p->at_b[0] + point, *restrict by = p->at_b[1] + point,
+                           *restrict bz = p->at_b[2] + point;
+    double *restrict sx = p->f_s[0] + point, *restrict sy = p->f_s[1] + point, *restrict sz = p->f_s[2] + point;
+    const double *restrict reference = p->reference ? p->reference + point : none;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_vec3 wa = {ax[l], ay[l], az[l]}, wb = {bx[l], by[l], bz[l]}, n = get(turn->normal, l);
+        const tl_vec3 apart = tl_v3_sub(carried(b->x, b->origin, wb, l), carried(a->x, a->origin, wa, l));
+        const tl_vec3 du = tl_v3_sub(carried(b->d, b->shift, wb, l), carried(a->d, a->shift, wa, l));
+        const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
+        const tl_vec3 aside = tl_v3_madd(apart, -gap, n), f = {sx[l], sy[l], sz[l]};
+        const double aside2 = aside.x * aside.x + aside.y * aside.y + aside.z * aside.z;
+        to->closure[at + l] = -gap - reference[l];
+        to->du_n[at + l] = du_n;
+        to->normal[0][at + l] = n.x, to->normal[1][at + l] = n.y, to->normal[2][at + l] = n.z;
+        to->du_s[0][at + l] = du.x - du_n * n.x;
+        to->du_s[1][at + l] = du.y - du_n * n.y;
+        to->du_s[2][at + l] = du.z - du_n * n.z;
+        const tl_vec3 turned = tl_turn_into(f, get(turn->g, l), turn->scale[l], turn->turns[l], n);
+        sx[l] = turned.x, sy[l] = turned.y, sz[l] = turned.z;
+        slid2[l] = aside2 > slid2[l] ? aside2 : slid2[l];
+    }
+}
+
+/* Follows a group: its points' lanes, and their shear. Notes which segments have slid. */
+TL_VECTORIZED static void follow_group(struct tl_segments *s, size_t row, side_lanes *a, side_lanes *b, size_t at,
+                                       lanes *to)
+{
+    turn_lanes turn;
+    double slid2[TL_LANES] = {0};
+    turn_normals(&s->table, row, a, b, &turn);
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+        follow_points(&s->points, TL_SEGMENT_POINTS * row + k * TL_LANES, a, b, &turn, at + k * TL_LANES, to, slid2);
+    for (size_t l = 0; l < TL_LANES; l++)
+        s->table.slid[row + l] = slid2[l] > SLID * SLID * s->table.area[row + l];
 }
 
 /* ---------------------------------------------------------------- laws ------------------- */
@@ -188,46 +277,110 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
     return status == TL_OK;
 }
 
-static void add(double *sum, tl_vec3 v)
+/* ---------------------------------------------------------------- pushing ---------------- */
+
+/* What a group does to its sides: forces on the corners, on a rigid side likewise on the ends of its axes, with their
+ * sizes. The force on B, and the sum of the sizes of its points' forces. */
+typedef struct push_lanes {
+    _Alignas(TL_ALIGN) double corner[2][3][4][TL_LANES]; /* by side, corner, component */
+    double force[3][TL_LANES];
+} push_lanes;
+
+/* The force of a point on B. */
+TL_INLINE tl_vec3 force_of(const tl_segment_points *p, const lanes *of, size_t point, size_t at)
 {
-    sum[0] += v.x;
-    sum[1] += v.y;
-    sum[2] += v.z;
+    const double f = p->f_n[point];
+    return (tl_vec3){p->f_s[0][point] + f * of->normal[0][at], p->f_s[1][point] + f * of->normal[1][at],
+                     p->f_s[2][point] + f * of->normal[2][at]};
 }
 
-/* Adds the force of a point to what its side gets: the corners by their weights, or a body force and moment. */
-static void push_side(const tl_model *m, const tl_segment_side *side, tl_vec3 at, tl_vec3 force, double sum[9])
+TL_INLINE double size_of(tl_vec3 v)
 {
-    if (tl_side_is_rigid(side)) {
-        add(sum, force);
-        add(sum + 3, tl_v3_cross(tl_m3_mul(&m->bodies.pose[side->at[0]].r, at), force));
-        return;
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+/* The force on a corner of which three points have the weights w[0], w[TL_LANES] and w[2 TL_LANES], and its size. */
+TL_INLINE void push_corner(double (*to)[TL_LANES], size_t l, const double *w, double sign, tl_vec3 f0, tl_vec3 f1,
+                           tl_vec3 f2)
+{
+    const double w0 = sign * w[0], w1 = sign * w[TL_LANES], w2 = sign * w[2 * TL_LANES];
+    const tl_vec3 f = {w0 * f0.x + w1 * f1.x + w2 * f2.x, w0 * f0.y + w1 * f1.y + w2 * f2.y,
+                       w0 * f0.z + w1 * f1.z + w2 * f2.z};
+    to[0][l] = f.x, to[1][l] = f.y, to[2][l] = f.z, to[3][l] = size_of(f);
+}
+
+/* Sums of the points of a group, and what it stores and turns into heat. */
+TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t at, const lanes *of, push_lanes *restrict to)
+{
+    const tl_segment_points *p = &s->points;
+    tl_segment_table *t = &s->table;
+    const size_t first = TL_SEGMENT_POINTS * row;
+    double *restrict bears = t->bears + row, *restrict stored = t->stored + row, *restrict heat = t->heat + row;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const size_t i = first + l, j = at + l;
+        const tl_vec3 f0 = force_of(p, of, i, j), f1 = force_of(p, of, i + TL_LANES, j + TL_LANES);
+        const tl_vec3 f2 = force_of(p, of, i + 2 * TL_LANES, j + 2 * TL_LANES);
+        bears[l] = size_of(f0) + size_of(f1) + size_of(f2);
+        stored[l] = of->stored[j] + of->stored[j + TL_LANES] + of->stored[j + 2 * TL_LANES];
+        heat[l] = of->dissipated[j] + of->dissipated[j + TL_LANES] + of->dissipated[j + 2 * TL_LANES];
+        to->force[0][l] = f0.x + f1.x + f2.x;
+        to->force[1][l] = f0.y + f1.y + f2.y;
+        to->force[2][l] = f0.z + f1.z + f2.z;
+        push_corner(to->corner[0][0], l, p->at_a[0] + i, -1, f0, f1, f2);
+        push_corner(to->corner[0][1], l, p->at_a[1] + i, -1, f0, f1, f2);
+        push_corner(to->corner[0][2], l, p->at_a[2] + i, -1, f0, f1, f2);
+        push_corner(to->corner[1][0], l, p->at_b[0] + i, 1, f0, f1, f2);
+        push_corner(to->corner[1][1], l, p->at_b[1] + i, 1, f0, f1, f2);
+        push_corner(to->corner[1][2], l, p->at_b[2] + i, 1, f0, f1, f2);
     }
-    add(sum, tl_v3_scale(at.x, force));
-    add(sum + 3, tl_v3_scale(at.y, force));
-    add(sum + 6, tl_v3_scale(at.z, force));
 }
 
-/* What a segment does to its sides. */
-static void push(tl_model *m, uint32_t row, size_t lane, const lanes *l)
+TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t at, const lanes *of, push_lanes *by)
+{
+    sum_points(s, row, at, of, by);
+    for (size_t l = 0; l < TL_LANES; l += 4) {
+        tl_segment_push *to = s->table.push + row + l;
+        for (int side = 0; side < 2; side++)
+            for (int c = 0; c < 3; c++) {
+                double(*corner)[TL_LANES] = by->corner[side][c];
+                const double *const column[4] = {corner[0] + l, corner[1] + l, corner[2] + l, corner[3] + l};
+                tl_lanes_turn(column, to[0].of[side][c], to[1].of[side][c], to[2].of[side][c], to[3].of[side][c]);
+            }
+    }
+}
+
+/* A rigid side gets the force, and the moment about its centroid of the forces on the ends of its axes. */
+static void push_rigid(const tl_model *m, uint32_t body, tl_vec3 force, double (*to)[4])
+{
+    tl_vec3 moment = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        moment =
+            tl_v3_add(moment, tl_v3_cross(axis_of(&m->bodies.pose[body].r, k), tl_v3(to[k][0], to[k][1], to[k][2])));
+    const tl_vec3 both[2] = {force, moment};
+    for (int k = 0; k < 2; k++) {
+        to[k][0] = both[k].x;
+        to[k][1] = both[k].y;
+        to[k][2] = both[k].z;
+    }
+}
+
+/* `rigid`: the group may have rigid sides. */
+static void push_sides(tl_model *m, size_t row, size_t at, bool rigid, const lanes *of)
 {
     struct tl_segments *s = m->segments;
-    const tl_segment *of = &s->table.of[row];
-    const tl_segment_points *p = &s->points;
-    double sums[2][9] = {{0}}, bears = 0;
-    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t at = lane + k * TL_LANES;
-        const size_t point = tl_segment_point_row(row, k);
-        const tl_vec3 n = tl_v3(l->normal[0][at], l->normal[1][at], l->normal[2][at]);
-        const tl_vec3 on_b = tl_v3_madd(tl_columns_get(p->f_s, point), p->f_n[point], n);
-        bears += tl_v3_norm(on_b);
-        push_side(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
-        push_side(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
+    push_lanes by;
+    push_group(s, row, at, of, &by);
+    for (size_t l = 0; l < TL_LANES && rigid; l++) {
+        const tl_segment *one = &s->table.of[row + l];
+        if (one->meet == TL_NO_ROW)
+            continue;
+        const tl_vec3 on_b = get(by.force, l);
+        if (tl_side_is_rigid(&one->a))
+            push_rigid(m, one->a.at[0], tl_v3_neg(on_b), s->table.push[row + l].of[0]);
+        if (tl_side_is_rigid(&one->b))
+            push_rigid(m, one->b.at[0], on_b, s->table.push[row + l].of[1]);
     }
-    for (int side = 0; side < 2; side++)
-        for (int c = 0; c < 9; c++)
-            s->table.push[side][c][row] = sums[side][c];
-    s->table.bears[row] = bears;
 }
 
 static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -235,31 +388,56 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     (void)chunk, (void)thread;
     const act_job *job = user;
     tl_model *m = job->m;
-    struct tl_segments *s = m->segments;
+    const size_t first = (job->span->group_begin + begin) * TL_LANES, groups = end - begin;
+    bool rigid[TILE];
+    side_lanes side[2];
     lanes l;
-    const size_t first = (job->span->group_begin + begin) * TL_LANES, count = (end - begin) * TL_LANES;
-    memset(&l, 0, sizeof l);
-    for (size_t k = 0; k < count; k++)
-        if (s->table.of[first + k].meet != TL_NO_ROW)
-            follow(m, (uint32_t)(first + k), k / TL_LANES * GROUP_POINTS + k % TL_LANES, &l);
-    if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))
-        return;
-    for (size_t k = 0; k < count; k++) {
-        const size_t lane = k / TL_LANES * GROUP_POINTS + k % TL_LANES;
-        if (s->table.of[first + k].meet == TL_NO_ROW)
-            continue;
-        push(m, (uint32_t)(first + k), lane, &l);
-        s->table.stored[first + k] = s->table.heat[first + k] = 0;
-        for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
-            s->table.stored[first + k] += l.stored[lane + i * TL_LANES];
-            s->table.heat[first + k] += l.dissipated[lane + i * TL_LANES];
-        }
+    for (size_t g = 0; g < groups; g++) {
+        const size_t row = first + g * TL_LANES;
+        rigid[g] = false;
+        for (int k = 0; k < 2; k++)
+            if (!find_sides(m->segments, row, k, &side[k])) {
+                put_rigid_sides(m, row, k, &side[k]);
+                rigid[g] = true;
+            }
+        follow_group(m->segments, row, &side[0], &side[1], g * GROUP_POINTS, &l);
     }
+    if (!call_law(job, TL_SEGMENT_POINTS * first, groups * GROUP_POINTS, &l))
+        return;
+    for (size_t g = 0; g < groups; g++)
+        push_sides(m, first + g * TL_LANES, g * GROUP_POINTS, rigid[g], &l);
+}
+
+static void touch_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const tl_model *m = user;
+    tl_gridpoint_now *now = tl_gridpoints_aligned(m->segments->now) + TL_SEGMENT_DUMMIES;
+    for (size_t k = begin; k < end; k++)
+        tl_gridpoint_put(&now[k], &m->zones->points, m->segments->touched[k], m->dt);
+}
+
+/* Where gridpoints are that segments touch. */
+static void find_touched(tl_model *m)
+{
+    tl_gridpoint_now *now = tl_gridpoints_aligned(m->segments->now);
+    for (int k = 0; k < TL_SEGMENT_DUMMIES; k++)
+        now[k] = (tl_gridpoint_now){{k == 1, k == 2, 0}, {0}};
+    tl_parallel_for(m->pool, m->segments->touched_count, CHUNK, touch_range, m);
+}
+
+tl_status tl_segments_prepare(tl_model *m)
+{
+    struct tl_segments *s = m->segments;
+    const size_t need = s ? s->touched_count + TL_SEGMENT_DUMMIES + 1 : 0;
+    return !s || tl_fit(&s->now, &s->now_capacity, need, sizeof *s->now) ? TL_OK : tl_fail_memory(&m->error);
 }
 
 tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
 {
     struct tl_segments *s = m->segments;
+    if (s)
+        find_touched(m);
     for (size_t k = 0; s && k < s->span_count && failure->error.status == TL_OK; k++) {
         act_job job = {m, failure, &s->span[k]};
         if (job.span->law != TL_NO_ROW)
@@ -270,28 +448,15 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
 
 /* ---------------------------------------------------------------- who gets what ---------- */
 
-void tl_segments_gather(const tl_model *m, uint32_t gridpoint, tl_vec3 *force, double *bears)
-{
-    const struct tl_segments *s = m->segments;
-    for (uint32_t k = s->use_start[gridpoint]; k < s->use_start[gridpoint + 1]; k++) {
-        const tl_segment_use *use = &s->use[k];
-        double *const *push = &s->table.push[use->side][3 * use->corner];
-        const tl_vec3 f = tl_v3(push[0][use->segment], push[1][use->segment], push[2][use->segment]);
-        *force = tl_v3_add(*force, f);
-        *bears += tl_v3_norm(f);
-    }
-}
-
 void tl_segments_gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const struct tl_segments *s = m->segments;
     for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
         const tl_segment_use *use = &s->body_use[k];
-        double *const *push = s->table.push[use->side];
-        const uint32_t row = use->segment;
-        on->force = tl_v3_add(on->force, tl_v3(push[0][row], push[1][row], push[2][row]));
-        on->moment = tl_v3_add(on->moment, tl_v3(push[3][row], push[4][row], push[5][row]));
-        on->magnitude += s->table.bears[row];
+        double(*push)[4] = s->table.push[use->segment].of[use->side];
+        on->force = tl_v3_add(on->force, tl_v3(push[0][0], push[0][1], push[0][2]));
+        on->moment = tl_v3_add(on->moment, tl_v3(push[1][0], push[1][1], push[1][2]));
+        on->magnitude += s->table.bears[use->segment];
     }
 }
 

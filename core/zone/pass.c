@@ -70,14 +70,14 @@ typedef struct row_edges {
     double way[3][3][TL_LANES];
 } row_edges;
 
-TL_INLINE void load_edges(const tl_parcel_points *p, uint16_t *const corner[4], size_t row, row_edges *restrict to)
+TL_INLINE void load_edges(const tl_gridpoint_now *p, uint16_t *const corner[4], size_t row, row_edges *restrict to)
 {
     for (size_t l = row; l < row + TL_LANES; l += 4) {
         double *restrict const edge = &to->edge[0][0][l - row], *restrict const way = &to->way[0][0][l - row];
         for (size_t a = 1; a < 4; a++) {
             const size_t at = 3 * (a - 1) * TL_LANES;
-            tl_lanes_apart(p->of[0].place, corner[a] + l, corner[0] + l, edge + at);
-            tl_lanes_apart(p->of[0].way, corner[a] + l, corner[0] + l, way + at);
+            tl_lanes_apart(p->place, corner[a] + l, corner[0] + l, edge + at);
+            tl_lanes_apart(p->way, corner[a] + l, corner[0] + l, way + at);
         }
     }
 }
@@ -108,7 +108,7 @@ TL_INLINE tl_sym3 turned(tl_sym3 s, tl_vec3 w)
 
 /* The zones of one row of a group: number k of their clusters. All of a zone in one go, so that it stays in
  * registers. */
-TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g, size_t k,
+TL_INLINE void strain_row(const struct tl_zones *z, const tl_gridpoint_now *p, const tl_zone_group *g, size_t k,
                           group_rows *restrict r, group_sums *restrict sums)
 {
     const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
@@ -296,7 +296,7 @@ TL_INLINE void push_row(uint16_t *const corner[4], size_t row, const push by[4],
 /* ---------------------------------------------------------------- groups and parcels ----- */
 
 /* false: a zone is turned inside out. `most`: the square of the largest strain. */
-TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g,
+TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_gridpoint_now *p, const tl_zone_group *g,
                                        group_rows *r, double *most)
 {
     group_sums sums;
@@ -407,21 +407,16 @@ static bool call_solid(const pass_job *job, const tl_solid *solid, const tl_zone
 }
 
 /* The places of a parcel's gridpoints, and their way in the last step. */
-static void list_points(const pass_job *job, const tl_parcel *of, tl_parcel_points *p)
+static void list_points(const pass_job *job, const tl_parcel *of, tl_gridpoint_now *p)
 {
-    const tl_gridpoints *g = &job->zones->points;
     for (uint32_t k = of->point_begin; k < of->point_end; k++) {
-        const uint32_t row = job->zones->listed[k], at = k - of->point_begin;
-        for (int i = 0; i < 3; i++) {
-            p->of[at].place[i] = g->ref[i][row] + g->u[i][row];
-            p->of[at].way[i] = job->dt * g->moved[i][row];
-        }
+        tl_gridpoint_put(&p[k - of->point_begin], &job->zones->points, job->zones->listed[k], job->dt);
         job->zones->slot[k] = (tl_slot){{0}};
     }
 }
 
 /* Says which zone of a group is turned inside out. */
-static void note_inside_out(const pass_job *job, const tl_parcel_points *p, const tl_zone_group *g, const group_rows *r,
+static void note_inside_out(const pass_job *job, const tl_gridpoint_now *p, const tl_zone_group *g, const group_rows *r,
                             size_t parcel)
 {
     const tl_zone_table *t = &job->zones->zones;
@@ -431,7 +426,7 @@ static void note_inside_out(const pass_job *job, const tl_parcel_points *p, cons
             continue;
         tl_vec3 at = job->m->origin;
         for (int a = 0; a < 4; a++) {
-            const double *x = p->of[t->corner[a][row]].place;
+            const double *x = p[t->corner[a][row]].place;
             at = tl_v3_madd(at, 0.25, tl_v3(x[0], x[1], x[2]));
         }
         char text[TL_ERROR_TEXT / 2];
@@ -445,7 +440,7 @@ static void note_inside_out(const pass_job *job, const tl_parcel_points *p, cons
     }
 }
 
-static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
+static void pass_parcel(const pass_job *job, size_t parcel, tl_gridpoint_now *p)
 {
     struct tl_zones *z = job->zones;
     const tl_parcel *of = &z->parcels.of[parcel];
@@ -480,7 +475,7 @@ static void pass_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     (void)chunk;
     const pass_job *job = user;
     for (size_t parcel = begin; parcel < end; parcel++)
-        pass_parcel(job, parcel, &job->zones->scratch[thread]);
+        pass_parcel(job, parcel, tl_gridpoints_aligned(job->zones->scratch[thread].of));
 }
 
 void tl_zones_pass(tl_model *m, double dt, tl_failure *failure)
