@@ -101,12 +101,10 @@ typedef struct gathering {
 /* Adds up the slots of a row, in their order. */
 TL_INLINE void sum_slots(const struct tl_zones *z, size_t row, double *restrict sum)
 {
-    for (uint32_t k = z->use_start[row]; k < z->use_start[row + 1]; k++) {
-        const double *restrict slot = z->slot[z->use[k]].of;
-#pragma omp simd
-        for (size_t c = 0; c < 4; c++)
-            sum[c] += slot[c];
-    }
+    tl_four all = {0, 0, 0, 0};
+    for (uint32_t k = z->use_start[row]; k < z->use_start[row + 1]; k++)
+        all += *(const tl_four *)z->slot[z->use[k]].of;
+    *(tl_four *)sum = all;
 }
 
 /* Four rows of sums as columns. */
@@ -120,14 +118,19 @@ TL_VECTORIZED static void gather_sums(const struct tl_zones *z, const struct tl_
                                       gathering *to)
 {
     for (size_t i = 0; i < count; i += 4) {
-        _Alignas(TL_ALIGN) double zones[4][4] = {{0}}, segments[4][4] = {{0}};
+        _Alignas(TL_ALIGN) double zones[4][4];
         for (size_t l = 0; l < 4; l++)
             sum_slots(z, begin + i + l, zones[l]);
         put_sums(zones, to->zones, i);
-        for (size_t l = 0; s && l < 4; l++)
+    }
+    for (size_t i = 0; i < count && s; i += 4) {
+        _Alignas(TL_ALIGN) double segments[4][4];
+        for (size_t l = 0; l < 4; l++)
             tl_segments_gather(s, begin + i + l, segments[l]);
         put_sums(segments, to->segments, i);
     }
+    for (int c = 0; c < 4 && !s; c++)
+        memset(to->segments[c], 0, count * sizeof to->segments[c][0]);
 }
 
 /* Forces and what they are compared with. `pull`: what gravity gives a mass, m/s2. `share`: of the loads. */

@@ -55,9 +55,13 @@ static const double none[TL_LANES];
 typedef struct side_lanes {
     _Alignas(TL_ALIGN) double x[3][3][TL_LANES]; /* by corner, component */
     double d[3][3][TL_LANES];
-    double origin[3][TL_LANES], shift[3][TL_LANES];
+    double (*origin)[TL_LANES], (*shift)[TL_LANES]; /* zeros unless there are rigid sides: `own` */
+    double own[2][3][TL_LANES];
     double normal[3][TL_LANES], turn[3][TL_LANES]; /* outward */
 } side_lanes;
+
+/* Of triangles. */
+static double zeros[3][TL_LANES];
 
 static void put(double (*to)[TL_LANES], size_t lane, tl_vec3 v)
 {
@@ -122,6 +126,7 @@ TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bo
 {
     uint32_t least = UINT32_MAX;
     load_corners(s, row, is_b, to);
+    to->origin = to->shift = zeros;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_vec3 x = get(to->x[0], l), d = get(to->d[0], l);
@@ -136,8 +141,6 @@ TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bo
         to->turn[0][l] = 0.5 * per * (of_a.x + of_b.x);
         to->turn[1][l] = 0.5 * per * (of_a.y + of_b.y);
         to->turn[2][l] = 0.5 * per * (of_a.z + of_b.z);
-        to->origin[0][l] = to->origin[1][l] = to->origin[2][l] = 0;
-        to->shift[0][l] = to->shift[1][l] = to->shift[2][l] = 0;
     }
     for (size_t l = 0; l < TL_LANES; l++)
         least = s->table.corner[is_b][0][row + l] < least ? s->table.corner[is_b][0][row + l] : least;
@@ -148,6 +151,9 @@ TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bo
 static void put_rigid_sides(const tl_model *m, size_t row, bool is_b, side_lanes *to)
 {
     const tl_segment *of = &m->segments->table.of[row];
+    memset(to->own, 0, sizeof to->own);
+    to->origin = to->own[0];
+    to->shift = to->own[1];
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_segment_side *side = is_b ? &of[l].b : &of[l].a;
         if (of[l].meet != TL_NO_ROW && tl_side_is_rigid(side))
@@ -226,7 +232,8 @@ TL_VECTORIZED static void follow_group(struct tl_segments *s, size_t row, side_l
                                        lanes *to)
 {
     turn_lanes turn;
-    double slid2[TL_LANES] = {0};
+    double slid2[TL_LANES];
+    tl_lanes_clear(slid2);
     turn_normals(&s->table, row, a, b, &turn);
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
         follow_points(&s->points, TL_SEGMENT_POINTS * row + k * TL_LANES, a, b, &turn, at + k * TL_LANES, to, slid2);

@@ -204,7 +204,9 @@ typedef struct given {
 TL_INLINE void mean_change(const group_rows *restrict r, double *const stress[6], size_t row, size_t depth,
                            double mean[TL_LANES])
 {
-    double sum[TL_LANES] = {0}, all[TL_LANES] = {0};
+    double sum[TL_LANES], all[TL_LANES];
+    tl_lanes_clear(sum);
+    tl_lanes_clear(all);
     const double *restrict xx = stress[0] + row, *restrict yy = stress[1] + row, *restrict zz = stress[2] + row;
     for (size_t i = 0; i < TL_LANES * depth; i += TL_LANES)
 #pragma omp simd
@@ -300,10 +302,11 @@ TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_gridpo
                                        group_rows *r, double *most)
 {
     group_sums sums;
-    for (size_t l = 0; l < TL_LANES; l++) {
-        sums.change[l] = sums.middle[l] = sums.strain2[l] = 0;
+    tl_lanes_clear(sums.change);
+    tl_lanes_clear(sums.middle);
+    tl_lanes_clear(sums.strain2);
+    for (size_t l = 0; l < TL_LANES; l++)
         sums.sound[l] = 1;
-    }
     for (size_t k = 0; k < g->depth; k++)
         strain_row(z, p, g, k, r, &sums);
     share_volume(r, &sums, g->depth);
@@ -317,8 +320,11 @@ TL_VECTORIZED static given close_group(const struct tl_zones *z, const tl_zone_g
                                        tl_slot *slots)
 {
     double mean[TL_LANES];
-    lane_sums sums = {{0}, {0}, {0}};
+    lane_sums sums;
     given out = {0, 0, 0};
+    tl_lanes_clear(sums.work);
+    tl_lanes_clear(sums.heat);
+    tl_lanes_clear(sums.lost);
     push by[4];
     mean_change(r, z->zones.stress, g->start, g->depth, mean);
     for (size_t k = 0; k < g->depth; k++) {
