@@ -53,6 +53,7 @@ typedef struct group_sums {
     double middle[TL_LANES];                    /* of volumes half-way, m3 */
     double strain2[TL_LANES];                   /* the square of the largest strain */
     double sound[TL_LANES];                     /* 1: no zone is turned inside out; else 0 */
+    double zones[TL_LANES];                     /* how many */
 } group_sums;
 
 typedef struct pass_job {
@@ -115,11 +116,9 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_gridpoint_now *p, c
     double *const *s = z->zones.stress;
     double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
     double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
-    double factor[TL_LANES];
+    const double number = (double)k;
     row_edges c;
     load_edges(p, z->zones.corner, row, &c);
-    for (size_t l = 0; l < TL_LANES; l++)
-        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_vec3 e1 = lane_of(c.edge[0], l), e2 = lane_of(c.edge[1], l), e3 = lane_of(c.edge[2], l);
@@ -129,11 +128,11 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_gridpoint_now *p, c
         r->area[1][0][at + l] = a2.x, r->area[1][1][at + l] = a2.y, r->area[1][2][at + l] = a2.z;
         r->area[2][0][at + l] = a3.x, r->area[2][1][at + l] = a3.y, r->area[2][2][at + l] = a3.z;
         const double six_now = tl_v3_dot(a1, e1);
-        r->volume[at + l] = factor[l] * six_now;
-        r->extent[at + l] = g->extent[l];
+        const double factor = number < sums->zones[l] ? 1.0 / 6 : 0;
+        r->volume[at + l] = factor * six_now;
         const tl_vec3 m1 = tl_v3_madd(e1, -0.5, w1), m2 = tl_v3_madd(e2, -0.5, w2), m3 = tl_v3_madd(e3, -0.5, w3);
         const tl_vec3 b1 = tl_v3_cross(m2, m3), b2 = tl_v3_cross(m3, m1), b3 = tl_v3_cross(m1, m2);
-        const double six = tl_v3_dot(b1, m1), per = 1 / six, middle = factor[l] * six;
+        const double six = tl_v3_dot(b1, m1), per = 1 / six, middle = factor * six;
         const double dxx = per * (w1.x * b1.x + w2.x * b2.x + w3.x * b3.x);
         const double dyy = per * (w1.y * b1.y + w2.y * b2.y + w3.y * b3.y);
         const double dzz = per * (w1.z * b1.z + w2.z * b2.z + w3.z * b3.z);
@@ -256,12 +255,10 @@ TL_INLINE void close_row(const struct tl_zones *z, const tl_zone_group *g, size_
     double *const *s = z->zones.stress;
     double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
     const double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
-    double factor[TL_LANES];
-    for (size_t l = 0; l < TL_LANES; l++)
-        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const size_t i = at + l;
+        const double factor = r->volume[i] > 0 ? 1.0 / 6 : 0; /* inert rows push nothing */
         tl_sym3 t = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
         const double x = r->before[0][i], y = r->before[1][i], zz = r->before[2][i];
         const double more = (mean[l] - ((t.xx - x) + (t.yy - y) + (t.zz - zz))) * (1.0 / 3);
@@ -275,8 +272,8 @@ TL_INLINE void close_row(const struct tl_zones *z, const tl_zone_group *g, size_
         sums->work[l] += r->middle[i] * (straight + 2 * shear);
         sums->heat[l] += r->volume[i] * r->dissipated[i];
         sums->lost[l] += r->volume[i] * (more * more);
-        const tl_vec3 f1 = force_of(t, factor[l], r->area[0], i), f2 = force_of(t, factor[l], r->area[1], i);
-        const tl_vec3 f3 = force_of(t, factor[l], r->area[2], i);
+        const tl_vec3 f1 = force_of(t, factor, r->area[0], i), f2 = force_of(t, factor, r->area[1], i);
+        const tl_vec3 f3 = force_of(t, factor, r->area[2], i);
         put_push(&by[0], l, tl_v3_neg(tl_v3_add(tl_v3_add(f1, f2), f3)));
         put_push(&by[1], l, f1);
         put_push(&by[2], l, f2);
@@ -305,11 +302,15 @@ TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_gridpo
     tl_lanes_clear(sums.change);
     tl_lanes_clear(sums.middle);
     tl_lanes_clear(sums.strain2);
-    for (size_t l = 0; l < TL_LANES; l++)
+    for (size_t l = 0; l < TL_LANES; l++) {
         sums.sound[l] = 1;
+        sums.zones[l] = g->count[l];
+    }
     for (size_t k = 0; k < g->depth; k++)
         strain_row(z, p, g, k, r, &sums);
     share_volume(r, &sums, g->depth);
+    for (size_t i = 0; i < TL_LANES * g->depth; i += TL_LANES)
+        tl_lanes_load(r->extent + i, g->extent);
     for (size_t l = 0; l < TL_LANES; l++)
         *most = tl_larger(*most, sums.strain2[l]);
     return is_outside_out(&sums);
