@@ -4,14 +4,17 @@
  *
  * A side carries the three points of a segment with it. Let x be the places of the corners of its triangle, and d how
  * they have moved in the last step. A point of weights w lies at sum w x and has moved by sum w d. The triangle spins
- * about its normal by
+ * about its own outward normal by
  *
- *     spin . n = (g_1 x d_1 + g_2 x d_2) . n / 2,    g_1, g_2 reciprocal to the edges
+ *     spin = (e_2 . d_1 - e_1 . d_2) / (2 size),    size = |e_1 x e_2|
+ *
+ * with its edges e_1 and e_2 from the first corner, and d_1, d_2 how their ends have moved beside that. A rigid side
+ * carries its points likewise: x are then the axes of its frame, from its centroid.
  *
  * The common normal n bisects those of both sides. The gap is n . (x_B - x_A), its closure what a law gets, the motion
- * d_B - d_A. A rigid side carries its points likewise: x are then the axes of its frame, from its centroid. Shear turns
- * from the last normal to this one and by the mean spin about it. What a point bears acts on the
- * corners by the same weights, so work, forces and energy agree whatever the triangles do. */
+ * d_B - d_A. Shear turns from the last normal to this one and by the mean spin about it: with the outward normals a and
+ * b, (spin_A - spin_B) / |a - b|, which is that of two sides that turn together. What a point bears acts on the corners
+ * by the same weights, so work, forces and energy agree whatever the triangles do. */
 #include "segment/act.h"
 
 #include "base/columns.h"
@@ -44,8 +47,8 @@ typedef struct lanes {
     double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
 } lanes;
 
-/* The reference of a group of points where there are none. */
-static const double none[TL_LANES];
+/* What points have where there is nothing. */
+static const double none[TILE_POINTS];
 
 /* ---------------------------------------------------------------- sides ------------------ */
 
@@ -57,7 +60,7 @@ typedef struct side_lanes {
     double d[3][3][TL_LANES];
     double (*origin)[TL_LANES], (*shift)[TL_LANES]; /* zeros unless there are rigid sides: `own` */
     double own[2][3][TL_LANES];
-    double normal[3][TL_LANES], turn[3][TL_LANES]; /* outward */
+    double normal[3][TL_LANES], spin[TL_LANES]; /* outward, and the turn about it in the last step */
 } side_lanes;
 
 /* Of triangles. */
@@ -68,6 +71,11 @@ static void put(double (*to)[TL_LANES], size_t lane, tl_vec3 v)
     to[0][lane] = v.x;
     to[1][lane] = v.y;
     to[2][lane] = v.z;
+}
+
+TL_INLINE double dot_of(tl_vec3 a, tl_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 TL_INLINE tl_vec3 get(double (*from)[TL_LANES], size_t lane)
@@ -95,7 +103,7 @@ static tl_vec3 axis_of(const tl_mat3 *r, int k)
 static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t lane, side_lanes *to)
 {
     const tl_pose *pose = &m->bodies.pose[body];
-    const tl_vec3 turn = tl_v3_scale(m->dt, pose->w_moved);
+    const tl_vec3 turn = tl_v3_scale(m->dt, pose->w_moved), outward = tl_m3_mul(&pose->r, normal);
     const tl_mat3 back = turned_back(turn);
     for (int k = 0; k < 3; k++) {
         const tl_vec3 axis = axis_of(&pose->r, k);
@@ -104,8 +112,8 @@ static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t l
     }
     put(to->origin, lane, tl_body_place(&m->bodies, body));
     put(to->shift, lane, tl_v3_scale(m->dt, pose->v_moved));
-    put(to->normal, lane, tl_m3_mul(&pose->r, normal));
-    put(to->turn, lane, turn);
+    put(to->normal, lane, outward);
+    to->spin[lane] = tl_v3_dot(turn, outward);
 }
 
 /* The corners of triangles. */
@@ -131,16 +139,11 @@ TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bo
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_vec3 x = get(to->x[0], l), d = get(to->d[0], l);
         const tl_vec3 a = tl_v3_sub(get(to->x[1], l), x), b = tl_v3_sub(get(to->x[2], l), x);
-        const tl_vec3 area = tl_v3_cross(a, b);
-        const double per = 1 / sqrt(area.x * area.x + area.y * area.y + area.z * area.z);
-        const tl_vec3 n = {per * area.x, per * area.y, per * area.z};
-        const tl_vec3 ga = tl_v3_cross(b, n), gb = tl_v3_cross(n, a); /* over per, the reciprocal edges */
         const tl_vec3 da = tl_v3_sub(get(to->d[1], l), d), db = tl_v3_sub(get(to->d[2], l), d);
-        const tl_vec3 of_a = tl_v3_cross(ga, da), of_b = tl_v3_cross(gb, db);
-        to->normal[0][l] = n.x, to->normal[1][l] = n.y, to->normal[2][l] = n.z;
-        to->turn[0][l] = 0.5 * per * (of_a.x + of_b.x);
-        to->turn[1][l] = 0.5 * per * (of_a.y + of_b.y);
-        to->turn[2][l] = 0.5 * per * (of_a.z + of_b.z);
+        const tl_vec3 area = tl_v3_cross(a, b);
+        const double per = 1 / sqrt(dot_of(area, area));
+        to->normal[0][l] = per * area.x, to->normal[1][l] = per * area.y, to->normal[2][l] = per * area.z;
+        to->spin[l] = 0.5 * per * (dot_of(b, da) - dot_of(a, db));
     }
     for (size_t l = 0; l < TL_LANES; l++)
         least = s->table.corner[is_b][0][row + l] < least ? s->table.corner[is_b][0][row + l] : least;
@@ -182,11 +185,10 @@ TL_INLINE void turn_normals(tl_segment_table *t, size_t row, side_lanes *a, side
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_vec3 both = tl_v3_sub(get(a->normal, l), get(b->normal, l)), last = {nx[l], ny[l], nz[l]};
-        const double per = 1 / sqrt(both.x * both.x + both.y * both.y + both.z * both.z);
+        const double per = 1 / sqrt(dot_of(both, both));
         const tl_vec3 n = {per * both.x, per * both.y, per * both.z};
-        const tl_vec3 turn = tl_v3_add(get(a->turn, l), get(b->turn, l)); /* a quarter is half of the mean */
-        const tl_vec3 g = tl_turn_between(last, n, 0.25 * (turn.x * n.x + turn.y * n.y + turn.z * n.z));
-        const double g2 = g.x * g.x + g.y * g.y + g.z * g.z;
+        const tl_vec3 g = tl_turn_between(last, n, 0.5 * per * (a->spin[l] - b->spin[l]));
+        const double g2 = dot_of(g, g);
         nx[l] = to->normal[0][l] = n.x;
         ny[l] = to->normal[1][l] = n.y;
         nz[l] = to->normal[2][l] = n.z;
@@ -214,7 +216,7 @@ TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lane
         const tl_vec3 du = tl_v3_sub(carried(b->d, b->shift, wb, l), carried(a->d, a->shift, wa, l));
         const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
         const tl_vec3 aside = tl_v3_madd(apart, -gap, n), f = {sx[l], sy[l], sz[l]};
-        const double aside2 = aside.x * aside.x + aside.y * aside.y + aside.z * aside.z;
+        const double aside2 = dot_of(aside, aside);
         to->closure[at + l] = -gap - reference[l];
         to->du_n[at + l] = du_n;
         to->normal[0][at + l] = n.x, to->normal[1][at + l] = n.y, to->normal[2][at + l] = n.z;
@@ -264,7 +266,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
                                 .dt = job->m->dt,
                                 .area = p->area + first,
                                 .closure = l->closure,
-                                .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,
+                                .f_n0 = p->f_n0 ? p->f_n0 + first : none,
                                 .normal = {l->normal[0], l->normal[1], l->normal[2]},
                                 .du_n = l->du_n,
                                 .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
@@ -275,7 +277,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
                                 .stored = l->stored,
                                 .dissipated = l->dissipated,
                                 .closure_edge = l->closure,
-                                .closure_apart = l->zero};
+                                .closure_apart = none};
     tl_report report;
     const tl_status status = tl_law_update(law, &batch, &report);
     const size_t bad = report.first_bad < count ? report.first_bad : 0;
@@ -303,7 +305,7 @@ TL_INLINE tl_vec3 force_of(const tl_segment_points *p, const lanes *of, size_t p
 
 TL_INLINE double size_of(tl_vec3 v)
 {
-    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return sqrt(dot_of(v, v));
 }
 
 /* The force on a corner of which three points have the weights w[0], w[TL_LANES] and w[2 TL_LANES], and its size. */
@@ -322,13 +324,12 @@ TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t at, const la
     const tl_segment_points *p = &s->points;
     tl_segment_table *t = &s->table;
     const size_t first = TL_SEGMENT_POINTS * row;
-    double *restrict bears = t->bears + row, *restrict stored = t->stored + row, *restrict heat = t->heat + row;
+    double *restrict stored = t->stored + row, *restrict heat = t->heat + row;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const size_t i = first + l, j = at + l;
         const tl_vec3 f0 = force_of(p, of, i, j), f1 = force_of(p, of, i + TL_LANES, j + TL_LANES);
         const tl_vec3 f2 = force_of(p, of, i + 2 * TL_LANES, j + 2 * TL_LANES);
-        bears[l] = size_of(f0) + size_of(f1) + size_of(f2);
         stored[l] = of->stored[j] + of->stored[j + TL_LANES] + of->stored[j + 2 * TL_LANES];
         heat[l] = of->dissipated[j] + of->dissipated[j + TL_LANES] + of->dissipated[j + 2 * TL_LANES];
         to->force[0][l] = f0.x + f1.x + f2.x;
@@ -383,6 +384,10 @@ static void push_sides(tl_model *m, size_t row, size_t at, bool rigid, const lan
         if (one->meet == TL_NO_ROW)
             continue;
         const tl_vec3 on_b = get(by.force, l);
+        s->table.bears[row + l] = 0;
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+            s->table.bears[row + l] +=
+                size_of(force_of(&s->points, of, tl_segment_point_row(row + l, k), at + l + k * TL_LANES));
         if (tl_side_is_rigid(&one->a))
             push_rigid(m, one->a.at[0], tl_v3_neg(on_b), s->table.push[row + l].of[0]);
         if (tl_side_is_rigid(&one->b))

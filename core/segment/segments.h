@@ -59,7 +59,7 @@ typedef struct tl_segment_table {
     double *normal[3];      /* in the last step, from A to B */
     uint32_t *corner[2][3]; /* of its sides, in the list of gridpoints that are touched */
     tl_segment_push *push;
-    double *bears;         /* sum of the sizes of the forces of its points, N */
+    double *bears;         /* where a side is rigid, the sum of the sizes of the forces of its points, N */
     double *stored, *heat; /* J: the latter in the last step */
     uint8_t *slid;         /* its sides have slid or stretched: it is to be laid anew */
 } tl_segment_table;
