@@ -3,10 +3,7 @@
  * A gridpoint is a point of mass m. Its zones, contacts, weight and load push it, and it moves by central differences
  * as bodies do: v <- (D1 v + F/m h) D2, x <- x + v dt. Components that are held keep the velocity they were given.
  *
- * Rest asks of a gridpoint what it asks of a body (rest.c), with B = sqrt(n sum f^2) for the n forces of its zones. A
- * mesh swings more softly than one of its gridpoints by far. So kinetic energy is compared over the whole of it:
- *
- *     sum m v.v / 2  <  the smaller of ratio and 1000 ratio^2, times sum B^2 / (2 k)
+ * Rest asks of a gridpoint what it asks of a body (rest.c), with B = sqrt(n sum f^2) for the n forces of its zones.
  *
  * Rows of a mesh are padded to whole lanes, so lanes add up in one order, whoever takes them. */
 #include "cycle/gridpoints.h"
@@ -14,6 +11,8 @@
 #include "base/columns.h"
 #include "base/extremes.h"
 #include "base/lanes.h"
+#include "cycle/gridpoint.h"
+#include "cycle/meshes.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
 #include "zone/stiffness.h"
@@ -25,12 +24,10 @@
 /* Rows that a thread takes at a time: a multiple of TL_LANES. */
 #define CHUNK 256
 
-/* All components of a gridpoint. */
-#define ALL (TL_FIX_X | TL_FIX_Y | TL_FIX_Z)
-
 /* ---------------------------------------------------------------- step ------------------- */
 
-/* What holds each gridpoint: zones and, no less than the floor, segments and carriers. */
+/* What holds each gridpoint: zones and, no less than the floor, segments and carriers. With that, what rounding of its
+ * place would bring. */
 static void find_holds(tl_model *m)
 {
     tl_gridpoints *p = &m->zones->points;
@@ -40,6 +37,8 @@ static void find_holds(tl_model *m)
     tl_carriers_stiffen(m);
     for (size_t row = 0; row < p->table.rows; row++)
         p->holds[row] = p->stiffness[row] + tl_larger(p->holds[row], p->floor[row]);
+    for (size_t row = 0; row < p->table.rows; row++)
+        p->rounded[row] = tl_least_borne(&m->bodies, m->zones->mesh[p->mesh[row]].row, p->holds[row]);
 }
 
 double tl_gridpoints_least(tl_model *m)
@@ -55,14 +54,6 @@ double tl_gridpoints_least(tl_model *m)
     }
     const double rate = tl_scales_all(m) ? z->lowest_rate : z->highest_rate;
     return rate > 0 ? 1 / rate : INFINITY;
-}
-
-/* What mass scaling makes of a gridpoint's mass. */
-double tl_gridpoint_scale(const tl_model *m, size_t row)
-{
-    const tl_gridpoints *p = &m->zones->points;
-    const double scale = m->cycle->mass_scale * p->holds[row] / p->mass[row];
-    return m->cycle->mass_scale > 0 && p->holds[row] > 0 ? scale : 1;
 }
 
 /* ---------------------------------------------------------------- lanes ------------------ */
@@ -139,7 +130,7 @@ TL_VECTORIZED static void end_gather(const tl_gridpoints *p, size_t begin, size_
 {
     const double *restrict mass = p->mass + begin, by[3] = {pull.x, pull.y, pull.z};
     const uint32_t *restrict zones = p->zones + begin;
-    double *restrict bears = p->bears + begin;
+    double *restrict bears = p->bears + begin, *restrict touched = p->touched + begin;
     for (int c = 0; c < 3; c++) {
         const double *restrict load = p->load[0] ? p->load[c] + begin : none;
         double *restrict force = p->force[c] + begin;
@@ -148,8 +139,10 @@ TL_VECTORIZED static void end_gather(const tl_gridpoints *p, size_t begin, size_
             force[i] = (of->zones[c][i] + of->segments[c][i]) + mass[i] * by[c] + share * load[i];
     }
 #pragma omp simd
-    for (size_t i = 0; i < count; i++)
-        bears[i] = sqrt((double)(int32_t)zones[i] * of->zones[3][i]) + of->segments[3][i];
+    for (size_t i = 0; i < count; i++) {
+        touched[i] = of->segments[3][i];
+        bears[i] = sqrt((double)(int32_t)zones[i] * of->zones[3][i]) + touched[i];
+    }
 }
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -192,7 +185,8 @@ TL_VECTORIZED static void note_ratios(const tl_gridpoints *p, const free_parts *
             const double fz = if_free(free->of[2][i], p->force[2][row]);
             const double moves = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 1 : 0;
             const double size = sqrt(size2_of(fx, fy, fz)), weight = p->mass[row] * gravity + sqrt(load2[l]);
-            const double bears = tl_larger(p->bears[row], weight), carries = bears > 0 ? bears : 1;
+            const double bears = tl_larger(tl_larger(p->bears[row], weight), p->rounded[row]);
+            const double carries = bears > 0 ? bears : 1;
             const double own = bears > 0 ? size / carries : (size > 0 ? 1.0 : 0.0), ratio = moves > 0 ? own : -1;
             const double speed2 = if_free(moves, size2_of(p->v[0][row], p->v[1][row], p->v[2][row]));
             of->number[TL_SUM_UNBALANCED][l] += size;
@@ -206,21 +200,38 @@ TL_VECTORIZED static void note_ratios(const tl_gridpoints *p, const free_parts *
     }
 }
 
+/* What totals ask of a chunk: the mass that energies count, kg, and 1 for what goes along with the model (settle.c). */
+typedef struct counting {
+    const double *mass;
+    double scaled[CHUNK], along[CHUNK];
+} counting;
+
+static void find_counting(const tl_model *m, size_t begin, size_t count, counting *out)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    for (size_t i = 0; i < count; i++)
+        out->along[i] = !m->relaxing || m->zones->goes[p->mesh[begin + i]] == TL_MESH_GOES_ALONG ? 1 : 0;
+    for (size_t i = 0; i < count && m->cycle->adds; i++)
+        out->scaled[i] = p->mass[begin + i] * tl_gridpoint_energy_scale(m, begin + i);
+    out->mass = m->cycle->adds ? out->scaled : p->mass + begin;
+}
+
 /* Kinetic energy and power, for what asks for totals. */
 TL_VECTORIZED static void note_totals(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
-                                      addends *of)
+                                      const counting *by, addends *of)
 {
     for (size_t first = 0; first < count; first += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = first + l, row = begin + i;
-            const double half = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 0.5 * p->mass[row] : 0;
+            const double half = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 0.5 * by->mass[i] : 0;
             const double x = p->v[0][row], y = p->v[1][row], z = p->v[2][row];
             const double vx = if_free(free->of[0][i], x), vy = if_free(free->of[1][i], y);
             const double vz = if_free(free->of[2][i], z);
             of->number[TL_SUM_KINETIC][l] += half * size2_of(x, y, z);
             of->number[TL_SUM_DAMPED][l] += half * size2_of(vx, vy, vz);
-            of->number[TL_SUM_POWER][l] += p->force[0][row] * vx + p->force[1][row] * vy + p->force[2][row] * vz;
+            const double power = p->force[0][row] * vx + p->force[1][row] * vy + p->force[2][row] * vz;
+            of->number[TL_SUM_POWER][l] += if_free(by->along[i], power);
         }
 }
 
@@ -262,8 +273,11 @@ static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsign
         of.most[l] = -1;
     find_free(z->points.fixed + begin, end - begin, &free);
     note_ratios(&z->points, &free, begin, end - begin, tl_v3_norm(m->config.gravity), &of);
-    if (totals)
-        note_totals(&z->points, &free, begin, end - begin, &of);
+    if (totals) {
+        counting by;
+        find_counting(m, begin, end - begin, &by);
+        note_totals(&z->points, &free, begin, end - begin, &by, &of);
+    }
     note_worst(z, begin, end - begin, &of, all);
     tl_exact_add_each(all->sum, totals ? TL_SUM_COUNT : TL_SUM_KINETIC, of.number[0], TL_LANES, TL_LANES);
 }
@@ -274,17 +288,29 @@ void tl_gridpoints_gather(tl_model *m)
         return;
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
     tl_carriers_push(m);
+    if (m->relaxing)
+        tl_meshes_judge(m);
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, sum_range, m);
 }
 
 /* ---------------------------------------------------------------- motion ----------------- */
 
-void tl_gridpoints_brake(tl_model *m, double alpha)
+void tl_gridpoints_brake(tl_model *m, double alpha, double lost)
 {
     tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
     for (size_t row = 0; p && row < p->table.rows; row++) {
-        p->alpha[row] = alpha;
+        const tl_mesh_way way = m->zones->goes[p->mesh[row]];
+        p->alpha[row] = way == TL_MESH_GOES_ALONG ? alpha : way == TL_MESH_TURNS_BACK ? lost : 0;
         tl_columns_put(p->damping, row, tl_v3(0, 0, 0));
+    }
+}
+
+void tl_gridpoints_stop(tl_model *m)
+{
+    tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
+    for (size_t row = 0; p && row < p->table.rows; row++) {
+        const tl_vec3 v = tl_columns_get(p->v, row);
+        tl_columns_put(p->v, row, tl_v3_sub(v, tl_free_part(v, p->fixed[row])));
     }
 }
 
@@ -296,7 +322,7 @@ typedef struct move_job {
 
 /* What moves the gridpoints of a chunk beside their forces: columns. */
 typedef struct movers {
-    const double *mass;                     /* as the step moves it, kg */
+    const double *mass, *counted;           /* as the step moves it, and as energies count it, kg */
     const double *damping[3], *alpha;       /* N, 1/s */
     const double *load[3];                  /* N */
     tl_vec3 gravity, lag;                   /* m/s2: what is booked, and by how much forces have more */
@@ -312,10 +338,11 @@ typedef struct chunk_work {
 static void find_movers(const tl_model *m, size_t begin, size_t count, movers *out)
 {
     const tl_gridpoints *p = &m->zones->points;
-    const bool damped = tl_is_damped(m) && p->alpha, scales = m->cycle->mass_scale > 0;
+    const bool damped = tl_is_damped(m) && p->alpha, scales = tl_inertia_scaled(m->cycle);
     for (size_t i = 0; i < count && scales; i++)
         out->scaled[i] = p->mass[begin + i] * tl_gridpoint_scale(m, begin + i);
     out->mass = scales ? out->scaled : p->mass + begin;
+    out->counted = m->cycle->adds ? out->scaled : p->mass + begin;
     out->alpha = damped ? p->alpha + begin : none;
     for (int c = 0; c < 3; c++) {
         out->damping[c] = damped ? p->damping[c] + begin : none;
@@ -371,11 +398,11 @@ TL_VECTORIZED static void book_chunk(const tl_gridpoints *p, const free_parts *f
             const size_t i = first + l, row = begin + i;
             const tl_vec3 v0 = {by->v0[0][i], by->v0[1][i], by->v0[2][i]}, v1 = at_row(p->v, row);
             const tl_vec3 moved = at_row(p->moved, row), dv = tl_v3_sub(v1, v0), v = tl_v3_madd(v0, share, dv);
-            const double mass = p->mass[row], half = 0.5 * mass, dv2 = dot_of(dv, dv);
+            const double mass = by->counted[i], half = 0.5 * mass, dv2 = dot_of(dv, dv);
             const tl_vec3 load = {by->load[0][i], by->load[1][i], by->load[2][i]};
             const tl_vec3 held = {free->of[0][i] > 0 ? 0 : p->force[0][row], free->of[1][i] > 0 ? 0 : p->force[1][row],
                                   free->of[2][i] > 0 ? 0 : p->force[2][row]};
-            const tl_vec3 outside = tl_v3_sub(load, held), weight = tl_v3_scale(mass, by->gravity);
+            const tl_vec3 outside = tl_v3_sub(load, held), weight = tl_v3_scale(p->mass[row], by->gravity);
             book[TL_BOOK_KINETIC][l] += half * (dot_of(v, v) - share * (1 - share) * dv2);
             book[TL_BOOK_FIRST][l] += half * dv2;
             book[TL_BOOK_MOTION0][l] += half * dot_of(v0, v0);
@@ -431,4 +458,5 @@ void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt, 0.5 * m->dt, 0.5 * dt};
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
+    m->zones->moved_dt = dt;
 }

@@ -10,10 +10,11 @@
 double tl_gridpoints_least(tl_model *m);
 /* Each gridpoint adds what its zones do, its weight and its load; to the sums of this step. */
 void tl_gridpoints_gather(tl_model *m);
-/* What mass scaling makes of a gridpoint's mass. */
-double tl_gridpoint_scale(const tl_model *m, size_t row);
-/* In a relaxation: takes velocities back by alpha, 1/s. */
-void tl_gridpoints_brake(tl_model *m, double alpha);
+/* In a relaxation: takes velocities back by alpha, 1/s, of meshes that go along. Those that go their own way lose them
+ * by `lost`, 1/s, where they turn back. */
+void tl_gridpoints_brake(tl_model *m, double alpha, double lost);
+/* Velocities of components that are free end. Their last motion strains zones all the same. */
+void tl_gridpoints_stop(tl_model *m);
 /* Velocities and places one step on. */
 void tl_gridpoints_move(tl_model *m, double dt);
 

@@ -17,7 +17,7 @@ static tl_status apply(tl_model *m)
     struct tl_cycle *c = m->cycle;
     if (!tl_model_deforms(m))
         return TL_OK;
-    tl_zones_pass(m, m->dt, &c->failure);
+    tl_zones_pass(m, m->zones->moved_dt, &c->failure);
     const tl_status status = c->failure.error.status;
     struct tl_zones *z = m->zones;
     if (status == TL_OK) {
@@ -70,6 +70,7 @@ static tl_status prepare(tl_model *m)
     struct tl_zones *z = m->zones;
     const bool before = m->damping && ((const tl_damping_ops *)m->damping->ops)->before;
     const bool enough = tl_fit(&z->scratch, &z->scratch_capacity, tl_pool_threads(m->pool), sizeof *z->scratch) &&
+                        tl_fit(&z->goes, &z->goes_capacity, z->mesh_count, sizeof *z->goes) &&
                         (!tl_is_damped(m) || tl_gridpoints_hold_damping(&z->points, before));
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }

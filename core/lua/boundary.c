@@ -143,7 +143,7 @@ static void push_result(lua_State *L, tl_boundary_result *r)
     }
     lua_setfield(L, -2, "faces");
     tl_lua_selection *blocks = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
-    blocks->ids = r->blocks;
+    blocks->names = r->blocks;
     blocks->count = r->block_count;
     r->blocks = NULL;
     lua_setfield(L, -2, "blocks");

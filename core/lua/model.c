@@ -165,10 +165,15 @@ static int model_mass_scaling(lua_State *L, tl_model *model)
 static int model_energy(lua_State *L, tl_model *model)
 {
     tl_energy energy;
+    tl_zone_energy zones;
     tl_lua_ok(L, model, tl_model_energy(model, &energy));
-    lua_createtable(L, 0, 7);
+    tl_lua_ok(L, model, tl_model_zone_energy(model, &zones));
+    lua_createtable(L, 0, 9);
 #define SET(name, unit, doc) tl_lua_set_number(L, #name, energy.name);
     TL_ENERGY(SET)
+#undef SET
+#define SET(name, unit, doc) tl_lua_set_number(L, #name, zones.name);
+    TL_ZONE_ENERGY(SET)
 #undef SET
     return 1;
 }
@@ -353,7 +358,7 @@ static const tl_lua_key mass_scaling_results[] = {
 };
 
 #define KEY(name, unit, doc) {#name, "", doc},
-static const tl_lua_key energy_terms[] = {TL_ENERGY(KEY){NULL, NULL, NULL}};
+static const tl_lua_key energy_terms[] = {TL_ENERGY(KEY) TL_ZONE_ENERGY(KEY){NULL, NULL, NULL}};
 #undef KEY
 
 const tl_lua_topic tl_lua_model_topics[] = {

@@ -462,6 +462,46 @@ static void delete_block(tl_model *m, tl_id id)
     m->gone++;
 }
 
+/* Refuses to delete a part of a deformable body. */
+static tl_status check_meshes(tl_model *m, const tl_id *ids, size_t count)
+{
+    unsigned char *chosen = calloc(m->blocks.table.rows + 1, 1);
+    tl_status status = chosen ? TL_OK : tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        chosen[tl_block_row_quiet(m, ids[i])] = 1;
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        const uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        for (uint32_t k = 0; m->bodies.mesh[body] && k < m->bodies.member_count[body] && status == TL_OK; k++) {
+            const uint32_t other = m->members[m->bodies.member_start[body] + k];
+            if (!chosen[other])
+                status =
+                    tl_fail(&m->error, TL_E_STATE,
+                            "cannot delete block %u: it is deformable and joined to block %u, which would stay; delete "
+                            "blocks of a body before they get zones, or all of them",
+                            ids[i], m->blocks.id[other]);
+        }
+    }
+    free(chosen);
+    return status;
+}
+
+/* Takes blocks out of their bodies, but those whose bodies have zones: these go whole. */
+static tl_status leave_bodies(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = check_meshes(m, ids, count);
+    tl_id *rigid = status == TL_OK ? malloc((count + 1) * sizeof *rigid) : NULL;
+    size_t rigid_count = 0;
+    if (status == TL_OK && !rigid)
+        status = tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        if (!m->bodies.mesh[m->blocks.body[tl_block_row_quiet(m, ids[i])]])
+            rigid[rigid_count++] = ids[i];
+    if (status == TL_OK && rigid_count > 0)
+        status = fall_apart(m, rigid, rigid_count);
+    free(rigid);
+    return status;
+}
+
 tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
 {
     tl_status status = tl_model_may_change(m, "delete blocks");
@@ -469,7 +509,7 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
         status = tl_blocks_check(m, ids, count);
     if (status == TL_OK && some_joined(m, ids, count)) {
         tl_rows_tidy(m);
-        status = fall_apart(m, ids, count);
+        status = leave_bodies(m, ids, count);
     }
     for (size_t i = 0; i < count && status == TL_OK; i++)
         delete_block(m, ids[i]);
@@ -485,7 +525,7 @@ static tl_status check_parts(tl_model *m, const tl_id *ids, size_t count, const 
     if (status == TL_OK)
         tl_rows_tidy(m);
     if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, verb, "join blocks before they get zones");
+        status = tl_blocks_check_rigid(m, ids, count, verb, "join or unjoin blocks before they get zones");
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t row = tl_block_row(m, ids[i]);
         if (row == TL_NO_ROW)

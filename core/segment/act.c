@@ -1,29 +1,39 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
- * A SIMD group of segments is taken at a time.
+ * A SIMD group of segments is taken at a time. A side carries the three points of a segment with it. Let x be the
+ * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at sum w
+ * x and has moved by sum w d. With edges a and b from the first corner, how these have changed, a' and b', the size |a x
+ * b| and the normal m of the triangle it turns by
  *
- * A side carries the three points of a segment with it. Let x be the places of the corners of its triangle, and d how
- * they have moved in the last step. A point of weights w lies at sum w x and has moved by sum w d. The triangle spins
- * about its own outward normal by
+ *     turn = ((b . a' - a . b') m / 2 + (m . b') a - (m . a') b) / size
  *
- *     spin = (e_2 . d_1 - e_1 . d_2) / (2 size),    size = |e_1 x e_2|
+ * A rigid side carries its points likewise: x are then the axes of its frame, from its centroid.
  *
- * with its edges e_1 and e_2 from the first corner, and d_1, d_2 how their ends have moved beside that. A rigid side
- * carries its points likewise: x are then the axes of its frame, from its centroid.
+ * Let s be the share of the outline that is B's (overlay.h), and p = s n_A - (1 - s) n_B. Then the common normal is
+ * n = p / |p|, and the gap n . e, e = x_B - x_A. So a point on the side with the outline presses along the normal of
+ * the other side, by its distance from that: the gradient of the energy, however far the sides tilt.
  *
- * The common normal n bisects those of both sides. The gap is n . (x_B - x_A), its closure what a law gets, the motion
- * d_B - d_A. Shear turns from the last normal to this one and by the mean spin about it: with the outward normals a and
- * b, (spin_A - spin_B) / |a - b|, which is that of two sides that turn together. What a point bears acts on the corners
- * by the same weights, so work, forces and energy agree whatever the triangles do. */
+ * Forces act at the place x_A + s e. The motion is that of both sides there. Shear turns from the last normal to this
+ * one, and by the spin of s A + (1 - s) B about it. A force f on B acts on the corners by the weights. The rest is
+ * couples,
+ *
+ *     on A  -s e x f_s + f_n s n_A x t / |p|,    on B  -(1 - s) e x f_s - f_n (1 - s) n_B x t / |p|
+ *
+ * with t the part of e along the plane, for it turns with the normals. Couples act by the transpose of the turn. So
+ * work, forces, moments and energy agree whatever the triangles do. */
 #include "segment/act.h"
 
 #include "base/columns.h"
+#include "base/extremes.h"
+#include "base/inside.h"
 #include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/series.h"
 #include "contact/contacts.h"
 #include "contact/plane_turn.h"
 #include "force/joint_laws.h"
+#include "segment/blend.h"
+#include "segment/closed.h"
 #include "segment/lay.h"
 
 #include <math.h>
@@ -40,28 +50,43 @@
 /* Tolerance: slide or stretch of a segment over its size, from which on it is laid anew. */
 #define SLID 1e-3
 
-/* What is known of a tile's points only in a step. */
-typedef struct lanes {
-    _Alignas(TL_ALIGN) double closure[TILE_POINTS];
-    double du_n[TILE_POINTS], normal[3][TILE_POINTS], du_s[3][TILE_POINTS];
-    double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
-} lanes;
-
-/* What points have where there is nothing. */
-static const double none[TILE_POINTS];
-
-/* ---------------------------------------------------------------- sides ------------------ */
+/* Tolerance: how far corners of a segment may be beyond its points, over the largest difference of these: of a triangle
+ * 1, of slivers cut off of one somewhat more. */
+#define CORNERS_BEYOND 4.0
 
 /* One side of a SIMD group of segments now. A point of weights w lies at origin + sum w x, and has moved by shift +
- * sum w d. Of a triangle x are the places of its corners, and d how they have moved in the last step. Of a rigid body
- * they are the axes of its frame, and what the ends of these have moved beside its centroid. */
+ * sum w d. What lies off the side by e has moved by `off` e beside that. Of a triangle x are the places of its corners,
+ * and d how they have moved in the last step. Of a rigid body they are the axes of its frame, and what the ends of
+ * these have moved beside its centroid. */
 typedef struct side_lanes {
     _Alignas(TL_ALIGN) double x[3][3][TL_LANES]; /* by corner, component */
     double d[3][3][TL_LANES];
     double (*origin)[TL_LANES], (*shift)[TL_LANES]; /* zeros unless there are rigid sides: `own` */
     double own[2][3][TL_LANES];
-    double normal[3][TL_LANES], spin[TL_LANES]; /* outward, and the turn about it in the last step */
+    double off[3][3][TL_LANES];                    /* by row, column */
+    double normal[3][TL_LANES], turn[3][TL_LANES]; /* outward */
+    double edge[2][3][TL_LANES];                   /* a and b over the size, 1/m; of rigid sides 0 */
 } side_lanes;
+
+/* What is known of a tile's points only in a step. */
+typedef struct lanes {
+    _Alignas(TL_ALIGN) double closure[TILE_POINTS];
+    double du_n[TILE_POINTS], normal[3][TILE_POINTS], du_s[3][TILE_POINTS];
+    double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
+    double apart[3][TILE_POINTS];  /* e */
+    double beside[TILE_POINTS];    /* normal forces that laws do not know: of segments that are closed in part, N */
+    side_lanes side[TILE][2];      /* of the groups */
+    double per_p[TILE * TL_LANES]; /* 1 / |p| */
+    bool rigid[TILE];              /* there may be rigid sides in the group */
+    bool parts;                    /* some segments are closed in part */
+    bool partly[TILE * TL_LANES];  /* a part of it is closed, and a part is apart: */
+    tl_closed closed[TILE * TL_LANES];
+} lanes;
+
+/* What points have where there is nothing. */
+static const double nothing[TILE_POINTS];
+
+/* ---------------------------------------------------------------- sides ------------------ */
 
 /* Of triangles. */
 static double zeros[3][TL_LANES];
@@ -103,17 +128,21 @@ static tl_vec3 axis_of(const tl_mat3 *r, int k)
 static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t lane, side_lanes *to)
 {
     const tl_pose *pose = &m->bodies.pose[body];
-    const tl_vec3 turn = tl_v3_scale(m->dt, pose->w_moved), outward = tl_m3_mul(&pose->r, normal);
+    const tl_vec3 turn = tl_v3_scale(m->dt, pose->w_moved), zero = {0, 0, 0};
     const tl_mat3 back = turned_back(turn);
     for (int k = 0; k < 3; k++) {
         const tl_vec3 axis = axis_of(&pose->r, k);
         put(to->x[k], lane, axis);
         put(to->d[k], lane, tl_m3_mul(&back, axis));
+        for (int c = 0; c < 3; c++)
+            to->off[k][c][lane] = back.m[k][c];
     }
     put(to->origin, lane, tl_body_place(&m->bodies, body));
     put(to->shift, lane, tl_v3_scale(m->dt, pose->v_moved));
-    put(to->normal, lane, outward);
-    to->spin[lane] = tl_v3_dot(turn, outward);
+    put(to->normal, lane, tl_m3_mul(&pose->r, normal));
+    put(to->turn, lane, turn);
+    put(to->edge[0], lane, zero);
+    put(to->edge[1], lane, zero);
 }
 
 /* The corners of triangles. */
@@ -129,6 +158,11 @@ TL_INLINE void load_corners(const struct tl_segments *s, size_t row, bool is_b, 
     }
 }
 
+TL_INLINE void put_lane(double (*to)[TL_LANES], size_t l, double x, double y, double z)
+{
+    to[0][l] = x, to[1][l] = y, to[2][l] = z;
+}
+
 /* The sides A, or B, of the group whose first segment has a row, as if all were triangles. false: some are not. */
 TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bool is_b, side_lanes *to)
 {
@@ -142,8 +176,18 @@ TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bo
         const tl_vec3 da = tl_v3_sub(get(to->d[1], l), d), db = tl_v3_sub(get(to->d[2], l), d);
         const tl_vec3 area = tl_v3_cross(a, b);
         const double per = 1 / sqrt(dot_of(area, area));
-        to->normal[0][l] = per * area.x, to->normal[1][l] = per * area.y, to->normal[2][l] = per * area.z;
-        to->spin[l] = 0.5 * per * (dot_of(b, da) - dot_of(a, db));
+        const tl_vec3 n = {per * area.x, per * area.y, per * area.z}, ea = {per * a.x, per * a.y, per * a.z};
+        const tl_vec3 eb = {per * b.x, per * b.y, per * b.z};
+        const double spin = 0.5 * (dot_of(eb, da) - dot_of(ea, db)), up_a = dot_of(n, da), up_b = dot_of(n, db);
+        const tl_vec3 turn = {spin * n.x + up_b * ea.x - up_a * eb.x, spin * n.y + up_b * ea.y - up_a * eb.y,
+                              spin * n.z + up_b * ea.z - up_a * eb.z};
+        put_lane(to->normal, l, n.x, n.y, n.z);
+        put_lane(to->turn, l, turn.x, turn.y, turn.z);
+        put_lane(to->edge[0], l, ea.x, ea.y, ea.z);
+        put_lane(to->edge[1], l, eb.x, eb.y, eb.z);
+        put_lane(to->off[0], l, 0, -turn.z, turn.y);
+        put_lane(to->off[1], l, turn.z, 0, -turn.x);
+        put_lane(to->off[2], l, -turn.y, turn.x, 0);
     }
     for (size_t l = 0; l < TL_LANES; l++)
         least = s->table.corner[is_b][0][row + l] < least ? s->table.corner[is_b][0][row + l] : least;
@@ -174,28 +218,48 @@ TL_INLINE tl_vec3 carried(double (*x)[3][TL_LANES], double (*from)[TL_LANES], tl
                      from[2][l] + w.x * x[0][2][l] + w.y * x[1][2][l] + w.z * x[2][2][l]};
 }
 
-/* The common normals of a group, and how shear turns: g and 2 / (1 + g.g), and whether it does. */
+/* The common normals of a group, and how shear turns: g and 2 / (1 + g.g), and whether it does. How far B has moved
+ * more than A where a point is apart by e: by `off` e less. */
 typedef struct turn_lanes {
     _Alignas(TL_ALIGN) double normal[3][TL_LANES], g[3][TL_LANES], scale[TL_LANES], turns[TL_LANES];
+    double off[3][3][TL_LANES];
 } turn_lanes;
 
-TL_INLINE void turn_normals(tl_segment_table *t, size_t row, side_lanes *a, side_lanes *b, turn_lanes *restrict to)
+TL_INLINE void turn_normals(tl_segment_table *t, size_t row, side_lanes *a, side_lanes *b, turn_lanes *restrict to,
+                            double *restrict per_p)
 {
     double *restrict nx = t->normal[0] + row, *restrict ny = t->normal[1] + row, *restrict nz = t->normal[2] + row;
+    const double *restrict share = t->share + row;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_vec3 both = tl_v3_sub(get(a->normal, l), get(b->normal, l)), last = {nx[l], ny[l], nz[l]};
-        const double per = 1 / sqrt(dot_of(both, both));
-        const tl_vec3 n = {per * both.x, per * both.y, per * both.z};
-        const tl_vec3 g = tl_turn_between(last, n, 0.5 * per * (a->spin[l] - b->spin[l]));
+        const double s = share[l], rest = 1 - s;
+        const tl_vec3 na = get(a->normal, l), nb = get(b->normal, l), last = {nx[l], ny[l], nz[l]};
+        const tl_vec3 p = {s * na.x - rest * nb.x, s * na.y - rest * nb.y, s * na.z - rest * nb.z};
+        const tl_vec3 ta = get(a->turn, l), tb = get(b->turn, l);
+        const tl_vec3 turn = {s * ta.x + rest * tb.x, s * ta.y + rest * tb.y, s * ta.z + rest * tb.z};
+        const double per = 1 / sqrt(dot_of(p, p));
+        const tl_vec3 n = {per * p.x, per * p.y, per * p.z};
+        const tl_vec3 g = tl_turn_between(last, n, 0.5 * dot_of(turn, n));
         const double g2 = dot_of(g, g);
-        nx[l] = to->normal[0][l] = n.x;
-        ny[l] = to->normal[1][l] = n.y;
-        nz[l] = to->normal[2][l] = n.z;
-        to->g[0][l] = g.x, to->g[1][l] = g.y, to->g[2][l] = g.z;
+        per_p[l] = per;
+        nx[l] = n.x, ny[l] = n.y, nz[l] = n.z;
+        put_lane(to->normal, l, n.x, n.y, n.z);
+        put_lane(to->g, l, g.x, g.y, g.z);
         to->scale[l] = 2 / (1 + g2);
         to->turns[l] = g2 > 0 ? 1 : 0;
     }
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+#pragma omp simd
+            for (size_t l = 0; l < TL_LANES; l++)
+                to->off[k][c][l] = share[l] * a->off[k][c][l] + (1 - share[l]) * b->off[k][c][l];
+}
+
+TL_INLINE tl_vec3 carried_off(double (*off)[3][TL_LANES], tl_vec3 e, size_t l)
+{
+    return (tl_vec3){off[0][0][l] * e.x + off[0][1][l] * e.y + off[0][2][l] * e.z,
+                     off[1][0][l] * e.x + off[1][1][l] * e.y + off[1][2][l] * e.z,
+                     off[2][0][l] * e.x + off[2][1][l] * e.y + off[2][2][l] * e.z};
 }
 
 /* Point k of each segment of a group: what a law gets of it, from `at` on, and its shear. `slid2`: the square of the
@@ -208,17 +272,19 @@ TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lane
     const double *restrict bx = p->at_b[0] + point, *restrict by = p->at_b[1] + point,
                            *restrict bz = p->at_b[2] + point;
     double *restrict sx = p->f_s[0] + point, *restrict sy = p->f_s[1] + point, *restrict sz = p->f_s[2] + point;
-    const double *restrict reference = p->reference ? p->reference + point : none;
+    const double *restrict reference = p->reference ? p->reference + point : nothing;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_vec3 wa = {ax[l], ay[l], az[l]}, wb = {bx[l], by[l], bz[l]}, n = get(turn->normal, l);
         const tl_vec3 apart = tl_v3_sub(carried(b->x, b->origin, wb, l), carried(a->x, a->origin, wa, l));
-        const tl_vec3 du = tl_v3_sub(carried(b->d, b->shift, wb, l), carried(a->d, a->shift, wa, l));
+        const tl_vec3 of_sides = tl_v3_sub(carried(b->d, b->shift, wb, l), carried(a->d, a->shift, wa, l));
+        const tl_vec3 off = carried_off(turn->off, apart, l), du = tl_v3_sub(of_sides, off);
         const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
         const tl_vec3 aside = tl_v3_madd(apart, -gap, n), f = {sx[l], sy[l], sz[l]};
         const double aside2 = dot_of(aside, aside);
         to->closure[at + l] = -gap - reference[l];
         to->du_n[at + l] = du_n;
+        to->apart[0][at + l] = apart.x, to->apart[1][at + l] = apart.y, to->apart[2][at + l] = apart.z;
         to->normal[0][at + l] = n.x, to->normal[1][at + l] = n.y, to->normal[2][at + l] = n.z;
         to->du_s[0][at + l] = du.x - du_n * n.x;
         to->du_s[1][at + l] = du.y - du_n * n.y;
@@ -229,18 +295,36 @@ TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lane
     }
 }
 
-/* Follows a group: its points' lanes, and their shear. Notes which segments have slid. */
-TL_VECTORIZED static void follow_group(struct tl_segments *s, size_t row, side_lanes *a, side_lanes *b, size_t at,
-                                       lanes *to)
+/* Whether the closure of a point of some segment is below 0, or may be at a corner. */
+TL_INLINE bool may_be_apart(const double *restrict closure)
 {
+    double least[TL_LANES], all = INFINITY;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const double c0 = closure[l], c1 = closure[l + TL_LANES], c2 = closure[l + 2 * TL_LANES];
+        const double low = tl_smaller(c0, tl_smaller(c1, c2)), high = tl_larger(c0, tl_larger(c1, c2));
+        least[l] = low - CORNERS_BEYOND * (high - low);
+    }
+    for (size_t l = 0; l < TL_LANES; l++)
+        all = tl_smaller(least[l], all);
+    return all < 0;
+}
+
+/* Follows a group, by its number in the tile: its points' lanes, and their shear. Notes which segments have slid. true:
+ * some segments may be apart in part. */
+TL_VECTORIZED static bool follow_group(struct tl_segments *s, size_t row, size_t number, lanes *to)
+{
+    const size_t at = number * GROUP_POINTS;
+    side_lanes *a = &to->side[number][0], *b = &to->side[number][1];
     turn_lanes turn;
     double slid2[TL_LANES];
     tl_lanes_clear(slid2);
-    turn_normals(&s->table, row, a, b, &turn);
+    turn_normals(&s->table, row, a, b, &turn, to->per_p + number * TL_LANES);
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
         follow_points(&s->points, TL_SEGMENT_POINTS * row + k * TL_LANES, a, b, &turn, at + k * TL_LANES, to, slid2);
     for (size_t l = 0; l < TL_LANES; l++)
         s->table.slid[row + l] = slid2[l] > SLID * SLID * s->table.area[row + l];
+    return may_be_apart(to->closure + at);
 }
 
 /* ---------------------------------------------------------------- laws ------------------- */
@@ -266,7 +350,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
                                 .dt = job->m->dt,
                                 .area = p->area + first,
                                 .closure = l->closure,
-                                .f_n0 = p->f_n0 ? p->f_n0 + first : none,
+                                .f_n0 = p->f_n0 ? p->f_n0 + first : nothing,
                                 .normal = {l->normal[0], l->normal[1], l->normal[2]},
                                 .du_n = l->du_n,
                                 .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
@@ -277,7 +361,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
                                 .stored = l->stored,
                                 .dissipated = l->dissipated,
                                 .closure_edge = l->closure,
-                                .closure_apart = none};
+                                .closure_apart = nothing};
     tl_report report;
     const tl_status status = tl_law_update(law, &batch, &report);
     const size_t bad = report.first_bad < count ? report.first_bad : 0;
@@ -286,21 +370,128 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
     return status == TL_OK;
 }
 
+/* ---------------------------------------------------------------- partly closed ---------- */
+
+/* Whether the points of a segment that are apart do not pull. */
+static bool pulls_not(const tl_law *law, const tl_segment_points *p, uint32_t row)
+{
+    bool none = law->pulls != TL_PULL_ANY;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS && law->pulls == TL_PULL_BONDED; k++)
+        none = none && (p->flags[tl_segment_point_row(row, k)] & TL_POINT_FAILED);
+    return none;
+}
+
+/* How far slip and initial stress have lifted the walls of points. */
+static void find_lifts(const act_job *job, size_t first, size_t count, lanes *l, double *lift)
+{
+    const tl_segment_points *p = &job->m->segments->points;
+    const tl_law *law = &job->m->joint_laws[job->span->law];
+    const tl_law_ops *ops = law->kind->ops;
+    double hold[TILE_POINTS], *state[TL_STATE_COLUMNS];
+    memset(lift, 0, count * sizeof *lift);
+    memset(l->zero, 0, count * sizeof *l->zero);
+    if (!ops->across_gap)
+        return;
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = k < p->state_columns ? p->state[k] + first : l->zero;
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = (uint32_t)count,
+                                .area = p->area + first,
+                                .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,
+                                .state = state,
+                                .flags = p->flags + first};
+    tl_enter(law->kind, "across_gap");
+    ops->across_gap(law->self, &batch, lift, hold);
+    tl_leave();
+}
+
+/* The lane of the first point of a segment of a tile. */
+static size_t lane_of(size_t number)
+{
+    return number / TL_LANES * GROUP_POINTS + number % TL_LANES;
+}
+
+/* Gives points of segments that are closed in part the closures of what presses. */
+static void close_parts(const act_job *job, size_t first, size_t count, lanes *l)
+{
+    const struct tl_segments *s = job->m->segments;
+    const tl_law *law = &job->m->joint_laws[job->span->law];
+    double lift[TILE_POINTS];
+    bool known = false;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t row = (uint32_t)(first + i);
+        const size_t lane = lane_of(i);
+        double u[TL_SEGMENT_POINTS];
+        l->partly[i] = false;
+        if (s->table.of[row].meet == TL_NO_ROW || !pulls_not(law, &s->points, row))
+            continue;
+        if (!known)
+            find_lifts(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, l, lift);
+        known = true;
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+            u[k] = l->closure[lane + k * TL_LANES] + lift[lane + k * TL_LANES];
+        l->parts |= l->partly[i] =
+            tl_closed_part(s->outline + s->table.outline[row], s->table.corners[row], u, &l->closed[i]);
+        for (size_t k = 0; k < TL_SEGMENT_POINTS && l->partly[i]; k++)
+            l->closure[lane + k * TL_LANES] = l->closed[i].even[k] - lift[lane + k * TL_LANES];
+    }
+}
+
+/* The stiffness, N/m3, with which the law presses on a segment that is closed in part; 0 for others. */
+static double stiffness_of(const tl_segment_points *p, uint32_t row, const lanes *l, size_t number)
+{
+    double force = 0, closed = 0;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS && l->partly[number]; k++) {
+        const size_t point = tl_segment_point_row(row, k);
+        force += p->f_n[point];
+        closed += p->area[point] * l->closed[number].even[k];
+    }
+    return closed > 0 ? force / closed : 0;
+}
+
+/* What presses on segments that are closed in part beside what their law knows. */
+static void press_parts(const tl_segment_points *p, size_t first, size_t count, lanes *l)
+{
+    memset(l->beside, 0, TL_SEGMENT_POINTS * count * sizeof *l->beside);
+    for (size_t i = 0; i < count; i++) {
+        const double stiffness = stiffness_of(p, (uint32_t)(first + i), l, i);
+        for (size_t k = 0; k < TL_SEGMENT_POINTS && stiffness > 0; k++)
+            l->beside[lane_of(i) + k * TL_LANES] =
+                stiffness * p->area[tl_segment_point_row(first + i, k)] * l->closed[i].rest[k];
+    }
+}
+
+/* And what they store beside that. */
+static void store_parts(struct tl_segments *s, size_t first, size_t count, const lanes *l)
+{
+    for (size_t i = 0; i < count; i++)
+        if (l->partly[i])
+            s->table.stored[first + i] += 0.5 * stiffness_of(&s->points, (uint32_t)(first + i), l, i) *
+                                          s->table.area[first + i] * l->closed[i].second;
+}
+
 /* ---------------------------------------------------------------- pushing ---------------- */
 
 /* What a group does to its sides: forces on the corners, on a rigid side likewise on the ends of its axes, with their
- * sizes. The force on B, and the sum of the sizes of its points' forces. */
+ * sizes. The force on B, and couples on both sides. */
 typedef struct push_lanes {
     _Alignas(TL_ALIGN) double corner[2][3][4][TL_LANES]; /* by side, corner, component */
-    double force[3][TL_LANES];
+    double force[3][TL_LANES], couple[2][3][TL_LANES];
 } push_lanes;
 
-/* The force of a point on B. */
-TL_INLINE tl_vec3 force_of(const tl_segment_points *p, const lanes *of, size_t point, size_t at)
+/* A point: its force on B; of its moments about the side e x f_s and f_n t. */
+typedef struct pushing {
+    tl_vec3 force, moment, tilting;
+} pushing;
+
+TL_INLINE pushing pushing_of(const tl_segment_points *p, const lanes *of, const double *beside, size_t point, size_t at)
 {
-    const double f = p->f_n[point];
-    return (tl_vec3){p->f_s[0][point] + f * of->normal[0][at], p->f_s[1][point] + f * of->normal[1][at],
-                     p->f_s[2][point] + f * of->normal[2][at]};
+    const tl_vec3 n = {of->normal[0][at], of->normal[1][at], of->normal[2][at]};
+    const tl_vec3 e = {of->apart[0][at], of->apart[1][at], of->apart[2][at]};
+    const tl_vec3 shear = {p->f_s[0][point], p->f_s[1][point], p->f_s[2][point]};
+    const double f = p->f_n[point] + beside[at];
+    const tl_vec3 along = tl_v3_madd(e, -dot_of(e, n), n), tilting = {f * along.x, f * along.y, f * along.z};
+    return (pushing){tl_v3_madd(shear, f, n), tl_v3_cross(e, shear), tilting};
 }
 
 TL_INLINE double size_of(tl_vec3 v)
@@ -308,45 +499,77 @@ TL_INLINE double size_of(tl_vec3 v)
     return sqrt(dot_of(v, v));
 }
 
-/* The force on a corner of which three points have the weights w[0], w[TL_LANES] and w[2 TL_LANES], and its size. */
-TL_INLINE void push_corner(double (*to)[TL_LANES], size_t l, const double *w, double sign, tl_vec3 f0, tl_vec3 f1,
-                           tl_vec3 f2)
+TL_INLINE tl_vec3 sum_of(tl_vec3 a, tl_vec3 b, tl_vec3 c)
 {
-    const double w0 = sign * w[0], w1 = sign * w[TL_LANES], w2 = sign * w[2 * TL_LANES];
-    const tl_vec3 f = {w0 * f0.x + w1 * f1.x + w2 * f2.x, w0 * f0.y + w1 * f1.y + w2 * f2.y,
-                       w0 * f0.z + w1 * f1.z + w2 * f2.z};
-    to[0][l] = f.x, to[1][l] = f.y, to[2][l] = f.z, to[3][l] = size_of(f);
+    return tl_v3_add(tl_v3_add(a, b), c);
 }
 
-/* Sums of the points of a group, and what it stores and turns into heat. */
-TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t at, const lanes *of, push_lanes *restrict to)
+/* The force on a corner of which the three points have the weights w[0], w[TL_LANES] and w[2 TL_LANES], and `more`. */
+TL_INLINE void push_corner(double (*to)[TL_LANES], size_t l, const double *w, double sign, pushing p0, pushing p1,
+                           pushing p2, tl_vec3 more)
+{
+    const double w0 = sign * w[0], w1 = sign * w[TL_LANES], w2 = sign * w[2 * TL_LANES];
+    const tl_vec3 f0 = p0.force, f1 = p1.force, f2 = p2.force;
+    const tl_vec3 f = {w0 * f0.x + w1 * f1.x + w2 * f2.x + more.x, w0 * f0.y + w1 * f1.y + w2 * f2.y + more.y,
+                       w0 * f0.z + w1 * f1.z + w2 * f2.z + more.z};
+    put_lane(to, l, f.x, f.y, f.z);
+    to[3][l] = size_of(f);
+}
+
+/* The forces on the corners of a side: `at`, their weights in the points, and what a couple brings. */
+TL_INLINE void push_side(double (*to)[4][TL_LANES], size_t l, double *const at[3], size_t point, double sign,
+                         pushing p0, pushing p1, pushing p2, tl_vec3 couple, side_lanes *side)
+{
+    const tl_vec3 n = get(side->normal, l), a = get(side->edge[0], l), b = get(side->edge[1], l);
+    const double spin = 0.5 * dot_of(couple, n), on_a = dot_of(couple, a), on_b = dot_of(couple, b);
+    const tl_vec3 f1 = {spin * b.x - on_b * n.x, spin * b.y - on_b * n.y, spin * b.z - on_b * n.z};
+    const tl_vec3 f2 = {on_a * n.x - spin * a.x, on_a * n.y - spin * a.y, on_a * n.z - spin * a.z};
+    const tl_vec3 f0 = {-(f1.x + f2.x), -(f1.y + f2.y), -(f1.z + f2.z)};
+    push_corner(to[0], l, at[0] + point, sign, p0, p1, p2, f0);
+    push_corner(to[1], l, at[1] + point, sign, p0, p1, p2, f1);
+    push_corner(to[2], l, at[2] + point, sign, p0, p1, p2, f2);
+}
+
+/* Sums of the points of a group, by its number in the tile, and what it stores and turns into heat. */
+TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *restrict to)
 {
     const tl_segment_points *p = &s->points;
     tl_segment_table *t = &s->table;
-    const size_t first = TL_SEGMENT_POINTS * row;
-    double *restrict stored = t->stored + row, *restrict heat = t->heat + row;
+    const size_t first = TL_SEGMENT_POINTS * row, at = number * GROUP_POINTS;
+    side_lanes *a = &of->side[number][0], *b = &of->side[number][1];
+    const double *restrict beside = of->parts ? of->beside : nothing, *restrict per_p = of->per_p + number * TL_LANES;
+    double *restrict bears = t->bears + row, *restrict stored = t->stored + row, *restrict heat = t->heat + row;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const size_t i = first + l, j = at + l;
-        const tl_vec3 f0 = force_of(p, of, i, j), f1 = force_of(p, of, i + TL_LANES, j + TL_LANES);
-        const tl_vec3 f2 = force_of(p, of, i + 2 * TL_LANES, j + 2 * TL_LANES);
+        const double share = t->share[row + l], rest = 1 - share;
+        const pushing p0 = pushing_of(p, of, beside, i, j);
+        const pushing p1 = pushing_of(p, of, beside, i + TL_LANES, j + TL_LANES);
+        const pushing p2 = pushing_of(p, of, beside, i + 2 * TL_LANES, j + 2 * TL_LANES);
+        const tl_vec3 force = sum_of(p0.force, p1.force, p2.force);
+        const tl_vec3 moment = sum_of(p0.moment, p1.moment, p2.moment);
+        const tl_vec3 tilting = sum_of(p0.tilting, p1.tilting, p2.tilting);
+        const tl_vec3 tilts_a = tl_v3_cross(get(a->normal, l), tilting);
+        const tl_vec3 tilts_b = tl_v3_cross(get(b->normal, l), tilting);
+        const double tilt_a = share * per_p[l], tilt_b = -rest * per_p[l];
+        const tl_vec3 on_a = {tilt_a * tilts_a.x - share * moment.x, tilt_a * tilts_a.y - share * moment.y,
+                              tilt_a * tilts_a.z - share * moment.z};
+        const tl_vec3 on_b = {tilt_b * tilts_b.x - rest * moment.x, tilt_b * tilts_b.y - rest * moment.y,
+                              tilt_b * tilts_b.z - rest * moment.z};
+        bears[l] = size_of(p0.force) + size_of(p1.force) + size_of(p2.force);
         stored[l] = of->stored[j] + of->stored[j + TL_LANES] + of->stored[j + 2 * TL_LANES];
         heat[l] = of->dissipated[j] + of->dissipated[j + TL_LANES] + of->dissipated[j + 2 * TL_LANES];
-        to->force[0][l] = f0.x + f1.x + f2.x;
-        to->force[1][l] = f0.y + f1.y + f2.y;
-        to->force[2][l] = f0.z + f1.z + f2.z;
-        push_corner(to->corner[0][0], l, p->at_a[0] + i, -1, f0, f1, f2);
-        push_corner(to->corner[0][1], l, p->at_a[1] + i, -1, f0, f1, f2);
-        push_corner(to->corner[0][2], l, p->at_a[2] + i, -1, f0, f1, f2);
-        push_corner(to->corner[1][0], l, p->at_b[0] + i, 1, f0, f1, f2);
-        push_corner(to->corner[1][1], l, p->at_b[1] + i, 1, f0, f1, f2);
-        push_corner(to->corner[1][2], l, p->at_b[2] + i, 1, f0, f1, f2);
+        put_lane(to->force, l, force.x, force.y, force.z);
+        put_lane(to->couple[0], l, on_a.x, on_a.y, on_a.z);
+        put_lane(to->couple[1], l, on_b.x, on_b.y, on_b.z);
+        push_side(to->corner[0], l, p->at_a, i, -1, p0, p1, p2, on_a, a);
+        push_side(to->corner[1], l, p->at_b, i, 1, p0, p1, p2, on_b, b);
     }
 }
 
-TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t at, const lanes *of, push_lanes *by)
+TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
 {
-    sum_points(s, row, at, of, by);
+    sum_points(s, row, number, of, by);
     for (size_t l = 0; l < TL_LANES; l += 4) {
         tl_segment_push *to = s->table.push + row + l;
         for (int side = 0; side < 2; side++)
@@ -358,10 +581,11 @@ TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t a
     }
 }
 
-/* A rigid side gets the force, and the moment about its centroid of the forces on the ends of its axes. */
-static void push_rigid(const tl_model *m, uint32_t body, tl_vec3 force, double (*to)[4])
+/* A rigid side gets the force, and the moment about its centroid: a couple, and that of the forces on the ends of its
+ * axes. */
+static void push_rigid(const tl_model *m, uint32_t body, tl_vec3 force, tl_vec3 couple, double (*to)[4])
 {
-    tl_vec3 moment = {0, 0, 0};
+    tl_vec3 moment = couple;
     for (int k = 0; k < 3; k++)
         moment =
             tl_v3_add(moment, tl_v3_cross(axis_of(&m->bodies.pose[body].r, k), tl_v3(to[k][0], to[k][1], to[k][2])));
@@ -373,25 +597,20 @@ static void push_rigid(const tl_model *m, uint32_t body, tl_vec3 force, double (
     }
 }
 
-/* `rigid`: the group may have rigid sides. */
-static void push_sides(tl_model *m, size_t row, size_t at, bool rigid, const lanes *of)
+static void push_sides(tl_model *m, size_t row, size_t number, lanes *of)
 {
     struct tl_segments *s = m->segments;
     push_lanes by;
-    push_group(s, row, at, of, &by);
-    for (size_t l = 0; l < TL_LANES && rigid; l++) {
+    push_group(s, row, number, of, &by);
+    for (size_t l = 0; l < TL_LANES && of->rigid[number]; l++) {
         const tl_segment *one = &s->table.of[row + l];
         if (one->meet == TL_NO_ROW)
             continue;
         const tl_vec3 on_b = get(by.force, l);
-        s->table.bears[row + l] = 0;
-        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
-            s->table.bears[row + l] +=
-                size_of(force_of(&s->points, of, tl_segment_point_row(row + l, k), at + l + k * TL_LANES));
         if (tl_side_is_rigid(&one->a))
-            push_rigid(m, one->a.at[0], tl_v3_neg(on_b), s->table.push[row + l].of[0]);
+            push_rigid(m, one->a.at[0], tl_v3_neg(on_b), get(by.couple[0], l), s->table.push[row + l].of[0]);
         if (tl_side_is_rigid(&one->b))
-            push_rigid(m, one->b.at[0], on_b, s->table.push[row + l].of[1]);
+            push_rigid(m, one->b.at[0], on_b, get(by.couple[1], l), s->table.push[row + l].of[1]);
     }
 }
 
@@ -400,24 +619,30 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     (void)chunk, (void)thread;
     const act_job *job = user;
     tl_model *m = job->m;
-    const size_t first = (job->span->group_begin + begin) * TL_LANES, groups = end - begin;
-    bool rigid[TILE];
-    side_lanes side[2];
+    const size_t first = (job->span->group_begin + begin) * TL_LANES, groups = end - begin, count = groups * TL_LANES;
+    bool apart = false;
     lanes l;
+    l.parts = false;
     for (size_t g = 0; g < groups; g++) {
         const size_t row = first + g * TL_LANES;
-        rigid[g] = false;
+        l.rigid[g] = false;
         for (int k = 0; k < 2; k++)
-            if (!find_sides(m->segments, row, k, &side[k])) {
-                put_rigid_sides(m, row, k, &side[k]);
-                rigid[g] = true;
+            if (!find_sides(m->segments, row, k, &l.side[g][k])) {
+                put_rigid_sides(m, row, k, &l.side[g][k]);
+                l.rigid[g] = true;
             }
-        follow_group(m->segments, row, &side[0], &side[1], g * GROUP_POINTS, &l);
+        apart |= follow_group(m->segments, row, g, &l);
     }
-    if (!call_law(job, TL_SEGMENT_POINTS * first, groups * GROUP_POINTS, &l))
+    if (apart)
+        close_parts(job, first, count, &l);
+    if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))
         return;
+    if (l.parts)
+        press_parts(&m->segments->points, first, count, &l);
     for (size_t g = 0; g < groups; g++)
-        push_sides(m, first + g * TL_LANES, g * GROUP_POINTS, rigid[g], &l);
+        push_sides(m, first + g * TL_LANES, g, &l);
+    if (l.parts)
+        store_parts(m->segments, first, count, &l);
 }
 
 static void touch_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -426,7 +651,7 @@ static void touch_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     const tl_model *m = user;
     tl_gridpoint_now *now = tl_gridpoints_aligned(m->segments->now) + TL_SEGMENT_DUMMIES;
     for (size_t k = begin; k < end; k++)
-        tl_gridpoint_put(&now[k], &m->zones->points, m->segments->touched[k], m->dt);
+        tl_gridpoint_put(&now[k], &m->zones->points, m->segments->touched[k], m->zones->moved_dt);
 }
 
 /* Where gridpoints are that segments touch. */
@@ -455,6 +680,8 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
         if (job.span->law != TL_NO_ROW)
             tl_parallel_for(m->pool, job.span->group_end - job.span->group_begin, TILE, act_range, &job);
     }
+    if (s && failure->error.status == TL_OK)
+        tl_blends_apply(m);
     return failure->error.status;
 }
 

@@ -40,6 +40,18 @@ typedef struct tl_segment {
     tl_vec3 normal_a, normal_b;
 } tl_segment;
 
+/* Whether a side is of a body. */
+static inline bool tl_side_is_of(const tl_model *m, const tl_segment_side *s, uint32_t body)
+{
+    return (tl_side_is_rigid(s) ? s->at[0] : m->zones->mesh[m->zones->points.mesh[s->at[0]]].row) == body;
+}
+
+/* Whether a row is a segment, and one of its sides is of a body. */
+static inline bool tl_segment_touches(const tl_model *m, const tl_segment *of, uint32_t body)
+{
+    return of->meet != TL_NO_ROW && (tl_side_is_of(m, &of->a, body) || tl_side_is_of(m, &of->b, body));
+}
+
 /* The row of point k of a segment. */
 static inline size_t tl_segment_point_row(size_t segment, size_t k)
 {
@@ -54,12 +66,14 @@ typedef struct tl_segment_push {
 
 typedef struct tl_segment_table {
     tl_table table;
-    tl_segment *of;         /* an empty lane has no meet: TL_NO_ROW */
-    double *area;           /* m2 */
-    double *normal[3];      /* in the last step, from A to B */
-    uint32_t *corner[2][3]; /* of its sides, in the list of gridpoints that are touched */
+    tl_segment *of;              /* an empty lane has no meet: TL_NO_ROW */
+    double *area;                /* m2 */
+    double *share;               /* that of its meet */
+    uint32_t *outline, *corners; /* in the list of outlines */
+    double *normal[3];           /* in the last step, from A to B */
+    uint32_t *corner[2][3];      /* of its sides, in the list of gridpoints that are touched */
     tl_segment_push *push;
-    double *bears;         /* where a side is rigid, the sum of the sizes of the forces of its points, N */
+    double *bears;         /* sum of the sizes of the forces of its points, N */
     double *stored, *heat; /* J: the latter in the last step */
     uint8_t *slid;         /* its sides have slid or stretched: it is to be laid anew */
 } tl_segment_table;
@@ -80,10 +94,25 @@ typedef struct tl_meet {
     tl_id a, b;
     uint32_t face_a, face_b;
     tl_tag tag;
-    uint32_t law; /* index into the model's joint_laws, or TL_NO_ROW */
-    bool stale;   /* its segments are to be laid anew: it is new, or its sides have slid or stretched */
-    double area;  /* m2 */
+    uint32_t law;        /* index into the model's joint_laws, or TL_NO_ROW */
+    bool stale;          /* its segments are to be laid anew: it is new, or its sides have slid or stretched */
+    double area;         /* m2 */
+    double share;        /* 1: the outline of what the faces have in common is B's; 0: it is A's */
+    uint32_t begin, end; /* rows of its segments */
+    bool tilted;         /* its faces may be tilted so far that a field contact has a share (blend.c) */
+    bool alone;          /* there is none */
+    double left;         /* what the field contact leaves of its forces and energies */
 } tl_meet;
+
+/* Two blocks a part of whose contact is a field contact (blend.c). */
+typedef struct tl_blend {
+    tl_id a, b;
+    uint32_t first, end; /* of their meets */
+    uint32_t meet;       /* whose tilt decides */
+    uint32_t contact;    /* row of the field contact, or TL_NO_ROW */
+    double share;        /* of the field contact */
+    tl_vec3 slope[2];    /* of the share by the mean vector areas of both faces, 1/m2 */
+} tl_blend;
 
 /* SIMD groups of one law. */
 typedef struct tl_segment_span {
@@ -103,6 +132,8 @@ typedef struct tl_segment_use {
 struct tl_segments {
     tl_segment_table table;
     tl_segment_points points;
+    tl_point2 *outline; /* of all segments, as of tl_overlay */
+    size_t outline_count, outline_capacity;
     tl_meet *meet;
     size_t meet_count, meet_capacity;
     tl_segment_span *span;
@@ -122,6 +153,8 @@ struct tl_segments {
     tl_point2 *room_memory;
     tl_vec3 *corner; /* scratch: of a rigid face */
     size_t corner_capacity;
+    tl_blend *blend; /* in this step, in the order of the meets */
+    size_t blend_count, blend_capacity;
     uint64_t version; /* counts how often segments were laid */
     double lost;      /* shear that went when segments were laid: heat of the next step, J */
 };

@@ -11,6 +11,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     tl_walk_table(walk, TL_KEEP_STATE, "segments.table", &s->table.table, counts);
     tl_walk_table(walk, TL_KEEP_STATE, "segments.points", &s->points.table, counts);
     VALUE(STATE, points.state_columns);
+    LIST(STATE, outline, outline_count, outline_capacity);
     LIST(STATE, meet, meet_count, meet_capacity);
     LIST(STATE, span, span_count, span_capacity);
     LIST(DERIVED, use, use_capacity, use_capacity);
@@ -21,6 +22,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     VALUE(DERIVED, touched_count);
     LIST(SCRATCH, now, now_capacity, now_capacity);
     LIST(SCRATCH, corner, corner_capacity, corner_capacity);
+    LIST(SCRATCH, blend, blend_capacity, blend_capacity);
     VALUE(STATE, lost);
     VALUE(CACHE, structure);
     VALUE(CACHE, followed);

@@ -249,6 +249,7 @@ static void hash_mesh(tl_hash *hash, const struct tl_zones *z, const tl_body_mes
         const tl_named_solid *solid = &z->solid[of->solid];
         hash_text(hash, solid->name);
         hash_text(hash, solid->of.kind->name);
+        tl_hash_word(hash, of->block);
         hash_rows(hash, &z->parcels.table, k, k + 1);
         for (uint32_t g = of->group_begin; g < of->group_end; g++) {
             const size_t begin = z->group[g].start, end = begin + (size_t)z->group[g].depth * TL_LANES;

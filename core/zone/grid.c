@@ -23,7 +23,7 @@ uint32_t tl_mesh_of(const tl_model *m, tl_id body)
 const tl_surface_part *tl_face_parts(const tl_model *m, tl_id block, uint32_t number, size_t *count)
 {
     const struct tl_zones *z = m->zones;
-    const uint32_t mesh = tl_mesh_of(m, m->bodies.id[m->blocks.body[tl_block_row_quiet(m, block)]]);
+    const uint32_t mesh = tl_mesh_of(m, block);
     *count = 0;
     if (mesh == TL_NO_ROW)
         return NULL;
@@ -58,12 +58,22 @@ typedef struct laying {
     tl_model *m;
     struct tl_zones *z;
     const tl_grid *grid;
-    uint32_t *local;  /* of each of the mesh's points: its number in the parcel, or TL_NO_ROW */
-    uint32_t *sorted; /* clusters of the parcel, by their sizes */
-    uint32_t points;  /* that the parcel has */
-    uint32_t first;   /* row of the mesh's first gridpoint */
-    uint32_t row;     /* of the body */
+    uint32_t *local;   /* of each of the mesh's points: its number in the parcel, or TL_NO_ROW */
+    uint32_t *sorted;  /* clusters of the parcel, by their sizes */
+    uint32_t points;   /* that the parcel has */
+    uint32_t first;    /* row of the mesh's first gridpoint */
+    uint32_t row;      /* of the body */
+    tl_grid_block own; /* that of a body which does not list its blocks */
 } laying;
+
+/* The block of a cluster. */
+static const tl_grid_block *block_of(const laying *l, uint32_t cluster)
+{
+    const tl_grid_block *of = l->grid->block ? l->grid->block : &l->own;
+    while (of->cluster_end <= cluster)
+        of++;
+    return of;
+}
 
 static size_t size_of(const tl_grid *g, uint32_t cluster)
 {
@@ -96,12 +106,13 @@ static uint32_t new_points(const laying *l, uint32_t cluster, bool add)
 static uint32_t gather_clusters(laying *l, uint32_t first)
 {
     const tl_grid *g = l->grid;
+    const size_t most = block_of(l, first)->cluster_end;
     size_t zones = 0;
     uint32_t end = first;
     for (size_t k = 0; k < g->point_count; k++)
         l->local[k] = TL_NO_ROW;
     l->points = 0;
-    while (end < g->cluster_count) {
+    while (end < most) {
         const size_t more = size_of(g, end);
         if (zones + more > TL_PARCEL_ZONES * 9 / 10 || l->points + new_points(l, end, false) > TL_PARCEL_POINTS)
             break;
@@ -168,7 +179,8 @@ static uint32_t lay_parcel(laying *l, uint32_t first, uint32_t parcel, size_t *r
 {
     struct tl_zones *z = l->z;
     const uint32_t end = gather_clusters(l, first), count = end - first;
-    tl_parcel of = {.mesh = mesh, .solid = solid, .group_begin = (uint32_t)z->group_count};
+    tl_parcel of = {
+        .mesh = mesh, .solid = solid, .block = block_of(l, first)->block, .group_begin = (uint32_t)z->group_count};
     sort_clusters(l, first, end);
     for (uint32_t k = 0; k < count; k += TL_LANES)
         lay_group(l, l->sorted + k, count - k < TL_LANES ? count - k : TL_LANES, row);
@@ -198,8 +210,11 @@ static void put_points(const laying *l, size_t padded, uint32_t mesh)
         p->mass[l->first + k] = k < g->point_count ? 0 : NO_MASS;
         p->fixed[l->first + k] = k < g->point_count ? 0 : TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
     }
+    const tl_grid_block *of = block_of(l, 0);
     for (uint32_t zone = 0; zone < g->zone_count; zone++) {
-        const double mass = g->density * volume_of(g, zone) / 4;
+        while (zone >= of->zone_end)
+            of++;
+        const double mass = of->density * volume_of(g, zone) / 4;
         for (int a = 0; a < 4; a++) {
             const uint32_t row = l->first + g->zone[zone][a];
             p->mass[row] += mass;
@@ -223,6 +238,9 @@ bool tl_zones_index(struct tl_zones *z)
         z->use[z->use_start[z->listed[k]]++] = (uint32_t)k;
     memmove(z->use_start + 1, z->use_start, points * sizeof *z->use_start);
     z->use_start[0] = 0;
+    for (size_t k = 0; k < z->part_count; k++)
+        for (int a = 0; a < 3; a++)
+            z->points.bare[z->part[k].corner[a]] = 1;
     return true;
 }
 
@@ -283,6 +301,8 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
     tl_body_mesh *mesh = &z->mesh[number];
     *mesh = (tl_body_mesh){.body = body,
                            .row = l->row,
+                           .made_u = l->m->bodies.pose[l->row].u,
+                           .made_q = l->m->bodies.q[l->row],
                            .point_begin = (uint32_t)z->points.table.rows,
                            .parcel_begin = (uint32_t)z->parcels.table.rows,
                            .zone_begin = (uint32_t)z->row_of_count,
@@ -315,6 +335,7 @@ tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t so
 {
     struct tl_zones *z = m->zones;
     laying l = {.m = m, .z = z, .grid = grid, .row = m->blocks.body[tl_block_row_quiet(m, body)]};
+    l.own = (tl_grid_block){body, grid->density, grid->zone_count, grid->cluster_count};
     sizes more;
     const size_t points = z->points.table.rows + grid->point_count + TL_LANES;
     bool enough = make_room(&l, &more) && tl_solid_columns(z, &z->solid[solid].of) &&

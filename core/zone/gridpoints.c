@@ -1,9 +1,9 @@
 /* gridpoints.c - what a user does to gridpoints: holds and loads them, gives them velocities, asks what holds them. */
-#include "zone/gridpoints.h"
-
 #include "base/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
+
+#include <talus/zones.h>
 
 /* The row of a gridpoint, or TL_NO_ROW with a sentence. */
 static uint32_t row_of(tl_model *m, tl_zone_name name)

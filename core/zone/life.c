@@ -19,12 +19,15 @@ static void add_columns(struct tl_zones *z)
     }
     TL_COLUMN(&p->table, p, mass, TL_COLUMN_STATE);
     TL_COLUMN(&p->table, p, bears, TL_COLUMN_STEP);
+    TL_COLUMN(&p->table, p, touched, TL_COLUMN_STEP);
     TL_COLUMN(&p->table, p, zones, 0);
     TL_COLUMN(&p->table, p, stiffness, 0);
     TL_COLUMN(&p->table, p, floor, 0);
     TL_COLUMN(&p->table, p, holds, 0);
+    TL_COLUMN(&p->table, p, rounded, 0);
     TL_COLUMN(&p->table, p, mesh, 0);
     TL_COLUMN(&p->table, p, fixed, TL_COLUMN_STATE);
+    TL_COLUMN(&p->table, p, bare, 0);
 
     tl_zone_table *t = &z->zones;
     tl_table_init(&t->table, t);
@@ -61,8 +64,8 @@ void tl_zones_free(struct tl_zones *z)
     tl_table_free(&z->points.table);
     tl_table_free(&z->zones.table);
     tl_table_free(&z->parcels.table);
-    void *const owned[] = {z->group,  z->listed, z->slot, z->use,     z->use_start,
-                           z->row_of, z->part,   z->mesh, z->meeting, z->scratch};
+    void *const owned[] = {z->group, z->listed, z->slot,    z->use,     z->use_start, z->row_of,
+                           z->part,  z->mesh,   z->meeting, z->scratch, z->goes};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     tl_solids_free(z);

@@ -53,29 +53,87 @@ static bool turns(const tl_kind *kind)
     return some;
 }
 
+/* Makes a solid; what is not given is taken from `from`. */
+static tl_status make(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args, const tl_solid *from,
+                      tl_named_solid *made)
+{
+    char context[TL_ERROR_TEXT / 2];
+    *made = (tl_named_solid){.name = strdup(name)};
+    if (!made->name)
+        return tl_fail_memory(&m->error);
+    snprintf(context, sizeof context, "solid '%.80s', of kind '%.40s'", name, kind->name);
+    const tl_status status = tl_solid_make(kind, args, from, context, &m->error, &made->of);
+    if (status != TL_OK)
+        clear(made);
+    else
+        made->turns = turns(kind);
+    return status;
+}
+
+/* Where the columns of a state of a kind begin; false: it has none of that name and width. */
+static bool find_columns(const tl_kind *kind, const tl_state *state, uint32_t *begin)
+{
+    *begin = 0;
+    for (uint32_t k = 0; k < kind->state_count; k++) {
+        const tl_state *own = tl_kind_state(kind, k);
+        if (strcmp(own->name, state->name) == 0 && own->kind == state->kind)
+            return true;
+        *begin += tl_state_width(own->kind);
+    }
+    return false;
+}
+
+/* The states of a zone after its kind has changed: those of the same names stay. */
+static void carry_states(struct tl_zones *z, uint32_t row, const tl_kind *from, const tl_kind *to)
+{
+    double old[TL_SOLID_COLUMNS] = {0};
+    uint32_t at = 0, begin;
+    for (uint32_t k = 0; k < z->zones.state_columns; k++)
+        old[k] = z->zones.state[k][row];
+    for (uint32_t k = 0; k < to->state_count; k++) {
+        const tl_state *state = tl_kind_state(to, k);
+        const bool stays = find_columns(from, state, &begin);
+        for (uint32_t c = 0; c < tl_state_width(state->kind); c++)
+            z->zones.state[at + c][row] = stays ? old[begin + c] : state->initial;
+        at += tl_state_width(state->kind);
+    }
+    for (; at < z->zones.state_columns; at++)
+        z->zones.state[at][row] = 0;
+}
+
+void tl_solid_carry(struct tl_zones *z, const tl_parcel *parcel, const tl_kind *from, const tl_kind *to)
+{
+    for (uint32_t g = parcel->group_begin; from != to && g < parcel->group_end; g++)
+        for (uint32_t k = 0; k < (uint32_t)z->group[g].depth * TL_LANES; k++)
+            carry_states(z, z->group[g].start + k, from, to);
+}
+
+/* Puts a solid in the place of an older one of its name, or at the end. Memory suffices. */
+static void put(struct tl_zones *z, uint32_t known, tl_named_solid *made)
+{
+    for (size_t k = 0; known != TL_NO_ROW && k < z->parcels.table.rows; k++)
+        if (z->parcels.of[k].solid == known)
+            tl_solid_carry(z, &z->parcels.of[k], z->solid[known].of.kind, made->of.kind);
+    if (known != TL_NO_ROW)
+        clear(&z->solid[known]);
+    z->solid[known != TL_NO_ROW ? known : z->solid_count++] = *made;
+    z->version++;
+}
+
 /* Sets a solid; what is not given is taken from `from`. */
 static tl_status set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args, const tl_solid *from)
 {
     struct tl_zones *z = m->zones;
-    const uint32_t known = tl_solid_find(m, name);
-    tl_named_solid made = {.name = strdup(name)};
-    char context[TL_ERROR_TEXT / 2];
-    if (!made.name)
-        return tl_fail_memory(&m->error);
-    snprintf(context, sizeof context, "solid '%.80s', of kind '%.40s'", name, kind->name);
-    tl_status status = tl_solid_make(kind, args, from, context, &m->error, &made.of);
-    if (status == TL_OK && !(tl_grow(&z->solid, &z->solid_capacity, z->solid_count + 1, sizeof *z->solid) &&
-                             tl_solid_columns(z, &made.of)))
-        status = tl_fail_memory(&m->error);
-    if (status != TL_OK) {
-        clear(&made);
+    tl_named_solid made;
+    const tl_status status = make(m, name, kind, args, from, &made);
+    if (status != TL_OK)
         return status;
+    if (!tl_grow(&z->solid, &z->solid_capacity, z->solid_count + 1, sizeof *z->solid) ||
+        !tl_solid_columns(z, &made.of)) {
+        clear(&made);
+        return tl_fail_memory(&m->error);
     }
-    made.turns = turns(made.of.kind);
-    if (known != TL_NO_ROW)
-        clear(&z->solid[known]);
-    z->solid[known != TL_NO_ROW ? known : z->solid_count++] = made;
-    z->version++;
+    put(z, tl_solid_find(m, name), &made);
     return TL_OK;
 }
 

@@ -40,13 +40,20 @@ static bool groups_are_sound(const struct tl_zones *z)
     return sound && row == z->zones.table.rows;
 }
 
-static bool parcels_are_sound(const struct tl_zones *z)
+/* Whether a block is one of the body of a mesh. */
+static bool has_block(const tl_model *m, const tl_body_mesh *mesh, tl_id block)
+{
+    const uint32_t row = tl_block_row_quiet(m, block);
+    return row != TL_NO_ROW && m->blocks.body[row] == mesh->row;
+}
+
+static bool parcels_are_sound(const tl_model *m, const struct tl_zones *z)
 {
     uint32_t groups = 0, points = 0;
     bool sound = true;
     for (size_t k = 0; sound && k < z->parcels.table.rows; k++) {
         const tl_parcel *of = &z->parcels.of[k];
-        sound = of->mesh < z->mesh_count && of->solid < z->solid_count &&
+        sound = of->mesh < z->mesh_count && of->solid < z->solid_count && has_block(m, &z->mesh[of->mesh], of->block) &&
                 follows(of->group_begin, of->group_end, &groups) && groups <= z->group_count &&
                 follows(of->point_begin, of->point_end, &points) && points <= z->listed_count &&
                 of->point_end - of->point_begin <= TL_PARCEL_POINTS;
@@ -99,7 +106,7 @@ const char *tl_zones_unsound(const tl_model *m, const struct tl_zones *z)
         return "a gridpoint has an impossible value";
     if (!meshes_are_sound(m, z))
         return "meshes do not fit their bodies";
-    if (!groups_are_sound(z) || !parcels_are_sound(z))
+    if (!groups_are_sound(z) || !parcels_are_sound(m, z))
         return "zones do not fit their meshes";
     return parts_are_sound(m, z) ? NULL : "the surface of a mesh does not fit its block";
 }

@@ -7,7 +7,7 @@
  * table. A cluster of fewer zones than the deepest of its group, and a lane without a cluster, has inert rows: copies
  * of a zone whose volume counts as 0.
  *
- * A parcel is some groups of one body and one solid, with a list of the gridpoints that they use. A thread takes one
+ * A parcel is some groups of one block and one solid, with a list of the gridpoints that they use. A thread takes one
  * parcel at a time. What the zones of a parcel do to a gridpoint is summed in a slot of the parcel; a gridpoint adds
  * its slots in their order. So sums do not depend on threads.
  *
@@ -44,12 +44,15 @@ typedef struct tl_gridpoints {
     double *mass;      /* kg: a quarter of the mass of each of its zones */
     double *force[3];  /* unbalanced: zones, contacts, weight, load; of held components it is what holds, reversed, N */
     double *bears;     /* a bound of the sum of the sizes of the forces on it, N: pass.c */
+    double *touched;   /* the part of it that contacts bring, N */
     uint32_t *zones;   /* that have it for a corner */
     double *stiffness; /* bound of the row of the stiffness matrix of the zones, N/m: stiffness.c */
     double *floor;     /* stiffness of the stiffest joint on its share of outer faces, N/m */
     double *holds;     /* of zones and what touches it, but at least the floor, N/m */
+    double *rounded;   /* force that rounding of its place brings, N */
     uint32_t *mesh;    /* its number */
     uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
+    uint8_t *bare;     /* 1: it is on the surface of its body */
     double *load[3];   /* of the user's, N; NULL: none has ever been set */
     double *damping[3], *alpha; /* what the damping gave; NULL: there has been none */
     double *force_before[3];    /* in the last damped step; NULL: no damping has asked for them */
@@ -75,6 +78,7 @@ typedef struct tl_zone_group {
 
 typedef struct tl_parcel {
     uint32_t mesh, solid;
+    tl_id block;
     uint32_t group_begin, group_end;
     uint32_t point_begin, point_end; /* in `listed`, and its slots */
 } tl_parcel;
@@ -111,6 +115,9 @@ typedef struct tl_surface_part {
     tl_id block;
 } tl_surface_part;
 
+/* What a mesh does in a step of a relaxation: it goes along with the model or, loose, its own way (settle.c). */
+typedef enum tl_mesh_way { TL_MESH_GOES_ALONG, TL_MESH_GOES_ON, TL_MESH_TURNS_BACK } tl_mesh_way;
+
 /* The mesh of a body. */
 typedef struct tl_body_mesh {
     tl_id body;
@@ -119,6 +126,8 @@ typedef struct tl_body_mesh {
     uint32_t parcel_begin, parcel_end;
     uint32_t zone_begin, zone_end; /* in `row_of` */
     uint32_t part_begin, part_end; /* in `part` */
+    tl_vec3 made_u;                /* of the body when the mesh was made: displacement, m, and rotation */
+    tl_quat made_q;
 } tl_body_mesh;
 
 struct tl_zones {
@@ -139,12 +148,15 @@ struct tl_zones {
     size_t part_count, part_capacity;
     tl_body_mesh *mesh;
     size_t mesh_count, mesh_capacity;
+    uint8_t *goes; /* of each mesh: tl_mesh_way */
+    size_t goes_capacity;
     tl_named_solid *solid;
     size_t solid_count, solid_capacity;
     uint64_t *meeting; /* pairs of blocks that meet by segments, the lower id times 2^32 and the other, ascending */
     size_t meeting_count, meeting_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
+    double moved_dt;                  /* of the last motion of the gridpoints, s; 0: they have not moved yet */
     uint32_t steps_kept;              /* steps to come that can be undone, for velocities were set */
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */

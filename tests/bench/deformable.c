@@ -11,13 +11,11 @@
  * zones take more than blocks, over the zones. */
 #include "bare_zones.h"
 #include "segment/act.h"
-#include "zone/deform.h"
-#include "zone/life.h"
-#include "zone/solids.h"
 
 #include <stdio.h>
 #include <talus/plugins.h>
 #include <talus/talus.h>
+#include <talus/zones.h>
 #include <time.h>
 
 #define YOUNG 1e9
@@ -122,13 +120,7 @@ static void set_solid(tl_model *m, const scene *s)
     if (s->tension > 0)
         values[n++] = tl_arg_number("tension", s->tension);
     const tl_args args = {values, n};
-    const tl_kind *kind = tl_plugin_find(TL_KIND_SOLID, s->solid);
-    if (!kind) {
-        fprintf(stderr, "deformable: there is no solid '%s'\n", s->solid);
-        exit(1);
-    }
-    ok(m, tl_zones_begin(m));
-    ok(m, tl_solid_set(m, "rock", kind, &args));
+    ok(m, tl_model_solid(m, "rock", s->solid, &args));
 }
 
 /* Free gridpoints get small velocities, each its own; held ones those of a field. */
@@ -157,7 +149,8 @@ static tl_model *make(const scene *s, size_t *zones, double *bytes)
     const tl_value joint[] = {tl_arg_number("kn", 1e10), tl_arg_number("ks", 1e10), tl_arg_number("friction", 40)};
     const tl_args law = {joint, 3};
     tl_model *m;
-    tl_divided made;
+    tl_zoned made;
+    tl_zoning how = tl_zoning_default();
     tl_solve_result result;
     ok(NULL, tl_model_create(&config, &m, NULL));
     tl_model_log(m, quiet, NULL);
@@ -165,8 +158,9 @@ static tl_model *make(const scene *s, size_t *zones, double *bytes)
     ok(m, tl_joint_law(m, "*", "coulomb", &law));
     set_solid(m, s);
     const double before = (double)tl_model_memory(m).total;
-    const tl_dividing how = {.edge = s->edge, .solid = "rock"};
-    ok(m, tl_blocks_divide(m, m->blocks.id, m->blocks.table.rows, &how, &made));
+    how.edge = s->edge;
+    how.solid = "rock";
+    ok(m, tl_blocks_deform(m, m->blocks.id, m->blocks.table.rows, &how, &made));
     *zones = made.zones;
     *bytes = ((double)tl_model_memory(m).total - before) / (double)made.zones;
     set_velocities(m, s);

@@ -584,7 +584,8 @@ TL_API tl_status tl_blocks_drive(tl_model *model, const tl_id *ids, size_t count
 /* Energy of the bodies that are free to move, J, all at one time and counted from the first step. Its members are
  * numbers, the terms of TL_ENERGY. What is held: kinetic, potential (minus the work of gravity) and stored (in all
  * contacts). What has gone: friction (heat of slip) and damping. What has come: external, work of loads, of driven
- * bodies and of edits. The last, balance, is the error of their sum over the largest change of a term so far. */
+ * bodies and of edits. The last, balance, is the error of their sum over the largest change of a term so far. What the
+ * zones of deformable blocks hold and have taken, tl_zone_energy, is in that sum. */
 typedef struct tl_energy {
 #define TL_ENERGY_TERM(name, unit, doc) double name;
     TL_ENERGY(TL_ENERGY_TERM)
@@ -593,6 +594,22 @@ typedef struct tl_energy {
 
 /* The ledger, as of the last force evaluation. */
 TL_API tl_status tl_model_energy(tl_model *model, tl_energy *energy);
+
+/* The terms of the ledger that zones have: name, unit and what it is. */
+#define TL_ZONE_ENERGY(X)                                                                                              \
+    X(strain, "J", "elastic, in all zones of deformable blocks, J")                                                    \
+    X(plastic, "J", "turned to heat in zones, by yielding, J")
+
+/* Energy of the zones of deformable blocks, J. Its members are numbers, the terms of TL_ZONE_ENERGY: strain (elastic,
+ * held now) and plastic (turned to heat so far). Both are 0 without deformable blocks. */
+typedef struct tl_zone_energy {
+#define TL_ENERGY_TERM(name, unit, doc) double name;
+    TL_ZONE_ENERGY(TL_ENERGY_TERM)
+#undef TL_ENERGY_TERM
+} tl_zone_energy;
+
+/* What zones have in the ledger, as of the last force evaluation. */
+TL_API tl_status tl_model_zone_energy(tl_model *model, tl_zone_energy *energy);
 
 /* ---------------------------------------------------------------- contacts --------------- */
 
