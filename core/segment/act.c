@@ -273,11 +273,13 @@ TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lane
                            *restrict bz = p->at_b[2] + point;
     double *restrict sx = p->f_s[0] + point, *restrict sy = p->f_s[1] + point, *restrict sz = p->f_s[2] + point;
     const double *restrict reference = p->reference ? p->reference + point : nothing;
+    double(*origin_a)[TL_LANES] = a->origin, (*origin_b)[TL_LANES] = b->origin;
+    double(*shift_a)[TL_LANES] = a->shift, (*shift_b)[TL_LANES] = b->shift;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_vec3 wa = {ax[l], ay[l], az[l]}, wb = {bx[l], by[l], bz[l]}, n = get(turn->normal, l);
-        const tl_vec3 apart = tl_v3_sub(carried(b->x, b->origin, wb, l), carried(a->x, a->origin, wa, l));
-        const tl_vec3 of_sides = tl_v3_sub(carried(b->d, b->shift, wb, l), carried(a->d, a->shift, wa, l));
+        const tl_vec3 apart = tl_v3_sub(carried(b->x, origin_b, wb, l), carried(a->x, origin_a, wa, l));
+        const tl_vec3 of_sides = tl_v3_sub(carried(b->d, shift_b, wb, l), carried(a->d, shift_a, wa, l));
         const tl_vec3 off = carried_off(turn->off, apart, l), du = tl_v3_sub(of_sides, off);
         const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
         const tl_vec3 aside = tl_v3_madd(apart, -gap, n), f = {sx[l], sy[l], sz[l]};
