@@ -249,7 +249,9 @@ struct tl_model {
     struct tl_zones *zones; /* meshes of deformable bodies and their materials, or NULL: module zone */
     void (*zones_destroy)(struct tl_zones *);
     void (*zones_follow)(struct tl_model *); /* lets meshes follow rows that have moved; NULL: there are no zones */
-    struct tl_segments *segments;            /* their flush contacts, or NULL: module segment */
+    /* gives the zones of blocks another solid, by its name */
+    tl_status (*zones_resolid)(struct tl_model *, const tl_id *blocks, size_t count, const char *solid);
+    struct tl_segments *segments; /* their flush contacts, or NULL: module segment */
     void (*segments_destroy)(struct tl_segments *);
     void (*segments_follow)(struct tl_model *); /* likewise */
     struct tl_outputs *outputs;                 /* of the module state: files written so far */

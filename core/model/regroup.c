@@ -755,6 +755,17 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     }
 }
 
+/* Gives the zones of blocks another solid; what else is set cannot fail then. Deformable blocks keep their density. */
+static tl_status set_solid(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
+{
+    if (!isnan(set->density))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: give density before the blocks get zones, and solid after it");
+    if (!m->zones_resolid)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%.80s': name it with %s first", set->solid,
+                       tl_words(m, "model:solid", "tl_model_solid"));
+    return m->zones_resolid(m, ids, count, set->solid);
+}
+
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
 {
     tl_block_set read;
@@ -780,6 +791,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     if ((joined && !moved) || (mends && !tl_rows_set_aside(m, &aside))) {
         free(moved);
         return tl_fail_memory(&m->error);
+    }
+    if (set->solid && (status = set_solid(m, ids, count, set)) != TL_OK) {
+        free(moved);
+        return status;
     }
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];

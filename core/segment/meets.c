@@ -125,16 +125,52 @@ static bool faces_meet(const tl_model *m, const face *a, const face *b)
            aside < a->reach + b->reach;
 }
 
+/* ---------------------------------------------------------------- depth ------------------ */
+
+/* Tolerance: how much deeper than along another face the blocks may overlap along one that touches, and what of their
+ * size beside: as of patches (narrow/manifold.c). Test: property/deform_contacts. */
+#define DEEPER 4.0
+#define DEEPER_SIZE 1e-3
+
+/* How deep a block reaches behind a face of another one, m; its shape is that as made. */
+static double depth_behind(const tl_model *m, uint32_t block, uint32_t number, uint32_t other)
+{
+    const uint32_t body = m->blocks.body[block];
+    const tl_vec3 n = tl_m3_mul(&m->bodies.pose[body].r, m->blocks.shape[block]->plane[number].normal);
+    const tl_vec3 on = rigid_corner(m, block, number, 0);
+    const tl_poly *p = m->blocks.shape[other];
+    double least = INFINITY;
+    for (uint32_t k = 0; k < p->vertex_count; k++) {
+        const tl_vec3 x = tl_body_point(&m->bodies, m->blocks.body[other], p->vertex[k]);
+        least = fmin(least, tl_v3_dot(n, tl_v3_sub(x, on)));
+    }
+    return -least;
+}
+
+/* The depth up to which faces of two blocks touch: behind others they lie side by side. */
+static double most_depth(const tl_model *m, uint32_t a, uint32_t b)
+{
+    double least = INFINITY;
+    for (int side = 0; side < 2; side++) {
+        const uint32_t block = side ? b : a, other = side ? a : b;
+        for (uint32_t k = 0; k < m->blocks.shape[block]->face_count; k++)
+            if (!m->blocks.shape[block]->covered[k])
+                least = fmin(least, depth_behind(m, block, k, other));
+    }
+    return DEEPER * fmax(least, 0) + DEEPER_SIZE * fmin(m->blocks.size[a], m->blocks.size[b]);
+}
+
 /* ---------------------------------------------------------------- meets ------------------ */
 
 /* Adds the meets of two blocks. false: out of memory. */
 static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list, size_t *count, size_t *capacity)
 {
     const tl_poly *pa = m->blocks.shape[a], *pb = m->blocks.shape[b];
+    const double most = most_depth(m, a, b);
     for (uint32_t i = 0; i < pa->face_count; i++) {
         const face fa = face_of(m, a, i);
         for (uint32_t k = 0; k < pb->face_count && !pa->covered[i]; k++) {
-            if (pb->covered[k])
+            if (pb->covered[k] || (depth_behind(m, a, i, b) > most && depth_behind(m, b, k, a) > most))
                 continue;
             const face fb = face_of(m, b, k);
             if (is_inside(&fa) || is_inside(&fb) || !faces_meet(m, &fa, &fb))

@@ -567,7 +567,7 @@ static tl_status read_zones(tl_model *m, const tl_archive *a)
     const char *bad = tl_zones_unsound(m, z);
     if (bad)
         return unsound(a, m, bad);
-    const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z);
+    const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z, 0);
     z->followed = m->structure - 1; /* as if rows had moved */
     if (enough)
         tl_zones_follow(m);

@@ -141,7 +141,7 @@ static void keep_meshes(const tl_model *m, struct tl_zones *z)
     z->listed_count = to.listed.begin;
     z->row_of_count = to.numbers.begin;
     z->part_count = to.parts.begin;
-    tl_zones_index(z); /* there is room: there were more */
+    tl_zones_index(z, 0); /* there is room: there were more */
     z->version++;
 }
 

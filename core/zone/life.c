@@ -2,6 +2,7 @@
 #include "zone/life.h"
 
 #include "zone/follow.h"
+#include "zone/resolid.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
@@ -55,6 +56,7 @@ tl_status tl_zones_begin(tl_model *m)
         return tl_fail_memory(&m->error);
     m->zones_destroy = tl_zones_free;
     m->zones_follow = tl_zones_follow;
+    m->zones_resolid = tl_blocks_resolid;
     add_columns(m->zones);
     return TL_OK;
 }
@@ -65,7 +67,7 @@ void tl_zones_free(struct tl_zones *z)
     tl_table_free(&z->zones.table);
     tl_table_free(&z->parcels.table);
     void *const owned[] = {z->group, z->listed, z->slot,    z->use,     z->use_start, z->row_of,
-                           z->part,  z->mesh,   z->meeting, z->scratch, z->goes};
+                           z->part,  z->mesh,   z->meeting, z->scratch, z->motion};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     tl_solids_free(z);
