@@ -4,7 +4,7 @@
  * Bodies share none.
  *
  * Cell data   mean      mean stress, Pa, tension positive: what ParaView colours by first
- *             block_id  id of the block; of a body of several the oldest
+ *             block_id  id of the block
  *             group     of that block: index into the field group_names
  *             solid     index into the field solid_names
  *             cluster   number of the zones that share their change of volume
@@ -84,11 +84,11 @@ typedef struct zones {
 static double whole_of(const zones *j, size_t i)
 {
     const tl_model *m = j->model;
-    const uint32_t block = tl_block_row_quiet(m, j->list.zone_name[i].body);
+    const tl_parcel *parcel = &m->zones->parcels.of[j->list.parcel[i]];
     switch (j->of->from) {
-    case BLOCK: return j->list.zone_name[i].body;
-    case GROUP: return m->blocks.group[block];
-    case SOLID: return m->zones->parcels.of[j->list.parcel[i]].solid;
+    case BLOCK: return parcel->block;
+    case GROUP: return m->blocks.group[tl_block_row_quiet(m, parcel->block)];
+    case SOLID: return parcel->solid;
     case CLUSTER: return j->list.cluster[i];
     default: return tl_zone_state(m->zones->zones.flags[j->list.row[i]]);
     }
