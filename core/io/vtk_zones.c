@@ -4,7 +4,7 @@
  * Bodies share none.
  *
  * Cell data   mean      mean stress, Pa, tension positive: what ParaView colours by first
- *             block_id  id of the block
+ *             block_id  id of the block that it is of
  *             group     of that block: index into the field group_names
  *             solid     index into the field solid_names
  *             cluster   number of the zones that share their change of volume

@@ -98,8 +98,8 @@ static void add_segment(const tl_model *m, const tl_meet *meet, size_t row, tl_m
         const double area = p->area[point];
         sum->gap = fmin(sum->gap, tl_v3_dot(n, tl_v3_sub(b, a)));
         sum->point = tl_v3_madd(sum->point, 0.5 * area, tl_v3_add(a, b));
-        sum->pressing += meet->left * p->f_n[point];
-        sum->shear = tl_v3_madd(sum->shear, meet->left, tl_columns_get(p->f_s, point));
+        sum->pressing += meet->flat * p->f_n[point];
+        sum->shear = tl_v3_madd(sum->shear, meet->flat, tl_columns_get(p->f_s, point));
         const tl_vec3 moved_a = moved_of(m, &of->a, meet->a, at_a), moved_b = moved_of(m, &of->b, meet->b, at_b);
         sum->passed = tl_v3_madd(sum->passed, area, tl_v3_sub(moved_b, moved_a));
         sum->any |= p->flags[point];
