@@ -542,12 +542,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
     entry *list = malloc(most * sizeof *list);
     old_segments old = {m, s, malloc(most * sizeof *old.list), 0};
     add_columns(&fresh, states_of(m));
-    if (s->points.f_n0 && !tl_segments_hold_initial(&fresh)) {
-        free(list);
-        free(old.list);
-        return false;
-    }
-    bool enough = list && old.list;
+    bool enough = list && old.list && (!s->points.f_n0 || tl_segments_hold_initial(&fresh));
     const size_t count = enough ? list_entries(m, l, list, &old) : 0;
     const size_t rows = rows_of(list, count);
     enough = enough && tl_table_resize(&fresh.table.table, rows) &&
