@@ -26,6 +26,7 @@
 #include "cycle/damping.h"
 #include "cycle/energy.h"
 #include "cycle/gather.h"
+#include "cycle/held_gridpoints.h"
 #include "cycle/limits.h"
 #include "cycle/motion.h"
 #include "cycle/prepare.h"
@@ -35,6 +36,7 @@
 #include "cycle/split.h"
 #include "cycle/timestep.h"
 #include "cycle/undo.h"
+#include "cycle/zone_limits.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
 #include "detect/overlap.h"
@@ -81,6 +83,8 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     /* false when a user's function ends the run: bodies then go on as they were driven before */
     *driven = status != TL_OK || tl_drives_evaluate(m, m->relaxing ? m->time : m->time + 0.5 * *dt);
     if (status == TL_OK)
+        tl_gridpoints_expect(m);
+    if (status == TL_OK)
         status = tl_motion_check(m, *dt, true);
     return status == TL_OK ? tl_undo_reserve(m) : status;
 }
@@ -110,6 +114,8 @@ static tl_status apply_forces(tl_model *m, double dt)
             status = m->relaxing ? tl_settle(m, dt) : tl_damping_apply(m, dt);
         if (status == TL_OK)
             status = tl_motion_check(m, dt, false);
+        if (status == TL_OK)
+            status = tl_zones_check(m, dt);
         tl_phase_ends(m, TL_PHASE_DAMPING);
     }
     if (status != TL_OK)

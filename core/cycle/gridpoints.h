@@ -15,6 +15,8 @@ void tl_gridpoints_gather(tl_model *m);
 void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick);
 /* Velocities of components that are free end. Their last motion strains zones all the same. */
 void tl_gridpoints_stop(tl_model *m);
+/* The velocity with which a gridpoint goes through the next step, of dt. */
+tl_vec3 tl_gridpoint_to_come(const tl_model *m, size_t row, double dt);
 /* Velocities and places one step on. */
 void tl_gridpoints_move(tl_model *m, double dt);
 

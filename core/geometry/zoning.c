@@ -18,9 +18,9 @@
  * another bulge is tried, and another unit of the grid: which flat zones are made among points on a sphere hangs on
  * rounding.
  *
- * Faces may be given in parts (joined_faces.c). Delaunay knows the whole face alone. Where one of its triangles lies across
- * an edge between two parts, nothing is made, and the middle of what it crosses is told: with a corner there, and so
- * with shorter parts of the edge, no triangle crosses it (Ruppert 1995). */
+ * Faces may be given in parts (joined_faces.c). Delaunay knows the whole face alone. Where one of its triangles lies
+ * across an edge between two parts, nothing is made, and the middle of what it crosses is told. With corners there the
+ * parts of the edge are shorter, and sooner or later no triangle crosses them (Ruppert 1995). */
 #include "geometry/zoning.h"
 
 #include "base/table.h"
@@ -527,10 +527,13 @@ static tl_status make_once(tl_zone_scratch *s, const attempt *a, tl_zone_mesh *m
     return status;
 }
 
-/* The bulge with which a block is tried first: 0 where its faces are flat. */
+/* The bulge with which a block is tried first: 0 where its faces are flat. Faces in parts count as flat: a bulge would
+ * let the two sides of a part choose by its bend, and not alike. */
 static double first_bulge(const tl_zone_points *p)
 {
     double bend = 0;
+    if (p->zoning->parts)
+        return 0;
     for (uint32_t f = 0; f < p->poly->face_count; f++)
         bend = fmax(bend, p->bend[f]);
     bend /= p->extent;

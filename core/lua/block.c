@@ -330,6 +330,10 @@ static const tl_param set_params[] = {
              "velocity of the centroid; of several blocks of a body, that of their common one",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, tl_block_set, angular_velocity, "rad/s", "angular velocity", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, tl_block_set, solid, "",
+             "of deformable blocks: the solid of all their zones, by its name; stress stays, and states of the same "
+             "names",
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_spec set_spec = {"set", set_params, TL_LUA_COUNT(set_params), NULL};
@@ -338,8 +342,9 @@ static tl_status set(lua_State *L, const tl_lua_selection *b)
 {
     tl_block_set wanted = tl_block_set_default();
     tl_lua_read(L, 2, &set_spec, false, &wanted);
-    if (isnan(wanted.density) && !wanted.group && isnan(wanted.velocity.x) && isnan(wanted.angular_velocity.x))
-        tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
+    if (isnan(wanted.density) && !wanted.group && isnan(wanted.velocity.x) && isnan(wanted.angular_velocity.x) &&
+        !wanted.solid)
+        tl_lua_fail(L, "set: give density, group, velocity, angular_velocity or solid");
     return tl_blocks_set(b->owner->model, b->names, b->count, &wanted);
 }
 

@@ -385,7 +385,27 @@ static int reaction(lua_State *L, const tl_lua_selection *of)
     return 1;
 }
 
-static const tl_lua_verb zone_verbs[] = {{.name = NULL}};
+typedef struct solid_args {
+    const char *solid;
+} solid_args;
+
+static const tl_param solid_params[] = {
+    TL_PARAM(TL_PARAM_STRING, solid_args, solid, "", "the solid that they get, by its name",
+             .flags = TL_PARAM_REQUIRED),
+};
+
+static tl_status set_zones(lua_State *L, const tl_lua_selection *of)
+{
+    static const tl_lua_spec spec = {"set", solid_params, TL_LUA_COUNT(solid_params), NULL};
+    solid_args given;
+    tl_lua_read(L, 2, &spec, false, &given);
+    return tl_zones_solid(of->owner->model, of->names, of->count, given.solid);
+}
+
+static const tl_lua_verb zone_verbs[] = {
+    {.name = "set", .arguments = 1, .act = set_zones, .done = "changed"},
+    {.name = NULL},
+};
 
 static const tl_lua_verb gridpoint_verbs[] = {
     {.name = "fix", .arguments = 1, .act = fix, .done = "held"},
@@ -440,6 +460,10 @@ static const tl_lua_key zone_methods[] = {
      "list of the field's values, in the order of the selection; likewise a state of a solid, by its name, NaN where "
      "the zone's solid has no such state. With \"flat\" after it vectors and tensors are not lists of their own"},
     {"sel:where(function(zone) ... end)", "", "those for which the function answers true"},
+    {"sel:set{solid = \"fault\"}", "",
+     "gives them another solid, named by model:solid. Stress stays, and states that both solids have by the same "
+     "names; "
+     "what it changes of the stored energy counts as work by hand"},
     {NULL, NULL, NULL},
 };
 

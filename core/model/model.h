@@ -248,10 +248,10 @@ struct tl_model {
     void (*cycle_destroy)(struct tl_cycle *);
     struct tl_zones *zones; /* meshes of deformable bodies and their materials, or NULL: module zone */
     void (*zones_destroy)(struct tl_zones *);
-    void (*zones_follow)(struct tl_model *); /* lets meshes follow rows that have moved; NULL: there are no zones */
-    struct tl_segments *segments;            /* their flush contacts, or NULL: module segment */
+    const struct tl_zone_verbs *zone_verbs; /* what is done to their bodies: deformable.h; NULL: there are no zones */
+    struct tl_segments *segments;           /* their flush contacts, or NULL: module segment */
     void (*segments_destroy)(struct tl_segments *);
-    void (*segments_follow)(struct tl_model *); /* likewise */
+    void (*segments_follow)(struct tl_model *); /* lets them follow rows that have moved */
     struct tl_outputs *outputs;                 /* of the module state: files written so far */
     void (*outputs_destroy)(struct tl_outputs *);
 };

@@ -10,6 +10,7 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "model/loads.h"
 #include "model/options.h"
@@ -735,6 +736,10 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     tl_bodies *b = &m->bodies;
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        if (b->mesh[body]) {
+            m->zone_verbs->move(m, body, set->velocity, set->angular_velocity);
+            continue;
+        }
         if (given(set->velocity) && moved) {
             double mass = m->blocks.density[row] * m->blocks.volume[row];
             tl_vec3 arm = tl_m3_mul(&b->pose[body].r, tl_block_local(m, row));
@@ -748,11 +753,24 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     }
     for (size_t i = 0; i < count && given(set->velocity); i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        if (b->mesh[body])
+            continue;
         b->v[body] = set->velocity;
         if (moved && b->member_count[body] > 1)
             b->v[body] = tl_v3_sub(set->velocity,
                                    tl_v3_cross(b->w[body], tl_v3_scale(1 / moved[body].mass, moved[body].moment)));
     }
+}
+
+/* Gives the zones of blocks another solid; what else is set cannot fail then. Deformable blocks keep their density. */
+static tl_status set_solid(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
+{
+    if (!isnan(set->density))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: give density before the blocks get zones, and solid after it");
+    if (!m->zone_verbs)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%.80s': name it with %s first", set->solid,
+                       tl_words(m, "model:solid", "tl_model_solid"));
+    return m->zone_verbs->resolid(m, ids, count, set->solid);
 }
 
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
@@ -762,11 +780,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     tl_status status = TL_OPTIONS_READ(tl_block_set, values, &read, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set properties of blocks");
-    const bool moves = given(set->velocity) || given(set->angular_velocity);
-    if (status == TL_OK && !moves && isnan(set->density))
+    if (status == TL_OK && isnan(set->density))
         status = tl_blocks_check(m, ids, count);
     else if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, "set density or velocities", "set them before it gets zones");
+        status = tl_blocks_check_rigid(m, ids, count, "set density", "set it before it gets zones");
     if (status == TL_OK)
         status = check_set(m, ids, count, set);
     if (status != TL_OK)
@@ -780,6 +797,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     if ((joined && !moved) || (mends && !tl_rows_set_aside(m, &aside))) {
         free(moved);
         return tl_fail_memory(&m->error);
+    }
+    if (set->solid && (status = set_solid(m, ids, count, set)) != TL_OK) {
+        free(moved);
+        return status;
     }
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];

@@ -65,8 +65,8 @@ static double least_of(const double weight[4])
     return fmin(fmin(weight[0], weight[1]), fmin(weight[2], weight[3]));
 }
 
-/* The zone at the surface of a block that a place lies in, or the least outside of. A block inside of its body has none:
- * then that of another block. */
+/* The zone at the surface of a block that a place lies in, or the least outside of. A block inside of its body has
+ * none: then that of another block. */
 static void find_zone(const tl_model *m, tl_id block, tl_vec3 place, uint32_t point[4], double weight[4])
 {
     const struct tl_zones *z = m->zones;

@@ -241,9 +241,34 @@ static void hash_rock(tl_hash *hash, const tl_model *m)
 
 /* ---------------------------------------------------------------- deformable blocks ------ */
 
-static void hash_mesh(tl_hash *hash, const struct tl_zones *z, const tl_body_mesh *mesh)
+/* What acts on the surface of a mesh, and drives its gridpoints. */
+static void hash_outer(tl_hash *hash, const tl_model *m, const tl_body_mesh *mesh)
 {
+    const struct tl_zones *z = m->zones;
+    for (size_t k = 0; k < z->outer_count; k++) {
+        tl_outer_part of = z->outer[k];
+        if (of.part < mesh->part_begin || of.part >= mesh->part_end)
+            continue;
+        if (of.drive)
+            hash_drive(hash, &m->drives[of.drive - 1].drive);
+        if (of.quiet)
+            hash_text(hash, z->solid[of.solid].name);
+        of.part -= mesh->part_begin;
+        of.drive = of.solid = 0;
+        tl_hash_bytes(hash, &of, sizeof of);
+    }
+    for (uint32_t row = mesh->point_begin; z->points.drive && row < mesh->point_end; row++)
+        if (z->points.drive[row]) {
+            tl_hash_word(hash, row - mesh->point_begin);
+            hash_drive(hash, &m->drives[z->points.drive[row] - 1].drive);
+        }
+}
+
+static void hash_mesh(tl_hash *hash, const tl_model *m, const tl_body_mesh *mesh)
+{
+    const struct tl_zones *z = m->zones;
     hash_rows(hash, &z->points.table, mesh->point_begin, mesh->point_end);
+    hash_outer(hash, m, mesh);
     for (uint32_t k = mesh->parcel_begin; k < mesh->parcel_end; k++) {
         const tl_parcel *of = &z->parcels.of[k];
         const tl_named_solid *solid = &z->solid[of->solid];
@@ -267,7 +292,7 @@ static void hash_meshes(tl_hash *hash, const tl_model *m)
     for (size_t k = 0; k < m->zones->mesh_count; k++) {
         tl_hash one = tl_hash_start();
         tl_hash_word(&one, m->zones->mesh[k].body);
-        hash_mesh(&one, m->zones, &m->zones->mesh[k]);
+        hash_mesh(&one, m, &m->zones->mesh[k]);
         hash_any_order(&sum, &one);
     }
     tl_hash_word(hash, sum.a);
@@ -288,6 +313,7 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
         tl_hash_word(&one, (uint64_t)meet->a << 32 | meet->b);
         tl_hash_word(&one, (uint64_t)meet->face_a << 32 | meet->face_b);
         tl_hash_word(&one, (uint64_t)of->key[0] << 32 | of->key[1]);
+        tl_hash_numbers(&one, &meet->share, 1);
         hash_rows(&one, &s->table.table, row, row + 1);
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
             const size_t point = tl_segment_point_row(row, k);
@@ -422,7 +448,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     hash_rock(&hash, m);
     if (tl_model_deforms(m))
         hash_meshes(&hash, m);
-    if (m->segments)
+    if (m->segments && m->segments->meet_count > 0)
         hash_segments(&hash, m);
     snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;

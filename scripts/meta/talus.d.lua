@@ -363,7 +363,7 @@ local Model = {}
 ---@field deformable boolean whether it has zones
 ---@field zones integer of its body
 ---@field gridpoints integer of its body
----@field stress talus.Tensor Pa: mean over the zones of its body, by volume; nan of a rigid block
+---@field stress talus.Tensor Pa: mean over its zones, by volume; nan of a rigid block
 ---@field strain talus.Tensor mean logarithmic strain of these zones; nan of a rigid block
 ---@field vertices talus.Vector[] vertices in their present place
 ---@field faces { vertices: integer[], normal: talus.Vector, joint: string? }[] faces: vertex numbers from 1, outward normal, name of the joint plane or nil
@@ -489,9 +489,9 @@ function Contacts:values(field) end
 function Contacts:where(keep) end
 
 ---@class (exact) talus.Zone
----@field id integer of its own among all zones: 4294967296 times its block, and its number
----@field block integer block that it is of: the lowest of a body of several
----@field number integer its number in the block, from 0
+---@field id integer of its own among all zones: 4294967296 times the first block of its body, and its number
+---@field block integer block that it is of
+---@field number integer its number in the block, or in the body of several joined blocks, from 0
 ---@field group string group of the block
 ---@field solid string name of its solid
 ---@field centroid talus.Vector m: present place of its centroid
@@ -537,9 +537,9 @@ function Zones:values(field) end
 function Zones:where(keep) end
 
 ---@class (exact) talus.Gridpoint
----@field id integer of its own among all gridpoints: 4294967296 times its block, and its number
----@field block integer block that it is of: the lowest of a body of several
----@field number integer its number in the block, from 0
+---@field id integer of its own among all gridpoints: 4294967296 times the first block of its body, and its number
+---@field block integer block that it is of: the first one of a body of several
+---@field number integer its number in the block, or in the body of several joined blocks, from 0
 ---@field group string group of the block
 ---@field position talus.Vector m: present place
 ---@field displacement talus.Vector m: since it was made
@@ -657,6 +657,7 @@ function Model:joint(joint, law, options) end
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
 ---@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz are the same as xy, yz and zx
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
+---@field blocks? any puts the stress in their zones, and on their contacts with any; all without it
 
 --- Puts an initial stress on the face contacts that exist now, once.
 ---
@@ -741,6 +742,8 @@ function Model:contact_area(options) end
 ---@field damping number taken out by the damping, J
 ---@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
 ---@field balance number error of the sum over the largest change of a term so far
+---@field strain number elastic, in all zones of deformable blocks, J
+---@field plastic number turned to heat in zones, by yielding, J
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
@@ -861,7 +864,7 @@ function Model:solid(name, name, options) end
 ---@field inertia number largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an edge. Blocks that topple or rock in time want 8 zones to an edge, or stay rigid
 ---@field memory integer bytes memory that the model has grown by
 
---- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Nothing is done where one block cannot be divided.
+--- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share gridpoints, so zones go on over the faces between them. Nothing is done where one block cannot be divided.
 ---
 ---     report = selection:deformable{zone = 1.0, solid = "granite"}
 ---@param options talus.DeformableOptions
@@ -1058,8 +1061,9 @@ function talus.solid_test(options) end
 ---@field within? number deg, in [0, 180], default 45: this angle
 ---@field tolerance? number m, >= 0: how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size when left out
 ---@field fixed? boolean default false: holds the bodies in all components
----@field roller? boolean default false: holds the bodies across their faces, which must look along x, y or z
----@field rotation? boolean default false: with roller: holds their rotation, too
+---@field roller? boolean default false: holds the bodies across their faces; those of rigid blocks must look along x, y or z
+---@field rotation? boolean default false: with roller: holds the rotation of rigid blocks, too
+---@field quiet? boolean default false: of deformable blocks: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), and bears what it bore
 ---@field pressure? number Pa: pressure on the faces, inward
 ---@field traction? talus.Vector Pa: force per area on the faces
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height stress holds; the gradient counts from there
@@ -1068,6 +1072,7 @@ function talus.solid_test(options) end
 ---@field box? { min: talus.Vector, max: talus.Vector } faces with all corners in this box
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) prescribes the velocity of the faces, m/s; rigid bodies move with it whole
 ---@field xmin? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field xmax? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise
@@ -1089,7 +1094,7 @@ function talus.solid_test(options) end
 ---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
 ---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
---- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share.
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added.
 ---
 ---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions
@@ -1193,7 +1198,7 @@ function Model:relax(options) end
 ---@field field? string field of numbers of what `of` gives ("displacement", "normal_force")
 ---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its items
 ---@field remove? boolean default false: ends the history of that name, with all its samples
----@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
+---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external", "strain", "plastic" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
 ---@field of? talus.Block|talus.Contact|talus.Zone|talus.Gridpoint|talus.Blocks|talus.Contacts|talus.Zones|talus.Gridpoints what the field is sampled of, in the place of `value`. Those that no longer exist are left out; where none is left the value is nan
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.

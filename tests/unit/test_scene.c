@@ -345,7 +345,7 @@ TEST(what_has_changed_is_sent_again)
 
     const tl_id small = 2;
     const tl_vec3 unchanged = {NAN, NAN, NAN};
-    tl_block_set set = {sizeof(tl_block_set), NAN, "small", unchanged, unchanged};
+    tl_block_set set = {sizeof set, NAN, "small", unchanged, unchanged, NULL};
     CHECK_INT(tl_blocks_set(m, &small, 1, &set), TL_OK);
     CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP FRAM LINE FIND DONE");
     CHECK_INT(first_of(&f, "SHAP"), 1);

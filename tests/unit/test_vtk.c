@@ -51,7 +51,7 @@ static void add_box(tl_model *m, double x, double y, double z, const char *group
     generate(m, "box", values, 3);
     const tl_id first = 1;
     const tl_vec3 unchanged = {NAN, NAN, NAN};
-    const tl_block_set set = {sizeof(tl_block_set), NAN, group, unchanged, unchanged};
+    const tl_block_set set = {sizeof(tl_block_set), NAN, group, unchanged, unchanged, NULL};
     CHECK_INT(tl_blocks_set(m, &first, 1, &set), TL_OK);
 }
 
@@ -166,7 +166,8 @@ static void note_zones(tl_model *m, const char *path)
     tl_zone_name *names = NULL;
     size_t count = 0, width, plastic = 0;
     double sum[6] = {0}, volume = 0;
-    CHECK_INT(tl_zones_select(m, NULL, &names, &count), TL_OK);
+    const tl_zone_filter all = tl_zone_filter_default();
+    CHECK_INT(tl_zones_select(m, &all, &names, &count), TL_OK);
     for (size_t k = 0; k < count; k++) {
         double v, s[6], yields;
         tl_zones_values(m, names + k, 1, "volume", &v, &width);

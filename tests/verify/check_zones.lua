@@ -18,15 +18,15 @@ function zones.model(options)
     return model
 end
 
--- Gridpoints with x . normal = offset, one axis alone: zones.on(model, "z", 1).
+-- Gridpoints that were made on a plane across an axis: zones.on(model, "z", 1). More may be asked for, as by
+-- { block = 1 }.
 function zones.on(model, axis, value, more)
-    local k = ({ x = 1, y = 2, z = 3 })[axis]
-    local box = { min = { -1e9, -1e9, -1e9 }, max = { 1e9, 1e9, 1e9 } }
-    local off = ON_PLANE * math.max(1, math.abs(value))
-    box.min[k], box.max[k] = value - off, value + off
-    local what = { inside = box }
+    local k, what = ({ x = 1, y = 2, z = 3 })[axis], {}
     for key, x in pairs(more or {}) do
         what[key] = x
+    end
+    what.where = function(p)
+        return math.abs(p.position[k] - p.displacement[k] - value) < ON_PLANE * math.max(1, math.abs(value))
     end
     return model:gridpoints(what)
 end
@@ -43,13 +43,13 @@ function zones.hull(model, min, max)
     end }
 end
 
--- Moves gridpoints along a field of displacements, a function of the place, by `steps` equal steps, and stops them there. The
--- zones have seen all of it at the end.
+-- Moves gridpoints along a field of displacements, a function of the place and the gridpoint, by `steps` equal steps, and
+-- stops them there. The zones have seen all of it at the end.
 function zones.displace(model, points, field, steps, dt)
     dt = dt or model.dt
     local way = {}
     for i, p in ipairs(points) do
-        way[i] = field(p.position)
+        way[i] = field(p.position, p)
     end
     local i = 0
     points:set { velocity = function()

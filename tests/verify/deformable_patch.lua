@@ -50,7 +50,7 @@ do
     figures.relative("force on the plate, N", top:reaction()[3], case.inputs.stress * area, UNIFORM)
     -- The reference has the energy of a volume that stays: here it changes by exp(q s) as the stress grows by s from 0 to 1.
     local q = e + 2 * side
-    figures.relative("stored, J", model:energy().stored, 2 * case.expected.energy * (1 / 2 + q / 3 + q * q / 8), UNIFORM)
+    figures.relative("stored, J", model:energy().strain, 2 * case.expected.energy * (1 / 2 + q / 3 + q * q / 8), UNIFORM)
 end
 
 do
@@ -233,7 +233,7 @@ do
     end
     local function energy()
         local e = model:energy()
-        return e.kinetic + e.stored
+        return e.kinetic + e.strain
     end
     -- along the bar: the stress n . sigma n with n from end to end
     local function stress()

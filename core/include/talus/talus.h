@@ -195,9 +195,12 @@ typedef struct tl_insitu {
     uint32_t size;            /* sizeof(tl_insitu) */
     tl_sym3 stress, gradient; /* tension positive, Pa and Pa/m over z */
     tl_vec3 at;
+    const tl_id *blocks; /* in the zones of these, and on their contacts with any; NULL: everywhere */
+    size_t block_count;
 } tl_insitu;
 
-/* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now. */
+/* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now, and in the zones of
+ * deformable blocks. A stress that is in equilibrium with weight and with tractions on the faces stays as it is. */
 TL_API tl_status tl_model_insitu(tl_model *model, const tl_insitu *insitu);
 
 /* Chooses the damping plugin; "none" is no damping. */
@@ -528,11 +531,12 @@ typedef struct tl_block_set {
     double density;                     /* NaN: unchanged */
     const char *group;                  /* NULL: unchanged */
     tl_vec3 velocity, angular_velocity; /* NaN: unchanged */
+    const char *solid;                  /* of the zones of deformable blocks: zones.h; NULL: unchanged */
 } tl_block_set;
 
 /* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those
  * that are listed. TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not
- * finite; then no block is changed. */
+ * finite, or a solid that is not there; TL_E_STATE for a solid of a rigid block. Then no block is changed. */
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count, const tl_block_set *set);
 
 /* Makes one rigid body of the blocks and of all blocks joined to them before. Mass, momentum and angular

@@ -18,7 +18,7 @@ extern "C" {
 
 /* Names a solid: "granite", of the kind "mohr_coulomb" with properties. With `kind` NULL, or the kind it has already,
  * only the properties that are given change. Zones of a solid that changes keep their stress, and the states that the
- * new kind has by the same names. TL_E_NOT_FOUND for a kind that no plugin has, or a solid that is to be changed and is
+ * new kind has by the same names; what they store changes, as of tl_zones_solid. TL_E_NOT_FOUND for a kind that no plugin has, or a solid that is to be changed and is
  * not there; TL_E_ARGUMENT for a bad property. */
 TL_API tl_status tl_model_solid(tl_model *model, const char *name, const char *kind, const tl_args *properties);
 
@@ -60,13 +60,14 @@ typedef struct tl_zoned {
 } tl_zoned;
 
 /* Gives blocks zones, free of stress where the blocks are, with the blocks' velocities. A block that is held, in some
- * components or all, has gridpoints that are held so. Where faces of two blocks are the same polygon, the triangles of
- * both are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed when
- * it fails:
+ * components or all, has gridpoints that are held so. A drive moves all gridpoints as the block; a load goes over to
+ * the zone at its point, or to all gridpoints. Where faces of two blocks are the same polygon, the triangles of both
+ * are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed when it
+ * fails:
  *
  * TL_E_ARGUMENT: the edge is not positive, or makes too many zones; there is no such solid. TL_E_STALE: no such block.
- * TL_E_STATE: a block has zones, is joined to one that is not given, or is driven or loaded. TL_E_GEOMETRY: a block
- * cannot be divided, or joined blocks do not lie flat on each other. */
+ * TL_E_STATE: a block has zones, is joined to one that is not given, or is loaded on its faces or at a point outside.
+ * TL_E_GEOMETRY: a block cannot be divided, or joined blocks do not lie flat on each other. */
 TL_API tl_status tl_blocks_deform(tl_model *model, const tl_id *blocks, size_t count, const tl_zoning *how,
                                   tl_zoned *made);
 
@@ -117,6 +118,12 @@ TL_API tl_status tl_gridpoints_values(tl_model *model, const tl_zone_name *names
 /* Writes the corners of zones: numbers of gridpoints of the same body, those of names[i] to corners[i]. Corners 0, 1, 2
  * are counter-clockwise as seen from the side without corner 3. */
 TL_API tl_status tl_zones_corners(tl_model *model, const tl_zone_name *names, size_t count, uint32_t (*corners)[4]);
+
+/* Gives zones another solid. They keep their stress, and the states that both solids have by the same names. What they
+ * store is then the energy of that stress in the new solid; the balance counts the change as work by hand. Clusters do
+ * not reach across solids: near the border they are made anew. TL_E_ARGUMENT for a solid that is not there, TL_E_STALE
+ * for a zone; then nothing has changed. All zones of blocks: tl_blocks_set. */
+TL_API tl_status tl_zones_solid(tl_model *model, const tl_zone_name *names, size_t count, const char *solid);
 
 /* ---------------------------------------------------------------- gridpoints ------------- */
 
