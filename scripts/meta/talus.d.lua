@@ -657,7 +657,7 @@ function Model:joint(joint, law, options) end
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
 ---@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz are the same as xy, yz and zx
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
----@field blocks? any puts the stress in their zones, and on their contacts with any; all without it
+---@field blocks? talus.Blocks puts the stress in their zones, and on their contacts with any; all without it
 
 --- Puts an initial stress on the face contacts that exist now, once.
 ---
@@ -796,6 +796,7 @@ function Blocks:fix(options) end
 ---@field group? string name of the group
 ---@field velocity? talus.Vector m/s: velocity of the centroid; of several blocks of a body, that of their common one
 ---@field angular_velocity? talus.Vector rad/s: angular velocity
+---@field solid? string of deformable blocks: the solid of all their zones, by its name; stress stays, and states of the same names
 
 --- Changes properties of blocks; what is not named stays.
 ---
