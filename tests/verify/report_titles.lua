@@ -50,6 +50,7 @@ local TITLES = {
     { "DF.direct_shear", "zones: joint sheared until it slips" },
     { "DF.incline", "zones: soft cube that slides on an incline" },
     { "DF.punch", "zones: rigid punch pressed into a layer" },
+    { "DF.lame_nu([%d.]+)", "zones: thick ring under pressure, Poisson's ratio %1" },
     { "E1.dipscan", "paper's wedge, friction at failure over the dip of a plane" },
     { "E1.run(%d)", "paper's wedge, run %1" },
     { "E2", "paper's roof pyramid, cut and under stress" },
