@@ -1,7 +1,7 @@
 // The state of the page: what is changed decides what is made anew; the rest of the time pictures are averaged.
 // @ts-check
 import {Camera} from "./camera.js";
-import {category, colourBlocks, colourContacts, legendText} from "./colours.js";
+import {category, colourBlocks, colourContacts, colourZones, legendText} from "./colours.js";
 import {byId, say} from "./dom.js";
 import {Model} from "./frames.js";
 import {arrowsFor, contactSheets} from "./glyphs.js";
@@ -11,6 +11,7 @@ import {drawAxes, drawLegends, legendSize, penOf} from "./overlay.js";
 import {fillTable, showFrame, tightBox} from "./poses.js";
 import {capSheets, cutBlocks, sectionPlane} from "./section.js";
 import {makeView, readView, viewText} from "./view.js";
+import {PRESSED, PULLED, capMesh, crossSheets, cutZones, surfaceMesh} from "./zones.js";
 
 const STILL = 160;             // ms without a change after which pictures are averaged
 const SLOW = 80;               // ms of a draft from which it is drawn at half the resolution
@@ -32,6 +33,7 @@ export class App {
         /** @type {import("./poses.js").Shown | null} */ this.shown = null;
         /** @type {import("./section.js").Plane | null} */ this.plane = null;
         /** @type {import("./section.js").Cut[]} */ this.cuts = [];
+        /** @type {import("./zones.js").ZoneCut | null} */ this.zoneCut = null;
         /** @type {import("./colours.js").Legend[]} */ this.legends = [];
         this.note = "";
         this.live = false;
@@ -195,9 +197,11 @@ export class App {
             const whole =
                 sectionPlane(view.dip, view.direction, view.position, scale(add(this.home.min, this.home.max), 0.5));
             this.plane = view.cut ? {normal: scale(whole.normal, side), position: whole.position * side} : null;
-            this.cuts = this.plane
-                ? cutBlocks(model, shown.place, shown.turn, shown.kind.map((k) => (k === 1 ? 1 : 0)), this.plane)
-                : [];
+            this.cuts = this.plane ? cutBlocks(
+                                         model, shown.place, shown.turn,
+                                         shown.kind.map((k, row) => (k === 1 && !shown.zoned[row] ? 1 : 0)), this.plane)
+                                   : [];
+            this.zoneCut = this.plane ? cutZones(model, frame, shown, this.plane) : null;
             fillTable(model, shown, this.plane);
             gpu.table("pose", shown.table);
         }
@@ -250,8 +254,11 @@ export class App {
         gpu.caps.set(this.plane ? capSheets(this.cuts, c.colours, this.plane.normal) : []);
         this.legends = [c.legend];
         this.note = "";
+        const crosses = this.paintZones(frame, shown, c);
         const contacts = view.contacts === "" ? null : colourContacts(model, frame, view.contacts);
-        gpu.sheets.set(contacts ? contactSheets(model, frame, shown, contacts.colour, this.plane, view.joint) : []);
+        gpu.sheets.set([
+            ...(contacts ? contactSheets(model, frame, shown, contacts.colour, this.plane, view.joint) : []), ...crosses
+        ]);
         if (contacts) this.legends.push(contacts.legend);
         const arrows = view.arrows === ""
             ? null
@@ -259,7 +266,8 @@ export class App {
         gpu.arrows.set(arrows?.arrows ?? []);
         if (arrows) {
             const unit = view.arrows === "force" ? "N" : view.arrows === "velocity" ? "m/s" : "m";
-            this.note = arrows.arrows.length ? `longest arrow: ${figure(arrows.most)} ${unit}` : "no arrows";
+            this.note += this.note && ", ";
+            this.note += arrows.arrows.length ? `longest arrow: ${figure(arrows.most)} ${unit}` : "no arrows";
         }
         if (view.motion !== 1) this.note += `${this.note && ", "}motion × ${view.motion}`;
         const [w, h] = legendSize(this.legends, this.note);
@@ -270,6 +278,35 @@ export class App {
         drawLegends(penOf(canvas, w, h), this.legends, this.note, 0, 0);
         box.setAttribute("aria-label", [...this.legends.map(legendText), this.note].filter(Boolean).join("; "));
         box.hidden = false;
+    }
+
+    /**
+     * Meshes of deformable blocks into the picture. Gives the crosses of principal stresses.
+     * @param {import("./frames.js").Frame} frame
+     * @param {import("./poses.js").Shown} shown
+     * @param {import("./colours.js").Colouring} blocks
+     */
+    paintZones(frame, shown, blocks) {
+        const {model, view, gpu} = this, there = frame.surface !== null && shown.points !== null;
+        const by = view.zones || (view.colour === "displacement" && view.joint === "" ? "displacement" : "");
+        const zones = there ? colourZones(model, frame, by, view.smooth) : null;
+        const paint = {
+            points: zones?.points ?? null,
+            zones: zones?.zones ?? null,
+            blocks: blocks.colours,
+            faces: blocks.faces || view.joint !== "" ? blocks.palette : null,
+            own: view.also.size > 0
+        };
+        gpu.zones.set(there ? surfaceMesh(model, frame, shown, paint, view.mesh) : null);
+        gpu.zoneCaps.set(
+            this.zoneCut && this.plane ? capMesh(model, this.zoneCut, this.plane.normal, paint, view.mesh) : null);
+        if (zones && view.zones !== "" && view.zones !== view.colour) this.legends.push(zones.legend);
+        if (this.plane && there && !frame.surface?.whole) this.note = "only the surface of zones is sent";
+        if (!view.crosses || !there) return [];
+        const crosses = crossSheets(model, frame, shown, this.zoneCut, this.plane, this.reach());
+        this.legends.push(crossLegend);
+        this.note += `${this.note && ", "}longest cross: ${figure(crosses.most)} Pa`;
+        return crosses.sheets;
     }
 
     counts() {
@@ -357,6 +394,13 @@ export class App {
         return found;
     }
 }
+
+/** @type {import("./colours.js").Legend} */
+const crossLegend = {
+    title: "Principal stresses",
+    kind: "list",
+    items: [{name: "compression", colour: PRESSED}, {name: "tension", colour: PULLED}]
+};
 
 /** Half the diagonal of a box. @param {import("./camera.js").Bounds} box */
 function boxReach(box) { return Math.hypot(...[0, 1, 2].map((c) => box.max[c] - box.min[c])) / 2; }

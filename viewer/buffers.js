@@ -9,6 +9,7 @@
 /** @typedef {{tail: number[], way: number[], width: number, colour: number[], name: number}} Arrow */
 
 const BLOCK_BYTES = 28, SHEET_BYTES = 36;
+export const MESH_BYTES = 32; // of a corner
 
 /**
  * All blocks' faces as triangles. The last corner of a triangle tells its normal and name, so faces share
@@ -145,6 +146,35 @@ export function sheetBuffer(gl) {
             this.count = n;
             gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
             gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+        }
+    };
+}
+
+/** Triangles of deformable blocks, made by zones.js. @param {WebGL2RenderingContext} gl */
+export function meshBuffer(gl) {
+    const array = gl.createVertexArray(), buffer = gl.createBuffer();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    attribute(gl, 0, 3, gl.FLOAT, MESH_BYTES, 0);
+    attribute(gl, 1, 4, gl.SHORT, MESH_BYTES, 12);
+    attribute(gl, 2, 4, gl.UNSIGNED_BYTE, MESH_BYTES, 20);
+    attribute(gl, 3, 1, gl.UNSIGNED_INT, MESH_BYTES, 24);
+    attribute(gl, 4, 1, gl.FLOAT, MESH_BYTES, 28);
+    gl.bindVertexArray(null);
+    return {
+        array,
+        solid: 0,
+        ghosts: 0,
+        /**
+           @param {{data: ArrayBuffer, solid: number, ghosts: number} | null} mesh corners of solid blocks, then of
+               ghosts
+         */
+        set(mesh) {
+            this.solid = mesh?.solid ?? 0;
+            this.ghosts = mesh?.ghosts ?? 0;
+            if (!mesh) return;
+            gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+            gl.bufferData(gl.ARRAY_BUFFER, mesh.data, gl.DYNAMIC_DRAW);
         }
     };
 }

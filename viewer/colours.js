@@ -1,9 +1,10 @@
 // Scales of colour and their legends. Sequential scales are monotone in lightness; categories are those of Okabe and
 // Ito.
 // @ts-check
-import {column} from "./frames.js";
+import {column, lengths} from "./frames.js";
 import {capital, figure} from "./math.js";
 import {slimness} from "./slimness.js";
+import {atPoints, zoneColumn, zoneNames, zoneUnit} from "./zones.js";
 
 /** @typedef {import("./frames.js").Frame} Frame */
 /** @typedef {import("./frames.js").Model} Model */
@@ -92,6 +93,37 @@ export function contactColours(model) {
     ];
 }
 
+/** Ways to colour zones. @param {Model} model @returns {[string, string][]} */
+export function zoneColours(model) {
+    const head = model.head;
+    return [
+        ["", "as blocks"], ["displacement", "displacement"], ["state", "state"], ["solid", "solid"],
+        .../** @type {[string, string][]} */ ((head ? zoneNames(head) : []).map((name) => [name, plain(name)]))
+    ];
+}
+
+/**
+ * A ramp from low to high that is light at 0: cool below, warm above, as strong as the value is large.
+ * @param {number} low
+ * @param {number} high
+ */
+function signed(low, high) {
+    const most = Math.max(-low, high), steps = 64;
+    const warm = low < 0 ? [COOL[0], ...WARM.slice(1)] : WARM;
+    return Array.from({length: steps + 1}, (_v, i) => {
+        const value = low + i / steps * (high - low);
+        return value < 0 ? ramp(COOL, -value / most) : ramp(warm, value / most);
+    });
+}
+
+/** @param {import("./scene.js").Head} head @param {string} name @param {number} least @param {number} most */
+function zoneScale(head, name, least, most) {
+    const unit = zoneUnit(head, name), low = least < 0 ? -roundUp(-least) : 0;
+    const high = most > 0 ? roundUp(most) : low < 0 ? 0 : 1;
+    const title = capital(plain(name)) + (unit ? `, ${unit}` : "");
+    return {title, kind: /** @type {const} */ ("scale"), low, high, log: false, ramp: signed(low, high), none: true};
+}
+
 /**
  * The scale of a column, one for all frames.
  * @param {Model} model
@@ -101,10 +133,11 @@ export function contactColours(model) {
 export function scaleOf(model, name) {
     const head = /** @type {import("./scene.js").Head} */ (model.head);
     const most = model.largest(name), least = model.least(name), size = head.size;
+    if (name.startsWith("zone:")) return zoneScale(head, name.slice(5), least, most);
     const weight = 1e-3 * Math.hypot(...head.gravity) * model.density * size ** 3;
     /** @type {Record<string, [string, number]>} */
     const floors = {
-        displacement: ["Displacement, m", size / 1000],
+        displacement: ["Displacement, m", model.surface ? 0 : size / 1000], // zones strain by little
         velocity: ["Velocity, m/s", size / 1000],
         rotation: ["Rotation, °", 0.05],
         unbalanced: ["Unbalanced force, N", weight],
@@ -258,7 +291,7 @@ export function colourBlocks(model, frame, by) {
         return done(scale);
     }
     const values = column(frame.data, head, by), scale = scaleOf(model, by);
-    if (by === "displacement" && frame.data.finding) scale.grey = frame.data.finding.closed;
+    if (by === "displacement" && frame.data.finding && !frame.surface) scale.grey = frame.data.finding.closed;
     paint((i) => (values ? scaled(scale, values[i]) : NONE));
     return done(scale);
 }
@@ -295,6 +328,52 @@ export function colourContacts(model, frame, by) {
     }
     const values = column(frame.data, frame.head, by), scale = scaleOf(model, by);
     return {colour: (i) => (values ? scaled(scale, values[i]) : NONE), legend: scale};
+}
+
+const YIELDS =
+    [[200, 206, 212], [213, 94, 0], [150, 40, 110], [0, 114, 178], [240, 190, 140], [215, 170, 205], [160, 205, 235]];
+
+/** Colours of values, three bytes each. @param {Float32Array} values @param {(v: number) => number[]} colour */
+function bytesOf(values, colour) {
+    const out = new Uint8Array(3 * values.length);
+    for (let i = 0; i < values.length; i++) out.set(colour(values[i]), 3 * i);
+    return out;
+}
+
+/**
+ * Colours of zones, or of gridpoints, and their legend; null: zones have the colour of their blocks.
+ * @param {Model} model
+ * @param {Frame} frame
+ * @param {string} by
+ * @param {boolean} smooth whether numbers of zones are shown by their means at gridpoints
+ * @returns {{points: Uint8Array | null, zones: Uint8Array | null, legend: Legend} | null}
+ */
+export function colourZones(model, frame, by, smooth) {
+    const {surface, head, data} = frame, {points} = data;
+    if (!surface || !points || by === "") return null;
+    if (by === "displacement") {
+        const legend = scaleOf(model, by);
+        return {points: bytesOf(lengths(points.displacement), (v) => scaled(legend, v)), zones: null, legend};
+    }
+    if (by === "state" || by === "solid") {
+        const list = by === "state" ? head.zoneStates : head.solids;
+        const items = list.map((name, i) => ({name, colour: by === "state" ? YIELDS[i] ?? NONE : category(i)}));
+        const values = by === "state" ? zoneColumn(data, head, by) : Float32Array.from(surface.solid);
+        const there = new Set(values ?? []);
+        return {
+            points: null,
+            zones: values && bytesOf(values, (v) => items[v]?.colour ?? NONE),
+            legend: {
+                title: by === "state" ? "Zones: state" : "Zones: solid",
+                kind: "list",
+                items: items.filter((_item, i) => there.has(i))
+            }
+        };
+    }
+    const values = zoneColumn(data, head, by), legend = scaleOf(model, `zone:${by}`);
+    if (!values) return null;
+    const colours = bytesOf(smooth ? atPoints(surface, values) : values, (v) => scaled(legend, v));
+    return {points: smooth ? colours : null, zones: smooth ? null : colours, legend};
 }
 
 /** Words of a legend, for those who do not see it. @param {Legend} legend */

@@ -1,6 +1,6 @@
 // The panel of controls.
 // @ts-check
-import {blockColours, contactColours} from "./colours.js";
+import {blockColours, contactColours, zoneColours} from "./colours.js";
 import {button, byId, checkBox, choice, element, labelled, slider} from "./dom.js";
 import {makeLists} from "./lists.js";
 import {figure} from "./math.js";
@@ -22,7 +22,7 @@ export function makeControls(app) {
         app.change(change);
     };
     /**
-     * @param {"edges" | "parallel" | "net" | "dark" | "cut" | "other" | "shadows"} name
+     * @param {"mesh" | "smooth" | "crosses" | "edges" | "parallel" | "net" | "dark" | "cut" | "other" | "shadows"} name
      * @param {string} words
      * @param {string} change
      */
@@ -56,6 +56,14 @@ export function makeControls(app) {
             app.zoomPicked();
         }
     };
+    const zones = element(
+        "div", {},
+        ...group(
+            "Zones", keep(choice("zones", () => zoneColours(app.model), () => view.zones, set("zones", "colour"))),
+            checks(
+                check("mesh", "mesh", "colour"), check("smooth", "smooth", "colour"),
+                check("crosses", "principal stresses", "colour"))));
+    all.push({update() { zones.hidden = !app.model.surface; }});
     const nodes = [
         ...group(
             "Colour", keep(choice("blocks", () => blockColours(app.model), () => view.colour, set("colour", "colour"))),
@@ -98,6 +106,7 @@ export function makeControls(app) {
                 button("Hide", () => app.hidePicked(), "Hide the picked blocks"),
                 button("Show all", () => app.showAll())),
             ...lists.nodes),
+        zones,
         ...group(
             "Section", checks(check("cut", "cut", "pose"), check("other", "other side", "pose")),
             keep(slider("dip", 0, 90, 1, () => view.dip, set("dip", "cut"), () => `${figure(view.dip)}°`)),

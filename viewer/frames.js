@@ -2,24 +2,27 @@
 // @ts-check
 import {readFrame} from "./scene.js";
 import {norm, triple} from "./math.js";
+import {zoneColumn, zoneNames} from "./zones.js";
 
 /** @typedef {import("./scene.js").FrameData} FrameData */
 /** @typedef {import("./scene.js").Refused} Refused */
 /** @typedef {import("./scene.js").Touches} Touches */
+/** @typedef {import("./scene.js").Surface} Surface */
 /**
  * @typedef {{largest: Record<string, number>, least: Record<string, number>, time: number, cycle: number, most: number,
  *   mover: number, slipping: number, contacts: number, line: import("./scene.js").Line | null, blocks: number}} Summary
  */
 /**
  * @typedef {{packed: string | null, length: number, buffer: ArrayBuffer | null, used: number,
- *   head: import("./scene.js").Head, refused: Refused | null, touches: Touches | null, since: number, summary: Summary,
+ *   head: import("./scene.js").Head, refused: Refused | null, touches: Touches | null, surface: Surface | null,
+ *   since: number, summary: Summary,
  *   whole: boolean, rows: Int32Array | null, data: FrameData | null}} Stored whole: the summary is of the frame itself;
  *   rows and data: of the blocks and the chunks, while they are known
  */
 /**
  * @typedef {{index: number, since: number, data: FrameData, head: import("./scene.js").Head,
  *   poses: import("./scene.js").Poses, rows: Int32Array, at: Int32Array, summary: Summary, refused: Refused | null,
- *   touches: Touches | null}} Frame
+ *   touches: Touches | null, surface: Surface | null}} Frame
  */
 
 const UNPACKED = 256 * 1024 * 1024; // bytes of unpacked frames that are kept
@@ -79,6 +82,7 @@ export function column(data, head, name) {
     if (name === "velocity") return lengths(p.velocity);
     if (name === "rotation") return lengths(p.rotation).map((x) => x * 180 / Math.PI);
     if (name === "unbalanced") return p.unbalanced;
+    if (name.startsWith("zone:")) return zoneColumn(data, head, name.slice(5));
     if (name.startsWith("field:") || name.startsWith("contact field:")) {
         const of = name.startsWith("field:") ? 0 : 1, wanted = name.slice(name.indexOf(":") + 1);
         return data.extras.find((e) => e.of === of && head.fields[e.field].name === wanted)?.value ?? null;
@@ -101,7 +105,8 @@ export function columnNames(data, head) {
     const extra = data.extras.map((e) => (e.of ? "contact field:" : "field:") + head.fields[e.field].name);
     return [
         "displacement", "velocity", "rotation", "unbalanced",
-        ...(data.contacts ? ["slip", "normal stress", "shear stress", "force"] : []), ...extra
+        ...(data.contacts ? ["slip", "normal stress", "shear stress", "force"] : []), ...extra,
+        ...(data.zones.length ? zoneNames(head).map((name) => `zone:${name}`) : [])
     ];
 }
 
@@ -129,6 +134,8 @@ function summarise(data, head) {
             least[name] = low;
         }
     }
+    for (const moved of data.points ? lengths(data.points.displacement) : [])
+        largest.displacement = Math.max(largest.displacement ?? 0, moved);
     for (const state of data.contacts?.state ?? []) slipping += state === 1 ? 1 : 0;
     return {
         largest,
@@ -144,6 +151,15 @@ function summarise(data, head) {
     };
 }
 
+/**
+ * Numbers of gridpoints and zones must be those of the mesh. @param {FrameData} data @param {Surface | null} surface
+ */
+function checkZones(data, surface) {
+    const {points} = data, P = surface?.P ?? 0, Z = surface?.Z ?? 0;
+    if ((points && points.n !== P) || data.zones.some((z) => z.value.length !== Z))
+        throw new Error(`A frame does not fit its mesh of ${P} gridpoints and ${Z} zones.`);
+}
+
 /** All frames of a page or of a run, and the blocks' shapes by row. */
 export class Model {
     constructor() {
@@ -151,6 +167,7 @@ export class Model {
         /** @type {import("./scene.js").Head | null} */ this.head = null;
         /** @type {Refused | null} */ this.refused = null; // cuts so far
         /** @type {Touches | null} */ this.touches = null; // as they are now
+        /** @type {Surface | null} */ this.surface = null; // likewise
         this.density = 0;                                  // of the first block, kg/m³
         this.keys = false;                                 // whether any frame has keyblocks
         this.rows = 0;
@@ -191,6 +208,7 @@ export class Model {
             head,
             refused: this.refused,
             touches: this.touches,
+            surface: this.surface,
             since: this.serial++,
             whole: false,
             rows: null,
@@ -242,6 +260,8 @@ export class Model {
         for (const shapes of data.shapes) this.addShapes(shapes, serial);
         this.refused = data.refused ?? this.refused;
         this.touches = data.touches ?? this.touches;
+        this.surface = data.surface ?? this.surface;
+        checkZones(data, this.surface);
         this.density ||= data.shapes[0]?.density[0] ?? 0;
         this.keys ||= data.keys !== null;
         /** @type {Stored} */ const stored = {
@@ -252,6 +272,7 @@ export class Model {
             head,
             refused: this.refused,
             touches: this.touches,
+            surface: this.surface,
             since: serial,
             summary: summarise(data, head),
             whole: true,
@@ -379,6 +400,7 @@ export class Model {
         const data = stored.data ??
             (this.last?.buffer === stored.buffer ? this.last.data : readFrame(stored.buffer, stored.head));
         this.last = {buffer: stored.buffer, data};
+        checkZones(data, stored.surface);
         if (!stored.whole) stored.summary = summarise(data, stored.head);
         stored.whole = true;
         this.keys ||= data.keys !== null;
@@ -395,7 +417,8 @@ export class Model {
             at,
             summary: stored.summary,
             refused: stored.refused,
-            touches: stored.touches
+            touches: stored.touches,
+            surface: data.points ? stored.surface : null
         };
     }
 

@@ -2,16 +2,18 @@
 // edges. While nothing changes, pictures with sub-pixel offsets are averaged; while something moves, one draft without
 // shadow and occlusion.
 // @ts-check
-import {arrowBuffer, blockBuffer, sheetBuffer} from "./buffers.js";
+import {arrowBuffer, blockBuffer, meshBuffer, sheetBuffer} from "./buffers.js";
 import {
     ARROW_VERTEX,
     DEPTH_FRAGMENT,
+    MESH_VERTEX,
     SHEET_VERTEX,
     SHOW_FRAGMENT,
     WHOLE_VERTEX,
     blockFragment,
     blockVertex,
     lightFragment,
+    meshFragment,
     sheetFragment
 } from "./shaders.js";
 
@@ -140,6 +142,9 @@ export function makeGpu(canvas) {
         block: [blockVertex(""), blockFragment("")],
         cut: [blockVertex(""), blockFragment("#define CUT\n")],
         depth: [blockVertex("#define DEPTH\n"), DEPTH_FRAGMENT],
+        mesh: [MESH_VERTEX, meshFragment("")],
+        meshCut: [MESH_VERTEX, meshFragment("#define CUT\n")],
+        meshDepth: [MESH_VERTEX, DEPTH_FRAGMENT],
         sheet: [SHEET_VERTEX, sheetFragment("flat")],
         arrow: [ARROW_VERTEX, sheetFragment("")],
         show: [WHOLE_VERTEX, SHOW_FRAGMENT],
@@ -149,6 +154,7 @@ export function makeGpu(canvas) {
         fullGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n#define FULL\n")]
     };
     /** @type {Partial<Record<keyof typeof texts, ReturnType<typeof makeProgram>>>} */ const programs = {};
+    const zones = meshBuffer(gl), zoneCaps = meshBuffer(gl);
     const caps = sheetBuffer(gl), sheets = sheetBuffer(gl), arrows = arrowBuffer(gl), empty = gl.createVertexArray();
     const shadow = makeTexture(gl, gl.DEPTH_COMPONENT24, SHADOW, SHADOW), shadowTarget = makeTarget(gl, [], shadow);
     gl.bindTexture(gl.TEXTURE_2D, shadow);
@@ -214,6 +220,28 @@ export function makeGpu(canvas) {
         gl.disable(gl.CULL_FACE);
     }
 
+    /**
+     * @param {keyof typeof texts} kind
+     * @param {ReturnType<typeof meshBuffer>} mesh
+     * @param {Float32Array} matrix
+     * @param {number} pixels
+     * @param {number[]} plane
+     * @param {boolean} ghosts
+     */
+    function drawMesh(kind, mesh, matrix, pixels, plane, ghosts) {
+        const count = ghosts ? mesh.ghosts : mesh.solid;
+        if (!count) return;
+        const at = use(kind, []);
+        gl.uniformMatrix4fv(at.u_matrix, false, matrix);
+        if (at.u_pixels) gl.uniform1f(at.u_pixels, pixels);
+        if (at.u_plane) gl.uniform4fv(at.u_plane, plane);
+        gl.bindVertexArray(mesh.array);
+        gl.drawArrays(gl.TRIANGLES, ghosts ? mesh.solid : 0, count);
+    }
+
+    /** What hides nothing: for the shadow of a whole model. @param {Look} look */
+    const planeOf = (look) => (look.cut ? look.plane : [0, 0, 0, 1]);
+
     /** @param {keyof typeof texts} kind @param {Sight} sight @param {Float32Array} matrix */
     function useGlyphs(kind, sight, matrix) {
         const at = use(kind, []);
@@ -239,7 +267,12 @@ export function makeGpu(canvas) {
         gl.clearBufferuiv(gl.COLOR, 2, [NOTHING, 0, 0, 0]);
         gl.clearBufferfv(gl.DEPTH, 0, [1]);
         drawBlocks(look.cut ? "cut" : "block", matrix, sight.pixels * stage.height, look, ghosts ? 2 : 1);
+        const pixels = sight.pixels * stage.height;
+        gl.enable(gl.CULL_FACE);
+        drawMesh(look.cut ? "meshCut" : "mesh", zones, matrix, pixels, look.plane, ghosts);
+        gl.disable(gl.CULL_FACE);
         if (ghosts) return;
+        drawMesh("mesh", zoneCaps, matrix, pixels, look.plane, false);
         for (const s of [caps, sheets]) {
             if (!s.count) continue;
             useGlyphs("sheet", sight, matrix);
@@ -329,6 +362,8 @@ export function makeGpu(canvas) {
 
     return {
         gl,
+        zones,
+        zoneCaps,
         caps,
         sheets,
         arrows,
@@ -350,6 +385,9 @@ export function makeGpu(canvas) {
             gl.enable(gl.DEPTH_TEST);
             gl.clearBufferfv(gl.DEPTH, 0, [1]);
             drawBlocks("depth", look.light, 0, look, 1);
+            gl.enable(gl.CULL_FACE);
+            drawMesh("meshDepth", zones, look.light, 0, planeOf(look), false);
+            gl.disable(gl.CULL_FACE);
         },
         /**
          * One picture; number 0 begins a new average.
@@ -410,6 +448,8 @@ export function noGpu() {
     const nothing = () => {}, sheets = {set: nothing, count: 0};
     /** @type {any} */ const gpu = {
         gl: null,
+        zones: sheets,
+        zoneCaps: sheets,
         caps: sheets,
         sheets,
         arrows: sheets,

@@ -2,13 +2,15 @@
 // the section.
 // @ts-check
 import {add, dot, norm, scale, sub, triple, turnAfter} from "./math.js";
+import {rowsOf, shownPoints} from "./zones.js";
 
 /** @typedef {import("./frames.js").Model} Model */
 /** @typedef {import("./frames.js").Frame} Frame */
 /**
  * @typedef {{place: Float32Array, turn: Float32Array, kind: Uint8Array, table: Float32Array, ghosts: boolean,
- *   bounds: import("./camera.js").Bounds, middle: number[]}} Shown by row; kind: 0 not there, 1 solid, 2 ghost; the
- *   table goes to the picture
+ *   bounds: import("./camera.js").Bounds, middle: number[], zoned: Uint8Array, points: Float32Array | null,
+ *   meshRow: Int32Array, pointStart: number[]}} Shown by row; kind: 0 not there, 1 solid, 2 ghost; the table goes to
+ * the picture; zoned: 1 where it is drawn by its mesh, whose gridpoints are at `points`
  */
 
 /**
@@ -62,7 +64,12 @@ export function showFrame(model, frame, view) {
         box.min = [-1, -1, -1];
         box.max = [1, 1, 1];
     }
-    const shown = {place, turn, kind, table, ghosts, bounds: box, middle};
+    const zoned = new Uint8Array(model.rows), points = shownPoints(model, frame, view, middle);
+    const surface = points ? frame.surface : null;
+    const meshRow = surface ? rowsOf(model, frame, surface.body) : new Int32Array(0), pointStart = [0];
+    for (const id of new Set(surface?.block ?? [])) zoned[Math.max(0, model.rowOf(id, frame.since))] = 1;
+    for (const count of surface?.points ?? []) pointStart.push(pointStart[pointStart.length - 1] + count);
+    const shown = {place, turn, kind, table, ghosts, bounds: box, middle, zoned, points, meshRow, pointStart};
     fillTable(model, shown, null);
     return shown;
 }
@@ -78,7 +85,7 @@ export function fillTable(model, shown, plane) {
     const {place, turn, kind, table} = shown;
     for (let row = 0; row < model.rows; row++) {
         const radius = model.shape[row].radius, sign = turn[4 * row + 3] < 0 ? -1 : 1;
-        let group = kind[row];
+        let group = shown.zoned[row] ? 0 : kind[row];
         if (plane && group) {
             const away = dot(plane.normal, triple(place, row)) - plane.position;
             group = away > radius ? 0 : away > -radius ? group + 4 : group;
@@ -101,8 +108,16 @@ export function fillTable(model, shown, plane) {
  */
 export function tightBox(model, shown, wanted) {
     const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
+    for (let m = 0; shown.points && m < shown.meshRow.length; m++) {
+        const row = shown.meshRow[m];
+        if (row < 0 || !shown.kind[row] || !wanted(row)) continue;
+        for (let k = 3 * shown.pointStart[m]; k < 3 * shown.pointStart[m + 1]; k++) {
+            min[k % 3] = Math.min(min[k % 3], shown.points[k]);
+            max[k % 3] = Math.max(max[k % 3], shown.points[k]);
+        }
+    }
     for (let row = 0; row < model.rows; row++) {
-        if (!shown.kind[row] || !wanted(row)) continue;
+        if (shown.zoned[row] || !shown.kind[row] || !wanted(row)) continue;
         const s = model.shape[row], q = shown.turn, o = 4 * row;
         const x = q[o], y = q[o + 1], z = q[o + 2], w = q[o + 3];
         for (let i = 0, k = 3 * s.vertex; i < s.shapes.vertices[s.block]; i++, k += 3) {

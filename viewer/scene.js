@@ -6,7 +6,7 @@
 /**
  * @typedef {{format: number, program: string, title: string, origin: number[], gravity: number[], size: number,
  *   groups: string[], joints: string[], friction: number[], limit: number, fields: Field[], histories: string[], live:
- * boolean, commands: boolean}} Head
+ * boolean, commands: boolean, solids: string[], zoneStates: string[], zoneFields: {name: string, unit: string}[]}} Head
  */
 /**
  * @typedef {{n: number, id: Uint32Array, body: Uint32Array, group: Uint32Array, vertices: Uint32Array,
@@ -32,12 +32,21 @@
  *   point: Float32Array, thickness: Float32Array, limit: Float32Array}} Refused
  */
 /**
+ * @typedef {{P: number, Z: number, T: number, whole: boolean, body: Uint32Array, points: Uint32Array,
+ *   zones: Uint32Array, triangles: Uint32Array, made: Float32Array, corner: Uint32Array, solid: Uint16Array,
+ *   triangle: Uint32Array, zone: Uint32Array, block: Uint32Array, face: Uint32Array}} Surface meshes of deformable
+ *   bodies: gridpoints, zones and the triangles of their surfaces; not whole: without zones inside
+ */
+/** @typedef {{n: number, place: Float32Array, displacement: Float32Array}} Points gridpoints of a frame */
+/** @typedef {{field: number, value: Float32Array}} ZoneField */
+/**
  * @typedef {{n: number, body: Uint32Array, normal: Float32Array}} Touches outward normals of the faces with which
  *   bodies lie on others, body by body
  */
 /**
  * @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, touches: Touches |
- *   null, poses: Poses | null, contacts: Contacts | null, extras: Extra[], line: Line | null, keys: Keys | null,
+ *   null, surface: Surface | null, points: Points | null, zones: ZoneField[], poses: Poses | null, contacts: Contacts |
+ *   null, extras: Extra[], line: Line | null, keys: Keys | null,
  *   finding: Finding | null, live: Live[], number: number}} FrameData
  */
 /**
@@ -167,6 +176,10 @@ function readHead(c) {
             (/** @type {any} */ f) => ({name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of)})),
         friction,
         limit: Number.isFinite(h.safety_limit) && h.safety_limit > 0 ? h.safety_limit : NaN,
+        solids: names(h.solids ?? [], "solids"),
+        zoneStates: names(h.zone_states ?? [], "zone_states"),
+        zoneFields: (Array.isArray(h.zone_fields) ? h.zone_fields : [])
+                        .map((/** @type {any} */ f) => ({name: String(f?.name), unit: String(f?.unit ?? "")})),
         live: h.live === true,
         commands: h.commands === true
     };
@@ -309,6 +322,49 @@ function readTouches(c) {
     return {n, body: c.u32(n, "body"), normal: c.f32(3 * n, "normal")};
 }
 
+/** @param {Columns} c @param {Head} head @returns {Surface} */
+function readSurface(c, head) {
+    const [n, P, Z, T, whole] = c.u32(5, "counts");
+    const s = {
+        P,
+        Z,
+        T,
+        whole: whole !== 0,
+        body: c.u32(n, "body"),
+        points: c.u32(n, "points"),
+        zones: c.u32(n, "zones"),
+        triangles: c.u32(n, "triangles"),
+        made: c.f32(3 * P, "made"),
+        corner: c.u32(4 * Z, "corner"),
+        solid: c.u16(Z, "solid"),
+        triangle: c.u32(3 * T, "triangle"),
+        zone: c.u32(T, "zone"),
+        block: c.u32(T, "block"),
+        face: c.u32(T, "face")
+    };
+    c.sum(s.points, P, "points");
+    c.sum(s.zones, Z, "zones");
+    c.sum(s.triangles, T, "triangles");
+    c.below(s.corner, P, "corner");
+    c.below(s.triangle, P, "triangle");
+    c.below(s.zone, Z, "zone");
+    c.below(s.solid, Math.max(1, head.solids.length), "solid");
+    return s;
+}
+
+/** @param {Columns} c @returns {Points} */
+function readPoints(c) {
+    const n = c.u32(1, "count")[0];
+    return {n, place: c.f32(3 * n, "place"), displacement: c.f32(3 * n, "displacement")};
+}
+
+/** @param {Columns} c @param {Head} head @returns {ZoneField} */
+function readZoneField(c, head) {
+    const [field, n] = c.u32(2, "counts");
+    if (field >= head.zoneFields.length) throw c.bad(`field ${field} has no name`);
+    return {field, value: c.f32(n, "value", true)};
+}
+
 /** @param {Columns} c @returns {Finding} */
 function readFinding(c) {
     const f = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
@@ -349,6 +405,9 @@ export function readFrame(buffer, head, news) {
         gone: [],
         refused: null,
         touches: null,
+        surface: null,
+        points: null,
+        zones: [],
         poses: null,
         contacts: null,
         extras: [],
@@ -380,6 +439,9 @@ function readChunks(buffer, head, frame) {
         else if (name === "GONE") frame.gone.push(c.u32(c.u32(1, "count")[0], "id"));
         else if (name === "REFU") frame.refused = readRefused(c, head);
         else if (name === "TOUC") frame.touches = readTouches(c);
+        else if (name === "SURF") frame.surface = readSurface(c, head);
+        else if (name === "SPOS") frame.points = readPoints(c);
+        else if (name === "ZFLD") frame.zones.push(readZoneField(c, head));
         else if (name === "FRAM") frame.poses = readPoses(c);
         else if (name === "CONT") frame.contacts = readContacts(c, head);
         else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));

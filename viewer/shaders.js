@@ -83,6 +83,51 @@ in vec3 v_world;
 uniform vec4 u_plane;
 void main() { if (v_cut > 0.0 && dot(u_plane.xyz, v_world) > u_plane.w) discard; }`;
 
+// Triangles of deformable blocks, of their surfaces and sections: places in the model. The fourth number of a normal is
+// 1 where it is lit, 0 flat. Edges of small triangles fade.
+export const MESH_VERTEX = HEAD + `
+layout(location = 0) in vec3 a_place;
+layout(location = 1) in vec4 a_normal;
+layout(location = 2) in vec4 a_colour;
+layout(location = 3) in uint a_name;
+layout(location = 4) in float a_size;
+uniform mat4 u_matrix;
+uniform float u_pixels;
+out vec4 v_colour;
+flat out vec4 v_normal;
+flat out uint v_name;
+flat out float v_cut;
+out vec3 v_world;
+void main() {
+    v_world = a_place;
+    gl_Position = u_matrix * vec4(a_place, 1.0);
+    v_cut = 1.0;
+    v_colour = vec4(a_colour.rgb, clamp(a_size * u_pixels / gl_Position.w / 9.0, 0.0, 1.0));
+    v_normal = a_normal;
+    v_name = a_name;
+}`;
+
+/** @param {string} define */
+export function meshFragment(define) {
+    return HEAD + define + `
+in vec4 v_colour;
+flat in vec4 v_normal;
+flat in uint v_name;
+in vec3 v_world;
+uniform vec4 u_plane;
+layout(location = 0) out vec4 o_colour;
+layout(location = 1) out vec4 o_normal;
+layout(location = 2) out uint o_name;
+void main() {
+#ifdef CUT
+    if (dot(u_plane.xyz, v_world) > u_plane.w) discard;
+#endif
+    o_colour = v_colour;
+    o_normal = vec4(v_normal.xyz * 0.5 + 0.5, v_normal.w);
+    o_name = v_name;
+}`;
+}
+
 // Section polygons and contact polygons: places in the model. Sections are not lit, so that their colours match the
 // legend.
 export const SHEET_VERTEX = HEAD + `

@@ -5,6 +5,7 @@ import {button, byId, element} from "./dom.js";
 import {dot, figure, norm, scale, sub, trendPlunge, triple} from "./math.js";
 import {pairOf} from "./scene.js";
 import {slimness} from "./slimness.js";
+import {zoneColumn} from "./zones.js";
 
 const LISTED = 12; // ids of several blocks that are listed
 const MOST = 60;   // contacts of a block that are listed
@@ -19,6 +20,20 @@ export function directionText(v) {
 
 /** @param {number} kg */
 function massText(kg) { return kg >= 1000 ? `${figure(kg / 1000)} t` : `${figure(kg)} kg`; }
+
+/**
+ * What is known of the zones of a block: of all of its body, where that is of several.
+ * @param {import("./frames.js").Frame} frame
+ * @param {number} id
+ * @returns {[string, string][]}
+ */
+function zoneRows(frame, id) {
+    const {surface, head, data} = frame, mesh = surface ? surface.body.indexOf(id) : -1;
+    if (!surface || mesh < 0) return [];
+    const start = surface.zones.subarray(0, mesh).reduce((sum, n) => sum + n, 0), count = surface.zones[mesh];
+    const yielded = zoneColumn(data, head, "state")?.subarray(start, start + count).filter((s) => s > 0).length ?? 0;
+    return [["zones", `${count}, ${yielded} yielded`]];
+}
 
 /**
  * Names and values of what is known of a block.
@@ -52,6 +67,7 @@ export function blockRows(model, frame, id) {
         ["held", p.flags[i] & 1 ? "yes" : "no"], ["unbalanced", `${figure(p.unbalanced[i])} N`]
     ];
     if (shapes.body[block] !== id) rows.push(["body", String(shapes.body[block])]);
+    rows.push(...zoneRows(frame, id));
     if (k) rows.push(["contacts", `${contacts}, ${slipping} slipping`]);
     rows.push(["joints", [...joints].join(", ") || "none"]);
     const keys = frame.data.keys, at = keys ? keys.id.indexOf(shapes.body[block]) : -1;

@@ -6,7 +6,8 @@
  *   opacity: number, moved: number, explode: number, motion: number, cut: boolean, other: boolean, dip: number,
  *   direction: number, position: number, parallel: boolean, net: boolean, dark: boolean, shadows: boolean,
  *   picked: number, contact: number, also: Set<number>, joint: string, hidden: Set<number>, ghosts: Set<number>,
- *   only: Set<number>}} View also: all picked blocks, where there are several
+ *   only: Set<number>, zones: string, mesh: boolean, smooth: boolean, crosses: boolean}} View also: all picked blocks,
+ * where there are several
  */
 
 /** @returns {View} */
@@ -37,7 +38,11 @@ export function makeView() {
         joint: "",
         hidden: new Set(),
         ghosts: new Set(),
-        only: new Set()
+        only: new Set(),
+        zones: "",
+        mesh: true,
+        smooth: false,
+        crosses: false
     };
 }
 

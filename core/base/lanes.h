@@ -99,6 +99,37 @@ TL_INLINE void tl_lanes_turn(const double *const row[4], double *restrict x, dou
     *(four *)w = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
 }
 
+/* Rows of TL_ROW numbers. Four of them, less four others, become three columns of TL_LANES: x, y, z of the first
+ * three numbers of each. */
+#define TL_ROW 8
+TL_INLINE void tl_lanes_apart(const double *rows, const uint16_t of[4], const uint16_t from[4], double *restrict xyz)
+{
+    typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+#define TL_ROWS_APART(i) (*(const four *)(rows + TL_ROW * of[i]) - *(const four *)(rows + TL_ROW * from[i]))
+    const four a = TL_ROWS_APART(0), b = TL_ROWS_APART(1), c = TL_ROWS_APART(2), d = TL_ROWS_APART(3);
+#undef TL_ROWS_APART
+    const four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(four *)xyz = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(four *)(xyz + TL_LANES) = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(four *)(xyz + 2 * TL_LANES) = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+}
+
+/* Four columns of four numbers are added to four rows: the first of each to the first row. The rows may be the same
+ * one. */
+TL_INLINE void tl_lanes_add_rows(double *const row[4], const double *x, const double *y, const double *z,
+                                 const double *w)
+{
+    typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+    const four a = *(const four *)x, b = *(const four *)y, c = *(const four *)z, d = *(const four *)w;
+    const four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(four *)row[0] += __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(four *)row[1] += __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(four *)row[2] += __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+    *(four *)row[3] += __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
+}
+
 /* Matrices element by element, not in loops: a loop over lanes with loops in it does not become SIMD code. */
 TL_INLINE tl_mat3 tl_lanes9_get(const tl_lanes9 *from, size_t lane)
 {

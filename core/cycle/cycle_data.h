@@ -78,8 +78,11 @@ struct tl_stiffness_rates {
 struct tl_added {
     double share; /* of the mass of the bodies that can move */
     size_t bodies;
-    double factor;  /* the highest, 1 without any */
-    uint32_t worst; /* row of the body that has it, or TL_NO_ROW */
+    double factor;        /* the highest, 1 without any */
+    uint32_t worst;       /* row of the body that has it, or TL_NO_ROW */
+    uint32_t worst_point; /* of a deformable one the number of its gridpoint, or TL_NO_ROW */
+    size_t points;        /* gridpoints that have been given some */
+    double point_limit;   /* the highest stable rate of a gridpoint, 1/s2; 0: none is asked for */
 };
 
 /* Bounds on the speeds of the bodies after the last kick: of (|v| + |w| r)^2 / 4, m2/s2, and of |w|^2 / 2, 1/s2. */
@@ -208,7 +211,9 @@ struct tl_cycle {
     tl_id *fails; /* blocks that failed in the last run that saw a failure, */
     size_t fails_count, fails_capacity;
     double fails_volume; /* m3, */
-    tl_vec3 fails_way;   /* and where to */
+    tl_vec3 fails_way;   /* and where to; */
+    bool fails_strained; /* or a deformable one is strained on and on, */
+    tl_vec3 fails_at;    /* at this place, m */
     tl_id failing;       /* in the last run that was watched: solve.c; or TL_NO_ID */
     double rest_ratio;   /* that the last solve asked for; 0: none has */
     bool fast;           /* a body came near the limit of motion in the last step: limits.c */

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/params.h"
 #include "contact/contacts.h"
-#include "cycle/gridpoints.h"
+#include "cycle/gridpoint.h"
 #include "cycle/undo.h"
 #include "plugin/loader.h"
 
@@ -241,7 +241,7 @@ static void damp_points(void *user, size_t begin, size_t end, size_t chunk, unsi
     const damping_job *job = user;
     tl_gridpoints *p = &job->m->zones->points;
     double none[POINT_CHUNK] = {0}, one[POINT_CHUNK], scaled[POINT_CHUNK], out[3][POINT_CHUNK] = {{0}};
-    const bool scales = job->m->cycle->mass_scale > 0;
+    const bool scales = tl_inertia_scaled(job->m->cycle);
     for (size_t i = 0; i < end - begin; i++) {
         one[i] = 1;
         scaled[i] = p->mass[begin + i] * tl_gridpoint_scale(job->m, begin + i);

@@ -11,12 +11,14 @@
  * adds to moving bodies and takes from them (added_mass.c). What contacts lose or gain counts likewise when blocks are
  * deleted, made, joined or parted, or laws changed: it is what the sum of that step lacks.
  *
- * Each contributor has a term of its own, by its name: what it stores, and what it has turned to heat.
+ * Each contributor has a term of its own, by its name: what it stores, and what it has turned to heat. Those of the
+ * zones are told by themselves, all others together as `stored` and `friction`.
  *
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/energy.h"
 
 #include "contact/detection.h"
+#include "cycle/zone_forces.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -32,10 +34,16 @@ static tl_energy_term *term_of(tl_ledger *l, const char *name)
     return term;
 }
 
+/* What all but the zones store, and what zones do. */
+typedef struct stored_now {
+    double contacts, zones;
+} stored_now;
+
 /* Asks all contributors; their sum: stored now, and heat of this step. */
-static tl_energies ask_contributors(tl_model *m)
+static tl_energies ask_contributors(tl_model *m, stored_now *now)
 {
     tl_energies sum = {0, 0};
+    *now = (stored_now){0, 0};
     for (tl_contributors with = m->cycle->contributor; *with; with++) {
         if (!(*with)->energies)
             continue;
@@ -43,13 +51,23 @@ static tl_energies ask_contributors(tl_model *m)
         tl_energy_term *term = term_of(&m->cycle->ledger, (*with)->name);
         term->stored = own.stored;
         term->heat += own.heat;
-        sum.stored += own.stored;
+        *(*with == &tl_zones_act ? &now->zones : &now->contacts) += own.stored;
         sum.heat += own.heat;
     }
+    sum.stored = now->contacts + now->zones;
     return sum;
 }
 
-/* Notes the terms at the forces' time. */
+/* What zones store and have turned to heat. */
+static tl_zone_energy zones_of(const tl_ledger *l)
+{
+    for (size_t k = 0; k < TL_MOST_CONTRIBUTORS; k++)
+        if (strcmp(l->term[k].name, tl_zones_act.name) == 0)
+            return (tl_zone_energy){l->term[k].stored, l->term[k].heat};
+    return (tl_zone_energy){0, 0};
+}
+
+/* Notes the terms at the forces' time. `stored`: by all but zones. */
 static void note_terms(tl_ledger *l, const double now[TL_BOOK_COUNT], double stored)
 {
     tl_energy *e = &l->energy;
@@ -65,14 +83,16 @@ static void note_terms(tl_ledger *l, const double now[TL_BOOK_COUNT], double sto
     e->external = at[TL_WORK_EXTERNAL] + l->by_hand;
     e->friction = 0;
     for (size_t k = 0; k < TL_MOST_CONTRIBUTORS; k++)
-        e->friction += l->term[k].heat;
+        e->friction += strcmp(l->term[k].name, tl_zones_act.name) != 0 ? l->term[k].heat : 0;
 }
 
 /* The balance of the terms. `changed`: by something else than forces. */
 static void balance(tl_ledger *l, bool first, bool changed)
 {
     tl_energy *e = &l->energy;
-    const double gains[] = {e->kinetic - l->start_kinetic, e->potential, e->stored - l->start_stored, e->friction,
+    const tl_zone_energy zones = zones_of(l);
+    const double stored = e->stored + zones.strain - l->start_stored;
+    const double gains[] = {e->kinetic - l->start_kinetic, e->potential, stored, e->friction + zones.plastic,
                             e->damping};
     double sum = 0, largest = fmax(e->kinetic, l->start_kinetic);
     for (size_t k = 0; k < sizeof gains / sizeof *gains; k++) {
@@ -134,7 +154,8 @@ void tl_energy_close(tl_model *m)
     tl_ledger *l = &m->cycle->ledger;
     double now[TL_BOOK_COUNT];
     sum_booked(m, now);
-    const tl_energies own = ask_contributors(m);
+    stored_now stored;
+    const tl_energies own = ask_contributors(m, &stored);
     const bool first = !l->started, changed = l->structure != m->structure || l->laws != m->laws;
     if (first) {
         note_overlaps(m, l);
@@ -149,7 +170,7 @@ void tl_energy_close(tl_model *m)
     l->structure = m->structure;
     l->laws = m->laws;
     m->cycle->kinetic_before = now[TL_BOOK_MOTION0];
-    note_terms(l, now, own.stored);
+    note_terms(l, now, stored.contacts);
     balance(l, first, changed);
     tl_balance_note(m);
 }
@@ -157,6 +178,12 @@ void tl_energy_close(tl_model *m)
 tl_status tl_model_energy(tl_model *m, tl_energy *energy)
 {
     *energy = m->cycle ? m->cycle->ledger.energy : (tl_energy){0};
+    return TL_OK;
+}
+
+tl_status tl_model_zone_energy(tl_model *m, tl_zone_energy *energy)
+{
+    *energy = m->cycle ? zones_of(&m->cycle->ledger) : (tl_zone_energy){0};
     return TL_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "base/extremes.h"
 #include "base/parallel.h"
 #include "contact/detection.h"
+#include "cycle/borne.h"
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
 #include "cycle/gridpoints.h"

@@ -3,33 +3,33 @@
  * A gridpoint is a point of mass m. Its zones, contacts, weight and load push it, and it moves by central differences
  * as bodies do: v <- (D1 v + F/m h) D2, x <- x + v dt. Components that are held keep the velocity they were given.
  *
- * Rest asks of a gridpoint what it asks of a body (rest.c), with B = sqrt(n sum f^2) for the n forces of its zones. A
- * mesh swings more softly than one of its gridpoints by far. So kinetic energy is compared over the whole of it:
- *
- *     sum m v.v / 2  <  the smaller of ratio and 1000 ratio^2, times sum B^2 / (2 k)
+ * Rest asks of a gridpoint what it asks of a body (rest.c), with B = sqrt(n sum f^2) for the n forces of its zones.
  *
  * Rows of a mesh are padded to whole lanes, so lanes add up in one order, whoever takes them. */
 #include "cycle/gridpoints.h"
 
 #include "base/columns.h"
 #include "base/extremes.h"
-#include "cycle/turn.h"
+#include "base/lanes.h"
+#include "cycle/gridpoint.h"
+#include "cycle/held_gridpoints.h"
+#include "cycle/meshes.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
+#include "zone/outer.h"
 #include "zone/stiffness.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 /* Rows that a thread takes at a time: a multiple of TL_LANES. */
 #define CHUNK 256
 
-/* All components of a gridpoint. */
-#define ALL (TL_FIX_X | TL_FIX_Y | TL_FIX_Z)
-
 /* ---------------------------------------------------------------- step ------------------- */
 
-/* What holds each gridpoint: zones and, no less than the floor, segments and carriers. */
+/* What holds each gridpoint: zones and, no less than the floor, segments and carriers. With that, what rounding of its
+ * place would bring. */
 static void find_holds(tl_model *m)
 {
     tl_gridpoints *p = &m->zones->points;
@@ -39,6 +39,8 @@ static void find_holds(tl_model *m)
     tl_carriers_stiffen(m);
     for (size_t row = 0; row < p->table.rows; row++)
         p->holds[row] = p->stiffness[row] + tl_larger(p->holds[row], p->floor[row]);
+    for (size_t row = 0; row < p->table.rows; row++)
+        p->rounded[row] = tl_least_borne(&m->bodies, m->zones->mesh[p->mesh[row]].row, p->holds[row]);
 }
 
 double tl_gridpoints_least(tl_model *m)
@@ -56,74 +58,85 @@ double tl_gridpoints_least(tl_model *m)
     return rate > 0 ? 1 / rate : INFINITY;
 }
 
-/* What mass scaling makes of a gridpoint's mass. */
-double tl_gridpoint_scale(const tl_model *m, size_t row)
+/* ---------------------------------------------------------------- lanes ------------------ */
+
+/* Columns of a chunk that are the same in most models. */
+static const double none[CHUNK];
+
+/* Of rows that nothing holds: 1 in each component. */
+typedef struct free_parts {
+    _Alignas(TL_ALIGN) double of[3][CHUNK];
+} free_parts;
+
+/* 1 for each component that a gridpoint may move along, else 0. */
+TL_VECTORIZED static void find_free(const uint8_t *fixed, size_t count, free_parts *out)
 {
-    const tl_gridpoints *p = &m->zones->points;
-    const double scale = m->cycle->mass_scale * p->holds[row] / p->mass[row];
-    return m->cycle->mass_scale > 0 && p->holds[row] > 0 ? scale : 1;
+    for (int c = 0; c < 3; c++)
+        for (size_t i = 0; i < count; i++)
+            out->of[c][i] = (fixed[i] & TL_FIX_X << c) != 0 ? 0 : 1;
+}
+
+/* What a component is where it is free, else 0. */
+TL_INLINE double if_free(double free, double x)
+{
+    return free > 0 ? x : 0;
 }
 
 /* ---------------------------------------------------------------- gather ----------------- */
 
-static tl_vec3 load_of(const tl_gridpoints *p, size_t row)
-{
-    return p->load[0] ? tl_columns_get(p->load, row) : tl_v3(0, 0, 0);
-}
+/* What acts on the gridpoints of a chunk: the sums of their slots, and sizes of forces of segments. */
+typedef struct gathering {
+    _Alignas(TL_ALIGN) double sum[4][CHUNK];
+    double touched[CHUNK];
+} gathering;
 
-static void gather_point(const tl_model *m, size_t row, double share)
+/* Adds up the slots of each row, in their order. */
+TL_VECTORIZED static void sum_slots(const struct tl_zones *z, size_t begin, size_t count, gathering *to)
 {
-    struct tl_zones *z = m->zones;
-    tl_gridpoints *p = &z->points;
-    tl_vec3 force = {0, 0, 0};
-    double square = 0;
-    for (uint32_t k = z->use_start[row]; k < z->use_start[row + 1]; k++) {
-        const tl_slot *slot = &z->slot[z->use[k]];
-        force = tl_v3_add(force, tl_v3(slot->of[0], slot->of[1], slot->of[2]));
-        square += slot->of[3];
-    }
-    double touched = 0;
-    if (m->segments)
-        tl_segments_gather(m, (uint32_t)row, &force, &touched);
-    force = tl_v3_madd(force, share * p->mass[row], m->config.gravity);
-    tl_columns_put(p->force, row, tl_v3_madd(force, share, load_of(p, row)));
-    p->bears[row] = sqrt((double)p->zones[row] * square) + touched;
-}
-
-/* What is summed of a chunk: a number for each row of lanes. */
-typedef struct addends {
-    double number[TL_SUM_COUNT][CHUNK / TL_LANES];
-} addends;
-
-/* Unbalanced force of a gridpoint, by itself and over what it bears. */
-static void note_ratio(const tl_model *m, size_t row, size_t at, double gravity, uint32_t body, addends *of,
-                       tl_gathered *all)
-{
-    const tl_gridpoints *p = &m->zones->points;
-    const tl_vec3 force = tl_free_part(tl_columns_get(p->force, row), p->fixed[row]), v = tl_columns_get(p->v, row);
-    const double size = tl_v3_norm(force), weight = p->mass[row] * gravity + tl_v3_norm(load_of(p, row));
-    const double bears = tl_larger(p->bears[row], weight), ratio = bears > 0 ? size / bears : size > 0;
-    of->number[TL_SUM_UNBALANCED][at] += size;
-    of->number[TL_SUM_CONTACT_FORCE][at] += bears;
-    all->largest = tl_larger(all->largest, size);
-    all->max_speed2 = tl_larger(all->max_speed2, tl_v3_norm2(v));
-    all->local = tl_larger(all->local, ratio);
-    all->bodies++;
-    if (ratio > all->worst_ratio || (ratio == all->worst_ratio && body < all->worst)) {
-        all->worst_ratio = ratio;
-        all->worst = body;
+    for (size_t i = 0; i < count; i += 4) {
+        _Alignas(4 * sizeof(double)) double of[4][4] = {{0}};
+        for (size_t l = 0; l < 4; l++)
+            for (uint32_t k = z->use_start[begin + i + l]; k < z->use_start[begin + i + l + 1]; k++) {
+                const double *slot = z->slot[z->use[k]].of;
+#pragma omp simd
+                for (size_t c = 0; c < 4; c++)
+                    of[l][c] += slot[c];
+            }
+        const double *const row[4] = {of[0], of[1], of[2], of[3]};
+        tl_lanes_turn(row, to->sum[0] + i, to->sum[1] + i, to->sum[2] + i, to->sum[3] + i);
     }
 }
 
-/* Kinetic energy and power, for what asks for totals. */
-static void note_totals(const tl_model *m, size_t row, size_t at, addends *of)
+static void add_segments(const tl_model *m, size_t begin, size_t count, gathering *to)
 {
-    const tl_gridpoints *p = &m->zones->points;
-    const tl_vec3 v = tl_columns_get(p->v, row), force = tl_columns_get(p->force, row);
-    const double mass = p->mass[row];
-    of->number[TL_SUM_KINETIC][at] += 0.5 * mass * tl_v3_norm2(v);
-    of->number[TL_SUM_DAMPED][at] += 0.5 * mass * tl_v3_norm2(tl_free_part(v, p->fixed[row]));
-    of->number[TL_SUM_POWER][at] += tl_v3_dot(tl_free_part(force, p->fixed[row]), v);
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 force = {to->sum[0][i], to->sum[1][i], to->sum[2][i]};
+        tl_segments_gather(m, (uint32_t)(begin + i), &force, &to->touched[i]);
+        to->sum[0][i] = force.x;
+        to->sum[1][i] = force.y;
+        to->sum[2][i] = force.z;
+    }
+}
+
+/* Forces and what they are compared with. `pull`: what gravity gives a mass, m/s2. `share`: of the loads. */
+TL_VECTORIZED static void end_gather(const tl_gridpoints *p, size_t begin, size_t count, const gathering *of,
+                                     tl_vec3 pull, double share)
+{
+    const double *restrict mass = p->mass + begin, by[3] = {pull.x, pull.y, pull.z};
+    const uint32_t *restrict zones = p->zones + begin;
+    double *restrict bears = p->bears + begin, *restrict touched = p->touched + begin;
+    for (int c = 0; c < 3; c++) {
+        const double *restrict load = p->load[0] ? p->load[c] + begin : none;
+        double *restrict force = p->force[c] + begin;
+#pragma omp simd
+        for (size_t i = 0; i < count; i++)
+            force[i] = of->sum[c][i] + mass[i] * by[c] + share * load[i];
+    }
+#pragma omp simd
+    for (size_t i = 0; i < count; i++) {
+        bears[i] = sqrt((double)(int32_t)zones[i] * of->sum[3][i]) + of->touched[i];
+        touched[i] = of->touched[i];
+    }
 }
 
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -131,8 +144,107 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     (void)chunk, (void)thread;
     const tl_model *m = user;
     const double share = tl_loads_share(m);
-    for (size_t row = begin; row < end; row++)
-        gather_point(m, row, share);
+    const tl_vec3 pull = tl_v3_scale(share, m->config.gravity);
+    gathering of;
+    memset(of.touched, 0, sizeof of.touched);
+    sum_slots(m->zones, begin, end - begin, &of);
+    if (m->segments)
+        add_segments(m, begin, end - begin, &of);
+    end_gather(&m->zones->points, begin, end - begin, &of, pull, share);
+}
+
+/* What is summed of a chunk: lane by lane. `ratio`: of each row that may move, else -1. */
+typedef struct addends {
+    _Alignas(TL_ALIGN) double number[TL_SUM_COUNT][TL_LANES];
+    double largest[TL_LANES], speed2[TL_LANES], most[TL_LANES], movable[TL_LANES];
+    double ratio[CHUNK];
+} addends;
+
+TL_INLINE double size2_of(double x, double y, double z)
+{
+    return x * x + y * y + z * z;
+}
+
+/* Unbalanced forces, by themselves and over what the gridpoints bear. */
+TL_VECTORIZED static void note_ratios(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
+                                      double gravity, addends *of)
+{
+    for (size_t first = 0; first < count; first += TL_LANES) {
+        double load2[TL_LANES] = {0};
+        for (int c = 0; c < 3 && p->load[0]; c++)
+            for (size_t l = 0; l < TL_LANES; l++)
+                load2[l] += p->load[c][begin + first + l] * p->load[c][begin + first + l];
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            const size_t i = first + l, row = begin + i;
+            const double fx = if_free(free->of[0][i], p->force[0][row]);
+            const double fy = if_free(free->of[1][i], p->force[1][row]);
+            const double fz = if_free(free->of[2][i], p->force[2][row]);
+            const double moves = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 1 : 0;
+            const double size = sqrt(size2_of(fx, fy, fz)), weight = p->mass[row] * gravity + sqrt(load2[l]);
+            const double bears = tl_larger(tl_larger(p->bears[row], weight), p->rounded[row]);
+            const double carries = bears > 0 ? bears : 1;
+            const double own = bears > 0 ? size / carries : (size > 0 ? 1.0 : 0.0), ratio = moves > 0 ? own : -1;
+            const double speed2 = if_free(moves, size2_of(p->v[0][row], p->v[1][row], p->v[2][row]));
+            of->number[TL_SUM_UNBALANCED][l] += size;
+            of->number[TL_SUM_CONTACT_FORCE][l] += if_free(moves, bears);
+            of->largest[l] = tl_larger(of->largest[l], size);
+            of->speed2[l] = tl_larger(of->speed2[l], speed2);
+            of->most[l] = tl_larger(of->most[l], ratio);
+            of->movable[l] += moves;
+            of->ratio[i] = ratio;
+        }
+    }
+}
+
+/* The mass of a chunk that energies count, kg: of its own or, with inertia added, what is in `scaled`. */
+static const double *counted_mass(const tl_model *m, size_t begin, size_t count, double scaled[CHUNK])
+{
+    for (size_t i = 0; i < count && m->cycle->adds; i++)
+        scaled[i] = m->zones->points.mass[begin + i] * tl_gridpoint_energy_scale(m, begin + i);
+    return m->cycle->adds ? scaled : m->zones->points.mass + begin;
+}
+
+/* Kinetic energy and power, for what asks for totals. */
+TL_VECTORIZED static void note_totals(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
+                                      const double *mass, addends *of)
+{
+    for (size_t first = 0; first < count; first += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            const size_t i = first + l, row = begin + i;
+            const double half = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 0.5 * mass[i] : 0;
+            const double x = p->v[0][row], y = p->v[1][row], z = p->v[2][row];
+            const double vx = if_free(free->of[0][i], x), vy = if_free(free->of[1][i], y);
+            const double vz = if_free(free->of[2][i], z);
+            of->number[TL_SUM_KINETIC][l] += half * size2_of(x, y, z);
+            of->number[TL_SUM_DAMPED][l] += half * size2_of(vx, vy, vz);
+            of->number[TL_SUM_POWER][l] += p->force[0][row] * vx + p->force[1][row] * vy + p->force[2][row] * vz;
+        }
+}
+
+/* The largest ratio of a chunk, and the first body that has it, where no other chunk has a larger one. */
+static void note_worst(const struct tl_zones *z, size_t begin, size_t count, const addends *of, tl_gathered *all)
+{
+    double most = -1;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        all->largest = tl_larger(all->largest, of->largest[l]);
+        all->max_speed2 = tl_larger(all->max_speed2, of->speed2[l]);
+        all->bodies += (size_t)of->movable[l];
+        most = tl_larger(most, of->most[l]);
+    }
+    all->local = tl_larger(all->local, most);
+    if (most < 0 || most < all->worst_ratio)
+        return;
+    uint32_t worst = TL_NO_ROW;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t body = z->mesh[z->points.mesh[begin + i]].row;
+        worst = of->ratio[i] == most && body < worst ? body : worst;
+    }
+    if (most > all->worst_ratio || worst < all->worst) {
+        all->worst_ratio = most;
+        all->worst = worst;
+    }
 }
 
 static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -141,20 +253,22 @@ static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     const tl_model *m = user;
     const struct tl_zones *z = m->zones;
     const bool totals = m->relaxing || (m->damping && ((const tl_damping_ops *)m->damping->ops)->begin);
-    const double gravity = tl_v3_norm(m->config.gravity);
     tl_gathered *all = &m->cycle->gathered[thread];
+    free_parts free;
     addends of;
-    memset(&of, 0, sizeof of);
-    for (size_t row = begin; row < end; row++) {
-        const size_t at = (row - begin) / TL_LANES;
-        if (z->points.fixed[row] == ALL)
-            continue;
-        note_ratio(m, row, at, gravity, z->mesh[z->points.mesh[row]].row, &of, all);
-        if (totals)
-            note_totals(m, row, at, &of);
+    memset(&of, 0, offsetof(addends, ratio));
+    for (size_t l = 0; l < TL_LANES; l++)
+        of.most[l] = -1;
+    find_free(z->points.fixed + begin, end - begin, &free);
+    note_ratios(&z->points, &free, begin, end - begin, tl_v3_norm(m->config.gravity), &of);
+    if (totals) {
+        double scaled[CHUNK];
+        note_totals(&z->points, &free, begin, end - begin, counted_mass(m, begin, end - begin, scaled), &of);
     }
-    tl_exact_add_each(all->sum, totals ? TL_SUM_COUNT : TL_SUM_KINETIC, of.number[0], CHUNK / TL_LANES,
-                      (end - begin) / TL_LANES);
+    if (m->relaxing) /* of meshes as a whole: tl_meshes_judge */
+        memset(of.number[TL_SUM_POWER], 0, sizeof of.number[TL_SUM_POWER]);
+    note_worst(z, begin, end - begin, &of, all);
+    tl_exact_add_each(all->sum, totals ? TL_SUM_COUNT : TL_SUM_KINETIC, of.number[0], TL_LANES, TL_LANES);
 }
 
 void tl_gridpoints_gather(tl_model *m)
@@ -163,122 +277,238 @@ void tl_gridpoints_gather(tl_model *m)
         return;
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
     tl_carriers_push(m);
+    tl_outer_push(m, tl_loads_share(m));
+    if (m->relaxing)
+        tl_meshes_judge(m);
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, sum_range, m);
 }
 
 /* ---------------------------------------------------------------- motion ----------------- */
 
-void tl_gridpoints_brake(tl_model *m, double alpha)
+/* Takes the velocities of a mesh back; `whole`: down to those of its motion as a whole. */
+static void brake_mesh(tl_model *m, const tl_body_mesh *mesh, const tl_mesh_motion *whole, double alpha, double kick)
+{
+    tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 centre = tl_body_place(&m->bodies, mesh->row);
+    for (uint32_t row = mesh->point_begin; row < mesh->point_end; row++) {
+        tl_vec3 damping = {0, 0, 0};
+        if (whole) {
+            const tl_vec3 arm = tl_v3_sub(tl_gridpoint_place(p, row), centre);
+            const tl_vec3 v = tl_v3_add(whole->velocity, tl_v3_cross(whole->turn, arm));
+            damping = tl_v3_scale(2 * p->mass[row] * tl_gridpoint_scale(m, row) / kick, v);
+        }
+        p->alpha[row] = alpha;
+        tl_columns_put(p->damping, row, damping);
+    }
+}
+
+void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick)
+{
+    struct tl_zones *z = m->zones;
+    for (size_t k = 0; z && k < z->mesh_count; k++) {
+        const tl_mesh_motion *of = &z->motion[k];
+        const bool ends = of->loose ? of->power < 0 : stop && !of->goes_on, calms = stop || of->strain_power < 0;
+        brake_mesh(m, &z->mesh[k], ends || !calms ? NULL : of, ends || calms ? lost : 0, kick);
+    }
+}
+
+void tl_gridpoints_stop(tl_model *m)
 {
     tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
     for (size_t row = 0; p && row < p->table.rows; row++) {
-        p->alpha[row] = alpha;
-        tl_columns_put(p->damping, row, tl_v3(0, 0, 0));
+        const tl_vec3 v = tl_columns_get(p->v, row);
+        tl_columns_put(p->v, row, tl_v3_sub(v, tl_free_part(v, p->fixed[row])));
     }
 }
 
 typedef struct move_job {
     tl_model *m;
     double kick, drift;
+    double until, after; /* half of the step before and of the one after */
 } move_job;
 
-/* What makes a gridpoint faster: its free forces, and what slows it. */
-typedef struct push {
-    tl_vec3 force, damping;
-    double mass, alpha; /* mass as the step moves it */
-} push;
+/* What moves the gridpoints of a chunk beside their forces: columns. */
+typedef struct movers {
+    const double *mass, *counted;           /* as the step moves it, and as energies count it, kg */
+    const double *damping[3], *alpha;       /* N, 1/s */
+    const double *load[3];                  /* N */
+    tl_vec3 gravity, lag;                   /* m/s2: what is booked, and by how much forces have more */
+    _Alignas(TL_ALIGN) double v0[3][CHUNK]; /* velocity before */
+    double scaled[CHUNK];
+} movers;
 
-static push push_of(const tl_model *m, size_t row)
+/* What is booked of a chunk (energy.c): lane by lane. */
+typedef struct chunk_work {
+    _Alignas(TL_ALIGN) double book[TL_BOOK_COUNT][TL_LANES];
+} chunk_work;
+
+static void find_movers(const tl_model *m, size_t begin, size_t count, movers *out)
 {
     const tl_gridpoints *p = &m->zones->points;
-    const unsigned fixed = p->fixed[row];
-    push out = {
-        tl_free_part(tl_columns_get(p->force, row), fixed), {0, 0, 0}, p->mass[row] * tl_gridpoint_scale(m, row), 0};
-    if (tl_is_damped(m) && p->alpha) {
-        out.damping = tl_free_part(tl_columns_get(p->damping, row), fixed);
-        out.alpha = p->alpha[row];
+    const bool damped = tl_is_damped(m) && p->alpha, scales = tl_inertia_scaled(m->cycle);
+    for (size_t i = 0; i < count && scales; i++)
+        out->scaled[i] = p->mass[begin + i] * tl_gridpoint_scale(m, begin + i);
+    out->mass = scales ? out->scaled : p->mass + begin;
+    out->counted = m->cycle->adds ? out->scaled : p->mass + begin;
+    out->alpha = damped ? p->alpha + begin : none;
+    for (int c = 0; c < 3; c++) {
+        out->damping[c] = damped ? p->damping[c] + begin : none;
+        out->load[c] = p->load[0] ? p->load[c] + begin : none;
     }
-    if (tl_loads_lag(m)) {
-        const tl_vec3 lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
-        out.force = tl_v3_sub(out.force, tl_free_part(tl_v3_scale(p->mass[row], lag), fixed));
-    }
-    return out;
+    out->gravity = m->cycle->gravity;
+    out->lag = tl_v3(0, 0, 0);
+    if (tl_loads_lag(m))
+        out->lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
 }
 
-/* The velocity after the kick: that of held components stays. */
-static tl_vec3 kicked(const tl_model *m, size_t row, const push *by, double kick)
+/* A component of the velocity after a kick; `more`: m/s2 by which the force has more than its share. */
+TL_INLINE double kicked(double v, double force, double mass, double more, double damping, double moving, double alpha,
+                        double kick)
 {
-    const tl_gridpoints *p = &m->zones->points;
-    const unsigned fixed = p->fixed[row];
-    const tl_vec3 v0 = tl_columns_get(p->v, row);
-    const tl_vec3 v1 = tl_kick(v0, tl_v3_add(by->force, by->damping), kick / by->mass, by->alpha, kick);
-    return tl_v3_add(tl_v3_sub(v0, tl_free_part(v0, fixed)), tl_free_part(v1, fixed));
+    const double f = (force - mass * more) + damping, slow = 0.5 * alpha * kick;
+    return ((1 - slow) * v + kick / moving * f) * (1 / (1 + slow));
+}
+
+/* Kicks velocities: those of held components stay. Then places follow. */
+TL_VECTORIZED static void move_chunk(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
+                                     const move_job *job, movers *by)
+{
+    const double lag[3] = {by->lag.x, by->lag.y, by->lag.z}, kick = job->kick, drift = job->drift;
+    const double *restrict mass = p->mass + begin, *restrict moving = by->mass, *restrict alpha = by->alpha;
+    for (int c = 0; c < 3; c++) {
+        double *restrict v = p->v[c] + begin, *restrict u = p->u[c] + begin, *restrict v0 = by->v0[c];
+        const double *restrict force = p->force[c] + begin, *restrict damping = by->damping[c];
+        const double *restrict may = free->of[c];
+        const double more = lag[c];
+#pragma omp simd
+        for (size_t i = 0; i < count; i++) {
+            const double v1 = kicked(v[i], force[i], mass[i], more, damping[i], moving[i], alpha[i], kick);
+            v0[i] = v[i];
+            v[i] = may[i] > 0 ? v1 : v[i];
+            u[i] += drift * v[i];
+        }
+    }
 }
 
 tl_vec3 tl_gridpoint_to_come(const tl_model *m, size_t row, double dt)
 {
-    const push by = push_of(m, row);
-    return kicked(m, row, &by, 0.5 * (m->dt + dt));
-}
-
-/* What is booked of a chunk (energy.c): a number for each row of lanes. */
-typedef struct chunk_work {
-    double book[TL_BOOK_COUNT][CHUNK / TL_LANES];
-    double until, after; /* half of the step before and of the one after */
-} chunk_work;
-
-static void book_work(chunk_work *work, size_t at, tl_work_kind kind, tl_vec3 force, tl_vec3 moved, tl_vec3 v1)
-{
-    work->book[TL_BOOK_UNTIL(kind)][at] += work->until * tl_v3_dot(force, moved);
-    work->book[TL_BOOK_AFTER(kind)][at] += work->after * tl_v3_dot(force, v1);
-}
-
-/* As motion.c books a body. */
-static void book_point(const tl_model *m, size_t row, size_t at, const push *by, tl_vec3 v1, chunk_work *work)
-{
     const tl_gridpoints *p = &m->zones->points;
-    const tl_vec3 v0 = tl_columns_get(p->v, row), moved = tl_columns_get(p->moved, row), dv = tl_v3_sub(v1, v0);
-    const double mass = p->mass[row], share = work->until / (work->until + work->after), dv2 = tl_v3_norm2(dv);
-    const tl_vec3 v = tl_v3_madd(v0, share, dv), held = tl_columns_get(p->force, row);
-    work->book[TL_BOOK_KINETIC][at] += 0.5 * mass * (tl_v3_norm2(v) - share * (1 - share) * dv2);
-    work->book[TL_BOOK_FIRST][at] += 0.5 * mass * dv2;
-    work->book[TL_BOOK_MOTION0][at] += 0.5 * mass * tl_v3_norm2(v0);
-    work->book[TL_BOOK_MOTION2][at] += 0.5 * mass * tl_v3_norm2(v1);
-    work->book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][at] += share * mass * tl_v3_dot(tl_v3_sub(v0, moved), dv);
-    book_work(work, at, TL_WORK_GRAVITY, tl_v3_scale(mass, m->cycle->gravity), moved, v1);
-    book_work(work, at, TL_WORK_EXTERNAL, load_of(p, row), moved, v1);
-    book_work(work, at, TL_WORK_EXTERNAL, tl_v3_sub(tl_free_part(held, p->fixed[row]), held), moved, v1);
-    if (!tl_is_damped(m))
-        return;
-    const tl_vec3 slowed = tl_free_part(tl_v3_add(v0, v1), p->fixed[row]);
-    book_work(work, at, TL_WORK_DAMPING, tl_v3_madd(by->damping, -0.5 * by->alpha * by->mass, slowed), moved, v1);
+    const double kick = 0.5 * (m->dt + dt), moving = p->mass[row] * tl_gridpoint_scale(m, row);
+    const bool damped = tl_is_damped(m) && p->alpha;
+    tl_vec3 lag = {0, 0, 0};
+    if (tl_loads_lag(m))
+        lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
+    const double more[3] = {lag.x, lag.y, lag.z};
+    double v[3];
+    for (int c = 0; c < 3; c++) {
+        const double damping = damped ? p->damping[c][row] : 0, alpha = damped ? p->alpha[row] : 0;
+        v[c] = p->v[c][row];
+        if (!(p->fixed[row] & TL_FIX_X << c))
+            v[c] = kicked(v[c], p->force[c][row], p->mass[row], more[c], damping, moving, alpha, kick);
+    }
+    return (tl_vec3){v[0], v[1], v[2]};
+}
+
+TL_INLINE double dot_of(tl_vec3 a, tl_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+TL_INLINE tl_vec3 at_row(double *const column[3], size_t row)
+{
+    return (tl_vec3){column[0][row], column[1][row], column[2][row]};
+}
+
+/* As motion.c books a body. Then the last motion is this one. */
+TL_VECTORIZED static void book_chunk(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
+                                     const move_job *job, const movers *by, chunk_work *work)
+{
+    const double until = job->until, after = job->after, share = until / (until + after);
+    double(*restrict book)[TL_LANES] = work->book;
+    for (size_t first = 0; first < count; first += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            const size_t i = first + l, row = begin + i;
+            const tl_vec3 v0 = {by->v0[0][i], by->v0[1][i], by->v0[2][i]}, v1 = at_row(p->v, row);
+            const tl_vec3 moved = at_row(p->moved, row), dv = tl_v3_sub(v1, v0), v = tl_v3_madd(v0, share, dv);
+            const double mass = by->counted[i], half = 0.5 * mass, dv2 = dot_of(dv, dv);
+            const tl_vec3 load = {by->load[0][i], by->load[1][i], by->load[2][i]};
+            const tl_vec3 held = {free->of[0][i] > 0 ? 0 : p->force[0][row], free->of[1][i] > 0 ? 0 : p->force[1][row],
+                                  free->of[2][i] > 0 ? 0 : p->force[2][row]};
+            const tl_vec3 outside = tl_v3_sub(load, held), weight = tl_v3_scale(p->mass[row], by->gravity);
+            book[TL_BOOK_KINETIC][l] += half * (dot_of(v, v) - share * (1 - share) * dv2);
+            book[TL_BOOK_FIRST][l] += half * dv2;
+            book[TL_BOOK_MOTION0][l] += half * dot_of(v0, v0);
+            book[TL_BOOK_MOTION2][l] += half * dot_of(v1, v1);
+            book[TL_BOOK_UNTIL(TL_WORK_GRAVITY)][l] += until * dot_of(weight, moved);
+            book[TL_BOOK_AFTER(TL_WORK_GRAVITY)][l] += after * dot_of(weight, v1);
+            book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][l] +=
+                until * dot_of(outside, moved) + share * mass * dot_of(tl_v3_sub(v0, moved), dv);
+            book[TL_BOOK_AFTER(TL_WORK_EXTERNAL)][l] += after * dot_of(outside, v1);
+            p->moved[0][row] = v1.x;
+            p->moved[1][row] = v1.y;
+            p->moved[2][row] = v1.z;
+        }
+}
+
+/* What damping has taken, before the last motion becomes this one. */
+TL_VECTORIZED static void book_damping(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
+                                       const move_job *job, const movers *by, chunk_work *work)
+{
+    for (int c = 0; c < 3; c++)
+        for (size_t first = 0; first < count; first += TL_LANES)
+#pragma omp simd
+            for (size_t l = 0; l < TL_LANES; l++) {
+                const size_t i = first + l, row = begin + i;
+                const double slowed = by->v0[c][i] + p->v[c][row];
+                const double force =
+                    if_free(free->of[c][i], by->damping[c][i] - 0.5 * by->alpha[i] * by->mass[i] * slowed);
+                work->book[TL_BOOK_UNTIL(TL_WORK_DAMPING)][l] += job->until * force * p->moved[c][row];
+                work->book[TL_BOOK_AFTER(TL_WORK_DAMPING)][l] += job->after * force * p->v[c][row];
+            }
+}
+
+/* Mends gridpoints that more than axes hold, and books what pushes them at the surface. */
+static void mend_chunk(const move_job *job, size_t begin, size_t count, const movers *by, chunk_work *work)
+{
+    for (size_t i = 0; i < count; i++) {
+        const tl_point_moved moved = {.v0 = {by->v0[0][i], by->v0[1][i], by->v0[2][i]},
+                                      .mass = by->mass[i],
+                                      .alpha = by->alpha[i],
+                                      .kick = job->kick,
+                                      .drift = job->drift,
+                                      .until = job->until,
+                                      .after = job->after};
+        tl_gridpoint_mend(job->m, begin + i, &moved, i % TL_LANES, work->book);
+    }
 }
 
 static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     const move_job *job = user;
-    tl_model *m = job->m;
-    tl_gridpoints *p = &m->zones->points;
+    const tl_gridpoints *p = &job->m->zones->points;
+    const size_t count = end - begin;
+    free_parts free;
+    movers by;
     chunk_work work;
     memset(&work, 0, sizeof work);
-    work.until = 0.5 * m->dt;
-    work.after = 0.5 * job->drift;
-    for (size_t row = begin; row < end; row++) {
-        const push by = push_of(m, row);
-        const tl_vec3 v1 = kicked(m, row, &by, job->kick);
-        book_point(m, row, (row - begin) / TL_LANES, &by, v1, &work);
-        tl_columns_put(p->v, row, v1);
-        tl_columns_put(p->moved, row, v1);
-        tl_columns_put(p->u, row, tl_v3_madd(tl_columns_get(p->u, row), job->drift, v1));
-    }
-    tl_exact_add_each(m->cycle->booked[thread].sum, TL_BOOK_COUNT, work.book[0], CHUNK / TL_LANES,
-                      (end - begin) / TL_LANES);
+    find_free(p->fixed + begin, count, &free);
+    find_movers(job->m, begin, count, &by);
+    move_chunk(p, &free, begin, count, job, &by);
+    if (tl_gridpoints_mend(job->m))
+        mend_chunk(job, begin, count, &by, &work);
+    if (tl_is_damped(job->m))
+        book_damping(p, &free, begin, count, job, &by, &work);
+    book_chunk(p, &free, begin, count, job, &by, &work);
+    tl_exact_add_each(job->m->cycle->booked[thread].sum, TL_BOOK_COUNT, work.book[0], TL_LANES, TL_LANES);
 }
 
 void tl_gridpoints_move(tl_model *m, double dt)
 {
-    move_job job = {m, 0.5 * (m->dt + dt), dt};
+    move_job job = {m, 0.5 * (m->dt + dt), dt, 0.5 * m->dt, 0.5 * dt};
+    tl_gridpoints_follow_drives(m, dt);
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
+    m->zones->moved_dt = dt;
     m->zones->steps_kept -= m->zones->steps_kept > 0;
 }

@@ -577,7 +577,7 @@ static void carry_body(const move_job *job, uint32_t body, chunk_work *work)
 {
     tl_bodies *b = &job->m->bodies;
     double dt = job->drift;
-    if (b->drive[body]) {
+    if (b->drive[body] && !b->mesh[body]) {
         const tl_drive_record *drive = &job->m->drives[b->drive[body] - 1];
         b->v[body] = drive->velocity;
         b->w[body] = drive->angular_velocity;
@@ -631,7 +631,7 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 }
 
 /* The mean motion of a mesh, by mass, is that of its body: with X the places as made, from the mean, and x those now,
- * it has turned by the rotation in sum m x (x) X. */
+ * it has turned by the rotation in sum m x (x) X since then. */
 static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk, (void)thread;
@@ -648,18 +648,19 @@ static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsig
             mass += p->mass[row];
             fastest2 = tl_larger(fastest2, tl_v3_norm2(tl_columns_get(p->v, row)));
         }
-        pose->u = tl_v3_scale(1 / mass, u);
+        const tl_vec3 shift = tl_v3_scale(1 / mass, u), centre = tl_v3_add(pose->x_ref, mesh->made_u);
+        pose->u = tl_v3_add(mesh->made_u, shift);
         tl_mat3 turn = {{{0}}};
         for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
-            const tl_vec3 made = tl_v3_sub(tl_columns_get(p->ref, row), pose->x_ref);
-            const tl_vec3 now = tl_v3_add(made, tl_v3_sub(tl_columns_get(p->u, row), pose->u));
+            const tl_vec3 made = tl_v3_sub(tl_columns_get(p->ref, row), centre);
+            const tl_vec3 now = tl_v3_add(made, tl_v3_sub(tl_columns_get(p->u, row), shift));
             const double x[3] = {now.x, now.y, now.z}, y[3] = {made.x, made.y, made.z};
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 3; j++)
                     turn.m[i][j] += p->mass[row] * x[i] * y[j];
         }
         const tl_mat3 r = tl_m3_polar(&turn);
-        m->bodies.q[mesh->row] = tl_q_trim(tl_q_of_matrix(&r));
+        m->bodies.q[mesh->row] = tl_q_trim(tl_q_mul(tl_q_of_matrix(&r), mesh->made_q));
         pose->r = tl_q_matrix(m->bodies.q[mesh->row]);
         m->bodies.odometer[mesh->row] += job->drift * sqrt(fastest2);
     }

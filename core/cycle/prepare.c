@@ -120,6 +120,8 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     LIST(CACHE, fails, &c->fails_count, &c->fails_capacity, step);
     VALUE(CACHE, fails_volume);
     VALUE(CACHE, fails_way);
+    FLAG(CACHE, fails_strained);
+    VALUE(CACHE, fails_at);
     LIST(STATE, secant, &c->secant_count, &c->secant_capacity, step);
     LIST(SCRATCH, link, &c->link_count, &c->link_capacity, step);
     LIST(SCRATCH, leap, &c->leap_capacity, &c->leap_capacity, step);

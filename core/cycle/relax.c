@@ -3,19 +3,45 @@
  * While `relaxing` is set, damping, time step and masses of the steps are those of a relaxation (settle.c), whatever
  * the user has set: that stays and is not touched. Time stands still: functions of time keep their values. A save made
  * meanwhile holds both, and the next call goes on where it was. */
+#include "base/columns.h"
 #include "contact/body_contacts.h"
 #include "cycle/cycle_data.h"
+#include "cycle/meshes.h"
 #include "cycle/prepare.h"
 #include "cycle/settle.h"
 #include "cycle/solve.h"
 #include "model/options.h"
 #include "model/rows.h"
+#include "segment/segments.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
+
+/* What to do with what is driven. */
+static const char *stop_first(const tl_model *m)
+{
+    return tl_words(m, "stop it first, or use model:solve", "stop it first, or use tl_model_solve()");
+}
+
+/* Refuses gridpoints that are held and have a velocity. */
+static tl_status check_driven_points(tl_model *m)
+{
+    const tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
+    for (uint32_t row = 0; p && row < p->table.rows; row++) {
+        const tl_vec3 v = tl_columns_get(p->v, row);
+        const double speed = tl_v3_norm(tl_v3_sub(v, tl_free_part(v, p->fixed[row])));
+        const tl_body_mesh *mesh = &m->zones->mesh[p->mesh[row]];
+        if (speed > 0)
+            return tl_fail(&m->error, TL_E_STATE,
+                           "relax: gridpoint %u of block %u is driven at %.3g m/s, so there is nothing to come to "
+                           "rest: %s",
+                           row - mesh->point_begin, mesh->body, speed, stop_first(m));
+    }
+    return TL_OK;
+}
 
 /* Refuses a model that something drives: there is no rest then. */
 static tl_status check_driven(tl_model *m)
@@ -31,12 +57,10 @@ static tl_status check_driven(tl_model *m)
         const double speed = tl_v3_norm(v), turn = tl_v3_norm(w);
         if (speed > 0 || turn > 0)
             return tl_fail(&m->error, TL_E_STATE,
-                           "relax: block %u is driven at %.3g %s, so there is nothing to come to rest: stop it first, "
-                           "or use %s",
-                           b->id[body], speed > 0 ? speed : turn, speed > 0 ? "m/s" : "rad/s",
-                           tl_words(m, "model:solve", "tl_model_solve()"));
+                           "relax: block %u is driven at %.3g %s, so there is nothing to come to rest: %s", b->id[body],
+                           speed > 0 ? speed : turn, speed > 0 ? "m/s" : "rad/s", stop_first(m));
     }
-    return TL_OK;
+    return check_driven_points(m);
 }
 
 /* ---------------------------------------------------------------- what moved before ------- */
@@ -44,8 +68,14 @@ static tl_status check_driven(tl_model *m)
 /* What a relaxation that makes no step gives back. */
 typedef struct motion {
     tl_vec3 *v, *w; /* [bodies]; NULL: a relaxation that goes on */
+    tl_vec3 *point; /* [gridpoints] */
     double dt, step;
 } motion;
+
+static size_t points_of(const tl_model *m)
+{
+    return m->zones ? m->zones->points.table.rows : 0;
+}
 
 static tl_status keep_motion(tl_model *m, motion *kept)
 {
@@ -53,8 +83,11 @@ static tl_status keep_motion(tl_model *m, motion *kept)
     const size_t bodies = b->table.rows;
     kept->v = malloc((bodies + 1) * sizeof *kept->v);
     kept->w = malloc((bodies + 1) * sizeof *kept->w);
-    if (!kept->v || !kept->w)
+    kept->point = malloc((points_of(m) + 1) * sizeof *kept->point);
+    if (!kept->v || !kept->w || !kept->point)
         return tl_fail_memory(&m->error);
+    for (size_t row = 0; row < points_of(m); row++)
+        kept->point[row] = tl_columns_get(m->zones->points.v, row);
     if (bodies > 0) {
         memcpy(kept->v, b->v, bodies * sizeof *kept->v);
         memcpy(kept->w, b->w, bodies * sizeof *kept->w);
@@ -75,6 +108,8 @@ static void give_back(tl_model *m, const motion *kept)
         memcpy(m->bodies.v, kept->v, bodies * sizeof *kept->v);
         memcpy(m->bodies.w, kept->w, bodies * sizeof *kept->w);
     }
+    for (size_t row = 0; row < points_of(m); row++)
+        tl_columns_put(m->zones->points.v, row, kept->point[row]);
     m->dt = kept->dt;
     m->cycle->dt = kept->step;
 }
@@ -88,7 +123,8 @@ static tl_status begin(tl_model *m, int64_t load_steps, motion *kept)
         status = check_driven(m);
     if (status != TL_OK)
         return status;
-    if (!TL_COLUMN_NEED(&m->bodies.table, &m->bodies, fall, TL_COLUMN_STEP))
+    if (!TL_COLUMN_NEED(&m->bodies.table, &m->bodies, fall, TL_COLUMN_STEP) ||
+        (tl_model_deforms(m) && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, going, TL_COLUMN_STEP)))
         return tl_fail_memory(&m->error);
     const double share = m->cycle->settling.share;
     if (m->relaxing && share > 0 && share <= 1)
@@ -103,11 +139,14 @@ static tl_status begin(tl_model *m, int64_t load_steps, motion *kept)
 
 /* ---------------------------------------------------------------- what the end means ----- */
 
-/* What keeps the body of a block from rest. */
-static const char *why_slow(const tl_model *m, uint32_t body)
+/* Contacts and segments on a body that press, and those of them whose points all slip. */
+typedef struct pressing {
+    size_t all, slipping;
+} pressing;
+
+static void add_contacts(const tl_model *m, uint32_t body, pressing *sum)
 {
     const tl_contacts *c = &m->detect->contacts;
-    size_t pressing = 0, slipping = 0;
     for (uint32_t i = 0; i < c->table.rows; i++) {
         const tl_sides on = tl_contact_bodies(m, i);
         if ((on.a != body && on.b != body) || !(tl_v3_norm2(c->force[i]) > 0))
@@ -115,13 +154,42 @@ static const char *why_slow(const tl_model *m, uint32_t body)
         bool slips = true;
         for (size_t k = 0; k < c->point_count[i]; k++)
             slips = slips && (m->detect->points.flags[tl_point_row(c, i, k)] & TL_POINT_SLIPPING);
-        pressing++;
-        slipping += slips;
+        sum->all++;
+        sum->slipping += slips;
     }
-    return pressing == 0          ? "nothing bears it: it falls"
-           : slipping == pressing ? "it slides on all that bears it"
-           : slipping > 0         ? "it slides on some of what bears it"
-                                  : "what bears it is soft against what else there is";
+}
+
+static void add_segments(const tl_model *m, uint32_t body, pressing *sum)
+{
+    const struct tl_segments *s = m->segments;
+    for (uint32_t row = 0; s && row < s->table.table.rows; row++) {
+        const tl_segment *of = &s->table.of[row];
+        if (!(s->table.bears[row] > 0) || !tl_segment_touches(m, of, body))
+            continue;
+        bool slips = true;
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+            slips = slips && (s->points.flags[tl_segment_point_row(row, k)] & TL_POINT_SLIPPING);
+        sum->all++;
+        sum->slipping += slips;
+    }
+}
+
+/* Tolerance: share of the zones of a body that yield, from which on that is why it is slow. */
+#define MANY_YIELD 0.1
+
+/* What keeps the body of a block from rest. */
+static const char *why_slow(const tl_model *m, uint32_t body)
+{
+    const tl_body_mesh *mesh = tl_mesh_of_body(m, body);
+    pressing on = {0, 0};
+    add_contacts(m, body, &on);
+    add_segments(m, body, &on);
+    const bool held = mesh && tl_mesh_whole_of(m, mesh).borne > 0;
+    return on.all == 0 && !held                              ? "nothing bears it: it falls"
+           : on.all > 0 && on.slipping == on.all             ? "it slides on all that bears it"
+           : mesh && tl_mesh_yielding(m, mesh) >= MANY_YIELD ? "its zones yield"
+           : on.slipping > 0                                 ? "it slides on some of what bears it"
+                                                             : "what bears it is soft against what else there is";
 }
 
 static void tell_slow(const tl_model *m, const tl_relax *relax, tl_relax_result *r)
@@ -136,6 +204,18 @@ static void tell_slow(const tl_model *m, const tl_relax *relax, tl_relax_result 
                       "is farthest from rest; %s",
                       (long long)r->run.cycles, of[relax->measure], relax->ratio, r->run.worst, m->blocks.volume[row],
                       why_slow(m, m->blocks.body[row]));
+}
+
+static void tell_failure(const tl_model *m, tl_relax_result *r)
+{
+    const struct tl_cycle *c = m->cycle;
+    char strained[80] = "";
+    if (c->fails_strained)
+        tl_text_print(strained, sizeof strained, ", which is strained on and on at (%.4g, %.4g, %.4g)", c->fails_at.x,
+                      c->fails_at.y, c->fails_at.z);
+    tl_text_print(r->message, sizeof r->message,
+                  "fails: %zu blocks of %.3g m3, block %u first%s, towards (%.2g, %.2g, %.2g)", r->failing, r->volume,
+                  r->run.failing, strained, c->fails_way.x, c->fails_way.y, c->fails_way.z);
 }
 
 static void tell(tl_model *m, const tl_relax *relax, tl_relax_result *r)
@@ -153,11 +233,7 @@ static void tell(tl_model *m, const tl_relax *relax, tl_relax_result *r)
     case TL_SOLVE_REST:
         tl_text_print(r->message, sizeof r->message, "at rest after %lld steps", (long long)r->run.cycles);
         break;
-    case TL_SOLVE_FAILURE:
-        tl_text_print(r->message, sizeof r->message,
-                      "fails: %zu blocks of %.3g m3, block %u first, towards (%.2g, %.2g, %.2g)", r->failing, r->volume,
-                      r->run.failing, c->fails_way.x, c->fails_way.y, c->fails_way.z);
-        break;
+    case TL_SOLVE_FAILURE: tell_failure(m, r); break;
     case TL_SOLVE_OVERLAP:
         tl_text_print(r->message, sizeof r->message, "blocks that were made overlapping push the model apart");
         break;
@@ -213,6 +289,7 @@ tl_status tl_model_relax(tl_model *m, const tl_relax *given, tl_relax_result *wa
     }
     free(kept.v);
     free(kept.w);
+    free(kept.point);
     return status;
 }
 

@@ -14,10 +14,10 @@
  * contacts has its share, by mass, of the energy stored in all contacts for U. */
 #include "cycle/rest.h"
 
-#include "base/columns.h"
+#include "cycle/borne.h"
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
-#include "zone/zones.h"
+#include "cycle/meshes.h"
 
 #include <stdatomic.h>
 
@@ -102,25 +102,6 @@ static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     }
 }
 
-/* The first body with a mesh that moves by more than a ratio allows at rest, or TL_NO_ROW. A mesh swings more softly
- * than one of its gridpoints by far, so energies are compared over the whole of it. */
-static uint32_t moving_mesh(const tl_model *m, double ratio)
-{
-    uint32_t out = TL_NO_ROW;
-    for (size_t k = 0; m->zones && k < m->zones->mesh_count; k++) {
-        const tl_gridpoints *p = &m->zones->points;
-        const tl_body_mesh *mesh = &m->zones->mesh[k];
-        double kinetic = 0, stored = 0;
-        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
-            kinetic += 0.5 * p->mass[row] * tl_v3_norm2(tl_free_part(tl_columns_get(p->v, row), p->fixed[row]));
-            stored += p->holds[row] > 0 ? 0.5 * p->bears[row] * p->bears[row] / p->holds[row] : 0;
-        }
-        if (kinetic > 0 && !(kinetic < kinetic_share(ratio) * stored) && mesh->row < out)
-            out = mesh->row;
-    }
-    return out;
-}
-
 /* Whether no body moves any more than `ratio` allows. The first that does is the worst. Looked at only when forces are
  * in equilibrium. */
 static bool all_rest(tl_model *m, double ratio)
@@ -137,7 +118,7 @@ static bool all_rest(tl_model *m, double ratio)
                     .stored = mass > 0 ? energy.stored / mass : 0,
                     .moving = TL_NO_ROW};
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_READ_CHUNK, rest_range, &job);
-    const uint32_t mesh = moving_mesh(m, ratio), moving = job.moving < mesh ? job.moving : mesh;
+    const uint32_t mesh = tl_mesh_moving(m, kinetic_share(ratio)), moving = job.moving < mesh ? job.moving : mesh;
     if (moving == TL_NO_ROW)
         return true;
     m->cycle->sums.worst = moving;

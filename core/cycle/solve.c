@@ -2,306 +2,19 @@
 #include "cycle/solve.h"
 
 #include "base/clock.h"
-#include "contact/body_contacts.h"
 #include "contact/detection.h"
 #include "cycle/cycle.h"
 #include "cycle/cycle_data.h"
+#include "cycle/failing.h"
+#include "cycle/meshes.h"
 #include "cycle/remarks.h"
 #include "cycle/rest.h"
 #include "cycle/settle.h"
-#include "model/body_shape.h"
 #include "model/options.h"
 #include "model/rows.h"
 
 #include <stdatomic.h>
-#include <stdlib.h>
 #include <talus/number.h>
-
-/* ---------------------------------------------------------------- steady failure ----------
- *
- * Telling steady failure from settling.
- *
- * The motion of each free body is followed in legs, each a share of the body's size long. A body fails steadily when it
- * has gone LEGS legs in one direction, none slower than the one before. The mean unbalanced force must push it that
- * way. A body that settles or swings slows down; one that is carried along feels no force. Legs are lengths, so neither
- * the time step nor the damping nor the stiffness decides how far a body has gone when it is found.
- *
- * Blocks on soft joints settle by more than a share of their size. So a leg is not shorter than a share of how far the
- * model may settle: the mean closure of its loaded contacts, weighted by their forces, times the number of blocks on
- * end.
- *
- * Bodies that touched nothing when the run began fall until they land, and tumble on. They are followed only while
- * something bears them, and in longer legs: what is poured has not failed. */
-
-/* Tolerance: steps between two samples of the bodies: few of them make a leg of a body that moves. */
-#define SAMPLE_STEPS 5
-/* Tolerance: legs in a row, and how long they are together, relative to the size of the body. Stable blocks slip by
- * less as weight comes on. */
-#define LEGS 5
-#define FAILED_SHARE 0.05
-/* Tolerance: the same for a body that has landed. */
-#define LANDED_SHARE 1.0
-/* Tolerance: the same relative to how far the model may settle: a column under sudden weight settles by about 1.5 of
- * it. */
-#define SETTLED_SHARE 3.0
-/* Tolerance: a leg counts as no slower than the one before from this share of its speed on. */
-#define NO_SLOWER 0.95
-/* Tolerance: cos of the largest change of direction between legs. */
-#define ONE_WAY 0.7
-/* Tolerance: unbalanced force over what a body bears, below which such a body lies on something or slides on it. */
-#define SUPPORTED 0.5
-/* Tolerance: unbalanced force over what a body bears from which it is pushed on: above what is left where a body is
- * carried along. */
-#define LEAST_PUSH 1e-4
-
-/* A leg of a body, until now, and those behind it. */
-typedef struct leg {
-    double size;   /* of the body, m */
-    tl_vec3 start; /* displacement when the run began */
-    tl_vec3 from;  /* displacement where it began */
-    double began;  /* s */
-    tl_vec3 way;   /* direction and speed of the leg before */
-    double speed;
-    uint8_t legs; /* gone, one no slower than the other */
-    /* sums over the samples of these legs: the unbalanced force, and what the body bore */
-    tl_vec3 force;
-    double borne;
-    bool touched; /* something, when the run began */
-    bool reached; /* has gone as far as its size asks: the leg may be at its end */
-} leg;
-
-/* Watches for steady failure. */
-typedef struct tl_watch {
-    size_t bodies;
-    uint64_t structure;
-    int64_t steps;
-    double time;   /* in which they were made, s */
-    double on_end; /* free blocks on end across the model */
-    double least;  /* length of a leg that settlement asks for, when it was last needed, m */
-    leg *leg;
-    tl_id failing;
-} tl_watch;
-
-/* Number of blocks of the mean size across the free bodies. */
-static double blocks_on_end(const tl_model *m)
-{
-    tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = tl_v3_neg(low);
-    tl_addends sizes = {.count = 0};
-    double count = 0;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        if (m->bodies.fixed[body] == TL_FIX_ALL)
-            continue;
-        tl_vec3 x = tl_body_place(&m->bodies, body);
-        low = tl_v3(fmin(low.x, x.x), fmin(low.y, x.y), fmin(low.z, x.z));
-        high = tl_v3(fmax(high.x, x.x), fmax(high.y, x.y), fmax(high.z, x.z));
-        tl_addends_put(&sizes, tl_body_size(m, body));
-        count++;
-    }
-    return count > 0 ? 1 + tl_v3_norm(tl_v3_sub(high, low)) * count / tl_addends_sum(&sizes) : 1;
-}
-
-static void begin_leg(leg *l, const tl_model *m, uint32_t body, double time)
-{
-    l->from = m->bodies.pose[body].u;
-    l->began = time;
-    l->reached = false;
-}
-
-/* None of the legs behind it counts. */
-static void forget_legs(leg *l)
-{
-    l->legs = 0;
-    l->force = tl_v3(0, 0, 0);
-    l->borne = 0;
-}
-
-static void watch_end(tl_watch *w)
-{
-    if (!w)
-        return;
-    free(w->leg);
-    free(w);
-}
-
-static tl_watch *watch_begin(const tl_model *m)
-{
-    tl_watch *w = calloc(1, sizeof *w);
-    if (!w)
-        return NULL;
-    w->bodies = m->bodies.table.rows;
-    w->structure = m->structure;
-    w->on_end = blocks_on_end(m);
-    w->leg = calloc(w->bodies + 1, sizeof *w->leg);
-    if (!w->leg) {
-        watch_end(w);
-        return NULL;
-    }
-    for (uint32_t body = 0; body < w->bodies; body++) {
-        w->leg[body].size = tl_body_size(m, body);
-        w->leg[body].start = m->bodies.pose[body].u;
-        begin_leg(&w->leg[body], m, body, 0);
-    }
-    return w;
-}
-
-/* ---------------------------------------------------------------- samples ---------------- */
-
-typedef struct sample_job {
-    tl_watch *w;
-    const tl_model *m;
-    atomic_bool reached; /* by some body */
-} sample_job;
-
-/* Adds a sample to the leg of a body. */
-static void add_sample(leg *l, const tl_watch *w, const tl_model *m, uint32_t body)
-{
-    double weight = tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity));
-    double unbalanced = tl_v3_norm(m->bodies.force[body]);
-    double borne = tl_borne(m, body, weight); /* without what rounding carries (rest.c) */
-    bool judged = l->touched || (m->cycle->contact_force[body] > 0 && unbalanced < SUPPORTED * borne);
-    tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from);
-    double share = l->touched ? FAILED_SHARE : LANDED_SHARE;
-    double length = share / LEGS * l->size, time = w->time - l->began;
-    if (!judged) {
-        forget_legs(l);
-        begin_leg(l, m, body, w->time);
-        return;
-    }
-    double far = tl_v3_norm(gone), whole = fmax(length, w->least);
-    if (far < whole && whole < NO_SLOWER * l->speed * time) /* too late by now */
-        forget_legs(l);
-    l->force = tl_v3_add(l->force, m->bodies.force[body]);
-    l->borne += borne;
-    l->reached = far >= length;
-}
-
-static void sample_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)chunk, (void)thread;
-    sample_job *job = user;
-    const tl_model *m = job->m;
-    bool reached = false;
-    for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        if (m->bodies.fixed[body] == TL_FIX_ALL)
-            continue;
-        add_sample(&job->w->leg[body], job->w, m, body);
-        reached = reached || job->w->leg[body].reached;
-    }
-    if (reached)
-        atomic_store_explicit(&job->reached, true, memory_order_relaxed);
-}
-
-/* How far the model may settle, m: see the head of the file. */
-static double settlement(const tl_watch *w, const tl_model *m)
-{
-    const tl_contacts *c = &m->detect->contacts;
-    tl_addends forces = {.count = 0}, closures = {.count = 0};
-    for (uint32_t i = 0; i < c->table.rows; i++) {
-        double f = tl_v3_norm(c->force[i]);
-        if (!(f > 0) || c->held[i])
-            continue;
-        const tl_law *law = &m->joint_laws[c->law[i]];
-        double k = law->ks > 0 && law->ks < law->kn ? law->ks : law->kn;
-        tl_addends_put(&forces, f);
-        tl_addends_put(&closures, k > 0 && c->area[i] > 0 ? f * f / (k * c->area[i]) : 0);
-    }
-    const double force = tl_addends_sum(&forces);
-    return force > 0 ? w->on_end * tl_addends_sum(&closures) / force : 0;
-}
-
-/* Ends the leg of a body, and begins the next. */
-static void end_leg(leg *l, const tl_model *m, uint32_t body, double time)
-{
-    tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from), way = tl_v3_unit(gone);
-    double speed = tl_v3_norm(gone) / (time - l->began);
-    if (speed < NO_SLOWER * l->speed || tl_v3_dot(way, l->way) < ONE_WAY)
-        forget_legs(l);
-    if (l->legs < LEGS)
-        l->legs++;
-    l->way = way;
-    l->speed = speed;
-    begin_leg(l, m, body, time);
-}
-
-/* The fastest of the bodies that fail: that have gone all their legs, pushed that way. */
-static tl_id find_failing(const tl_watch *w, const tl_model *m)
-{
-    tl_id failing = TL_NO_ID;
-    double fastest = 0;
-    for (uint32_t body = 0; body < w->bodies; body++) {
-        const leg *l = &w->leg[body];
-        double speed = tl_v3_norm(m->bodies.v[body]);
-        if (l->legs < LEGS || !(tl_v3_dot(l->force, l->way) > LEAST_PUSH * l->borne) ||
-            m->bodies.fixed[body] == TL_FIX_ALL || !(speed > fastest))
-            continue;
-        fastest = speed;
-        failing = m->bodies.id[body];
-    }
-    return failing;
-}
-
-/* Tolerance: speed over that of the fastest body that fails, from which on another fails with it. */
-#define FAILS_ALONG 0.1
-
-/* Keeps the blocks that fail with the one found, how much rock that is, and where it goes. */
-static tl_status list_failing(const tl_watch *w, tl_model *m)
-{
-    struct tl_cycle *c = m->cycle;
-    const uint32_t row = tl_block_row_quiet(m, w->failing);
-    if (row == TL_NO_ROW || w->structure != m->structure)
-        return TL_OK;
-    if (!tl_fit(&c->fails, &c->fails_capacity, m->blocks.table.rows, sizeof *c->fails))
-        return tl_fail_memory(&m->error);
-    const double speed = tl_v3_norm(m->bodies.v[m->blocks.body[row]]);
-    tl_addends volume = {.count = 0}, way[3] = {{.count = 0}, {.count = 0}, {.count = 0}};
-    c->fails_count = 0;
-    for (uint32_t i = 0; i < m->blocks.table.rows; i++) {
-        const uint32_t body = m->blocks.body[i];
-        const tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, w->leg[body].start);
-        const bool along = m->bodies.fixed[body] != TL_FIX_ALL && tl_v3_norm(m->bodies.v[body]) >= FAILS_ALONG * speed;
-        if (!along && i != row)
-            continue;
-        c->fails[c->fails_count++] = m->blocks.id[i];
-        const double own = m->blocks.volume[i];
-        tl_addends_put(&volume, own);
-        tl_addends_put(&way[0], own * gone.x);
-        tl_addends_put(&way[1], own * gone.y);
-        tl_addends_put(&way[2], own * gone.z);
-    }
-    c->fails_volume = tl_addends_sum(&volume);
-    c->fails_way = tl_v3_unit(tl_v3(tl_addends_sum(&way[0]), tl_addends_sum(&way[1]), tl_addends_sum(&way[2])));
-    return TL_OK;
-}
-
-/* After each step; gives the id of the block that fails steadily, or 0. */
-static tl_id watch_step(tl_watch *w, const tl_model *m)
-{
-    if (w->structure != m->structure)
-        return w->failing;
-    w->time += m->dt;
-    if (tl_has_leapt(m)) { /* that says nothing of speeds */
-        for (uint32_t body = 0; body < w->bodies; body++) {
-            forget_legs(&w->leg[body]);
-            begin_leg(&w->leg[body], m, body, w->time);
-        }
-        return w->failing = TL_NO_ID;
-    }
-    if (w->steps++ == 0)
-        for (uint32_t body = 0; body < w->bodies; body++)
-            w->leg[body].touched = tl_body_has_points(m, body);
-    if (w->steps % SAMPLE_STEPS != 0)
-        return w->failing;
-    sample_job job = {.w = w, .m = m};
-    tl_parallel_for(m->pool, w->bodies, TL_READ_CHUNK, sample_range, &job);
-    if (job.reached)
-        w->least = SETTLED_SHARE / LEGS * settlement(w, m);
-    for (uint32_t body = 0; body < w->bodies && job.reached; body++)
-        if (w->leg[body].reached && m->bodies.fixed[body] != TL_FIX_ALL &&
-            tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->leg[body].from)) >= w->least)
-            end_leg(&w->leg[body], m, body, w->time);
-    w->failing = find_failing(w, m);
-    return w->failing;
-}
 
 /* ---------------------------------------------------------------- runs -------------------- */
 
@@ -414,8 +127,8 @@ static bool call_between(tl_model *m, const progress *p, tl_watch **watch, tl_st
     uint64_t structure = m->structure;
     *status = p->solve->between(p->solve->user, m);
     if (*status == TL_OK && *watch && m->structure != structure) {
-        watch_end(*watch);
-        *watch = watch_begin(m);
+        tl_watch_end(*watch);
+        *watch = tl_watch_begin(m);
         *status = *watch ? TL_OK : tl_fail_memory(&m->error);
     }
     if (*status == TL_OK && !tl_model_interrupted(m))
@@ -433,7 +146,7 @@ static const char *run_name(const tl_model *m)
 static void say_failure(tl_model *m, const tl_solve_result *r)
 {
     uint32_t row = tl_block_row_quiet(m, r->failing);
-    double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(m->bodies.v[m->blocks.body[row]]);
+    double speed = row == TL_NO_ROW ? 0 : tl_body_speed(m, m->blocks.body[row]);
     overlap_push push;
     if (overlaps_push(m, &push)) {
         tl_model_say(m,
@@ -456,21 +169,11 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
  * Names the body that has gone the farthest over its size, of those that touched something then. */
 static void say_gone(tl_model *m, const tl_watch *w)
 {
-    double way = 0, most = FAILED_SHARE, least = SETTLED_SHARE * settlement(w, m);
-    uint32_t gone = TL_NO_ROW;
-    for (uint32_t body = 0; body < w->bodies && w->structure == m->structure; body++) {
-        const leg *l = &w->leg[body];
-        double far = tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, l->start));
-        if (!l->touched || m->bodies.fixed[body] == TL_FIX_ALL || far < least || !(far > most * l->size))
-            continue;
-        most = far / l->size;
-        way = far;
-        gone = body;
-    }
-    if (gone != TL_NO_ROW)
+    const tl_gone gone = tl_watch_gone(w, m);
+    if (gone.body != TL_NO_ROW)
         tl_model_say(
             m, "%s: at rest, but not where it began: block %u has moved by %.3g m in this run, %.2g times its size",
-            run_name(m), m->bodies.id[gone], way, most);
+            run_name(m), m->bodies.id[gone.body], gone.way, gone.share);
 }
 
 /* Neither at rest nor failing: of a run that was to find out which. */
@@ -509,7 +212,7 @@ tl_status tl_solve_run(tl_model *m, const tl_solve *solve, tl_solve_result *want
         return tl_fail(&m->error, TL_E_STATE, "cycle and solve cannot be called from a function that a run has called");
     progress p = {solve, result, m->cycles, m->time, tl_clock()};
     tl_watch *watch = NULL;
-    if ((solve->ratio > 0 || solve->stop_at_failure) && !(watch = watch_begin(m)))
+    if ((solve->ratio > 0 || solve->stop_at_failure) && !(watch = tl_watch_begin(m)))
         return tl_fail_memory(&m->error);
     atomic_store(&m->interrupted, false);
     tl_remark_units(m);
@@ -522,17 +225,17 @@ tl_status tl_solve_run(tl_model *m, const tl_solve *solve, tl_solve_result *want
             break;
         measure(m, &p);
         if (watch)
-            m->cycle->failing = result->failing = watch_step(watch, m);
+            m->cycle->failing = result->failing = tl_watch_step(watch, m);
         if (solve->ratio > 0)
             m->cycle->rest_ratio = solve->ratio;
         if (ended(m, &p, &status))
             break;
     }
+    if (status == TL_OK && result->failing && watch)
+        status = tl_watch_list(watch, m);
     if (status == TL_OK)
         say_end(m, solve, watch, result);
-    if (status == TL_OK && result->failing && watch)
-        status = list_failing(watch, m);
-    watch_end(watch);
+    tl_watch_end(watch);
     return status;
 }
 

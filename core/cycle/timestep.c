@@ -575,9 +575,10 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
                        "them only, or the longer one to mass_scaling",
                        given, wanted);
     if (!report) {
-        double limit = rate_limit(m);
+        const double limit = rate_limit(m), share = m->timestep.zone_fraction / tl_timestep_fraction(m);
         rates_keep(m, limit);
-        tl_status status = tl_added_find(m, limit);
+        tl_gridpoints_least(m); /* what holds each of them */
+        tl_status status = tl_added_find(m, (tl_rate_limits){limit, 2 * share * share * limit});
         if (status != TL_OK)
             return status;
         c->mass_scale = 0;

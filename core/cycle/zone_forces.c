@@ -4,6 +4,7 @@
 #include "cycle/cycle_data.h"
 #include "cycle/zone_limits.h"
 #include "segment/act.h"
+#include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/pass.h"
@@ -15,7 +16,7 @@ static tl_status apply(tl_model *m)
     struct tl_cycle *c = m->cycle;
     if (!tl_model_deforms(m))
         return TL_OK;
-    tl_zones_pass(m, m->dt, &c->failure);
+    tl_zones_pass(m, m->zones->moved_dt, &c->failure);
     const tl_status status = c->failure.error.status;
     return status == TL_OK ? TL_OK : tl_zones_failed(m, status);
 }
@@ -57,6 +58,7 @@ static tl_status prepare(tl_model *m)
     struct tl_zones *z = m->zones;
     const bool before = m->damping && ((const tl_damping_ops *)m->damping->ops)->before;
     const bool enough = tl_fit(&z->scratch, &z->scratch_capacity, tl_pool_threads(m->pool), sizeof *z->scratch) &&
+                        tl_fit(&z->motion, &z->motion_capacity, z->mesh_count, sizeof *z->motion) &&
                         (!tl_is_damped(m) || tl_gridpoints_hold_damping(&z->points, before));
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }

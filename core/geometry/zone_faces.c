@@ -12,6 +12,9 @@
  * Those nearer than NEAR h to an edge are left out. Where h is a function of place, lattices of p / 2^k follow each
  * other, coarse ones first. A point is taken when none that was taken is nearer than APART h.
  *
+ * A face of a block that is given in parts (joined_faces.c) has points on each part, in the frame of that. Their
+ * places in the face are then those in the frame of its first part.
+ *
  * Triangles are those of Delaunay in these coordinates, put on a grid (delaunay.c). Weights decide among points on one
  * circle. They are random by keys, and the same on both sides (zone_weight.h). */
 #include "geometry/zone_faces.h"
@@ -21,6 +24,8 @@
 #include "geometry/zone_weight.h"
 
 #include <talus/vmath.h>
+
+#define NONE UINT32_MAX
 
 /* Tolerance: lengths that differ by less than this share count as equal. */
 #define TIE 1e-9
@@ -102,11 +107,26 @@ static tl_site2 into_face(const face_frame *f, tl_vec3 from_first)
     return (tl_site2){tl_v3_dot(from_first, f->x), tl_v3_dot(from_first, f->y), 0};
 }
 
-static face_frame frame_of(tl_zone_points *p, uint32_t face)
+/* Takes the corners of a face into the bounds of a frame: how far they are from its plane, the least and the most. */
+static void take_in(const tl_zone_points *p, face_frame *f, uint32_t face, double *least, double *most)
+{
+    const tl_vec3 origin = listed(p, f, 0);
+    for (uint32_t h = p->poly->start[face]; h < p->poly->start[face + 1u]; h++) {
+        const tl_vec3 to = tl_v3_sub(p->poly->vertex[p->poly->loop[h]], origin);
+        const tl_site2 at = into_face(f, to);
+        f->low[0] = fmin(f->low[0], at.x), f->high[0] = fmax(f->high[0], at.x);
+        f->low[1] = fmin(f->low[1], at.y), f->high[1] = fmax(f->high[1], at.y);
+        *least = fmin(*least, tl_v3_dot(to, f->normal)), *most = fmax(*most, tl_v3_dot(to, f->normal));
+    }
+    int exponent;
+    (void)frexp(fmax(f->high[0] - f->low[0], f->high[1] - f->low[1]), &exponent);
+    f->unit = ldexp(1, TL_GRID_BITS - exponent);
+}
+
+static face_frame frame_of(const tl_zone_points *p, uint32_t face)
 {
     face_frame f = {.face = face, .corners = tl_poly_face_size(p->poly, face)};
     choose_start(p, &f);
-    p->turn[face] = f.forward ? 1 : -1;
     const tl_vec3 origin = listed(p, &f, 0);
     tl_vec3 area = {0, 0, 0}, before = tl_v3_sub(listed(p, &f, 1), origin);
     f.x = tl_v3_unit(before);
@@ -120,17 +140,8 @@ static face_frame frame_of(tl_zone_points *p, uint32_t face)
     f.low[0] = f.low[1] = INFINITY;
     f.high[0] = f.high[1] = -INFINITY;
     double least = INFINITY, most = -INFINITY;
-    for (uint32_t k = 0; k < f.corners; k++) {
-        const tl_vec3 to = tl_v3_sub(listed(p, &f, k), origin);
-        const tl_site2 at = into_face(&f, to);
-        f.low[0] = fmin(f.low[0], at.x), f.high[0] = fmax(f.high[0], at.x);
-        f.low[1] = fmin(f.low[1], at.y), f.high[1] = fmax(f.high[1], at.y);
-        least = fmin(least, tl_v3_dot(to, f.normal)), most = fmax(most, tl_v3_dot(to, f.normal));
-    }
+    take_in(p, &f, face, &least, &most);
     f.height = 0.5 * (least + most);
-    int exponent;
-    (void)frexp(fmax(f.high[0] - f.low[0], f.high[1] - f.low[1]), &exponent);
-    f.unit = ldexp(1, TL_GRID_BITS - exponent);
     return f;
 }
 
@@ -140,6 +151,8 @@ static face_frame frame_of(tl_zone_points *p, uint32_t face)
 static double shortest_part(const tl_zone_points *p, const face_frame *f)
 {
     double shortest = INFINITY;
+    if (p->zoning->parts)
+        return p->zoning->parts->shortest;
     for (uint32_t h = p->poly->start[f->face]; h < p->poly->start[f->face + 1u]; h++)
         shortest = fmin(shortest, p->edge_part[p->edge_at[h]]);
     return shortest;
@@ -151,7 +164,14 @@ static void note(tl_zone_points *p, const face_frame *f, uint32_t point, tl_site
     at.x = floor(f->unit * (at.x - f->low[0]) + 0.5);
     at.y = floor(f->unit * (at.y - f->low[1]) + 0.5);
     at.weight = tl_zone_weight(point < p->edge_end, p->size[point] * f->unit, shortest * f->unit, p->chance[point]);
-    p->in_face[i] = (tl_in_face){f->face, at};
+    p->in_face[i] = (tl_in_face){tl_zone_block_face(p, f->face), at};
+}
+
+/* Whether an edge lies between two parts of one face of the block. */
+static bool is_within(const tl_zone_points *p, uint32_t edge)
+{
+    const tl_edge *e = &p->poly->edge[edge];
+    return tl_zone_block_face(p, e->left) == tl_zone_block_face(p, e->right);
 }
 
 /* Counts the faces of each surface point, and makes room for them. */
@@ -162,10 +182,19 @@ static bool count_faces(tl_zone_points *p)
     if (!tl_grow(&p->start, &p->start_room, points + 1, sizeof *p->start) ||
         !tl_grow(&p->filled, &p->filled_room, points, sizeof *p->filled))
         return false;
-    for (uint32_t i = 0; i < p->face_end; i++)
-        p->filled[i] = i < p->corner_end ? 0 : i < p->edge_end ? 2 : 1;
-    for (uint32_t h = 0; h < 2 * poly->edge_count; h++)
-        p->filled[poly->loop[h]]++;
+    for (uint32_t i = 0; i < p->face_end; i++) {
+        p->filled[i] = i < p->edge_end ? 0 : 1;
+        p->start[i] = NONE;
+    }
+    for (uint32_t e = 0; e < poly->edge_count; e++)
+        for (uint32_t i = p->edge_start[e]; i < p->edge_start[e + 1]; i++)
+            p->filled[i] = is_within(p, e) ? 1 : 2;
+    for (uint32_t f = 0; f < poly->face_count; f++)
+        for (uint32_t h = poly->start[f]; h < poly->start[f + 1]; h++) {
+            const uint32_t corner = poly->loop[h], face = tl_zone_block_face(p, f);
+            p->filled[corner] += p->start[corner] != face; /* `start` serves as the last face until then */
+            p->start[corner] = face;
+        }
     p->start[0] = 0;
     for (uint32_t i = 0; i < p->face_end; i++) {
         p->start[i + 1] = p->start[i] + p->filled[i];
@@ -185,19 +214,42 @@ static void note_edge(tl_zone_points *p, const face_frame *f, uint32_t edge, dou
         note(p, f, i, into_face(f, tl_v3_madd(from, p->flat[i].x, step)), shortest);
 }
 
-/* Places of all points of a face. */
-static void note_all(tl_zone_points *p, uint32_t face)
+/* Whether a corner has its place in a face of the block already: by another part of that. */
+static bool is_noted(const tl_zone_points *p, uint32_t corner, uint32_t block_face)
+{
+    return p->filled[corner] > 0 && p->in_face[p->start[corner] + p->filled[corner] - 1].face == block_face;
+}
+
+/* Places of the points inside a part of a face, which has a frame of its own, in that of the face. */
+static void note_inner(tl_zone_points *p, const face_frame *f, uint32_t part, double shortest)
+{
+    const tl_vec3 origin = listed(p, f, 0);
+    for (uint32_t i = p->face_from[part]; i < p->face_from[part + 1]; i++) {
+        const tl_site2 own = {p->flat[i].x, p->flat[i].y, 0};
+        note(p, f, i, part == f->face ? own : into_face(f, tl_v3_sub(p->real[i], origin)), shortest);
+    }
+}
+
+/* Places of all points of a face of the block: of its parts from `first` on. */
+static void note_all(tl_zone_points *p, uint32_t first, uint32_t end)
 {
     const tl_poly *poly = p->poly;
-    const face_frame f = frame_of(p, face);
+    face_frame f = frame_of(p, first);
+    double least = 0, most = 0;
+    for (uint32_t part = first + 1; part < end; part++)
+        take_in(p, &f, part, &least, &most);
+    p->turn[tl_zone_block_face(p, first)] = f.forward ? 1 : -1;
     const double shortest = shortest_part(p, &f);
-    for (uint32_t h = poly->start[face]; h < poly->start[face + 1]; h++) {
-        const tl_vec3 corner = poly->vertex[poly->loop[h]];
-        note(p, &f, poly->loop[h], into_face(&f, tl_v3_sub(corner, listed(p, &f, 0))), shortest);
-        note_edge(p, &f, p->edge_at[h], shortest);
+    for (uint32_t part = first; part < end; part++) {
+        for (uint32_t h = poly->start[part]; h < poly->start[part + 1]; h++) {
+            const tl_vec3 corner = poly->vertex[poly->loop[h]];
+            if (!is_noted(p, poly->loop[h], tl_zone_block_face(p, first)))
+                note(p, &f, poly->loop[h], into_face(&f, tl_v3_sub(corner, listed(p, &f, 0))), shortest);
+            if (!is_within(p, p->edge_at[h]) || poly->edge[p->edge_at[h]].left == part)
+                note_edge(p, &f, p->edge_at[h], shortest);
+        }
+        note_inner(p, &f, part, shortest);
     }
-    for (uint32_t i = p->face_from[face]; i < p->face_from[face + 1]; i++)
-        note(p, &f, i, (tl_site2){p->flat[i].x, p->flat[i].y, 0}, shortest);
 }
 
 /* ---- lattices ---- */
@@ -328,7 +380,10 @@ tl_status tl_zone_faces_lay(tl_zone_points *p, tl_zone_near *near, tl_error *err
     p->face_from[p->poly->face_count] = p->face_end = p->count;
     if (!count_faces(p))
         return tl_fail_memory(error);
-    for (uint32_t f = 0; f < p->poly->face_count; f++)
-        note_all(p, f);
+    for (uint32_t first = 0, end = 0; first < p->poly->face_count; first = end) {
+        while (end < p->poly->face_count && tl_zone_block_face(p, end) == tl_zone_block_face(p, first))
+            end++;
+        note_all(p, first, end);
+    }
     return TL_OK;
 }

@@ -10,7 +10,16 @@
 /* The wanted edge of zones at a place, in the coordinates of the block's vertices. Positive. */
 typedef double (*tl_zone_size_fn)(const void *user, tl_vec3 place);
 
-typedef struct tl_zoning {
+/* Faces that are given in parts: those of a block that is joined to others (joined_faces.c). The parts of a face lie in
+ * one plane, and zones end at the edges between them. */
+typedef struct tl_zone_parts {
+    uint32_t corner_count;   /* of the polyhedron's vertices, those that are corners of the block: they come first */
+    uint32_t face_count;     /* of the block */
+    const uint32_t *face_of; /* [faces of the polyhedron] the face of the block that each is a part of, ascending */
+    double shortest;         /* edge of all the joined blocks: their weights are alike */
+} tl_zone_parts;
+
+typedef struct tl_shape_zoning {
     double edge;          /* the wanted edge h of zones; larger than the block: corners and centroid alone */
     tl_zone_size_fn size; /* or a function of place. NULL: `edge` everywhere */
     const void *user;     /* of it */
@@ -18,11 +27,13 @@ typedef struct tl_zoning {
      * of the block. Another block with the same polygon gets the same triangles when the keys of the polygon's corners
      * are in the same order. Every key is there once. */
     const uint64_t *corner_key;
-    /* [face_count] Not 0: points on the face may be moved by the repair, for no other zones lie on it. NULL: none. */
+    /* [faces of the block] Not 0: points on the face may be moved by the repair, for no other zones lie on it. NULL:
+     * none. */
     const uint8_t *face_free;
-} tl_zoning;
+    const tl_zone_parts *parts; /* NULL: no face is given in parts */
+} tl_shape_zoning;
 
-static inline double tl_zoning_size(const tl_zoning *z, tl_vec3 place)
+static inline double tl_zoning_size(const tl_shape_zoning *z, tl_vec3 place)
 {
     return z->size ? z->size(z->user, place) : z->edge;
 }

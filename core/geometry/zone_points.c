@@ -152,7 +152,7 @@ static bool make_room(tl_zone_points *p)
            tl_grow(&p->face_from, &p->face_from_room, faces + 1, sizeof *p->face_from);
 }
 
-tl_status tl_zone_points_begin(tl_zone_points *p, const tl_poly *poly, const tl_zoning *zoning, tl_error *error)
+tl_status tl_zone_points_begin(tl_zone_points *p, const tl_poly *poly, const tl_shape_zoning *zoning, tl_error *error)
 {
     p->poly = poly;
     p->zoning = zoning;

@@ -12,7 +12,7 @@
 /* Cost only: first rooms. All arrays are kept between blocks. */
 typedef struct tl_zone_points {
     const tl_poly *poly;
-    const tl_zoning *zoning;
+    const tl_shape_zoning *zoning;
     /* The frame: origin at the first vertex, x along the longest edge, y in a face beside it. Rows of `axes`. */
     tl_mat3 axes;
     tl_vec3 centroid; /* in the frame */
@@ -34,7 +34,7 @@ typedef struct tl_zone_points {
 
     tl_plane *plane;     /* [face_count] in the frame, by the corners */
     double *bend;        /* [face_count] by how much corners miss it */
-    signed char *turn;   /* [face_count] as in tl_delaunay_points */
+    signed char *turn;   /* [faces of the block] as in tl_delaunay_points */
     uint32_t *face_from; /* [face_count + 1] the first point inside each face */
     size_t plane_room, bend_room, turn_room, face_from_room;
 
@@ -44,7 +44,8 @@ typedef struct tl_zone_points {
 } tl_zone_points;
 
 /* Begins with the corners: frame, planes, centroid. */
-tl_status tl_zone_points_begin(tl_zone_points *points, const tl_poly *poly, const tl_zoning *zoning, tl_error *error);
+tl_status tl_zone_points_begin(tl_zone_points *points, const tl_poly *poly, const tl_shape_zoning *zoning,
+                               tl_error *error);
 /* Adds a point inside, or on the surface. */
 bool tl_zone_points_add(tl_zone_points *points, tl_vec3 place, double size, uint64_t key);
 bool tl_zone_points_add_outer(tl_zone_points *points, tl_vec3 place, tl_vec3 real, tl_point2 flat, double size,
@@ -63,6 +64,15 @@ static inline tl_vec3 tl_zone_into_frame(const tl_zone_points *p, tl_vec3 real)
 static inline uint64_t tl_zone_corner_key(const tl_zone_points *p, uint32_t corner)
 {
     return p->zoning->corner_key ? p->zoning->corner_key[corner] : corner;
+}
+/* The face of the block that a face is a part of, and how many the block has. */
+static inline uint32_t tl_zone_block_face(const tl_zone_points *p, uint32_t face)
+{
+    return p->zoning->parts ? p->zoning->parts->face_of[face] : face;
+}
+static inline uint32_t tl_zone_block_faces(const tl_zone_points *p)
+{
+    return p->zoning->parts ? p->zoning->parts->face_count : p->poly->face_count;
 }
 /* The least altitude of a zone: 3 volumes over its largest triangle. Negative where it is turned inside out. */
 static inline double tl_zone_altitude(tl_vec3 a, tl_vec3 b, tl_vec3 c, tl_vec3 d)

@@ -16,7 +16,11 @@
  * c is the centroid and R the largest distance from it. The hull of a face moved so has the Delaunay triangles of the
  * flat face, as far as the bulge is more than the bend. Only what lies on the grid is moved. Where a check fails,
  * another bulge is tried, and another unit of the grid: which flat zones are made among points on a sphere hangs on
- * rounding. */
+ * rounding.
+ *
+ * Faces may be given in parts (joined_faces.c). Delaunay knows the whole face alone. Where one of its triangles lies
+ * across an edge between two parts, nothing is made, and the middle of what it crosses is told. With corners there the
+ * parts of the edge are shorter, and sooner or later no triangle crosses them (Ruppert 1995). */
 #include "geometry/zoning.h"
 
 #include "base/table.h"
@@ -82,6 +86,9 @@ struct tl_zone_scratch {
     uint32_t *triangle_at; /* [face + 1] */
     size_t site_room, number_room, triangle_room, triangle_at_room;
     uint32_t triangle_count;
+    uint32_t *on; /* of a block whose faces are given in parts: the edge or the part that a surface point is on */
+    tl_vec3 *crossed;
+    size_t on_room, crossed_room, crossed_count;
 };
 
 tl_zone_scratch *tl_zone_scratch_create(void)
@@ -102,6 +109,8 @@ void tl_zone_scratch_free(tl_zone_scratch *s)
     free(s->number);
     free(s->triangle);
     free(s->triangle_at);
+    free(s->on);
+    free(s->crossed);
     free(s);
 }
 
@@ -173,6 +182,34 @@ static void list_zones(tl_zone_scratch *s)
             s->lists.beside[s->number[t]][i] = s->number[d->tetrahedron[t].next[i] / 4];
 }
 
+/* Whether a surface point is in a part of a face. */
+static bool is_in_part(const tl_zone_scratch *s, uint32_t point, uint32_t part)
+{
+    const tl_zone_points *p = &s->points;
+    const tl_poly *poly = p->poly;
+    if (point >= p->edge_end)
+        return s->on[point] == part;
+    if (point >= p->corner_end)
+        return poly->edge[s->on[point]].left == part || poly->edge[s->on[point]].right == part;
+    for (uint32_t h = poly->start[part]; h < poly->start[part + 1]; h++)
+        if (poly->loop[h] == point)
+            return true;
+    return false;
+}
+
+/* The face, or the part of one, that a ghost's triangle lies in; NONE: it lies across an edge between parts. */
+static uint32_t part_of(const tl_zone_scratch *s, const tl_tetrahedron *ghost)
+{
+    const uint32_t face = ghost->corner[3] - TL_GHOST;
+    if (!s->points.zoning->parts)
+        return face;
+    for (uint32_t part = 0; part < s->points.poly->face_count; part++)
+        if (tl_zone_block_face(&s->points, part) == face && is_in_part(s, ghost->corner[0], part) &&
+            is_in_part(s, ghost->corner[1], part) && is_in_part(s, ghost->corner[2], part))
+            return part;
+    return NONE;
+}
+
 /* Triangles by face, in the order of the ghosts. */
 static void list_triangles(tl_zone_scratch *s)
 {
@@ -181,14 +218,14 @@ static void list_triangles(tl_zone_scratch *s)
     memset(s->triangle_at, 0, (faces + 2) * sizeof *s->triangle_at);
     for (uint32_t t = 0; t < d->used; t++)
         if (tl_is_there(&d->tetrahedron[t]) && tl_is_ghost(&d->tetrahedron[t]))
-            s->triangle_at[d->tetrahedron[t].corner[3] - TL_GHOST + 2]++;
+            s->triangle_at[part_of(s, &d->tetrahedron[t]) + 2]++;
     for (uint32_t f = 0; f < faces; f++)
         s->triangle_at[f + 2] += s->triangle_at[f + 1];
     for (uint32_t t = 0; t < d->used; t++) {
         const tl_tetrahedron *ghost = &d->tetrahedron[t];
         if (!tl_is_there(ghost) || !tl_is_ghost(ghost))
             continue;
-        const uint32_t face = ghost->corner[3] - TL_GHOST;
+        const uint32_t face = part_of(s, ghost);
         s->triangle[s->triangle_at[face + 1]++] =
             (tl_zone_triangle){{ghost->corner[0], ghost->corner[1], ghost->corner[2]}, face};
     }
@@ -216,8 +253,10 @@ static bool take_over(tl_zone_scratch *s)
 
 /* ---- checks ---- */
 
-static const tl_site2 *place_in(const tl_zone_points *p, uint32_t point, uint32_t face)
+/* Where a point is in the face of the block that a part is of. */
+static const tl_site2 *place_in(const tl_zone_points *p, uint32_t point, uint32_t part)
 {
+    const uint32_t face = tl_zone_block_face(p, part);
     uint32_t i = p->start[point];
     while (i + 1 < p->start[point + 1] && p->in_face[i].face != face)
         i++;
@@ -234,19 +273,19 @@ static bool is_covered(const tl_zone_scratch *s, uint32_t face)
 {
     const tl_zone_points *p = &s->points;
     const tl_poly *poly = p->poly;
+    const double turn = p->turn[tl_zone_block_face(p, face)];
     double sum = 0, all = 0;
     for (uint32_t i = s->triangle_at[face]; i < s->triangle_at[face + 1]; i++) {
         const uint32_t *v = s->triangle[i].corner;
         const double area =
-            p->turn[face] * twice_area(place_in(p, v[0], face), place_in(p, v[1], face), place_in(p, v[2], face));
+            turn * twice_area(place_in(p, v[0], face), place_in(p, v[1], face), place_in(p, v[2], face));
         if (!(area > 0))
             return false;
         sum += area;
     }
     const tl_site2 *first = place_in(p, poly->loop[poly->start[face]], face);
     for (uint32_t h = poly->start[face] + 1u; h + 1 < poly->start[face + 1]; h++)
-        all +=
-            p->turn[face] * twice_area(first, place_in(p, poly->loop[h], face), place_in(p, poly->loop[h + 1], face));
+        all += turn * twice_area(first, place_in(p, poly->loop[h], face), place_in(p, poly->loop[h + 1], face));
     return fabs(sum - all) <= COVERED * all + RIM * ldexp(1, TL_GRID_BITS);
 }
 
@@ -318,9 +357,98 @@ static tl_status check_zones(const tl_zone_points *p, const tl_zone_mesh *m, dou
     return TL_OK;
 }
 
+/* ---- edges between parts of a face ---- */
+
+/* Notes the edge or the part that each surface point is on. */
+static bool note_where(tl_zone_scratch *s)
+{
+    const tl_zone_points *p = &s->points;
+    if (!tl_grow(&s->on, &s->on_room, p->face_end, sizeof *s->on))
+        return false;
+    for (uint32_t e = 0; e < p->poly->edge_count; e++)
+        for (uint32_t i = p->edge_start[e]; i < p->edge_start[e + 1]; i++)
+            s->on[i] = e;
+    for (uint32_t f = 0; f < p->poly->face_count; f++)
+        for (uint32_t i = p->face_from[f]; i < p->face_from[f + 1]; i++)
+            s->on[i] = f;
+    return true;
+}
+
+/* Whether two sides cross each other inside both. */
+static bool cross_inside(const tl_site2 *a, const tl_site2 *b, const tl_site2 *c, const tl_site2 *d)
+{
+    const double abc = twice_area(a, b, c), abd = twice_area(a, b, d), cda = twice_area(c, d, a),
+                 cdb = twice_area(c, d, b);
+    return abc * abd < 0 && cda * cdb < 0;
+}
+
+/* Notes the middle of a part of an edge, from point a to point b, if a triangle lies across it. */
+static bool note_crossed(tl_zone_scratch *s, const uint32_t corner[3], uint32_t part, uint32_t a, uint32_t b)
+{
+    const tl_zone_points *p = &s->points;
+    const tl_site2 *u = place_in(p, a, part), *w = place_in(p, b, part);
+    bool crosses = false;
+    for (int k = 0; k < 3; k++)
+        crosses = crosses || cross_inside(u, w, place_in(p, corner[k], part), place_in(p, corner[(k + 1) % 3], part));
+    if (!crosses)
+        return true;
+    const tl_vec3 middle = tl_v3_scale(0.5, tl_v3_add(p->real[a], p->real[b]));
+    for (size_t k = 0; k < s->crossed_count; k++)
+        if (tl_v3_is_zero(tl_v3_sub(s->crossed[k], middle)))
+            return true;
+    if (!tl_grow(&s->crossed, &s->crossed_room, s->crossed_count + 1, sizeof *s->crossed))
+        return false;
+    s->crossed[s->crossed_count++] = middle;
+    return true;
+}
+
+/* Notes what a ghost's triangle crosses of an edge between two parts of its face. */
+static bool note_edge_crossed(tl_zone_scratch *s, const tl_tetrahedron *ghost, uint32_t edge)
+{
+    const tl_zone_points *p = &s->points;
+    const tl_edge *e = &p->poly->edge[edge];
+    const uint32_t face = ghost->corner[3] - TL_GHOST;
+    if (tl_zone_block_face(p, e->left) != face || tl_zone_block_face(p, e->right) != face)
+        return true;
+    const bool forward = tl_zone_corner_key(p, e->a) < tl_zone_corner_key(p, e->b);
+    const uint32_t end = p->edge_start[edge + 1];
+    uint32_t from = forward ? e->a : e->b;
+    bool enough = true;
+    for (uint32_t i = p->edge_start[edge]; enough && i <= end; i++) {
+        const uint32_t to = i < end ? i : forward ? e->b : e->a;
+        enough = note_crossed(s, ghost->corner, e->left, from, to);
+        from = to;
+    }
+    return enough;
+}
+
+/* Looks for triangles that lie across edges between parts. */
+static tl_status check_parts(tl_zone_scratch *s, tl_error *error)
+{
+    const tl_delaunay *d = &s->delaunay;
+    bool across = false, enough = note_where(s);
+    for (uint32_t t = 0; enough && t < d->used; t++) {
+        const tl_tetrahedron *ghost = &d->tetrahedron[t];
+        if (!tl_is_there(ghost) || !tl_is_ghost(ghost) || part_of(s, ghost) != NONE)
+            continue;
+        across = true;
+        for (uint32_t e = 0; enough && e < s->points.poly->edge_count; e++)
+            enough = note_edge_crossed(s, ghost, e);
+    }
+    if (!enough)
+        return tl_fail_memory(error);
+    return across ? tl_fail(error, TL_E_GEOMETRY, "its zones do not end at the edges of the blocks beside it") : TL_OK;
+}
+
+const tl_vec3 *tl_zoning_crossed(const tl_zone_scratch *s, size_t *count)
+{
+    *count = s->crossed_count;
+    return s->crossed;
+}
+
 /* ---- all ---- */
 
-static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_zoning *zoning, tl_error *error)
+static tl_status lay_points(tl_zone_scratch *s, const tl_poly *poly, const tl_shape_zoning *zoning, tl_error *error)
 {
     tl_status status = tl_zone_points_begin(&s->points, poly, zoning, error);
     if (!status)
@@ -343,13 +471,16 @@ static tl_status divide(tl_zone_scratch *s, const attempt *a, tl_error *error)
         return tl_fail_memory(error);
     const tl_delaunay_points points = {.count = p->count,
                                        .site = s->site,
-                                       .corner_count = p->corner_end,
+                                       .corner_count =
+                                           p->zoning->parts ? p->zoning->parts->corner_count : p->corner_end,
                                        .surface_count = p->face_end,
                                        .start = p->start,
                                        .in_face = p->in_face,
                                        .flat = a->bulge == 0,
                                        .turn = p->turn};
-    const tl_status status = tl_delaunay_make(&s->delaunay, &points, error);
+    tl_status status = tl_delaunay_make(&s->delaunay, &points, error);
+    if (!status && p->zoning->parts)
+        status = check_parts(s, error);
     if (status)
         return status;
     return take_over(s) ? check_faces(s, error) : tl_fail_memory(error);
@@ -396,10 +527,13 @@ static tl_status make_once(tl_zone_scratch *s, const attempt *a, tl_zone_mesh *m
     return status;
 }
 
-/* The bulge with which a block is tried first: 0 where its faces are flat. */
+/* The bulge with which a block is tried first: 0 where its faces are flat. Faces in parts count as flat: a bulge would
+ * let the two sides of a part choose by its bend, and not alike. */
 static double first_bulge(const tl_zone_points *p)
 {
     double bend = 0;
+    if (p->zoning->parts)
+        return 0;
     for (uint32_t f = 0; f < p->poly->face_count; f++)
         bend = fmax(bend, p->bend[f]);
     bend /= p->extent;
@@ -428,17 +562,18 @@ static tl_status check_rounding(const tl_zone_mesh *m, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_zoning_make(const tl_poly *poly, const tl_zoning *zoning, tl_zone_scratch *scratch, tl_zone_mesh *mesh,
-                         tl_error *error)
+tl_status tl_zoning_make(const tl_poly *poly, const tl_shape_zoning *zoning, tl_zone_scratch *scratch,
+                         tl_zone_mesh *mesh, tl_error *error)
 {
     *mesh = (tl_zone_mesh){0};
+    scratch->crossed_count = 0;
     tl_status status = lay_points(scratch, poly, zoning, error);
     if (status)
         return status;
     const double bulge = first_bulge(&scratch->points);
     attempt a = {.bulge = bulge, .stretch = 1, .light = 1, .least_share = FLATTEST};
     status = make_once(scratch, &a, mesh, error);
-    for (int again = 1; status == TL_E_GEOMETRY && again < TRIES; again++) {
+    for (int again = 1; status == TL_E_GEOMETRY && again < TRIES && scratch->crossed_count == 0; again++) {
         /* repaired places are no places of lattices: all are laid anew */
         a.bulge = bulge_of(bulge, again);
         a.stretch = 1 - again * COARSER;

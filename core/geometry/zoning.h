@@ -15,9 +15,11 @@ void tl_zone_scratch_free(tl_zone_scratch *scratch);
  *
  * TL_E_ARGUMENT: the wanted edge is no positive number somewhere, or makes too many zones. TL_E_GEOMETRY: the zones
  * fail a check, and the mesh is empty. The sentence says what of the block is so: the caller puts its name in front. */
-tl_status tl_zoning_make(const tl_poly *poly, const tl_zoning *zoning, tl_zone_scratch *scratch, tl_zone_mesh *mesh,
-                         tl_error *error);
+tl_status tl_zoning_make(const tl_poly *poly, const tl_shape_zoning *zoning, tl_zone_scratch *scratch,
+                         tl_zone_mesh *mesh, tl_error *error);
 void tl_zone_mesh_free(tl_zone_mesh *mesh);
+/* Places on edges between parts of faces at which the last block, which was not divided for that, needs corners. */
+const tl_vec3 *tl_zoning_crossed(const tl_zone_scratch *scratch, size_t *count);
 
 /* About how many zones of an edge fill a volume with a surface: for a limit before the work. */
 double tl_zoning_expected(double volume, double surface, double edge);

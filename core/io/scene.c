@@ -12,6 +12,7 @@
 #include "io/extra_fields.h"
 #include "io/json.h"
 #include "io/scene_put.h"
+#include "io/scene_zones.h"
 #include "io/verdict.h"
 #include "model/joints.h"
 #include "model/regroup.h"
@@ -26,6 +27,7 @@
 #include <string.h>
 #include <talus/history.h>
 #include <talus/vmath.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- what is new ------------ */
 
@@ -90,16 +92,18 @@ static bool compare(tl_scene *scene, const tl_model *m, news *found)
 static const struct {
     const char *name, *unit;
 } quantities[] = {
-    TL_ENERGY(TERM){"max_velocity", "m/s"},
+    TL_ENERGY(TERM) TL_ZONE_ENERGY(TERM){"max_velocity", "m/s"},
 };
 #undef TERM
 
 static const char *unit_of(const tl_history *h)
 {
     size_t count = 0;
-    const tl_field *fields = h->source == TL_FROM_BLOCKS     ? tl_block_fields(&count)
-                             : h->source == TL_FROM_CONTACTS ? tl_contact_fields(&count)
-                                                             : NULL;
+    const tl_field *fields = h->source == TL_FROM_BLOCKS       ? tl_block_fields(&count)
+                             : h->source == TL_FROM_CONTACTS   ? tl_contact_fields(&count)
+                             : h->source == TL_FROM_ZONES      ? tl_zone_fields(&count)
+                             : h->source == TL_FROM_GRIDPOINTS ? tl_gridpoint_fields(&count)
+                                                               : NULL;
     for (size_t i = 0; i < count; i++)
         if (strcmp(fields[i].name, h->asked) == 0)
             return fields[i].unit;
@@ -186,7 +190,9 @@ static void scene_head(const tl_model *m, const tl_html *options, const tl_scene
     put_fields(text, options->contact_fields, options->contact_field_count, block_fields > 0, "contacts");
     tl_json_put(text, "], \"histories\": [");
     put_histories(text, m);
-    tl_json_print(text, "]%r%r}", scene->live ? ", \"live\": true" : "",
+    tl_json_put(text, "]");
+    tl_scene_zones_head(m, text);
+    tl_json_print(text, "%r%r}", scene->live ? ", \"live\": true" : "",
                   scene->live == TL_SCENE_COMMANDS ? ", \"commands\": true" : "");
 }
 
@@ -751,6 +757,8 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
     scene->next.refused = m->record.refused;
     if (status == TL_OK)
         status = put_touches(scene, m, out);
+    if (status == TL_OK)
+        status = tl_scene_surface(m, scene->sent.surface, &scene->next.surface, out);
     free(found.rows);
     free(found.gone);
     return status;
@@ -806,6 +814,8 @@ tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, t
     if (status == TL_OK)
         status = put_frame(m, out, &facts->largest);
     if (status == TL_OK)
+        status = tl_scene_zones(m, out, &facts->largest);
+    if (status == TL_OK)
         status = put_block_fields(m, options, out);
     tl_verdict verdict;
     if (status == TL_OK)
@@ -833,6 +843,7 @@ void tl_scene_forget(tl_scene *scene)
     scene->sent.count = scene->sent.head.length = scene->sent.touches.length = 0;
     scene->sent.frames = 0;
     scene->sent.refused = 0;
+    scene->sent.surface = (tl_hash){0, 0};
 }
 
 static void free_known(tl_scene_known *known)

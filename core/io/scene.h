@@ -2,6 +2,7 @@
 #ifndef TL_IO_SCENE_H
 #define TL_IO_SCENE_H
 
+#include "base/hash.h"
 #include "io/pieces.h"
 #include "model/model.h"
 
@@ -21,7 +22,8 @@ typedef struct tl_scene_known {
     uint64_t structure;     /* of the model, when `median` was found */
     double median;          /* size of the blocks, m */
     uint32_t frames;
-    size_t refused; /* cuts, of all that were refused since the model was made */
+    size_t refused;  /* cuts, of all that were refused since the model was made */
+    tl_hash surface; /* of the chunk SURF; zeros: none */
 } tl_scene_known;
 
 /* Whether a run is seen as it goes, and whether it takes commands. */
@@ -35,9 +37,9 @@ typedef struct tl_scene {
 
 /* Of the frame that was written last. */
 typedef struct tl_scene_facts {
-    double time, largest; /* s; largest displacement of a block, m */
+    double time, largest; /* s; largest displacement of a block or a gridpoint, m */
     int64_t cycle;
-    size_t news; /* bytes at its beginning, from HEAD to TOUC; 0: it has none of them */
+    size_t news; /* bytes at its beginning, from HEAD to SURF; 0: it has none of them */
 } tl_scene_facts;
 
 /* Adds the next frame to `out`. The scene goes on with it only after tl_scene_accept. */

@@ -1,231 +1,31 @@
-/* vtk.c - a frame for ParaView: blocks, contacts and joint faces, or some of these, or a section, and the index of
- * each series. Files of one number are of one frame; a part that is left out of a frame has no file of that number.
+/* vtk.c - a frame for ParaView: blocks, contacts, joint faces and zones, or some of these, or a section, and the index
+ * of each series. Files of one number are of one frame; a part that is left out of a frame has no file of that number.
  *
  * The files of a frame are all written under temporary names before the first is renamed. So a full disk or a folder
  * without permission leaves the series as it was. */
 
+#include "base/columns.h"
 #include "base/error.h"
-#include "base/number.h"
 #include "base/output_file.h"
 #include "base/signals.h"
 #include "io/extra_fields.h"
-#include "io/json.h"
 #include "io/pieces.h"
 #include "io/vtk_contacts.h"
 #include "io/vtk_file.h"
-#include "model/fields.h"
+#include "io/vtk_series.h"
+#include "io/vtk_zones.h"
 #include "model/options.h"
 #include "model/rows.h"
+#include "query/block_fields.h"
 #include "state/outputs.h"
+#include "zone/zones.h"
 
 #include <assert.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <talus/number.h>
 #include <talus/text.h>
-#include <unistd.h>
-
-/* A change of an index on its way: an entry that goes into the space it has, or the whole of it anew. */
-typedef struct tl_vtk_index_change {
-    tl_output whole;
-    tl_vtk_index *index; /* as it is */
-    tl_vtk_index next;   /* as it will be */
-    char *path;
-    tl_piece entry;
-    off_t at; /* where it goes */
-    int file; /* descriptor to write it to; 0: the whole is written anew */
-} tl_vtk_index_change;
-
-/* ---------------------------------------------------------------- series ------------------
- *
- * The names of the frames' files, and ParaView's file series: a JSON list of file names and times.
- *
- *     {"file-series-version": "1.0", "files": [{"name": "run_blocks_000000.vtk", "time": 0}, ...]}
- *
- * Names are relative to the index, so a folder of results can be moved.
- *
- * To write the whole list with every frame would take a time that grows as the square of their number. A long list is
- * written with as much blank space before its end as it has text. The entries of the frames that follow are put
- * there, each by one call within one page of the system. Such a call is done or not done however the program ends. So
- * the file is a complete list after every frame and at any moment in between. When the space is used up, or the file
- * is not the one that was written, the whole is written anew. */
-
-/* Bytes that the system writes as one, at multiples of that: no system has smaller pages. */
-#define PAGE 4096
-/* Shorter lists get no space: they are cheap to write, and easy to read. */
-#define LEAST_ROOMY 16
-
-static const char before_entry[] = ",\n";
-static const char tail[] = "\n  ]\n}\n";
-
-/* Tolerance: frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to
- * tell them apart. */
-#define STAGE 1e-9
-
-/* PREFIX_CONTENT and an ending. The text is the caller's; NULL when out of memory. */
-static char *name_of(const tl_vtk_series *series, const char *content, const char *ending)
-{
-    size_t capacity = strlen(series->prefix) + strlen(content) + strlen(ending) + 2;
-    char *name = malloc(capacity);
-    if (name)
-        snprintf(name, capacity, "%s_%s%s", series->prefix, content, ending);
-    return name;
-}
-
-/* Name of a file of the series; likewise. */
-static char *vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame)
-{
-    char ending[32];
-    snprintf(ending, sizeof ending, "_%06zu.vtk", frame);
-    return name_of(series, content, ending);
-}
-
-/* The time under which the next frame is listed: that of the model, or a little more than that of the frame before.
- * Readers take frames of one time for one frame, so stages without a step between them would not be seen. */
-static double vtk_series_time(const tl_vtk_series *series, double time)
-{
-    if (series->count == 0)
-        return time;
-    double last = series->times[series->count - 1];
-    return fmax(time, last + STAGE * fmax(1, fabs(last)));
-}
-
-/* Adds one frame of the list, its time with all digits; false when out of memory. */
-static bool put_entry(const tl_vtk_series *series, const char *content, size_t frame, double time, tl_piece *to)
-{
-    char *name = vtk_frame_name(series, content, frame), number[TL_NUMBER_TEXT];
-    if (!name)
-        return false;
-    const char *slash = strrchr(name, '/');
-    tl_text_print(number, sizeof number, "%.17g", time);
-    tl_json_print(to, "    {\"name\": %s, \"time\": %r}", slash ? slash + 1 : name, number);
-    free(name);
-    return !to->failed;
-}
-
-/* Adds all frames so far that have the file and one more at `time`. */
-static bool put_list(const tl_vtk_series *series, size_t part, const char *content, double time, tl_piece *to)
-{
-    tl_json_put(to, "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n");
-    for (size_t frame = 0; frame < series->count; frame++) {
-        if (!(series->parts[frame] >> part & 1))
-            continue;
-        if (!put_entry(series, content, frame, series->times[frame], to))
-            return false;
-        tl_json_put(to, before_entry);
-    }
-    return put_entry(series, content, series->count, time, to);
-}
-
-/* Writes the list and notes where the next frame goes. */
-static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *series, size_t part, const char *content,
-                             double time, tl_error *error)
-{
-    tl_piece list = {0};
-    tl_status status = put_list(series, part, content, time, &list)
-                           ? tl_output_open(&change->whole, change->path, error)
-                           : tl_fail_memory(error);
-    if (status == TL_OK) {
-        const off_t end = (off_t)list.length;
-        const off_t blank = series->written[part] >= LEAST_ROOMY ? end : 0;
-        tl_output_put(&change->whole, list.data, list.length);
-        fprintf(change->whole.file, "%*s%s", (int)blank, "", tail);
-        change->next = (tl_vtk_index){series->written[part] + 1, end, end + blank, {0}};
-        status = tl_output_finish(&change->whole, error);
-    }
-    free(list.data);
-    return status;
-}
-
-/* Opens the index for an entry that goes into its space; false when the whole is to be written anew. */
-static bool open_reserved(tl_vtk_index_change *change, size_t written)
-{
-    const tl_vtk_index *index = change->index;
-    off_t length = (off_t)change->entry.length, at = index->place, next = (at / PAGE + 1) * PAGE;
-    if (at + length > next) /* within one page */
-        at = next;
-    if (index->frames != written || length > PAGE || at + length > index->end)
-        return false;
-    int file = open(change->path, O_WRONLY | O_CLOEXEC);
-    if (file < 0)
-        return false;
-    change->file = fcntl(file, F_DUPFD_CLOEXEC, 1); /* 0 stands for none */
-    close(file);
-    struct stat info;
-    if (change->file > 0 && fstat(change->file, &info) == 0 && S_ISREG(info.st_mode) &&
-        info.st_dev == index->written.device && info.st_ino == index->written.number &&
-        info.st_size == index->end + (off_t)sizeof tail - 1) {
-        change->next = *index;
-        change->next.frames++;
-        change->next.place = at + length;
-        change->at = at;
-        return true;
-    }
-    if (change->file > 0)
-        close(change->file);
-    change->file = 0;
-    return false;
-}
-
-/* Makes ready what adds the next frame, at `time`, to the index of `content`, number `part` of the series. */
-static tl_status vtk_index_open(tl_vtk_index_change *change, tl_vtk_series *series, size_t part, const char *content,
-                                double time, tl_error *error)
-{
-    *change = (tl_vtk_index_change){.index = &series->index[part]};
-    change->path = name_of(series, content, ".vtk.series");
-    tl_json_put(&change->entry, before_entry);
-    if (!change->path || !put_entry(series, content, series->count, time, &change->entry))
-        return tl_fail_memory(error);
-    if (open_reserved(change, series->written[part]))
-        return TL_OK;
-    return write_whole(change, series, part, content, time, error);
-}
-
-/* Writes the entry by one call, so that it is there or not. */
-static tl_status commit_entry(tl_vtk_index_change *change, tl_error *error)
-{
-    change->index->frames = 0; /* no longer known until it is done */
-    errno = 0;
-    ssize_t written = pwrite(change->file, change->entry.data, change->entry.length, change->at);
-    int code = written == (ssize_t)change->entry.length ? 0 : errno ? errno : EIO;
-    if (close(change->file) != 0 && code == 0)
-        code = errno;
-    change->file = 0;
-    return code ? tl_output_fail(error, change->path, code) : TL_OK;
-}
-
-static tl_status vtk_index_commit(tl_vtk_index_change *change, tl_error *error)
-{
-    tl_status status;
-    if (change->file) {
-        status = commit_entry(change, error);
-    } else {
-        struct stat info;
-        change->index->frames = 0;
-        status = tl_output_commit(&change->whole, error);
-        if (status == TL_OK && stat(change->path, &info) == 0)
-            change->next.written = (tl_vtk_file_id){info.st_dev, info.st_ino};
-    }
-    if (status == TL_OK)
-        *change->index = change->next;
-    return status;
-}
-
-/* Frees; what is not committed is dropped. Does nothing to a zeroed or dropped change. */
-static void vtk_index_drop(tl_vtk_index_change *change)
-{
-    if (change->file)
-        close(change->file);
-    tl_output_drop(&change->whole);
-    free(change->path);
-    free(change->entry.data);
-    *change = (tl_vtk_index_change){.file = 0};
-}
 
 /* ---------------------------------------------------------------- blocks -----------------
  *
@@ -233,7 +33,7 @@ static void vtk_index_drop(tl_vtk_index_change *change)
  *
  * A polyhedron is a face stream: number of faces, then for each face its number of vertices and
  * their indices, counter-clockwise from outside. Vertices are not shared between blocks, so that
- * blocks can be moved apart.
+ * blocks can be moved apart. A deformable block has the triangles of its surface for faces, as they are now.
  *
  * Cell data   displacement_size  of its centroid since creation or the last reset, m: what ParaView colours by first
  *             velocity  of the block's centroid, m/s
@@ -257,36 +57,64 @@ typedef struct grid {
     const tl_blocks *blocks;
     uint32_t *first; /* [rows + 1] index of the block's first vertex */
     tl_vec3 centre;  /* of the model */
+    bool deforms;    /* some blocks are deformable */
+    tl_block_surfaces surfaces;
 } grid;
 
-/* Integers of a block's face stream, with its leading length. */
-static size_t stream_of(const tl_poly *shape)
+static bool has_zones(const grid *g, size_t row)
 {
-    return 2u + shape->face_count + shape->start[shape->face_count];
+    return g->deforms && tl_surface_triangles(&g->surfaces, row) > 0;
+}
+
+static uint32_t vertices_of(const grid *g, size_t row)
+{
+    return has_zones(g, row) ? tl_surface_vertices(&g->surfaces, row) : g->blocks->shape[row]->vertex_count;
+}
+
+/* Integers of a block's face stream, with its leading length. */
+static size_t stream_of(const grid *g, size_t row)
+{
+    const tl_poly *shape = g->blocks->shape[row];
+    return has_zones(g, row) ? 2u + 4u * (size_t)tl_surface_triangles(&g->surfaces, row)
+                             : 2u + shape->face_count + shape->start[shape->face_count];
 }
 
 /* ---------------------------------------------------------------- points ----------------- */
 
+/* Puts a vector of a gridpoint: where it is, or how far it has moved. */
+typedef unsigned char *(*gridpoint_fn)(const tl_model *m, uint32_t gridpoint, unsigned char *to);
+
+static unsigned char *put_gridpoint_place(const tl_model *m, uint32_t gridpoint, unsigned char *to)
+{
+    return tl_vtk_put_vec3(to, tl_v3_add(m->origin, tl_gridpoint_place(&m->zones->points, gridpoint)));
+}
+
+static unsigned char *put_gridpoint_moved(const tl_model *m, uint32_t gridpoint, unsigned char *to)
+{
+    return tl_vtk_put_float3(to, tl_columns_get(m->zones->points.u, gridpoint));
+}
+
 /* A vector of each vertex of rows. */
 static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece, tl_vtk_point_fn of,
-                                 size_t each)
+                                 gridpoint_fn of_gridpoint, size_t each)
 {
     unsigned char *to = tl_piece_add(piece, (g->first[end] - g->first[begin]) * each);
     for (uint32_t row = (uint32_t)begin; to && row < end; row++) {
         const tl_poly *shape = g->blocks->shape[row];
-        for (uint32_t v = 0; v < shape->vertex_count; v++)
-            to = of(g->model, row, shape->vertex[v], to);
+        for (uint32_t v = 0; v < vertices_of(g, row); v++)
+            to = has_zones(g, row) ? of_gridpoint(g->model, g->surfaces.vertex[g->surfaces.vertex_start[row] + v], to)
+                                   : of(g->model, row, shape->vertex[v], to);
     }
 }
 
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_vertices(user, begin, end, piece, tl_vtk_put_place, TL_VTK_VEC3_BYTES);
+    fill_vertices(user, begin, end, piece, tl_vtk_put_place, put_gridpoint_place, TL_VTK_VEC3_BYTES);
 }
 
 static void fill_displacements(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_vertices(user, begin, end, piece, tl_vtk_put_moved, TL_VTK_FLOAT3_BYTES);
+    fill_vertices(user, begin, end, piece, tl_vtk_put_moved, put_gridpoint_moved, TL_VTK_FLOAT3_BYTES);
 }
 
 /* From the model's centre to the block's: the same for all its vertices. */
@@ -301,21 +129,43 @@ static void fill_explode(const void *user, size_t begin, size_t end, tl_piece *p
 
 /* ---------------------------------------------------------------- cells ------------------ */
 
+/* The faces of a rigid block. */
+static unsigned char *put_faces(const grid *g, uint32_t row, unsigned char *to)
+{
+    const tl_poly *shape = g->blocks->shape[row];
+    to = tl_vtk_put_int(to, (int32_t)shape->face_count);
+    for (uint32_t face = 0; face < shape->face_count; face++) {
+        to = tl_vtk_put_int(to, (int32_t)tl_poly_face_size(shape, face));
+        for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++)
+            to = tl_vtk_put_int(to, (int32_t)(g->first[row] + shape->loop[i]));
+    }
+    return to;
+}
+
+/* Those of a deformable one. */
+static unsigned char *put_triangles(const grid *g, uint32_t row, unsigned char *to)
+{
+    to = tl_vtk_put_int(to, (int32_t)tl_surface_triangles(&g->surfaces, row));
+    for (uint32_t k = g->surfaces.triangle_start[row]; k < g->surfaces.triangle_start[row + 1]; k++) {
+        to = tl_vtk_put_int(to, 3);
+        for (int c = 0; c < 3; c++)
+            to = tl_vtk_put_int(to, (int32_t)(g->first[row] + g->surfaces.triangle[k][c]));
+    }
+    return to;
+}
+
 static void fill_cells(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
     const grid *g = user;
-    for (size_t row = begin; row < end; row++) {
-        const tl_poly *shape = g->blocks->shape[row];
-        unsigned char *to = tl_piece_add(piece, stream_of(shape) * TL_VTK_INT_BYTES);
+    for (uint32_t row = (uint32_t)begin; row < end; row++) {
+        unsigned char *to = tl_piece_add(piece, stream_of(g, row) * TL_VTK_INT_BYTES);
         if (!to)
             return;
-        to = tl_vtk_put_int(to, (int32_t)stream_of(shape) - 1);
-        to = tl_vtk_put_int(to, (int32_t)shape->face_count);
-        for (uint32_t face = 0; face < shape->face_count; face++) {
-            to = tl_vtk_put_int(to, (int32_t)tl_poly_face_size(shape, face));
-            for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++)
-                to = tl_vtk_put_int(to, (int32_t)(g->first[row] + shape->loop[i]));
-        }
+        to = tl_vtk_put_int(to, (int32_t)stream_of(g, row) - 1);
+        if (has_zones(g, row))
+            put_triangles(g, row, to);
+        else
+            put_faces(g, row, to);
     }
 }
 
@@ -475,26 +325,32 @@ static tl_status check_fields(tl_model *m, const tl_vtk_parts *parts)
     return status;
 }
 
+static void free_grid(grid *g)
+{
+    tl_block_surfaces_free(&g->surfaces);
+    free(g->first);
+}
+
 static tl_status put_blocks(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
 {
     const tl_blocks *b = &m->blocks;
+    grid g = {.model = m, .blocks = b, .centre = model_centre(m), .deforms = tl_model_deforms(m)};
+    g.first = calloc(b->table.rows + 1, sizeof *g.first);
+    tl_status status = g.first ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK && g.deforms)
+        status = tl_block_surfaces_find(m, &g.surfaces);
     size_t stream = 0;
-    for (size_t row = 0; row < b->table.rows; row++)
-        stream += stream_of(b->shape[row]);
-    tl_status status = tl_vtk_countable(stream, "blocks", &m->error);
+    for (size_t row = 0; status == TL_OK && row < b->table.rows; row++) {
+        stream += stream_of(&g, row);
+        g.first[row + 1] = g.first[row] + vertices_of(&g, row);
+    }
+    if (status == TL_OK)
+        status = tl_vtk_countable(stream, "blocks", &m->error);
     if (status == TL_OK)
         status = check_fields(m, parts);
-    if (status != TL_OK)
-        return status;
-    grid g = {.model = m, .blocks = b, .centre = model_centre(m)};
-    g.first = malloc((b->table.rows + 1) * sizeof *g.first);
-    if (!g.first)
-        return tl_fail_memory(&m->error);
-    g.first[0] = 0;
-    for (size_t row = 0; row < b->table.rows; row++)
-        g.first[row + 1] = g.first[row] + b->shape[row]->vertex_count;
-    status = put_grid(m, &g, stream, parts, out);
-    free(g.first);
+    if (status == TL_OK)
+        status = put_grid(m, &g, stream, parts, out);
+    free_grid(&g);
     return status;
 }
 
@@ -728,12 +584,13 @@ typedef struct frame {
     const tl_vtk_parts *fields; /* of a whole frame: what is added to its arrays */
 } frame;
 
-enum { BLOCKS, CONTACTS, JOINTS, PART_COUNT };
+enum { BLOCKS, CONTACTS, JOINTS, ZONES, PART_COUNT };
 
 static const part frame_parts[PART_COUNT] = {
     [BLOCKS] = {"blocks", put_blocks},
     [CONTACTS] = {"contacts", tl_vtk_contacts},
     [JOINTS] = {"joints", tl_vtk_joints},
+    [ZONES] = {"zones", tl_vtk_zones},
 };
 
 static const part section_part = {"section", NULL};
@@ -749,7 +606,7 @@ static tl_status write_part(tl_model *m, const tl_vtk_series *series, const fram
                             tl_output *output)
 {
     const part *p = &f->parts[i];
-    char *name = vtk_frame_name(series, p->content, series->count);
+    char *name = tl_vtk_frame_name(series, p->content, series->count);
     tl_status status = name ? tl_output_open(output, name, &m->error) : tl_fail_memory(&m->error);
     free(name);
     if (status == TL_OK)
@@ -787,7 +644,7 @@ static tl_status write_files(tl_model *m, tl_vtk_series *series, const frame *f,
     tl_pieces_free(&pieces);
     for (size_t i = 0; status == TL_OK && i < f->count; i++)
         if (wants(f, i))
-            status = vtk_index_open(&indices[i], series, i, f->parts[i].content, time, &m->error);
+            status = tl_vtk_index_open(&indices[i], series, i, f->parts[i].content, time, &m->error);
     if (status == TL_OK)
         status = tl_model_go_on(m);
     for (size_t i = 0; status == TL_OK && i < f->count; i++)
@@ -795,10 +652,10 @@ static tl_status write_files(tl_model *m, tl_vtk_series *series, const frame *f,
             status = tl_output_commit(&data[i], &m->error);
     for (size_t i = 0; status == TL_OK && i < f->count; i++)
         if (wants(f, i))
-            status = vtk_index_commit(&indices[i], &m->error);
+            status = tl_vtk_index_commit(&indices[i], &m->error);
     for (size_t i = 0; i < f->count; i++) {
         tl_output_drop(&data[i]);
-        vtk_index_drop(&indices[i]);
+        tl_vtk_index_drop(&indices[i]);
     }
     return status;
 }
@@ -818,7 +675,7 @@ static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
     sigset_t before;
     tl_signals_hold(&before, false);
     atomic_store(&m->interrupted, false);
-    double time = vtk_series_time(series, m->time);
+    double time = tl_vtk_series_time(series, m->time);
     status = write_files(m, series, f, time);
     tl_signals_release(&before);
     if (status == TL_OK)
@@ -837,11 +694,14 @@ tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *part
     frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT, .fields = &of};
     f.wanted = (unsigned)(of.blocks != 0) << BLOCKS | (unsigned)(of.contacts != 0) << CONTACTS |
                (unsigned)(of.joints != 0) << JOINTS;
+    tl_rows_tidy(m);
+    if (of.zones != 0 && tl_model_deforms(m))
+        f.wanted |= 1u << ZONES;
     if (f.wanted == 0)
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "write_vtk: blocks, contacts and joints are all false, so there is nothing "
-                       "to write; leave out what is to be written");
-    tl_rows_tidy(m);
+                       "write_vtk: blocks, contacts and joints are all false, %s, so there is nothing "
+                       "to write; leave out what is to be written",
+                       of.zones ? "and no block is deformable" : "zones as well");
     return write_frame(m, prefix, &f);
 }
 

@@ -2,6 +2,7 @@
 #include "io/vtk_file.h"
 
 #include "base/error.h"
+#include "zone/zones.h"
 
 #include <string.h>
 
@@ -51,7 +52,8 @@ void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const cha
     fprintf(file, "# vtk DataFile Version 3.0\nTalus %s: %s, cycle %lld\nBINARY\nDATASET %s\n", TALUS_VERSION, content,
             (long long)m->cycles, dataset);
 
-    tl_vtk_field(file, "FieldData", m->group_count > 0 ? 4 : 3);
+    const bool deforms = tl_model_deforms(m);
+    tl_vtk_field(file, "FieldData", 3 + (size_t)(m->group_count > 0) + (size_t)deforms);
     tl_vtk_array(file, "TIME", 1, 1, TL_VTK_DOUBLE);
     put_double(file, m->time);
     tl_vtk_line(file);
@@ -68,6 +70,12 @@ void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const cha
         tl_vtk_array(file, "group_names", 1, m->group_count, TL_VTK_STRING);
         for (size_t i = 0; i < m->group_count; i++)
             put_string(file, m->groups[i]);
+        tl_vtk_line(file);
+    }
+    if (deforms) {
+        tl_vtk_array(file, "solid_names", 1, m->zones->solid_count, TL_VTK_STRING);
+        for (size_t i = 0; i < m->zones->solid_count; i++)
+            put_string(file, m->zones->solid[i].name);
         tl_vtk_line(file);
     }
 }

@@ -18,9 +18,12 @@
 
 /* Type number of a cell whose faces are given as polygons. */
 #define TL_VTK_POLYHEDRON 42
+/* That of a tetrahedron: seen from its fourth point, the first three turn counter-clockwise. */
+#define TL_VTK_TETRA 10
 
 /* The five lines at the head of a file and the fields every file carries: TIME, CYCLE, and the
- * names of groups and joints, so that the numbers in `group` and `joint` can be looked up. */
+ * names of groups and joints, so that the numbers in `group` and `joint` can be looked up; where blocks are deformable
+ * those of the solids. */
 void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset);
 
 /* "FIELD": `arrays` arrays follow, each begun by tl_vtk_array and ended by tl_vtk_line. */

@@ -3,6 +3,7 @@
 #include "lua/block.h"
 
 #include "lua/convert.h"
+#include "lua/deformable.h"
 #include "lua/fail.h"
 #include "lua/item.h"
 #include "lua/living.h"
@@ -17,7 +18,7 @@ void tl_lua_set_block(lua_State *L, const char *name, tl_id id)
 {
     if (id == TL_NO_ID)
         return;
-    tl_lua_item_push_id(L, &tl_lua_block_kind, 1, id);
+    tl_lua_item_push_name(L, &tl_lua_block_kind, 1, &id);
     lua_setfield(L, -2, name);
 }
 
@@ -58,17 +59,20 @@ static void push_faces(lua_State *L, tl_model *model, const tl_block_mesh *mesh)
 static void push_neighbours(lua_State *L, tl_model *model, tl_id id)
 {
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_block_kind, 3);
-    tl_lua_ok(L, model, tl_block_neighbours(model, id, &found->ids, &found->count));
+    tl_id *ids = NULL;
+    tl_status status = tl_block_neighbours(model, id, &ids, &found->count);
+    found->names = ids;
+    tl_lua_ok(L, model, status);
     lua_createtable(L, (int)found->count, 0);
     for (size_t i = 0; i < found->count; i++) {
-        tl_lua_item_push_id(L, &tl_lua_block_kind, 3, found->ids[i]);
+        tl_lua_item_push(L, 3, found, i);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
 
 static bool block_extra(lua_State *L, tl_model *model, const tl_lua_item *item, const char *name)
 {
-    const tl_id id = item->id;
+    const tl_id id = item->name.block;
     bool vertices = strcmp(name, "vertices") == 0;
     if (strcmp(name, "neighbours") == 0) {
         push_neighbours(L, model, id);
@@ -191,11 +195,12 @@ static block_ids read_ids(lua_State *L)
 static void keep_ids(tl_lua_selection *found, const block_ids *ids)
 {
     size_t kept = 0, k = 0;
+    tl_id *of = found->names;
     for (size_t i = 0; i < found->count; i++) {
-        while (k < ids->count && ids->list[k] < found->ids[i])
+        while (k < ids->count && ids->list[k] < of[i])
             k++;
-        if (k < ids->count && ids->list[k] == found->ids[i])
-            found->ids[kept++] = found->ids[i];
+        if (k < ids->count && ids->list[k] == of[i])
+            of[kept++] = of[i];
     }
     found->count = kept;
 }
@@ -248,6 +253,14 @@ static tl_status keep_on_side(tl_model *model, tl_lua_selection *found, int32_t 
     return TL_OK;
 }
 
+void tl_lua_blocks_select(lua_State *L, tl_model *model, const tl_block_filter *filter, tl_lua_selection *found)
+{
+    tl_id *ids = NULL;
+    const tl_status status = tl_blocks_select(model, filter, &ids, &found->count);
+    found->names = ids;
+    tl_lua_ok(L, model, status);
+}
+
 static int model_blocks(lua_State *L, tl_model *model)
 {
     block_args args = {.containing = {NAN, NAN, NAN}, .fixed = -1};
@@ -260,7 +273,7 @@ static int model_blocks(lua_State *L, tl_model *model)
     int32_t side = args.boundary ? tl_lua_side(L, "blocks", args.boundary) : TL_SIDE_ANY;
     int where = tl_lua_read_where(L, &tl_lua_block_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
-    tl_lua_ok(L, model, tl_blocks_select(model, &filter, &found->ids, &found->count));
+    tl_lua_blocks_select(L, model, &filter, found);
     if (ids.list)
         keep_ids(found, &ids);
     if (side != TL_SIDE_ANY)
@@ -306,7 +319,7 @@ static tl_status fix(lua_State *L, const tl_lua_selection *b)
         what = TL_FIX_ALL;
     else if (what == 0)
         tl_lua_fail(L, "fix: nothing is to be held; to let blocks go use selection:free()");
-    return tl_blocks_fix(b->owner->model, b->ids, b->count, what);
+    return tl_blocks_fix(b->owner->model, b->names, b->count, what);
 }
 
 static const tl_param set_params[] = {
@@ -317,6 +330,10 @@ static const tl_param set_params[] = {
              "velocity of the centroid; of several blocks of a body, that of their common one",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, tl_block_set, angular_velocity, "rad/s", "angular velocity", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, tl_block_set, solid, "",
+             "of deformable blocks: the solid of all their zones, by its name; stress stays, and states of the same "
+             "names",
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_spec set_spec = {"set", set_params, TL_LUA_COUNT(set_params), NULL};
@@ -325,9 +342,10 @@ static tl_status set(lua_State *L, const tl_lua_selection *b)
 {
     tl_block_set wanted = tl_block_set_default();
     tl_lua_read(L, 2, &set_spec, false, &wanted);
-    if (isnan(wanted.density) && !wanted.group && isnan(wanted.velocity.x) && isnan(wanted.angular_velocity.x))
-        tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
-    return tl_blocks_set(b->owner->model, b->ids, b->count, &wanted);
+    if (isnan(wanted.density) && !wanted.group && isnan(wanted.velocity.x) && isnan(wanted.angular_velocity.x) &&
+        !wanted.solid)
+        tl_lua_fail(L, "set: give density, group, velocity, angular_velocity or solid");
+    return tl_blocks_set(b->owner->model, b->names, b->count, &wanted);
 }
 
 /* Bounds over all vertices of the blocks in their present place. */
@@ -338,7 +356,7 @@ static int bounds(lua_State *L, const tl_lua_selection *b)
     tl_block_mesh *mesh = mesh_push(L);
     tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < b->count; i++) {
-        tl_lua_ok(L, b->owner->model, tl_block_mesh_get(b->owner->model, b->ids[i], mesh));
+        tl_lua_ok(L, b->owner->model, tl_block_mesh_get(b->owner->model, ((const tl_id *)b->names)[i], mesh));
         for (size_t k = 0; k < mesh->vertex_count; k++) {
             tl_vec3 v = mesh->vertices[k];
             low = (tl_vec3){fmin(low.x, v.x), fmin(low.y, v.y), fmin(low.z, v.z)};
@@ -501,7 +519,7 @@ static tl_status load(lua_State *L, const tl_lua_selection *b)
     tl_lua_read_function(L, 2, "load", NULL, &given);
     if (!lua_istable(L, 2))
         tl_lua_fail(L, "load: give force, moment and at in a table; load{} takes the load off");
-    return tl_blocks_load(b->owner->model, b->ids, b->count, &given);
+    return tl_blocks_load(b->owner->model, b->names, b->count, &given);
 }
 
 /* Reads one of the two velocities of the table at index 2; true when it is given. A function goes to
@@ -552,7 +570,7 @@ static tl_status drive(lua_State *L, const tl_lua_selection *b)
     if (!moves)
         tl_lua_fail(L, "drive: give velocity, angular_velocity or both; to hold blocks use "
                        "selection:fix(), to let them go selection:free()");
-    tl_status status = tl_blocks_drive(b->owner->model, b->ids, b->count, &given);
+    tl_status status = tl_blocks_drive(b->owner->model, b->names, b->count, &given);
     if (status == TL_OK && b->count > 0)
         a->ended = false;
     return status;
@@ -562,7 +580,7 @@ static int reaction(lua_State *L, const tl_lua_selection *blocks)
 {
     tl_model *model = tl_lua_living(L, blocks->owner);
     tl_vec3 force;
-    tl_lua_ok(L, model, tl_blocks_reaction(model, blocks->ids, blocks->count, &force));
+    tl_lua_ok(L, model, tl_blocks_reaction(model, blocks->names, blocks->count, &force));
     tl_lua_push_numbers(L, &force.x, 3);
     return 1;
 }
@@ -580,18 +598,19 @@ static const tl_lua_verb block_verbs[] = {
     {.name = "load", .arguments = 1, .act = load, .done = "loaded"},
     {.name = "drive", .arguments = 1, .act = drive, .done = "driven"},
     {.name = "reaction", .ask = reaction},
+    {.name = "deformable", .arguments = 1, .ask = tl_lua_deformable},
     {.name = "bounds", .ask = bounds},
     {.name = NULL},
 };
 
 static tl_status block_field(tl_model *model, const tl_lua_item *item, size_t index, tl_field_value *value)
 {
-    return tl_block_field(model, item->id, index, value);
+    return tl_block_field(model, item->name.block, index, value);
 }
 
 static tl_status block_values(tl_model *model, const tl_lua_selection *of, const char *name, double *out, size_t *width)
 {
-    return tl_blocks_values(model, of ? of->ids : NULL, of ? of->count : 0, name, out, width);
+    return tl_blocks_values(model, of ? of->names : NULL, of ? of->count : 0, name, out, width);
 }
 
 static const tl_lua_key block_extra_keys[] = {
@@ -602,11 +621,19 @@ static const tl_lua_key block_extra_keys[] = {
     {NULL, NULL, NULL},
 };
 
+static lua_Integer block_number(const tl_lua_name *name)
+{
+    return name->block;
+}
+
 const tl_lua_kind tl_lua_block_kind = {
     .item = "block",
     .items = "blocks",
     .item_type = TL_LUA_BLOCK,
     .selection_type = TL_LUA_BLOCKS,
+    .name_size = sizeof(tl_id),
+    .number = block_number,
+    .bearer = "law",
     .fields = tl_block_fields,
     .field = block_field,
     .values = block_values,
@@ -636,6 +663,7 @@ static const tl_lua_key block_methods[] = {
     {"sel:free()", "", "lets fixed and driven blocks go"},
     {"sel:reaction()", "", "sum of the forces that hold their bodies, N: {x, y, z}, of held components only"},
     {"sel:reset_displacement()", "", "displacements count from now"},
+    {"sel:deformable{zone =, solid =}", "", "divides them into zones: talus help deformable"},
     {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "changes properties: talus help set"},
     {NULL, NULL, NULL},
 };

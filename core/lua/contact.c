@@ -171,7 +171,7 @@ static const tl_id *read_side(lua_State *L, const tl_lua_model *owner, int side,
     *count = blocks ? blocks->count : 1;
     if (*count == 0)
         return &none;
-    return blocks ? blocks->ids : &block->id;
+    return blocks ? blocks->names : &block->name.block;
 }
 
 static void read_between(lua_State *L, tl_contact_filter *filter)
@@ -191,6 +191,14 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
     filter->between_b = read_side(L, owner, 2, &filter->count_b);
 }
 
+void tl_lua_contacts_select(lua_State *L, tl_model *model, const tl_contact_filter *filter, tl_lua_selection *found)
+{
+    tl_contact_name *names = NULL;
+    const tl_status status = tl_contacts_select(model, filter, &names, &found->count);
+    found->names = names;
+    tl_lua_ok(L, model, status);
+}
+
 static int model_contacts(lua_State *L, tl_model *model)
 {
     tl_contact_filter filter = tl_contact_filter_default();
@@ -198,7 +206,7 @@ static int model_contacts(lua_State *L, tl_model *model)
     read_between(L, &filter);
     int where = tl_lua_read_where(L, &tl_lua_contact_kind);
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_contact_kind, 1);
-    tl_lua_ok(L, model, tl_contacts_select(model, &filter, &found->contacts, &found->count));
+    tl_lua_contacts_select(L, model, &filter, found);
     if (where)
         tl_lua_selection_filter(L, lua_gettop(L), where);
     return 1;
@@ -206,19 +214,19 @@ static int model_contacts(lua_State *L, tl_model *model)
 
 static tl_status contact_field(tl_model *model, const tl_lua_item *item, size_t index, tl_field_value *value)
 {
-    return tl_contact_field(model, item->contact, index, value);
+    return tl_contact_field(model, item->name.contact, index, value);
 }
 
 static tl_status contact_values(tl_model *model, const tl_lua_selection *of, const char *name, double *out,
                                 size_t *width)
 {
-    return tl_contacts_values(model, of ? of->contacts : NULL, of ? of->count : 0, name, out, width);
+    return tl_contacts_values(model, of ? of->names : NULL, of ? of->count : 0, name, out, width);
 }
 
 /* `id`, exact; `blocks`: the pair of blocks, as blocks and not as numbers; `points` and `states`. */
 static bool contact_extra(lua_State *L, tl_model *model, const tl_lua_item *item, const char *name)
 {
-    const tl_contact_name contact = item->contact;
+    const tl_contact_name contact = item->name.contact;
     if (strcmp(name, "points") == 0) {
         push_contact_points(L, model, &contact);
         return true;
@@ -235,13 +243,13 @@ static bool contact_extra(lua_State *L, tl_model *model, const tl_lua_item *item
     tl_lua_field_named(&tl_lua_contact_kind, name, &index);
     tl_lua_ok(L, model, tl_contact_field(model, contact, index, &value));
     if (!blocks) {
-        lua_pushinteger(L, tl_lua_item_number(item));
+        lua_pushinteger(L, item->kind->number(&item->name));
         return true;
     }
     lua_createtable(L, 2, 0);
-    tl_lua_item_push_id(L, &tl_lua_block_kind, 3, contact.a);
+    tl_lua_item_push_name(L, &tl_lua_block_kind, 3, &contact.a);
     lua_rawseti(L, -2, 1);
-    tl_lua_item_push_id(L, &tl_lua_block_kind, 3, contact.b);
+    tl_lua_item_push_name(L, &tl_lua_block_kind, 3, &contact.b);
     lua_rawseti(L, -2, 2);
     return true;
 }
@@ -257,11 +265,19 @@ static const tl_lua_key contact_extra_keys[] = {
 };
 static const tl_lua_verb contact_verbs[] = {{.name = NULL}};
 
+static lua_Integer contact_number(const tl_lua_name *name)
+{
+    return tl_contact_number(name->contact);
+}
+
 const tl_lua_kind tl_lua_contact_kind = {
     .item = "contact",
     .items = "contacts",
     .item_type = TL_LUA_CONTACT,
     .selection_type = TL_LUA_CONTACTS,
+    .name_size = sizeof(tl_contact_name),
+    .number = contact_number,
+    .bearer = "law",
     .fields = tl_contact_fields,
     .field = contact_field,
     .values = contact_values,

@@ -1,8 +1,8 @@
 /* front.h - what the parts of the Lua front end share.
  *
- * Objects. A model is a userdata that owns a tl_model. A block or a contact is an *item*: a userdata with an id. Its
- * user value is the model's userdata, so the model outlives it. A selection is a userdata with a list of ids, likewise.
- * Items of either type share one implementation, driven by a tl_lua_kind.
+ * Objects. A model is a userdata that owns a tl_model. A block, a contact, a zone or a gridpoint is an *item*: a
+ * userdata with its name. Its user value is the model's userdata, so the model outlives it. A selection is a userdata
+ * with a list of names, likewise. Items of all types share one implementation, driven by a tl_lua_kind.
  *
  * Errors. Everything here may raise a Lua error, so no local variable holds what only C could free. Memory that must
  * survive a call is a userdata on the stack or owned by one. */
@@ -14,6 +14,7 @@
 #include <talus/number.h>
 #include <talus/talus.h>
 #include <talus/text.h>
+#include <talus/zones.h>
 
 /* A key of a table of arguments that a tl_param cannot express. */
 typedef struct tl_lua_key {
@@ -82,27 +83,37 @@ typedef struct tl_lua_running {
 struct tl_lua_item;
 struct tl_lua_selection;
 
-/* A method of selections of blocks: of `plain`, `act` and `ask` the one that is there. */
+/* A method of selections: of `plain`, `act` and `ask` the one that is there. */
 typedef struct tl_lua_verb {
     const char *name; /* a list ends with name = NULL */
     int arguments;    /* after the selection, nil where none are given */
-    tl_status (*plain)(tl_model *model, const tl_id *ids, size_t count);
-    tl_status (*act)(lua_State *L, const struct tl_lua_selection *blocks);
+    tl_status (*plain)(tl_model *model, const tl_id *ids, size_t count); /* of blocks */
+    tl_status (*act)(lua_State *L, const struct tl_lua_selection *items);
     /* "hidden": a remark says "no block was hidden" of an empty selection; NULL: none does. */
     const char *done;
-    int (*ask)(lua_State *L, const struct tl_lua_selection *blocks); /* pushes what it gives; 1 */
+    int (*ask)(lua_State *L, const struct tl_lua_selection *items); /* pushes what it gives; 1 */
 } tl_lua_verb;
 
 /* Rows of a table. */
 #define TL_LUA_COUNT(table) (sizeof(table) / sizeof(table)[0])
 
-/* What differs between blocks and contacts. */
+/* By what the kernel knows an item. */
+typedef union tl_lua_name {
+    tl_id block;
+    tl_contact_name contact;
+    tl_zone_name zone; /* or gridpoint */
+} tl_lua_name;
+
+/* What differs between blocks, contacts, zones and gridpoints. */
 typedef struct tl_lua_kind {
-    const char *item, *items;               /* "block", "blocks": words in messages */
-    const char *item_type, *selection_type; /* names of the metatables */
+    const char *item, *items;                       /* "block", "blocks": words in messages */
+    const char *item_type, *selection_type;         /* names of the metatables */
+    size_t name_size;                               /* bytes of a name */
+    lua_Integer (*number)(const tl_lua_name *name); /* by which a script knows it: its id */
+    const char *bearer;                             /* "law", "solid": what declares its states */
     const tl_field *(*fields)(size_t *count);
     tl_status (*field)(tl_model *model, const struct tl_lua_item *item, size_t index, tl_field_value *value);
-    /* A field of a selection by its name: tl_blocks_values, tl_contacts_values. NULL: only its width is asked for. */
+    /* A field of a selection by its name, as tl_blocks_values. NULL: only its width is asked for. */
     tl_status (*values)(tl_model *model, const struct tl_lua_selection *of, const char *name, double *out,
                         size_t *width);
     /* Pushes a field that `fields` cannot express; false when it has none of that name. The item is
@@ -117,20 +128,21 @@ typedef struct tl_lua_kind {
 #define TL_LUA_BLOCKS "talus.blocks"
 #define TL_LUA_CONTACT "talus.contact"
 #define TL_LUA_CONTACTS "talus.contacts"
+#define TL_LUA_ZONE "talus.zone"
+#define TL_LUA_ZONES "talus.zones"
+#define TL_LUA_GRIDPOINT "talus.gridpoint"
+#define TL_LUA_GRIDPOINTS "talus.gridpoints"
 
 typedef struct tl_lua_item {
     const tl_lua_kind *kind;
     tl_lua_model *owner;
-    tl_id id;                /* of a block, or TL_NO_ID */
-    tl_contact_name contact; /* or of blocks TL_NO_ID */
+    tl_lua_name name;
 } tl_lua_item;
 
 typedef struct tl_lua_selection {
     const tl_lua_kind *kind;
     tl_lua_model *owner;
-    /* from malloc; one of them is NULL */
-    tl_id *ids; /* of blocks */
-    tl_contact_name *contacts;
+    void *names; /* [count], from malloc: tl_id, tl_contact_name or tl_zone_name */
     size_t count;
 } tl_lua_selection;
 

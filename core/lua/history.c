@@ -10,11 +10,13 @@
 #include "lua/fail.h"
 #include "lua/item.h"
 #include "lua/living.h"
+#include "lua/zones.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <talus/fields.h>
 
 /* ---------------------------------------------------------------- what is asked ---------- */
 
@@ -33,9 +35,8 @@ static const tl_param history_params[] = {
              .def = {10.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_STRING, history_args, field, "",
              "field of numbers of what `of` gives (\"displacement\", \"normal_force\")", .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_ENUM, history_args, take, "",
-             "of a selection: what is made of the values of its blocks or contacts", .def = {TL_TAKE_MEAN},
-             .choices = take_names),
+    TL_PARAM(TL_PARAM_ENUM, history_args, take, "", "of a selection: what is made of the values of its items",
+             .def = {TL_TAKE_MEAN}, .choices = take_names),
     TL_PARAM(TL_PARAM_BOOL, history_args, remove, "", "ends the history of that name, with all its samples",
              .def = {0.0}),
 };
@@ -43,11 +44,12 @@ static const tl_param history_params[] = {
 static const tl_lua_key history_keys[] = {
     {"value", "function(model) or text",
      "gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but "
-     "not change it. Or one of \"kinetic\", \"potential\", \"stored\", \"friction\", \"damping\", \"external\" (J), "
+     "not change it. Or one of \"kinetic\", \"potential\", \"stored\", \"friction\", \"damping\", \"external\", "
+     "\"strain\", \"plastic\" (J), "
      "\"balance\", \"ratio\", \"ratio_maximum\", \"ratio_local\", \"max_velocity\" (m/s), \"contacts\", \"slipping\", "
      "\"open\" (numbers of contacts in the last step)"},
-    {"of", "block, contact or selection",
-     "what the field is sampled of, in the place of `value`. Blocks and contacts that no longer "
+    {"of", "block, contact, zone, gridpoint or selection",
+     "what the field is sampled of, in the place of `value`. Those that no longer "
      "exist are left out; where none is left the value is nan"},
     {NULL, NULL, NULL},
 };
@@ -80,15 +82,16 @@ static void history_set_function(lua_State *L, int model_index, const char *name
  * Takes the samples of histories: of functions, of the model, of fields of blocks and contacts. */
 
 /* What a model can be asked for by name. */
-typedef enum origin { OF_ENERGY, OF_BALANCE, OF_CONTACTS } origin;
+typedef enum origin { OF_ENERGY, OF_ZONES, OF_BALANCE, OF_CONTACTS } origin;
 
 #define TERM(name, unit, doc) {#name, OF_ENERGY, offsetof(tl_energy, name)},
+#define ZONE_TERM(name, unit, doc) {#name, OF_ZONES, offsetof(tl_zone_energy, name)},
 static const struct {
     const char *name;
     origin origin;
     size_t offset;
 } quantities[] = {
-    TL_ENERGY(TERM){"ratio", OF_BALANCE, offsetof(tl_balance, ratio)},
+    TL_ENERGY(TERM) TL_ZONE_ENERGY(ZONE_TERM){"ratio", OF_BALANCE, offsetof(tl_balance, ratio)},
     {"ratio_maximum", OF_BALANCE, offsetof(tl_balance, ratio_maximum)},
     {"ratio_local", OF_BALANCE, offsetof(tl_balance, ratio_local)},
     {"max_velocity", OF_BALANCE, offsetof(tl_balance, max_velocity)},
@@ -97,6 +100,7 @@ static const struct {
     {"open", OF_CONTACTS, offsetof(tl_contact_counts, open)},
 };
 #undef TERM
+#undef ZONE_TERM
 
 enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 
@@ -109,16 +113,26 @@ static size_t quantity_named(const char *name)
     return i;
 }
 
+/* From TL_FROM_BLOCKS on. */
+static const tl_lua_kind *const kinds[] = {&tl_lua_block_kind, &tl_lua_contact_kind, &tl_lua_zone_kind,
+                                           &tl_lua_gridpoint_kind};
+
 static const tl_lua_kind *history_kind(const tl_history *h)
 {
-    return h->source == TL_FROM_BLOCKS ? &tl_lua_block_kind : &tl_lua_contact_kind;
+    return kinds[h->source - TL_FROM_BLOCKS];
 }
 
-/* Finds the field that a history of blocks or contacts asks for; NULL: they have none of numbers of that name. */
+/* Whether a history may be of a field of this kind. */
+static bool is_numbers(tl_field_kind kind)
+{
+    return kind <= TL_FIELD_VEC3 || kind == TL_FIELD_SYM3;
+}
+
+/* Finds the field that a history of items asks for; NULL: they have none of numbers of that name. */
 static const tl_field *history_field(const tl_history *h, size_t *index)
 {
     const tl_field *field = tl_lua_field_named(history_kind(h), h->asked, index);
-    return field && field->kind <= TL_FIELD_VEC3 ? field : NULL;
+    return field && is_numbers(field->kind) ? field : NULL;
 }
 
 /* Places on the stack while the function of a history is called. */
@@ -192,11 +206,15 @@ static void ask_model(lua_State *L, tl_model *model, const tl_history *h, latest
         return;
     }
     tl_energy energy;
+    tl_zone_energy zones;
     tl_balance balance = tl_model_balance(model);
     const void *from = &balance;
     if (quantities[index].origin == OF_ENERGY) {
         tl_lua_ok(L, model, tl_model_energy(model, &energy));
         from = &energy;
+    } else if (quantities[index].origin == OF_ZONES) {
+        tl_lua_ok(L, model, tl_model_zone_energy(model, &zones));
+        from = &zones;
     }
     memcpy(now->number, (const char *)from + offset, sizeof *now->number);
 }
@@ -227,24 +245,28 @@ static void take_in(tl_history_take take, latest *now, const double *number, boo
     }
 }
 
-/* The field of the blocks or contacts. */
+/* The field of the items. */
 static void ask_items(lua_State *L, tl_model *model, tl_history *h, latest *now)
 {
     size_t index, gone = 0;
     const tl_lua_kind *kind = history_kind(h);
-    bool vector = history_field(h, &index)->kind == TL_FIELD_VEC3;
+    const size_t width = tl_field_width(history_field(h, &index)->kind);
     tl_id lost = TL_NO_ID;
-    now->width = vector ? 3 : 1;
-    now->list = vector;
+    now->width = width;
+    now->list = width > 1;
     for (size_t i = 0; i < h->id_count; i++) {
         tl_field_value value;
-        const tl_lua_item item = {.kind = kind,
-                                  .id = h->ids ? h->ids[i] : TL_NO_ID,
-                                  .contact = h->contacts ? h->contacts[i] : (tl_contact_name){.a = TL_NO_ID}};
+        tl_lua_item item = {.kind = kind};
+        if (h->ids)
+            item.name.block = h->ids[i];
+        else if (h->contacts)
+            item.name.contact = h->contacts[i];
+        else
+            item.name.zone = h->zones[i];
         tl_status status = kind->field(model, &item, index, &value);
         if (status == TL_E_STALE && h->count) { /* not at the first sample */
             gone++;
-            lost = item.id;
+            lost = item.name.block;
             continue;
         }
         tl_lua_ok(L, model, status);
@@ -350,44 +372,49 @@ static void check_field(lua_State *L, const tl_history *h, const char *name)
     const tl_field *fields = kind->fields(&count), *field = history_field(h, &index);
     tl_lua_names names = {0};
     for (size_t i = 0; i < count; i++)
-        if (fields[i].kind <= TL_FIELD_VEC3)
+        if (is_numbers(fields[i].kind))
             tl_lua_names_add(&names, fields[i].name);
     if (!field)
         tl_lua_unknown(L, lua_pushfstring(L, "history '%s': a %s has no field of numbers", h->name, kind->item), name,
                        &names);
-    else if (field->kind == TL_FIELD_VEC3 && h->take >= TL_TAKE_MIN)
-        tl_lua_fail(L, "history '%s': the field '%s' is a vector; only single numbers are compared", h->name, name);
+    else if (tl_field_width(field->kind) > 1 && h->take >= TL_TAKE_MIN)
+        tl_lua_fail(L, "history '%s': the field '%s' is a vector or tensor; only single numbers are compared", h->name,
+                    name);
 }
 
 /* Reads `of`, at the top of the stack, and which field of it is wanted. The ids stay those of the object. */
 static void read_items(lua_State *L, tl_history *h, const history_args *args)
 {
-    static const tl_history_source sources[] = {TL_FROM_BLOCKS, TL_FROM_CONTACTS};
     const tl_lua_model *owner = NULL;
     h->take = (tl_history_take)args->take;
-    for (size_t i = 0; i < 2; i++) {
-        const tl_lua_kind *kind = i ? &tl_lua_contact_kind : &tl_lua_block_kind;
+    for (size_t i = 0; i < TL_LUA_COUNT(kinds); i++) {
+        const tl_lua_kind *kind = kinds[i];
         tl_lua_item *item = luaL_testudata(L, -1, kind->item_type);
         const tl_lua_selection *selection = luaL_testudata(L, -1, kind->selection_type);
         if (!item && !selection)
             continue;
-        h->source = sources[i];
+        h->source = (tl_history_source)(TL_FROM_BLOCKS + i);
         h->selection = selection != NULL;
         owner = item ? item->owner : selection->owner;
-        h->ids = i > 0 ? NULL : item ? &item->id : selection->ids;
-        h->contacts = i == 0 ? NULL : item ? &item->contact : selection->contacts;
+        void *names = item ? &item->name : selection->names;
+        h->ids = h->source == TL_FROM_BLOCKS ? names : NULL;
+        h->contacts = h->source == TL_FROM_CONTACTS ? names : NULL;
+        h->zones = h->source >= TL_FROM_ZONES ? names : NULL;
         h->id_count = item ? 1 : selection->count;
     }
     if (!owner)
-        tl_lua_fail(L, "history '%s': of must be a block, a contact or a selection of them, not %s", h->name,
-                    tl_lua_describe(L, -1));
+        tl_lua_fail(L,
+                    "history '%s': of must be a block, a contact, a zone, a gridpoint or a selection of them, not %s",
+                    h->name, tl_lua_describe(L, -1));
     if (owner != lua_touserdata(L, 1))
         tl_lua_fail(L, "history '%s': of is a part of another model", h->name);
     if (h->id_count == 0)
         tl_lua_fail(L, "history '%s': the selection that of gives is empty", h->name);
     if (!args->field)
         tl_lua_fail(L, "history '%s': say which field is to be sampled: field = \"%s\"", h->name,
-                    h->source == TL_FROM_BLOCKS ? "displacement" : "normal_force");
+                    h->source == TL_FROM_CONTACTS ? "normal_force"
+                    : h->source == TL_FROM_ZONES  ? "mean"
+                                                  : "displacement");
     strncpy(h->asked, args->field, TL_HISTORY_NAME);
     check_field(L, h, args->field);
 }
@@ -397,7 +424,8 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
 {
     bool of = lua_getfield(L, 2, "of") != LUA_TNIL;
     if (!of && lua_getfield(L, 2, "take") != LUA_TNIL)
-        tl_lua_fail(L, "history '%s': take is for a history of blocks or contacts, with of", h->name);
+        tl_lua_fail(L, "history '%s': take is for a history of blocks, contacts, zones or gridpoints, with of",
+                    h->name);
     bool value = lua_getfield(L, 2, "value") != LUA_TNIL;
     if (value == of)
         tl_lua_fail(L, "history '%s': give either value = function(model) ... end or of = a selection with field",
@@ -516,9 +544,8 @@ static bool is_there(const tl_history *h)
         return quantity_named(h->asked) < QUANTITIES && !h->list && h->count && h->width == 1;
     size_t index;
     const tl_field *field = history_field(h, &index);
-    bool vector = field && field->kind == TL_FIELD_VEC3;
-    return field && !(vector && h->take >= TL_TAKE_MIN) && h->list == vector && h->count &&
-           h->width == (vector ? 3 : 1);
+    const size_t width = field ? tl_field_width(field->kind) : 0;
+    return field && !(width > 1 && h->take >= TL_TAKE_MIN) && h->list == (width > 1) && h->count && h->width == width;
 }
 
 /* Takes up history `i`, or ends it; true: it is still there. */

@@ -1,6 +1,6 @@
-/* item.c - blocks and contacts as Lua objects: one of them, and a list.
+/* item.c - blocks, contacts, zones and gridpoints as Lua objects: one of them, and a list.
  *
- * An item is no pointer into the kernel but a number that is looked up at every access. So one that was deleted raises
+ * An item is no pointer into the kernel but a name that is looked up at every access. So one that was deleted raises
  * and never crashes. A selection is a snapshot, taken when it was made: blocks in ascending order of id, contacts in
  * that of their blocks. Sums run in that order, so they are the same bits every time, whenever contacts began. */
 #include "lua/item.h"
@@ -78,17 +78,10 @@ const tl_field *tl_lua_field_named(const tl_lua_kind *kind, const char *name, si
 
 static tl_lua_item item_at(const tl_lua_selection *selection, size_t i)
 {
-    tl_lua_item item = {.kind = selection->kind, .owner = selection->owner};
-    if (selection->contacts)
-        item.contact = selection->contacts[i];
-    else
-        item.id = selection->ids[i];
+    const tl_lua_kind *kind = selection->kind;
+    tl_lua_item item = {.kind = kind, .owner = selection->owner};
+    memcpy(&item.name, (const char *)selection->names + i * kind->name_size, kind->name_size);
     return item;
-}
-
-lua_Integer tl_lua_item_number(const tl_lua_item *item)
-{
-    return item->id != TL_NO_ID ? (lua_Integer)item->id : tl_contact_number(item->contact);
 }
 
 static void push(lua_State *L, int model_index, tl_lua_item item)
@@ -109,16 +102,18 @@ tl_lua_item tl_lua_item_push(lua_State *L, int model_index, const tl_lua_selecti
     return item;
 }
 
-void tl_lua_item_push_id(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id)
+void tl_lua_item_push_name(lua_State *L, const tl_lua_kind *kind, int model_index, const void *name)
 {
-    push(L, model_index, (tl_lua_item){.kind = kind, .id = id});
+    tl_lua_item item = {.kind = kind};
+    memcpy(&item.name, name, kind->name_size);
+    push(L, model_index, item);
 }
 
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id)
 {
     lua_getfield(L, -1, name);
     tl_lua_item *item = lua_touserdata(L, -1);
-    item->id = id;
+    item->name.block = id;
     lua_pop(L, 1);
     if (id != TL_NO_ID)
         return;
@@ -162,10 +157,9 @@ static int item_assign(lua_State *L)
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "?";
     if (!item->kind->verbs->name)
         return tl_lua_fail(L, "the fields of a %s can only be read ('%s')", item->kind->item, name);
-    return tl_lua_fail(L,
-                       "the fields of a block can only be read; to change '%s' use a selection: "
-                       "model:blocks{id = %I}:set{...}",
-                       name, (lua_Integer)item->id);
+    return tl_lua_fail(
+        L, "the fields of a %s can only be read; to change '%s' use a selection: model:%s{id = %I}:set{...}",
+        item->kind->item, name, item->kind->items, item->kind->number(&item->name));
 }
 
 static int item_equal(lua_State *L)
@@ -173,15 +167,14 @@ static int item_equal(lua_State *L)
     const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
     tl_lua_item *a = luaL_testudata(L, 1, kind->item_type);
     tl_lua_item *b = luaL_testudata(L, 2, kind->item_type);
-    lua_pushboolean(L, a && b && a->owner == b->owner && a->id == b->id && a->contact.a == b->contact.a &&
-                           a->contact.b == b->contact.b && a->contact.born == b->contact.born);
+    lua_pushboolean(L, a && b && a->owner == b->owner && memcmp(&a->name, &b->name, kind->name_size) == 0);
     return 1;
 }
 
 static int item_text(lua_State *L)
 {
     tl_lua_item *item = self_item(L);
-    lua_pushfstring(L, "%s %I", item->kind->item, tl_lua_item_number(item));
+    lua_pushfstring(L, "%s %I", item->kind->item, item->kind->number(&item->name));
     return 1;
 }
 
@@ -226,10 +219,8 @@ static tl_lua_selection *self(lua_State *L, const char *method)
 static int selection_collect(lua_State *L)
 {
     tl_lua_selection *selection = self(L, "collect");
-    free(selection->ids);
-    free(selection->contacts);
-    selection->ids = NULL;
-    selection->contacts = NULL;
+    free(selection->names);
+    selection->names = NULL;
     selection->count = 0;
     return 0;
 }
@@ -250,7 +241,7 @@ static int selection_text(lua_State *L)
 
 /* ---------------------------------------------------------------- one field of all --------
  *
- * selection:values(field): one field of all blocks or contacts of a selection, as a list. */
+ * selection:values(field): one field of all items of a selection, as a list. */
 
 /* Whether the second argument of `values` asks for a flat list. */
 static bool wants_flat(lua_State *L)
@@ -279,12 +270,13 @@ static void push_items(lua_State *L, const tl_lua_selection *selection, const tl
     }
 }
 
-/* The numbers of contacts: exact, as single items give them. */
-static void push_ids(lua_State *L, const tl_lua_selection *contacts)
+/* Ids: exact, as single items give them. */
+static void push_ids(lua_State *L, const tl_lua_selection *selection)
 {
-    lua_createtable(L, (int)contacts->count, 0);
-    for (size_t i = 0; i < contacts->count; i++) {
-        lua_pushinteger(L, tl_contact_number(contacts->contacts[i]));
+    lua_createtable(L, (int)selection->count, 0);
+    for (size_t i = 0; i < selection->count; i++) {
+        const tl_lua_item item = item_at(selection, i);
+        lua_pushinteger(L, item.kind->number(&item.name));
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
@@ -320,7 +312,7 @@ static int selection_values(lua_State *L)
     tl_lua_ok(L, model, status);
     double *values = lua_newuserdatauv(L, (count * width + 1) * sizeof *values, 0);
     tl_lua_ok(L, model, selection->kind->values(model, selection, name, values, &width));
-    if (selection->contacts && strcmp(name, "id") == 0)
+    if (strcmp(name, "id") == 0)
         push_ids(L, selection);
     else if (flat || width == 1)
         push_flat(L, values, count * width, kind == TL_FIELD_COUNT || kind == TL_FIELD_IDS);
@@ -333,7 +325,7 @@ static int selection_values(lua_State *L)
 
 /* ---------------------------------------------------------------- sums and extremes ------ */
 
-/* What sum, max and min work on: a field of numbers, or a state of laws, NaN of contacts whose law has it not. */
+/* What sum, max and min work on: a field of numbers, or a state of laws or solids, NaN of items that have it not. */
 typedef struct column {
     const tl_field *field; /* NULL: a state */
     const double *values;  /* of each item as many as the width */
@@ -400,7 +392,8 @@ static int extreme(lua_State *L, const char *method, double sign)
         if (sign * c.values[i] > sign * best || (!c.field && isnan(best)))
             best = c.values[i];
     if (!c.field && isnan(best))
-        tl_lua_fail(L, "%s: no contact of the selection has a law with the state '%s'", method, name);
+        tl_lua_fail(L, "%s: no %s of the selection has a %s with the state '%s'", method, selection->kind->item,
+                    selection->kind->bearer, name);
     return push_of_column(L, &c, &(tl_field_value){{best}, NULL});
 }
 
@@ -414,9 +407,9 @@ static int selection_min(lua_State *L)
     return extreme(L, "min", -1.0);
 }
 
-/* ---------------------------------------------------------------- verbs of blocks -------------------
+/* ---------------------------------------------------------------- verbs ------------------
  *
- * What all verbs of selections of blocks share: whom they act on, and how they end. */
+ * What all verbs of selections share: whom they act on, and how they end. */
 
 /* Lets go of the functions of drives that have ended. */
 static void sweep_drives(lua_State *L, int model_index)
@@ -434,11 +427,12 @@ static void sweep_drives(lua_State *L, int model_index)
 }
 
 /* Says once for each place in a script that a verb had nothing to act on. */
-static void remark_empty(lua_State *L, const char *verb, const char *done)
+static void remark_empty(lua_State *L, const tl_lua_kind *kind, const char *verb, const char *done)
 {
     luaL_getsubtable(L, LUA_REGISTRYINDEX, "talus.remarks");
     tl_lua_push_where(L);
-    lua_pushfstring(L, "%s: the selection is empty: no block was %s; see what model:blocks{...} finds", verb, done);
+    lua_pushfstring(L, "%s: the selection is empty: no %s was %s; see what model:%s{...} finds", verb, kind->item, done,
+                    kind->items);
     lua_concat(L, 2);
     lua_pushvalue(L, -1);
     if (lua_rawget(L, -3) == LUA_TNIL) {
@@ -454,15 +448,15 @@ static void remark_empty(lua_State *L, const char *verb, const char *done)
 static int call_verb(lua_State *L)
 {
     const tl_lua_verb *verb = lua_touserdata(L, lua_upvalueindex(2));
-    tl_lua_selection *blocks = self(L, verb->name);
-    tl_model *model = tl_lua_living(L, blocks->owner);
+    tl_lua_selection *items = self(L, verb->name);
+    tl_model *model = tl_lua_living(L, items->owner);
     tl_lua_arity(L, verb->arguments + 1, verb->name);
     lua_settop(L, verb->arguments + 1);
     if (verb->ask)
-        return verb->ask(L, blocks);
-    tl_status status = verb->plain ? verb->plain(model, blocks->ids, blocks->count) : verb->act(L, blocks);
-    if (verb->done && blocks->count == 0 && status == TL_OK)
-        remark_empty(L, verb->name, verb->done);
+        return verb->ask(L, items);
+    tl_status status = verb->plain ? verb->plain(model, items->names, items->count) : verb->act(L, items);
+    if (verb->done && items->count == 0 && status == TL_OK)
+        remark_empty(L, items->kind, verb->name, verb->done);
     tl_lua_ok(L, model, status);
     lua_getiuservalue(L, 1, 1);
     sweep_drives(L, lua_gettop(L)); /* the verb may have ended a drive */
@@ -475,10 +469,9 @@ static int call_verb(lua_State *L)
 /* Puts item i in the place of item `to` of the same selection. */
 static void move(tl_lua_selection *selection, size_t to, size_t i)
 {
-    if (selection->contacts)
-        selection->contacts[to] = selection->contacts[i];
-    else
-        selection->ids[to] = selection->ids[i];
+    char *names = selection->names;
+    const size_t size = selection->kind->name_size;
+    memmove(names + to * size, names + i * size, size);
 }
 
 void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index)
@@ -516,17 +509,12 @@ static int selection_where(lua_State *L)
         tl_lua_fail(L, "where: a function(%s) is expected, not %s", selection->kind->item, tl_lua_describe(L, 2));
     lua_getiuservalue(L, 1, 1);
     tl_lua_selection *copy = tl_lua_selection_push(L, selection->kind, 3);
-    const size_t each = selection->contacts ? sizeof *selection->contacts : sizeof *selection->ids;
-    const void *from = selection->contacts ? (const void *)selection->contacts : selection->ids;
-    void *list = malloc((selection->count + 1) * each);
-    if (!list)
+    const size_t bytes = selection->count * selection->kind->name_size;
+    copy->names = malloc(bytes + 1);
+    if (!copy->names)
         return tl_lua_fail(L, "where: out of memory");
-    if (selection->count)
-        memcpy(list, from, selection->count * each);
-    if (selection->contacts)
-        copy->contacts = list;
-    else
-        copy->ids = list;
+    if (bytes)
+        memcpy(copy->names, selection->names, bytes);
     copy->count = selection->count;
     tl_lua_selection_filter(L, 4, 2);
     return 1;

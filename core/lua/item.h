@@ -1,4 +1,4 @@
-/* item.h - blocks and contacts as Lua objects: one of them, and a list. */
+/* item.h - blocks, contacts, zones and gridpoints as Lua objects: one of them, and a list. */
 #ifndef TL_LUA_ITEM_H
 #define TL_LUA_ITEM_H
 
@@ -8,12 +8,10 @@
 void tl_lua_kind_open(lua_State *L, const tl_lua_kind *kind);
 /* The field of a kind that has that name, and its index; NULL: there is none. */
 const tl_field *tl_lua_field_named(const tl_lua_kind *kind, const char *name, size_t *index);
-/* Pushes the item of an id, of blocks; `model_index` is where the model's userdata is. */
-void tl_lua_item_push_id(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id);
+/* Pushes the item of a name; `model_index` is where the model's userdata is. */
+void tl_lua_item_push_name(lua_State *L, const tl_lua_kind *kind, int model_index, const void *name);
 /* Pushes item i of a selection, from 0. */
 tl_lua_item tl_lua_item_push(lua_State *L, int model_index, const tl_lua_selection *selection, size_t i);
-/* The number by which a script knows it. */
-lua_Integer tl_lua_item_number(const tl_lua_item *item);
 /* Makes the block in the field `name` of the table at the top of the stack the one of that id, without needing memory.
  * TL_NO_ID: takes it out. */
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id);

@@ -9,6 +9,7 @@
 #include "lua/living.h"
 #include "lua/model.h"
 #include "lua/topics.h"
+#include "lua/zones.h"
 
 #include <string.h>
 
@@ -144,6 +145,8 @@ int luaopen_talus(lua_State *L)
         return tl_lua_fail(L, "out of memory while the plugins are loaded");
     tl_lua_kind_open(L, &tl_lua_block_kind);
     tl_lua_kind_open(L, &tl_lua_contact_kind);
+    tl_lua_kind_open(L, &tl_lua_zone_kind);
+    tl_lua_kind_open(L, &tl_lua_gridpoint_kind);
     lua_createtable(L, 0, 16);
     lua_newtable(L);
     put_functions(L);

@@ -9,10 +9,12 @@
 #include "lua/item.h"
 #include "lua/living.h"
 #include "lua/quality.h"
+#include "lua/zones.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/zones.h>
 
 static const tl_lua_key page_keys[] = {
     TL_LUA_PAGE_KEYS,
@@ -21,7 +23,7 @@ static const tl_lua_key page_keys[] = {
 
 /* ---------------------------------------------------------------- extra fields ------------
  *
- * Numbers that a script adds to the blocks or contacts of a file or page: fields by name, and functions.
+ * Numbers that a script adds to the blocks, contacts or zones of a file or page: fields by name, and functions.
  *
  *     block_fields = {"kinetic_energy", safety = function(block) return factor[block.id] end}
  *
@@ -30,6 +32,8 @@ static const tl_lua_key page_keys[] = {
 
 static const tl_lua_key field_keys[] = {
     TL_LUA_FIELD_KEYS,
+    {"zone_fields", "{\"FIELD\", NAME = \"FIELD\" or function(zone)}",
+     "numbers of each zone, likewise: fields of zones, states of their solids, functions"},
     {NULL, NULL, NULL},
 };
 
@@ -128,7 +132,7 @@ static int ask(lua_State *L)
         lua_call(L, 1, 1);
         if (lua_type(L, -1) != LUA_TNUMBER && !lua_isnil(L, -1))
             return luaL_error(L, "it must give a number or nil, not %s for %s %I", tl_lua_describe(L, -1),
-                              r->kind->item, tl_lua_item_number(&item));
+                              r->kind->item, r->kind->number(&item.name));
         values[i] = lua_isnil(L, -1) ? NAN : lua_tonumber(L, -1);
         lua_settop(L, AT_OWNER);
     }
@@ -172,22 +176,33 @@ static void take_values(lua_State *L, request *r, size_t i, size_t listed)
     lua_pop(L, 1);
 }
 
-/* Pushes the selection of all blocks or contacts. */
+/* Pushes the selection of all blocks, contacts or zones, also of hidden blocks. Zones have that of blocks below it. */
 static const tl_lua_selection *push_all(lua_State *L, const tl_lua_kind *kind)
 {
     tl_model *model = ((const tl_lua_model *)lua_touserdata(L, 1))->model;
-    tl_lua_selection *all = tl_lua_selection_push(L, kind, 1);
     if (kind == &tl_lua_contact_kind) {
-        tl_lua_ok(L, model, tl_contacts_select(model, NULL, &all->contacts, &all->count));
+        tl_lua_selection *all = tl_lua_selection_push(L, kind, 1);
+        tl_lua_contacts_select(L, model, NULL, all);
         return all;
     }
+    tl_lua_selection *blocks = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
     tl_block_filter any = tl_block_filter_default();
     any.hidden = -1;
-    tl_lua_ok(L, model, tl_blocks_select(model, &any, &all->ids, &all->count));
-    return all;
+    tl_lua_blocks_select(L, model, &any, blocks);
+    if (kind == &tl_lua_block_kind)
+        return blocks;
+    tl_lua_selection *zones = tl_lua_selection_push(L, kind, 1);
+    tl_zone_filter of = tl_zone_filter_default();
+    of.blocks = blocks->names;
+    of.block_count = blocks->count;
+    tl_zone_name *names = NULL;
+    const tl_status status = tl_zones_select(model, &of, &names, &zones->count);
+    zones->names = names;
+    tl_lua_ok(L, model, status);
+    return zones;
 }
 
-/* The fields that the table at `table` asks for under `key`, of all blocks or all contacts of the model at index 1.
+/* The fields that the table at `table` asks for under `key`, of all blocks, contacts or zones of the model at index 1.
  * `context` names the method. Pushes one value, which must stay on the stack as long as they are used. */
 static const tl_extra_field *extra_fields(lua_State *L, int table, const char *key, const char *context,
                                           const tl_lua_kind *kind, size_t *count)
@@ -300,6 +315,7 @@ static int model_write_vtk(lua_State *L, tl_model *model)
     parts.block_fields = extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind, &parts.block_field_count);
     parts.contact_fields =
         extra_fields(L, 3, "contact_fields", "write_vtk", &tl_lua_contact_kind, &parts.contact_field_count);
+    parts.zone_fields = extra_fields(L, 3, "zone_fields", "write_vtk", &tl_lua_zone_kind, &parts.zone_field_count);
     tl_lua_watch watch = tl_lua_watch_begin(L);
     tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, tl_write_vtk(model, prefix, &parts), "write_vtk", NO_FILE));
     return 0;

@@ -242,7 +242,7 @@ static void push_empty_result(lua_State *L, int model_index, int32_t measure)
     set_numbers(L, &none);
     tl_lua_set_text(L, "measure", tl_ratio_measure_name((tl_ratio_measure)measure));
     for (size_t i = 0; i < sizeof result_blocks / sizeof result_blocks[0]; i++) {
-        tl_lua_item_push_id(L, &tl_lua_block_kind, model_index, TL_NO_ID);
+        tl_lua_item_push_name(L, &tl_lua_block_kind, model_index, &(tl_id){TL_NO_ID});
         lua_setfield(L, -2, result_blocks[i]);
     }
 }
@@ -523,8 +523,8 @@ static tl_lua_selection *push_room(lua_State *L, const tl_model *model)
     lua_pushboolean(L, false);
     lua_setfield(L, AT_RESULT, "direction");
     tl_lua_selection *failing = tl_lua_selection_push(L, &tl_lua_block_kind, AT_MODEL);
-    failing->ids = malloc((room + 1) * sizeof *failing->ids);
-    if (!failing->ids)
+    failing->names = malloc((room + 1) * sizeof(tl_id));
+    if (!failing->names)
         tl_lua_fail(L, "relax: out of memory");
     failing->count = room;
     tl_lua_push_numbers(L, (const double[3]){0, 0, 0}, 3);
@@ -535,7 +535,7 @@ static tl_lua_selection *push_room(lua_State *L, const tl_model *model)
 static void set_relaxed(lua_State *L, const tl_model *model, const tl_relax_result *result, tl_lua_selection *failing)
 {
     const bool fails = result->failing > 0;
-    const size_t room = failing->count, found = fails ? tl_model_failing(model, failing->ids, room) : 0;
+    const size_t room = failing->count, found = fails ? tl_model_failing(model, failing->names, room) : 0;
     failing->count = found < room ? found : room;
     for (int i = 0; i < 3; i++) {
         lua_pushnumber(L, result->direction[i]);

@@ -18,10 +18,10 @@ const char *tl_history_unsound(const tl_model *m, const tl_history *h)
         return "a history has no name of one line of UTF-8";
     if (!is_text(h->asked, sizeof h->asked))
         return "a history asks for what has no name of one line of UTF-8";
-    if (h->source > TL_FROM_CONTACTS || h->take > TL_TAKE_MAX || h->every < 1)
+    if (h->source > TL_FROM_GRIDPOINTS || h->take > TL_TAKE_MAX || h->every < 1)
         return "a history has an impossible setting";
     if ((h->id_count > 0) != (h->source >= TL_FROM_BLOCKS) || (!h->selection && h->id_count > 1))
-        return "a history has too few or too many blocks or contacts";
+        return "a history has too few or too many blocks, contacts, zones or gridpoints";
     for (size_t i = 0; i < m->history_count; i++)
         if (strcmp(m->histories[i]->name, h->name) == 0)
             return "two histories have one name";
@@ -32,6 +32,7 @@ static void history_free(tl_history *h)
 {
     free(h->ids);
     free(h->contacts);
+    free(h->zones);
     free(h->cycles);
     free(h->times);
     free(h->values);
@@ -59,13 +60,14 @@ tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples)
     if (!h)
         return NULL;
     *h = *what;
-    const bool contacts = h->source == TL_FROM_CONTACTS;
-    h->ids = h->id_count && !contacts ? malloc(h->id_count * sizeof *h->ids) : NULL;
-    h->contacts = h->id_count && contacts ? malloc(h->id_count * sizeof *h->contacts) : NULL;
+    const bool zones = h->source >= TL_FROM_ZONES;
+    h->ids = h->source == TL_FROM_BLOCKS ? malloc(h->id_count * sizeof *h->ids) : NULL;
+    h->contacts = h->source == TL_FROM_CONTACTS ? malloc(h->id_count * sizeof *h->contacts) : NULL;
+    h->zones = zones ? malloc(h->id_count * sizeof *h->zones) : NULL;
     h->cycles = NULL;
     h->times = h->values = NULL;
     h->capacity = 0;
-    if ((h->id_count && !h->ids && !h->contacts) || (samples && !hold_samples(h, samples))) {
+    if ((h->id_count && !h->ids && !h->contacts && !h->zones) || (samples && !hold_samples(h, samples))) {
         history_free(h);
         return NULL;
     }
@@ -91,6 +93,8 @@ tl_status tl_history_add(tl_model *m, const tl_history *what, tl_history **wante
         memcpy(h->ids, what->ids, h->id_count * sizeof *h->ids);
     if (h->contacts)
         memcpy(h->contacts, what->contacts, h->id_count * sizeof *h->contacts);
+    if (h->zones)
+        memcpy(h->zones, what->zones, h->id_count * sizeof *h->zones);
     *made = h;
     return TL_OK;
 }

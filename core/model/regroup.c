@@ -10,6 +10,7 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "model/loads.h"
 #include "model/options.h"
@@ -462,6 +463,46 @@ static void delete_block(tl_model *m, tl_id id)
     m->gone++;
 }
 
+/* Refuses to delete a part of a deformable body. */
+static tl_status check_meshes(tl_model *m, const tl_id *ids, size_t count)
+{
+    unsigned char *chosen = calloc(m->blocks.table.rows + 1, 1);
+    tl_status status = chosen ? TL_OK : tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        chosen[tl_block_row_quiet(m, ids[i])] = 1;
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        const uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        for (uint32_t k = 0; m->bodies.mesh[body] && k < m->bodies.member_count[body] && status == TL_OK; k++) {
+            const uint32_t other = m->members[m->bodies.member_start[body] + k];
+            if (!chosen[other])
+                status =
+                    tl_fail(&m->error, TL_E_STATE,
+                            "cannot delete block %u: it is deformable and joined to block %u, which would stay; delete "
+                            "blocks of a body before they get zones, or all of them",
+                            ids[i], m->blocks.id[other]);
+        }
+    }
+    free(chosen);
+    return status;
+}
+
+/* Takes blocks out of their bodies, but those whose bodies have zones: these go whole. */
+static tl_status leave_bodies(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = check_meshes(m, ids, count);
+    tl_id *rigid = status == TL_OK ? malloc((count + 1) * sizeof *rigid) : NULL;
+    size_t rigid_count = 0;
+    if (status == TL_OK && !rigid)
+        status = tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        if (!m->bodies.mesh[m->blocks.body[tl_block_row_quiet(m, ids[i])]])
+            rigid[rigid_count++] = ids[i];
+    if (status == TL_OK && rigid_count > 0)
+        status = fall_apart(m, rigid, rigid_count);
+    free(rigid);
+    return status;
+}
+
 tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
 {
     tl_status status = tl_model_may_change(m, "delete blocks");
@@ -469,7 +510,7 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
         status = tl_blocks_check(m, ids, count);
     if (status == TL_OK && some_joined(m, ids, count)) {
         tl_rows_tidy(m);
-        status = fall_apart(m, ids, count);
+        status = leave_bodies(m, ids, count);
     }
     for (size_t i = 0; i < count && status == TL_OK; i++)
         delete_block(m, ids[i]);
@@ -485,7 +526,7 @@ static tl_status check_parts(tl_model *m, const tl_id *ids, size_t count, const 
     if (status == TL_OK)
         tl_rows_tidy(m);
     if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, verb, "join blocks before they get zones");
+        status = tl_blocks_check_rigid(m, ids, count, verb, "join or unjoin blocks before they get zones");
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t row = tl_block_row(m, ids[i]);
         if (row == TL_NO_ROW)
@@ -695,6 +736,10 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     tl_bodies *b = &m->bodies;
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        if (b->mesh[body]) {
+            m->zone_verbs->move(m, body, set->velocity, set->angular_velocity);
+            continue;
+        }
         if (given(set->velocity) && moved) {
             double mass = m->blocks.density[row] * m->blocks.volume[row];
             tl_vec3 arm = tl_m3_mul(&b->pose[body].r, tl_block_local(m, row));
@@ -708,11 +753,24 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     }
     for (size_t i = 0; i < count && given(set->velocity); i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        if (b->mesh[body])
+            continue;
         b->v[body] = set->velocity;
         if (moved && b->member_count[body] > 1)
             b->v[body] = tl_v3_sub(set->velocity,
                                    tl_v3_cross(b->w[body], tl_v3_scale(1 / moved[body].mass, moved[body].moment)));
     }
+}
+
+/* Gives the zones of blocks another solid; what else is set cannot fail then. Deformable blocks keep their density. */
+static tl_status set_solid(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
+{
+    if (!isnan(set->density))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: give density before the blocks get zones, and solid after it");
+    if (!m->zone_verbs)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%.80s': name it with %s first", set->solid,
+                       tl_words(m, "model:solid", "tl_model_solid"));
+    return m->zone_verbs->resolid(m, ids, count, set->solid);
 }
 
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
@@ -722,11 +780,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     tl_status status = TL_OPTIONS_READ(tl_block_set, values, &read, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set properties of blocks");
-    const bool moves = given(set->velocity) || given(set->angular_velocity);
-    if (status == TL_OK && !moves && isnan(set->density))
+    if (status == TL_OK && isnan(set->density))
         status = tl_blocks_check(m, ids, count);
     else if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, "set density or velocities", "set them before it gets zones");
+        status = tl_blocks_check_rigid(m, ids, count, "set density", "set it before it gets zones");
     if (status == TL_OK)
         status = check_set(m, ids, count, set);
     if (status != TL_OK)
@@ -740,6 +797,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     if ((joined && !moved) || (mends && !tl_rows_set_aside(m, &aside))) {
         free(moved);
         return tl_fail_memory(&m->error);
+    }
+    if (set->solid && (status = set_solid(m, ids, count, set)) != TL_OK) {
+        free(moved);
+        return status;
     }
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];

@@ -7,7 +7,7 @@
 #include "contact/law_states.h"
 #include "contact/places.h"
 #include "detect/detect.h"
-#include "model/fields.h"
+#include "query/block_fields.h"
 #include "query/contact_fields.h"
 
 #include <math.h>

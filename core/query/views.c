@@ -2,6 +2,7 @@
 #include "contact/detection.h"
 #include "detect/detect.h"
 #include "model/rows.h"
+#include "zone/grid.h"
 
 #include <talus/views.h>
 
@@ -65,5 +66,27 @@ tl_status tl_view_contacts(tl_model *m, tl_contact_views *views)
                                 .b = indices(c->b, n),
                                 .force = view(c->force, sizeof *c->force, n, 3),
                                 .area = view(c->area, sizeof *c->area, n, 1)};
+    return TL_OK;
+}
+
+tl_status tl_view_gridpoints(tl_model *m, tl_id block, tl_gridpoint_views *views)
+{
+    *views = (tl_gridpoint_views){.origin = m->origin};
+    tl_rows_tidy(m);
+    const uint32_t row = tl_block_row(m, block);
+    if (row == TL_NO_ROW)
+        return m->error.status;
+    const uint32_t mesh = tl_mesh_of(m, m->bodies.id[m->blocks.body[row]]);
+    if (mesh == TL_NO_ROW)
+        return TL_OK;
+    const tl_gridpoints *p = &m->zones->points;
+    const size_t first = m->zones->mesh[mesh].point_begin, n = m->zones->mesh[mesh].point_end - first;
+    for (int k = 0; k < 3; k++) {
+        views->reference[k] = view(p->ref[k] + first, sizeof(double), n, 1);
+        views->displacement[k] = view(p->u[k] + first, sizeof(double), n, 1);
+        views->velocity[k] = view(p->v[k] + first, sizeof(double), n, 1);
+        views->force[k] = view(p->force[k] + first, sizeof(double), n, 1);
+    }
+    views->mass = view(p->mass + first, sizeof(double), n, 1);
     return TL_OK;
 }

@@ -5,184 +5,120 @@
 #include "base/error.h"
 #include "base/solid_columns.h"
 #include "geometry/measure.h"
-#include "model/fields.h"
+#include "model/rows.h"
+#include "query/block_fields.h"
+#include "query/zone_at.h"
 #include "zone/grid.h"
 #include "zone/solids.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/elementary.h>
 #include <talus/fields.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- one zone --------------- */
 
-/* A zone where it is: its mesh, row and parcel, and the places of its corners now and as made. */
-typedef struct place {
-    const tl_model *m;
-    const tl_body_mesh *mesh;
-    const tl_parcel *parcel;
-    uint32_t row;
-    tl_vec3 x[4], ref[4];
-} place;
-
-/* The parcel that has a row: they ascend. */
-static const tl_parcel *parcel_of(const struct tl_zones *z, const tl_body_mesh *mesh, uint32_t row)
-{
-    uint32_t low = mesh->parcel_begin, high = mesh->parcel_end;
-    while (high - low > 1) {
-        const uint32_t middle = (low + high) / 2;
-        if (z->group[z->parcels.of[middle].group_begin].start <= row)
-            low = middle;
-        else
-            high = middle;
-    }
-    return &z->parcels.of[low];
-}
-
-static place place_of(const tl_model *m, const tl_body_mesh *mesh, uint32_t number)
-{
-    const struct tl_zones *z = m->zones;
-    place at = {.m = m, .mesh = mesh, .row = z->row_of[mesh->zone_begin + number]};
-    at.parcel = parcel_of(z, mesh, at.row);
-    for (int a = 0; a < 4; a++) {
-        const uint32_t point = z->listed[at.parcel->point_begin + z->zones.corner[a][at.row]];
-        at.x[a] = tl_gridpoint_place(&z->points, point);
-        at.ref[a] = tl_columns_get(z->points.ref, point);
-    }
-    return at;
-}
-
-static double volume_of(const tl_vec3 x[4])
-{
-    return tl_v3_dot(tl_v3_sub(x[1], x[0]), tl_v3_cross(tl_v3_sub(x[2], x[0]), tl_v3_sub(x[3], x[0]))) / 6;
-}
-
-static tl_vec3 centroid_of(const place *at)
-{
-    const tl_vec3 sum = tl_v3_add(tl_v3_add(at->x[0], at->x[1]), tl_v3_add(at->x[2], at->x[3]));
-    return tl_v3_madd(at->m->origin, 0.25, sum);
-}
-
-static tl_sym3 stress_of(const place *at)
-{
-    double *const *s = at->m->zones->zones.stress;
-    const uint32_t row = at->row;
-    return (tl_sym3){s[0][row], s[1][row], s[2][row], s[3][row], s[4][row], s[5][row]};
-}
-
-/* How the zone has stretched and turned since it was made: edges now by those then. */
-static tl_mat3 gradient_of(const place *at)
-{
-    tl_mat3 f = {{{0}}};
-    const double six = 6 * volume_of(at->ref);
-    tl_vec3 e[3], r[3];
-    for (int a = 0; a < 3; a++) {
-        e[a] = tl_v3_sub(at->x[a + 1], at->x[0]);
-        r[a] = tl_v3_sub(at->ref[a + 1], at->ref[0]);
-    }
-    for (int a = 0; a < 3; a++) {
-        const tl_vec3 g = tl_v3_scale(1 / six, tl_v3_cross(r[(a + 1) % 3], r[(a + 2) % 3]));
-        const double x[3] = {e[a].x, e[a].y, e[a].z}, y[3] = {g.x, g.y, g.z};
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                f.m[i][j] += x[i] * y[j];
-    }
-    return f;
-}
-
-/* A tensor of principal values about axes. */
-static tl_sym3 about(tl_quat axes, const double value[3])
-{
-    const tl_mat3 q = tl_q_matrix(axes);
-    double t[3][3] = {{0}};
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                t[i][j] += value[k] * q.m[i][k] * q.m[j][k];
-    return (tl_sym3){t[0][0], t[1][1], t[2][2], t[0][1], t[1][2], t[2][0]};
-}
-
-/* Logarithmic strain, ln V of F = V R, in the axes of the model. */
-static tl_sym3 strain_of(const place *at)
-{
-    const tl_mat3 f = gradient_of(at);
-    double b[3][3] = {{0}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                b[i][j] += f.m[i][k] * f.m[j][k];
-    tl_vec3 squares;
-    tl_quat axes;
-    tl_principal_axes((tl_sym3){b[0][0], b[1][1], b[2][2], b[0][1], b[1][2], b[2][0]}, &squares, &axes);
-    const double ln[3] = {0.5 * tl_log1p(squares.x - 1), 0.5 * tl_log1p(squares.y - 1), 0.5 * tl_log1p(squares.z - 1)};
-    return about(axes, ln);
-}
-
 /* Principal stresses, the largest (tension) first. */
-static tl_vec3 principal_of(const place *at)
+static tl_vec3 principal_of(const tl_zone_at *at)
 {
     tl_vec3 ascending;
     tl_quat axes;
-    tl_principal_axes(stress_of(at), &ascending, &axes);
+    tl_principal_axes(tl_zone_stress(at), &ascending, &axes);
     return tl_v3(ascending.z, ascending.y, ascending.x);
 }
 
-static double mean_of(const place *at)
+static double mean_of(const tl_zone_at *at)
 {
-    const tl_sym3 s = stress_of(at);
+    const tl_sym3 s = tl_zone_stress(at);
     return (s.xx + s.yy + s.zz) / 3;
 }
 
 /* sqrt(3 J2), of the deviator: that of a uniaxial stress is the stress. */
-static double deviator_of(const place *at)
+static double deviator_of(const tl_zone_at *at)
 {
-    const tl_sym3 s = stress_of(at);
+    const tl_sym3 s = tl_zone_stress(at);
     const double a = s.xx - s.yy, b = s.yy - s.zz, c = s.zz - s.xx;
     return sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
 }
 
-enum { ELASTIC, SHEAR, TENSION, JOINT, SHEAR_PAST, TENSION_PAST, JOINT_PAST };
-static const char *const state_names[] = {"elastic",    "shear",        "tension",   "joint",
-                                          "shear past", "tension past", "joint past"};
+/* In the order in which a zone is told to be in one of them. */
+static const struct {
+    uint32_t flag;
+    const char *name;
+} states[] = {
+    {0, "elastic"},
+    {TL_ZONE_SHEAR, "shear"},
+    {TL_ZONE_TENSION, "tension"},
+    {TL_ZONE_JOINT, "joint"},
+    {TL_ZONE_SHEAR_PAST, "shear past"},
+    {TL_ZONE_TENSION_PAST, "tension past"},
+    {TL_ZONE_JOINT_PAST, "joint past"},
+};
 
-static double state_number(const place *at)
+enum { STATES = sizeof states / sizeof *states };
+
+uint32_t tl_zone_state(uint32_t flags)
 {
-    const uint32_t flags = at->m->zones->zones.flags[at->row];
-    static const uint32_t order[] = {
-        0, TL_ZONE_SHEAR, TL_ZONE_TENSION, TL_ZONE_JOINT, TL_ZONE_SHEAR_PAST, TL_ZONE_TENSION_PAST, TL_ZONE_JOINT_PAST};
-    for (int k = 1; k < (int)(sizeof order / sizeof *order); k++)
-        if (flags & order[k])
+    for (uint32_t k = 1; k < STATES; k++)
+        if (flags & states[k].flag)
             return k;
-    return ELASTIC;
+    return 0;
+}
+
+const char *tl_zone_state_name(uint32_t number)
+{
+    return number < STATES ? states[number].name : NULL;
 }
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
+/* A number of its own among all zones, or gridpoints: its body's id times 2^32, and its number. */
+static double id_of(tl_id body, uint32_t number)
+{
+    return 4294967296.0 * body + number;
+}
+
+/* The number of a block's group. */
+static double group_of(const tl_model *m, tl_id block)
+{
+    return m->blocks.group[tl_block_row_quiet(m, block)];
+}
+
 #define ZONE_FIELDS(FIELD)                                                                                             \
-    FIELD(block, COUNT, "", "block that it is of: the lowest of a body of several", at->mesh->body)                    \
-    FIELD(number, COUNT, "", "its number in the block, from 0", z->zones.number[at->row])                              \
+    FIELD(id, COUNT, "", "of its own among all zones: 4294967296 times the first block of its body, and its number",   \
+          id_of(at->mesh->body, z->zones.number[at->row]))                                                             \
+    FIELD(block, COUNT, "", "block that it is of", at->parcel->block)                                                  \
+    FIELD(number, COUNT, "", "its number in the block, or in the body of several joined blocks, from 0",               \
+          z->zones.number[at->row])                                                                                    \
+    FIELD(group, TEXT, "", "group of the block", group_of(at->m, at->parcel->block))                                   \
     FIELD(solid, TEXT, "", "name of its solid", at->parcel->solid)                                                     \
-    FIELD(centroid, VEC3, "m", "present place of its centroid", centroid_of(at))                                       \
-    FIELD(volume, SCALAR, "m3", "present volume", volume_of(at->x))                                                    \
-    FIELD(stress, SYM3, "Pa", "Cauchy stress, tension positive", stress_of(at))                                        \
-    FIELD(strain, SYM3, "", "logarithmic strain since it was made", strain_of(at))                                     \
+    FIELD(centroid, VEC3, "m", "present place of its centroid", tl_zone_centroid(at))                                  \
+    FIELD(volume, SCALAR, "m3", "present volume", tl_tetrahedron_volume(at->x))                                        \
+    FIELD(stress, SYM3, "Pa", "Cauchy stress, tension positive", tl_zone_stress(at))                                   \
+    FIELD(strain, SYM3, "", "logarithmic strain since it was made", tl_zone_strain(at))                                \
     FIELD(principal, VEC3, "Pa", "principal stresses, the largest first", principal_of(at))                            \
     FIELD(mean, SCALAR, "Pa", "mean stress", mean_of(at))                                                              \
     FIELD(deviator, SCALAR, "Pa", "sqrt(3 J2): of a uniaxial stress its size", deviator_of(at))                        \
     FIELD(state, TEXT, "", "\"elastic\", \"shear\", \"tension\" or \"joint\" now, or \"shear past\" ...",              \
-          state_number(at))                                                                                            \
+          tl_zone_state(z->zones.flags[at->row]))                                                                      \
     FIELD(plastic, BOOL, "", "whether it has ever yielded", z->zones.flags[at->row] != 0)
 
 #define POINT_FIELDS(FIELD)                                                                                            \
-    FIELD(block, COUNT, "", "block that it is of: the lowest of a body of several", mesh->body)                        \
-    FIELD(number, COUNT, "", "its number in the block, from 0", row - mesh->point_begin)                               \
+    FIELD(id, COUNT, "",                                                                                               \
+          "of its own among all gridpoints: 4294967296 times the first block of its body, and its number",             \
+          id_of(mesh->body, row - mesh->point_begin))                                                                  \
+    FIELD(block, COUNT, "", "block that it is of: the first one of a body of several", mesh->body)                     \
+    FIELD(number, COUNT, "", "its number in the block, or in the body of several joined blocks, from 0",               \
+          row - mesh->point_begin)                                                                                     \
+    FIELD(group, TEXT, "", "group of the block", group_of(m, mesh->body))                                              \
     FIELD(position, VEC3, "m", "present place", tl_v3_add(m->origin, tl_gridpoint_place(p, row)))                      \
     FIELD(displacement, VEC3, "m", "since it was made", tl_columns_get(p->u, row))                                     \
     FIELD(velocity, VEC3, "m/s", "half a step ago", tl_columns_get(p->v, row))                                         \
     FIELD(force, VEC3, "N", "unbalanced", tl_columns_get(p->force, row))                                               \
     FIELD(mass, SCALAR, "kg", "a quarter of that of each of its zones", p->mass[row])                                  \
-    FIELD(fixed, COUNT, "", "components that are held: 1 x, 2 y, 4 z, added up", p->fixed[row])
+    FIELD(fixed, COUNT, "", "components that are held: 1 x, 2 y, 4 z, added up", p->fixed[row])                        \
+    FIELD(surface, BOOL, "", "whether it is on the surface of its body", p->bare[row] != 0)
 
 #define NUMBER(prefix, name) prefix##name,
 #define ZONE_NUMBER(name, kind, unit, doc, value) NUMBER(Z_, name)
@@ -213,7 +149,7 @@ const tl_field *tl_gridpoint_fields(size_t *count)
     return point_fields;
 }
 
-static void zone_numbers(const place *at, size_t field, double out[6])
+static void zone_numbers(const tl_zone_at *at, size_t field, double out[6])
 {
     const struct tl_zones *z = at->m->zones;
     switch (field) {
@@ -233,24 +169,110 @@ static void point_numbers(const tl_model *m, const tl_body_mesh *mesh, uint32_t 
 
 /* ---------------------------------------------------------------- selections ------------- */
 
-/* Whether a mesh has one of the blocks. */
-static bool has_block(const tl_model *m, const tl_body_mesh *mesh, const tl_zone_filter *f)
+/* A selection on its way. */
+typedef struct search {
+    tl_model *m;
+    const tl_zone_filter *f;
+    bool points;      /* gridpoints are looked for, not zones */
+    uint32_t solid;   /* of which zones are to be */
+    uint8_t *wanted;  /* of each row of blocks, whether it is asked for */
+    uint8_t *reached; /* of each row of gridpoints, whether a zone of such a block has it */
+} search;
+
+static bool block_passes(const tl_model *m, uint32_t row, const tl_zone_filter *f)
 {
-    bool some = f->blocks == NULL;
-    for (size_t k = 0; k < f->block_count && !some; k++) {
-        const uint32_t row = tl_block_row_quiet(m, f->blocks[k]);
-        some = row != TL_NO_ROW && m->blocks.body[row] == mesh->row;
+    const bool grouped = !f->group || strcmp(tl_group_name(m, m->blocks.group[row]), f->group) == 0;
+    return grouped && (f->blocks || !m->blocks.hidden[row]);
+}
+
+static bool parcel_passes(const search *s, const tl_parcel *parcel)
+{
+    return s->wanted[tl_block_row_quiet(s->m, parcel->block)];
+}
+
+/* Marks the gridpoints of zones of the blocks that are asked for. */
+static void reach_points(search *s)
+{
+    const struct tl_zones *z = s->m->zones;
+    for (size_t k = 0; k < z->parcels.table.rows; k++) {
+        const tl_parcel *parcel = &z->parcels.of[k];
+        for (uint32_t p = parcel->point_begin; p < parcel->point_end && parcel_passes(s, parcel); p++)
+            s->reached[z->listed[p]] = 1;
     }
+}
+
+/* Marks the blocks of which zones may pass, and their gridpoints. */
+static tl_status mark_blocks(search *s)
+{
+    const struct tl_zones *z = s->m->zones;
+    const size_t rows = s->m->blocks.table.rows;
+    s->wanted = calloc(rows + 1, 1);
+    s->reached = calloc(z->points.table.rows + 1, 1);
+    if (!s->wanted || !s->reached)
+        return tl_fail_memory(&s->m->error);
+    for (uint32_t row = 0; !s->f->blocks && row < rows; row++)
+        s->wanted[row] = block_passes(s->m, row, s->f);
+    for (size_t k = 0; s->f->blocks && k < s->f->block_count; k++) {
+        const uint32_t row = tl_block_row(s->m, s->f->blocks[k]);
+        if (row == TL_NO_ROW)
+            return s->m->error.status;
+        s->wanted[row] = block_passes(s->m, row, s->f);
+    }
+    if (s->points)
+        reach_points(s);
+    return TL_OK;
+}
+
+/* Whether some block of a mesh is asked for. */
+static bool mesh_passes(const search *s, const tl_body_mesh *mesh)
+{
+    const uint32_t *rows = tl_body_blocks(s->m, mesh->row);
+    bool some = false;
+    for (uint32_t k = 0; k < s->m->bodies.member_count[mesh->row]; k++)
+        some = some || s->wanted[rows[k]];
     return some;
 }
 
-static bool passes(const tl_model *m, const tl_body_mesh *mesh, uint32_t number, const tl_zone_filter *f,
-                   uint32_t solid)
+static bool in_box(const tl_bounds *box, tl_vec3 p)
 {
-    const struct tl_zones *z = m->zones;
-    const uint32_t row = z->row_of[mesh->zone_begin + number];
-    return (f->plastic < 0 || (f->plastic != 0) == (z->zones.flags[row] != 0)) &&
-           (!f->solid || parcel_of(z, mesh, row)->solid == solid);
+    return p.x >= box->min.x && p.y >= box->min.y && p.z >= box->min.z && p.x <= box->max.x && p.y <= box->max.y &&
+           p.z <= box->max.z;
+}
+
+/* Whether a point lies in a zone, or on a side of it. */
+static bool zone_contains(const tl_zone_at *at, tl_vec3 p)
+{
+    const tl_vec3 q = tl_v3_sub(p, at->m->origin);
+    const double least = -1e-12 * tl_tetrahedron_volume(at->x);
+    bool inside = true;
+    for (int a = 0; a < 4; a++) {
+        tl_vec3 x[4];
+        memcpy(x, at->x, sizeof x);
+        x[a] = q;
+        inside = inside && tl_tetrahedron_volume(x) >= least;
+    }
+    return inside;
+}
+
+static bool zone_passes(const search *s, const tl_body_mesh *mesh, uint32_t number, tl_vec3 *where)
+{
+    const tl_zone_at at = tl_zone_at_number(s->m, mesh, number);
+    const tl_zone_filter *f = s->f;
+    *where = tl_zone_centroid(&at);
+    return parcel_passes(s, at.parcel) &&
+           (f->plastic < 0 || (f->plastic != 0) == (s->m->zones->zones.flags[at.row] != 0)) &&
+           (!f->solid || at.parcel->solid == s->solid) && (!f->inside || in_box(f->inside, *where)) &&
+           (!f->containing || zone_contains(&at, *f->containing));
+}
+
+static bool point_passes(const search *s, const tl_body_mesh *mesh, uint32_t number, tl_vec3 *where)
+{
+    const tl_gridpoints *p = &s->m->zones->points;
+    const uint32_t row = mesh->point_begin + number;
+    const tl_zone_filter *f = s->f;
+    *where = tl_v3_add(s->m->origin, tl_gridpoint_place(p, row));
+    return s->reached[row] && p->zones[row] > 0 && (f->fixed < 0 || (f->fixed != 0) == (p->fixed[row] != 0)) &&
+           (f->surface < 0 || (f->surface != 0) == (p->bare[row] != 0)) && (!f->inside || in_box(f->inside, *where));
 }
 
 /* Meshes in the order of their bodies: a list of their numbers, from malloc. */
@@ -266,31 +288,77 @@ static uint32_t *meshes_in_order(const struct tl_zones *z)
     return list;
 }
 
+/* Takes in what passes of a mesh: all, or what is nearer to a point than what was found. false: out of memory. */
+static bool take_mesh(const search *s, const tl_body_mesh *mesh, tl_zone_name **names, size_t *count, size_t *capacity,
+                      double *nearest)
+{
+    const uint32_t end = s->points ? mesh->point_end - mesh->point_begin : mesh->zone_end - mesh->zone_begin;
+    if (!tl_grow(names, capacity, *count + end + 1, sizeof **names))
+        return false;
+    for (uint32_t number = 0; number < end; number++) {
+        tl_vec3 where;
+        if (!(s->points ? point_passes : zone_passes)(s, mesh, number, &where))
+            continue;
+        const double far = s->f->near ? tl_v3_norm2(tl_v3_sub(where, *s->f->near)) : 0;
+        if (s->f->near && *count > 0 && !(far < *nearest))
+            continue;
+        *count = s->f->near ? 0 : *count;
+        *nearest = far;
+        (*names)[(*count)++] = (tl_zone_name){mesh->body, number};
+    }
+    return true;
+}
+
+static tl_status take_all(const search *s, tl_zone_name **names, size_t *count)
+{
+    const struct tl_zones *z = s->m->zones;
+    uint32_t *order = meshes_in_order(z);
+    size_t capacity = 0;
+    double nearest = INFINITY;
+    bool enough = order != NULL;
+    for (size_t k = 0; enough && k < z->mesh_count; k++)
+        if (mesh_passes(s, &z->mesh[order[k]]))
+            enough = take_mesh(s, &z->mesh[order[k]], names, count, &capacity, &nearest);
+    free(order);
+    return enough ? TL_OK : tl_fail_memory(&s->m->error);
+}
+
+/* Finds what is asked for among the meshes that there are. */
+static tl_status find_parts(search *s, tl_zone_name **names, size_t *count)
+{
+    const char *solid = s->f->solid;
+    s->solid = solid ? tl_solid_find(s->m, solid) : TL_NO_ROW;
+    if (solid && s->solid == TL_NO_ROW)
+        return tl_fail(&s->m->error, TL_E_NOT_FOUND, "there is no solid '%.80s' in this model", solid);
+    if (!s->m->zones)
+        return TL_OK;
+    tl_status status = mark_blocks(s);
+    return status == TL_OK ? take_all(s, names, count) : status;
+}
+
+tl_zone_filter tl_zone_filter_default(void)
+{
+    return (tl_zone_filter){.size = sizeof(tl_zone_filter), .plastic = -1, .surface = -1, .fixed = -1};
+}
+
 static tl_status select_parts(tl_model *m, const tl_zone_filter *f, bool points, tl_zone_name **names, size_t *count)
 {
-    const struct tl_zones *z = m->zones;
-    size_t capacity = 0;
+    const tl_zone_filter all = tl_zone_filter_default();
+    search s = {.m = m, .f = f ? f : &all, .points = points};
     *names = NULL;
     *count = 0;
-    const uint32_t solid = f->solid ? tl_solid_find(m, f->solid) : TL_NO_ROW;
-    if (f->solid && solid == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_NOT_FOUND, "there is no solid '%.80s' in this model", f->solid);
-    uint32_t *order = z ? meshes_in_order(z) : NULL;
-    bool enough = !z || order;
-    for (size_t k = 0; enough && z && k < z->mesh_count; k++) {
-        const tl_body_mesh *mesh = &z->mesh[order[k]];
-        const uint32_t end = points ? mesh->point_end - mesh->point_begin : mesh->zone_end - mesh->zone_begin;
-        if (!has_block(m, mesh, f))
-            continue;
-        enough = tl_grow(names, &capacity, *count + end + 1, sizeof **names);
-        for (uint32_t number = 0; enough && number < end; number++)
-            if (points || passes(m, mesh, number, f, solid))
-                (*names)[(*count)++] = (tl_zone_name){mesh->body, number};
+    tl_rows_tidy(m);
+    tl_status status = find_parts(&s, names, count);
+    if (status == TL_OK && !*names && !(*names = malloc(sizeof **names)))
+        status = tl_fail_memory(&m->error);
+    free(s.wanted);
+    free(s.reached);
+    if (status != TL_OK) {
+        free(*names);
+        *names = NULL;
+        *count = 0;
     }
-    free(order);
-    if (enough && !*names)
-        enough = tl_grow(names, &capacity, 1, sizeof **names);
-    return enough ? TL_OK : tl_fail_memory(&m->error);
+    return status;
 }
 
 tl_status tl_zones_select(tl_model *m, const tl_zone_filter *filter, tl_zone_name **names, size_t *count)
@@ -323,13 +391,15 @@ tl_status tl_zone_field(tl_model *m, tl_zone_name zone, size_t index, tl_field_v
     const tl_body_mesh *mesh = mesh_of(m, zone, false);
     if (!mesh)
         return m->error.status;
-    const place at = place_of(m, mesh, zone.number);
+    const tl_zone_at at = tl_zone_at_number(m, mesh, zone.number);
     *value = (tl_field_value){{0}, NULL};
     zone_numbers(&at, index, value->number);
     if (index == Z_solid)
         value->text = m->zones->solid[at.parcel->solid].name;
+    if (index == Z_group)
+        value->text = tl_group_name(m, (size_t)value->number[0]);
     if (index == Z_state)
-        value->text = state_names[(size_t)value->number[0]];
+        value->text = tl_zone_state_name((uint32_t)value->number[0]);
     return TL_OK;
 }
 
@@ -340,6 +410,8 @@ tl_status tl_gridpoint_field(tl_model *m, tl_zone_name gridpoint, size_t index, 
         return m->error.status;
     *value = (tl_field_value){{0}, NULL};
     point_numbers(m, mesh, mesh->point_begin + gridpoint.number, index, value->number);
+    if (index == P_group)
+        value->text = tl_group_name(m, (size_t)value->number[0]);
     return TL_OK;
 }
 
@@ -366,7 +438,7 @@ static size_t state_width(const tl_model *m, const char *name)
     return 0;
 }
 
-static void put_state(const place *at, const char *name, size_t width, double *out)
+static void put_state(const tl_zone_at *at, const char *name, size_t width, double *out)
 {
     const struct tl_zones *z = at->m->zones;
     uint32_t begin, own;
@@ -403,7 +475,7 @@ tl_status tl_zones_values(tl_model *m, const tl_zone_name *names, size_t count, 
         double all[6] = {0};
         if (!mesh)
             return m->error.status;
-        const place at = place_of(m, mesh, names[k].number);
+        const tl_zone_at at = tl_zone_at_number(m, mesh, names[k].number);
         if (field < Z_COUNT)
             zone_numbers(&at, field, all);
         else
@@ -417,8 +489,9 @@ tl_status tl_gridpoints_values(tl_model *m, const tl_zone_name *names, size_t co
                                size_t *width)
 {
     const size_t field = field_named(point_fields, P_COUNT, name);
-    if (field == P_COUNT)
-        return no_column(m, "gridpoint", name, false);
+    const bool text = field < P_COUNT && point_fields[field].kind == TL_FIELD_TEXT;
+    if (text || field == P_COUNT)
+        return no_column(m, "gridpoint", name, text);
     *width = tl_field_width(point_fields[field].kind);
     for (size_t k = 0; out && k < count; k++) {
         const tl_body_mesh *mesh = mesh_of(m, names[k], true);
@@ -427,6 +500,21 @@ tl_status tl_gridpoints_values(tl_model *m, const tl_zone_name *names, size_t co
             return m->error.status;
         point_numbers(m, mesh, mesh->point_begin + names[k].number, field, all);
         memcpy(out + k * *width, all, *width * sizeof *out);
+    }
+    return TL_OK;
+}
+
+tl_status tl_zones_corners(tl_model *m, const tl_zone_name *names, size_t count, uint32_t (*corners)[4])
+{
+    for (size_t k = 0; k < count; k++) {
+        const tl_body_mesh *mesh = mesh_of(m, names[k], false);
+        if (!mesh)
+            return m->error.status;
+        const tl_zone_at at = tl_zone_at_number(m, mesh, names[k].number);
+        for (int a = 0; a < 4; a++) {
+            const uint16_t local = m->zones->zones.corner[a][at.row];
+            corners[k][a] = m->zones->listed[at.parcel->point_begin + local] - mesh->point_begin;
+        }
     }
     return TL_OK;
 }

@@ -65,20 +65,23 @@ static double least_of(const double weight[4])
     return fmin(fmin(weight[0], weight[1]), fmin(weight[2], weight[3]));
 }
 
-/* The zone at the surface of a block that a place lies in, or the least outside of. */
+/* The zone at the surface of a block that a place lies in, or the least outside of. A block inside of its body has
+ * none: then that of another block. */
 static void find_zone(const tl_model *m, tl_id block, tl_vec3 place, uint32_t point[4], double weight[4])
 {
     const struct tl_zones *z = m->zones;
-    const uint32_t row = tl_block_row_quiet(m, block);
-    const tl_body_mesh *mesh = &z->mesh[tl_mesh_of(m, m->bodies.id[m->blocks.body[row]])];
+    const tl_body_mesh *mesh = &z->mesh[tl_mesh_of(m, block)];
     double best = -INFINITY;
+    bool own_surface = false;
+    for (uint32_t k = mesh->part_begin; k < mesh->part_end; k++)
+        own_surface = own_surface || z->part[k].block == block;
     for (uint32_t k = mesh->part_begin; k < mesh->part_end; k++) {
         const tl_surface_part *part = &z->part[k];
         const uint32_t own[4] = {part->apex - mesh->point_begin, part->corner[0] - mesh->point_begin,
                                  part->corner[1] - mesh->point_begin, part->corner[2] - mesh->point_begin};
         tl_vec3 x[4];
         double w[4];
-        if (part->block != block)
+        if (own_surface && part->block != block)
             continue;
         corners_of(m, mesh->point_begin, own, x);
         weigh(x, place, w);
@@ -208,6 +211,7 @@ static void push(tl_model *m, uint32_t first, const tl_carrier *by, tl_vec3 forc
         const uint32_t row = first + by->point[a];
         tl_columns_put(p->force, row, tl_v3_add(tl_columns_get(p->force, row), f));
         p->bears[row] += tl_v3_norm(f);
+        p->touched[row] += tl_v3_norm(f);
     }
 }
 

@@ -40,6 +40,18 @@ typedef struct tl_segment {
     tl_vec3 normal_a, normal_b;
 } tl_segment;
 
+/* Whether a side is of a body. */
+static inline bool tl_side_is_of(const tl_model *m, const tl_segment_side *s, uint32_t body)
+{
+    return (tl_side_is_rigid(s) ? s->at[0] : m->zones->mesh[m->zones->points.mesh[s->at[0]]].row) == body;
+}
+
+/* Whether a row is a segment, and one of its sides is of a body. */
+static inline bool tl_segment_touches(const tl_model *m, const tl_segment *of, uint32_t body)
+{
+    return of->meet != TL_NO_ROW && (tl_side_is_of(m, &of->a, body) || tl_side_is_of(m, &of->b, body));
+}
+
 /* The row of point k of a segment. */
 static inline size_t tl_segment_point_row(size_t segment, size_t k)
 {

@@ -38,7 +38,7 @@ tl_side_now tl_side_now_of(const tl_model *m, const tl_segment_side *side, tl_ve
     const tl_gridpoints *g = &m->zones->points;
     for (int k = 0; k < 3; k++) {
         out.x[k] = tl_gridpoint_place(g, side->at[k]);
-        out.d[k] = tl_v3_scale(m->dt, tl_columns_get(g->moved, side->at[k]));
+        out.d[k] = tl_v3_scale(m->zones->moved_dt, tl_columns_get(g->moved, side->at[k]));
     }
     const tl_vec3 a = tl_v3_sub(out.x[1], out.x[0]), b = tl_v3_sub(out.x[2], out.x[0]), area = tl_v3_cross(a, b);
     const double size = tl_v3_norm(area);

@@ -3,6 +3,7 @@
  *     histories             what each samples, and how many samples it has; without histories it is not there
  *     histories.K.ids       of its blocks
  *     histories.K.contacts  names of its contacts
+ *     histories.K.zones     names of its zones or gridpoints
  *     histories.K.cycles    of its samples
  *     histories.K.times     s
  *     histories.K.values    width numbers for each sample
@@ -23,8 +24,8 @@ typedef struct history_kept {
     uint8_t source, take, selection, lost, list, spare[3];
 } history_kept;
 
-/* A list of a history, by its name in a file: "ids" of its blocks or contacts, and of its samples "cycles", "times"
- * and "values". */
+/* A list of a history, by its name in a file: "ids" of its blocks ("contacts", "zones"), and of its samples "cycles",
+ * "times" and "values". */
 typedef struct history_list {
     const char *name;
     void *at;
@@ -37,6 +38,8 @@ static history_list history_list_at(const tl_history *h, unsigned k)
 {
     switch (k) {
     case 0:
+        if (h->source == TL_FROM_ZONES || h->source == TL_FROM_GRIDPOINTS)
+            return (history_list){"zones", h->zones, sizeof *h->zones, h->id_count};
         return h->source == TL_FROM_CONTACTS ? (history_list){"contacts", h->contacts, sizeof *h->contacts, h->id_count}
                                              : (history_list){"ids", h->ids, sizeof *h->ids, h->id_count};
     case 1: return (history_list){"cycles", h->cycles, sizeof *h->cycles, h->count};

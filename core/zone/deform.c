@@ -1,35 +1,39 @@
-/* deform.c - rigid blocks become deformable: their zones are made, and laid into the tables.
+/* deform.c - rigid bodies become deformable: the zones of their blocks are made, and laid into the tables.
  *
- * All blocks are divided before any is changed. Then each gets its mesh, in the order of the rows. */
-#include "zone/deform.h"
-
+ * All bodies are divided before any is changed. Then each gets its mesh, in the order of their first blocks. */
 #include "base/columns.h"
-#include "geometry/zone_clusters.h"
 #include "geometry/zoning.h"
+#include "model/deformable.h"
+#include "model/loads.h"
 #include "model/rows.h"
+#include "zone/body_zones.h"
+#include "zone/columns.h"
 #include "zone/corner_keys.h"
-#include "zone/grid.h"
 #include "zone/solids.h"
+#include "zone/stiffness.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
+#include <talus/zones.h>
 
-/* The zones of one block on their way. */
+/* Tolerance: distance over the block's size up to which a loaded point outside counts as one of the surface. */
+#define TOUCHES 1e-6
+
+/* A body on its way. */
 typedef struct part {
-    uint32_t row; /* of the block */
-    tl_zone_mesh mesh;
-    tl_zone_clusters clusters;
-    tl_surface_part *surface;
+    uint32_t body; /* its row */
+    tl_body_zones zones;
 } part;
 
 /* One call. */
 typedef struct dividing {
     tl_model *m;
-    const tl_dividing *how;
-    part *part; /* ascending rows */
+    const tl_zoning *how;
+    unsigned char *chosen; /* [rows of blocks] */
+    size_t blocks;
+    part *part; /* in the order of their first blocks */
     size_t count;
-    uint32_t body; /* of the block that is being divided */
+    uint32_t body; /* that is being divided */
     tl_corner_keys keys;
     tl_zone_scratch *scratch;
 } dividing;
@@ -41,6 +45,35 @@ static tl_status refuse(tl_model *m, tl_id block, const char *why)
     return tl_fail(&m->error, TL_E_STATE, "block %u cannot get zones: %s", block, why);
 }
 
+/* Whether a place, in a body's frame, lies in one of its blocks. */
+static bool lies_in(const tl_model *m, uint32_t body, tl_vec3 at)
+{
+    bool some = false;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        const uint32_t row = tl_body_blocks(m, body)[k];
+        const tl_poly *shape = m->blocks.shape[row];
+        bool inside = true;
+        for (uint32_t f = 0; f < shape->face_count; f++)
+            inside = inside &&
+                     tl_v3_dot(shape->plane[f].normal, at) <= shape->plane[f].offset + TOUCHES * m->blocks.size[row];
+        some = some || inside;
+    }
+    return some;
+}
+
+/* A load goes over to the zone at its point, or without one to all gridpoints by mass. */
+static tl_status check_load(tl_model *m, uint32_t row)
+{
+    const tl_id block = m->blocks.id[row];
+    const tl_vec3 at = m->bodies.load[m->blocks.body[row]].arm;
+    for (size_t k = 0; k < m->face_load_count; k++)
+        if (m->face_loads[k].block == block)
+            return refuse(m, block, "its faces are loaded; take the load off, and put it on when it has zones");
+    if (!lies_in(m, m->blocks.body[row], at))
+        return refuse(m, block, "it carries a load at a point outside of it; take that off");
+    return tl_gridpoints_hold_loads(&m->zones->points) ? TL_OK : tl_fail_memory(&m->error);
+}
+
 static tl_status check_block(tl_model *m, uint32_t row)
 {
     const tl_bodies *b = &m->bodies;
@@ -48,41 +81,51 @@ static tl_status check_block(tl_model *m, uint32_t row)
     const tl_id block = m->blocks.id[row];
     if (b->mesh[body])
         return refuse(m, block, "it has zones already");
-    if (b->member_count[body] > 1)
-        return refuse(m, block, "it is joined to others; bodies of one block can be divided");
-    if (b->drive[body])
-        return refuse(m, block, "it is driven; drive gridpoints instead");
-    if (tl_body_loaded(b, body))
-        return refuse(m, block, "it carries a load; load gridpoints instead");
+    return tl_body_loaded(b, body) ? check_load(m, row) : TL_OK;
+}
+
+/* A body comes whole: all blocks that are joined to a chosen one are chosen. */
+static tl_status check_whole(const dividing *d, uint32_t row)
+{
+    tl_model *m = d->m;
+    const uint32_t body = m->blocks.body[row], *rows = tl_body_blocks(m, body);
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
+        if (!d->chosen[rows[k]])
+            return tl_fail(
+                &m->error, TL_E_STATE,
+                "block %u cannot get zones: it is joined to block %u, which is not among the blocks given; give "
+                "all blocks of a body, or unjoin them",
+                m->blocks.id[row], m->blocks.id[rows[k]]);
     return TL_OK;
 }
 
-static int by_row(const void *a, const void *b)
+/* Lists the bodies of the blocks, each once. */
+static tl_status list_bodies(dividing *d, const tl_id *blocks, size_t count)
 {
-    const part *x = a, *y = b;
-    return x->row < y->row ? -1 : x->row > y->row;
-}
-
-/* Lists the blocks, each once. */
-static tl_status list_blocks(dividing *d, const tl_id *blocks, size_t count)
-{
+    tl_model *m = d->m;
     d->part = calloc(count + 1, sizeof *d->part);
-    if (!d->part)
-        return tl_fail_memory(&d->m->error);
+    d->chosen = calloc(m->blocks.table.rows + 1, 1);
+    if (!d->part || !d->chosen)
+        return tl_fail_memory(&m->error);
     for (size_t k = 0; k < count; k++) {
-        const uint32_t row = tl_block_row(d->m, blocks[k]);
+        const uint32_t row = tl_block_row(m, blocks[k]);
         if (row == TL_NO_ROW)
-            return d->m->error.status;
-        const tl_status status = check_block(d->m, row);
+            return m->error.status;
+        const tl_status status = check_block(m, row);
         if (status != TL_OK)
             return status;
-        d->part[k].row = row;
+        d->chosen[row] = 1;
     }
-    if (count > 0)
-        qsort(d->part, count, sizeof *d->part, by_row);
-    for (size_t k = 0; k < count; k++)
-        if (d->count == 0 || d->part[d->count - 1].row != d->part[k].row)
-            d->part[d->count++].row = d->part[k].row;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        if (!d->chosen[row])
+            continue;
+        const tl_status status = check_whole(d, row);
+        if (status != TL_OK)
+            return status;
+        d->blocks++;
+        if (*tl_body_blocks(m, m->blocks.body[row]) == row)
+            d->part[d->count++].body = m->blocks.body[row];
+    }
     return TL_OK;
 }
 
@@ -92,130 +135,53 @@ static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint3
     tl_status status = tl_model_may_change(m, "give blocks zones");
     if (status == TL_OK)
         tl_rows_tidy(m);
-    if (status == TL_OK && !d->how->size && !(d->how->edge > 0))
+    if (status == TL_OK && !d->how->edge_at && !(d->how->edge > 0))
         status = tl_fail(&m->error, TL_E_ARGUMENT, "the edge of zones must be > 0 m (it is %g)", d->how->edge);
     *solid = status == TL_OK && m->zones && d->how->solid ? tl_solid_find(m, d->how->solid) : TL_NO_ROW;
     if (status == TL_OK && *solid == TL_NO_ROW)
         status = tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%s': name one with %s first",
                          d->how->solid ? d->how->solid : "", tl_words(m, "model:solid", "tl_model_solid"));
-    return status == TL_OK ? list_blocks(d, blocks, count) : status;
+    return status == TL_OK ? list_bodies(d, blocks, count) : status;
 }
 
-/* ---------------------------------------------------------------- zones of a block ------- */
+/* ---------------------------------------------------------------- zones of a body -------- */
 
-/* The wanted edge at a place of the block that is being divided. */
+/* The wanted edge at a place of the body that is being divided. */
 static double edge_at(const void *user, tl_vec3 local)
 {
     const dividing *d = user;
-    return d->how->size(d->how->user, tl_model_point(d->m, d->body, local));
+    return d->how->edge_at(d->how->user, tl_model_point(d->m, d->body, local));
 }
 
-/* Lists of the free sides of zones by their lowest points: side `4 zone + corner` lies opposite the corner. */
-typedef struct free_sides {
-    uint32_t *start, *side;
-} free_sides;
-
-static uint32_t lowest_of(const tl_zone_mesh *mesh, uint32_t side)
+static tl_status divide_body(dividing *d, part *of)
 {
-    uint32_t lowest = UINT32_MAX;
-    for (uint32_t a = 0; a < 4; a++)
-        if (a != side % 4 && mesh->zone[side / 4][a] < lowest)
-            lowest = mesh->zone[side / 4][a];
-    return lowest;
-}
-
-static bool list_free_sides(const tl_zone_mesh *mesh, free_sides *sides)
-{
-    sides->start = calloc((size_t)mesh->point_count + 2, sizeof *sides->start);
-    sides->side = malloc(((size_t)mesh->triangle_count + 1) * sizeof *sides->side);
-    if (!sides->start || !sides->side)
-        return false;
-    for (uint32_t s = 0; s < 4 * mesh->zone_count; s++)
-        if (mesh->beside[s / 4][s % 4] == UINT32_MAX)
-            sides->start[lowest_of(mesh, s) + 2]++;
-    for (uint32_t p = 0; p < mesh->point_count; p++)
-        sides->start[p + 2] += sides->start[p + 1];
-    for (uint32_t s = 0; s < 4 * mesh->zone_count; s++)
-        if (mesh->beside[s / 4][s % 4] == UINT32_MAX)
-            sides->side[sides->start[lowest_of(mesh, s) + 1]++] = s;
-    return true;
-}
-
-/* Whether a side of a zone has the corners of a triangle. */
-static bool is_side(const tl_zone_mesh *mesh, uint32_t side, const uint32_t corner[3])
-{
-    int shared = 0;
-    for (uint32_t a = 0; a < 4; a++)
-        for (int k = 0; a != side % 4 && k < 3; k++)
-            shared += mesh->zone[side / 4][a] == corner[k];
-    return shared == 3;
-}
-
-/* The point of a triangle's zone that is no corner of it. */
-static uint32_t apex_of(const tl_zone_mesh *mesh, const free_sides *sides, const uint32_t corner[3])
-{
-    uint32_t lowest = corner[0];
-    for (int k = 1; k < 3; k++)
-        if (corner[k] < lowest)
-            lowest = corner[k];
-    for (uint32_t k = sides->start[lowest]; k < sides->start[lowest + 1]; k++)
-        if (is_side(mesh, sides->side[k], corner))
-            return mesh->zone[sides->side[k] / 4][sides->side[k] % 4];
-    return UINT32_MAX;
-}
-
-static tl_status list_surface(dividing *d, part *of)
-{
-    const tl_zone_mesh *mesh = &of->mesh;
-    const tl_id block = d->m->blocks.id[of->row];
-    free_sides sides;
-    of->surface = malloc(((size_t)mesh->triangle_count + 1) * sizeof *of->surface);
-    const bool enough = list_free_sides(mesh, &sides) && of->surface;
-    bool whole = true;
-    for (uint32_t t = 0; enough && t < mesh->triangle_count; t++) {
-        const tl_zone_triangle *from = &mesh->triangle[t];
-        tl_surface_part *to = &of->surface[t];
-        *to = (tl_surface_part){.face = from->face, .block = block};
-        memcpy(to->corner, from->corner, sizeof to->corner);
-        to->apex = apex_of(mesh, &sides, from->corner);
-        whole = whole && to->apex != UINT32_MAX;
-    }
-    free(sides.start);
-    free(sides.side);
-    if (enough && !whole)
-        return tl_fail(&d->m->error, TL_E_GEOMETRY, "block %u: its zones do not end at its faces", block);
-    return enough ? TL_OK : tl_fail_memory(&d->m->error);
-}
-
-/* Places of points from the model's origin instead of those of the block. */
-static void place_points(const dividing *d, part *of)
-{
-    for (uint32_t p = 0; p < of->mesh.point_count; p++)
-        of->mesh.point[p] = tl_body_point(&d->m->bodies, d->body, of->mesh.point[p]);
-}
-
-static tl_status divide_block(dividing *d, part *of)
-{
-    tl_model *m = d->m;
-    const tl_zoning zoning = {.edge = d->how->edge,
-                              .size = d->how->size ? edge_at : NULL,
-                              .user = d,
-                              .corner_key = d->keys.of + d->keys.start[of->row]};
-    d->body = m->blocks.body[of->row];
-    tl_status status = tl_zoning_make(m->blocks.shape[of->row], &zoning, d->scratch, &of->mesh, &m->error);
-    if (status == TL_OK)
-        status = tl_zone_clusters_make((const uint32_t(*)[4])of->mesh.zone, (const uint32_t(*)[4])of->mesh.beside,
-                                       of->mesh.zone_count, &of->clusters, &m->error);
-    if (status != TL_OK)
-        return tl_error_prefix(&m->error, "block %u: ", m->blocks.id[of->row]);
-    status = list_surface(d, of);
-    place_points(d, of);
+    const tl_shape_zoning zoning = {.edge = d->how->edge, .size = d->how->edge_at ? edge_at : NULL, .user = d};
+    d->body = of->body;
+    const tl_status status = tl_body_zones_make(d->m, of->body, &zoning, &d->keys, d->scratch, &of->zones);
+    for (uint32_t p = 0; status == TL_OK && p < of->zones.point_count; p++) /* from the model's origin from now on */
+        of->zones.point[p] = tl_body_point(&d->m->bodies, of->body, of->zones.point[p]);
     return status;
 }
 
 /* ---------------------------------------------------------------- laying ----------------- */
 
-/* Gridpoints move and are held as their block was, whose own motion ends. */
+/* The load of a block acts on its gridpoints, and no longer on the block. */
+static void take_over_load(tl_model *m, uint32_t body)
+{
+    if (!tl_body_loaded(&m->bodies, body))
+        return;
+    const tl_body_load had = m->bodies.load[body];
+    tl_load load = tl_load_default();
+    load.force = had.force;
+    load.moment = had.moment;
+    if (!tl_v3_is_zero(had.arm))
+        load.at = tl_model_point(m, body, had.arm);
+    m->bodies.load[body] = (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    tl_load_begins_anew(m, body);
+    m->zone_verbs->load(m, body, &load);
+}
+
+/* Gridpoints move and are held as their body was, whose own motion ends. */
 static void take_over_motion(tl_model *m, const tl_body_mesh *mesh, uint8_t fixed)
 {
     tl_gridpoints *p = &m->zones->points;
@@ -230,23 +196,27 @@ static void take_over_motion(tl_model *m, const tl_body_mesh *mesh, uint8_t fixe
         p->fixed[row] = held;
     }
     b->v[mesh->row] = b->w[mesh->row] = tl_v3(0, 0, 0);
-    tl_block_changes(m, *tl_body_blocks(m, mesh->row));
+    take_over_load(m, mesh->row);
+    for (uint32_t k = 0; k < b->member_count[mesh->row]; k++)
+        tl_block_changes(m, tl_body_blocks(m, mesh->row)[k]);
 }
 
 static tl_status lay(dividing *d, const part *of, uint32_t solid)
 {
     tl_model *m = d->m;
-    const tl_grid grid = {.point = of->mesh.point,
-                          .point_count = of->mesh.point_count,
-                          .zone = (const uint32_t(*)[4])of->mesh.zone,
-                          .zone_count = of->mesh.zone_count,
-                          .cluster_start = of->clusters.start,
-                          .cluster_zone = of->clusters.zone,
-                          .cluster_count = of->clusters.count,
-                          .density = m->blocks.density[of->row],
-                          .part = of->surface,
-                          .part_count = of->mesh.triangle_count};
-    return tl_zones_add(m, m->bodies.id[m->blocks.body[of->row]], &grid, solid);
+    const tl_body_zones *z = &of->zones;
+    const tl_grid grid = {.point = z->point,
+                          .point_count = z->point_count,
+                          .zone = (const uint32_t(*)[4])z->zone,
+                          .zone_count = z->zone_count,
+                          .cluster_start = z->cluster_start,
+                          .cluster_zone = z->cluster_zone,
+                          .cluster_count = z->cluster_count,
+                          .block = z->block,
+                          .block_count = z->block_count,
+                          .part = z->surface,
+                          .part_count = z->surface_count};
+    return tl_zones_add(m, m->bodies.id[of->body], &grid, solid);
 }
 
 /* Lays all meshes; takes them back when memory does not suffice. */
@@ -257,7 +227,7 @@ static tl_status lay_all(dividing *d, uint32_t solid)
     uint8_t *fixed = malloc(d->count + 1);
     tl_status status = fixed ? TL_OK : tl_fail_memory(&m->error);
     for (size_t k = 0; status == TL_OK && k < d->count; k++) {
-        fixed[k] = m->bodies.fixed[m->blocks.body[d->part[k].row]];
+        fixed[k] = m->bodies.fixed[d->part[k].body];
         status = lay(d, &d->part[k], solid);
     }
     for (uint32_t k = meshes; k < m->zones->mesh_count; k++)
@@ -273,35 +243,67 @@ static tl_status lay_all(dividing *d, uint32_t solid)
     return status;
 }
 
-static void report(const dividing *d, tl_divided *made)
+/* The trace of the inertia of a body's gridpoints about its centroid, over that of the body. */
+static double inertia_ratio(const tl_model *m, const tl_body_mesh *mesh)
 {
-    *made = (tl_divided){.blocks = d->count, .least_altitude = INFINITY, .least_share = INFINITY};
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 at = tl_body_place(&m->bodies, mesh->row), own = m->bodies.moments[mesh->row];
+    double sum = 0;
+    for (uint32_t row = mesh->point_begin; row < mesh->point_end; row++)
+        sum += 2 * p->mass[row] * tl_v3_norm2(tl_v3_sub(tl_gridpoint_place(p, row), at));
+    return sum / (own.x + own.y + own.z);
+}
+
+/* The step that the gridpoints of meshes allow, free as they are: 2 / sqrt(k / m) of the stiffest. */
+static double step_of(tl_model *m, size_t from)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    double most = 0;
+    tl_zones_stiffen(m);
+    for (uint32_t row = m->zones->mesh[from].point_begin; row < p->table.rows; row++)
+        if (p->zones[row] > 0)
+            most = fmax(most, p->stiffness[row] / p->mass[row]);
+    m->zones->rated_for = 0; /* what segments hold gridpoints by is not in it */
+    return most > 0 ? 2 / sqrt(most) : 0;
+}
+
+static void report(const dividing *d, tl_zoned *made)
+{
+    tl_model *m = d->m;
+    *made = (tl_zoned){.blocks = d->blocks, .least_altitude = INFINITY, .least_share = INFINITY};
+    const size_t from = m->zones->mesh_count - d->count;
+    for (size_t k = from; k < m->zones->mesh_count; k++)
+        made->inertia = fmax(made->inertia, inertia_ratio(m, &m->zones->mesh[k]));
+    made->time_step = d->count > 0 ? step_of(m, from) : 0;
     for (size_t k = 0; k < d->count; k++) {
-        const part *of = &d->part[k];
-        made->zones += of->mesh.zone_count;
-        made->gridpoints += of->mesh.point_count;
-        made->clusters += of->clusters.count;
-        made->least_altitude = fmin(made->least_altitude, of->mesh.least_altitude);
-        if (of->mesh.least_share < made->least_share) {
-            made->least_share = of->mesh.least_share;
-            made->worst = d->m->blocks.id[of->row];
+        const tl_body_zones *of = &d->part[k].zones;
+        made->zones += of->zone_count;
+        made->gridpoints += of->point_count;
+        made->clusters += of->cluster_count;
+        made->least_altitude = fmin(made->least_altitude, of->least_altitude);
+        if (of->least_share < made->least_share) {
+            made->least_share = of->least_share;
+            made->worst = of->worst;
         }
     }
 }
 
 static void end(dividing *d)
 {
-    for (size_t k = 0; k < d->count; k++) {
-        tl_zone_mesh_free(&d->part[k].mesh);
-        tl_zone_clusters_free(&d->part[k].clusters);
-        free(d->part[k].surface);
-    }
+    for (size_t k = 0; k < d->count; k++)
+        tl_body_zones_free(&d->part[k].zones);
     free(d->part);
+    free(d->chosen);
     tl_corner_keys_free(&d->keys);
     tl_zone_scratch_free(d->scratch);
 }
 
-tl_status tl_blocks_divide(tl_model *m, const tl_id *blocks, size_t count, const tl_dividing *how, tl_divided *made)
+tl_zoning tl_zoning_default(void)
+{
+    return (tl_zoning){.size = sizeof(tl_zoning), .edge = NAN};
+}
+
+tl_status tl_blocks_deform(tl_model *m, const tl_id *blocks, size_t count, const tl_zoning *how, tl_zoned *made)
 {
     dividing d = {.m = m, .how = how};
     uint32_t solid = TL_NO_ROW;
@@ -314,7 +316,7 @@ tl_status tl_blocks_divide(tl_model *m, const tl_id *blocks, size_t count, const
     for (size_t k = 0; status == TL_OK && k < d.count; k++) {
         status = tl_model_go_on(m);
         if (status == TL_OK)
-            status = divide_block(&d, &d.part[k]);
+            status = divide_body(&d, &d.part[k]);
     }
     if (status == TL_OK)
         status = lay_all(&d, solid);

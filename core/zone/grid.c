@@ -23,7 +23,7 @@ uint32_t tl_mesh_of(const tl_model *m, tl_id body)
 const tl_surface_part *tl_face_parts(const tl_model *m, tl_id block, uint32_t number, size_t *count)
 {
     const struct tl_zones *z = m->zones;
-    const uint32_t mesh = tl_mesh_of(m, m->bodies.id[m->blocks.body[tl_block_row_quiet(m, block)]]);
+    const uint32_t mesh = tl_mesh_of(m, block);
     *count = 0;
     if (mesh == TL_NO_ROW)
         return NULL;
@@ -56,14 +56,25 @@ bool tl_blocks_meet(const tl_model *m, uint32_t a, uint32_t b)
 /* A mesh on its way into the tables: scratch of `tl_zones_add`. */
 typedef struct laying {
     tl_model *m;
-    struct tl_zones *z;
+    struct tl_zones *z; /* the tables: those of the model, or others */
     const tl_grid *grid;
-    uint32_t *local;  /* of each of the mesh's points: its number in the parcel, or TL_NO_ROW */
-    uint32_t *sorted; /* clusters of the parcel, by their sizes */
-    uint32_t points;  /* that the parcel has */
-    uint32_t first;   /* row of the mesh's first gridpoint */
-    uint32_t row;     /* of the body */
+    uint32_t *local;   /* of each of the mesh's points: its number in the parcel, or TL_NO_ROW */
+    uint32_t *sorted;  /* clusters of the parcel, by their sizes */
+    uint32_t points;   /* that the parcel has */
+    uint32_t first;    /* row of the mesh's first gridpoint */
+    uint32_t row;      /* of the body */
+    uint32_t solid;    /* of clusters, where the grid does not tell */
+    tl_grid_block own; /* that of a body which does not list its blocks */
 } laying;
+
+/* The block of a cluster. */
+static const tl_grid_block *block_of(const laying *l, uint32_t cluster)
+{
+    const tl_grid_block *of = l->grid->block ? l->grid->block : &l->own;
+    while (of->cluster_end <= cluster)
+        of++;
+    return of;
+}
 
 static size_t size_of(const tl_grid *g, uint32_t cluster)
 {
@@ -92,16 +103,23 @@ static uint32_t new_points(const laying *l, uint32_t cluster, bool add)
     return found - l->points;
 }
 
+static uint32_t solid_of(const laying *l, uint32_t cluster)
+{
+    return l->grid->cluster_solid ? l->grid->cluster_solid[cluster] : l->solid;
+}
+
 /* How many clusters from `first` on make a parcel: its gridpoints get their numbers. */
 static uint32_t gather_clusters(laying *l, uint32_t first)
 {
     const tl_grid *g = l->grid;
+    const size_t most = block_of(l, first)->cluster_end;
+    const uint32_t solid = solid_of(l, first);
     size_t zones = 0;
     uint32_t end = first;
     for (size_t k = 0; k < g->point_count; k++)
         l->local[k] = TL_NO_ROW;
     l->points = 0;
-    while (end < g->cluster_count) {
+    while (end < most && solid_of(l, end) == solid) {
         const size_t more = size_of(g, end);
         if (zones + more > TL_PARCEL_ZONES * 9 / 10 || l->points + new_points(l, end, false) > TL_PARCEL_POINTS)
             break;
@@ -164,11 +182,14 @@ static void lay_group(const laying *l, const uint32_t *cluster, uint32_t count, 
 }
 
 /* Lays a parcel of the clusters from `first` on, its zones from a row on, and says which cluster is the next. */
-static uint32_t lay_parcel(laying *l, uint32_t first, uint32_t parcel, size_t *row, uint32_t mesh, uint32_t solid)
+static uint32_t lay_parcel(laying *l, uint32_t first, uint32_t parcel, size_t *row, uint32_t mesh)
 {
     struct tl_zones *z = l->z;
     const uint32_t end = gather_clusters(l, first), count = end - first;
-    tl_parcel of = {.mesh = mesh, .solid = solid, .group_begin = (uint32_t)z->group_count};
+    tl_parcel of = {.mesh = mesh,
+                    .solid = solid_of(l, first),
+                    .block = block_of(l, first)->block,
+                    .group_begin = (uint32_t)z->group_count};
     sort_clusters(l, first, end);
     for (uint32_t k = 0; k < count; k += TL_LANES)
         lay_group(l, l->sorted + k, count - k < TL_LANES ? count - k : TL_LANES, row);
@@ -198,8 +219,11 @@ static void put_points(const laying *l, size_t padded, uint32_t mesh)
         p->mass[l->first + k] = k < g->point_count ? 0 : NO_MASS;
         p->fixed[l->first + k] = k < g->point_count ? 0 : TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
     }
+    const tl_grid_block *of = block_of(l, 0);
     for (uint32_t zone = 0; zone < g->zone_count; zone++) {
-        const double mass = g->density * volume_of(g, zone) / 4;
+        while (zone >= of->zone_end)
+            of++;
+        const double mass = of->density * volume_of(g, zone) / 4;
         for (int a = 0; a < 4; a++) {
             const uint32_t row = l->first + g->zone[zone][a];
             p->mass[row] += mass;
@@ -208,21 +232,34 @@ static void put_points(const laying *l, size_t padded, uint32_t mesh)
     }
 }
 
-bool tl_zones_index(struct tl_zones *z)
+bool tl_zones_index(struct tl_zones *z, uint32_t mesh)
 {
-    const size_t points = z->points.table.rows;
-    if (!tl_fit(&z->use_start, &z->use_start_capacity, points + 1, sizeof *z->use_start) ||
-        !tl_fit(&z->use, &z->use_capacity, z->listed_count, sizeof *z->use))
+    const size_t end = z->points.table.rows, listed_end = z->listed_count;
+    if (!tl_grow(&z->use_start, &z->use_start_capacity, end + 1, sizeof *z->use_start) ||
+        !tl_grow(&z->use, &z->use_capacity, listed_end, sizeof *z->use))
         return false;
-    memset(z->use_start, 0, (points + 1) * sizeof *z->use_start);
-    for (size_t k = 0; k < z->listed_count; k++)
-        z->use_start[z->listed[k] + 1]++;
-    for (size_t p = 0; p < points; p++)
-        z->use_start[p + 1] += z->use_start[p];
-    for (size_t k = 0; k < z->listed_count; k++)
-        z->use[z->use_start[z->listed[k]]++] = (uint32_t)k;
-    memmove(z->use_start + 1, z->use_start, points * sizeof *z->use_start);
-    z->use_start[0] = 0;
+    if (mesh == 0)
+        z->use_start[0] = 0;
+    if (mesh >= z->mesh_count)
+        return true;
+    /* each item of the list is a slot of one gridpoint: gridpoints from `begin` on have those from `listed` on */
+    const tl_body_mesh *first = &z->mesh[mesh];
+    const size_t begin = first->point_begin, listed = mesh > 0 ? z->parcels.of[first->parcel_begin].point_begin : 0;
+    uint32_t *start = z->use_start;
+    for (size_t p = begin; p <= end; p++)
+        start[p] = 0;
+    for (size_t k = listed; k < listed_end; k++)
+        start[z->listed[k] + 1]++;
+    start[begin] = (uint32_t)listed;
+    for (size_t p = begin; p < end; p++)
+        start[p + 1] += start[p];
+    for (size_t k = listed; k < listed_end; k++)
+        z->use[start[z->listed[k]]++] = (uint32_t)k;
+    memmove(start + begin + 1, start + begin, (end - begin) * sizeof *start);
+    start[begin] = (uint32_t)listed;
+    for (size_t k = first->part_begin; k < z->part_count; k++)
+        for (int a = 0; a < 3; a++)
+            z->points.bare[z->part[k].corner[a]] = 1;
     return true;
 }
 
@@ -244,21 +281,31 @@ static void count_parcel(const laying *l, uint32_t count, sizes *all)
     all->listed += l->points;
 }
 
-static bool reserve(laying *l, const sizes *more)
+/* Makes room for zones. */
+static bool reserve_zones(laying *l, const sizes *more)
 {
     struct tl_zones *z = l->z;
-    return tl_table_reserve(&z->points.table, z->points.table.rows + more->points) &&
-           tl_table_reserve(&z->zones.table, z->zones.table.rows + more->rows) &&
+    return tl_table_reserve(&z->zones.table, z->zones.table.rows + more->rows) &&
            tl_table_reserve(&z->parcels.table, z->parcels.table.rows + more->parcels) &&
            tl_grow(&z->group, &z->group_capacity, z->group_count + more->groups, sizeof *z->group) &&
            tl_grow(&z->listed, &z->listed_capacity, z->listed_count + more->listed, sizeof *z->listed) &&
            tl_grow(&z->slot, &z->slot_capacity, z->listed_count + more->listed, sizeof *z->slot) &&
-           tl_grow(&z->row_of, &z->row_of_capacity, z->row_of_count + l->grid->zone_count, sizeof *z->row_of) &&
-           tl_grow(&z->part, &z->part_capacity, z->part_count + l->grid->part_count, sizeof *z->part) &&
-           tl_grow(&z->mesh, &z->mesh_capacity, z->mesh_count + 1, sizeof *z->mesh);
+           tl_grow(&z->row_of, &z->row_of_capacity, z->row_of_count + l->grid->zone_count, sizeof *z->row_of);
 }
 
-/* Makes room for a mesh. */
+/* Makes room for all else of a mesh. */
+static bool reserve_rest(laying *l, const sizes *more)
+{
+    struct tl_zones *z = l->z;
+    const size_t points = z->points.table.rows + more->points;
+    return tl_table_reserve(&z->points.table, points) &&
+           tl_grow(&z->part, &z->part_capacity, z->part_count + l->grid->part_count, sizeof *z->part) &&
+           tl_grow(&z->mesh, &z->mesh_capacity, z->mesh_count + 1, sizeof *z->mesh) &&
+           tl_grow(&z->use_start, &z->use_start_capacity, points + 1, sizeof *z->use_start) &&
+           tl_grow(&z->use, &z->use_capacity, z->listed_count + more->listed, sizeof *z->use);
+}
+
+/* Makes room for the zones of a mesh, and counts what it adds. */
 static bool make_room(laying *l, sizes *more)
 {
     const tl_grid *g = l->grid;
@@ -272,34 +319,44 @@ static bool make_room(laying *l, sizes *more)
         sort_clusters(l, first, end);
         count_parcel(l, end - first, more);
     }
-    return reserve(l, more);
+    return reserve_zones(l, more);
+}
+
+/* Lays the zones of a mesh that has its gridpoints. There is room. */
+static void lay_zones(laying *l, tl_body_mesh *mesh, uint32_t number, const sizes *more)
+{
+    struct tl_zones *z = l->z;
+    mesh->parcel_begin = (uint32_t)z->parcels.table.rows;
+    mesh->zone_begin = (uint32_t)z->row_of_count;
+    l->first = mesh->point_begin;
+    tl_table_resize(&z->parcels.table, z->parcels.table.rows + more->parcels);
+    tl_table_resize(&z->zones.table, z->zones.table.rows + more->rows);
+    uint32_t parcel = mesh->parcel_begin, first = 0;
+    size_t row = z->zones.table.rows - more->rows;
+    while (first < l->grid->cluster_count)
+        first = lay_parcel(l, first, parcel++, &row, number);
+    z->row_of_count += l->grid->zone_count;
+    mesh->parcel_end = parcel;
+    mesh->zone_end = (uint32_t)z->row_of_count;
 }
 
 /* Lays a mesh for which there is room. */
-static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
+static void lay_mesh(laying *l, tl_id body, const sizes *more)
 {
     struct tl_zones *z = l->z;
     const uint32_t number = (uint32_t)z->mesh_count++;
     tl_body_mesh *mesh = &z->mesh[number];
     *mesh = (tl_body_mesh){.body = body,
                            .row = l->row,
+                           .made_u = l->m->bodies.pose[l->row].u,
+                           .made_q = l->m->bodies.q[l->row],
                            .point_begin = (uint32_t)z->points.table.rows,
-                           .parcel_begin = (uint32_t)z->parcels.table.rows,
-                           .zone_begin = (uint32_t)z->row_of_count,
                            .part_begin = (uint32_t)z->part_count};
     l->first = mesh->point_begin;
     tl_table_resize(&z->points.table, z->points.table.rows + more->points);
     put_points(l, more->points, number);
-    tl_table_resize(&z->parcels.table, z->parcels.table.rows + more->parcels);
-    tl_table_resize(&z->zones.table, z->zones.table.rows + more->rows);
-    uint32_t parcel = mesh->parcel_begin, first = 0;
-    size_t row = z->zones.table.rows - more->rows;
-    while (first < l->grid->cluster_count)
-        first = lay_parcel(l, first, parcel++, &row, number, solid);
-    z->row_of_count += l->grid->zone_count;
+    lay_zones(l, mesh, number, more);
     mesh->point_end = mesh->point_begin + (uint32_t)l->grid->point_count;
-    mesh->parcel_end = parcel;
-    mesh->zone_end = (uint32_t)z->row_of_count;
     for (size_t k = 0; k < l->grid->part_count; k++) {
         tl_surface_part *part = &z->part[z->part_count++];
         *part = l->grid->part[k];
@@ -311,18 +368,25 @@ static void lay_mesh(laying *l, tl_id body, uint32_t solid, const sizes *more)
     z->version++;
 }
 
+static laying laying_of(tl_model *m, struct tl_zones *z, tl_id body, const tl_grid *grid, uint32_t solid)
+{
+    return (laying){.m = m,
+                    .z = z,
+                    .grid = grid,
+                    .row = m->blocks.body[tl_block_row_quiet(m, body)],
+                    .solid = solid,
+                    .own = {body, grid->density, grid->zone_count, grid->cluster_count}};
+}
+
 tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t solid)
 {
     struct tl_zones *z = m->zones;
-    laying l = {.m = m, .z = z, .grid = grid, .row = m->blocks.body[tl_block_row_quiet(m, body)]};
+    laying l = laying_of(m, z, body, grid, solid);
     sizes more;
-    const size_t points = z->points.table.rows + grid->point_count + TL_LANES;
-    bool enough = make_room(&l, &more) && tl_solid_columns(z, &z->solid[solid].of) &&
-                  tl_fit(&z->use_start, &z->use_start_capacity, points + 1, sizeof *z->use_start) &&
-                  tl_fit(&z->use, &z->use_capacity, z->listed_count + more.listed, sizeof *z->use);
+    const bool enough = make_room(&l, &more) && tl_solid_columns(z, &z->solid[solid].of) && reserve_rest(&l, &more);
     if (enough) {
-        lay_mesh(&l, body, solid, &more);
-        tl_zones_index(z);
+        lay_mesh(&l, body, &more);
+        tl_zones_index(z, (uint32_t)z->mesh_count - 1);
         m->bodies.fixed[l.row] = TL_FIX_ALL; /* its gridpoints move it */
         m->bodies.mesh[l.row] = (uint32_t)z->mesh_count;
         m->constraints++;
@@ -330,6 +394,18 @@ tl_status tl_zones_add(tl_model *m, tl_id body, const tl_grid *grid, uint32_t so
     free(l.local);
     free(l.sorted);
     return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+bool tl_zones_lay(tl_model *m, struct tl_zones *to, uint32_t mesh, const tl_grid *grid)
+{
+    laying l = laying_of(m, to, to->mesh[mesh].body, grid, TL_NO_ROW);
+    sizes more;
+    const bool enough = make_room(&l, &more);
+    if (enough)
+        lay_zones(&l, &to->mesh[mesh], mesh, &more);
+    free(l.local);
+    free(l.sorted);
+    return enough;
 }
 
 void tl_zones_end_at(tl_model *m, uint32_t meshes)
@@ -350,5 +426,4 @@ void tl_zones_end_at(tl_model *m, uint32_t meshes)
         m->bodies.mesh[z->mesh[k].row] = 0;
     z->mesh_count = meshes;
     z->version++;
-    tl_zones_index(z); /* there is room: it was made for more */
 }

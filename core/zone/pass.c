@@ -28,7 +28,7 @@
 #include "zone/pass.h"
 
 #include "base/extremes.h"
-#include "base/inline.h"
+#include "base/lanes.h"
 #include "base/solid_columns.h"
 
 #include <string.h>
@@ -47,6 +47,14 @@ typedef struct group_rows {
     double extent[ROWS], dissipated[ROWS];     /* m, and J/m3 */
 } group_rows;
 
+/* Sums over the zones of each cluster of a group, and what is the same for all its zones. */
+typedef struct group_sums {
+    _Alignas(TL_ALIGN) double change[TL_LANES]; /* of volume, m3; then its mean, 1 */
+    double middle[TL_LANES];                    /* of volumes half-way, m3 */
+    double strain2[TL_LANES];                   /* the square of the largest strain */
+    double sound[TL_LANES];                     /* 1: no zone is turned inside out; else 0 */
+} group_sums;
+
 typedef struct pass_job {
     tl_model *m;
     struct tl_zones *zones;
@@ -56,22 +64,22 @@ typedef struct pass_job {
 
 /* ---------------------------------------------------------------- strain ----------------- */
 
-/* The corners of a row of zones: places, and ways in the last step. */
-typedef struct row_corners {
-    _Alignas(TL_ALIGN) double x[4][3][TL_LANES];
-    double way[4][3][TL_LANES];
-} row_corners;
+/* A row of zones: places of corners 1 to 3, and their ways in the last step, from corner 0. */
+typedef struct row_edges {
+    _Alignas(TL_ALIGN) double edge[3][3][TL_LANES];
+    double way[3][3][TL_LANES];
+} row_edges;
 
-TL_INLINE void load_corners(const tl_parcel_points *p, uint16_t *const corner[4], size_t row, row_corners *restrict to)
+TL_INLINE void load_edges(const tl_parcel_points *p, uint16_t *const corner[4], size_t row, row_edges *restrict to)
 {
-    for (int a = 0; a < 4; a++)
-        for (size_t l = 0; l < TL_LANES; l++) {
-            const double *from = p->of[corner[a][row + l]];
-            for (int i = 0; i < 3; i++) {
-                to->x[a][i][l] = from[i];
-                to->way[a][i][l] = from[3 + i];
-            }
+    for (size_t l = row; l < row + TL_LANES; l += 4) {
+        double *restrict const edge = &to->edge[0][0][l - row], *restrict const way = &to->way[0][0][l - row];
+        for (size_t a = 1; a < 4; a++) {
+            const size_t at = 3 * (a - 1) * TL_LANES;
+            tl_lanes_apart(p->of[0].place, corner[a] + l, corner[0] + l, edge + at);
+            tl_lanes_apart(p->of[0].way, corner[a] + l, corner[0] + l, way + at);
         }
+    }
 }
 
 TL_INLINE tl_vec3 lane_of(double (*v)[TL_LANES], size_t l)
@@ -101,45 +109,49 @@ TL_INLINE tl_sym3 turned(tl_sym3 s, tl_vec3 w)
 /* The zones of one row of a group: number k of their clusters. All of a zone in one go, so that it stays in
  * registers. */
 TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g, size_t k,
-                          group_rows *restrict r)
+                          group_rows *restrict r, group_sums *restrict sums)
 {
     const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
     double *const *s = z->zones.stress;
     double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
     double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
     double factor[TL_LANES];
-    row_corners c;
-    load_corners(p, z->zones.corner, row, &c);
+    row_edges c;
+    load_edges(p, z->zones.corner, row, &c);
     for (size_t l = 0; l < TL_LANES; l++)
         factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_vec3 x0 = lane_of(c.x[0], l), w0 = lane_of(c.way[0], l);
-        const tl_vec3 e1 = tl_v3_sub(lane_of(c.x[1], l), x0), e2 = tl_v3_sub(lane_of(c.x[2], l), x0);
-        const tl_vec3 e3 = tl_v3_sub(lane_of(c.x[3], l), x0), w1 = tl_v3_sub(lane_of(c.way[1], l), w0);
-        const tl_vec3 w2 = tl_v3_sub(lane_of(c.way[2], l), w0), w3 = tl_v3_sub(lane_of(c.way[3], l), w0);
+        const tl_vec3 e1 = lane_of(c.edge[0], l), e2 = lane_of(c.edge[1], l), e3 = lane_of(c.edge[2], l);
+        const tl_vec3 w1 = lane_of(c.way[0], l), w2 = lane_of(c.way[1], l), w3 = lane_of(c.way[2], l);
         const tl_vec3 a1 = tl_v3_cross(e2, e3), a2 = tl_v3_cross(e3, e1), a3 = tl_v3_cross(e1, e2);
         r->area[0][0][at + l] = a1.x, r->area[0][1][at + l] = a1.y, r->area[0][2][at + l] = a1.z;
         r->area[1][0][at + l] = a2.x, r->area[1][1][at + l] = a2.y, r->area[1][2][at + l] = a2.z;
         r->area[2][0][at + l] = a3.x, r->area[2][1][at + l] = a3.y, r->area[2][2][at + l] = a3.z;
-        r->volume[at + l] = factor[l] * tl_v3_dot(a1, e1);
+        const double six_now = tl_v3_dot(a1, e1);
+        r->volume[at + l] = factor[l] * six_now;
         r->extent[at + l] = g->extent[l];
         const tl_vec3 m1 = tl_v3_madd(e1, -0.5, w1), m2 = tl_v3_madd(e2, -0.5, w2), m3 = tl_v3_madd(e3, -0.5, w3);
         const tl_vec3 b1 = tl_v3_cross(m2, m3), b2 = tl_v3_cross(m3, m1), b3 = tl_v3_cross(m1, m2);
-        const double six = tl_v3_dot(b1, m1), per = 1 / six;
+        const double six = tl_v3_dot(b1, m1), per = 1 / six, middle = factor[l] * six;
+        const double dxx = per * (w1.x * b1.x + w2.x * b2.x + w3.x * b3.x);
+        const double dyy = per * (w1.y * b1.y + w2.y * b2.y + w3.y * b3.y);
+        const double dzz = per * (w1.z * b1.z + w2.z * b2.z + w3.z * b3.z);
         const double dxy = per * (w1.x * b1.y + w2.x * b2.y + w3.x * b3.y);
         const double dyx = per * (w1.y * b1.x + w2.y * b2.x + w3.y * b3.x);
         const double dyz = per * (w1.y * b1.z + w2.y * b2.z + w3.y * b3.z);
         const double dzy = per * (w1.z * b1.y + w2.z * b2.y + w3.z * b3.y);
         const double dzx = per * (w1.z * b1.x + w2.z * b2.x + w3.z * b3.x);
         const double dxz = per * (w1.x * b1.z + w2.x * b2.z + w3.x * b3.z);
-        r->middle[at + l] = factor[l] * six;
-        r->strain[0][at + l] = per * (w1.x * b1.x + w2.x * b2.x + w3.x * b3.x);
-        r->strain[1][at + l] = per * (w1.y * b1.y + w2.y * b2.y + w3.y * b3.y);
-        r->strain[2][at + l] = per * (w1.z * b1.z + w2.z * b2.z + w3.z * b3.z);
-        r->strain[3][at + l] = 0.5 * (dxy + dyx);
-        r->strain[4][at + l] = 0.5 * (dyz + dzy);
-        r->strain[5][at + l] = 0.5 * (dzx + dxz);
+        const double xy = 0.5 * (dxy + dyx), yz = 0.5 * (dyz + dzy), zx = 0.5 * (dzx + dxz), trace = dxx + dyy + dzz;
+        const double square = dxx * dxx + dyy * dyy + dzz * dzz + 2 * (xy * xy + yz * yz + zx * zx);
+        r->middle[at + l] = middle;
+        r->strain[0][at + l] = dxx, r->strain[1][at + l] = dyy, r->strain[2][at + l] = dzz;
+        r->strain[3][at + l] = xy, r->strain[4][at + l] = yz, r->strain[5][at + l] = zx;
+        sums->change[l] += middle * trace;
+        sums->middle[l] += middle;
+        sums->strain2[l] = square > sums->strain2[l] ? square : sums->strain2[l];
+        sums->sound[l] = (six > 0) & (six_now > 0) ? sums->sound[l] : 0;
         const tl_vec3 spin = {0.5 * (dzy - dyz), 0.5 * (dxz - dzx), 0.5 * (dyx - dxy)};
         r->spin[0][at + l] = spin.x, r->spin[1][at + l] = spin.y, r->spin[2][at + l] = spin.z;
         const tl_sym3 was = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
@@ -155,163 +167,129 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
 
 /* ---------------------------------------------------------------- clusters --------------- */
 
-/* Whether no zone is turned inside out. Rows that are inert have the volume 0. */
-TL_INLINE bool is_outside_out(const tl_zone_group *g, const group_rows *restrict r)
+/* Whether no zone is turned inside out. Inert rows are copies of a zone of the group. */
+TL_INLINE bool is_outside_out(const group_sums *sums)
 {
-    int bad[TL_LANES] = {0};
-    for (size_t k = 0; k < g->depth; k++)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = TL_LANES * k + l;
-            bad[l] |= (k < g->count[l]) & (!(r->volume[i] > 0) | !(r->middle[i] > 0));
-        }
-    int any = 0;
+    double all = 1;
     for (size_t l = 0; l < TL_LANES; l++)
-        any |= bad[l];
-    return any == 0;
+        all *= sums->sound[l];
+    return all > 0;
 }
 
-/* Each zone gets the mean change of volume of its cluster. The square of the largest strain. */
-TL_INLINE double share_volume(group_rows *restrict r, size_t depth)
+/* Each zone gets the mean change of volume of its cluster. */
+TL_INLINE void share_volume(group_rows *restrict r, group_sums *restrict sums, size_t depth)
 {
-    double sum[TL_LANES] = {0}, all[TL_LANES] = {0}, most[TL_LANES] = {0};
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++)
+        sums->change[l] /= sums->middle[l] != 0 ? sums->middle[l] : 1;
     for (size_t k = 0; k < depth; k++)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = TL_LANES * k + l;
-            sum[l] += r->middle[i] * (r->strain[0][i] + r->strain[1][i] + r->strain[2][i]);
-            all[l] += r->middle[i];
+            const double x = r->strain[0][i], y = r->strain[1][i], z = r->strain[2][i];
+            const double more = (sums->change[l] - (x + y + z)) * (1.0 / 3);
+            r->strain[0][i] = x + more;
+            r->strain[1][i] = y + more;
+            r->strain[2][i] = z + more;
         }
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++)
-        sum[l] /= all[l] != 0 ? all[l] : 1;
-    for (size_t k = 0; k < depth; k++)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = TL_LANES * k + l;
-            const double more = (sum[l] - (r->strain[0][i] + r->strain[1][i] + r->strain[2][i])) / 3;
-            double square = 0;
-            for (int j = 0; j < 6; j++)
-                square += (j < 3 ? 1 : 2) * r->strain[j][i] * r->strain[j][i];
-            most[l] = square > most[l] ? square : most[l];
-            for (int j = 0; j < 3; j++)
-                r->strain[j][i] += more;
-        }
-    double out = 0;
-    for (size_t l = 0; l < TL_LANES; l++)
-        out = most[l] > out ? most[l] : out;
-    return out;
 }
 
-/* Each zone gets the mean change of mean stress of its cluster. The sum of V (P - dp)^2: twice the bulk modulus times
- * the energy that this takes. */
-TL_INLINE double share_stress(group_rows *restrict r, double *const stress[6], size_t row, size_t depth)
+/* What a group gives its parcel: the work of its stresses over the strain, J; heat that the solid made, J; and the sum
+ * of V (P - dp)^2, twice the bulk modulus times what the mean of dp takes. */
+typedef struct given {
+    double work, heat, lost;
+} given;
+
+/* The mean change of mean stress of each cluster, times 3. */
+TL_INLINE void mean_change(const group_rows *restrict r, double *const stress[6], size_t row, size_t depth,
+                           double mean[TL_LANES])
 {
-    double sum[TL_LANES] = {0}, all[TL_LANES] = {0}, lost[TL_LANES] = {0};
-    for (size_t k = 0; k < depth; k++)
+    double sum[TL_LANES] = {0}, all[TL_LANES] = {0};
+    const double *restrict xx = stress[0] + row, *restrict yy = stress[1] + row, *restrict zz = stress[2] + row;
+    for (size_t i = 0; i < TL_LANES * depth; i += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = TL_LANES * k + l, j = row + i;
-            const double change =
-                (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) + (stress[2][j] - r->before[2][i]);
-            sum[l] += r->volume[i] * change;
-            all[l] += r->volume[i];
+            const double change = (xx[i + l] - r->before[0][i + l]) + (yy[i + l] - r->before[1][i + l]) +
+                                  (zz[i + l] - r->before[2][i + l]);
+            sum[l] += r->volume[i + l] * change;
+            all[l] += r->volume[i + l];
         }
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++)
-        sum[l] /= all[l] != 0 ? all[l] : 1;
-    for (size_t k = 0; k < depth; k++)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = TL_LANES * k + l, j = row + i;
-            const double change =
-                (stress[0][j] - r->before[0][i]) + (stress[1][j] - r->before[1][i]) + (stress[2][j] - r->before[2][i]);
-            const double more = (sum[l] - change) / 3;
-            for (int c = 0; c < 3; c++)
-                stress[c][j] += more;
-            lost[l] += r->volume[i] * more * more;
-        }
-    double out = 0;
-    for (size_t l = 0; l < TL_LANES; l++)
-        out += lost[l];
-    return out;
+        mean[l] = sum[l] / (all[l] != 0 ? all[l] : 1);
 }
 
 /* ---------------------------------------------------------------- forces ----------------- */
 
-/* The work of a group's stresses over the strain, J. */
-TL_INLINE double work_of(const group_rows *r, double *const stress[6], size_t row, size_t depth)
-{
-    double sum[TL_LANES] = {0};
-    for (size_t k = 0; k < depth; k++)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = TL_LANES * k + l;
-            double straight = 0, shear = 0;
-            for (int j = 0; j < 3; j++)
-                straight += (r->before[j][i] + stress[j][row + i]) * r->strain[j][i];
-            for (int j = 3; j < 6; j++)
-                shear += (r->before[j][i] + stress[j][row + i]) * r->strain[j][i];
-            sum[l] += r->middle[i] * (straight + 2 * shear);
-        }
-    double out = 0;
-    for (size_t l = 0; l < TL_LANES; l++)
-        out += 0.5 * sum[l];
-    return out;
-}
-
-/* What a zone does to a corner: three components and the square of the size. */
+/* What a row of zones does to a corner: three components and the square of the size. */
 typedef struct push {
-    _Alignas(4 * sizeof(double)) double of[4][TL_LANES][4]; /* of each corner */
+    _Alignas(TL_ALIGN) double of[4][TL_LANES];
 } push;
 
-/* Forces on corner a, 1 to 3, of one row of zones: the stress, by -1/6, times the vector area. */
-TL_INLINE void push_corner(double *const stress[6], size_t row, const double factor[TL_LANES], int a,
-                           const group_rows *restrict r, size_t at, push *restrict out)
+/* Minus the stress of a zone times a vector area over 6: a force of a corner. */
+TL_INLINE tl_vec3 force_of(tl_sym3 s, double factor, const double (*area)[ROWS], size_t i)
 {
-    const double *restrict sxx = stress[0] + row, *restrict syy = stress[1] + row, *restrict szz = stress[2] + row;
-    const double *restrict sxy = stress[3] + row, *restrict syz = stress[4] + row, *restrict szx = stress[5] + row;
+    const double x = -factor * area[0][i], y = -factor * area[1][i], z = -factor * area[2][i];
+    return (tl_vec3){s.xx * x + s.xy * y + s.zx * z, s.xy * x + s.yy * y + s.yz * z, s.zx * x + s.yz * y + s.zz * z};
+}
+
+TL_INLINE void put_push(push *to, size_t l, tl_vec3 f)
+{
+    to->of[0][l] = f.x;
+    to->of[1][l] = f.y;
+    to->of[2][l] = f.z;
+    to->of[3][l] = f.x * f.x + f.y * f.y + f.z * f.z;
+}
+
+/* Sums of each lane of what a group gives. */
+typedef struct lane_sums {
+    _Alignas(TL_ALIGN) double work[TL_LANES], heat[TL_LANES], lost[TL_LANES];
+} lane_sums;
+
+/* Zone k of each cluster: its stress gets the mean change of the cluster. Its work, and its forces on its corners. */
+TL_INLINE void close_row(const struct tl_zones *z, const tl_zone_group *g, size_t k, const double mean[TL_LANES],
+                         const group_rows *restrict r, lane_sums *restrict sums, push by[4])
+{
+    const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
+    double *const *s = z->zones.stress;
+    double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
+    const double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
+    double factor[TL_LANES];
+    for (size_t l = 0; l < TL_LANES; l++)
+        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const double x = -factor[l] * r->area[a - 1][0][at + l], y = -factor[l] * r->area[a - 1][1][at + l];
-        const double z = -factor[l] * r->area[a - 1][2][at + l];
-        const double fx = sxx[l] * x + sxy[l] * y + szx[l] * z, fy = sxy[l] * x + syy[l] * y + syz[l] * z;
-        const double fz = szx[l] * x + syz[l] * y + szz[l] * z;
-        out->of[a][l][0] = fx;
-        out->of[a][l][1] = fy;
-        out->of[a][l][2] = fz;
-        out->of[a][l][3] = fx * fx + fy * fy + fz * fz;
+        const size_t i = at + l;
+        tl_sym3 t = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
+        const double x = r->before[0][i], y = r->before[1][i], zz = r->before[2][i];
+        const double more = (mean[l] - ((t.xx - x) + (t.yy - y) + (t.zz - zz))) * (1.0 / 3);
+        sxx[l] = t.xx += more;
+        syy[l] = t.yy += more;
+        szz[l] = t.zz += more;
+        const double straight =
+            (x + t.xx) * r->strain[0][i] + (y + t.yy) * r->strain[1][i] + (zz + t.zz) * r->strain[2][i];
+        const double shear = (r->before[3][i] + t.xy) * r->strain[3][i] + (r->before[4][i] + t.yz) * r->strain[4][i] +
+                             (r->before[5][i] + t.zx) * r->strain[5][i];
+        sums->work[l] += r->middle[i] * (straight + 2 * shear);
+        sums->heat[l] += r->volume[i] * r->dissipated[i];
+        sums->lost[l] += r->volume[i] * (more * more);
+        const tl_vec3 f1 = force_of(t, factor[l], r->area[0], i), f2 = force_of(t, factor[l], r->area[1], i);
+        const tl_vec3 f3 = force_of(t, factor[l], r->area[2], i);
+        put_push(&by[0], l, tl_v3_neg(tl_v3_add(tl_v3_add(f1, f2), f3)));
+        put_push(&by[1], l, f1);
+        put_push(&by[2], l, f2);
+        put_push(&by[3], l, f3);
     }
 }
 
-/* Adds the forces of one row of zones to the slots, lane by lane, corner by corner. */
-TL_INLINE void push_row(const struct tl_zones *z, const tl_zone_group *g, size_t k, const group_rows *restrict r,
-                        tl_slot *restrict slots)
+/* Adds the forces of one row of zones to the slots: four lanes, corner by corner, then the other four. */
+TL_INLINE void push_row(uint16_t *const corner[4], size_t row, const push by[4], tl_slot *slots)
 {
-    const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
-    double factor[TL_LANES];
-    push by;
-    for (size_t l = 0; l < TL_LANES; l++)
-        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
-    for (int a = 1; a < 4; a++)
-        push_corner(z->zones.stress, row, factor, a, r, at, &by);
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        const double fx = -(by.of[1][l][0] + by.of[2][l][0] + by.of[3][l][0]);
-        const double fy = -(by.of[1][l][1] + by.of[2][l][1] + by.of[3][l][1]);
-        const double fz = -(by.of[1][l][2] + by.of[2][l][2] + by.of[3][l][2]);
-        by.of[0][l][0] = fx;
-        by.of[0][l][1] = fy;
-        by.of[0][l][2] = fz;
-        by.of[0][l][3] = fx * fx + fy * fy + fz * fz;
-    }
-    for (size_t l = 0; l < TL_LANES; l++)
-        for (int a = 0; a < 4; a++) {
-            double *restrict sum = slots[z->zones.corner[a][row + l]].of;
-            const double *restrict add = by.of[a][l];
-#pragma omp simd
-            for (int i = 0; i < 4; i++)
-                sum[i] += add[i];
+    for (size_t l = 0; l < TL_LANES; l += 4)
+        for (size_t a = 0; a < 4; a++) {
+            const uint16_t *at = corner[a] + row + l;
+            double *const to[4] = {slots[at[0]].of, slots[at[1]].of, slots[at[2]].of, slots[at[3]].of};
+            tl_lanes_add_rows(to, by[a].of[0] + l, by[a].of[1] + l, by[a].of[2] + l, by[a].of[3] + l);
         }
 }
 
@@ -321,23 +299,38 @@ TL_INLINE void push_row(const struct tl_zones *z, const tl_zone_group *g, size_t
 TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g,
                                        group_rows *r, double *most)
 {
+    group_sums sums;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        sums.change[l] = sums.middle[l] = sums.strain2[l] = 0;
+        sums.sound[l] = 1;
+    }
     for (size_t k = 0; k < g->depth; k++)
-        strain_row(z, p, g, k, r);
-    *most = share_volume(r, g->depth);
-    return is_outside_out(g, r);
+        strain_row(z, p, g, k, r, &sums);
+    share_volume(r, &sums, g->depth);
+    for (size_t l = 0; l < TL_LANES; l++)
+        *most = tl_larger(*most, sums.strain2[l]);
+    return is_outside_out(&sums);
 }
 
-TL_VECTORIZED static void push_group(const struct tl_zones *z, const tl_zone_group *g, const group_rows *r,
-                                     tl_slot *slots)
+/* Ends a group whose solid has answered. */
+TL_VECTORIZED static given close_group(const struct tl_zones *z, const tl_zone_group *g, const group_rows *r,
+                                       tl_slot *slots)
 {
-    for (size_t k = 0; k < g->depth; k++)
-        push_row(z, g, k, r, slots);
-}
-
-TL_VECTORIZED static double close_group(const struct tl_zones *z, const tl_zone_group *g, group_rows *r, double *lost)
-{
-    *lost = share_stress(r, z->zones.stress, g->start, g->depth);
-    return work_of(r, z->zones.stress, g->start, g->depth);
+    double mean[TL_LANES];
+    lane_sums sums = {{0}, {0}, {0}};
+    given out = {0, 0, 0};
+    push by[4];
+    mean_change(r, z->zones.stress, g->start, g->depth, mean);
+    for (size_t k = 0; k < g->depth; k++) {
+        close_row(z, g, k, mean, r, &sums, by);
+        push_row(z->zones.corner, g->start + TL_LANES * k, by, slots);
+    }
+    for (size_t l = 0; l < TL_LANES; l++) {
+        out.work += 0.5 * sums.work[l];
+        out.heat += sums.heat[l];
+        out.lost += sums.lost[l];
+    }
+    return out;
 }
 
 /* Q of the turn w. */
@@ -420,8 +413,8 @@ static void list_points(const pass_job *job, const tl_parcel *of, tl_parcel_poin
     for (uint32_t k = of->point_begin; k < of->point_end; k++) {
         const uint32_t row = job->zones->listed[k], at = k - of->point_begin;
         for (int i = 0; i < 3; i++) {
-            p->of[at][i] = g->ref[i][row] + g->u[i][row];
-            p->of[at][3 + i] = job->dt * g->moved[i][row];
+            p->of[at].place[i] = g->ref[i][row] + g->u[i][row];
+            p->of[at].way[i] = job->dt * g->moved[i][row];
         }
         job->zones->slot[k] = (tl_slot){{0}};
     }
@@ -438,7 +431,7 @@ static void note_inside_out(const pass_job *job, const tl_parcel_points *p, cons
             continue;
         tl_vec3 at = job->m->origin;
         for (int a = 0; a < 4; a++) {
-            const double *x = p->of[t->corner[a][row]];
+            const double *x = p->of[t->corner[a][row]].place;
             at = tl_v3_madd(at, 0.25, tl_v3(x[0], x[1], x[2]));
         }
         char text[TL_ERROR_TEXT / 2];
@@ -460,26 +453,22 @@ static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
     const tl_solid *solid = &named->of;
     const double bulk = solid->constrained - 4.0 / 3 * solid->shear;
     double work = 0, heat = 0, most = 0;
+    group_rows r;
     list_points(job, of, p);
     for (uint32_t k = of->group_begin; k < of->group_end; k++) {
         const tl_zone_group *g = &z->group[k];
-        group_rows r;
-        double lost, strain2;
-        memset(r.dissipated, 0, sizeof r.dissipated);
-        if (!strain_group(z, p, g, &r, &strain2)) {
+        memset(r.dissipated, 0, TL_LANES * g->depth * sizeof *r.dissipated);
+        if (!strain_group(z, p, g, &r, &most)) {
             note_inside_out(job, p, g, &r, parcel);
             return;
         }
-        most = tl_larger(most, strain2);
         if (named->turns)
             turn_states(z, solid->kind, g, &r);
         if (!call_solid(job, solid, g, &r, parcel))
             return;
-        work += close_group(z, g, &r, &lost);
-        heat += bulk > 0 ? 0.5 * lost / bulk : 0;
-        for (size_t i = 0; i < (size_t)g->depth * TL_LANES; i++)
-            heat += r.volume[i] * r.dissipated[i];
-        push_group(z, g, &r, z->slot + of->point_begin);
+        const given by = close_group(z, g, &r, z->slot + of->point_begin);
+        work += by.work;
+        heat += by.heat + (bulk > 0 ? 0.5 * by.lost / bulk : 0);
     }
     z->parcels.heat[parcel] = heat;
     z->parcels.stored[parcel] += work - heat;

@@ -126,6 +126,56 @@ void tl_solid_clear(tl_solid *solid)
     *solid = (tl_solid){0};
 }
 
+/* Rows of one SIMD batch, for a solid that tells energy in an update alone. */
+typedef struct lane_rows {
+    _Alignas(TL_ALIGN) double none[TL_LANES]; /* strain */
+    double one[TL_LANES], stress[6][TL_LANES], state[TL_SOLID_COLUMNS][TL_LANES], stored[TL_LANES], heat[TL_LANES];
+    uint32_t flags[TL_LANES];
+} lane_rows;
+
+/* Asks for an update of rows from `at` on without strain. */
+static void ask_update(const tl_solid *solid, uint32_t at, const double *const stress[6], double *const *state,
+                       double *stored)
+{
+    lane_rows r = {.stored = {0}};
+    double *columns[TL_SOLID_COLUMNS];
+    tl_report report;
+    tl_solid_batch batch = {.size = sizeof batch,
+                            .count = TL_LANES,
+                            .volume = r.one,
+                            .extent = r.one,
+                            .state = columns,
+                            .flags = r.flags,
+                            .stored = r.stored,
+                            .dissipated = r.heat};
+    for (size_t l = 0; l < TL_LANES; l++)
+        r.one[l] = 1;
+    for (int k = 0; k < 6; k++) {
+        memcpy(r.stress[k], stress[k] + at, sizeof r.stress[k]);
+        batch.stress[k] = r.stress[k];
+        batch.strain[k] = r.none;
+    }
+    for (uint32_t k = 0; k < solid->columns; k++) {
+        memcpy(r.state[k], state[k] + at, sizeof r.state[k]);
+        columns[k] = r.state[k];
+    }
+    if (tl_solid_update(solid, &batch, &report) == TL_OK)
+        memcpy(stored + at, r.stored, sizeof r.stored);
+}
+
+void tl_solid_energy(const tl_solid *solid, uint32_t count, const double *const stress[6], double *const *state,
+                     double *stored)
+{
+    const tl_solid_ops *ops = solid->kind->ops;
+    for (uint32_t at = 0; !ops->energy && at < count; at += TL_LANES)
+        ask_update(solid, at, stress, state, stored);
+    if (!ops->energy)
+        return;
+    tl_enter(solid->kind, "energy");
+    ops->energy(solid->self, count, stress, state, stored);
+    tl_leave();
+}
+
 tl_status tl_solid_update(const tl_solid *solid, const tl_solid_batch *batch, tl_report *report)
 {
     const tl_solid_ops *ops = solid->kind->ops;

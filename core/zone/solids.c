@@ -53,29 +53,135 @@ static bool turns(const tl_kind *kind)
     return some;
 }
 
+/* Makes a solid; what is not given is taken from `from`. */
+static tl_status make(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args, const tl_solid *from,
+                      tl_named_solid *made)
+{
+    char context[TL_ERROR_TEXT / 2];
+    *made = (tl_named_solid){.name = strdup(name)};
+    if (!made->name)
+        return tl_fail_memory(&m->error);
+    snprintf(context, sizeof context, "solid '%.80s', of kind '%.40s'", name, kind->name);
+    const tl_status status = tl_solid_make(kind, args, from, context, &m->error, &made->of);
+    if (status != TL_OK)
+        clear(made);
+    else
+        made->turns = turns(kind);
+    return status;
+}
+
+/* Where the columns of a state of a kind begin; false: it has none of that name and width. */
+static bool find_columns(const tl_kind *kind, const tl_state *state, uint32_t *begin)
+{
+    *begin = 0;
+    for (uint32_t k = 0; k < kind->state_count; k++) {
+        const tl_state *own = tl_kind_state(kind, k);
+        if (strcmp(own->name, state->name) == 0 && own->kind == state->kind)
+            return true;
+        *begin += tl_state_width(own->kind);
+    }
+    return false;
+}
+
+void tl_solid_carry_row(const tl_zone_table *from, uint32_t from_row, const tl_kind *had, tl_zone_table *to,
+                        uint32_t to_row, const tl_kind *has)
+{
+    double old[TL_SOLID_COLUMNS] = {0};
+    uint32_t at = 0, begin;
+    for (uint32_t k = 0; k < from->state_columns; k++)
+        old[k] = from->state[k][from_row];
+    for (uint32_t k = 0; k < has->state_count; k++) {
+        const tl_state *state = tl_kind_state(has, k);
+        const bool stays = find_columns(had, state, &begin);
+        for (uint32_t c = 0; c < tl_state_width(state->kind); c++)
+            to->state[at + c][to_row] = stays ? old[begin + c] : state->initial;
+        at += tl_state_width(state->kind);
+    }
+    for (; at < to->state_columns; at++)
+        to->state[at][to_row] = 0;
+}
+
+void tl_solid_carry(struct tl_zones *z, const tl_parcel *parcel, const tl_kind *from, const tl_kind *to)
+{
+    for (uint32_t g = parcel->group_begin; from != to && g < parcel->group_end; g++)
+        for (uint32_t k = 0; k < (uint32_t)z->group[g].depth * TL_LANES; k++)
+            tl_solid_carry_row(&z->zones, z->group[g].start + k, from, &z->zones, z->group[g].start + k, to);
+}
+
+/* The present volume of a zone, m3; 0 of an inert row. */
+static double volume_of(const struct tl_zones *z, const tl_parcel *of, size_t row)
+{
+    tl_vec3 x[4];
+    for (int a = 0; a < 4; a++)
+        x[a] = tl_gridpoint_place(&z->points, z->listed[of->point_begin + z->zones.corner[a][row]]);
+    const tl_vec3 a = tl_v3_sub(x[1], x[0]), b = tl_v3_sub(x[2], x[0]), c = tl_v3_sub(x[3], x[0]);
+    return z->zones.number[row] != TL_NO_ROW ? tl_v3_dot(a, tl_v3_cross(b, c)) / 6 : 0;
+}
+
+double tl_parcel_stored(const struct tl_zones *z, const tl_parcel *parcel)
+{
+    const tl_solid *solid = &z->solid[parcel->solid].of;
+    double sum = 0;
+    for (uint32_t g = parcel->group_begin; g < parcel->group_end; g++) {
+        const size_t start = z->group[g].start, rows = (size_t)z->group[g].depth * TL_LANES;
+        double each[TL_CLUSTER_MOST * TL_LANES] = {0};
+        const double *stress[6];
+        double *state[TL_SOLID_COLUMNS];
+        for (int k = 0; k < 6; k++)
+            stress[k] = z->zones.stress[k] + start;
+        for (uint32_t k = 0; k < solid->columns; k++)
+            state[k] = z->zones.state[k] + start;
+        tl_solid_energy(solid, (uint32_t)rows, stress, state, each);
+        for (size_t i = 0; i < rows; i++)
+            sum += each[i] * volume_of(z, parcel, start + i);
+    }
+    return sum;
+}
+
+/* Puts a solid in the place of an older one. Its zones keep their stress, so they store another energy. */
+static void replace(tl_model *m, uint32_t known, const tl_named_solid *made)
+{
+    struct tl_zones *z = m->zones;
+    tl_named_solid old = z->solid[known];
+    bool changed = false;
+    z->solid[known] = *made;
+    for (size_t k = 0; k < z->parcels.table.rows; k++) {
+        const tl_parcel *parcel = &z->parcels.of[k];
+        if (parcel->solid != known)
+            continue;
+        tl_solid_carry(z, parcel, old.of.kind, made->of.kind);
+        z->parcels.stored[k] = tl_parcel_stored(z, parcel);
+        changed = true;
+    }
+    clear(&old);
+    m->laws += changed; /* the balance takes the change for one by hand */
+}
+
+/* Puts a solid in the place of an older one of its name, or at the end. Memory suffices. */
+static void put(tl_model *m, uint32_t known, const tl_named_solid *made)
+{
+    struct tl_zones *z = m->zones;
+    if (known != TL_NO_ROW)
+        replace(m, known, made);
+    else
+        z->solid[z->solid_count++] = *made;
+    z->version++;
+}
+
 /* Sets a solid; what is not given is taken from `from`. */
 static tl_status set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args, const tl_solid *from)
 {
     struct tl_zones *z = m->zones;
-    const uint32_t known = tl_solid_find(m, name);
-    tl_named_solid made = {.name = strdup(name)};
-    char context[TL_ERROR_TEXT / 2];
-    if (!made.name)
-        return tl_fail_memory(&m->error);
-    snprintf(context, sizeof context, "solid '%.80s', of kind '%.40s'", name, kind->name);
-    tl_status status = tl_solid_make(kind, args, from, context, &m->error, &made.of);
-    if (status == TL_OK && !(tl_grow(&z->solid, &z->solid_capacity, z->solid_count + 1, sizeof *z->solid) &&
-                             tl_solid_columns(z, &made.of)))
-        status = tl_fail_memory(&m->error);
-    if (status != TL_OK) {
-        clear(&made);
+    tl_named_solid made;
+    const tl_status status = make(m, name, kind, args, from, &made);
+    if (status != TL_OK)
         return status;
+    if (!tl_grow(&z->solid, &z->solid_capacity, z->solid_count + 1, sizeof *z->solid) ||
+        !tl_solid_columns(z, &made.of)) {
+        clear(&made);
+        return tl_fail_memory(&m->error);
     }
-    made.turns = turns(made.of.kind);
-    if (known != TL_NO_ROW)
-        clear(&z->solid[known]);
-    z->solid[known != TL_NO_ROW ? known : z->solid_count++] = made;
-    z->version++;
+    put(m, tl_solid_find(m, name), &made);
     return TL_OK;
 }
 

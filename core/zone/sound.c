@@ -40,16 +40,23 @@ static bool groups_are_sound(const struct tl_zones *z)
     return sound && row == z->zones.table.rows;
 }
 
-static bool parcels_are_sound(const struct tl_zones *z)
+/* Whether a block is one of the body of a mesh. */
+static bool has_block(const tl_model *m, const tl_body_mesh *mesh, tl_id block)
+{
+    const uint32_t row = tl_block_row_quiet(m, block);
+    return row != TL_NO_ROW && m->blocks.body[row] == mesh->row;
+}
+
+static bool parcels_are_sound(const tl_model *m, const struct tl_zones *z)
 {
     uint32_t groups = 0, points = 0;
     bool sound = true;
     for (size_t k = 0; sound && k < z->parcels.table.rows; k++) {
         const tl_parcel *of = &z->parcels.of[k];
-        sound = of->mesh < z->mesh_count && of->solid < z->solid_count &&
+        sound = of->mesh < z->mesh_count && of->solid < z->solid_count && has_block(m, &z->mesh[of->mesh], of->block) &&
                 follows(of->group_begin, of->group_end, &groups) && groups <= z->group_count &&
-                follows(of->point_begin, of->point_end, &points) && points <= z->listed_count &&
-                of->point_end - of->point_begin <= TL_PARCEL_POINTS;
+                of->group_end > of->group_begin && follows(of->point_begin, of->point_end, &points) &&
+                points <= z->listed_count && of->point_end - of->point_begin <= TL_PARCEL_POINTS;
         for (uint32_t g = of->group_begin; sound && g < of->group_end; g++)
             for (size_t row = z->group[g].start; row < z->group[g].start + (size_t)z->group[g].depth * TL_LANES; row++)
                 for (int a = 0; a < 4; a++)
@@ -70,7 +77,7 @@ static bool meshes_are_sound(const tl_model *m, const struct tl_zones *z)
         sound = mesh->row < m->bodies.table.rows && m->bodies.id[mesh->row] == mesh->body &&
                 m->bodies.fixed[mesh->row] == TL_FIX_ALL && mesh->point_end <= padded &&
                 follows(mesh->point_begin, padded, &points) && mesh->point_end > mesh->point_begin &&
-                follows(mesh->parcel_begin, mesh->parcel_end, &parcels) &&
+                follows(mesh->parcel_begin, mesh->parcel_end, &parcels) && mesh->parcel_end > mesh->parcel_begin &&
                 follows(mesh->zone_begin, mesh->zone_end, &zones) && follows(mesh->part_begin, mesh->part_end, &parts);
     }
     return sound && points == z->points.table.rows && parcels == z->parcels.table.rows && zones == z->row_of_count &&
@@ -93,13 +100,29 @@ static bool parts_are_sound(const tl_model *m, const struct tl_zones *z)
     return sound;
 }
 
+static bool outer_is_sound(const struct tl_zones *z)
+{
+    bool sound = true;
+    for (size_t k = 0; sound && k < z->outer_count; k++) {
+        const tl_outer_part *of = &z->outer[k];
+        const tl_vec3 all = tl_v3(of->share + of->density, of->at, tl_v3_norm2(of->along));
+        sound = of->part < z->part_count && (k == 0 || of->part > z->outer[k - 1].part) && of->solid < z->solid_count &&
+                of->fixed <= (TL_FIX_X | TL_FIX_Y | TL_FIX_Z) && of->density >= 0 && tl_v3_finite(all) &&
+                z->points.pushed[0] && (!of->quiet || z->points.quiet[0]) &&
+                (tl_v3_norm2(of->along) == 0 || z->points.held[0][0]) && (!of->drive || z->points.drive);
+    }
+    return sound;
+}
+
 const char *tl_zones_unsound(const tl_model *m, const struct tl_zones *z)
 {
     if (z->mesh_count >= TL_NO_ROW || !points_are_sound(z))
         return "a gridpoint has an impossible value";
     if (!meshes_are_sound(m, z))
         return "meshes do not fit their bodies";
-    if (!groups_are_sound(z) || !parcels_are_sound(z))
+    if (!groups_are_sound(z) || !parcels_are_sound(m, z))
         return "zones do not fit their meshes";
-    return parts_are_sound(m, z) ? NULL : "the surface of a mesh does not fit its block";
+    if (!parts_are_sound(m, z))
+        return "the surface of a mesh does not fit its block";
+    return outer_is_sound(z) ? NULL : "what acts on the surface of a mesh has an impossible value";
 }

@@ -7,7 +7,7 @@
  * table. A cluster of fewer zones than the deepest of its group, and a lane without a cluster, has inert rows: copies
  * of a zone whose volume counts as 0.
  *
- * A parcel is some groups of one body and one solid, with a list of the gridpoints that they use. A thread takes one
+ * A parcel is some groups of one block and one solid, with a list of the gridpoints that they use. A thread takes one
  * parcel at a time. What the zones of a parcel do to a gridpoint is summed in a slot of the parcel; a gridpoint adds
  * its slots in their order. So sums do not depend on threads.
  *
@@ -44,13 +44,21 @@ typedef struct tl_gridpoints {
     double *mass;      /* kg: a quarter of the mass of each of its zones */
     double *force[3];  /* unbalanced: zones, contacts, weight, load; of held components it is what holds, reversed, N */
     double *bears;     /* a bound of the sum of the sizes of the forces on it, N: pass.c */
+    double *touched;   /* the part of it that contacts bring, N */
     uint32_t *zones;   /* that have it for a corner */
     double *stiffness; /* bound of the row of the stiffness matrix of the zones, N/m: stiffness.c */
     double *floor;     /* stiffness of the stiffest joint on its share of outer faces, N/m */
     double *holds;     /* of zones and what touches it, but at least the floor, N/m */
+    double *rounded;   /* force that rounding of its place brings, N */
     uint32_t *mesh;    /* its number */
     uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
+    uint8_t *bare;     /* 1: it is on the surface of its body */
     double *load[3];   /* of the user's, N; NULL: none has ever been set */
+    double *held[2][3]; /* unit vectors along which it is held beside `fixed`, or zeros; NULL: nowhere is one */
+    uint32_t *drive;    /* whose velocity it has: index into the model's drives + 1, or 0; NULL: none is driven */
+    double *rolled[3];  /* force by which these directions hold it, in the last step, N; NULL as they are */
+    double *pushed[3];  /* by what acts on the surface, in the last step, N; NULL: nothing ever has */
+    double *quiet[6];   /* resistance of quiet boundaries, kg/s: xx yy zz xy yz zx; NULL: there has been none */
     double *damping[3], *alpha; /* what the damping gave; NULL: there has been none */
     double *force_before[3];    /* in the last damped step; NULL: no damping has asked for them */
 } tl_gridpoints;
@@ -75,6 +83,7 @@ typedef struct tl_zone_group {
 
 typedef struct tl_parcel {
     uint32_t mesh, solid;
+    tl_id block;
     uint32_t group_begin, group_end;
     uint32_t point_begin, point_end; /* in `listed`, and its slots */
 } tl_parcel;
@@ -93,10 +102,15 @@ typedef struct tl_slot {
     double of[4];
 } tl_slot;
 
-/* Gridpoints of a parcel, a row each: where they are, m, and how they came there in the last step; up to a line of
- * memory. Scratch of a thread. */
+/* A gridpoint of a parcel: where it is, m, and how it came there in the last step. A line of memory. */
+typedef struct tl_parcel_point {
+    _Alignas(TL_ALIGN) double place[4];
+    double way[4];
+} tl_parcel_point;
+
+/* Those of a parcel. Scratch of a thread. */
 typedef struct tl_parcel_points {
-    double of[TL_PARCEL_POINTS][8];
+    tl_parcel_point of[TL_PARCEL_POINTS];
 } tl_parcel_points;
 
 /* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the fourth
@@ -106,6 +120,33 @@ typedef struct tl_surface_part {
     tl_id block;
 } tl_surface_part;
 
+/* What acts from outside on a triangle of a surface, or holds it: outer.c. */
+typedef struct tl_outer_part {
+    uint32_t part;  /* in `part` */
+    uint32_t drive; /* whose velocity its gridpoints have: index into the model's drives + 1, or 0 */
+    uint32_t solid; /* of its zone: for quiet ones */
+    uint8_t fixed;  /* TL_FIX_X, _Y, _Z: how its gridpoints are held */
+    uint8_t quiet;  /* it lets waves out */
+    uint8_t loaded; /* stress, gradient and traction count */
+    uint8_t unused;
+    tl_vec3 along;            /* unit vector along which its gridpoints are held; zero: none */
+    double share;             /* of its area that lies on no other block */
+    double density;           /* of its block, kg/m3 */
+    double at;                /* height, in the user's coordinates, at which `stress` holds, m */
+    tl_sym3 stress, gradient; /* Pa, and Pa/m of height, tension positive */
+    tl_vec3 traction;         /* beside them, Pa */
+    tl_vec3 rest[3];          /* forces on its corners that stay as they are, N */
+} tl_outer_part;
+
+/* How a mesh moves in a step of a relaxation (settle.c): as a whole, m/s and rad/s; the power of its unbalanced forces
+ * on that, and on what it moves beside it, W. */
+typedef struct tl_mesh_motion {
+    tl_vec3 velocity, turn;
+    double power, strain_power;
+    bool loose;   /* next to nothing bears it: it goes its own way */
+    bool goes_on; /* where others stop */
+} tl_mesh_motion;
+
 /* The mesh of a body. */
 typedef struct tl_body_mesh {
     tl_id body;
@@ -114,6 +155,8 @@ typedef struct tl_body_mesh {
     uint32_t parcel_begin, parcel_end;
     uint32_t zone_begin, zone_end; /* in `row_of` */
     uint32_t part_begin, part_end; /* in `part` */
+    tl_vec3 made_u;                /* of the body when the mesh was made: displacement, m, and rotation */
+    tl_quat made_q;
 } tl_body_mesh;
 
 struct tl_zones {
@@ -132,14 +175,19 @@ struct tl_zones {
     size_t row_of_count, row_of_capacity;
     tl_surface_part *part; /* of the surfaces, mesh by mesh; of a mesh by block and face */
     size_t part_count, part_capacity;
+    tl_outer_part *outer; /* by ascending parts, each at most once */
+    size_t outer_count, outer_capacity;
     tl_body_mesh *mesh;
     size_t mesh_count, mesh_capacity;
+    tl_mesh_motion *motion; /* of each mesh: scratch of a step of a relaxation */
+    size_t motion_capacity;
     tl_named_solid *solid;
     size_t solid_count, solid_capacity;
     uint64_t *meeting; /* pairs of blocks that meet by segments, the lower id times 2^32 and the other, ascending */
     size_t meeting_count, meeting_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
+    double moved_dt;                  /* of the last motion of the gridpoints, s; 0: they have not moved yet */
     uint32_t steps_kept;              /* steps to come that can be undone, for velocities were set */
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */

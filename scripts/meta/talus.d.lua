@@ -360,6 +360,11 @@ local Model = {}
 ---@field body integer id of its rigid body: the lowest id of its blocks
 ---@field speed number m/s: length of the velocity
 ---@field kinetic_energy number J: of the block alone
+---@field deformable boolean whether it has zones
+---@field zones integer of its body
+---@field gridpoints integer of its body
+---@field stress talus.Tensor Pa: mean over its zones, by volume; nan of a rigid block
+---@field strain talus.Tensor mean logarithmic strain of these zones; nan of a rigid block
 ---@field vertices talus.Vector[] vertices in their present place
 ---@field faces { vertices: integer[], normal: talus.Vector, joint: string? }[] faces: vertex numbers from 1, outward normal, name of the joint plane or nil
 ---@field neighbours talus.Block[] blocks it is in contact with
@@ -483,6 +488,108 @@ function Contacts:values(field) end
 ---@return talus.Contacts
 function Contacts:where(keep) end
 
+---@class (exact) talus.Zone
+---@field id integer of its own among all zones: 4294967296 times the first block of its body, and its number
+---@field block integer block that it is of
+---@field number integer its number in the block, or in the body of several joined blocks, from 0
+---@field group string group of the block
+---@field solid string name of its solid
+---@field centroid talus.Vector m: present place of its centroid
+---@field volume number m3: present volume
+---@field stress talus.Tensor Pa: Cauchy stress, tension positive
+---@field strain talus.Tensor logarithmic strain since it was made
+---@field principal talus.Vector Pa: principal stresses, the largest first
+---@field mean number Pa: mean stress
+---@field deviator number Pa: sqrt(3 J2): of a uniaxial stress its size
+---@field state string "elastic", "shear", "tension" or "joint" now, or "shear past" ...
+---@field plastic boolean whether it has ever yielded
+local Zone = {}
+
+--- A selection of zones: a snapshot, in ascending order of id.
+---@class (exact) talus.Zones
+---@field [integer] talus.Zone
+---@operator len: integer
+local Zones = {}
+
+--- sum of a field of numbers, or of a state of a solid; of a vector a vector
+---@param field string
+---@return number|talus.Vector
+function Zones:sum(field) end
+
+--- largest and smallest value of a field of numbers, or of a state
+---@param field string
+---@return number
+function Zones:max(field) end
+
+--- largest and smallest value of a field of numbers, or of a state
+---@param field string
+---@return number
+function Zones:min(field) end
+
+--- list of the field's values, in the order of the selection; likewise a state of a solid, by its name, NaN where the zone's solid has no such state. With "flat" after it vectors and tensors are not lists of their own
+---@param field string
+---@return any
+function Zones:values(field) end
+
+--- those for which the function answers true
+---@param keep fun(item: talus.Zone): any
+---@return talus.Zones
+function Zones:where(keep) end
+
+---@class (exact) talus.Gridpoint
+---@field id integer of its own among all gridpoints: 4294967296 times the first block of its body, and its number
+---@field block integer block that it is of: the first one of a body of several
+---@field number integer its number in the block, or in the body of several joined blocks, from 0
+---@field group string group of the block
+---@field position talus.Vector m: present place
+---@field displacement talus.Vector m: since it was made
+---@field velocity talus.Vector m/s: half a step ago
+---@field force talus.Vector N: unbalanced
+---@field mass number kg: a quarter of that of each of its zones
+---@field fixed integer components that are held: 1 x, 2 y, 4 z, added up
+---@field surface boolean whether it is on the surface of its body
+local Gridpoint = {}
+
+--- A selection of gridpoints: a snapshot, in ascending order of id.
+---@class (exact) talus.Gridpoints
+---@field [integer] talus.Gridpoint
+---@operator len: integer
+local Gridpoints = {}
+
+--- sum, largest and smallest value of a field of numbers
+---@param field string
+---@return number|talus.Vector
+function Gridpoints:sum(field) end
+
+--- sum, largest and smallest value of a field of numbers
+---@param field string
+---@return number
+function Gridpoints:max(field) end
+
+--- sum, largest and smallest value of a field of numbers
+---@param field string
+---@return number
+function Gridpoints:min(field) end
+
+--- list of the field's values, in the order of the selection; "flat" as of blocks
+---@param field string
+---@return any
+function Gridpoints:values(field) end
+
+--- those for which the function answers true
+---@param keep fun(item: talus.Gridpoint): any
+---@return talus.Gridpoints
+function Gridpoints:where(keep) end
+
+--- lets components go; all when none is named
+---@param options any
+---@return talus.Gridpoints
+function Gridpoints:free(options) end
+
+--- sum of the forces that hold their held components, N: {x, y, z}
+---@return talus.Gridpoints
+function Gridpoints:reaction() end
+
 ---@class (exact) talus.ModelOptions
 ---@field gravity? talus.Vector m/s2, default {0, 0, -9.81}: acceleration of gravity
 ---@field seed? integer >= 0, default 1: seed of every random draw: the same seed gives the same model
@@ -550,6 +657,7 @@ function Model:joint(joint, law, options) end
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
 ---@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz are the same as xy, yz and zx
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
+---@field blocks? any puts the stress in their zones, and on their contacts with any; all without it
 
 --- Puts an initial stress on the face contacts that exist now, once.
 ---
@@ -634,6 +742,8 @@ function Model:contact_area(options) end
 ---@field damping number taken out by the damping, J
 ---@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
 ---@field balance number error of the sum over the largest change of a term so far
+---@field strain number elastic, in all zones of deformable blocks, J
+---@field plastic number turned to heat in zones, by yielding, J
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
@@ -728,6 +838,75 @@ function Blocks:drive(options) end
 ---@param options? talus.ContactsOptions
 ---@return talus.Contacts
 function Model:contacts(options) end
+
+--- Names a solid, the material of zones: a kind of solid with its properties. Without a kind it changes properties of one that has been named. Zones keep their stress, and the states that the new kind has by the same names.
+---
+---     model:solid("NAME", "KIND", {...})  or  model:solid("NAME", {cohesion = 1e6})
+---@param name string
+---@param name string
+---@param options? table
+---@overload fun(self: talus.Model, name: string, options?: table)
+function Model:solid(name, name, options) end
+
+---@class (exact) talus.DeformableOptions
+---@field solid string name of the solid that the zones are made of: model:solid
+---@field zone? number|fun(place: talus.Vector): number wanted edge of zones, m, > 0, the same everywhere or at a place. Larger than a block: zones between its corners and its centroid
+
+---@class (exact) talus.DeformableResult
+---@field blocks integer how many have been made
+---@field zones integer how many have been made
+---@field gridpoints integer how many have been made
+---@field clusters integer how many have been made
+---@field smallest_altitude number m smallest altitude of a zone over its largest side
+---@field altitude_ratio number smallest altitude over the wanted edge
+---@field worst_block talus.Block block the block that has it
+---@field time_step number s step that the gridpoints would allow if nothing touched them
+---@field inertia number largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an edge. Blocks that topple or rock in time want 8 zones to an edge, or stay rigid
+---@field memory integer bytes memory that the model has grown by
+
+--- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share gridpoints, so zones go on over the faces between them. Nothing is done where one block cannot be divided.
+---
+---     report = selection:deformable{zone = 1.0, solid = "granite"}
+---@param options talus.DeformableOptions
+---@return talus.Blocks
+function Blocks:deformable(options) end
+
+---@class (exact) talus.ZonesOptions
+---@field group? string zones of blocks of this group
+---@field solid? string zones of this solid
+---@field near? talus.Vector m: the one zone whose centroid is nearest to this point
+---@field containing? talus.Vector m: zones that have this point inside or on a side
+---@field plastic? boolean zones that have ever yielded, or that never have
+---@field id? integer|integer[] the zones of these ids
+---@field block? talus.Block|integer zones of this block
+---@field blocks? talus.Blocks zones of these blocks, hidden ones too
+---@field inside? { min: talus.Vector, max: talus.Vector } zones in this box, by their centroids or places
+---@field where? fun(zone: talus.Zone): any zones for which the function answers true
+
+--- Selects zones of deformable blocks, of visible ones unless asked otherwise; all conditions must hold. Beside its fields a zone has the states of its solid by their names, as zone.plastic_shear.
+---
+---     selection = model:zones{...}
+---@param options? talus.ZonesOptions
+---@return talus.Zones
+function Model:zones(options) end
+
+---@class (exact) talus.GridpointsOptions
+---@field group? string gridpoints of blocks of this group
+---@field near? talus.Vector m: the one gridpoint that is nearest to this point
+---@field surface? boolean gridpoints on the surface of their body, or inside
+---@field fixed? boolean gridpoints held in some component, or in none
+---@field id? integer|integer[] the gridpoints of these ids
+---@field block? talus.Block|integer gridpoints of this block
+---@field blocks? talus.Blocks gridpoints of these blocks, hidden ones too
+---@field inside? { min: talus.Vector, max: talus.Vector } gridpoints in this box, by their centroids or places
+---@field where? fun(gridpoint: talus.Gridpoint): any gridpoints for which the function answers true
+
+--- Selects gridpoints, the corners of zones; all conditions must hold.
+---
+---     selection = model:gridpoints{...}
+---@param options? talus.GridpointsOptions
+---@return talus.Gridpoints
+function Model:gridpoints(options) end
 
 ---@class (exact) talus.JointSet
 ---@field name string of the joint set; number of its planes so far
@@ -882,8 +1061,9 @@ function talus.solid_test(options) end
 ---@field within? number deg, in [0, 180], default 45: this angle
 ---@field tolerance? number m, >= 0: how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size when left out
 ---@field fixed? boolean default false: holds the bodies in all components
----@field roller? boolean default false: holds the bodies across their faces, which must look along x, y or z
----@field rotation? boolean default false: with roller: holds their rotation, too
+---@field roller? boolean default false: holds the bodies across their faces; those of rigid blocks must look along x, y or z
+---@field rotation? boolean default false: with roller: holds the rotation of rigid blocks, too
+---@field quiet? boolean default false: of deformable blocks: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), and bears what it bore
 ---@field pressure? number Pa: pressure on the faces, inward
 ---@field traction? talus.Vector Pa: force per area on the faces
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height stress holds; the gradient counts from there
@@ -892,6 +1072,7 @@ function talus.solid_test(options) end
 ---@field box? { min: talus.Vector, max: talus.Vector } faces with all corners in this box
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) prescribes the velocity of the faces, m/s; rigid bodies move with it whole
 ---@field xmin? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field xmax? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise
@@ -913,7 +1094,7 @@ function talus.solid_test(options) end
 ---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
 ---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
---- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share.
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added.
 ---
 ---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions
@@ -1015,10 +1196,10 @@ function Model:relax(options) end
 ---@field name string what it is called, one of its own
 ---@field every? integer >= 1, default 10: steps between two samples; the first is taken at once
 ---@field field? string field of numbers of what `of` gives ("displacement", "normal_force")
----@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its blocks or contacts
+---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its items
 ---@field remove? boolean default false: ends the history of that name, with all its samples
----@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
----@field of? talus.Block|talus.Contact|talus.Blocks|talus.Contacts what the field is sampled of, in the place of `value`. Blocks and contacts that no longer exist are left out; where none is left the value is nan
+---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external", "strain", "plastic" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
+---@field of? talus.Block|talus.Contact|talus.Zone|talus.Gridpoint|talus.Blocks|talus.Contacts|talus.Zones|talus.Gridpoints what the field is sampled of, in the place of `value`. Those that no longer exist are left out; where none is left the value is nan
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.
 ---
@@ -1253,8 +1434,10 @@ function Model:write_html(path, options) end
 ---@field blocks? boolean default true: whether the frame has a file of the blocks
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
 ---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
+---@field zone_fields? { NAME: number } numbers of each zone, likewise: fields of zones, states of their solids, functions
 
 --- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
 ---

@@ -74,10 +74,16 @@ local WORDS = {
     ["list of names"] = "string[]",
     ["list of keyblocks"] = "talus.Keyblock[]",
     ["model"] = "talus.Model",
-    ["block, contact or selection"] = "talus.Block|talus.Contact|talus.Blocks|talus.Contacts",
+    ["block, contact, zone, gridpoint or selection"] = "talus.Block|talus.Contact|talus.Zone|talus.Gridpoint|" ..
+        "talus.Blocks|talus.Contacts|talus.Zones|talus.Gridpoints",
+    ["selection of blocks"] = "talus.Blocks",
+    ["block or its id"] = "talus.Block|integer",
     ["a table of what is to be done"] = "talus.BoundaryOptions",
     ["function(block)"] = "fun(block: talus.Block): any",
     ["function(contact)"] = "fun(contact: talus.Contact): any",
+    ["function(zone)"] = "fun(zone: talus.Zone): any",
+    ["function(gridpoint)"] = "fun(gridpoint: talus.Gridpoint): any",
+    ["number or function({x, y, z})"] = "number|fun(place: talus.Vector): number",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
     ["function(t)"] = "(fun(t: number): number|talus.Vector, number?, number?)",
@@ -136,7 +142,9 @@ local function seen_type(value)
         local word = tostring(value)
         return word:match("^block ") and "talus.Block" or word:match("^contact ") and "talus.Contact" or
             word:match("^model ") and "talus.Model" or word:match("^selection of %d+ block") and "talus.Blocks" or
-            word:match("^selection of %d+ contact") and "talus.Contacts" or "userdata"
+            word:match("^selection of %d+ contact") and "talus.Contacts" or word:match("^zone ") and "talus.Zone" or
+            word:match("^gridpoint ") and "talus.Gridpoint" or word:match("^selection of %d+ zone") and "talus.Zones" or
+            word:match("^selection of %d+ gridpoint") and "talus.Gridpoints" or "userdata"
     elseif kind ~= "table" then
         return ({ float = "number", ["nil"] = false })[kind] or (kind ~= "nil" and kind or nil)
     elseif #value == 3 and type(value[1]) == "number" then
@@ -566,6 +574,8 @@ local function whole()
     put_model()
     put_items("blocks", "Block", "Blocks", functions)
     put_items("contacts", "Contact", "Contacts", functions)
+    put_items("zones", "Zone", "Zones", functions)
+    put_items("gridpoints", "Gridpoint", "Gridpoints", functions)
     for _, name in ipairs(names) do
         local topic = pages.topic(name)
         for _, of in ipairs(functions_of(name, topic.head[1])) do

@@ -4,7 +4,7 @@
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
 NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest edits output examples
-yade beside million cuts zones); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
+yade beside million cuts zones deformable); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
 
@@ -111,8 +111,8 @@ class Runner:
     def script(self, name, *arguments, cold=1, keep=True):
         return self.run(self.talus, "--quiet", BENCH / f"{name}.lua", *arguments, cold=cold, keep=keep)
 
-    def program(self, name, *arguments):
-        return self.run(self.build / "tests" / "bench" / name, *arguments)
+    def program(self, name, *arguments, env=None):
+        return self.run(self.build / "tests" / "bench" / name, *arguments, env=env)
 
 
 # ---------------------------------------------------------------------- jobs
@@ -227,9 +227,14 @@ def zones(r):
     r.program("zones", *(["quick"] if r.quick else []))
 
 
+def deformable(r):
+    """Steps of zones and points of segments, beside a bare loop, timed in C."""
+    r.program("deformable", *(["quick"] if r.quick else []), env={"TALUS_PLUGIN_PATH": str(r.build / "plugins")})
+
+
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest, edits,
                                       output,
-                                      examples, yade, beside, million, cuts, zones)}
+                                      examples, yade, beside, million, cuts, zones, deformable)}
 
 
 # ---------------------------------------------------------------------- figures

@@ -24,7 +24,7 @@ static void time_box(const char *name, tl_vec3 sides, double edge, int blocks)
     tl_error error = {0};
     tl_poly *box = NULL;
     tl_zone_scratch *scratch = tl_zone_scratch_create();
-    const tl_zoning zoning = {.edge = edge};
+    const tl_shape_zoning zoning = {.edge = edge};
     tl_status status = scratch ? tl_poly_box((tl_vec3){0, 0, 0}, sides, &box, &error) : TL_E_MEMORY;
     double zones = 0, share = 0;
     const double began = seconds();

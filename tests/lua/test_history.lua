@@ -69,7 +69,7 @@ check.equal(model:histories().x.value[1], wanted[3][1])
 -- The quantities of the model, and fields of blocks and contacts.
 model = scene(3)
 local slider, cubes = model:blocks { id = 2 }[1], model:blocks { group = "cube" }
-for _, name in ipairs { "kinetic", "potential", "stored", "friction", "damping", "external", "balance", "ratio",
+for _, name in ipairs { "kinetic", "potential", "stored", "friction", "damping", "external", "strain", "plastic", "balance", "ratio",
     "ratio_maximum", "ratio_local", "max_velocity", "contacts", "slipping", "open" } do
     model:history { name = name, every = 100, value = name }
 end
@@ -82,7 +82,7 @@ model:history { name = "fixed", every = 100, of = model:blocks(), field = "fixed
 local result = model:cycle(100)
 h = model:histories()
 local energy = model:energy()
-for _, name in ipairs { "kinetic", "potential", "stored", "friction", "damping", "external", "balance" } do
+for _, name in ipairs { "kinetic", "potential", "stored", "friction", "damping", "external", "strain", "plastic", "balance" } do
     check.equal(h[name].value[2], energy[name])
 end
 for _, name in ipairs { "ratio", "ratio_maximum", "ratio_local", "max_velocity" } do

@@ -158,7 +158,7 @@ static void check_mesh(const tl_poly *p, const tl_zone_mesh *m)
 /* Sums of worst shares, for the record. */
 static double worst_of_all = INFINITY;
 
-static bool divide(const tl_poly *p, const tl_zoning *zoning, tl_zone_mesh *m)
+static bool divide(const tl_poly *p, const tl_shape_zoning *zoning, tl_zone_mesh *m)
 {
     error.text[0] = 0;
     if (CHECK_INT(tl_zoning_make(p, zoning, scratch, m, &error), TL_OK))
@@ -173,7 +173,7 @@ TEST(random_blocks_are_filled)
     const int cases = check_cases(1000);
     for (int i = 0; i < cases; i++) {
         tl_poly *p = random_block();
-        const tl_zoning zoning = {.edge = random_edge(p)};
+        const tl_shape_zoning zoning = {.edge = random_edge(p)};
         tl_zone_mesh m;
         if (divide(p, &zoning, &m)) {
             check_mesh(p, &m);
@@ -199,7 +199,7 @@ TEST(bent_blocks_are_filled)
         if (!tl_poly_hull(p->vertex, p->vertex_count, TL_HULL_OF_CORNERS, &bent, &error)) {
             tl_zone_mesh m;
             const double edge = random_edge(bent);
-            if (tl_zoning_make(bent, &(tl_zoning){.edge = edge}, scratch, &m, &error)) {
+            if (tl_zoning_make(bent, &(tl_shape_zoning){.edge = edge}, scratch, &m, &error)) {
                 refused++;
             } else {
                 CHECK_NEAR(m.volume, tl_poly_mass(bent).volume, 1e-5 * p->size * p->size * p->size);
@@ -248,7 +248,7 @@ TEST(the_same_anywhere_and_of_any_size)
     for (int i = 0; i < cases; i++) {
         tl_poly *p = random_block();
         round_vertices(p);
-        tl_zoning zoning = {.edge = random_edge(p)};
+        tl_shape_zoning zoning = {.edge = random_edge(p)};
         tl_zone_mesh m, moved, larger;
         if (divide(p, &zoning, &m)) {
             change(p, 1, tl_v3(0x1p20, -0x1p20, 0x1p19));
@@ -348,7 +348,7 @@ TEST(both_sides_of_a_joint_have_the_same_triangles)
         uint64_t key[512];
         keys_by(cut.above, cut.below, key);
         tl_zone_mesh below, above = {0};
-        tl_zoning zoning = {.edge = edge, .size = i % 3 ? NULL : farther_is_coarser, .user = &edge};
+        tl_shape_zoning zoning = {.edge = edge, .size = i % 3 ? NULL : farther_is_coarser, .user = &edge};
         const bool divided = divide(cut.below, &zoning, &below);
         zoning.corner_key = key;
         if (divided && divide(cut.above, &zoning, &above)) {
@@ -375,7 +375,7 @@ TEST(triangles_are_those_of_delaunay)
     const int cases = check_cases(100);
     for (int i = 0; i < cases; i++) {
         tl_poly *p = random_block();
-        const tl_zoning zoning = {.edge = random_edge(p)};
+        const tl_shape_zoning zoning = {.edge = random_edge(p)};
         tl_zone_mesh m;
         int inside = 0;
         if (divide(p, &zoning, &m))

@@ -26,6 +26,9 @@ JOINT_ARRAYS = {"joint": 1, "plane": 1, "block_id": 1, "block_b": 1, "contact_id
 SECTION_ARRAYS = {"block_id": 1, "group": 1, "body": 1, "hidden": 1, "displacement": 3,
                   "displacement_in_plane": 3}
 SECTION_POINT_ARRAYS = {"displacement": 3, "displacement_in_plane": 3}
+ZONE_ARRAYS = {"mean": 1, "block_id": 1, "group": 1, "solid": 1, "cluster": 1, "stress": 6, "principal": 3,
+               "deviator": 1, "state": 1, "plastic": 1}
+ZONE_POINT_ARRAYS = {"displacement": 3, "velocity": 3, "force": 3, "fixed": 1}
 
 checks = failures = 0
 
@@ -327,6 +330,69 @@ def check_empty(folder):
         check(data.GetNumberOfCells() == 0, f"empty: has {content}")
 
 
+def tetrahedron(data, cell):
+    """Its volume, positive where VTK's order of points is kept."""
+    corners = vtk.vtkIdList()
+    data.GetCellPoints(cell, corners)
+    a, b, c, d = (data.GetPoint(corners.GetId(i)) for i in range(4))
+    u, v, w = ([x - o for x, o in zip(p, a)] for p in (b, c, d))
+    return (w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) + w[2] * (u[0] * v[1] - u[1] * v[0])) / 6
+
+
+def check_invariants(name, cells, cell):
+    """Mean, deviator and principal stresses are those of the stress; a zone that has yielded is told so."""
+    xx, yy, zz, xy, yz, zx = cells.GetArray("stress").GetTuple(cell)
+    high, middle, low = cells.GetArray("principal").GetTuple(cell)
+    size = max(map(abs, (xx, yy, zz, xy, yz, zx, 1.0)))
+    near = 8 * SINGLE * size
+    check(high >= middle - near and middle >= low - near, f"{name}: principal stresses of zone {cell} do not descend")
+    check(abs(high + middle + low - xx - yy - zz) < near, f"{name}: principal stresses of zone {cell} have another sum")
+    squares = xx * xx + yy * yy + zz * zz + 2 * (xy * xy + yz * yz + zx * zx)
+    check(abs(high ** 2 + middle ** 2 + low ** 2 - squares) < near * 3 * size, f"{name}: principal stresses of zone {cell} have another norm")
+    check(abs(cells.GetArray("mean").GetValue(cell) - (xx + yy + zz) / 3) < near, f"{name}: mean stress of zone {cell}")
+    j2 = squares / 2 - (xx + yy + zz) ** 2 / 6
+    check(abs(cells.GetArray("deviator").GetValue(cell) ** 2 - 3 * j2) < near * 10 * size, f"{name}: deviator of zone {cell}")
+    check((cells.GetArray("state").GetValue(cell) != 0) == (cells.GetArray("plastic").GetValue(cell) != 0), f"{name}: state of zone {cell}")
+
+
+def check_zones(folder):
+    """The column of zones: its volume and stress, the names of solid and group, and its surface in the file of the blocks."""
+    times = check_series(folder, "zoned", "zones", 2)
+    check(check_series(folder, "zoned", "blocks", 2) == times, "zones: other times than blocks")
+    expected = dict(line.split(" ", 1) for line in (folder / "zoned.txt").read_text().splitlines())
+    first, data = (read(folder / f"zoned_zones_{i:06d}.vtk", vtk.vtkUnstructuredGridReader) for i in range(2))
+    name, count, cells, points = "zoned_zones_000001.vtk", int(expected["zones"]), data.GetCellData(), data.GetPointData()
+    check(data.GetNumberOfCells() == count > 50 and data.GetNumberOfPoints() == int(expected["points"]),
+          f"{name}: {data.GetNumberOfCells()} cells, {data.GetNumberOfPoints()} points, expected {expected}")
+    check_arrays(name, cells, {**ZONE_ARRAYS, "mine": 1, "plastic_shear": 1}, count)
+    check_arrays(name, points, ZONE_POINT_ARRAYS, data.GetNumberOfPoints())
+    check(first.GetCellData().GetArray("mine") is None and moved(first) == 0 and moved(data) > 0, "zones: the first frame")
+    check(names_of(data, "solid_names") == ["rock"], f"{name}: solids {names_of(data, 'solid_names')}")
+    check({cells.GetArray("block_id").GetValue(i) for i in range(count)} == {2}, f"{name}: blocks")
+    clusters = [cells.GetArray("cluster").GetValue(i) for i in range(count)]
+    check(sorted(set(clusters)) == list(range(max(clusters) + 1)) and max(map(clusters.count, clusters)) <= 10, f"{name}: clusters")
+    check([cells.GetArray("mine").GetValue(i) for i in range(count)] == [0.5 * i for i in range(count)], f"{name}: added numbers")
+    volume, sums, plastic = 0.0, [0.0] * 6, 0
+    for cell in range(count):
+        check(data.GetCellType(cell) == vtk.VTK_TETRA, f"{name}: cell {cell} is no tetrahedron")
+        own = tetrahedron(data, cell)
+        check(own > 0, f"{name}: zone {cell} is turned inside out")
+        volume += own
+        sums = [s + own * x for s, x in zip(sums, cells.GetArray("stress").GetTuple(cell))]
+        plastic += cells.GetArray("plastic").GetValue(cell) != 0
+        check_invariants(name, cells, cell)
+    check(abs(volume - float(expected["volume"])) < 1e-5 * volume, f"{name}: volume {volume}, expected {expected['volume']}")
+    wanted = [float(x) for x in expected["stress"].split()]
+    check(all(abs(a - b) < 1e-5 * max(map(abs, wanted)) for a, b in zip(sums, wanted)), f"{name}: stress {sums}, expected {wanted}")
+    check(0 < plastic == int(expected["plastic"]) < count, f"{name}: {plastic} zones have yielded, expected {expected['plastic']}")
+    blocks = read(folder / "zoned_blocks_000001.vtk", vtk.vtkUnstructuredGridReader)
+    loops = face_loops(blocks, 1)
+    edges = [edge for loop in loops for edge in zip(loop, loop[1:] + loop[:1])]
+    check(len(edges) == len(set(edges)) and all((b, a) in edges for a, b in edges), "zones: the surface of the block is not closed")
+    check(all(len(loop) == 3 for loop in loops) and len(loops) > 20, f"zones: the block has {len(loops)} faces")
+    check(abs(enclosed_volume(blocks, loops) - volume) < 1e-5 * volume, "zones: the surface of the block encloses another volume")
+
+
 def moved(data):
     array = data.GetPointData().GetArray("displacement")
     return max(abs(c) for i in range(array.GetNumberOfTuples()) for c in array.GetTuple(i))
@@ -352,6 +418,7 @@ def main():
     check_series(folder / "new" / "folder", "a", "blocks", 2)
     check_empty(folder)
     check_sections(folder)
+    check_zones(folder)
     print(f"check_vtk.py: {checks} checks, {failures} failed")
     return 1 if failures else 0
 

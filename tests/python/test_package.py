@@ -66,6 +66,9 @@ def check_embedding(prefix, folder, plugins):
     warnings = build_project(source, folder / "cmake", prefix, "-DCMAKE_C_FLAGS=-Wall -Wextra -Wpedantic -Werror")
     expect("warning" not in warnings, warnings)
     check_example(folder / "cmake/slide", folder, "find_package")
+    said = run([folder / "cmake/column"]).stdout
+    found = re.search(r"settlement (\S+) mm, expected (\S+) mm", said)
+    expect(found and abs(float(found[1]) / float(found[2]) - 1) < 0.02, f"the column of zones: {said}")
 
     listing = (source / "CMakeLists.txt").read_text(encoding="utf-8")
     (source / "CMakeLists.txt").write_text(listing.replace("talus::talus", "talus::static"), encoding="utf-8")

@@ -1,10 +1,10 @@
 /* test_deform.c - blocks of a cut rock get zones: what these fill, share, take over, and how they stand. */
 #include "contact_scene.h"
 #include "segment/segments.h"
-#include "zone/deform.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
+#include <talus/zones.h>
 
 #include <string.h>
 
@@ -33,11 +33,11 @@ static tl_model *cut_rock(uint64_t seed, int cuts)
 }
 
 /* Divides all blocks from one row on. */
-static tl_divided divide(tl_model *m, uint32_t from, double edge)
+static tl_zoned divide(tl_model *m, uint32_t from, double edge)
 {
-    const tl_dividing how = {.edge = edge, .solid = "rock"};
-    tl_divided made = {0};
-    scene_ok(m, tl_blocks_divide(m, m->blocks.id + from, m->blocks.table.rows - from, &how, &made));
+    const tl_zoning how = {.size = sizeof how, .edge = edge, .solid = "rock"};
+    tl_zoned made = {0};
+    scene_ok(m, tl_blocks_deform(m, m->blocks.id + from, m->blocks.table.rows - from, &how, &made));
     return made;
 }
 
@@ -66,7 +66,7 @@ TEST(zones_fill_the_blocks_of_cut_rock)
         tl_model *m = cut_rock(seed, 5);
         solid(m, 1e9, 0.25);
         const size_t blocks = m->blocks.table.rows;
-        const tl_divided made = divide(m, 0, 0.4);
+        const tl_zoned made = divide(m, 0, 0.4);
         CHECK_INT(made.blocks, blocks);
         CHECK(made.zones > 12 * blocks && made.gridpoints > 5 * blocks && made.clusters * 10 >= made.zones);
         CHECK(made.least_altitude > 0 && made.least_share > 0);
@@ -175,22 +175,22 @@ TEST(what_cannot_be_divided_is_refused)
 {
     tl_model *m = cut_rock(5, 2);
     solid(m, 1e9, 0.25);
-    tl_divided made;
+    tl_zoned made;
     const tl_id good[2] = {m->blocks.id[0], m->blocks.id[1]}, stale[2] = {m->blocks.id[0], 999};
-    tl_dividing how = {.edge = 0.5, .solid = "rock"};
-    CHECK_INT(tl_blocks_divide(m, stale, 2, &how, &made), TL_E_STALE);
+    tl_zoning how = {.size = sizeof how, .edge = 0.5, .solid = "rock"};
+    CHECK_INT(tl_blocks_deform(m, stale, 2, &how, &made), TL_E_STALE);
     how.edge = -1;
-    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_ARGUMENT);
+    CHECK_INT(tl_blocks_deform(m, good, 2, &how, &made), TL_E_ARGUMENT);
     how.edge = NAN;
-    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_ARGUMENT);
-    how = (tl_dividing){.edge = 0.5, .solid = "stone"};
-    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_ARGUMENT);
+    CHECK_INT(tl_blocks_deform(m, good, 2, &how, &made), TL_E_ARGUMENT);
+    how = (tl_zoning){.size = sizeof how, .edge = 0.5, .solid = "stone"};
+    CHECK_INT(tl_blocks_deform(m, good, 2, &how, &made), TL_E_ARGUMENT);
     CHECK(strstr(m->error.text, "there is no solid 'stone'") != NULL);
     CHECK_INT(m->zones->mesh_count, 0);
     CHECK_INT(m->bodies.fixed[0], 0);
     how.solid = "rock";
-    scene_ok(m, tl_blocks_divide(m, good, 1, &how, &made));
-    CHECK_INT(tl_blocks_divide(m, good, 2, &how, &made), TL_E_STATE);
+    scene_ok(m, tl_blocks_deform(m, good, 1, &how, &made));
+    CHECK_INT(tl_blocks_deform(m, good, 2, &how, &made), TL_E_STATE);
     CHECK(strstr(m->error.text, "it has zones already") != NULL);
     CHECK_INT(m->zones->mesh_count, 1);
     CHECK_INT(m->bodies.fixed[1], 0);
@@ -269,11 +269,11 @@ TEST(meshes_follow_when_blocks_go)
     const tl_id far[2] = {1, 5}, above = 4;
     const tl_id of[3] = {5, 3, 4};
     const char *path = "meshes_follow.talus";
-    const tl_dividing how = {.edge = 0.5, .solid = "rock"};
-    tl_divided made;
+    const tl_zoning how = {.size = sizeof how, .edge = 0.5, .solid = "rock"};
+    tl_zoned made;
     for (int k = 0; k < 2; k++) {
         for (int b = 0; b < 3; b++) /* the mesh of the far block comes first */
-            scene_ok(m[k], tl_blocks_divide(m[k], of + b, 1, &how, &made));
+            scene_ok(m[k], tl_blocks_deform(m[k], of + b, 1, &how, &made));
         scene_ok(m[k], tl_model_cycle(m[k], 100, &result));
     }
     scene_ok(m[1], tl_blocks_delete(m[1], far, 2));
@@ -295,27 +295,21 @@ TEST(meshes_follow_when_blocks_go)
         tl_model_destroy(all[k]);
 }
 
-/* What would move a deformable block as a whole, part or join it is refused, and names it. */
+/* What would part or join a deformable block, or change its mass, is refused, and names it. */
 TEST(deformable_blocks_refuse_what_is_for_rigid_ones)
 {
     tl_model *m = cut_rock(5, 1);
     solid(m, 1e9, 0.25);
     const tl_id both[2] = {m->blocks.id[0], m->blocks.id[1]};
-    const tl_dividing how = {.edge = 0.5, .solid = "rock"};
-    tl_divided made;
+    const tl_zoning how = {.size = sizeof how, .edge = 0.5, .solid = "rock"};
+    tl_zoned made;
     char before[64], after[64];
-    scene_ok(m, tl_blocks_divide(m, both + 1, 1, &how, &made));
-    tl_load load = tl_load_default();
-    load.force = tl_v3(1, 0, 0);
+    scene_ok(m, tl_blocks_deform(m, both + 1, 1, &how, &made));
     tl_block_set set = tl_block_set_default();
-    set.velocity = tl_v3(1, 0, 0);
-    const tl_drive drive = tl_drive_default();
+    set.density = 3000;
     scene_ok(m, tl_state_hash(m, before));
-    CHECK_INT(tl_blocks_fix(m, both, 2, TL_FIX_ALL), TL_E_STATE);
-    CHECK(strstr(m->error.text, "is deformable; hold or let go of its gridpoints") != NULL);
-    CHECK_INT(tl_blocks_free(m, both, 2), TL_E_STATE);
-    CHECK_INT(tl_blocks_load(m, both, 2, &load), TL_E_STATE);
-    CHECK_INT(tl_blocks_drive(m, both, 2, &drive), TL_E_STATE);
+    CHECK_INT(tl_blocks_fix(m, both, 2, TL_FIX_ROTATION), TL_E_STATE);
+    CHECK(strstr(m->error.text, "is deformable; it has no rotation to hold") != NULL);
     CHECK_INT(tl_blocks_join(m, both, 2), TL_E_STATE);
     CHECK_INT(tl_blocks_unjoin(m, both, 2), TL_E_STATE);
     CHECK_INT(tl_blocks_set(m, both, 2, &set), TL_E_STATE);

@@ -64,7 +64,7 @@ TEST(a_list_of_histories)
         {{.name = "cubes", .every = 1}, "two histories have one name"},
         {{.name = "k", .every = 0}, "impossible setting"},
         {{.name = "k", .every = 1, .take = 4}, "impossible setting"},
-        {{.name = "k", .every = 1, .source = 4}, "impossible setting"},
+        {{.name = "k", .every = 1, .source = 6}, "impossible setting"},
         {{.name = "k", .every = 1, .source = TL_FROM_BLOCKS}, "too few"},
         {{.name = "k", .every = 1, .source = TL_FROM_MODEL, .id_count = 1, .ids = &id}, "too many"},
         {{.name = "k", .every = 1, .source = TL_FROM_BLOCKS, .id_count = 2, .ids = &id}, "too many"},

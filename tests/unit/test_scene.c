@@ -6,6 +6,8 @@
 #include "io/page.h"
 #include "io/pieces.h"
 #include "io/scene.h"
+#include "zone/zones.h"
+#include "zoned_column.h"
 
 #include <talus/talus.h>
 #include <zlib.h>
@@ -176,6 +178,150 @@ static const char *next_frame(frame *f, tl_scene *scene, tl_model *m)
     return names_of(f);
 }
 
+/* ---------------------------------------------------------------- zones ------------------ */
+
+static float f32(const unsigned char *at)
+{
+    const uint32_t bits = u32(at);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* The columns of SURF. */
+typedef struct surface {
+    uint32_t points, zones, triangles;
+    const unsigned char *made, *corner, *triangle, *zone, *block;
+} surface;
+
+static surface surface_of(const frame *f)
+{
+    surface s = {0};
+    for (size_t i = 0; i < f->count; i++)
+        if (strcmp(f->letters[i], "SURF") == 0) {
+            const unsigned char *at = f->payload[i];
+            CHECK_INT(u32(at), 1);
+            s.points = u32(at + 4);
+            s.zones = u32(at + 8);
+            s.triangles = u32(at + 12);
+            CHECK_INT(u32(at + 16), 1);
+            CHECK_INT(u32(at + 20), 2); /* the body */
+            s.made = at + 36;
+            s.corner = s.made + 12 * (size_t)s.points;
+            s.triangle = s.corner + 16 * (size_t)s.zones + ((size_t)s.zones * 2 + 3) / 4 * 4;
+            s.zone = s.triangle + 12 * (size_t)s.triangles;
+            s.block = s.zone + 4 * (size_t)s.triangles;
+            CHECK_INT(f->length[i], 36 + (size_t)(s.block - s.made) + 8 * (size_t)s.triangles);
+        }
+    return s;
+}
+
+static tl_vec3 point_of(const unsigned char *places, uint32_t point)
+{
+    const unsigned char *at = places + 12 * (size_t)point;
+    return tl_v3((double)f32(at), (double)f32(at + 4), (double)f32(at + 8));
+}
+
+/* The triangles enclose as much as the zones fill, and each is a side of its zone. */
+static void check_surface(const surface *s, const unsigned char *places, double volume)
+{
+    double enclosed = 0, filled = 0;
+    for (uint32_t k = 0; k < s->triangles; k++) {
+        tl_vec3 x[3];
+        const uint32_t zone = u32(s->zone + 4 * (size_t)k);
+        int shared = 0;
+        for (int c = 0; c < 3; c++) {
+            const uint32_t corner = u32(s->triangle + 12 * (size_t)k + 4 * (size_t)c);
+            x[c] = point_of(places, corner);
+            for (int a = 0; a < 4; a++)
+                shared += corner == u32(s->corner + 16 * (size_t)zone + 4 * (size_t)a);
+        }
+        CHECK_INT(shared, 3);
+        CHECK_INT(u32(s->block + 4 * (size_t)k), 2);
+        enclosed += tl_v3_dot(x[0], tl_v3_cross(x[1], x[2])) / 6;
+    }
+    for (uint32_t k = 0; k < s->zones; k++) {
+        tl_vec3 x[4];
+        for (int a = 0; a < 4; a++)
+            x[a] = point_of(places, u32(s->corner + 16 * (size_t)k + 4 * (size_t)a));
+        filled += tl_v3_dot(tl_v3_sub(x[1], x[0]), tl_v3_cross(tl_v3_sub(x[2], x[0]), tl_v3_sub(x[3], x[0]))) / 6;
+    }
+    CHECK_NEAR(enclosed, volume, 1e-3);
+    CHECK_NEAR(filled, enclosed, 1e-4);
+}
+
+static const unsigned char *payload_of(const frame *f, const char *letters, uint32_t number)
+{
+    for (size_t i = 0; i < f->count; i++)
+        if (strcmp(f->letters[i], letters) == 0 && number-- == 0)
+            return f->payload[i];
+    return NULL;
+}
+
+/* The mesh goes once, and again when it is another; places and numbers of the zones go in every frame. */
+TEST(zones_are_sent_with_their_numbers)
+{
+    tl_model *m = empty_model(2);
+    tl_scene scene = {0};
+    frame f = {.count = 0};
+    tl_solve_result result;
+    zoned_column(m, 0.7);
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
+    CHECK_TEXT(names_of(&f),
+               "HEAD SHAP TOUC SURF FRAM SPOS ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD CONT LINE FIND DONE");
+    CHECK(strstr((const char *)f.payload[0], "\"solids\": [\"rock\"]") != NULL);
+    const surface s = surface_of(&f);
+    CHECK_INT(s.zones, m->zones->mesh[0].zone_end - m->zones->mesh[0].zone_begin);
+    check_surface(&s, s.made, 6);
+    tl_scene_accept(&scene);
+    CHECK_INT(tl_model_cycle(m, 400, &result), TL_OK);
+    frame later = {.count = 0};
+    CHECK_INT(write_frame(&later, &scene, m, NULL), TL_OK);
+    CHECK_TEXT(names_of(&later), "FRAM SPOS ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD CONT LINE FIND DONE");
+    const unsigned char *places = payload_of(&later, "SPOS", 0) + 4, *moved = places + 12 * (size_t)s.points;
+    check_surface(&s, places, 6);
+    double largest = 0;
+    for (uint32_t k = 0; k < s.points; k++) {
+        const tl_vec3 u = point_of(moved, k), x = point_of(places, k), made = point_of(s.made, k);
+        CHECK(tl_v3_norm(tl_v3_sub(tl_v3_sub(x, made), u)) < 1e-6);
+        largest = fmax(largest, tl_v3_norm(u));
+    }
+    CHECK(largest > 0 && later.facts.largest >= largest * (1 - 1e-6));
+    uint32_t yielding = 0;
+    for (uint32_t number = 0; number < 9; number++) {
+        const unsigned char *field = payload_of(&later, "ZFLD", number);
+        CHECK_INT(u32(field), number);
+        CHECK_INT(u32(field + 4), s.zones);
+        for (uint32_t k = 0; k < s.zones; k++) {
+            const uint32_t row = m->zones->row_of[k];
+            const double value = (double)f32(field + 8 + 4 * (size_t)k);
+            if (number < 6)
+                CHECK_NEAR(value, m->zones->zones.stress[number][row], 1e-6 * fabs(value));
+            yielding += number == 6 && value > 0;
+        }
+    }
+    CHECK(yielding > 0 && yielding < s.zones);
+    free_frame(&f);
+    free_frame(&later);
+    tl_scene_forget(&scene);
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
+    CHECK(payload_of(&f, "SURF", 0) != NULL);
+    tl_scene_accept(&scene);
+    const tl_id column = 2;
+    CHECK_INT(tl_blocks_delete(m, &column, 1), TL_OK);
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
+    CHECK_TEXT(names_of(&f), "HEAD GONE TOUC SURF FRAM CONT LINE FIND DONE");
+    CHECK_INT(u32(payload_of(&f, "SURF", 0)), 0);
+    tl_scene_accept(&scene);
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
+    CHECK(payload_of(&f, "SURF", 0) == NULL);
+    free_frame(&f);
+    tl_scene_free(&scene);
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- changes ---------------- */
+
 TEST(what_has_changed_is_sent_again)
 {
     tl_model *m = empty_model(1);
@@ -217,14 +363,6 @@ TEST(what_has_changed_is_sent_again)
     free_frame(&f);
     tl_scene_free(&scene);
     tl_model_destroy(m);
-}
-
-static float f32(const unsigned char *at)
-{
-    float value;
-    const uint32_t bits = u32(at);
-    memcpy(&value, &bits, sizeof value);
-    return value;
 }
 
 TEST(refused_cuts_are_told_when_there_are_more)
@@ -373,5 +511,6 @@ TEST(what_is_packed_unpacks)
     tl_model_destroy(three);
 }
 
-TEST_MAIN(RUN(what_is_sent_once), RUN(what_has_changed_is_sent_again), RUN(refused_cuts_are_told_when_there_are_more),
-          RUN(an_empty_model_is_a_frame), RUN(fields_have_a_value_for_each), RUN(what_is_packed_unpacks))
+TEST_MAIN(RUN(what_is_sent_once), RUN(zones_are_sent_with_their_numbers), RUN(what_has_changed_is_sent_again),
+          RUN(refused_cuts_are_told_when_there_are_more), RUN(an_empty_model_is_a_frame),
+          RUN(fields_have_a_value_for_each), RUN(what_is_packed_unpacks))

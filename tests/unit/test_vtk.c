@@ -5,6 +5,9 @@
 #define _GNU_SOURCE /* usleep */
 #include "check.h"
 
+#include "zone/zones.h"
+#include "zoned_column.h"
+
 #include <dirent.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -147,6 +150,98 @@ TEST(two_frames_for_the_reader)
     note_expected(m);
     tl_model_destroy(m);
 }
+
+/* ---------------------------------------------------------------- zones ------------------ */
+
+static tl_model *column(void)
+{
+    tl_model *m = empty_model();
+    zoned_column(m, 0.7);
+    return m;
+}
+
+/* What the reader is to find of the zones: how many, and sums over them, weighted by their volumes. */
+static void note_zones(tl_model *m, const char *path)
+{
+    tl_zone_name *names = NULL;
+    size_t count = 0, width, plastic = 0;
+    double sum[6] = {0}, volume = 0;
+    const tl_zone_filter all = tl_zone_filter_default();
+    CHECK_INT(tl_zones_select(m, &all, &names, &count), TL_OK);
+    for (size_t k = 0; k < count; k++) {
+        double v, s[6], yields;
+        tl_zones_values(m, names + k, 1, "volume", &v, &width);
+        tl_zones_values(m, names + k, 1, "stress", s, &width);
+        tl_zones_values(m, names + k, 1, "plastic", &yields, &width);
+        plastic += yields != 0;
+        volume += v;
+        for (int c = 0; c < 6; c++)
+            sum[c] += v * s[c];
+    }
+    free(names);
+    char text[512];
+    tl_text_print(text, sizeof text,
+                  "zones %zu\npoints %zu\nplastic %zu\nvolume %.17g\nstress %.17g %.17g %.17g %.17g %.17g %.17g\n",
+                  count, (size_t)(m->zones->mesh[0].point_end - m->zones->mesh[0].point_begin), plastic, volume, sum[0],
+                  sum[1], sum[2], sum[3], sum[4], sum[5]);
+    CHECK(volume > 5.9 && volume < 6.1 && sum[2] < -1e4);
+    FILE *file = fopen(path, "w");
+    if (CHECK(file != NULL)) {
+        fputs(text, file);
+        fclose(file);
+    }
+}
+
+/* Zones have a file of their own, with numbers of a program's own; the deformed surface is that of the block. */
+TEST(zones_for_the_reader)
+{
+    tl_model *m = column();
+    tl_vtk_parts parts = tl_vtk_parts_default();
+    tl_solve_result result;
+    CHECK_INT(tl_write_vtk(m, FOLDER "/zoned", NULL), TL_OK);
+    CHECK_INT(tl_model_cycle(m, 400, &result), TL_OK);
+    const size_t count = m->zones->mesh[0].zone_end - m->zones->mesh[0].zone_begin;
+    double *values = calloc(count, sizeof *values);
+    for (size_t k = 0; k < count; k++)
+        values[k] = 0.5 * (double)k;
+    const tl_extra_field mine = {.name = "mine", .values = values, .count = count};
+    parts.zone_fields = &mine;
+    parts.zone_field_count = 1;
+    CHECK_INT(tl_write_vtk(m, FOLDER "/zoned", &parts), TL_OK);
+    CHECK_TEXT(tl_model_error(m)->text, "");
+    note_zones(m, FOLDER "/zoned.txt");
+    free(values);
+    tl_model_destroy(m);
+}
+
+/* Bad fields are refused, and a frame can go without its zones. */
+TEST(zones_can_be_left_out)
+{
+    tl_model *m = column();
+    const double few[] = {1, 2};
+    tl_extra_field field = {.name = "mine", .values = few, .count = 2};
+    tl_vtk_parts parts = tl_vtk_parts_default();
+    parts.zone_fields = &field;
+    parts.zone_field_count = 1;
+    CHECK_INT(tl_write_vtk(m, FOLDER "/few", &parts), TL_E_ARGUMENT);
+    CHECK_CONTAINS(tl_model_error(m)->text, "zone_fields: 'mine' has 2 values, and there are");
+    CHECK(!exists(FOLDER "/few_zones_000000.vtk") && !exists(FOLDER "/few_blocks_000000.vtk"));
+    parts = tl_vtk_parts_default();
+    parts.zones = 0;
+    CHECK_INT(tl_write_vtk(m, FOLDER "/plain", &parts), TL_OK);
+    CHECK(exists(FOLDER "/plain_blocks_000000.vtk") && !exists(FOLDER "/plain_zones_000000.vtk"));
+    parts.zones = 1;
+    parts.blocks = parts.contacts = parts.joints = 0;
+    CHECK_INT(tl_write_vtk(m, FOLDER "/plain", &parts), TL_OK);
+    CHECK(!exists(FOLDER "/plain_blocks_000001.vtk") && exists(FOLDER "/plain_zones_000001.vtk"));
+    tl_model_destroy(m);
+    tl_model *rigid = cut_box();
+    CHECK_INT(tl_write_vtk(rigid, FOLDER "/plain", &parts), TL_E_ARGUMENT);
+    CHECK_CONTAINS(tl_model_error(rigid)->text, "no block is deformable");
+    tl_model_destroy(rigid);
+}
+
+/* ---------------------------------------------------------------- refused ---------------- */
 
 /* Numbers of a program's own are as many as there are blocks or contacts, whatever files are written. */
 TEST(added_fields_fit_the_model)
@@ -400,8 +495,8 @@ static void clean_folder(void)
     files_with("plain", 1);
 }
 
-TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(added_fields_fit_the_model),
-          RUN(sections_for_the_reader), RUN(an_empty_model_has_files_too), RUN(prefixes_count_their_own_frames),
-          RUN(a_prefix_names_files), RUN(a_file_is_no_folder), RUN(a_failed_frame_leaves_nothing),
-          RUN(a_full_disk_is_noticed), RUN(an_index_is_kept_in_its_place),
+TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(zones_for_the_reader), RUN(zones_can_be_left_out),
+          RUN(added_fields_fit_the_model), RUN(sections_for_the_reader), RUN(an_empty_model_has_files_too),
+          RUN(prefixes_count_their_own_frames), RUN(a_prefix_names_files), RUN(a_file_is_no_folder),
+          RUN(a_failed_frame_leaves_nothing), RUN(a_full_disk_is_noticed), RUN(an_index_is_kept_in_its_place),
           RUN(an_index_that_was_changed_is_written_anew), RUN(a_killed_writer_leaves_a_whole_series))

@@ -17,7 +17,7 @@ static tl_poly *box_of(double x, double y, double z)
     return p;
 }
 
-static tl_zone_mesh zones_of(const tl_poly *p, const tl_zoning *zoning)
+static tl_zone_mesh zones_of(const tl_poly *p, const tl_shape_zoning *zoning)
 {
     tl_zone_mesh m;
     if (!CHECK_INT(tl_zoning_make(p, zoning, scratch, &m, &error), TL_OK)) {
@@ -40,7 +40,7 @@ static bool same(const tl_zone_mesh *a, const tl_zone_mesh *b)
 TEST(corners_and_centroid)
 {
     tl_poly *cube = box_of(1, 1, 1);
-    tl_zone_mesh m = zones_of(cube, &(tl_zoning){.edge = 3});
+    tl_zone_mesh m = zones_of(cube, &(tl_shape_zoning){.edge = 3});
     CHECK_INT(m.point_count, 9);
     CHECK_INT(m.zone_count, 12);
     CHECK_INT(m.triangle_count, 12);
@@ -55,7 +55,7 @@ TEST(corners_and_centroid)
 TEST(points_in_their_order)
 {
     tl_poly *box = box_of(3, 2, 1);
-    tl_zone_mesh m = zones_of(box, &(tl_zoning){.edge = 0.3});
+    tl_zone_mesh m = zones_of(box, &(tl_shape_zoning){.edge = 0.3});
     CHECK_INT(m.corner_end, 8);
     /* 10, 7 and 3 parts of an edge */
     CHECK_INT(m.edge_end, 8 + 4 * (9 + 6 + 2));
@@ -78,7 +78,7 @@ TEST(shapes_of_zones)
                  {2, 1, 0.7, 0.3, 0.39}, {3, 2, 1, 0.2, 0.39}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         tl_poly *box = box_of(cases[i].x, cases[i].y, cases[i].z);
-        tl_zone_mesh m = zones_of(box, &(tl_zoning){.edge = cases[i].edge});
+        tl_zone_mesh m = zones_of(box, &(tl_shape_zoning){.edge = cases[i].edge});
         CHECK(m.least_share > cases[i].share);
         CHECK_NEAR(m.least_altitude, m.least_share * cases[i].edge, 1e-12);
         const double volume = cases[i].x * cases[i].y * cases[i].z;
@@ -95,10 +95,11 @@ TEST(shapes_of_zones)
 TEST(the_same_with_any_scratch)
 {
     tl_poly *box = box_of(2, 1, 1), *other = box_of(5, 4, 3);
-    tl_zone_mesh used = zones_of(other, &(tl_zoning){.edge = 0.4}), again = zones_of(box, &(tl_zoning){.edge = 0.2});
+    tl_zone_mesh used = zones_of(other, &(tl_shape_zoning){.edge = 0.4}),
+                 again = zones_of(box, &(tl_shape_zoning){.edge = 0.2});
     tl_zone_scratch_free(scratch);
     scratch = tl_zone_scratch_create();
-    tl_zone_mesh m = zones_of(box, &(tl_zoning){.edge = 0.2});
+    tl_zone_mesh m = zones_of(box, &(tl_shape_zoning){.edge = 0.2});
     CHECK(same(&m, &again));
     tl_zone_mesh_free(&m);
     tl_zone_mesh_free(&again);
@@ -112,8 +113,8 @@ TEST(free_faces)
 {
     const uint8_t all_free[6] = {1, 1, 1, 1, 1, 1};
     tl_poly *slab = box_of(20, 20, 1);
-    tl_zone_mesh held = zones_of(slab, &(tl_zoning){.edge = 1});
-    tl_zone_mesh loose = zones_of(slab, &(tl_zoning){.edge = 1, .face_free = all_free});
+    tl_zone_mesh held = zones_of(slab, &(tl_shape_zoning){.edge = 1});
+    tl_zone_mesh loose = zones_of(slab, &(tl_shape_zoning){.edge = 1, .face_free = all_free});
     uint32_t moved = 0;
     CHECK_INT(held.face_end, loose.face_end);
     for (uint32_t i = 0; i < held.face_end; i++)
@@ -140,7 +141,7 @@ TEST(sizes_that_vary)
 {
     const double finest = 0.05;
     tl_poly *box = box_of(4, 3, 2);
-    tl_zone_mesh m = zones_of(box, &(tl_zoning){.size = graded, .user = &finest});
+    tl_zone_mesh m = zones_of(box, &(tl_shape_zoning){.size = graded, .user = &finest});
     CHECK_REL(m.volume, 24.0, 1e-13);
     CHECK(m.least_share > 0.2);
     /* mean edges of zones follow the wanted ones */
@@ -172,13 +173,13 @@ TEST(what_is_refused)
     tl_zone_mesh m;
     static const double none[] = {0, -1, NAN, INFINITY};
     for (int i = 0; i < 4; i++) {
-        CHECK_INT(tl_zoning_make(box, &(tl_zoning){.edge = none[i]}, scratch, &m, &error), TL_E_ARGUMENT);
+        CHECK_INT(tl_zoning_make(box, &(tl_shape_zoning){.edge = none[i]}, scratch, &m, &error), TL_E_ARGUMENT);
         CHECK_CONTAINS(error.text, "it must be positive");
         CHECK(m.point == NULL && m.zone_count == 0);
     }
-    CHECK_INT(tl_zoning_make(box, &(tl_zoning){.size = nowhere}, scratch, &m, &error), TL_E_ARGUMENT);
+    CHECK_INT(tl_zoning_make(box, &(tl_shape_zoning){.size = nowhere}, scratch, &m, &error), TL_E_ARGUMENT);
     CHECK_CONTAINS(error.text, "the wanted edge of zones is -1 at (1, 0, 0)");
-    CHECK_INT(tl_zoning_make(box, &(tl_zoning){.edge = 1e-7}, scratch, &m, &error), TL_E_ARGUMENT);
+    CHECK_INT(tl_zoning_make(box, &(tl_shape_zoning){.edge = 1e-7}, scratch, &m, &error), TL_E_ARGUMENT);
     CHECK_CONTAINS(error.text, "would have 1e+07 zones");
     tl_poly_free(box);
 }
@@ -187,7 +188,7 @@ TEST(what_is_refused)
 TEST(clusters)
 {
     tl_poly *box = box_of(3, 2, 1);
-    tl_zone_mesh m = zones_of(box, &(tl_zoning){.edge = 0.2});
+    tl_zone_mesh m = zones_of(box, &(tl_shape_zoning){.edge = 0.2});
     tl_zone_clusters c;
     CHECK_INT(
         tl_zone_clusters_make((const uint32_t(*)[4])m.zone, (const uint32_t(*)[4])m.beside, m.zone_count, &c, &error),

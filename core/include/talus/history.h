@@ -21,13 +21,15 @@ struct tl_model;
 
 /* What is sampled. */
 typedef enum tl_history_source {
-    TL_FROM_FUNCTION, /* what a function of the program gives: no file keeps that */
-    TL_FROM_MODEL,    /* a value of the model */
-    TL_FROM_BLOCKS,   /* a field of blocks */
-    TL_FROM_CONTACTS  /* a field of contacts */
+    TL_FROM_FUNCTION,  /* what a function of the program gives: no file keeps that */
+    TL_FROM_MODEL,     /* a value of the model */
+    TL_FROM_BLOCKS,    /* a field of blocks */
+    TL_FROM_CONTACTS,  /* a field of contacts */
+    TL_FROM_ZONES,     /* a field of zones */
+    TL_FROM_GRIDPOINTS /* a field of gridpoints */
 } tl_history_source;
 
-/* What is made of the values of several blocks or contacts. */
+/* What is made of the values of several. */
 typedef enum tl_history_take { TL_TAKE_MEAN, TL_TAKE_SUM, TL_TAKE_MIN, TL_TAKE_MAX } tl_history_take;
 
 typedef struct tl_history {
@@ -40,15 +42,17 @@ typedef struct tl_history {
     bool lost;      /* it was told that a block no longer exists */
     bool list;      /* a sample is a list, even of one number */
     size_t id_count;
-    tl_id *ids;                    /* of the blocks; NULL of contacts */
-    tl_contact_name *contacts;     /* NULL of blocks */
+    /* their names: one list, the others are NULL */
+    tl_id *ids; /* of blocks */
+    tl_contact_name *contacts;
+    tl_zone_name *zones;           /* or gridpoints */
     size_t width, count, capacity; /* numbers of a sample; samples; room for them */
     int64_t *cycles;               /* of each sample, ascending */
     double *times, *values;        /* s; width numbers for each sample */
 } tl_history;
 
 /* Makes a history without samples at the end of the model's list: `what` gives its name, asked, every, source, take,
- * selection and ids or contacts, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a
+ * selection and names, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a
  * name that is empty, not of one line, or that of another history; every < 1; no ids. `made` may be NULL. */
 TL_API tl_status tl_history_add(struct tl_model *model, const tl_history *what, tl_history **made);
 /* Ends history i, with its samples. */

@@ -195,9 +195,12 @@ typedef struct tl_insitu {
     uint32_t size;            /* sizeof(tl_insitu) */
     tl_sym3 stress, gradient; /* tension positive, Pa and Pa/m over z */
     tl_vec3 at;
+    const tl_id *blocks; /* in the zones of these, and on their contacts with any; NULL: everywhere */
+    size_t block_count;
 } tl_insitu;
 
-/* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now. */
+/* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now, and in the zones of
+ * deformable blocks. A stress that is in equilibrium with weight and with tractions on the faces stays as it is. */
 TL_API tl_status tl_model_insitu(tl_model *model, const tl_insitu *insitu);
 
 /* Chooses the damping plugin; "none" is no damping. */
@@ -528,11 +531,12 @@ typedef struct tl_block_set {
     double density;                     /* NaN: unchanged */
     const char *group;                  /* NULL: unchanged */
     tl_vec3 velocity, angular_velocity; /* NaN: unchanged */
+    const char *solid;                  /* of the zones of deformable blocks: zones.h; NULL: unchanged */
 } tl_block_set;
 
 /* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those
  * that are listed. TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not
- * finite; then no block is changed. */
+ * finite, or a solid that is not there; TL_E_STATE for a solid of a rigid block. Then no block is changed. */
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count, const tl_block_set *set);
 
 /* Makes one rigid body of the blocks and of all blocks joined to them before. Mass, momentum and angular
@@ -584,7 +588,8 @@ TL_API tl_status tl_blocks_drive(tl_model *model, const tl_id *ids, size_t count
 /* Energy of the bodies that are free to move, J, all at one time and counted from the first step. Its members are
  * numbers, the terms of TL_ENERGY. What is held: kinetic, potential (minus the work of gravity) and stored (in all
  * contacts). What has gone: friction (heat of slip) and damping. What has come: external, work of loads, of driven
- * bodies and of edits. The last, balance, is the error of their sum over the largest change of a term so far. */
+ * bodies and of edits. The last, balance, is the error of their sum over the largest change of a term so far. What the
+ * zones of deformable blocks hold and have taken, tl_zone_energy, is in that sum. */
 typedef struct tl_energy {
 #define TL_ENERGY_TERM(name, unit, doc) double name;
     TL_ENERGY(TL_ENERGY_TERM)
@@ -593,6 +598,22 @@ typedef struct tl_energy {
 
 /* The ledger, as of the last force evaluation. */
 TL_API tl_status tl_model_energy(tl_model *model, tl_energy *energy);
+
+/* The terms of the ledger that zones have: name, unit and what it is. */
+#define TL_ZONE_ENERGY(X)                                                                                              \
+    X(strain, "J", "elastic, in all zones of deformable blocks, J")                                                    \
+    X(plastic, "J", "turned to heat in zones, by yielding, J")
+
+/* Energy of the zones of deformable blocks, J. Its members are numbers, the terms of TL_ZONE_ENERGY: strain (elastic,
+ * held now) and plastic (turned to heat so far). Both are 0 without deformable blocks. */
+typedef struct tl_zone_energy {
+#define TL_ENERGY_TERM(name, unit, doc) double name;
+    TL_ZONE_ENERGY(TL_ENERGY_TERM)
+#undef TL_ENERGY_TERM
+} tl_zone_energy;
+
+/* What zones have in the ledger, as of the last force evaluation. */
+TL_API tl_status tl_model_zone_energy(tl_model *model, tl_zone_energy *energy);
 
 /* ---------------------------------------------------------------- contacts --------------- */
 

@@ -40,6 +40,12 @@ typedef struct tl_contact_name {
     int64_t born;
 } tl_contact_name;
 
+/* A zone, or a gridpoint: the body that it is of, by the lowest id of its blocks, and its number there, from 0. */
+typedef struct tl_zone_name {
+    tl_id body;
+    uint32_t number;
+} tl_zone_name;
+
 typedef struct tl_vec3 {
     double x, y, z;
 } tl_vec3;

@@ -76,6 +76,20 @@ typedef struct tl_contact_views {
 /* Finds contacts first where blocks have changed, so it can fail. */
 TL_API tl_status tl_view_contacts(tl_model *model, tl_contact_views *views);
 
+/* The gridpoints of a deformable body: row k is gridpoint k. Each component of a vector is a column. A gridpoint
+ * is at origin + reference + displacement. */
+typedef struct tl_gridpoint_views {
+    tl_vec3 origin;          /* m */
+    tl_view reference[3];    /* where it was made, less the origin, m */
+    tl_view displacement[3]; /* since then, m */
+    tl_view velocity[3];     /* half a step ago, m/s */
+    tl_view force[3];        /* unbalanced, in the last step, N */
+    tl_view mass;            /* kg */
+} tl_gridpoint_views;
+
+/* The gridpoints of the body that a block belongs to: none of a rigid one. TL_E_STALE: there is no such block. */
+TL_API tl_status tl_view_gridpoints(tl_model *model, tl_id block, tl_gridpoint_views *views);
+
 /* The shape of a block in the frame of its body, which moves with it: as tl_block_mesh_get, but `vertices` and
  * `normals` are fixed until the structure changes. */
 TL_API tl_status tl_block_mesh_local(tl_model *model, tl_id block, tl_block_mesh *mesh);

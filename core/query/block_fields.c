@@ -1,13 +1,13 @@
-/* fields.c - what can be asked of a block: its named fields and its shape in place. */
-#include "model/fields.h"
+/* block_fields.c - what can be asked of a block: its named fields. */
+#include "query/block_fields.h"
 
 #include "model/regroup.h"
+#include "query/zone_at.h"
+#include "zone/grid.h"
 
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 #include <talus/fields.h>
-#include <talus/views.h>
 
 static double kinetic_energy(const tl_model *m, uint32_t row)
 {
@@ -15,6 +15,25 @@ static double kinetic_energy(const tl_model *m, uint32_t row)
     double mass = m->blocks.density[row] * m->blocks.volume[row];
     return 0.5 * mass * tl_v3_norm2(tl_block_velocity(m, row)) +
            0.5 * tl_v3_dot(w, tl_s3_mul(tl_block_inertia(m, row), w));
+}
+
+/* The mesh of a block's body; NULL: it is rigid. */
+static const tl_body_mesh *mesh_of(const tl_model *m, uint32_t body)
+{
+    const uint32_t mesh = tl_mesh_of(m, m->bodies.id[body]);
+    return mesh != TL_NO_ROW ? &m->zones->mesh[mesh] : NULL;
+}
+
+static double zones_of(const tl_model *m, uint32_t body)
+{
+    const tl_body_mesh *mesh = mesh_of(m, body);
+    return mesh ? mesh->zone_end - mesh->zone_begin : 0;
+}
+
+static double gridpoints_of(const tl_model *m, uint32_t body)
+{
+    const tl_body_mesh *mesh = mesh_of(m, body);
+    return mesh ? mesh->point_end - mesh->point_begin : 0;
 }
 
 /* The fields: name, kind, unit, what they are, and their value. It is that of the block in `row` of the blocks b, or
@@ -39,7 +58,14 @@ static double kinetic_energy(const tl_model *m, uint32_t row)
     FIELD(hidden, BOOL, "", "hidden blocks are not cut", b->hidden[row] != 0)                                          \
     FIELD(body, COUNT, "", "id of its rigid body: the lowest id of its blocks", bodies->id[body])                      \
     FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(tl_block_velocity(m, row)))                       \
-    FIELD(kinetic_energy, SCALAR, "J", "of the block alone", kinetic_energy(m, row))
+    FIELD(kinetic_energy, SCALAR, "J", "of the block alone", kinetic_energy(m, row))                                   \
+    FIELD(deformable, BOOL, "", "whether it has zones", mesh_of(m, body) != NULL)                                      \
+    FIELD(zones, COUNT, "", "of its body", zones_of(m, body))                                                          \
+    FIELD(gridpoints, COUNT, "", "of its body", gridpoints_of(m, body))                                                \
+    FIELD(stress, SYM3, "Pa", "mean over its zones, by volume; nan of a rigid block",                                  \
+          tl_mesh_mean(m, mesh_of(m, body), b->id[row], tl_zone_stress))                                               \
+    FIELD(strain, SYM3, "", "mean logarithmic strain of these zones; nan of a rigid block",                            \
+          tl_mesh_mean(m, mesh_of(m, body), b->id[row], tl_zone_strain))
 
 /* What else files show. */
 #define BLOCK_ARRAYS(FIELD)                                                                                            \
@@ -105,58 +131,4 @@ tl_status tl_block_field(tl_model *m, tl_id block, size_t index, tl_field_value 
     else
         tl_block_numbers(m, row, &fields[index], value->number);
     return TL_OK;
-}
-
-/* The faces of a block's shape, and its vertices and normals in its body's frame. */
-tl_status tl_block_mesh_local(tl_model *m, tl_id block, tl_block_mesh *mesh)
-{
-    *mesh = (tl_block_mesh){0};
-    uint32_t row = tl_block_row(m, block);
-    if (row == TL_NO_ROW)
-        return m->error.status;
-    const tl_poly *shape = m->blocks.shape[row];
-    size_t corners = shape->start[shape->face_count];
-    mesh->vertex_count = shape->vertex_count;
-    mesh->face_count = shape->face_count;
-    mesh->vertices = malloc(shape->vertex_count * sizeof *mesh->vertices);
-    mesh->start = malloc((shape->face_count + 1u) * sizeof *mesh->start);
-    mesh->loops = malloc(corners * sizeof *mesh->loops);
-    mesh->tags = malloc(shape->face_count * sizeof *mesh->tags);
-    mesh->normals = malloc(shape->face_count * sizeof *mesh->normals);
-    if (!mesh->vertices || !mesh->start || !mesh->loops || !mesh->tags || !mesh->normals) {
-        tl_block_mesh_free(mesh);
-        return tl_fail_memory(&m->error);
-    }
-    memcpy(mesh->vertices, shape->vertex, shape->vertex_count * sizeof *mesh->vertices);
-    for (size_t f = 0; f <= shape->face_count; f++)
-        mesh->start[f] = shape->start[f];
-    for (size_t i = 0; i < corners; i++)
-        mesh->loops[i] = shape->loop[i];
-    memcpy(mesh->tags, shape->tag, shape->face_count * sizeof *mesh->tags);
-    for (uint32_t i = 0; i < shape->face_count; i++)
-        mesh->normals[i] = shape->plane[i].normal;
-    return TL_OK;
-}
-
-tl_status tl_block_mesh_get(tl_model *m, tl_id block, tl_block_mesh *mesh)
-{
-    tl_status status = tl_block_mesh_local(m, block, mesh);
-    if (status != TL_OK)
-        return status;
-    uint32_t body = m->blocks.body[tl_block_row_quiet(m, block)];
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        mesh->vertices[i] = tl_model_point(m, body, mesh->vertices[i]);
-    for (size_t i = 0; i < mesh->face_count; i++)
-        mesh->normals[i] = tl_m3_mul(&m->bodies.pose[body].r, mesh->normals[i]);
-    return TL_OK;
-}
-
-void tl_block_mesh_free(tl_block_mesh *mesh)
-{
-    free(mesh->vertices);
-    free(mesh->start);
-    free(mesh->loops);
-    free(mesh->tags);
-    free(mesh->normals);
-    *mesh = (tl_block_mesh){0};
 }

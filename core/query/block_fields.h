@@ -1,6 +1,6 @@
-/* fields.h - the numbers of fields, and of the arrays of files, of blocks. */
-#ifndef TL_MODEL_FIELDS_H
-#define TL_MODEL_FIELDS_H
+/* block_fields.h - the numbers of fields, and of the arrays of files, of blocks. */
+#ifndef TL_QUERY_BLOCK_FIELDS_H
+#define TL_QUERY_BLOCK_FIELDS_H
 
 #include "model/model.h"
 
