@@ -29,7 +29,7 @@
 #include <math.h>
 
 /* Tolerance: sines of 5 and 10 degrees, between which the field contact takes over: zoned faces curve by some degrees
- * and lie flush all the same. Test: property/deform_contacts. */
+ * and lie flush all the same. Test: property/deform_properties. */
 #define LEAST_TILT 0.087155742747658174
 #define MOST_TILT 0.17364817766693033
 /* Tolerance: sine of 4.8 degrees, from which on there is a field contact: before it has a share. */

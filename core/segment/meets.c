@@ -127,7 +127,7 @@ static bool faces_meet(const tl_model *m, const face *a, const face *b)
 /* ---------------------------------------------------------------- depth ------------------ */
 
 /* Tolerance: how much deeper than along another face the blocks may overlap along one that touches, and what of their
- * size beside: as of patches (narrow/manifold.c). Test: property/deform_contacts. */
+ * size beside: as of patches (narrow/manifold.c). Test: property/deform_properties. */
 #define DEEPER 4.0
 #define DEEPER_SIZE 1e-3
 
@@ -387,7 +387,7 @@ tl_status tl_segments_find(tl_model *m)
         size_t count;
         tl_meet *list = list_meets(m, &count, &enough);
         if (enough)
-            tl_laying_change_meets(&l, s, list, count);
+            tl_laying_change_meets(m, &l, list, count);
         else
             free(list);
         mark_changed(m);
