@@ -163,11 +163,12 @@ static double stored_by(const struct tl_segments *s, const tl_meet *meet)
 static void scale_segment(struct tl_segments *s, uint32_t row, double forces, double energy)
 {
     for (int side = 0; side < 2; side++)
-        for (int k = 0; k < 9; k++)
-            s->table.push[side][k][row] *= forces;
+        for (int corner = 0; corner < 3; corner++)
+            for (int k = 0; k < 4; k++)
+                s->table.push[row].of[side][corner][k] *= forces;
     s->table.bears[row] *= forces;
-    s->table.heat[row] *= forces;
     s->table.stored[row] *= energy;
+    s->table.heat[row] *= forces;
 }
 
 /* Adds what the change of its share by the tilt does to the sides of a segment. `more`: that of the energy, J, by the
@@ -180,8 +181,12 @@ static void turn_segment(tl_model *m, uint32_t row, const tl_meet *meet, double 
         const tl_side_now now = tl_side_now_of(m, side ? &of->b : &of->a, side ? of->normal_b : of->normal_a);
         double sum[9] = {0};
         tl_side_turn(&now, tl_v3_scale(-more * s->table.area[row], tl_v3_cross(now.normal, meet->by[side])), sum);
-        for (int k = 0; k < 9; k++)
-            s->table.push[side][k][row] += sum[k];
+        for (int corner = 0; corner < 3; corner++) {
+            double *to = s->table.push[row].of[side][corner];
+            for (int k = 0; k < 3; k++)
+                to[k] += sum[3 * corner + k];
+            to[3] = tl_v3_norm(tl_v3(to[0], to[1], to[2]));
+        }
     }
 }
 

@@ -393,7 +393,7 @@ tl_status tl_segments_find(tl_model *m)
         mark_changed(m);
     }
     for (size_t row = 0; row < s->table.table.rows && !anew; row++)
-        if (s->table.of[row].meet != TL_NO_ROW && s->table.slid[row])
+        if (s->table.slid[row] && s->table.of[row].meet != TL_NO_ROW)
             s->meet[s->table.of[row].meet].stale = true;
     for (size_t k = 0; k < s->meet_count; k++)
         some = some || s->meet[k].stale;

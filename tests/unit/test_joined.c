@@ -1,6 +1,7 @@
 /* test_joined.c - bodies of several blocks get zones: their blocks share gridpoints, and hang together as one solid does. */
 #include "contact_scene.h"
 #include "segment/segments.h"
+#include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
