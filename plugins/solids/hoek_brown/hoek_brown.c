@@ -192,7 +192,7 @@ TL_IN_LOOP void find_ends(const mass *m, const line_lanes *l, const tl_lanes wan
         b.over_high[i] = over_high;
         b.moved[i] = 0;
         met[i] = over_low >= 0 ? 1 : 0;
-        b.open[i] = (wanted[i] > 0) & (over_low > 0) & (over_high < 0) ? 1 : 0;
+        b.open[i] = ((wanted[i] > 0) & (over_low > 0) & (over_high < 0)) ? 1 : 0;
     }
     int any = sum_of(b.open) > 0;
     for (int pass = 0; pass < MOST_PASSES && any; pass++)
@@ -323,8 +323,8 @@ TL_IN_LOOP int bring_back(const mass *m, const tl_lanes6 s, tl_lanes6 after, tl_
     {
         double s1 = g.s[0][i], s3 = g.s[2][i], strength = strength_at(m, s1);
         double scale = TL_YIELD_ROUNDING * (fabs(s1) + fabs(s3) + strength);
-        g.shears[i] = (may[i] > 0) & (s1 - s3 - strength > scale) ? 1 : 0;
-        g.tears[i] = (may[i] > 0) & (s1 - m->tension > scale) ? 1 : 0;
+        g.shears[i] = ((may[i] > 0) & (s1 - s3 - strength > scale)) ? 1 : 0;
+        g.tears[i] = ((may[i] > 0) & (s1 - m->tension > scale)) ? 1 : 0;
     }
     if (!(sum_of(g.shears) + sum_of(g.tears) > 0))
         return 0;
