@@ -46,7 +46,7 @@ static bool passes(const tl_model *m, const tl_block_filter *f, tl_tag joint, ui
         return false;
     if (f->group && strcmp(m->groups[b->group[row]], f->group) != 0)
         return false;
-    if (f->fixed >= 0 && (m->bodies.fixed[b->body[row]] == TL_FIX_ALL) != (f->fixed != 0))
+    if (f->fixed >= 0 && tl_body_is_held(m, b->body[row]) != (f->fixed != 0))
         return false;
     if (f->joint && !has_joint(b->shape[row], joint))
         return false;

@@ -47,6 +47,16 @@ static void add_columns(struct tl_zones *z)
     TL_COLUMN(&parcels->table, parcels, most_strain, TL_COLUMN_STATE | TL_COLUMN_STEP);
 }
 
+static bool is_held(const tl_model *m, uint32_t body)
+{
+    const struct tl_zones *z = m->zones;
+    const tl_body_mesh *mesh = &z->mesh[m->bodies.mesh[body] - 1];
+    bool held = true;
+    for (uint32_t row = mesh->point_begin; held && row < mesh->point_end; row++)
+        held = z->points.fixed[row] == (TL_FIX_X | TL_FIX_Y | TL_FIX_Z);
+    return held;
+}
+
 tl_status tl_zones_begin(tl_model *m)
 {
     if (m->zones)
@@ -57,6 +67,7 @@ tl_status tl_zones_begin(tl_model *m)
     m->zones_destroy = tl_zones_free;
     m->zones_follow = tl_zones_follow;
     m->zones_resolid = tl_blocks_resolid;
+    m->zones_held = is_held;
     add_columns(m->zones);
     return TL_OK;
 }

@@ -381,6 +381,7 @@ TL_API void tl_model_interrupt_if(tl_model *model, bool (*asked)(void));
     X(DETECT, detect, "pairs and contacts up to date, gaps and motion of the contact points")                          \
     X(TIMESTEP, timestep, "the step to take")                                                                          \
     X(LAWS, laws, "contact forces, and their sums over each contact")                                                  \
+    X(ZONES, zones, "deformable blocks: strain and stress of zones, and forces of segments")                           \
     X(GATHER, gather, "forces and moments of each body")                                                               \
     X(DAMPING, damping, "the damping's forces")                                                                        \
     X(MOVE, move, "velocities, places and rotations")                                                                  \

@@ -70,6 +70,16 @@ typedef struct tl_zoned {
 TL_API tl_status tl_blocks_deform(tl_model *model, const tl_id *blocks, size_t count, const tl_zoning *how,
                                   tl_zoned *made);
 
+/* What a model has of deformable blocks, as they are now. */
+typedef struct tl_zone_summary {
+    size_t blocks, zones, gridpoints, clusters;
+    size_t segments;       /* through which they touch */
+    double least_altitude; /* of all zones over their largest sides, m; NaN: there are none */
+    tl_id worst;           /* the block that has it, or TL_NO_ID */
+} tl_zone_summary;
+
+TL_API tl_zone_summary tl_model_zone_summary(const tl_model *model);
+
 /* ---------------------------------------------------------------- which ------------------ */
 
 /* Which zones, or gridpoints; all that is set must hold. */
@@ -95,6 +105,17 @@ TL_API tl_zone_filter tl_zone_filter_default(void);
 TL_API tl_status tl_zones_select(tl_model *model, const tl_zone_filter *filter, tl_zone_name **names, size_t *count);
 TL_API tl_status tl_gridpoints_select(tl_model *model, const tl_zone_filter *filter, tl_zone_name **names,
                                       size_t *count);
+
+/* A point of the material, by the zone in which it lies: its place is the sum over the zone's gridpoints of weight times
+ * place, and so are its displacement and velocity. The weights add up to 1, and stay as the zone deforms. */
+typedef struct tl_material_point {
+    tl_zone_name zone;
+    tl_zone_name gridpoint[4];
+    double weight[4];
+} tl_material_point;
+
+/* The point of the material that is at a place now. TL_E_NOT_FOUND: it is in no zone of a visible block. */
+TL_API tl_status tl_material_point_at(tl_model *model, tl_vec3 place, tl_material_point *point);
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
