@@ -299,7 +299,7 @@ export class App {
         };
         gpu.zones.set(there ? surfaceMesh(model, frame, shown, paint, view.mesh) : null);
         gpu.zoneCaps.set(
-            this.zoneCut && this.plane ? capMesh(this.zoneCut, this.plane.normal, paint, view.mesh) : null);
+            this.zoneCut && this.plane ? capMesh(model, this.zoneCut, this.plane.normal, paint, view.mesh) : null);
         if (zones && view.zones !== "" && view.zones !== view.colour) this.legends.push(zones.legend);
         if (this.plane && there && !frame.surface?.whole) this.note = "only the surface of zones is sent";
         if (!view.crosses || !there) return [];

@@ -4,7 +4,7 @@
 import {column, lengths} from "./frames.js";
 import {capital, figure} from "./math.js";
 import {slimness} from "./slimness.js";
-import {atPoints, zoneColumn, zoneNames, zoneUnit, zoneWords} from "./zones.js";
+import {atPoints, zoneColumn, zoneNames, zoneUnit} from "./zones.js";
 
 /** @typedef {import("./frames.js").Frame} Frame */
 /** @typedef {import("./frames.js").Model} Model */
@@ -98,7 +98,7 @@ export function zoneColours(model) {
     const head = model.head;
     return [
         ["", "as blocks"], ["displacement", "displacement"], ["state", "state"], ["solid", "solid"],
-        .../** @type {[string, string][]} */ ((head ? zoneNames(head) : []).map((name) => [name, zoneWords(name)]))
+        .../** @type {[string, string][]} */ ((head ? zoneNames(head) : []).map((name) => [name, plain(name)]))
     ];
 }
 
@@ -120,7 +120,7 @@ function signed(low, high) {
 function zoneScale(head, name, least, most) {
     const unit = zoneUnit(head, name), low = least < 0 ? -roundUp(-least) : 0;
     const high = most > 0 ? roundUp(most) : low < 0 ? 0 : 1;
-    const title = capital(zoneWords(name)) + (unit ? `, ${unit}` : "");
+    const title = capital(plain(name)) + (unit ? `, ${unit}` : "");
     return {title, kind: /** @type {const} */ ("scale"), low, high, log: false, ramp: signed(low, high), none: true};
 }
 

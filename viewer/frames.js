@@ -155,9 +155,9 @@ function summarise(data, head) {
  * Numbers of gridpoints and zones must be those of the mesh. @param {FrameData} data @param {Surface | null} surface
  */
 function checkZones(data, surface) {
-    const {points} = data, P = surface?.P ?? 0, Z = surface?.Z ?? 0, bad = data.zones.find((z) => z.value.length !== Z);
-    if (points && points.n !== P) throw new Error(`A frame has ${points.n} gridpoints, and its mesh has ${P}.`);
-    if (bad) throw new Error(`A frame has numbers of ${bad.value.length} zones, and its mesh has ${Z}.`);
+    const {points} = data, P = surface?.P ?? 0, Z = surface?.Z ?? 0;
+    if ((points && points.n !== P) || data.zones.some((z) => z.value.length !== Z))
+        throw new Error(`A frame does not fit its mesh of ${P} gridpoints and ${Z} zones.`);
 }
 
 /** All frames of a page or of a run, and the blocks' shapes by row. */

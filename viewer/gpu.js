@@ -6,6 +6,7 @@ import {arrowBuffer, blockBuffer, meshBuffer, sheetBuffer} from "./buffers.js";
 import {
     ARROW_VERTEX,
     DEPTH_FRAGMENT,
+    MESH_VERTEX,
     SHEET_VERTEX,
     SHOW_FRAGMENT,
     WHOLE_VERTEX,
@@ -13,7 +14,6 @@ import {
     blockVertex,
     lightFragment,
     meshFragment,
-    meshVertex,
     sheetFragment
 } from "./shaders.js";
 
@@ -142,9 +142,9 @@ export function makeGpu(canvas) {
         block: [blockVertex(""), blockFragment("")],
         cut: [blockVertex(""), blockFragment("#define CUT\n")],
         depth: [blockVertex("#define DEPTH\n"), DEPTH_FRAGMENT],
-        mesh: [meshVertex(""), meshFragment("")],
-        meshCut: [meshVertex(""), meshFragment("#define CUT\n")],
-        meshDepth: [meshVertex("#define DEPTH\n"), DEPTH_FRAGMENT],
+        mesh: [MESH_VERTEX, meshFragment("")],
+        meshCut: [MESH_VERTEX, meshFragment("#define CUT\n")],
+        meshDepth: [MESH_VERTEX, DEPTH_FRAGMENT],
         sheet: [SHEET_VERTEX, sheetFragment("flat")],
         arrow: [ARROW_VERTEX, sheetFragment("")],
         show: [WHOLE_VERTEX, SHOW_FRAGMENT],

@@ -4,6 +4,7 @@ import {toPixel} from "./camera.js";
 import {makeControls} from "./controls.js";
 import {byId, say} from "./dom.js";
 import {firstView} from "./first.js";
+import {column} from "./frames.js";
 import {makeHistory} from "./history.js";
 import {makeImage} from "./image.js";
 import {listen} from "./input.js";
@@ -15,6 +16,7 @@ import {pyramid, touchedFaces} from "./pyramid.js";
 import {CAP_FACE} from "./section.js";
 import {makeStereonet} from "./stereonet.js";
 import {makeTable} from "./table.js";
+import {principal, principalAxes} from "./zones.js";
 
 /** @param {Page} app */
 function listenAll(app) {
@@ -100,6 +102,9 @@ document.addEventListener("DOMContentLoaded", async () => {
             CAP_FACE,
             pyramid,
             touchedFaces,
+            principal,
+            principalAxes,
+            column: (/** @type {string} */ name) => app.frame && column(app.frame.data, app.frame.head, name),
             ready: begin(app)
         };
         await page.talus.ready;

@@ -2,7 +2,7 @@
 // the section.
 // @ts-check
 import {add, dot, norm, scale, sub, triple, turnAfter} from "./math.js";
-import {meshRows, shownPoints} from "./zones.js";
+import {rowsOf, shownPoints} from "./zones.js";
 
 /** @typedef {import("./frames.js").Model} Model */
 /** @typedef {import("./frames.js").Frame} Frame */
@@ -66,7 +66,7 @@ export function showFrame(model, frame, view) {
     }
     const zoned = new Uint8Array(model.rows), points = shownPoints(model, frame, view, middle);
     const surface = points ? frame.surface : null;
-    const meshRow = surface ? meshRows(model, frame, surface) : new Int32Array(0), pointStart = [0];
+    const meshRow = surface ? rowsOf(model, frame, surface.body) : new Int32Array(0), pointStart = [0];
     for (const id of new Set(surface?.block ?? [])) zoned[Math.max(0, model.rowOf(id, frame.since))] = 1;
     for (const count of surface?.points ?? []) pointStart.push(pointStart[pointStart.length - 1] + count);
     const shown = {place, turn, kind, table, ghosts, bounds: box, middle, zoned, points, meshRow, pointStart};

@@ -83,15 +83,14 @@ in vec3 v_world;
 uniform vec4 u_plane;
 void main() { if (v_cut > 0.0 && dot(u_plane.xyz, v_world) > u_plane.w) discard; }`;
 
-// Triangles of deformable blocks, of their surfaces and sections: places in the model.
-/** @param {string} define */
-export function meshVertex(define) {
-    return HEAD + define + `
+// Triangles of deformable blocks, of their surfaces and sections: places in the model. The fourth number of a normal is
+// 1 where it is lit, 0 flat. Edges of small triangles fade.
+export const MESH_VERTEX = HEAD + `
 layout(location = 0) in vec3 a_place;
-layout(location = 1) in vec4 a_normal; // w: 1 lit, 0 flat
+layout(location = 1) in vec4 a_normal;
 layout(location = 2) in vec4 a_colour;
 layout(location = 3) in uint a_name;
-layout(location = 4) in float a_size; // m: edges of small triangles fade
+layout(location = 4) in float a_size;
 uniform mat4 u_matrix;
 uniform float u_pixels;
 out vec4 v_colour;
@@ -103,13 +102,10 @@ void main() {
     v_world = a_place;
     gl_Position = u_matrix * vec4(a_place, 1.0);
     v_cut = 1.0;
-#ifndef DEPTH
     v_colour = vec4(a_colour.rgb, clamp(a_size * u_pixels / gl_Position.w / 9.0, 0.0, 1.0));
     v_normal = a_normal;
     v_name = a_name;
-#endif
 }`;
-}
 
 /** @param {string} define */
 export function meshFragment(define) {

@@ -1,16 +1,15 @@
 // Deformable blocks: numbers of their zones, where their gridpoints are shown, and what of them goes into the picture.
 // @ts-check
 import {CAP_FACE} from "./section.js";
-import {cross, dot, norm, scale, sub, unit} from "./math.js";
+import {add, cross, dot, norm, scale, sub, triple, unit} from "./math.js";
 import {MESH_BYTES, faceName} from "./buffers.js";
 
 /** @typedef {import("./scene.js").Surface} Surface */
 /** @typedef {import("./frames.js").Model} Model */
 /** @typedef {import("./frames.js").Frame} Frame */
 /**
- * @typedef {{count: number, place: Float32Array, from: Uint32Array, share: Float32Array, zone: Uint32Array,
- *   row: Uint32Array}} ZoneCut triangles of a section: nine numbers of place each, the two gridpoints between which
- * each corner lies, and its share of the second
+ * @typedef {{place: number[], from: number[], share: number[], zone: number[], row: number[]}} ZoneCut triangles of a
+ *   section: places of the corners, the two gridpoints between which each corner lies, and its share of the second
  */
 /**
  * @typedef {{points: Uint8Array | null, zones: Uint8Array | null, blocks: Uint8Array, faces: number[][] | null,
@@ -19,13 +18,8 @@ import {MESH_BYTES, faceName} from "./buffers.js";
  */
 
 const STRESS = ["stress xx", "stress yy", "stress zz", "stress xy", "stress yz", "stress zx"];
-const DERIVED = ["principal 1", "principal 3", "mean", "deviator"];
-const WORDS = /** @type {Record<string, string>} */ ({
-    "principal 1": "largest principal stress",
-    "principal 3": "least principal stress",
-    mean: "mean stress",
-    deviator: "deviator"
-});
+const HIGHEST = "largest principal stress", LOWEST = "least principal stress", MEAN = "mean stress";
+const DERIVED = [HIGHEST, LOWEST, MEAN, "deviator"];
 const FACES = 126; // numbers of faces in names
 
 /** Names of the numbers of zones that a colour can show. @param {import("./scene.js").Head} head */
@@ -33,9 +27,6 @@ export function zoneNames(head) {
     const fields = head.zoneFields.map((f) => f.name).filter((name) => name !== "state");
     return fields.length ? [...DERIVED, ...fields] : [];
 }
-
-/** A name in words. @param {string} name */
-export function zoneWords(name) { return WORDS[name] ?? name.replaceAll("_", " "); }
 
 /** Unit of a number of zones. @param {import("./scene.js").Head} head @param {string} name */
 export function zoneUnit(head, name) {
@@ -104,11 +95,11 @@ export function zoneColumn(data, head, name) {
     const out = new Float32Array(s[0].length), t = [0, 0, 0, 0, 0, 0];
     for (let i = 0; i < out.length; i++) {
         for (let c = 0; c < 6; c++) t[c] = s[c][i];
-        if (name === "mean") out[i] = (t[0] + t[1] + t[2]) / 3;
+        if (name === MEAN) out[i] = (t[0] + t[1] + t[2]) / 3;
         else if (name === "deviator") {
             const a = t[0] - t[1], b = t[1] - t[2], c = t[2] - t[0];
             out[i] = Math.sqrt((a * a + b * b + c * c) / 2 + 3 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]));
-        } else out[i] = principal(t)[name === "principal 1" ? 0 : 2];
+        } else out[i] = principal(t)[name === HIGHEST ? 0 : 2];
     }
     return out;
 }
@@ -121,9 +112,8 @@ export function zoneColumn(data, head, name) {
 export function atPoints(surface, values) {
     const sum = new Float64Array(surface.P), weight = new Float64Array(surface.P), {corner, made} = surface;
     for (let z = 0; z < surface.Z; z++) {
-        const x = [0, 1, 2, 3].map((a) => 3 * corner[4 * z + a]);
-        const e = [1, 2, 3].map((a) => [0, 1, 2].map((c) => made[x[a] + c] - made[x[0] + c]));
-        const volume = Math.abs(dot(e[0], cross(e[1], e[2])));
+        const x = [0, 1, 2, 3].map((a) => triple(made, corner[4 * z + a]));
+        const volume = Math.abs(dot(sub(x[1], x[0]), cross(sub(x[2], x[0]), sub(x[3], x[0]))));
         for (let a = 0; a < 4; a++) {
             sum[corner[4 * z + a]] += volume * values[z];
             weight[corner[4 * z + a]] += volume;
@@ -133,13 +123,14 @@ export function atPoints(surface, values) {
 }
 
 /**
- * Rows of the meshes' bodies in a frame, -1 where a body is not there.
+ * Rows of blocks in a frame by their ids, -1 where one is not there.
  * @param {Model} model
  * @param {Frame} frame
- * @param {Surface} surface
+ * @param {Uint32Array} ids
  */
-export function meshRows(model, frame, surface) {
-    return Int32Array.from(surface.body, (id) => model.rowOf(id, frame.since));
+export function rowsOf(model, frame, ids) {
+    const known = new Map([...new Set(ids)].map((id) => [id, model.rowOf(id, frame.since)]));
+    return Int32Array.from(ids, (id) => known.get(id) ?? -1);
 }
 
 /**
@@ -153,7 +144,7 @@ export function meshRows(model, frame, surface) {
 export function shownPoints(model, frame, view, middle) {
     const {surface} = frame, {points} = frame.data;
     if (!surface || !points) return null;
-    const out = new Float32Array(3 * points.n), rows = meshRows(model, frame, surface);
+    const out = new Float32Array(3 * points.n), rows = rowsOf(model, frame, surface.body);
     for (let m = 0, k = 0; m < surface.body.length; m++) {
         const i = rows[m] < 0 ? -1 : frame.at[rows[m]];
         const away = [0, 1, 2].map((c) => (i < 0 ? 0 : view.explode * (frame.poses.place[3 * i + c] - middle[c])));
@@ -163,43 +154,72 @@ export function shownPoints(model, frame, view, middle) {
     return out;
 }
 
-/** Puts corners of triangles into a buffer. */
-class MeshWriter {
-    /** @param {number} triangles at the most */
-    constructor(triangles) {
-        this.data = new ArrayBuffer(3 * triangles * MESH_BYTES);
-        this.f32 = new Float32Array(this.data);
-        this.i16 = new Int16Array(this.data);
-        this.u8 = new Uint8Array(this.data);
-        this.u32 = new Uint32Array(this.data);
-        this.corners = 0;
-    }
-
-    /**
-     * @param {Float32Array} place
-     * @param {number} at
-     * @param {number[]} normal
-     * @param {boolean} lit
-     * @param {Uint8Array} colours
-     * @param {number} colour
-     * @param {number} name
-     * @param {number} size m, of what edges it has: they fade where it is small
-     */
-    put(place, at, normal, lit, colours, colour, name, size) {
-        const v = this.corners++;
-        for (let c = 0; c < 3; c++) {
-            this.f32[8 * v + c] = place[at + c];
-            this.i16[16 * v + 6 + c] = 32767 * normal[c];
-            this.u8[32 * v + 20 + c] = colours[colour + c];
+/**
+ * Triangles as the picture reads them.
+ * @param {number} most triangles
+ */
+function makeMesh(most) {
+    const data = new ArrayBuffer(3 * most * MESH_BYTES), f32 = new Float32Array(data), i16 = new Int16Array(data);
+    const u8 = new Uint8Array(data), u32 = new Uint32Array(data);
+    let v = 0;
+    return {
+        data,
+        /**
+         * Adds a corner.
+         * @param {number[]} place
+         * @param {number[]} normal
+         * @param {boolean} lit
+         * @param {ArrayLike<number>} colour
+         * @param {number} name
+         * @param {number} size m: edges fade where it is small
+         */
+        put(place, normal, lit, colour, name, size) {
+            for (let c = 0; c < 3; c++) {
+                f32[8 * v + c] = place[c];
+                i16[16 * v + 6 + c] = 32767 * normal[c];
+                u8[32 * v + 20 + c] = colour[c];
+            }
+            i16[16 * v + 9] = lit ? 32767 : 0;
+            u32[8 * v + 6] = name;
+            f32[8 * v++ + 7] = size;
         }
-        this.i16[16 * v + 9] = lit ? 32767 : 0;
-        this.u32[8 * v + 6] = name;
-        this.f32[8 * v + 7] = size;
-    }
+    };
 }
 
-/** Where a corner's colour is: the colours and a place in them. @param {Paint} paint @param {number} row */
-function ownColour(paint, row) { return paint.own && paint.blocks[4 * row + 3] > 0; }
+/**
+ * The size of triangles by which their edges fade: that of the mean one, for edges of the whole lie along small ones
+ * too.
+ * @param {number} count
+ * @param {(t: number, c: number) => number[]} corner
+ */
+function meanSize(count, corner) {
+    let sum = 0;
+    for (let t = 0; t < count; t++) sum += norm(acrossOf(corner, t));
+    return 0.6 * Math.sqrt(sum / Math.max(1, count));
+}
+
+/**
+ * Twice the area of a triangle, along its normal. @param {(t: number, c: number) => number[]} corner @param {number} t
+ */
+function acrossOf(corner, t) {
+    const a = corner(t, 0);
+    return cross(sub(corner(t, 1), a), sub(corner(t, 2), a));
+}
+
+/**
+ * The colour of a triangle; null: its corners have their own.
+ * @param {Paint} paint
+ * @param {number} row
+ * @param {number} zone
+ * @param {number} joint
+ */
+function colourOf(paint, row, zone, joint) {
+    const block = paint.blocks.subarray(4 * row, 4 * row + 3);
+    if (paint.own && paint.blocks[4 * row + 3] > 0) return block;
+    if (paint.points) return null;
+    if (paint.zones) return paint.zones.subarray(3 * zone, 3 * zone + 3);
+    return paint.faces ? paint.faces[joint % paint.faces.length] : block;
+}
 
 /**
  * The surfaces' triangles as the picture reads them: solid ones, then those of ghosts.
@@ -211,30 +231,19 @@ function ownColour(paint, row) { return paint.own && paint.blocks[4 * row + 3] >
  */
 export function surfaceMesh(model, frame, shown, paint, mesh) {
     const surface = /** @type {Surface} */ (frame.surface), x = /** @type {Float32Array} */ (shown.points);
-    const out = new MeshWriter(surface.T), counts = [0, 0], face = new Uint8Array(3);
-    /** @type {Map<number, number>} */ const rows = new Map();
+    const out = makeMesh(surface.T), counts = [0, 0], {triangle, face} = surface;
+    const corner = (/** @type {number} */ t, /** @type {number} */ c) => triple(x, triangle[3 * t + c]);
+    const small = meanSize(surface.T, corner), rows = rowsOf(model, frame, surface.block);
     for (const kind of [1, 2]) {
         for (let t = 0; t < surface.T; t++) {
-            const id = surface.block[t];
-            let row = rows.get(id);
-            if (row === undefined) rows.set(id, row = model.rowOf(id, frame.since));
+            const row = rows[t];
             if (row < 0 || shown.kind[row] !== kind) continue;
-            const k = [0, 1, 2].map((c) => 3 * surface.triangle[3 * t + c]);
-            const p = k.map((i) => [x[i], x[i + 1], x[i + 2]]);
-            const area = cross(sub(p[1], p[0]), sub(p[2], p[0])), size = 0.6 * Math.sqrt(norm(area));
-            const normal = unit(area);
-            const name = faceName(row, mesh ? t % FACES : surface.face[t] % FACES);
-            const zone = surface.zone[t], own = ownColour(paint, row);
-            if (paint.faces && !own) {
-                const s = model.shape[row], joint = s.shapes.joint[s.face + surface.face[t]];
-                face.set(paint.faces[joint % paint.faces.length]);
-            }
+            const s = model.shape[row], joint = s.shapes.joint[s.face + face[t]];
+            const colour = colourOf(paint, row, surface.zone[t], joint), normal = unit(acrossOf(corner, t));
+            const name = faceName(row, (mesh ? t : face[t]) % FACES), size = mesh ? small : s.radius;
             for (let c = 0; c < 3; c++) {
-                if (own) out.put(x, k[c], normal, true, paint.blocks, 4 * row, name, size);
-                else if (paint.points) out.put(x, k[c], normal, true, paint.points, k[c], name, size);
-                else if (paint.zones) out.put(x, k[c], normal, true, paint.zones, 3 * zone, name, size);
-                else if (paint.faces) out.put(x, k[c], normal, true, face, 0, name, size);
-                else out.put(x, k[c], normal, true, paint.blocks, 4 * row, name, size);
+                const own = colour ?? triple(/** @type {any} */ (paint.points), triangle[3 * t + c]);
+                out.put(corner(t, c), normal, true, own, name, size);
             }
             counts[kind - 1] += 3;
         }
@@ -253,86 +262,66 @@ export function surfaceMesh(model, frame, shown, paint, mesh) {
 export function cutZones(model, frame, shown, plane) {
     const {surface} = frame, x = shown.points;
     if (!surface || !x || !surface.whole) return null;
-    const n = plane.normal, distance = new Float32Array(surface.P);
-    for (let i = 0; i < surface.P; i++)
-        distance[i] = n[0] * x[3 * i] + n[1] * x[3 * i + 1] + n[2] * x[3 * i + 2] - plane.position;
-    /** @type {number[]} */ const place = [], from = [], share = [], zones = [], rows = [];
-    const rowOf = meshRows(model, frame, surface);
-    for (let m = 0, z = 0; m < rowOf.length; m++) {
-        const row = rowOf[m], last = z + surface.zones[m];
-        if (row < 0 || shown.kind[row] !== 1) {
-            z = last;
-            continue;
-        }
-        for (; z < last; z++) {
+    const distance =
+        Float32Array.from({length: surface.P}, (_v, i) => dot(plane.normal, triple(x, i)) - plane.position);
+    /** @type {ZoneCut} */ const cut = {place: [], from: [], share: [], zone: [], row: []};
+    const rowOf = rowsOf(model, frame, surface.body);
+    for (let m = 0, z = 0, last = 0; m < rowOf.length; m++, z = last) {
+        const row = rowOf[m];
+        last = z + surface.zones[m];
+        for (; row >= 0 && shown.kind[row] === 1 && z < last; z++) {
             /** @type {number[]} */ const up = [], down = [];
-            for (let a = 0; a < 4; a++) {
-                const i = surface.corner[4 * z + a];
-                (distance[i] > 0 ? up : down).push(i);
-            }
+            for (const i of surface.corner.subarray(4 * z, 4 * z + 4)) (distance[i] > 0 ? up : down).push(i);
             if (!up.length || !down.length) continue;
             // the edges that the plane goes through, around the polygon
-            const edges = up.length === 2 ? [[up[0], down[0]], [up[0], down[1]], [up[1], down[1]], [up[1], down[0]]]
-                                          : up.flatMap((i) => down.map((k) => [i, k]));
+            const edges = up.flatMap((i, k) => (k ? [...down].reverse() : down).map((j) => [i, j]));
             for (let i = 1; i + 1 < edges.length; i++) {
-                for (const e of [0, i, i + 1]) {
-                    const [a, b] = edges[e], t = distance[a] / (distance[a] - distance[b]);
-                    for (let c = 0; c < 3; c++) place.push(x[3 * a + c] + t * (x[3 * b + c] - x[3 * a + c]));
-                    from.push(a, b);
-                    share.push(t);
+                for (const [a, b] of [edges[0], edges[i], edges[i + 1]]) {
+                    const t = distance[a] / (distance[a] - distance[b]);
+                    cut.place.push(...add(triple(x, a), scale(sub(triple(x, b), triple(x, a)), t)));
+                    cut.from.push(a, b);
+                    cut.share.push(t);
                 }
-                zones.push(z);
-                rows.push(row);
+                cut.zone.push(z);
+                cut.row.push(row);
             }
         }
     }
-    return {
-        count: zones.length,
-        place: Float32Array.from(place),
-        from: Uint32Array.from(from),
-        share: Float32Array.from(share),
-        zone: Uint32Array.from(zones),
-        row: Uint32Array.from(rows)
-    };
+    return cut;
 }
 
 /**
  * A section of zones as the picture reads it: flat, in the colours of the legend.
+ * @param {Model} model
  * @param {ZoneCut} cut
  * @param {number[]} normal
  * @param {Paint} paint
  * @param {boolean} mesh
  */
-export function capMesh(cut, normal, paint, mesh) {
-    const out = new MeshWriter(cut.count), mixed = new Uint8Array(3), {place, from, share} = cut;
-    for (let t = 0; t < cut.count; t++) {
-        const row = cut.row[t], name = faceName(row, mesh ? cut.zone[t] % FACES : CAP_FACE);
-        const p = [0, 1, 2].map((c) => Array.from(place.subarray(9 * t + 3 * c, 9 * t + 3 * c + 3)));
-        const size = 0.6 * Math.sqrt(norm(cross(sub(p[1], p[0]), sub(p[2], p[0]))));
-        for (let c = 0; c < 3; c++) {
-            const k = 3 * t + c, at = 9 * t + 3 * c;
-            if (!ownColour(paint, row) && paint.points) {
-                const a = 3 * from[2 * k], b = 3 * from[2 * k + 1];
-                for (let i = 0; i < 3; i++)
-                    mixed[i] = Math.round(paint.points[a + i] + share[k] * (paint.points[b + i] - paint.points[a + i]));
-                out.put(place, at, normal, false, mixed, 0, name, size);
-            } else if (!ownColour(paint, row) && paint.zones)
-                out.put(place, at, normal, false, paint.zones, 3 * cut.zone[t], name, size);
-            else if (!ownColour(paint, row) && paint.faces) {
-                mixed.set(paint.faces[0]);
-                out.put(place, at, normal, false, mixed, 0, name, size);
-            } else out.put(place, at, normal, false, paint.blocks, 4 * row, name, size);
+export function capMesh(model, cut, normal, paint, mesh) {
+    const {row, zone, from, share} = cut, out = makeMesh(row.length);
+    const corner = (/** @type {number} */ t, /** @type {number} */ c) => triple(cut.place, 3 * t + c);
+    const small = meanSize(row.length, corner);
+    for (let t = 0; t < row.length; t++) {
+        const name = faceName(row[t], mesh ? zone[t] % FACES : CAP_FACE),
+              size = mesh ? small : model.shape[row[t]].radius;
+        const colour = colourOf(paint, row[t], zone[t], 0);
+        for (let k = 3 * t; k < 3 * t + 3; k++) {
+            const [a, b] = colour ? [] : [0, 1].map((e) => triple(/** @type {any} */ (paint.points), from[2 * k + e]));
+            out.put(
+                triple(cut.place, k), normal, false, colour ?? add(a, scale(sub(b, a), share[k])).map(Math.round), name,
+                size);
         }
     }
-    return {data: out.data, solid: 3 * cut.count, ghosts: 0};
+    return {data: out.data, solid: 3 * row.length, ghosts: 0};
 }
 
-export const PRESSED = [20, 70, 170], PULLED = [190, 30, 40]; // compression, tension
+export const PRESSED = [30, 80, 255], PULLED = [230, 20, 60]; // compression, tension
 const ACROSS = 28;                                            // crosses across the model, at the most
 const LEAST = 0.04;  // arms shorter than this share of the longest are left out
 const LONGEST = 0.8; // of an arm, as a share of the distance of crosses
 const ABOVE = 0.01;  // of a cross over its surface, likewise
-const WIDTH = 0.03;  // half that of an arm, likewise
+const WIDTH = 0.045; // half that of an arm, likewise
 
 /**
  * Places where crosses may stand: centres of the section's triangles, or of the surfaces', thinned.
@@ -345,32 +334,17 @@ const WIDTH = 0.03;  // half that of an arm, likewise
  */
 function crossPlaces(frame, shown, cut, plane, model, apart) {
     const surface = /** @type {Surface} */ (frame.surface), x = /** @type {Float32Array} */ (shown.points);
-    /** @type {{at: number[], normal: number[], zone: number, row: number}[]} */ const list = [];
+    const {zone, row} = cut ?? {zone: surface.zone, row: rowsOf(model, frame, surface.block)}, list = [];
+    const corner = (/** @type {number} */ t, /** @type {number} */ c) =>
+        (cut ? triple(cut.place, 3 * t + c) : triple(x, surface.triangle[3 * t + c]));
     /** @type {Set<string>} */ const taken = new Set();
-    const add =
-        (/** @type {number[][]} */ p, /** @type {number[]} */ normal, /** @type {number} */ zone,
-         /** @type {number} */ row) => {
-            const at = [0, 1, 2].map((c) => (p[0][c] + p[1][c] + p[2][c]) / 3);
-            const key = at.map((v) => Math.floor(v / apart)).join();
-            if (taken.has(key)) return;
-            taken.add(key);
-            list.push({at, normal, zone, row});
-        };
-    if (cut && plane) {
-        for (let t = 0; t < cut.count; t++)
-            add([0, 1, 2].map((c) => Array.from(cut.place.subarray(9 * t + 3 * c, 9 * t + 3 * c + 3))), plane.normal,
-                cut.zone[t], cut.row[t]);
-        return list;
-    }
-    for (let t = 0; t < surface.T; t++) {
-        const row = model.rowOf(surface.block[t], frame.since);
-        if (row < 0 || shown.kind[row] !== 1) continue;
-        const p = [0, 1, 2].map((c) => {
-            const k = 3 * surface.triangle[3 * t + c];
-            return [x[k], x[k + 1], x[k + 2]];
-        });
-        if (!plane || p.every((v) => dot(plane.normal, v) < plane.position))
-            add(p, unit(cross(sub(p[1], p[0]), sub(p[2], p[0]))), surface.zone[t], row);
+    for (let t = 0; t < row.length; t++) {
+        const p = [0, 1, 2].map((c) => corner(t, c)), at = scale(p.reduce(add), 1 / 3);
+        const key = at.map((v) => Math.floor(v / apart)).join();
+        if (row[t] < 0 || shown.kind[row[t]] !== 1 || taken.has(key)) continue;
+        if (!cut && plane && p.some((v) => dot(plane.normal, v) > plane.position)) continue;
+        taken.add(key);
+        list.push({at, normal: cut && plane ? plane.normal : unit(acrossOf(corner, t)), zone: zone[t], row: row[t]});
     }
     return list;
 }
@@ -402,11 +376,9 @@ export function crossSheets(model, frame, shown, cut, plane, reach) {
     for (const a of arms) {
         if (!(norm(a.way) > LEAST * most)) continue;
         const way = scale(a.way, times), side = scale(unit(cross(a.normal, a.way)), apart * WIDTH);
-        const middle = a.at.map((v, c) => v + a.normal[c] * apart * ABOVE);
-        const corner = (/** @type {number} */ i, /** @type {number} */ k) =>
-            middle.map((v, c) => v + i * way[c] + k * side[c]);
+        const middle = add(a.at, scale(a.normal, apart * ABOVE)), ends = [add(middle, way), sub(middle, way)];
         sheets.push({
-            place: [...corner(-1, -1), ...corner(1, -1), ...corner(1, 1), ...corner(-1, 1)],
+            place: [sub(ends[1], side), sub(ends[0], side), add(ends[0], side), add(ends[1], side)].flat(),
             normal: a.normal,
             colour: a.value < 0 ? PRESSED : PULLED,
             flat: true,

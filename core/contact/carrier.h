@@ -12,7 +12,7 @@ typedef struct tl_carrier {
     tl_quat q;
     tl_vec3 v, w; /* of the last motion */
     double odometer;
-    uint32_t point[4]; /* rows of the corners of the zone */
+    uint32_t point[4]; /* numbers of the corners of the zone in its mesh */
     double weight[4];  /* of them at the place */
     tl_vec3 at;        /* the place in the carrier's frame, m */
     tl_mat3 begun;     /* its rotation when it began, */

@@ -555,7 +555,7 @@ static void leave_lane(tl_detect *d, tl_contacts *c, uint32_t row)
     c->force[row] = c->moment[row] = tl_v3(0, 0, 0);
     c->holds_over_gap[row] = false;
     c->stored[row] = 0;
-    tl_addends_put(&d->parting, c->released[row]);
+    tl_addends_put(&d->parting, (c->share ? c->share[row] : 1) * c->released[row]);
     c->released[row] = 0;
 }
 

@@ -187,6 +187,26 @@ bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
     return hold_states(&d->spare_points, columns);
 }
 
+static bool hold_carriers(tl_contacts *c)
+{
+    const tl_column columns[] = {TL_COLUMN_NEW(c, carrier[0], 0), TL_COLUMN_NEW(c, carrier[1], 0),
+                                 TL_COLUMN_NEW(c, share, 0), TL_COLUMN_NEW(c, whole, 0)};
+    for (size_t k = 0; k < c->table.column_count; k++)
+        if (c->table.columns[k].offset == columns[0].offset)
+            return true;
+    return tl_table_widen(&c->table, columns, sizeof columns / sizeof *columns);
+}
+
+bool tl_detect_hold_carriers(tl_detect *d)
+{
+    if (d->contacts.whole)
+        return true;
+    if (!hold_carriers(&d->contacts))
+        return false;
+    tl_table_free(&d->spare.table);
+    return hold_carriers(&d->spare);
+}
+
 /* Gives the threads' lanes room for `capacity` points; false when out of memory. */
 static bool hold_lanes(tl_detect *d, size_t capacity)
 {

@@ -15,6 +15,8 @@ void tl_detect_destroy(tl_detect *d);
  * out of memory (nothing changed). */
 bool tl_detect_hold_initial(tl_detect *d);
 bool tl_detect_hold_states(tl_detect *d, uint32_t columns);
+/* Makes sure that contacts have what those of deformable blocks need; likewise. */
+bool tl_detect_hold_carriers(tl_detect *d);
 
 /* All that contacts of cut blocks have left has been taken over. */
 void tl_cut_contacts_end(tl_detect *d);

@@ -44,7 +44,10 @@ typedef struct tl_contacts {
     uint8_t *pending;       /* what the parallel phase leaves to the serial one: TL_PENDING_* */
     uint8_t *held;          /* both its bodies are held still: contacts.c */
     uint8_t *deep;          /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
-    tl_carrier *carrier[2]; /* of its sides on deformable blocks; NULL: there has been none */
+    /* of models with deformable blocks; NULL: there has been none */
+    tl_carrier *carrier[2]; /* of its sides on deformable blocks */
+    double *share;          /* of its forces and energies that act: segments have the rest (segment/blend.c) */
+    double *whole;          /* energy after the last step, of all of it, J */
 } tl_contacts;
 
 /* Faces that a field contact remembers; of one with more the faces are listed in every step. */

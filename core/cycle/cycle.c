@@ -36,6 +36,7 @@
 #include "cycle/timestep.h"
 #include "cycle/undo.h"
 #include "cycle/zone_forces.h"
+#include "cycle/zone_limits.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
 #include "detect/overlap.h"
@@ -113,6 +114,8 @@ static tl_status apply_forces(tl_model *m, double dt)
             status = m->relaxing ? tl_settle(m, dt) : tl_damping_apply(m, dt);
         if (status == TL_OK)
             status = tl_motion_check(m, dt, false);
+        if (status == TL_OK)
+            status = tl_zones_check(m, dt);
         tl_phase_ends(m, TL_PHASE_DAMPING);
     }
     if (status != TL_OK)

@@ -195,38 +195,29 @@ TL_VECTORIZED static void note_ratios(const tl_gridpoints *p, const free_parts *
     }
 }
 
-/* What totals ask of a chunk: the mass that energies count, kg, and 1 for what goes along with the model (settle.c). */
-typedef struct counting {
-    const double *mass;
-    double scaled[CHUNK], along[CHUNK];
-} counting;
-
-static void find_counting(const tl_model *m, size_t begin, size_t count, counting *out)
+/* The mass of a chunk that energies count, kg: of its own or, with inertia added, what is in `scaled`. */
+static const double *counted_mass(const tl_model *m, size_t begin, size_t count, double scaled[CHUNK])
 {
-    const tl_gridpoints *p = &m->zones->points;
-    for (size_t i = 0; i < count; i++)
-        out->along[i] = !m->relaxing || m->zones->goes[p->mesh[begin + i]] == TL_MESH_GOES_ALONG ? 1 : 0;
     for (size_t i = 0; i < count && m->cycle->adds; i++)
-        out->scaled[i] = p->mass[begin + i] * tl_gridpoint_energy_scale(m, begin + i);
-    out->mass = m->cycle->adds ? out->scaled : p->mass + begin;
+        scaled[i] = m->zones->points.mass[begin + i] * tl_gridpoint_energy_scale(m, begin + i);
+    return m->cycle->adds ? scaled : m->zones->points.mass + begin;
 }
 
 /* Kinetic energy and power, for what asks for totals. */
 TL_VECTORIZED static void note_totals(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
-                                      const counting *by, addends *of)
+                                      const double *mass, addends *of)
 {
     for (size_t first = 0; first < count; first += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             const size_t i = first + l, row = begin + i;
-            const double half = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 0.5 * by->mass[i] : 0;
+            const double half = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 0.5 * mass[i] : 0;
             const double x = p->v[0][row], y = p->v[1][row], z = p->v[2][row];
             const double vx = if_free(free->of[0][i], x), vy = if_free(free->of[1][i], y);
             const double vz = if_free(free->of[2][i], z);
             of->number[TL_SUM_KINETIC][l] += half * size2_of(x, y, z);
             of->number[TL_SUM_DAMPED][l] += half * size2_of(vx, vy, vz);
-            const double power = p->force[0][row] * vx + p->force[1][row] * vy + p->force[2][row] * vz;
-            of->number[TL_SUM_POWER][l] += if_free(by->along[i], power);
+            of->number[TL_SUM_POWER][l] += p->force[0][row] * vx + p->force[1][row] * vy + p->force[2][row] * vz;
         }
 }
 
@@ -269,10 +260,11 @@ static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     find_free(z->points.fixed + begin, end - begin, &free);
     note_ratios(&z->points, &free, begin, end - begin, tl_v3_norm(m->config.gravity), &of);
     if (totals) {
-        counting by;
-        find_counting(m, begin, end - begin, &by);
-        note_totals(&z->points, &free, begin, end - begin, &by, &of);
+        double scaled[CHUNK];
+        note_totals(&z->points, &free, begin, end - begin, counted_mass(m, begin, end - begin, scaled), &of);
     }
+    if (m->relaxing) /* of meshes as a whole: tl_meshes_judge */
+        memset(of.number[TL_SUM_POWER], 0, sizeof of.number[TL_SUM_POWER]);
     note_worst(z, begin, end - begin, &of, all);
     tl_exact_add_each(all->sum, totals ? TL_SUM_COUNT : TL_SUM_KINETIC, of.number[0], TL_LANES, TL_LANES);
 }
@@ -290,13 +282,30 @@ void tl_gridpoints_gather(tl_model *m)
 
 /* ---------------------------------------------------------------- motion ----------------- */
 
-void tl_gridpoints_brake(tl_model *m, double alpha, double lost)
+/* Takes the velocities of a mesh back; `whole`: down to those of its motion as a whole. */
+static void brake_mesh(tl_model *m, const tl_body_mesh *mesh, const tl_mesh_motion *whole, double alpha, double kick)
 {
-    tl_gridpoints *p = m->zones ? &m->zones->points : NULL;
-    for (size_t row = 0; p && row < p->table.rows; row++) {
-        const tl_mesh_way way = m->zones->goes[p->mesh[row]];
-        p->alpha[row] = way == TL_MESH_GOES_ALONG ? alpha : way == TL_MESH_TURNS_BACK ? lost : 0;
-        tl_columns_put(p->damping, row, tl_v3(0, 0, 0));
+    tl_gridpoints *p = &m->zones->points;
+    const tl_vec3 centre = tl_body_place(&m->bodies, mesh->row);
+    for (uint32_t row = mesh->point_begin; row < mesh->point_end; row++) {
+        tl_vec3 damping = {0, 0, 0};
+        if (whole) {
+            const tl_vec3 arm = tl_v3_sub(tl_gridpoint_place(p, row), centre);
+            const tl_vec3 v = tl_v3_add(whole->velocity, tl_v3_cross(whole->turn, arm));
+            damping = tl_v3_scale(2 * p->mass[row] * tl_gridpoint_scale(m, row) / kick, v);
+        }
+        p->alpha[row] = alpha;
+        tl_columns_put(p->damping, row, damping);
+    }
+}
+
+void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick)
+{
+    struct tl_zones *z = m->zones;
+    for (size_t k = 0; z && k < z->mesh_count; k++) {
+        const tl_mesh_motion *of = &z->motion[k];
+        const bool ends = of->loose ? of->power < 0 : stop, calms = of->strain_power < 0;
+        brake_mesh(m, &z->mesh[k], ends || !calms ? NULL : of, ends || calms ? lost : 0, kick);
     }
 }
 
@@ -349,6 +358,14 @@ static void find_movers(const tl_model *m, size_t begin, size_t count, movers *o
         out->lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
 }
 
+/* A component of the velocity after a kick; `more`: m/s2 by which the force has more than its share. */
+TL_INLINE double kicked(double v, double force, double mass, double more, double damping, double moving, double alpha,
+                        double kick)
+{
+    const double f = (force - mass * more) + damping, slow = 0.5 * alpha * kick;
+    return ((1 - slow) * v + kick / moving * f) * (1 / (1 + slow));
+}
+
 /* Kicks velocities: those of held components stay. Then places follow. */
 TL_VECTORIZED static void move_chunk(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
                                      const move_job *job, movers *by)
@@ -362,13 +379,31 @@ TL_VECTORIZED static void move_chunk(const tl_gridpoints *p, const free_parts *f
         const double more = lag[c];
 #pragma omp simd
         for (size_t i = 0; i < count; i++) {
-            const double f = (force[i] - mass[i] * more) + damping[i], slow = 0.5 * alpha[i] * kick;
-            const double v1 = ((1 - slow) * v[i] + kick / moving[i] * f) * (1 / (1 + slow));
+            const double v1 = kicked(v[i], force[i], mass[i], more, damping[i], moving[i], alpha[i], kick);
             v0[i] = v[i];
             v[i] = may[i] > 0 ? v1 : v[i];
             u[i] += drift * v[i];
         }
     }
+}
+
+tl_vec3 tl_gridpoint_to_come(const tl_model *m, size_t row, double dt)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const double kick = 0.5 * (m->dt + dt), moving = p->mass[row] * tl_gridpoint_scale(m, row);
+    const bool damped = tl_is_damped(m) && p->alpha;
+    tl_vec3 lag = {0, 0, 0};
+    if (tl_loads_lag(m))
+        lag = tl_v3_sub(tl_v3_scale(tl_loads_share(m), m->config.gravity), m->cycle->gravity);
+    const double more[3] = {lag.x, lag.y, lag.z};
+    double v[3];
+    for (int c = 0; c < 3; c++) {
+        const double damping = damped ? p->damping[c][row] : 0, alpha = damped ? p->alpha[row] : 0;
+        v[c] = p->v[c][row];
+        if (!(p->fixed[row] & TL_FIX_X << c))
+            v[c] = kicked(v[c], p->force[c][row], p->mass[row], more[c], damping, moving, alpha, kick);
+    }
+    return (tl_vec3){v[0], v[1], v[2]};
 }
 
 TL_INLINE double dot_of(tl_vec3 a, tl_vec3 b)
@@ -453,4 +488,6 @@ void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt, 0.5 * m->dt, 0.5 * dt};
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
+    m->zones->moved_dt = dt;
+    m->zones->steps_kept -= m->zones->steps_kept > 0;
 }

@@ -10,11 +10,13 @@
 double tl_gridpoints_least(tl_model *m);
 /* Each gridpoint adds what its zones do, its weight and its load; to the sums of this step. */
 void tl_gridpoints_gather(tl_model *m);
-/* In a relaxation: takes velocities back by alpha, 1/s, of meshes that go along. Those that go their own way lose them
- * by `lost`, 1/s, where they turn back. */
-void tl_gridpoints_brake(tl_model *m, double alpha, double lost);
-/* Free gridpoints do not move. */
+/* In a relaxation, with a kick of that span, s: velocities are lost, by `lost`, 1/s, where all stop. Else meshes lose
+ * those beside their motion as a whole, each when its forces work against them. */
+void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick);
+/* Velocities of components that are free end. Their last motion strains zones all the same. */
 void tl_gridpoints_stop(tl_model *m);
+/* The velocity with which a gridpoint goes through the next step, of dt. */
+tl_vec3 tl_gridpoint_to_come(const tl_model *m, size_t row, double dt);
 /* Velocities and places one step on. */
 void tl_gridpoints_move(tl_model *m, double dt);
 

@@ -8,7 +8,9 @@
 /* What acts on a mesh, and how it moves. */
 typedef struct tl_mesh_whole {
     tl_vec3 force;    /* sum of the unbalanced forces, N */
+    tl_vec3 moment;   /* of these about the centroid, N m */
     tl_vec3 velocity; /* mean by mass, m/s */
+    tl_vec3 turn;     /* of the momentum about the centroid, rad/s */
     double borne;     /* sum of the sizes of what contacts, and what holds gridpoints, do to it, N */
     double weight;    /* with its loads, N */
     double power;     /* of the unbalanced forces, W */
@@ -22,7 +24,7 @@ const tl_body_mesh *tl_mesh_of_body(const tl_model *m, uint32_t body);
 bool tl_body_is_free(const tl_model *m, uint32_t body);
 /* Speed of a body that is free, m/s: of its centroid, or the root of the mean square of its gridpoints'. */
 double tl_body_speed(const tl_model *m, uint32_t body);
-/* In a relaxation: finds what goes its own way (settle.c). */
+/* In a relaxation: finds how meshes move (settle.c). */
 void tl_meshes_judge(tl_model *m);
 /* The first body with a mesh whose kinetic energy is not below that share of what it stores, or TL_NO_ROW. */
 uint32_t tl_mesh_moving(const tl_model *m, double share);

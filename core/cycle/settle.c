@@ -175,7 +175,7 @@ static void move_on(tl_model *m, double dt)
     const tl_bodies *b = &m->bodies;
     const double gravity = tl_v3_norm(m->config.gravity), lost = all_lost(m, dt);
     put_none(c, c->sums.power < 0 ? lost : 0);
-    tl_gridpoints_brake(m, c->sums.power < 0 ? lost : 0, lost);
+    tl_gridpoints_brake(m, c->sums.power < 0, lost, 0.5 * (m->dt + dt));
     for (uint32_t body = 0; c->settling.calm && body < b->table.rows; body++)
         if (b->fixed[body] != TL_FIX_ALL && tl_body_is_loose(m, body, tl_weight_of(b, body, gravity)))
             c->alpha[body] = tl_body_power(m, body) < 0 ? lost : 0;

@@ -679,6 +679,14 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
     return TL_OK;
 }
 
+/* The gridpoint that allows no longer step than all bodies, or TL_NO_ROW. */
+static uint32_t gridpoint_in_control(tl_model *m, const bound *by)
+{
+    const double own = tl_gridpoints_least(m), share = m->timestep.zone_fraction / tl_timestep_fraction(m);
+    const bool scaled = tl_scales_all(m) || tl_adds_mass(m);
+    return !scaled && isfinite(own) && share * share * own < by->least ? m->zones->highest : TL_NO_ROW;
+}
+
 tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
 {
     *report = (tl_timestep_report){0};
@@ -692,6 +700,16 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
     bound by;
     status = choose(m, &report->dt, &by);
     c->dt = in_use;
+    const uint32_t gridpoint = status == TL_OK ? gridpoint_in_control(m, &by) : TL_NO_ROW;
+    if (gridpoint != TL_NO_ROW) {
+        const tl_gridpoints *p = &m->zones->points;
+        *report = (tl_timestep_report){.dt = report->dt,
+                                       .block = m->zones->mesh[p->mesh[gridpoint]].body,
+                                       .mass = p->mass[gridpoint],
+                                       .stiffness = p->holds[gridpoint],
+                                       .by = TL_STEP_BY_GRIDPOINT};
+        return TL_OK;
+    }
     if (status != TL_OK || by.body == TL_NO_ROW)
         return status;
     report->block = m->bodies.id[by.body];

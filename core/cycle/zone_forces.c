@@ -2,13 +2,11 @@
 #include "cycle/zone_forces.h"
 
 #include "cycle/cycle_data.h"
+#include "cycle/zone_limits.h"
 #include "segment/act.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/pass.h"
-
-/* Tolerance: strain of a zone in a step from which the next one can be undone, for it may turn zones inside out. */
-#define FAST_STRAIN 1e-3
 
 /* ---------------------------------------------------------------- forces of zones -------- */
 
@@ -17,18 +15,9 @@ static tl_status apply(tl_model *m)
     struct tl_cycle *c = m->cycle;
     if (!tl_model_deforms(m))
         return TL_OK;
-    tl_zones_pass(m, m->dt, &c->failure);
+    tl_zones_pass(m, m->zones->moved_dt, &c->failure);
     const tl_status status = c->failure.error.status;
-    struct tl_zones *z = m->zones;
-    if (status == TL_OK) {
-        z->steps_kept -= z->steps_kept > 0;
-        return TL_OK;
-    }
-    const tl_parcel *of = &z->parcels.of[c->failure.chunk];
-    const tl_named_solid *solid = &z->solid[of->solid];
-    c->failure.error.status = TL_OK;
-    return tl_fail(&m->error, status, "cycle %lld, solid '%s' (%s) of block %u: %s", (long long)m->cycles + 1,
-                   solid->name, solid->of.kind->name, z->mesh[of->mesh].body, c->failure.error.text);
+    return status == TL_OK ? TL_OK : tl_zones_failed(m, status);
 }
 
 static tl_energies energies(tl_model *m)
@@ -55,11 +44,9 @@ static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
 static bool may_fail(const tl_model *m)
 {
     const struct tl_zones *z = m->zones;
-    bool sure = !z || z->steps_kept == 0;
+    bool sure = !tl_zones_are_fast(m);
     for (size_t k = 0; z && k < z->solid_count; k++)
         sure = sure && ((const tl_solid_ops *)z->solid[k].of.kind->ops)->never_fails;
-    for (size_t k = 0; z && k < z->parcels.table.rows; k++)
-        sure = sure && z->parcels.most_strain[k] < FAST_STRAIN * FAST_STRAIN;
     return !sure;
 }
 
@@ -70,7 +57,7 @@ static tl_status prepare(tl_model *m)
     struct tl_zones *z = m->zones;
     const bool before = m->damping && ((const tl_damping_ops *)m->damping->ops)->before;
     const bool enough = tl_fit(&z->scratch, &z->scratch_capacity, tl_pool_threads(m->pool), sizeof *z->scratch) &&
-                        tl_fit(&z->goes, &z->goes_capacity, z->mesh_count, sizeof *z->goes) &&
+                        tl_fit(&z->motion, &z->motion_capacity, z->mesh_count, sizeof *z->motion) &&
                         (!tl_is_damped(m) || tl_gridpoints_hold_damping(&z->points, before));
     return enough ? TL_OK : tl_fail_memory(&m->error);
 }

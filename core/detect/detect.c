@@ -218,14 +218,18 @@ static void note_birth(tl_births *births, const tl_birth *birth)
 /* Cost only: gap along a face, over the reach of the coarse test, from which on that test is spared. */
 #define FAR_APART 0.25
 
+/* Tolerance: way over the size after which it is seen that segments no longer are all of a contact: a tilt of 0.1 degrees
+ * (segment/blend.c). */
+#define TILTS 0.002
+
 /* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of
  * memory. */
 static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_narrow_scratch *scratch)
 {
     const double reach = m->detect->reach;
-    if (tl_blocks_meet(m, p->a, p->b))
-        return reach; /* by segments */
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
+    if (tl_blocks_meet(m, p->a, p->b))
+        return fmin(reach, TILTS * view.size); /* by segments, until faces have tilted */
     tl_face_pair moved;
     const tl_cut_contact *cut = tl_cut_contact_of(m, p->a, p->b);
     double shift = fmax(0, tl_cut_contact_shift(m, p->a, p->b, &moved));
@@ -548,7 +552,8 @@ static bool settle_rows(tl_model *m)
         if (!tl_pending_waits(c->pending[row])) /* others are noted when they have got their points */
             touch(m, row);
         if (c->pending[row] == TL_PENDING_DIE) {
-            tl_addends_put(&d->parting, tl_contact_sheared(m, row) + c->released[row]);
+            const double share = c->share ? c->share[row] : 1;
+            tl_addends_put(&d->parting, share * (tl_contact_sheared(m, row) + c->released[row]));
             tl_contact_remove(d, row);
             note_parted(d, pair);
             continue;

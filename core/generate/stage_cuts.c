@@ -46,6 +46,31 @@ static tl_status check_turned(const tl_stage *stage)
     return status;
 }
 
+/* Refuses to take some of its blocks out of a body that has zones. */
+static tl_status check_bodies(const tl_stage *stage)
+{
+    tl_model *m = stage->model;
+    unsigned char *kept = calloc(m->blocks.table.rows + 1, 1);
+    tl_status status = kept ? TL_OK : tl_fail_memory(&m->error);
+    for (size_t i = 0; kept && i < stage->count; i++)
+        if (stage->blocks[i].source != TL_NO_ROW)
+            kept[stage->blocks[i].source] = 1;
+    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++) {
+        const uint32_t body = m->blocks.body[row], *rows = tl_body_blocks(m, body);
+        if (kept[row] || !m->bodies.mesh[body])
+            continue;
+        for (uint32_t k = 0; k < m->bodies.member_count[body] && status == TL_OK; k++)
+            if (kept[rows[k]])
+                status =
+                    tl_fail(&m->error, TL_E_STATE,
+                            "block %u is deformable and joined to block %u, which stays: it cannot be taken away; take "
+                            "it away before it gets zones",
+                            m->blocks.id[row], m->blocks.id[rows[k]]);
+    }
+    free(kept);
+    return status;
+}
+
 /* Refuses to cut blocks that have zones. */
 static tl_status check_zones(const tl_stage *stage)
 {
@@ -57,7 +82,7 @@ static tl_status check_zones(const tl_stage *stage)
                            "block %u is deformable and cannot be cut; cut it before it gets zones",
                            m->blocks.id[block->source]);
     }
-    return TL_OK;
+    return stage->opened ? check_bodies(stage) : TL_OK;
 }
 
 tl_status tl_stage_check_cuts(const tl_stage *stage)

@@ -12,8 +12,8 @@
  * Those nearer than NEAR h to an edge are left out. Where h is a function of place, lattices of p / 2^k follow each
  * other, coarse ones first. A point is taken when none that was taken is nearer than APART h.
  *
- * A face of a block that is given in parts (joined_faces.c) has points on each part, in the frame of that. Their places in
- * the face are then those in the frame of its first part.
+ * A face of a block that is given in parts (joined_faces.c) has points on each part, in the frame of that. Their
+ * places in the face are then those in the frame of its first part.
  *
  * Triangles are those of Delaunay in these coordinates, put on a grid (delaunay.c). Weights decide among points on one
  * circle. They are random by keys, and the same on both sides (zone_weight.h). */
@@ -25,6 +25,8 @@
 
 #include <talus/vmath.h>
 
+#define NONE UINT32_MAX
+
 /* Tolerance: lengths that differ by less than this share count as equal. */
 #define TIE 1e-9
 /* Constant: how near an edge a point on a face may be, and graded ones each other, in parts of the wanted edge. A point
@@ -33,8 +35,6 @@
 #define APART (0.8 * (1 - 1e-7))
 /* Cost only: a lattice is tried where the wanted edge is less than this times its own. */
 #define WORTH 2.0
-#define NONE UINT32_MAX
-
 /* Limit: lattices of a face. */
 #define MOST_LEVELS 20
 /* Constant: height of an equilateral triangle of edge 1. */

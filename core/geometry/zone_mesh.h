@@ -10,8 +10,8 @@
 /* The wanted edge of zones at a place, in the coordinates of the block's vertices. Positive. */
 typedef double (*tl_zone_size_fn)(const void *user, tl_vec3 place);
 
-/* Faces that are given in parts: those of a block that is joined to others (joined_faces.c). The parts of a face lie in one
- * plane, and zones end at the edges between them. */
+/* Faces that are given in parts: those of a block that is joined to others (joined_faces.c). The parts of a face lie in
+ * one plane, and zones end at the edges between them. */
 typedef struct tl_zone_parts {
     uint32_t corner_count;   /* of the polyhedron's vertices, those that are corners of the block: they come first */
     uint32_t face_count;     /* of the block */

@@ -18,9 +18,9 @@
  * another bulge is tried, and another unit of the grid: which flat zones are made among points on a sphere hangs on
  * rounding.
  *
- * Faces may be given in parts (joined_faces.c). Delaunay knows the whole face alone. Where one of its triangles lies across
- * an edge between two parts, nothing is made, and the middle of what it crosses is told: with a corner there, and so
- * with shorter parts of the edge, no triangle crosses it (Ruppert 1995). */
+ * Faces may be given in parts (joined_faces.c). Delaunay knows the whole face alone. Where one of its triangles lies
+ * across an edge between two parts, nothing is made, and the middle of what it crosses is told. With corners there the
+ * parts of the edge are shorter, and sooner or later no triangle crosses them (Ruppert 1995). */
 #include "geometry/zoning.h"
 
 #include "base/table.h"

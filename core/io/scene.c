@@ -758,7 +758,7 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
     if (status == TL_OK)
         status = put_touches(scene, m, out);
     if (status == TL_OK)
-        status = tl_scene_surface(&scene->sent, &scene->next, m, out);
+        status = tl_scene_surface(m, scene->sent.surface, &scene->next.surface, out);
     free(found.rows);
     free(found.gone);
     return status;

@@ -202,10 +202,10 @@ static tl_status put_surface(tl_model *m, const shown *s, tl_piece *out)
     return TL_OK;
 }
 
-tl_status tl_scene_surface(const tl_scene_known *sent, tl_scene_known *next, tl_model *m, tl_piece *out)
+tl_status tl_scene_surface(tl_model *m, tl_hash sent, tl_hash *next, tl_piece *out)
 {
-    next->surface = (tl_hash){0, 0};
-    if (!tl_model_deforms(m) && (sent->frames == 0 || (sent->surface.a == 0 && sent->surface.b == 0)))
+    *next = (tl_hash){0, 0};
+    if (!tl_model_deforms(m) && sent.a == 0 && sent.b == 0)
         return TL_OK;
     shown s;
     const size_t begin = out->length;
@@ -215,9 +215,9 @@ tl_status tl_scene_surface(const tl_scene_known *sent, tl_scene_known *next, tl_
     free_shown(&s);
     if (status != TL_OK)
         return status;
-    next->surface = tl_hash_start();
-    tl_hash_bytes(&next->surface, out->data + begin, out->length - begin);
-    if (sent->frames > 0 && sent->surface.a == next->surface.a && sent->surface.b == next->surface.b)
+    *next = tl_hash_start();
+    tl_hash_bytes(next, out->data + begin, out->length - begin);
+    if (sent.a == next->a && sent.b == next->b)
         out->length = begin;
     return TL_OK;
 }

@@ -1,10 +1,10 @@
 /* vtk_zones.c - the zones of a frame, and the surfaces of deformable blocks.
  *
- * Zones are an UNSTRUCTURED_GRID of tetrahedra (cell type 10). Their points are the gridpoints where they are now. Bodies
- * share none.
+ * Zones are an UNSTRUCTURED_GRID of tetrahedra (cell type 10). Their points are the gridpoints where they are now.
+ * Bodies share none.
  *
  * Cell data   mean      mean stress, Pa, tension positive: what ParaView colours by first
- *             block_id  id of the block; of a body of several the oldest
+ *             block_id  id of the block that it is of
  *             group     of that block: index into the field group_names
  *             solid     index into the field solid_names
  *             cluster   number of the zones that share their change of volume
@@ -13,8 +13,8 @@
  *             deviator  sqrt(3 J2), Pa
  *             state     0 elastic, 1 shear, 2 tension, 3 joint; 4, 5, 6 the same of steps before
  *             plastic   1 when it has ever yielded
- *             and each state of the solids by its name, one called as an array above with solid_ in front; NaN where the
- *             zone's solid has no such state
+ *             and each state of the solids by its name, one called as an array above with solid_ in front; NaN where
+ *             the zone's solid has no such state
  * Point data  displacement  m        velocity  m/s        force  unbalanced, N
  *             fixed     components that are held: 1 x, 2 y, 4 z, added up
  *
@@ -84,11 +84,11 @@ typedef struct zones {
 static double whole_of(const zones *j, size_t i)
 {
     const tl_model *m = j->model;
-    const uint32_t block = tl_block_row_quiet(m, j->list.zone_name[i].body);
+    const tl_parcel *parcel = &m->zones->parcels.of[j->list.parcel[i]];
     switch (j->of->from) {
-    case BLOCK: return j->list.zone_name[i].body;
-    case GROUP: return m->blocks.group[block];
-    case SOLID: return m->zones->parcels.of[j->list.parcel[i]].solid;
+    case BLOCK: return parcel->block;
+    case GROUP: return m->blocks.group[tl_block_row_quiet(m, parcel->block)];
+    case SOLID: return parcel->solid;
     case CLUSTER: return j->list.cluster[i];
     default: return tl_zone_state(m->zones->zones.flags[j->list.row[i]]);
     }

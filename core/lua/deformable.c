@@ -172,9 +172,10 @@ const tl_lua_topic tl_lua_deformable_topics[] = {
      .method = model_solid},
     {.name = "deformable",
      .usage = "report = selection:deformable{zone = 1.0, solid = \"granite\"}",
-     .doc =
-         "Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of "
-         "stress where the blocks are, and move as the blocks did. Nothing is done where one block cannot be divided.",
+     .doc = "Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of "
+            "stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share "
+            "gridpoints, "
+            "so zones go on over the faces between them. Nothing is done where one block cannot be divided.",
      .spec = &deformable_spec,
      .title = "Fields of the report",
      .verbs = deformable_results},

@@ -176,7 +176,7 @@ static void take_values(lua_State *L, request *r, size_t i, size_t listed)
     lua_pop(L, 1);
 }
 
-/* Pushes the selection of all blocks, contacts or zones, also of hidden blocks; of zones that of all blocks before it. */
+/* Pushes the selection of all blocks, contacts or zones, also of hidden blocks. Zones have that of blocks below it. */
 static const tl_lua_selection *push_all(lua_State *L, const tl_lua_kind *kind)
 {
     tl_model *model = ((const tl_lua_model *)lua_touserdata(L, 1))->model;

@@ -25,6 +25,8 @@ void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
         lua_pushfstring(L, "no block controls the step: dt = %s s", lua_tostring(L, -1));
         lua_insert(L, -3);
         lua_pop(L, 2);
+    } else if (r->by == TL_STEP_BY_GRIDPOINT) {
+        lua_pushfstring(L, "a gridpoint of block %I controls the step: %s", (lua_Integer)r->block, numbers);
     } else if (r->partner == TL_NO_ID) {
         static const char *const how[] = {"", " by turning", " by the speed at which it moves"};
         lua_pushfstring(L, "block %I controls the step%s: %s", (lua_Integer)r->block, how[r->by], numbers);

@@ -1,11 +1,14 @@
 /* overlay.c - the polygon that two faces have in common, and three points that integrate over it.
  *
- * Both faces are projected on the plane of the bisecting normal n = (n_A - n_B) / |n_A - n_B|. Their common polygon
- * has the area A, the centroid c and the second moments S = int (x - c)(x - c)^T dA / A = L L^T (Cholesky). The points
+ * Both faces are projected along n = p / |p|, p = s n_A - (1 - s) n_B. The share s is 1 where the outline of what they
+ * have in common is B's, and 0 where it is A's. Then the polygon keeps to the face with the outline, however the other
+ * one tilts. Its area A is measured on that face. With the centroid c and the second moments
+ * S = int (x - c)(x - c)^T dA / A = L L^T (Cholesky) the points
  *
  *     c + sqrt(2) L e_k,    e_k = (cos a, sin a),    a = 0, 120, 240 degrees
  *
- * with a third of the area each integrate every function of the second degree exactly, and lie in the polygon. */
+ * with a third of the area each integrate every function of the second degree exactly, and lie in the polygon. The axes
+ * of the plane go by an edge of the face, so the same polygon has the same points. */
 #include "narrow/overlay.h"
 
 #include <math.h>
@@ -70,13 +73,26 @@ static void project(const tl_outer_face *f, tl_vec3 from, tl_vec3 e, tl_vec3 g, 
     }
 }
 
-bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, tl_overlay_room *room, tl_overlay *out)
+/* Tolerance: share of the outline from which on the points are laid along an edge of B: far from those of outlines that
+ * are one side's or both's. */
+#define RIDES_ON_B 0.75
+
+/* The direction of the first edge of a face, across n. Points laid by it keep to the face. */
+static tl_vec3 first_edge(const tl_outer_face *f, tl_vec3 n)
+{
+    const tl_vec3 edge = tl_v3_sub(f->corner[1], f->corner[0]);
+    return tl_v3_unit(tl_v3_madd(edge, -tl_v3_dot(edge, n), n));
+}
+
+bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, double share, tl_overlay_room *room,
+                     tl_overlay *out)
 {
     const tl_vec3 area_a = area_of(a), area_b = area_of(b), origin = a->corner[0];
-    const tl_vec3 n = tl_v3_unit(tl_v3_sub(tl_v3_unit(area_a), tl_v3_unit(area_b)));
+    const tl_vec3 na = tl_v3_unit(area_a), nb = tl_v3_unit(area_b);
+    const tl_vec3 n = tl_v3_unit(tl_v3_madd(tl_v3_scale(share, na), share - 1, nb));
     if (!(tl_v3_dot(area_a, n) > 0) || !(tl_v3_dot(area_b, n) < 0))
         return false;
-    const tl_vec3 e = tl_v3_perpendicular(n), g = tl_v3_cross(n, e);
+    const tl_vec3 e = first_edge(share > RIDES_ON_B ? b : a, n), g = tl_v3_cross(n, e);
     project(a, origin, e, g, room->now);
     project(b, origin, e, g, room->by);
     const size_t count = tl_polygon_common(&room->now, &room->next, a->count, room->by, b->count);
@@ -84,14 +100,21 @@ bool tl_overlay_find(const tl_outer_face *a, const tl_outer_face *b, tl_overlay_
     if (!(m.area > NO_AREA * fmin(tl_v3_norm(area_a), tl_v3_norm(area_b))))
         return false;
     const double l11 = sqrt(fmax(m.xx, 0)), l21 = l11 > 0 ? m.xy / l11 : 0, l22 = sqrt(fmax(m.yy - l21 * l21, 0));
-    out->area = m.area;
+    out->area = m.area * ((1 - share) / tl_v3_dot(na, n) - share / tl_v3_dot(nb, n));
     out->n = n;
+    const tl_point2 first = room->now[0];
     for (int k = 0; k < 3; k++) {
-        const double x = room->now[0].x + m.x + l11 * around[k][0];
-        const double y = room->now[0].y + m.y + l21 * around[k][0] + l22 * around[k][1];
+        const double x = first.x + m.x + l11 * around[k][0];
+        const double y = first.y + m.y + l21 * around[k][0] + l22 * around[k][1];
         const tl_vec3 at = tl_v3_madd(tl_v3_madd(origin, x, e), y, g);
         out->on_a[k] = raised(at, n, a->corner[0], area_a);
         out->on_b[k] = raised(at, n, b->corner[0], area_b);
+    }
+    out->outline = room->now;
+    out->corners = l11 > 0 && l22 > 0 ? count : 0;
+    for (size_t i = 0; i < out->corners; i++) {
+        const double x = (room->now[i].x - first.x - m.x) / l11;
+        room->now[i] = (tl_point2){x, (room->now[i].y - first.y - m.y - l21 * x) / l22};
     }
     return true;
 }

@@ -336,9 +336,15 @@ static tl_status find_parts(search *s, tl_zone_name **names, size_t *count)
     return status == TL_OK ? take_all(s, names, count) : status;
 }
 
+tl_zone_filter tl_zone_filter_default(void)
+{
+    return (tl_zone_filter){.size = sizeof(tl_zone_filter), .plastic = -1, .surface = -1, .fixed = -1};
+}
+
 static tl_status select_parts(tl_model *m, const tl_zone_filter *f, bool points, tl_zone_name **names, size_t *count)
 {
-    search s = {.m = m, .f = f, .points = points};
+    const tl_zone_filter all = tl_zone_filter_default();
+    search s = {.m = m, .f = f ? f : &all, .points = points};
     *names = NULL;
     *count = 0;
     tl_rows_tidy(m);
@@ -353,11 +359,6 @@ static tl_status select_parts(tl_model *m, const tl_zone_filter *f, bool points,
         *count = 0;
     }
     return status;
-}
-
-tl_zone_filter tl_zone_filter_default(void)
-{
-    return (tl_zone_filter){.size = sizeof(tl_zone_filter), .plastic = -1, .surface = -1, .fixed = -1};
 }
 
 tl_status tl_zones_select(tl_model *m, const tl_zone_filter *filter, tl_zone_name **names, size_t *count)

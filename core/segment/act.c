@@ -1,27 +1,33 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
- * A side carries the three points of a segment with it. Let x be the places of the corners of its triangle, and d how
- * they have moved in the last step. A point of weights w lies at sum w x and has moved by sum w d. The triangle spins
- * about its normal by
+ * Let s be the share of the outline that is B's (overlay.h), and p = s n_A - (1 - s) n_B. Then the common normal is
+ * n = p / |p|, and the gap n . e, e = x_B - x_A. So a point on the side with the outline presses along the normal of
+ * the other side, by its distance from that: the gradient of the energy, however far the sides tilt.
  *
- *     spin . n = (g_1 x d_1 + g_2 x d_2) . n / 2,    g_1, g_2 reciprocal to the edges
+ * Forces act at the place x_A + s e. The motion is that of both sides there. Shear turns from the last normal to this
+ * one, and by the spin of s A + (1 - s) B about it. A force f on B acts on the corners by the weights. The rest is
+ * couples,
  *
- * The common normal n bisects those of both sides. The gap is n . (x_B - x_A), its closure what a law gets, the motion
- * d_B - d_A. Shear turns from the last normal to this one and by the mean spin about it. What a point bears acts on the
- * corners by the same weights, so work, forces and energy agree whatever the triangles do. */
+ *     on A  -s e x f_s + f_n s n_A x t / |p|,    on B  -(1 - s) e x f_s - f_n (1 - s) n_B x t / |p|
+ *
+ * with t the part of e along the plane, for it turns with the normals. Couples act by the transpose of the turn. So
+ * work, forces, moments and energy agree whatever the triangles do. */
 #include "segment/act.h"
 
 #include "base/columns.h"
+#include "base/inside.h"
 #include "base/parallel.h"
 #include "base/series.h"
 #include "contact/contacts.h"
 #include "contact/plane_turn.h"
 #include "force/joint_laws.h"
+#include "segment/blend.h"
+#include "segment/closed.h"
 #include "segment/lay.h"
+#include "segment/side.h"
 
 #include <math.h>
 #include <string.h>
-#include <talus/elementary.h>
 
 /* SIMD groups that a law gets at a time. */
 #define TILE 4
@@ -31,81 +37,21 @@
 /* Tolerance: slide or stretch of a segment over its size, from which on it is laid anew. */
 #define SLID 1e-3
 
+/* Tolerance: how far corners of a segment may be beyond its points, over the largest difference of these: of a triangle
+ * 1, of slivers cut off of one somewhat more. */
+#define CORNERS_BEYOND 4.0
+
 /* What is known of a tile's points only in a step. */
 typedef struct lanes {
     _Alignas(TL_ALIGN) double closure[TILE_POINTS];
     double du_n[TILE_POINTS], normal[3][TILE_POINTS], du_s[3][TILE_POINTS];
     double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
+    double apart[3][TILE_POINTS];                          /* e */
+    tl_side_now side[TILE * TL_LANES][2];                  /* of the segments */
+    double share[TILE * TL_LANES], per_p[TILE * TL_LANES]; /* s, and 1 / |p| */
+    bool partly[TILE * TL_LANES];                          /* a part of it is closed, and a part is apart: */
+    tl_closed closed[TILE * TL_LANES];
 } lanes;
-
-/* ---------------------------------------------------------------- sides ------------------ */
-
-/* A side now: places of its corners and their motion in the last step, or a rigid body's; its outward normal. */
-typedef struct side_now {
-    bool rigid;
-    uint32_t body;
-    tl_vec3 x[3], d[3];
-    tl_vec3 shift; /* of a rigid side: of its centroid in the last step, m */
-    tl_mat3 back;  /* and what a point has moved beside that, on its arm */
-    tl_vec3 normal, turn;
-} side_now;
-
-/* What a point has moved beside the centroid as the body turned by w, as it acts on its arm now (force/follow.c). */
-static tl_mat3 turned_back(tl_vec3 w)
-{
-    const double a = tl_v3_norm(w);
-    const tl_vec3 h = tl_v3_scale(a > 0 ? tl_tan(0.5 * a) / a : 0.5, w), s = tl_v3_scale(2 / (1 + tl_v3_norm2(h)), h);
-    return (tl_mat3){{{s.y * h.y + s.z * h.z, -s.x * h.y - s.z, -s.x * h.z + s.y},
-                      {-s.y * h.x + s.z, s.z * h.z + s.x * h.x, -s.y * h.z - s.x},
-                      {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
-}
-
-static side_now side_of(const tl_model *m, const tl_segment_side *side, tl_vec3 normal)
-{
-    side_now out = {.rigid = tl_side_is_rigid(side), .body = side->at[0]};
-    if (out.rigid) {
-        const tl_pose *pose = &m->bodies.pose[out.body];
-        out.shift = tl_v3_scale(m->dt, pose->v_moved);
-        out.turn = tl_v3_scale(m->dt, pose->w_moved);
-        out.back = turned_back(out.turn);
-        out.normal = tl_m3_mul(&pose->r, normal);
-        return out;
-    }
-    const tl_gridpoints *g = &m->zones->points;
-    for (int k = 0; k < 3; k++) {
-        out.x[k] = tl_gridpoint_place(g, side->at[k]);
-        out.d[k] = tl_v3_scale(m->dt, tl_columns_get(g->moved, side->at[k]));
-    }
-    const tl_vec3 a = tl_v3_sub(out.x[1], out.x[0]), b = tl_v3_sub(out.x[2], out.x[0]), area = tl_v3_cross(a, b);
-    const double size = tl_v3_norm(area);
-    out.normal = tl_v3_scale(1 / size, area);
-    const tl_vec3 ga = tl_v3_scale(1 / size, tl_v3_cross(b, out.normal));
-    const tl_vec3 gb = tl_v3_scale(1 / size, tl_v3_cross(out.normal, a));
-    const tl_vec3 da = tl_v3_sub(out.d[1], out.d[0]), db = tl_v3_sub(out.d[2], out.d[0]);
-    out.turn = tl_v3_scale(0.5, tl_v3_add(tl_v3_cross(ga, da), tl_v3_cross(gb, db)));
-    return out;
-}
-
-/* Where a point of the side is, and how it has moved. */
-typedef struct carried {
-    tl_vec3 place, moved;
-} carried;
-
-static carried carry(const tl_model *m, const side_now *s, tl_vec3 at)
-{
-    if (s->rigid) {
-        const tl_vec3 place = tl_body_point(&m->bodies, s->body, at);
-        const tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, s->body));
-        return (carried){place, tl_v3_add(s->shift, tl_m3_mul(&s->back, arm))};
-    }
-    const double w[3] = {at.x, at.y, at.z};
-    carried out = {{0, 0, 0}, {0, 0, 0}};
-    for (int k = 0; k < 3; k++) {
-        out.place = tl_v3_madd(out.place, w[k], s->x[k]);
-        out.moved = tl_v3_madd(out.moved, w[k], s->d[k]);
-    }
-    return out;
-}
 
 /* ---------------------------------------------------------------- following -------------- */
 
@@ -116,28 +62,45 @@ static void put(double (*to)[TILE_POINTS], size_t at, tl_vec3 v)
     to[2][at] = v.z;
 }
 
-/* Follows a segment: its points' lanes, and their shear. Notes when it has slid. */
-static void follow(tl_model *m, uint32_t row, size_t lane, lanes *l)
+/* The lane of the first point of a segment of a tile. */
+static size_t lane_of(size_t number)
 {
+    return number / TL_LANES * GROUP_POINTS + number % TL_LANES;
+}
+
+/* Follows a segment, by its number in the tile: its points' lanes, and their shear. Notes when it has slid. */
+static void follow(tl_model *m, uint32_t row, size_t number, lanes *l)
+{
+    const size_t lane = lane_of(number);
     struct tl_segments *s = m->segments;
     const tl_segment *of = &s->table.of[row];
     tl_segment_points *p = &s->points;
-    const side_now a = side_of(m, &of->a, of->normal_a), b = side_of(m, &of->b, of->normal_b);
-    const tl_vec3 n = tl_v3_unit(tl_v3_sub(a.normal, b.normal)), last = tl_columns_get(s->table.normal, row);
-    const tl_vec3 half = tl_v3_scale(0.25, tl_v3_add(a.turn, b.turn)); /* of the mean turn */
+    tl_side_now *sides = l->side[number], *a = &sides[0], *b = &sides[1];
+    *a = tl_side_now_of(m, &of->a, of->normal_a);
+    *b = tl_side_now_of(m, &of->b, of->normal_b);
+    const double share = s->meet[of->meet].share;
+    const tl_vec3 mixed = tl_v3_madd(tl_v3_scale(share, a->normal), share - 1, b->normal);
+    l->share[number] = share;
+    l->per_p[number] = 1 / tl_v3_norm(mixed);
+    const tl_vec3 n = tl_v3_scale(l->per_p[number], mixed), last = tl_columns_get(s->table.normal, row);
+    const tl_vec3 half = tl_v3_scale(0.5, tl_v3_madd(tl_v3_scale(share, a->turn), 1 - share, b->turn));
     double slid2 = 0;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t at = lane + k * TL_LANES;
         const size_t point = tl_segment_point_row(row, k);
-        const carried ca = carry(m, &a, tl_columns_get(p->at_a, point)),
-                      cb = carry(m, &b, tl_columns_get(p->at_b, point));
-        const tl_vec3 apart = tl_v3_sub(cb.place, ca.place), du = tl_v3_sub(cb.moved, ca.moved);
+        const tl_vec3 at_a = tl_columns_get(p->at_a, point), at_b = tl_columns_get(p->at_b, point);
+        const tl_vec3 on_a = tl_side_now_place(m, a, at_a), apart = tl_v3_sub(tl_side_now_place(m, b, at_b), on_a);
+        const tl_vec3 off_a = tl_v3_scale(share, apart), off_b = tl_v3_scale(share - 1, apart);
+        const tl_vec3 place = tl_v3_add(on_a, off_a);
+        const tl_vec3 du =
+            tl_v3_sub(tl_side_now_motion(m, b, at_b, off_b, place), tl_side_now_motion(m, a, at_a, off_a, place));
         const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
         l->closure[at] = -gap - (p->reference ? p->reference[point] : 0);
         l->du_n[at] = du_n;
         const tl_vec3 du_s = tl_v3_madd(du, -du_n, n);
         put(l->normal, at, n);
         put(l->du_s, at, du_s);
+        put(l->apart, at, apart);
         tl_columns_put(p->f_s, point, tl_turn_one(tl_columns_get(p->f_s, point), last, n, half));
         slid2 = fmax(slid2, tl_v3_norm2(tl_v3_madd(apart, -gap, n)));
     }
@@ -188,41 +151,118 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
     return status == TL_OK;
 }
 
-static void add(double *sum, tl_vec3 v)
+/* ---------------------------------------------------------------- partly closed ---------- */
+
+/* Whether the points of a segment that are apart do not pull. */
+static bool pulls_not(const tl_law *law, const tl_segment_points *p, uint32_t row)
 {
-    sum[0] += v.x;
-    sum[1] += v.y;
-    sum[2] += v.z;
+    bool none = law->pulls != TL_PULL_ANY;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS && law->pulls == TL_PULL_BONDED; k++)
+        none = none && (p->flags[tl_segment_point_row(row, k)] & TL_POINT_FAILED);
+    return none;
 }
 
-/* Adds the force of a point to what its side gets: the corners by their weights, or a body force and moment. */
-static void push_side(const tl_model *m, const tl_segment_side *side, tl_vec3 at, tl_vec3 force, double sum[9])
+/* How far slip and initial stress have lifted the walls of points. */
+static void find_lifts(const act_job *job, size_t first, size_t count, lanes *l, double *lift)
 {
-    if (tl_side_is_rigid(side)) {
-        add(sum, force);
-        add(sum + 3, tl_v3_cross(tl_m3_mul(&m->bodies.pose[side->at[0]].r, at), force));
+    const tl_segment_points *p = &job->m->segments->points;
+    const tl_law *law = &job->m->joint_laws[job->span->law];
+    const tl_law_ops *ops = law->kind->ops;
+    double hold[TILE_POINTS], *state[TL_STATE_COLUMNS];
+    memset(lift, 0, count * sizeof *lift);
+    memset(l->zero, 0, count * sizeof *l->zero);
+    if (!ops->across_gap)
         return;
-    }
-    add(sum, tl_v3_scale(at.x, force));
-    add(sum + 3, tl_v3_scale(at.y, force));
-    add(sum + 6, tl_v3_scale(at.z, force));
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = k < p->state_columns ? p->state[k] + first : l->zero;
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = (uint32_t)count,
+                                .area = p->area + first,
+                                .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,
+                                .state = state,
+                                .flags = p->flags + first};
+    tl_enter(law->kind, "across_gap");
+    ops->across_gap(law->self, &batch, lift, hold);
+    tl_leave();
 }
+
+/* Whether the closure of some point is below 0, or may be at a corner. */
+static bool may_be_apart(const lanes *l, size_t lane)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        low = fmin(low, l->closure[lane + k * TL_LANES]);
+        high = fmax(high, l->closure[lane + k * TL_LANES]);
+    }
+    return low - CORNERS_BEYOND * (high - low) < 0;
+}
+
+/* Gives points of segments that are closed in part the closures of what presses. */
+static void close_parts(const act_job *job, size_t first, size_t count, lanes *l)
+{
+    const struct tl_segments *s = job->m->segments;
+    const tl_law *law = &job->m->joint_laws[job->span->law];
+    double lift[TILE_POINTS];
+    bool known = false;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t row = (uint32_t)(first + i);
+        const size_t lane = lane_of(i);
+        double u[TL_SEGMENT_POINTS];
+        l->partly[i] = false;
+        if (s->table.of[row].meet == TL_NO_ROW || !may_be_apart(l, lane) || !pulls_not(law, &s->points, row))
+            continue;
+        if (!known)
+            find_lifts(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, l, lift);
+        known = true;
+        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+            u[k] = l->closure[lane + k * TL_LANES] + lift[lane + k * TL_LANES];
+        l->partly[i] = tl_closed_part(s->outline + s->table.outline[row], s->table.corners[row], u, &l->closed[i]);
+        for (size_t k = 0; k < TL_SEGMENT_POINTS && l->partly[i]; k++)
+            l->closure[lane + k * TL_LANES] = l->closed[i].even[k] - lift[lane + k * TL_LANES];
+    }
+}
+
+/* The stiffness, N/m3, with which the law presses on a segment that is closed in part; 0 for others. */
+static double stiffness_of(const tl_segment_points *p, uint32_t row, const lanes *l, size_t number)
+{
+    double force = 0, closed = 0;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS && l->partly[number]; k++) {
+        const size_t point = tl_segment_point_row(row, k);
+        force += p->f_n[point];
+        closed += p->area[point] * l->closed[number].even[k];
+    }
+    return closed > 0 ? force / closed : 0;
+}
+
+/* ---------------------------------------------------------------- forces ----------------- */
 
 /* What a segment does to its sides. */
-static void push(tl_model *m, uint32_t row, size_t lane, const lanes *l)
+static void push(tl_model *m, uint32_t row, size_t number, const lanes *l)
 {
     struct tl_segments *s = m->segments;
     const tl_segment *of = &s->table.of[row];
     const tl_segment_points *p = &s->points;
+    const tl_side_now *a = &l->side[number][0], *b = &l->side[number][1];
+    const double share = l->share[number];
+    const size_t lane = lane_of(number);
+    const double stiffness = stiffness_of(p, row, l, number);
     double sums[2][9] = {{0}}, bears = 0;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t at = lane + k * TL_LANES;
         const size_t point = tl_segment_point_row(row, k);
         const tl_vec3 n = tl_v3(l->normal[0][at], l->normal[1][at], l->normal[2][at]);
-        const tl_vec3 on_b = tl_v3_madd(tl_columns_get(p->f_s, point), p->f_n[point], n);
+        const double more = stiffness > 0 ? stiffness * p->area[point] * l->closed[number].rest[k] : 0;
+        const double normal = p->f_n[point] + more;
+        const tl_vec3 shear = tl_columns_get(p->f_s, point), on_b = tl_v3_madd(shear, normal, n);
+        const tl_vec3 apart = {l->apart[0][at], l->apart[1][at], l->apart[2][at]};
+        const tl_vec3 along = tl_v3_madd(apart, -tl_v3_dot(apart, n), n), couple = tl_v3_cross(apart, shear);
+        const double tilts = normal * l->per_p[number];
         bears += tl_v3_norm(on_b);
-        push_side(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
-        push_side(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
+        tl_side_push(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
+        tl_side_push(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
+        const tl_vec3 on_normal_a = tl_v3_cross(a->normal, along), on_normal_b = tl_v3_cross(b->normal, along);
+        tl_side_turn(a, tl_v3_madd(tl_v3_scale(-share, couple), tilts * share, on_normal_a), sums[0]);
+        tl_side_turn(b, tl_v3_scale(share - 1, tl_v3_madd(couple, tilts, on_normal_b)), sums[1]);
     }
     for (int side = 0; side < 2; side++)
         for (int c = 0; c < 9; c++)
@@ -241,15 +281,18 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     memset(&l, 0, sizeof l);
     for (size_t k = 0; k < count; k++)
         if (s->table.of[first + k].meet != TL_NO_ROW)
-            follow(m, (uint32_t)(first + k), k / TL_LANES * GROUP_POINTS + k % TL_LANES, &l);
+            follow(m, (uint32_t)(first + k), k, &l);
+    close_parts(job, first, count, &l);
     if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))
         return;
     for (size_t k = 0; k < count; k++) {
-        const size_t lane = k / TL_LANES * GROUP_POINTS + k % TL_LANES;
+        const size_t lane = lane_of(k);
         if (s->table.of[first + k].meet == TL_NO_ROW)
             continue;
-        push(m, (uint32_t)(first + k), lane, &l);
-        s->table.stored[first + k] = s->table.heat[first + k] = 0;
+        push(m, (uint32_t)(first + k), k, &l);
+        const double stiffness = stiffness_of(&s->points, (uint32_t)(first + k), &l, k);
+        s->table.stored[first + k] = 0.5 * stiffness * s->table.area[first + k] * l.closed[k].second;
+        s->table.heat[first + k] = 0;
         for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
             s->table.stored[first + k] += l.stored[lane + i * TL_LANES];
             s->table.heat[first + k] += l.dissipated[lane + i * TL_LANES];
@@ -265,6 +308,8 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
         if (job.span->law != TL_NO_ROW)
             tl_parallel_for(m->pool, job.span->group_end - job.span->group_begin, TILE, act_range, &job);
     }
+    if (s && failure->error.status == TL_OK)
+        tl_blends_apply(m);
     return failure->error.status;
 }
 

@@ -14,8 +14,10 @@
 #include "contact/contacts.h"
 #include "contact/kind.h"
 #include "contact/sides.h"
+#include "contact/store.h"
 #include "force/joint_laws.h"
 #include "geometry/polar.h"
+#include "segment/blend.h"
 #include "zone/grid.h"
 
 #include <math.h>
@@ -25,11 +27,19 @@
 
 /* ---------------------------------------------------------------- zones ------------------ */
 
-/* Where the corners of a zone are. */
-static void corners_of(const tl_model *m, const uint32_t point[4], tl_vec3 x[4])
+/* The first gridpoint of the body of a side. */
+static uint32_t first_point(const tl_model *m, uint32_t contact, int side)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    const uint32_t body = m->blocks.body[(side ? c->b : c->a)[contact]];
+    return m->zones->mesh[m->bodies.mesh[body] - 1].point_begin;
+}
+
+/* Where the corners of a zone are, by their numbers in a mesh that begins with row `first`. */
+static void corners_of(const tl_model *m, uint32_t first, const uint32_t point[4], tl_vec3 x[4])
 {
     for (int a = 0; a < 4; a++)
-        x[a] = tl_gridpoint_place(&m->zones->points, point[a]);
+        x[a] = tl_gridpoint_place(&m->zones->points, first + point[a]);
 }
 
 /* Edges from the first corner, as columns. */
@@ -55,8 +65,8 @@ static double least_of(const double weight[4])
     return fmin(fmin(weight[0], weight[1]), fmin(weight[2], weight[3]));
 }
 
-/* The zone at the surface of a block that a place lies in, or the least outside of. A block inside of its body has none:
- * then that of another block. */
+/* The zone at the surface of a block that a place lies in, or the least outside of. A block inside of its body has
+ * none: then that of another block. */
 static void find_zone(const tl_model *m, tl_id block, tl_vec3 place, uint32_t point[4], double weight[4])
 {
     const struct tl_zones *z = m->zones;
@@ -67,12 +77,13 @@ static void find_zone(const tl_model *m, tl_id block, tl_vec3 place, uint32_t po
         own_surface = own_surface || z->part[k].block == block;
     for (uint32_t k = mesh->part_begin; k < mesh->part_end; k++) {
         const tl_surface_part *part = &z->part[k];
-        const uint32_t own[4] = {part->apex, part->corner[0], part->corner[1], part->corner[2]};
+        const uint32_t own[4] = {part->apex - mesh->point_begin, part->corner[0] - mesh->point_begin,
+                                 part->corner[1] - mesh->point_begin, part->corner[2] - mesh->point_begin};
         tl_vec3 x[4];
         double w[4];
         if (own_surface && part->block != block)
             continue;
-        corners_of(m, own, x);
+        corners_of(m, mesh->point_begin, own, x);
         weigh(x, place, w);
         if (!(least_of(w) > best))
             continue;
@@ -108,53 +119,51 @@ static void begin(tl_model *m, uint32_t contact, int side, tl_vec3 place)
     next.at = tl_side_local(m, of, place);
     next.begun = next.pose.r;
     find_zone(m, m->blocks.id[(side ? c->b : c->a)[contact]], place, next.point, next.weight);
-    corners_of(m, next.point, x);
+    corners_of(m, first_point(m, contact, side), next.point, x);
     const tl_mat3 edges = edges_of(x);
     next.edges = tl_m3_inverse(&edges);
     *by = next;
 }
 
 /* Whether the place has run out of the zone that carries a side. */
-static bool has_left(const tl_model *m, const tl_carrier *by, tl_vec3 place)
+static bool has_left(const tl_model *m, uint32_t first, const tl_carrier *by, tl_vec3 place)
 {
     tl_vec3 x[4];
     double weight[4];
-    corners_of(m, by->point, x);
+    corners_of(m, first, by->point, x);
     weigh(x, place, weight);
     return least_of(weight) < OUTSIDE && least_of(weight) < least_of(by->weight) - 0.25;
-}
-
-static bool need_columns(tl_contacts *c)
-{
-    return TL_COLUMN_NEED(&c->table, c, carrier[0], 0) && TL_COLUMN_NEED(&c->table, c, carrier[1], 0);
 }
 
 bool tl_carriers_begin(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;
-    for (uint32_t i = 0; tl_model_deforms(m) && i < c->table.rows; i++) {
+    if (!tl_model_deforms(m) || c->table.rows == 0)
+        return true;
+    if (!tl_detect_hold_carriers(m->detect))
+        return false;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
         const bool carried = c->point_count[i] > 0 && tl_facet_is_field(&c->facet[i]);
         for (int side = 0; side < 2; side++) {
             if (!tl_block_deforms(m, (side ? c->b : c->a)[i]))
                 continue;
-            if (!need_columns(c))
-                return false;
             tl_carrier *by = &c->carrier[side][i];
             if (!carried)
                 by->on = 0;
-            else if (!by->on || has_left(m, by, place_of(m, i)))
+            else if (!by->on || has_left(m, first_point(m, i, side), by, place_of(m, i)))
                 begin(m, i, side, place_of(m, i));
         }
     }
+    tl_blends_share(m);
     return true;
 }
 
 /* ---------------------------------------------------------------- motion ----------------- */
 
-static void follow(const tl_model *m, tl_carrier *by, double dt)
+static void follow(const tl_model *m, uint32_t first, tl_carrier *by, double dt)
 {
     tl_vec3 x[4], place = {0, 0, 0};
-    corners_of(m, by->point, x);
+    corners_of(m, first, by->point, x);
     for (int a = 0; a < 4; a++)
         place = tl_v3_madd(place, by->weight[a], x[a]);
     const tl_mat3 edges = edges_of(x), f = tl_m3_product(&edges, &by->edges), turn = tl_m3_polar(&f);
@@ -177,7 +186,7 @@ void tl_carriers_follow(tl_model *m, double dt)
             tl_carrier *by = &c->carrier[side][i];
             if (!by->on)
                 continue;
-            follow(m, by, dt);
+            follow(m, first_point(m, i, side), by, dt);
             const double radius = tl_side_radius(m, TL_CARRIED | (2 * i + (uint32_t)side));
             by->odometer += dt * (tl_v3_norm(by->v) + tl_v3_norm(by->w) * radius);
         }
@@ -186,11 +195,11 @@ void tl_carriers_follow(tl_model *m, double dt)
 /* ---------------------------------------------------------------- forces ----------------- */
 
 /* Adds a force and a moment about the place of a carrier to the corners of its zone. */
-static void push(tl_model *m, const tl_carrier *by, tl_vec3 force, tl_vec3 moment)
+static void push(tl_model *m, uint32_t first, const tl_carrier *by, tl_vec3 force, tl_vec3 moment)
 {
     tl_gridpoints *p = &m->zones->points;
     tl_vec3 x[4];
-    corners_of(m, by->point, x);
+    corners_of(m, first, by->point, x);
     const tl_mat3 edges = edges_of(x), inverse = tl_m3_inverse(&edges);
     tl_vec3 g[4] = {{0, 0, 0}};
     for (int a = 1; a < 4; a++) {
@@ -199,9 +208,10 @@ static void push(tl_model *m, const tl_carrier *by, tl_vec3 force, tl_vec3 momen
     }
     for (int a = 0; a < 4; a++) {
         const tl_vec3 f = tl_v3_madd(tl_v3_scale(0.5, tl_v3_cross(moment, g[a])), by->weight[a], force);
-        tl_columns_put(p->force, by->point[a], tl_v3_add(tl_columns_get(p->force, by->point[a]), f));
-        p->bears[by->point[a]] += tl_v3_norm(f);
-        p->touched[by->point[a]] += tl_v3_norm(f);
+        const uint32_t row = first + by->point[a];
+        tl_columns_put(p->force, row, tl_v3_add(tl_columns_get(p->force, row), f));
+        p->bears[row] += tl_v3_norm(f);
+        p->touched[row] += tl_v3_norm(f);
     }
 }
 
@@ -215,7 +225,8 @@ void tl_carriers_push(tl_model *m)
                 continue;
             const tl_vec3 force = tl_v3_scale(side ? 1 : -1, c->force[i]);
             const tl_vec3 arm = tl_m3_mul(&by->pose.r, by->at); /* from the carrier's centroid to the place */
-            push(m, by, force, tl_v3_sub(tl_contact_moment(m, i, side), tl_v3_cross(arm, force)));
+            push(m, first_point(m, i, side), by, force,
+                 tl_v3_sub(tl_contact_moment(m, i, side), tl_v3_cross(arm, force)));
         }
 }
 
@@ -232,7 +243,26 @@ void tl_carriers_stiffen(tl_model *m)
             double all = 0;
             for (int a = 0; a < 4; a++)
                 all += fabs(by->weight[a]);
+            const uint32_t first = first_point(m, i, side);
             for (int a = 0; a < 4; a++)
-                m->zones->points.holds[by->point[a]] += 2 * k * all * fabs(by->weight[a]);
+                m->zones->points.holds[first + by->point[a]] += 2 * k * all * fabs(by->weight[a]);
         }
+}
+
+const char *tl_carriers_unsound(const tl_model *m)
+{
+    const tl_contacts *c = m->detect ? &m->detect->contacts : NULL;
+    for (uint32_t i = 0; c && c->carrier[0] && i < c->table.rows; i++)
+        for (int side = 0; side < 2; side++) {
+            const tl_carrier *by = &c->carrier[side][i];
+            if (!by->on)
+                continue;
+            if (by->on != 1 || !tl_block_deforms(m, (side ? c->b : c->a)[i]))
+                return "a contact is carried by a block without zones";
+            const tl_body_mesh *mesh = &m->zones->mesh[m->bodies.mesh[m->blocks.body[(side ? c->b : c->a)[i]]] - 1];
+            for (int a = 0; a < 4; a++)
+                if (by->point[a] >= mesh->point_end - mesh->point_begin)
+                    return "a contact is carried by an impossible gridpoint";
+        }
+    return NULL;
 }

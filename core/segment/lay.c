@@ -21,6 +21,8 @@ static void add_columns(struct tl_segments *s, uint32_t states)
     tl_table_init(&t->table, t);
     TL_COLUMN(&t->table, t, of, 0);
     TL_COLUMN(&t->table, t, area, TL_COLUMN_STATE);
+    TL_COLUMN(&t->table, t, outline, 0);
+    TL_COLUMN(&t->table, t, corners, 0);
     for (int k = 0; k < 3; k++)
         TL_COLUMN(&t->table, t, normal[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
     for (int side = 0; side < 2; side++)
@@ -61,8 +63,8 @@ void tl_segments_free(struct tl_segments *s)
 {
     tl_table_free(&s->table.table);
     tl_table_free(&s->points.table);
-    void *const owned[] = {s->meet,      s->span,       s->use,    s->body_use,
-                           s->use_start, s->body_start, s->corner, s->room_memory};
+    void *const owned[] = {s->meet,       s->span,   s->use,         s->body_use, s->use_start,
+                           s->body_start, s->corner, s->room_memory, s->blend,    s->outline};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -77,15 +79,22 @@ void tl_laying_begin(tl_laying *l)
 
 bool tl_laying_add(tl_laying *l, const tl_new_segment *segment)
 {
-    if (!tl_grow(&l->list, &l->capacity, l->count + 1, sizeof *l->list))
+    const size_t corners = segment->over.corners;
+    if (!tl_grow(&l->list, &l->capacity, l->count + 1, sizeof *l->list) ||
+        !tl_grow(&l->outline, &l->outline_capacity, l->outline_count + corners, sizeof *l->outline))
         return false;
-    l->list[l->count++] = *segment;
+    tl_new_segment *to = &l->list[l->count++];
+    *to = *segment;
+    to->outline = l->outline_count;
+    for (size_t k = 0; k < corners; k++)
+        l->outline[l->outline_count++] = segment->over.outline[k];
     return true;
 }
 
 void tl_laying_end(tl_laying *l)
 {
     free(l->list);
+    free(l->outline);
     free(l->now);
 }
 
@@ -111,8 +120,12 @@ bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, 
             at++;
         const bool same = at < count && order_of(&list[at], &s->meet[k]) == 0;
         l->now[k] = same ? (uint32_t)at : TL_NO_ROW;
-        if (same)
+        if (same) {
+            const bool tilted = list[at].tilted, stale = s->meet[k].area == 0; /* its faces may overlap by now */
             list[at] = s->meet[k];
+            list[at].tilted = tilted;
+            list[at].stale = list[at].stale || stale;
+        }
     }
     free(s->meet);
     s->meet = list;
@@ -346,6 +359,15 @@ static size_t list_entries(const tl_model *m, const tl_laying *l, entry *list, o
     return count;
 }
 
+/* Copies the outline of a segment to the end of the list, where there is room. */
+static void put_outline(struct tl_segments *to, size_t row, const tl_point2 *outline, size_t corners)
+{
+    to->table.outline[row] = (uint32_t)to->outline_count;
+    to->table.corners[row] = (uint32_t)corners;
+    for (size_t k = 0; k < corners; k++)
+        to->outline[to->outline_count++] = outline[k];
+}
+
 static void lay_entry(const old_segments *old, const tl_laying *l, struct tl_segments *to, size_t row, const entry *e)
 {
     const tl_model *m = old->m;
@@ -355,6 +377,7 @@ static void lay_entry(const old_segments *old, const tl_laying *l, struct tl_seg
         to->table.of[row] = s->table.of[e->old];
         to->table.of[row].meet = e->meet;
         to->table.area[row] = s->table.area[e->old];
+        put_outline(to, row, s->outline + s->table.outline[e->old], s->table.corners[e->old]);
         for (int c = 0; c < 3; c++)
             to->table.normal[c][row] = s->table.normal[c][e->old];
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
@@ -372,6 +395,7 @@ static void lay_entry(const old_segments *old, const tl_laying *l, struct tl_seg
     to->table.of[row] =
         (tl_segment){made->meet, made->a, made->b, {made->key[0], made->key[1]}, made->normal_a, made->normal_b};
     to->table.area[row] = made->over.area;
+    put_outline(to, row, l->outline + made->outline, made->over.corners);
     to->table.normal[0][row] = made->over.n.x;
     to->table.normal[1][row] = made->over.n.y;
     to->table.normal[2][row] = made->over.n.z;
@@ -458,13 +482,21 @@ static bool index_room(const tl_model *m, struct tl_segments *s, size_t segments
            tl_grow(&s->body_start, &s->body_start_capacity, m->bodies.table.rows + 1, sizeof *s->body_start);
 }
 
-static void sum_areas(struct tl_segments *s)
+/* Rows and areas of all meets. The segments of one follow each other. */
+static void sum_meets(struct tl_segments *s)
 {
-    for (size_t k = 0; k < s->meet_count; k++)
+    for (size_t k = 0; k < s->meet_count; k++) {
         s->meet[k].area = 0;
-    for (size_t row = 0; row < s->table.table.rows; row++)
-        if (s->table.of[row].meet != TL_NO_ROW)
-            s->meet[s->table.of[row].meet].area += s->table.area[row];
+        s->meet[k].begin = s->meet[k].end = 0;
+    }
+    for (uint32_t row = 0; row < s->table.table.rows; row++) {
+        if (s->table.of[row].meet == TL_NO_ROW)
+            continue;
+        tl_meet *meet = &s->meet[s->table.of[row].meet];
+        meet->begin = meet->end > 0 ? meet->begin : row;
+        meet->end = row + 1;
+        meet->area += s->table.area[row];
+    }
 }
 
 bool tl_lay_segments(tl_model *m, const tl_laying *l)
@@ -481,10 +513,13 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
     const size_t rows = rows_of(list, count);
     enough = enough && tl_table_resize(&fresh.table.table, rows) &&
              tl_table_resize(&fresh.points.table, TL_SEGMENT_POINTS * rows) &&
+             tl_grow(&fresh.outline, &fresh.outline_capacity, s->outline_count + l->outline_count + 1,
+                     sizeof *fresh.outline) &&
              tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) && index_room(m, s, count);
     if (!enough) {
         tl_table_free(&fresh.table.table);
         tl_table_free(&fresh.points.table);
+        free(fresh.outline);
     } else {
         fresh.span = s->span;
         fill_tables(&old, l, &fresh, list, count);
@@ -496,10 +531,14 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
         s->points = fresh.points;
         s->points.table.owner = &s->points;
         s->span_count = fresh.span_count;
+        free(s->outline);
+        s->outline = fresh.outline;
+        s->outline_count = fresh.outline_count;
+        s->outline_capacity = fresh.outline_capacity;
         for (size_t k = 0; k < s->meet_count; k++)
             s->meet[k].stale = false;
         s->version++;
-        sum_areas(s);
+        sum_meets(s);
         list_uses(m, s);
     }
     free(list);

@@ -10,12 +10,15 @@ typedef struct tl_new_segment {
     tl_segment_side a, b;
     tl_vec3 normal_a, normal_b;
     tl_overlay over;
+    size_t outline; /* where its outline begins in the list of the laying */
 } tl_new_segment;
 
 /* Segments on their way into the tables: those of stale meets, in the order of these. */
 typedef struct tl_laying {
     tl_new_segment *list;
     size_t count, capacity;
+    tl_point2 *outline;
+    size_t outline_count, outline_capacity;
     uint32_t *now; /* of each meet that there was: its number now, or TL_NO_ROW; NULL: the same */
 } tl_laying;
 

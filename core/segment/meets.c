@@ -15,6 +15,7 @@
 #include "force/joint_laws.h"
 #include "model/joints.h"
 #include "narrow/manifold.h"
+#include "segment/blend.h"
 #include "segment/lay.h"
 #include "zone/grid.h"
 
@@ -22,10 +23,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: cos of 10 degrees, up to which faces that meet may be tilted. */
-#define LEAST_FACING 0.98480775301220806
+/* Tolerance: cos of 12 degrees, up to which faces that meet may be tilted: beyond 10 a field contact has all
+ * (blend.c). */
+#define LEAST_FACING 0.97814760073380563
 /* Tolerance: distance over the size of the smaller block up to which faces meet. */
 #define NEAR 0.02
+/* Tolerance: sine of the tilt with which a centre may be farther from the other face: of 12 degrees. */
+#define TILTS_BY 0.21
+/* Tolerance: cos of 3 degrees, up to which faces are not tilted: a step in which meets are listed comes before 5. */
+#define NOT_TILTED 0.99862953475457383
 
 /* Cost only: steps after which meets are listed again, for faces that have tilted or come near. */
 #define LIST_EVERY 16
@@ -38,6 +44,7 @@ typedef struct face {
     const tl_surface_part *part; /* NULL: rigid */
     size_t part_count;
     tl_vec3 centre, area;
+    double size;  /* of all its parts, m2 */
     double reach; /* no corner is farther from the centre, m */
 } face;
 
@@ -48,7 +55,6 @@ static tl_vec3 corner_of(const tl_model *m, const tl_surface_part *part, int k)
 
 static void measure_parts(const tl_model *m, face *f)
 {
-    double weight = 0;
     for (size_t k = 0; k < f->part_count; k++) {
         const tl_vec3 a = corner_of(m, &f->part[k], 0), b = corner_of(m, &f->part[k], 1),
                       c = corner_of(m, &f->part[k], 2);
@@ -56,9 +62,9 @@ static void measure_parts(const tl_model *m, face *f)
         const double size = tl_v3_norm(area);
         f->area = tl_v3_add(f->area, area);
         f->centre = tl_v3_madd(f->centre, size / 3, tl_v3_add(a, tl_v3_add(b, c)));
-        weight += size;
+        f->size += size;
     }
-    f->centre = tl_v3_scale(weight > 0 ? 1 / weight : 0, f->centre);
+    f->centre = tl_v3_scale(f->size > 0 ? 1 / f->size : 0, f->centre);
     for (size_t k = 0; k < f->part_count; k++)
         for (int i = 0; i < 3; i++)
             f->reach = fmax(f->reach, tl_v3_norm(tl_v3_sub(corner_of(m, &f->part[k], i), f->centre)));
@@ -78,6 +84,7 @@ static void measure_rigid(const tl_model *m, face *f)
         f->area = tl_v3_madd(f->area, 0.5,
                              tl_v3_cross(tl_v3_sub(rigid_corner(m, f->block, f->number, k), first),
                                          tl_v3_sub(rigid_corner(m, f->block, f->number, k + 1), first)));
+    f->size = tl_v3_norm(f->area);
     for (uint32_t k = 0; k < count; k++)
         f->centre = tl_v3_madd(f->centre, 1.0 / count, rigid_corner(m, f->block, f->number, k));
     for (uint32_t k = 0; k < count; k++)
@@ -101,6 +108,12 @@ static bool is_inside(const face *f)
     return f->part && f->part_count == 0;
 }
 
+/* The cosine of the tilt between the mean planes of two faces. */
+static double tilt_cosine(const face *a, const face *b)
+{
+    return -tl_v3_dot(tl_v3_unit(a->area), tl_v3_unit(b->area));
+}
+
 /* Whether two faces look at each other and are near. */
 static bool faces_meet(const tl_model *m, const face *a, const face *b)
 {
@@ -108,8 +121,43 @@ static bool faces_meet(const tl_model *m, const face *a, const face *b)
     const double near = NEAR * fmin(m->blocks.size[a->block], m->blocks.size[b->block]);
     const tl_vec3 n = tl_v3_unit(tl_v3_sub(na, nb));
     const double gap = tl_v3_dot(apart, n), aside = tl_v3_norm(tl_v3_madd(apart, -gap, n));
-    return -tl_v3_dot(na, nb) > LEAST_FACING && fabs(gap) < near + 0.2 * fmin(a->reach, b->reach) &&
+    return tilt_cosine(a, b) > LEAST_FACING && fabs(gap) < near + TILTS_BY * fmin(a->reach, b->reach) &&
            aside < a->reach + b->reach;
+}
+
+/* ---------------------------------------------------------------- depth ------------------ */
+
+/* Tolerance: how much deeper than along another face the blocks may overlap along one that touches, and what of their
+ * size beside: as of patches (narrow/manifold.c). Test: property/deform_contacts. */
+#define DEEPER 4.0
+#define DEEPER_SIZE 1e-3
+
+/* How deep a block reaches behind a face of another one, m; its shape is that as made. */
+static double depth_behind(const tl_model *m, uint32_t block, uint32_t number, uint32_t other)
+{
+    const uint32_t body = m->blocks.body[block];
+    const tl_vec3 n = tl_m3_mul(&m->bodies.pose[body].r, m->blocks.shape[block]->plane[number].normal);
+    const tl_vec3 on = rigid_corner(m, block, number, 0);
+    const tl_poly *p = m->blocks.shape[other];
+    double least = INFINITY;
+    for (uint32_t k = 0; k < p->vertex_count; k++) {
+        const tl_vec3 x = tl_body_point(&m->bodies, m->blocks.body[other], p->vertex[k]);
+        least = fmin(least, tl_v3_dot(n, tl_v3_sub(x, on)));
+    }
+    return -least;
+}
+
+/* The depth up to which faces of two blocks touch: behind others they lie side by side. */
+static double most_depth(const tl_model *m, uint32_t a, uint32_t b)
+{
+    double least = INFINITY;
+    for (int side = 0; side < 2; side++) {
+        const uint32_t block = side ? b : a, other = side ? a : b;
+        for (uint32_t k = 0; k < m->blocks.shape[block]->face_count; k++)
+            if (!m->blocks.shape[block]->covered[k])
+                least = fmin(least, depth_behind(m, block, k, other));
+    }
+    return DEEPER * fmax(least, 0) + DEEPER_SIZE * fmin(m->blocks.size[a], m->blocks.size[b]);
 }
 
 /* ---------------------------------------------------------------- meets ------------------ */
@@ -118,10 +166,11 @@ static bool faces_meet(const tl_model *m, const face *a, const face *b)
 static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list, size_t *count, size_t *capacity)
 {
     const tl_poly *pa = m->blocks.shape[a], *pb = m->blocks.shape[b];
+    const double most = most_depth(m, a, b);
     for (uint32_t i = 0; i < pa->face_count; i++) {
         const face fa = face_of(m, a, i);
         for (uint32_t k = 0; k < pb->face_count && !pa->covered[i]; k++) {
-            if (pb->covered[k])
+            if (pb->covered[k] || (depth_behind(m, a, i, b) > most && depth_behind(m, b, k, a) > most))
                 continue;
             const face fb = face_of(m, b, k);
             if (is_inside(&fa) || is_inside(&fb) || !faces_meet(m, &fa, &fb))
@@ -133,7 +182,11 @@ static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list,
                                             .face_a = i,
                                             .face_b = k,
                                             .tag = tl_flush_tag(pa->tag[i], pb->tag[k]),
-                                            .stale = true};
+                                            .stale = true,
+                                            .share = 0.5,
+                                            .tilted = tilt_cosine(&fa, &fb) < NOT_TILTED,
+                                            .alone = true,
+                                            .left = 1};
         }
     }
     return true;
@@ -172,10 +225,9 @@ static tl_meet *list_meets(const tl_model *m, size_t *count, bool *enough)
 
 /* ---------------------------------------------------------------- segments --------------- */
 
-/* Notes a segment of two parts, or of a part and a rigid face, that lie over each other. false: out of memory. */
-static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a, size_t i, const face *b, size_t k)
+/* Finds what two parts, or a part and a rigid face, have in common. false: they do not lie over each other. */
+static bool lay_over(tl_model *m, double share, const face *a, size_t i, const face *b, size_t k, tl_overlay *over)
 {
-    tl_overlay over;
     tl_vec3 ca[3], cb[3];
     const face *of[2] = {a, b};
     const size_t at[2] = {i, k};
@@ -193,9 +245,17 @@ static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a
             outer[s] = (tl_outer_face){m->segments->corner, count};
         }
     }
-    if (!tl_overlay_find(&outer[0], &outer[1], &m->segments->room, &over))
+    return tl_overlay_find(&outer[0], &outer[1], share, &m->segments->room, over);
+}
+
+/* Notes a segment of two parts, or of a part and a rigid face, that lie over each other. false: out of memory. */
+static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a, size_t i, const face *b, size_t k)
+{
+    tl_new_segment made = {.meet = meet, .key = {(uint32_t)i, (uint32_t)k}};
+    if (!lay_over(m, m->segments->meet[meet].share, a, i, b, k, &made.over))
         return true;
-    tl_new_segment made = {.meet = meet, .key = {(uint32_t)i, (uint32_t)k}, .over = over};
+    const face *of[2] = {a, b};
+    const size_t at[2] = {i, k};
     for (int s = 0; s < 2; s++) {
         const uint32_t body = m->blocks.body[of[s]->block];
         tl_segment_side *side = s ? &made.b : &made.a;
@@ -227,20 +287,44 @@ static bool make_room(tl_model *m, const face *a, const face *b)
     return true;
 }
 
+/* Tolerance: share of a face that counts as left out when all is covered: two faces that cover each other share their
+ * outline. */
+#define LEFT_OUT 1e-6
+
+/* How far the outline of an area that two faces have in common is B's: by what of each is left out. */
+static double share_of(double common, const face *a, const face *b)
+{
+    const double out_a = fmax(1 - common / a->size, 0) + LEFT_OUT, out_b = fmax(1 - common / b->size, 0) + LEFT_OUT;
+    return out_a / (out_a + out_b);
+}
+
+/* The area that two faces have in common, m2. */
+static double common_area(tl_model *m, const face *a, const face *b)
+{
+    double sum = 0;
+    tl_overlay over;
+    for (size_t i = 0; i < (a->part ? a->part_count : 1); i++)
+        for (size_t k = 0; k < (b->part ? b->part_count : 1); k++)
+            sum += lay_over(m, 0.5, a, i, b, k, &over) ? over.area : 0;
+    return sum;
+}
+
 /* Notes the segments of a meet. */
 static bool find_segments(tl_model *m, tl_laying *l, uint32_t number)
 {
-    const tl_meet *meet = &m->segments->meet[number];
+    tl_meet *meet = &m->segments->meet[number];
     const face a = face_of(m, tl_block_row_quiet(m, meet->a), meet->face_a);
     const face b = face_of(m, tl_block_row_quiet(m, meet->b), meet->face_b);
     bool enough = make_room(m, &a, &b);
+    if (enough)
+        meet->share = share_of(meet->area > 0 ? meet->area : common_area(m, &a, &b), &a, &b);
     for (size_t i = 0; enough && i < (a.part ? a.part_count : 1); i++)
         for (size_t k = 0; enough && k < (b.part ? b.part_count : 1); k++)
             enough = note_segment(m, l, number, &a, i, &b, k);
     return enough;
 }
 
-/* Lists the pairs of blocks that meet. false: out of memory. */
+/* Lists the pairs of blocks that meet by segments alone. false: out of memory. */
 static bool list_meeting(tl_model *m)
 {
     const struct tl_segments *s = m->segments;
@@ -250,7 +334,8 @@ static bool list_meeting(tl_model *m)
     z->meeting_count = 0;
     for (size_t k = 0; k < s->meet_count; k++) {
         const uint64_t pair = (uint64_t)s->meet[k].a << 32 | s->meet[k].b;
-        if (s->meet[k].area > 0 && (z->meeting_count == 0 || z->meeting[z->meeting_count - 1] != pair))
+        if (s->meet[k].area > 0 && s->meet[k].alone &&
+            (z->meeting_count == 0 || z->meeting[z->meeting_count - 1] != pair))
             z->meeting[z->meeting_count++] = pair;
     }
     return true;
@@ -296,8 +381,10 @@ tl_status tl_segments_find(tl_model *m)
     for (uint32_t k = 0; enough && some && k < s->meet_count; k++)
         if (s->meet[k].stale)
             enough = find_segments(m, &l, k);
-    if (enough && some)
-        enough = tl_lay_segments(m, &l) && list_meeting(m);
+    enough = enough && (!some || tl_lay_segments(m, &l)) &&
+             tl_grow(&s->blend, &s->blend_capacity, s->meet_count + 1, sizeof *s->blend);
+    if (enough && (tl_blends_find(m) || some))
+        enough = list_meeting(m);
     tl_laying_end(&l);
     if (!enough)
         return tl_fail_memory(&m->error);

@@ -60,9 +60,10 @@ static inline size_t tl_segment_point_row(size_t segment, size_t k)
 
 typedef struct tl_segment_table {
     tl_table table;
-    tl_segment *of;    /* an empty lane has no meet: TL_NO_ROW */
-    double *area;      /* m2 */
-    double *normal[3]; /* in the last step, from A to B */
+    tl_segment *of;              /* an empty lane has no meet: TL_NO_ROW */
+    double *area;                /* m2 */
+    uint32_t *outline, *corners; /* in the list of outlines */
+    double *normal[3];           /* in the last step, from A to B */
     double *
         push[2][9]; /* what it does to the corners of its sides, N; to a rigid side: force, and moment about its body */
     double *bears;  /* sum of the sizes of the forces of its points, N */
@@ -86,10 +87,25 @@ typedef struct tl_meet {
     tl_id a, b;
     uint32_t face_a, face_b;
     tl_tag tag;
-    uint32_t law; /* index into the model's joint_laws, or TL_NO_ROW */
-    bool stale;   /* its segments are to be laid anew: it is new, or its sides have slid or stretched */
-    double area;  /* m2 */
+    uint32_t law;        /* index into the model's joint_laws, or TL_NO_ROW */
+    bool stale;          /* its segments are to be laid anew: it is new, or its sides have slid or stretched */
+    double area;         /* m2 */
+    double share;        /* 1: the outline of what the faces have in common is B's; 0: it is A's */
+    uint32_t begin, end; /* rows of its segments */
+    bool tilted;         /* its faces may be tilted so far that a field contact has a share (blend.c) */
+    bool alone;          /* there is none */
+    double left;         /* what the field contact leaves of its forces and energies */
 } tl_meet;
+
+/* Two blocks a part of whose contact is a field contact (blend.c). */
+typedef struct tl_blend {
+    tl_id a, b;
+    uint32_t first, end; /* of their meets */
+    uint32_t meet;       /* whose tilt decides */
+    uint32_t contact;    /* row of the field contact, or TL_NO_ROW */
+    double share;        /* of the field contact */
+    tl_vec3 slope[2];    /* of the share by the mean vector areas of both faces, 1/m2 */
+} tl_blend;
 
 /* SIMD groups of one law. */
 typedef struct tl_segment_span {
@@ -105,6 +121,8 @@ typedef struct tl_segment_use {
 struct tl_segments {
     tl_segment_table table;
     tl_segment_points points;
+    tl_point2 *outline; /* of all segments, as of tl_overlay */
+    size_t outline_count, outline_capacity;
     tl_meet *meet;
     size_t meet_count, meet_capacity;
     tl_segment_span *span;
@@ -120,6 +138,8 @@ struct tl_segments {
     tl_point2 *room_memory;
     tl_vec3 *corner; /* scratch: of a rigid face */
     size_t corner_capacity;
+    tl_blend *blend; /* in this step, in the order of the meets */
+    size_t blend_count, blend_capacity;
     uint64_t version; /* counts how often segments were laid */
     double lost;      /* shear that went when segments were laid: heat of the next step, J */
 };

@@ -14,9 +14,11 @@ static bool side_is_sound(const tl_model *m, const tl_segment_side *side)
     return sound;
 }
 
-static bool meet_is_sound(const tl_model *m, const tl_meet *meet)
+static bool meet_is_sound(const tl_model *m, const struct tl_segments *s, const tl_meet *meet)
 {
-    return meet->a < meet->b && meet->b < m->next_id && meet->tag.joint <= m->joint_count && tl_is_flag(&meet->stale) &&
+    return tl_is_flag(&meet->tilted) && tl_is_flag(&meet->alone) && meet->begin <= meet->end &&
+           meet->end <= s->table.table.rows && meet->a < meet->b && meet->b < m->next_id &&
+           meet->tag.joint <= m->joint_count && tl_is_flag(&meet->stale) && meet->share >= 0 && meet->share <= 1 &&
            (meet->law < m->joint_law_count || meet->law == TL_NO_ROW);
 }
 
@@ -37,14 +39,15 @@ static bool spans_are_sound(const tl_model *m, const struct tl_segments *s)
 const char *tl_segments_unsound(const tl_model *m, const struct tl_segments *s)
 {
     for (size_t k = 0; k < s->meet_count; k++)
-        if (!meet_is_sound(m, &s->meet[k]))
+        if (!meet_is_sound(m, s, &s->meet[k]))
             return "faces that meet have an impossible value";
     if (!spans_are_sound(m, s))
         return "segments do not fit their laws";
     for (size_t row = 0; row < s->table.table.rows; row++) {
         const tl_segment *of = &s->table.of[row];
-        if (of->meet != TL_NO_ROW &&
-            (of->meet >= s->meet_count || !side_is_sound(m, &of->a) || !side_is_sound(m, &of->b)))
+        if (of->meet != TL_NO_ROW && (of->meet >= s->meet_count || s->table.outline[row] > s->outline_count ||
+                                      s->table.corners[row] > s->outline_count - s->table.outline[row] ||
+                                      !side_is_sound(m, &of->a) || !side_is_sound(m, &of->b)))
             return "a segment has an impossible value";
     }
     return NULL;

@@ -11,6 +11,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     tl_walk_table(walk, TL_KEEP_STATE, "segments.table", &s->table.table, counts);
     tl_walk_table(walk, TL_KEEP_STATE, "segments.points", &s->points.table, counts);
     VALUE(STATE, points.state_columns);
+    LIST(STATE, outline, outline_count, outline_capacity);
     LIST(STATE, meet, meet_count, meet_capacity);
     LIST(STATE, span, span_count, span_capacity);
     LIST(DERIVED, use, use_capacity, use_capacity);
@@ -18,6 +19,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     LIST(DERIVED, use_start, use_start_capacity, use_start_capacity);
     LIST(DERIVED, body_start, body_start_capacity, body_start_capacity);
     LIST(SCRATCH, corner, corner_capacity, corner_capacity);
+    LIST(SCRATCH, blend, blend_capacity, blend_capacity);
     VALUE(STATE, lost);
     VALUE(CACHE, structure);
     VALUE(CACHE, followed);

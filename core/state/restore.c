@@ -17,6 +17,7 @@
 #include "model/loads.h"
 #include "model/rows.h"
 #include "model/walk.h"
+#include "segment/carriers.h"
 #include "segment/lay.h"
 #include "segment/sound.h"
 #include "segment/walk.h"
@@ -491,7 +492,8 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
     if (!tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) || columns > TL_STATE_COLUMNS ||
         !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) || !tl_is_flag(&initial))
         return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
-    bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d));
+    bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d)) &&
+                (!tl_archive_find(a, "detect.contacts.whole") || tl_detect_hold_carriers(d));
     return held ? TL_OK : tl_fail_memory(&m->error);
 }
 
@@ -624,6 +626,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = read_zones(m, a);
     if (status == TL_OK)
         status = read_segments(m, a);
+    if (status == TL_OK)
+        status = unsound(a, m, tl_carriers_unsound(m));
     return status == TL_OK ? read_cycle(m, a) : status;
 }
 

@@ -288,6 +288,7 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
         tl_hash_word(&one, (uint64_t)meet->a << 32 | meet->b);
         tl_hash_word(&one, (uint64_t)meet->face_a << 32 | meet->face_b);
         tl_hash_word(&one, (uint64_t)of->key[0] << 32 | of->key[1]);
+        tl_hash_numbers(&one, &meet->share, 1);
         hash_rows(&one, &s->table.table, row, row + 1);
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
             const size_t point = tl_segment_point_row(row, k);
@@ -420,7 +421,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     hash_rock(&hash, m);
     if (tl_model_deforms(m))
         hash_meshes(&hash, m);
-    if (m->segments)
+    if (m->segments && m->segments->meet_count > 0)
         hash_segments(&hash, m);
     snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;

@@ -215,6 +215,7 @@ static double step_of(tl_model *m, size_t from)
     for (uint32_t row = m->zones->mesh[from].point_begin; row < p->table.rows; row++)
         if (p->zones[row] > 0)
             most = fmax(most, p->stiffness[row] / p->mass[row]);
+    m->zones->rated_for = 0; /* what segments hold gridpoints by is not in it */
     return most > 0 ? 2 / sqrt(most) : 0;
 }
 

@@ -78,7 +78,7 @@ void tl_zones_free(struct tl_zones *z)
     tl_table_free(&z->zones.table);
     tl_table_free(&z->parcels.table);
     void *const owned[] = {z->group, z->listed, z->slot,    z->use,     z->use_start, z->row_of,
-                           z->part,  z->mesh,   z->meeting, z->scratch, z->goes};
+                           z->part,  z->mesh,   z->meeting, z->scratch, z->motion};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     tl_solids_free(z);

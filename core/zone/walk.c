@@ -21,7 +21,8 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     LIST(DERIVED, use_start, use_start_capacity, use_start_capacity);
     LIST(SCRATCH, slot, slot_capacity, slot_capacity);
     LIST(SCRATCH, scratch, scratch_capacity, scratch_capacity);
-    LIST(SCRATCH, goes, goes_capacity, goes_capacity);
+    LIST(SCRATCH, motion, motion_capacity, motion_capacity);
+    VALUE(STATE, moved_dt);
     VALUE(STATE, steps_kept);
     VALUE(CACHE, version);
     VALUE(CACHE, followed);

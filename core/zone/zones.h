@@ -115,8 +115,13 @@ typedef struct tl_surface_part {
     tl_id block;
 } tl_surface_part;
 
-/* What a mesh does in a step of a relaxation: it goes along with the model or, loose, its own way (settle.c). */
-typedef enum tl_mesh_way { TL_MESH_GOES_ALONG, TL_MESH_GOES_ON, TL_MESH_TURNS_BACK } tl_mesh_way;
+/* How a mesh moves in a step of a relaxation (settle.c): as a whole, m/s and rad/s; the power of its unbalanced forces
+ * on that, and on what it moves beside it, W. */
+typedef struct tl_mesh_motion {
+    tl_vec3 velocity, turn;
+    double power, strain_power;
+    bool loose; /* next to nothing bears it: it goes its own way */
+} tl_mesh_motion;
 
 /* The mesh of a body. */
 typedef struct tl_body_mesh {
@@ -148,14 +153,15 @@ struct tl_zones {
     size_t part_count, part_capacity;
     tl_body_mesh *mesh;
     size_t mesh_count, mesh_capacity;
-    uint8_t *goes; /* of each mesh: tl_mesh_way */
-    size_t goes_capacity;
+    tl_mesh_motion *motion; /* of each mesh: scratch of a step of a relaxation */
+    size_t motion_capacity;
     tl_named_solid *solid;
     size_t solid_count, solid_capacity;
     uint64_t *meeting; /* pairs of blocks that meet by segments, the lower id times 2^32 and the other, ascending */
     size_t meeting_count, meeting_capacity;
     tl_parcel_points *scratch; /* of each thread */
     size_t scratch_capacity;
+    double moved_dt;                  /* of the last motion of the gridpoints, s; 0: they have not moved yet */
     uint32_t steps_kept;              /* steps to come that can be undone, for velocities were set */
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */

@@ -363,7 +363,7 @@ local Model = {}
 ---@field deformable boolean whether it has zones
 ---@field zones integer of its body
 ---@field gridpoints integer of its body
----@field stress talus.Tensor Pa: mean over the zones of its body, by volume; nan of a rigid block
+---@field stress talus.Tensor Pa: mean over its zones, by volume; nan of a rigid block
 ---@field strain talus.Tensor mean logarithmic strain of these zones; nan of a rigid block
 ---@field vertices talus.Vector[] vertices in their present place
 ---@field faces { vertices: integer[], normal: talus.Vector, joint: string? }[] faces: vertex numbers from 1, outward normal, name of the joint plane or nil
@@ -489,9 +489,9 @@ function Contacts:values(field) end
 function Contacts:where(keep) end
 
 ---@class (exact) talus.Zone
----@field id integer of its own among all zones: 4294967296 times its block, and its number
----@field block integer block that it is of: the lowest of a body of several
----@field number integer its number in the block, from 0
+---@field id integer of its own among all zones: 4294967296 times the first block of its body, and its number
+---@field block integer block that it is of
+---@field number integer its number in the block, or in the body of several joined blocks, from 0
 ---@field group string group of the block
 ---@field solid string name of its solid
 ---@field centroid talus.Vector m: present place of its centroid
@@ -537,9 +537,9 @@ function Zones:values(field) end
 function Zones:where(keep) end
 
 ---@class (exact) talus.Gridpoint
----@field id integer of its own among all gridpoints: 4294967296 times its block, and its number
----@field block integer block that it is of: the lowest of a body of several
----@field number integer its number in the block, from 0
+---@field id integer of its own among all gridpoints: 4294967296 times the first block of its body, and its number
+---@field block integer block that it is of: the first one of a body of several
+---@field number integer its number in the block, or in the body of several joined blocks, from 0
 ---@field group string group of the block
 ---@field position talus.Vector m: present place
 ---@field displacement talus.Vector m: since it was made
@@ -741,6 +741,8 @@ function Model:contact_area(options) end
 ---@field damping number taken out by the damping, J
 ---@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
 ---@field balance number error of the sum over the largest change of a term so far
+---@field strain number elastic, in all zones of deformable blocks, J
+---@field plastic number turned to heat in zones, by yielding, J
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
@@ -861,7 +863,7 @@ function Model:solid(name, name, options) end
 ---@field inertia number largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an edge. Blocks that topple or rock in time want 8 zones to an edge, or stay rigid
 ---@field memory integer bytes memory that the model has grown by
 
---- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Nothing is done where one block cannot be divided.
+--- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share gridpoints, so zones go on over the faces between them. Nothing is done where one block cannot be divided.
 ---
 ---     report = selection:deformable{zone = 1.0, solid = "granite"}
 ---@param options talus.DeformableOptions
@@ -1193,7 +1195,7 @@ function Model:relax(options) end
 ---@field field? string field of numbers of what `of` gives ("displacement", "normal_force")
 ---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its items
 ---@field remove? boolean default false: ends the history of that name, with all its samples
----@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
+---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external", "strain", "plastic" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
 ---@field of? talus.Block|talus.Contact|talus.Zone|talus.Gridpoint|talus.Blocks|talus.Contacts|talus.Zones|talus.Gridpoints what the field is sampled of, in the place of `value`. Those that no longer exist are left out; where none is left the value is nan
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.

@@ -94,7 +94,7 @@ TEST(three_points_integrate_what_a_triangle_covers)
         square(&f, gap, true, upper);
         tl_overlay_room room = room_of();
         tl_overlay o;
-        CHECK(tl_overlay_find(&(tl_outer_face){lower, 3}, &(tl_outer_face){upper, 4}, &room, &o));
+        CHECK(tl_overlay_find(&(tl_outer_face){lower, 3}, &(tl_outer_face){upper, 4}, 0.5, &room, &o));
         CHECK_NEAR(by_points(c, &o, &f), integral(c, x, y), 1e-11);
         for (int k = 0; k < 3; k++)
             CHECK_NEAR(tl_v3_dot(tl_v3_sub(o.on_b[k], o.on_a[k]), o.n), gap, 1e-12);
@@ -118,7 +118,7 @@ TEST(pieces_add_up)
         const tl_outer_face above = {upper, 3};
         tl_overlay_room room = room_of();
         tl_overlay o;
-        if (!tl_overlay_find(&(tl_outer_face){whole, 4}, &above, &room, &o))
+        if (!tl_overlay_find(&(tl_outer_face){whole, 4}, &above, 0.5, &room, &o))
             continue;
         const double all = by_points(c, &o, &f), area = o.area;
         double sum = 0, areas = 0;
@@ -127,7 +127,7 @@ TEST(pieces_add_up)
             part[1] = whole[(k + 1) % 4];
             part[2] = at(&f, px, py, 0);
             room = room_of();
-            if (!tl_overlay_find(&(tl_outer_face){part, 3}, &above, &room, &o))
+            if (!tl_overlay_find(&(tl_outer_face){part, 3}, &above, 0.5, &room, &o))
                 continue;
             sum += by_points(c, &o, &f);
             areas += o.area;
@@ -145,11 +145,11 @@ TEST(faces_that_look_the_same_way_have_nothing)
     tl_overlay o;
     square(&f, 0, false, one);
     square(&f, 0, false, other);
-    CHECK(!tl_overlay_find(&(tl_outer_face){one, 4}, &(tl_outer_face){other, 4}, &room, &o));
+    CHECK(!tl_overlay_find(&(tl_outer_face){one, 4}, &(tl_outer_face){other, 4}, 0.5, &room, &o));
     square(&f, 0, true, other);
     for (int k = 0; k < 4; k++)
         other[k] = tl_v3_madd(other[k], 7, f.e);
-    CHECK(!tl_overlay_find(&(tl_outer_face){one, 4}, &(tl_outer_face){other, 4}, &room, &o));
+    CHECK(!tl_overlay_find(&(tl_outer_face){one, 4}, &(tl_outer_face){other, 4}, 0.5, &room, &o));
 }
 
 TEST_MAIN(three_points_integrate_what_a_triangle_covers(), pieces_add_up(), faces_that_look_the_same_way_have_nothing())

@@ -166,7 +166,8 @@ static void note_zones(tl_model *m, const char *path)
     tl_zone_name *names = NULL;
     size_t count = 0, width, plastic = 0;
     double sum[6] = {0}, volume = 0;
-    CHECK_INT(tl_zones_select(m, NULL, &names, &count), TL_OK);
+    const tl_zone_filter all = tl_zone_filter_default();
+    CHECK_INT(tl_zones_select(m, &all, &names, &count), TL_OK);
     for (size_t k = 0; k < count; k++) {
         double v, s[6], yields;
         tl_zones_values(m, names + k, 1, "volume", &v, &width);

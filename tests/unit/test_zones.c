@@ -641,7 +641,8 @@ TEST(zones_come_back)
         tl_model_destroy(all[k]);
 }
 
-/* A step that finds a zone turned inside out is undone, and says where. */
+/* A step that would turn a zone inside out is refused whole, and says where; made again it is refused again. With other
+ * velocities the model goes on. */
 TEST(a_zone_turned_inside_out_is_told)
 {
     const int n[3] = {2, 2, 2};
@@ -660,10 +661,15 @@ TEST(a_zone_turned_inside_out_is_told)
             if ((status = tl_model_cycle(m, 1, &result)) != TL_OK)
                 break;
         }
-        CHECK_INT(status, TL_E_NUMERIC);
-        CHECK(strstr(m->error.text, "of block 1: zone ") && strstr(m->error.text, "is turned inside out"));
-        scene_ok(m, tl_state_hash(m, after));
-        CHECK_TEXT(before, after);
+        for (int again = 0; again < 3; again++) {
+            CHECK_INT(status, TL_E_NUMERIC);
+            CHECK(strstr(m->error.text, "of block 1: zone ") && strstr(m->error.text, "would be turned inside out"));
+            scene_ok(m, tl_state_hash(m, after));
+            CHECK_TEXT(before, after);
+            status = tl_model_cycle(m, 1, &result);
+        }
+        scene_ok(m, tl_gridpoints_velocity(m, &name, 1, &(tl_vec3){0, 0, 0}));
+        run(m, 10);
         tl_model_destroy(m);
     }
 }

@@ -447,7 +447,7 @@ def test_controls(chrome, folder):
         const a = talus.app, same = [], shot = () => a.gpu.names(a.sight(180, 100), a.lookNow(), 180, 100, [0, 0, 180, 100]).join() + a.legends.map(l => l.title).join() + JSON.stringify(a.view) + a.camera.text();
         const use = async (e, name, act) => { const before = shot(); act(); e.dispatchEvent(new Event('input')); e.dispatchEvent(new Event('change'));
             await a.drawn(); if (shot() === before) same.push(name); };
-        for (const e of document.querySelectorAll('#controls select')) {
+        for (const e of [...document.querySelectorAll('#controls select')].filter(e => e.checkVisibility())) {
             for (const o of [...e.options].reverse()) if (o.value !== e.value) await use(e, e.ariaLabel + ': ' + o.textContent, () => { e.value = o.value; });
             await use(e, e.ariaLabel, () => { e.value = e.options[0].value; });
         }
@@ -456,7 +456,7 @@ def test_controls(chrome, folder):
             await use(e, e.ariaLabel, () => { e.value = (Number(e.min) + 2 * Number(e.max)) / 3; });
             await use(e, e.ariaLabel, () => { e.value = was; });
         }
-        for (const e of document.querySelectorAll('#controls input[type=checkbox]')) for (const twice of [0, 1]) await use(e, e.parentNode.textContent, () => { e.checked = !e.checked; });
+        for (const e of [...document.querySelectorAll('#controls input[type=checkbox]')].filter(e => e.checkVisibility())) for (const twice of [0, 1]) await use(e, e.parentNode.textContent, () => { e.checked = !e.checked; });
         for (const e of [...document.querySelectorAll('#controls button')].filter(b => !['Image', 'Find', 'Add'].includes(b.textContent))) {
             a.view.hidden.add(88); a.pick(92); a.camera.turn(31, 17);
             await use(e, e.textContent, () => e.click());

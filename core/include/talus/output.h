@@ -34,7 +34,8 @@ typedef struct tl_vtk_parts {
     size_t zone_field_count;           /* since 1.10 */
 } tl_vtk_parts;
 /* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_, _joints_ and, where blocks are
- * deformable, _zones_, or those of `parts`, and PREFIX_{blocks,contacts,joints,zones}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
+ * deformable, _zones_, or those of `parts`, and PREFIX_{blocks,contacts,joints,zones}.vtk.series. Folders are made as
+ * needed. Files of one number are of one frame. */
 TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix, const tl_vtk_parts *parts);
 
 /* Which contacts a frame of a page has. */

@@ -61,8 +61,8 @@ typedef struct tl_zoned {
 
 /* Gives blocks zones, free of stress where the blocks are, with the blocks' velocities. A block that is held, in some
  * components or all, has gridpoints that are held so. Where faces of two blocks are the same polygon, the triangles of
- * both are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed when
- * it fails:
+ * both are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed
+ * when it fails:
  *
  * TL_E_ARGUMENT: the edge is not positive, or makes too many zones; there is no such solid. TL_E_STALE: no such block.
  * TL_E_STATE: a block has zones, is joined to one that is not given, or is driven or loaded. TL_E_GEOMETRY: a block
