@@ -18,8 +18,8 @@ extern "C" {
 
 /* Names a solid: "granite", of the kind "mohr_coulomb" with properties. With `kind` NULL, or the kind it has already,
  * only the properties that are given change. Zones of a solid that changes keep their stress, and the states that the
- * new kind has by the same names; what they store changes, as of tl_zones_solid. TL_E_NOT_FOUND for a kind that no plugin has, or a solid that is to be changed and is
- * not there; TL_E_ARGUMENT for a bad property. */
+ * new kind has by the same names; what they store changes, as of tl_zones_solid. TL_E_NOT_FOUND for a kind that no
+ * plugin has, or a solid that is to be changed and is not there; TL_E_ARGUMENT for a bad property. */
 TL_API tl_status tl_model_solid(tl_model *model, const char *name, const char *kind, const tl_args *properties);
 
 typedef struct tl_solid_info {
@@ -106,7 +106,7 @@ TL_API tl_status tl_zones_select(tl_model *model, const tl_zone_filter *filter, 
 TL_API tl_status tl_gridpoints_select(tl_model *model, const tl_zone_filter *filter, tl_zone_name **names,
                                       size_t *count);
 
-/* A point of the material, by the zone in which it lies: its place is the sum over the zone's gridpoints of weight times
+/* A point of the material, by the zone in which it lies. Its place is the sum over the zone's gridpoints of weight times
  * place, and so are its displacement and velocity. The weights add up to 1, and stay as the zone deforms. */
 typedef struct tl_material_point {
     tl_zone_name zone;
