@@ -792,7 +792,7 @@ const tl_lua_topic tl_lua_history_topics[] = {
     {.name = "history",
      .usage = "model:history{name = \"gap\", every = 10, value = function(m) return m:contacts():max(\"gap\") end}  or "
               " model:history{name = \"wedge\", of = selection, field = \"displacement\"}  or "
-              " model:history{name = \"arch\", at = {X, Y, Z}, field = \"stress\"}",
+              " model:history{name = \"arch\", at = {3.5, 0.4, 1.8}, field = \"stress\"}",
      .doc = "Samples a value at once and then every so many steps of all runs, until it is removed.",
      .spec = &history_spec,
      .arguments = 1,

@@ -85,8 +85,24 @@ static const tl_lua_key insitu_keys[] = {
      "are the same as xy, yz and zx"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "change of the stress with height z, Pa/m; components left out are 0"},
+    {"blocks", "selection of blocks", "puts the stress in their zones, and on their contacts with any; all without it"},
     {NULL, NULL, NULL},
 };
+
+/* Reads the blocks, which stay on the stack. */
+static void read_insitu_blocks(lua_State *L, tl_insitu *insitu)
+{
+    static const tl_id none = TL_NO_ID; /* an empty selection has no list, but NULL would mean all */
+    if (tl_lua_option(L, 2, "blocks") == LUA_TNIL)
+        return;
+    const tl_lua_selection *blocks = luaL_testudata(L, -1, TL_LUA_BLOCKS);
+    if (!blocks)
+        tl_lua_fail(L, "insitu: blocks must be a selection of blocks, not %s", tl_lua_describe(L, -1));
+    if (blocks->owner != lua_touserdata(L, 1))
+        tl_lua_fail(L, "insitu: blocks belong to another model");
+    insitu->blocks = blocks->count > 0 ? blocks->names : &none;
+    insitu->block_count = blocks->count;
+}
 
 static int model_insitu(lua_State *L, tl_model *model)
 {
@@ -98,6 +114,7 @@ static int model_insitu(lua_State *L, tl_model *model)
     bool gradient = tl_lua_read_tensor(L, 2, "insitu", "gradient", &insitu.gradient);
     if (!stress && !gradient)
         return tl_lua_fail(L, "insitu: give stress = {xx = ...}, gradient = {zz = ...} or both");
+    read_insitu_blocks(L, &insitu);
     tl_lua_ok(L, model, tl_model_insitu(model, &insitu));
     return 0;
 }

@@ -248,13 +248,10 @@ struct tl_model {
     void (*cycle_destroy)(struct tl_cycle *);
     struct tl_zones *zones; /* meshes of deformable bodies and their materials, or NULL: module zone */
     void (*zones_destroy)(struct tl_zones *);
-    void (*zones_follow)(struct tl_model *); /* lets meshes follow rows that have moved; NULL: there are no zones */
-    bool (*zones_held)(const struct tl_model *, uint32_t body); /* whether all gridpoints of a body are held */
-    /* gives the zones of blocks another solid, by its name */
-    tl_status (*zones_resolid)(struct tl_model *, const tl_id *blocks, size_t count, const char *solid);
-    struct tl_segments *segments; /* their flush contacts, or NULL: module segment */
+    const struct tl_zone_verbs *zone_verbs; /* what is done to their bodies: deformable.h; NULL: there are no zones */
+    struct tl_segments *segments;           /* their flush contacts, or NULL: module segment */
     void (*segments_destroy)(struct tl_segments *);
-    void (*segments_follow)(struct tl_model *); /* likewise */
+    void (*segments_follow)(struct tl_model *); /* lets them follow rows that have moved */
     struct tl_outputs *outputs;                 /* of the module state: files written so far */
     void (*outputs_destroy)(struct tl_outputs *);
 };
@@ -282,12 +279,6 @@ static inline bool tl_blocks_fixed(const tl_model *m, uint32_t a, uint32_t b)
 static inline bool tl_block_deforms(const tl_model *m, uint32_t row)
 {
     return m->bodies.mesh[m->blocks.body[row]] != 0;
-}
-
-/* Whether a body is held in every component: of a deformable one, all its gridpoints. */
-static inline bool tl_body_is_held(const tl_model *m, uint32_t body)
-{
-    return m->bodies.mesh[body] ? m->zones_held(m, body) : m->bodies.fixed[body] == TL_FIX_ALL;
 }
 
 /* Present place of a body's centroid, relative to the origin. */

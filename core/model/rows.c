@@ -5,6 +5,7 @@
 #include "model/rows.h"
 
 #include "model/body_shape.h"
+#include "model/deformable.h"
 #include "model/inertia.h"
 #include "model/loads.h"
 
@@ -81,8 +82,8 @@ void tl_rows_tidy(tl_model *m)
     if (m->gone)
         rows_keep(m, m->blocks.stays); /* what is read of it has not moved yet */
     m->gone = 0;
-    if (m->zones_follow)
-        m->zones_follow(m);
+    if (m->zone_verbs)
+        m->zone_verbs->follow(m);
     if (m->segments_follow)
         m->segments_follow(m);
 }

@@ -1,5 +1,6 @@
 /* select.c - which blocks: the filters of a selection. Positions are the present ones and boundaries are included. */
 #include "geometry/measure.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "model/model.h"
 #include "model/options.h"

@@ -1,6 +1,7 @@
 /* block_fields.c - what can be asked of a block: its named fields. */
 #include "query/block_fields.h"
 
+#include "model/deformable.h"
 #include "model/regroup.h"
 #include "query/zone_at.h"
 #include "zone/grid.h"

@@ -313,6 +313,31 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
     return failure->error.status;
 }
 
+/* ---------------------------------------------------------------- initial stress --------- */
+
+void tl_segment_preload(tl_model *m, uint32_t row, tl_sym3 (*stress)(const void *user, tl_vec3 place), const void *user)
+{
+    struct tl_segments *s = m->segments;
+    const tl_segment *of = &s->table.of[row];
+    tl_segment_points *p = &s->points;
+    const double share = s->meet[of->meet].share;
+    const tl_side_now a = tl_side_now_of(m, &of->a, of->normal_a), b = tl_side_now_of(m, &of->b, of->normal_b);
+    const tl_vec3 mixed = tl_v3_madd(tl_v3_scale(share, a.normal), share - 1, b.normal);
+    const tl_vec3 n = tl_v3_scale(1 / tl_v3_norm(mixed), mixed); /* as the step finds it, to the bit */
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t point = tl_segment_point_row(row, k);
+        const tl_vec3 on_a = tl_side_now_place(m, &a, tl_columns_get(p->at_a, point));
+        const tl_vec3 apart = tl_v3_sub(tl_side_now_place(m, &b, tl_columns_get(p->at_b, point)), on_a);
+        const tl_vec3 traction = tl_s3_mul(stress(user, tl_v3_madd(on_a, share, apart)), n);
+        const double normal = tl_v3_dot(n, traction);
+        p->reference[point] = -tl_v3_dot(apart, n);
+        p->f_n0[point] = p->f_n[point] = -normal * p->area[point];
+        tl_columns_put(p->f_s, point, tl_v3_scale(-p->area[point], tl_v3_madd(traction, -normal, n)));
+        p->flags[point] = 0;
+    }
+    tl_columns_put(s->table.normal, row, n);
+}
+
 /* ---------------------------------------------------------------- who gets what ---------- */
 
 void tl_segments_gather(const tl_model *m, uint32_t gridpoint, tl_vec3 *force, double *bears)

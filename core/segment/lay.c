@@ -508,6 +508,11 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
     entry *list = malloc(most * sizeof *list);
     old_segments old = {m, s, malloc(most * sizeof *old.list), 0};
     add_columns(&fresh, states_of(m));
+    if (s->points.f_n0 && !tl_segments_hold_initial(&fresh)) {
+        free(list);
+        free(old.list);
+        return false;
+    }
     bool enough = list && old.list;
     const size_t count = enough ? list_entries(m, l, list, &old) : 0;
     const size_t rows = rows_of(list, count);
@@ -552,6 +557,13 @@ bool tl_segments_index(tl_model *m)
     if (enough)
         list_uses(m, m->segments);
     return enough;
+}
+
+bool tl_segments_hold_initial(struct tl_segments *s)
+{
+    tl_segment_points *p = &s->points;
+    return TL_COLUMN_NEED(&p->table, p, reference, TL_COLUMN_STATE) &&
+           TL_COLUMN_NEED(&p->table, p, f_n0, TL_COLUMN_STATE);
 }
 
 bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns)

@@ -35,6 +35,8 @@ void tl_laying_end(tl_laying *l);
 /* Lists the segments of gridpoints and bodies; makes columns of states. false: out of memory. */
 bool tl_segments_index(tl_model *m);
 bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns);
+/* Makes the columns of initial forces. false: out of memory. */
+bool tl_segments_hold_initial(struct tl_segments *s);
 
 /* Where a point of a side lies, from the model's origin. */
 tl_vec3 tl_segment_place(const tl_model *m, const tl_segment_side *side, tl_vec3 at);

@@ -23,9 +23,11 @@
 #include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "zone/columns.h"
 #include "zone/follow.h"
 #include "zone/grid.h"
 #include "zone/life.h"
+#include "zone/outer.h"
 #include "zone/sound.h"
 #include "zone/walk.h"
 
@@ -544,7 +546,23 @@ static bool hold_gridpoints(tl_gridpoints *p, const tl_archive *a)
 {
     const bool load = tl_archive_find(a, "zones.points.load[k]"), damped = tl_archive_find(a, "zones.points.alpha");
     const bool before = tl_archive_find(a, "zones.points.force_before[k]");
-    return (!load || tl_gridpoints_hold_loads(p)) && (!damped || tl_gridpoints_hold_damping(p, before));
+    const bool pushed = tl_archive_find(a, "zones.points.pushed[k]"),
+               quiet = tl_archive_find(a, "zones.points.quiet[k]");
+    const bool held = tl_archive_find(a, "zones.points.held[d][k]"), drive = tl_archive_find(a, "zones.points.drive");
+    return (!load || tl_gridpoints_hold_loads(p)) && (!damped || tl_gridpoints_hold_damping(p, before)) &&
+           (!pushed || tl_gridpoints_hold_pushed(p)) && (!quiet || tl_gridpoints_hold_quiet(p)) &&
+           (!held || tl_gridpoints_hold_directions(p)) && (!drive || tl_gridpoints_hold_drives(p));
+}
+
+/* Whether gridpoints follow drives that there are. */
+static bool drives_fit(const struct tl_zones *z, size_t drives)
+{
+    bool fit = true;
+    for (size_t row = 0; z->points.drive && row < z->points.table.rows; row++)
+        fit = fit && z->points.drive[row] <= drives;
+    for (size_t k = 0; k < z->outer_count; k++)
+        fit = fit && z->outer[k].drive <= drives;
+    return fit;
 }
 
 static tl_status read_zones(tl_model *m, const tl_archive *a)
@@ -565,6 +583,8 @@ static tl_status read_zones(tl_model *m, const tl_archive *a)
         return status;
     z->zones.state_columns = columns;
     const char *bad = tl_zones_unsound(m, z);
+    if (!bad && !drives_fit(z, tl_archive_items(a, "drives")))
+        bad = "a gridpoint follows no drive";
     if (bad)
         return unsound(a, m, bad);
     const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z, 0);
@@ -579,6 +599,8 @@ static tl_status read_segments(tl_model *m, const tl_archive *a)
     if (!m->zones || !tl_archive_find(a, "segments.table.rows"))
         return TL_OK;
     if (!tl_segments_begin(m) || !tl_segments_hold_states(m->segments, states_needed(m)))
+        return tl_fail_memory(&m->error);
+    if (tl_archive_find(a, "segments.points.f_n0") && !tl_segments_hold_initial(m->segments))
         return tl_fail_memory(&m->error);
     const uint32_t columns = m->segments->points.state_columns;
     reader r = {.archive = a};
@@ -617,8 +639,6 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
     for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
         status = (*part)->restore(m, a);
     if (status == TL_OK)
-        status = tl_drives_restore(m, a, again);
-    if (status == TL_OK)
         status = derive_rows(m);
     if (status == TL_OK)
         status = read_detection(m, a);
@@ -628,6 +648,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = read_segments(m, a);
     if (status == TL_OK)
         status = unsound(a, m, tl_carriers_unsound(m));
+    if (status == TL_OK) /* gridpoints may follow them */
+        status = tl_drives_restore(m, a, again);
     return status == TL_OK ? read_cycle(m, a) : status;
 }
 

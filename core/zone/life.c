@@ -1,8 +1,7 @@
 /* life.c - the tables of zones come and go. */
 #include "zone/life.h"
 
-#include "zone/follow.h"
-#include "zone/resolid.h"
+#include "zone/body_verbs.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
@@ -47,16 +46,6 @@ static void add_columns(struct tl_zones *z)
     TL_COLUMN(&parcels->table, parcels, most_strain, TL_COLUMN_STATE | TL_COLUMN_STEP);
 }
 
-static bool is_held(const tl_model *m, uint32_t body)
-{
-    const struct tl_zones *z = m->zones;
-    const tl_body_mesh *mesh = &z->mesh[m->bodies.mesh[body] - 1];
-    bool held = true;
-    for (uint32_t row = mesh->point_begin; held && row < mesh->point_end; row++)
-        held = z->points.fixed[row] == (TL_FIX_X | TL_FIX_Y | TL_FIX_Z);
-    return held;
-}
-
 tl_status tl_zones_begin(tl_model *m)
 {
     if (m->zones)
@@ -65,9 +54,7 @@ tl_status tl_zones_begin(tl_model *m)
     if (!m->zones)
         return tl_fail_memory(&m->error);
     m->zones_destroy = tl_zones_free;
-    m->zones_follow = tl_zones_follow;
-    m->zones_resolid = tl_blocks_resolid;
-    m->zones_held = is_held;
+    m->zone_verbs = &tl_zone_body_verbs;
     add_columns(m->zones);
     return TL_OK;
 }
@@ -78,27 +65,9 @@ void tl_zones_free(struct tl_zones *z)
     tl_table_free(&z->zones.table);
     tl_table_free(&z->parcels.table);
     void *const owned[] = {z->group, z->listed, z->slot,    z->use,     z->use_start, z->row_of,
-                           z->part,  z->mesh,   z->meeting, z->scratch, z->motion};
+                           z->part,  z->mesh,   z->meeting, z->scratch, z->motion,    z->outer};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     tl_solids_free(z);
     free(z);
-}
-
-bool tl_gridpoints_hold_damping(tl_gridpoints *p, bool before)
-{
-    bool enough = TL_COLUMN_NEED(&p->table, p, alpha, 0);
-    for (int k = 0; k < 3; k++) {
-        enough = enough && TL_COLUMN_NEED(&p->table, p, damping[k], 0);
-        enough = enough && (!before || TL_COLUMN_NEED(&p->table, p, force_before[k], TL_COLUMN_STEP));
-    }
-    return enough;
-}
-
-bool tl_gridpoints_hold_loads(tl_gridpoints *p)
-{
-    bool enough = true;
-    for (int k = 0; k < 3; k++)
-        enough = enough && TL_COLUMN_NEED(&p->table, p, load[k], TL_COLUMN_STATE);
-    return enough;
 }

@@ -657,6 +657,7 @@ function Model:joint(joint, law, options) end
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
 ---@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz are the same as xy, yz and zx
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
+---@field blocks? talus.Blocks puts the stress in their zones, and on their contacts with any; all without it
 
 --- Puts an initial stress on the face contacts that exist now, once.
 ---
@@ -1075,8 +1076,9 @@ function talus.solid_test(options) end
 ---@field within? number deg, in [0, 180], default 45: this angle
 ---@field tolerance? number m, >= 0: how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size when left out
 ---@field fixed? boolean default false: holds the bodies in all components
----@field roller? boolean default false: holds the bodies across their faces, which must look along x, y or z
----@field rotation? boolean default false: with roller: holds their rotation, too
+---@field roller? boolean default false: holds the bodies across their faces; those of rigid blocks must look along x, y or z
+---@field rotation? boolean default false: with roller: holds the rotation of rigid blocks, too
+---@field quiet? boolean default false: of deformable blocks: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), and bears what it bore
 ---@field pressure? number Pa: pressure on the faces, inward
 ---@field traction? talus.Vector Pa: force per area on the faces
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height stress holds; the gradient counts from there
@@ -1085,6 +1087,7 @@ function talus.solid_test(options) end
 ---@field box? { min: talus.Vector, max: talus.Vector } faces with all corners in this box
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) prescribes the velocity of the faces, m/s; rigid bodies move with it whole
 ---@field xmin? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field xmax? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise
@@ -1106,7 +1109,7 @@ function talus.solid_test(options) end
 ---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
 ---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
---- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share.
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added.
 ---
 ---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions
@@ -1216,7 +1219,7 @@ function Model:relax(options) end
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.
 ---
----     model:history{name = "gap", every = 10, value = function(m) return m:contacts():max("gap") end}  or  model:history{name = "wedge", of = selection, field = "displacement"}  or  model:history{name = "roof", at = {0, 0, 5}, field = "stress"}
+---     model:history{name = "gap", every = 10, value = function(m) return m:contacts():max("gap") end}  or  model:history{name = "wedge", of = selection, field = "displacement"}  or  model:history{name = "arch", at = {3.5, 0.4, 1.8}, field = "stress"}
 ---@param options talus.HistoryOptions
 ---@overload fun(self: talus.Model, options: talus.HistoryOptions)
 ---@overload fun(self: talus.Model, options: talus.HistoryOptions)

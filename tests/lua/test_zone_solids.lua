@@ -170,3 +170,89 @@ check.equal(cost.zones, report.zones)
 check.equal(cost.gridpoints, report.gridpoints)
 check.holds(cost.segments > 0 and cost.seconds.zones > 0)
 check.holds(runs:memory().zones > 100 * report.zones)
+
+-- ---------------------------------------------------------------- drives
+
+-- The head of a cube is pushed down by a function of time, on a held foot; its reaction is that of the foot.
+local function pressed()
+    local one = cubes()
+    one.gravity = { 0, 0, 0 }
+    one:blocks { group = "low" }:delete()
+    one:damping("local")
+    return one, one:gridpoints { inside = { min = { 0, 0, 1 }, max = { 1, 1, 1 } } },
+        one:gridpoints { inside = { min = { 0, 0, 2 }, max = { 1, 1, 2 } } }
+end
+local one, foot, head = pressed()
+foot:fix()
+local times = {}
+local function speed(t)
+    times[#times + 1] = t
+    return 0, 0, -0.1 * t
+end
+head:drive { velocity = speed }
+check.equal(one:cycle(400).cycles, 400)
+local dt, expected = one:parameters().timestep.dt, 0
+for k = 1, 400 do
+    check.near(times[k], (k - 0.5) * dt, 1e-9 * dt * k)
+    expected = expected - 0.1 * times[k] * dt
+end
+check.equal(#times, 400)
+for _, p in ipairs(head) do
+    check.near(p.displacement[3], expected, 1e-12 * 400 * math.abs(expected))
+    check.near(p.displacement[1], 0, 0)
+    check.near(p.velocity[3], -0.1 * times[400], 0)
+end
+check.holds(head:reaction()[3] < 0 and foot:reaction()[3] > 0)
+local file = os.getenv("TALUS_TEST_TMP") .. "/zone_drives.talus"
+one:save(file)
+check.raises(function() talus.restore(file) end, "is driven by a function for its velocity")
+local twin = talus.restore(file, { drives = { [head[1].block.id] = speed } })
+local image = one:copy()
+for _, m in ipairs { one, twin, image } do
+    m:cycle(50)
+    check.equal(m:state_hash(), one:state_hash())
+end
+head:free()
+check.equal(#one:gridpoints { fixed = true }, #foot)
+local calls = #times
+one:cycle(5)
+check.equal(#times, calls, "a drive that ended is not asked for")
+
+-- A gradient stretches; its zones have its strain. One without symmetric part turns, and changes no length.
+local pulled = pressed()
+pulled:gridpoints():drive { gradient = { { 0.5, 0, 0 }, { 0, 0, 0 }, { 0, 0, -0.25 } }, at = { 0, 0, 1 }, velocity = { 0, 2, 0 } }
+pulled:cycle(100)
+local done = pulled:parameters().timestep.dt * 100
+for _, z in ipairs(pulled:zones()) do
+    check.near(z.strain.xx, 0.5 * done, 1e-6 * done)
+    check.near(z.strain.zz, -0.25 * done, 1e-6 * done)
+    check.near(z.strain.yy, 0, 1e-9 * done)
+end
+check.near(pulled:gridpoints { near = { 0, 0, 1 } }[1].displacement[2], 2 * done, 1e-12)
+local turned = pressed()
+turned:gridpoints():drive { gradient = { { 0, -30, 0 }, { 30, 0, 0 }, { 0, 0, 0 } }, at = { 0.5, 0.5, 0 } }
+local corner = turned:gridpoints { near = { 1, 1, 2 } }
+turned:cycle(300)
+local angle = 2 * math.atan(15 * turned:parameters().timestep.dt) * 300 + math.pi / 4
+check.near(corner[1].position[1], 0.5 + math.sqrt(0.5) * math.cos(angle), 1e-9)
+check.near(corner[1].position[2], 0.5 + math.sqrt(0.5) * math.sin(angle), 1e-9)
+check.near(turned:zones():sum("volume"), 1, 1e-10)
+turned:save(file)
+local same = talus.restore(file)
+turned:cycle(10)
+same:cycle(10)
+check.equal(same:state_hash(), turned:state_hash())
+
+hash = turned:state_hash()
+for given, sentence in pairs {
+    [{}] = "drive: give velocity, gradient or both",
+    [{ velocity = 3 }] = "drive: velocity must be a list of 3 numbers or a function(t), not",
+    [{ velocity = { 1, 2 } }] = "velocity",
+    [{ gradient = { { 1, 0, 0 }, { 0, 1 } } }] = "drive: gradient must be a list of 3 lists of 3 finite numbers",
+    [{ gradient = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 / 0 } } }] = "drive: gradient must be a list of 3 lists",
+    [{ speed = 1 }] = "speed",
+} do
+    check.raises(function() turned:gridpoints():drive(given) end, sentence)
+end
+turned:blocks():drive { velocity = { 0, 0, 1 } }
+check.raises(function() turned:gridpoints():drive { velocity = { 0, 0, 1 } } end, "is driven whole; let it go with")

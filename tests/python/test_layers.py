@@ -24,7 +24,7 @@ MODULES = {
     "segment": ("base", "geometry", "narrow", "model", "zone", "contact", "force"),
     "detect": ("base", "geometry", "narrow", "model", "zone", "contact", "force"),
     "query": ("base", "geometry", "narrow", "model", "zone", "contact", "detect"),
-    "edit": ("base", "geometry", "plugin", "model", "zone", "contact", "detect", "query", "cycle"),
+    "edit": ("base", "geometry", "plugin", "model", "zone", "contact", "segment", "detect", "query", "cycle"),
     "cycle": ("base", "geometry", "plugin", "model", "zone", "contact", "force", "segment", "detect"),
     "state": ("base", "geometry", "narrow", "plugin", "model", "zone", "contact", "force", "segment", "detect", "cycle"),
     "io": ("base", "geometry", "model", "zone", "contact", "force", "query", "cycle", "state"),

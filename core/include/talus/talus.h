@@ -195,9 +195,12 @@ typedef struct tl_insitu {
     uint32_t size;            /* sizeof(tl_insitu) */
     tl_sym3 stress, gradient; /* tension positive, Pa and Pa/m over z */
     tl_vec3 at;
+    const tl_id *blocks; /* in the zones of these, and on their contacts with any; NULL: everywhere */
+    size_t block_count;
 } tl_insitu;
 
-/* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now. */
+/* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now, and in the zones of
+ * deformable blocks. A stress that is in equilibrium with weight and with tractions on the faces stays as it is. */
 TL_API tl_status tl_model_insitu(tl_model *model, const tl_insitu *insitu);
 
 /* Chooses the damping plugin; "none" is no damping. */
@@ -563,6 +566,9 @@ typedef struct tl_drive {
     tl_drive_fn velocity_at, angular_velocity_at; /* in their place, or NULL */
     void *user;
     void (*release)(void *user); /* called when the drive ends, or NULL */
+    /* of driven gridpoints (zones.h): gradient (x - at) comes to the velocity, x the present place; 1/s and m */
+    double gradient[3][3];
+    tl_vec3 at;
 } tl_drive;
 
 /* Prescribes the motion of the blocks' bodies, in the place of any fixing; free ends it. A function is
