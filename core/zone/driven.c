@@ -1,11 +1,11 @@
 /* driven.c - how driven gridpoints move.
  *
- * With the velocity c of the drive, its gradient L about a, and a gridpoint's place x now, the velocity v of a step h is
- * what they give in the middle of the way:
+ * A drive has a velocity c, and a gradient L about a point a. A gridpoint is at x now. Its velocity v in a step h is what
+ * the drive gives in the middle of its way:
  *
  *     v = c + L (x + v h / 2 - a),    v = (I - L h / 2)^-1 (c + L (x - a))
  *
- * So a gradient without symmetric part turns what it drives without a change of lengths. */
+ * A gradient without symmetric part turns what it drives without a change of lengths. */
 #include "zone/driven.h"
 
 #include "geometry/polar.h"
