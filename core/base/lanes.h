@@ -16,6 +16,9 @@ typedef struct tl_lanes4 {
     double w[TL_LANES], x[TL_LANES], y[TL_LANES], z[TL_LANES];
 } tl_lanes4;
 
+/* Four numbers side by side, half of the lanes or a row. */
+typedef double tl_four __attribute__((vector_size(32), aligned(8), may_alias));
+
 typedef struct tl_lanes9 {
     double m[3][3][TL_LANES];
 } tl_lanes9;
@@ -84,35 +87,62 @@ TL_INLINE void tl_lanes3_load_columns(tl_lanes3 *restrict to, double *const colu
     tl_lanes_load(to->z, column[2] + first);
 }
 
+/* Zeros. Of a loop that stores them compilers make a fill of memory, which begins slowly. */
+TL_INLINE void tl_lanes_clear(double to[TL_LANES])
+{
+    const tl_four zero = {0, 0, 0, 0};
+    *(tl_four *)to = zero;
+    *(tl_four *)(to + 4) = zero;
+}
+
 /* Four rows of four numbers become four columns: x gets the first of each row, w the last. */
 TL_INLINE void tl_lanes_turn(const double *const row[4], double *restrict x, double *restrict y, double *restrict z,
                              double *restrict w)
 {
-    typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-    const four a = *(const four *)row[0], b = *(const four *)row[1];
-    const four c = *(const four *)row[2], d = *(const four *)row[3];
-    const four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    *(four *)x = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
-    *(four *)y = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
-    *(four *)z = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
-    *(four *)w = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
+    const tl_four a = *(const tl_four *)row[0], b = *(const tl_four *)row[1];
+    const tl_four c = *(const tl_four *)row[2], d = *(const tl_four *)row[3];
+    const tl_four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                  odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const tl_four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                  odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(tl_four *)x = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(tl_four *)y = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(tl_four *)z = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+    *(tl_four *)w = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
 }
 
-/* Rows of TL_ROW numbers. Four of them, less four others, become three columns of TL_LANES: x, y, z of the first
+/* Rows of TL_ROW numbers. Four of them, less tl_four others, become three columns of TL_LANES: x, y, z of the first
  * three numbers of each. */
 #define TL_ROW 8
 TL_INLINE void tl_lanes_apart(const double *rows, const uint16_t of[4], const uint16_t from[4], double *restrict xyz)
 {
-    typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-#define TL_ROWS_APART(i) (*(const four *)(rows + TL_ROW * of[i]) - *(const four *)(rows + TL_ROW * from[i]))
-    const four a = TL_ROWS_APART(0), b = TL_ROWS_APART(1), c = TL_ROWS_APART(2), d = TL_ROWS_APART(3);
+#define TL_ROWS_APART(i)                                                                                               \
+    (*(const tl_four *)(rows + TL_ROW * (size_t)of[i]) - *(const tl_four *)(rows + TL_ROW * (size_t)from[i]))
+    const tl_four a = TL_ROWS_APART(0), b = TL_ROWS_APART(1), c = TL_ROWS_APART(2), d = TL_ROWS_APART(3);
 #undef TL_ROWS_APART
-    const four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    *(four *)xyz = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
-    *(four *)(xyz + TL_LANES) = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
-    *(four *)(xyz + 2 * TL_LANES) = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+    const tl_four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                  odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const tl_four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                  odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(tl_four *)xyz = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(tl_four *)(xyz + TL_LANES) = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(tl_four *)(xyz + 2 * TL_LANES) = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+}
+
+/* The same of rows that nothing is taken from. */
+TL_INLINE void tl_lanes_turn3(const double *rows, const uint32_t of[4], double *restrict xyz)
+{
+    const tl_four a = *(const tl_four *)(rows + TL_ROW * (size_t)of[0]),
+                  b = *(const tl_four *)(rows + TL_ROW * (size_t)of[1]);
+    const tl_four c = *(const tl_four *)(rows + TL_ROW * (size_t)of[2]),
+                  d = *(const tl_four *)(rows + TL_ROW * (size_t)of[3]);
+    const tl_four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                  odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const tl_four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                  odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(tl_four *)xyz = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(tl_four *)(xyz + TL_LANES) = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(tl_four *)(xyz + 2 * TL_LANES) = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
 }
 
 /* Four columns of four numbers are added to four rows: the first of each to the first row. The rows may be the same
@@ -120,14 +150,15 @@ TL_INLINE void tl_lanes_apart(const double *rows, const uint16_t of[4], const ui
 TL_INLINE void tl_lanes_add_rows(double *const row[4], const double *x, const double *y, const double *z,
                                  const double *w)
 {
-    typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-    const four a = *(const four *)x, b = *(const four *)y, c = *(const four *)z, d = *(const four *)w;
-    const four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    *(four *)row[0] += __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
-    *(four *)row[1] += __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
-    *(four *)row[2] += __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
-    *(four *)row[3] += __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
+    const tl_four a = *(const tl_four *)x, b = *(const tl_four *)y, c = *(const tl_four *)z, d = *(const tl_four *)w;
+    const tl_four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                  odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const tl_four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                  odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(tl_four *)row[0] += __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(tl_four *)row[1] += __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(tl_four *)row[2] += __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+    *(tl_four *)row[3] += __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
 }
 
 /* Matrices element by element, not in loops: a loop over lanes with loops in it does not become SIMD code. */

@@ -84,38 +84,46 @@ TL_INLINE double if_free(double free, double x)
 
 /* ---------------------------------------------------------------- gather ----------------- */
 
-/* What acts on the gridpoints of a chunk: the sums of their slots, and sizes of forces of segments. */
+/* What acts on the gridpoints of a chunk: sums over zones, of forces and of the squares of their sizes, and over
+ * segments, of forces and of their sizes. */
 typedef struct gathering {
-    _Alignas(TL_ALIGN) double sum[4][CHUNK];
-    double touched[CHUNK];
+    _Alignas(TL_ALIGN) double zones[4][CHUNK];
+    double segments[4][CHUNK];
 } gathering;
 
-/* Adds up the slots of each row, in their order. */
-TL_VECTORIZED static void sum_slots(const struct tl_zones *z, size_t begin, size_t count, gathering *to)
+/* Adds up the slots of a row, in their order. */
+TL_INLINE void sum_slots(const struct tl_zones *z, size_t row, double *restrict sum)
 {
-    for (size_t i = 0; i < count; i += 4) {
-        _Alignas(4 * sizeof(double)) double of[4][4] = {{0}};
-        for (size_t l = 0; l < 4; l++)
-            for (uint32_t k = z->use_start[begin + i + l]; k < z->use_start[begin + i + l + 1]; k++) {
-                const double *slot = z->slot[z->use[k]].of;
-#pragma omp simd
-                for (size_t c = 0; c < 4; c++)
-                    of[l][c] += slot[c];
-            }
-        const double *const row[4] = {of[0], of[1], of[2], of[3]};
-        tl_lanes_turn(row, to->sum[0] + i, to->sum[1] + i, to->sum[2] + i, to->sum[3] + i);
-    }
+    tl_four all = {0, 0, 0, 0};
+    for (uint32_t k = z->use_start[row]; k < z->use_start[row + 1]; k++)
+        all += *(const tl_four *)z->slot[z->use[k]].of;
+    *(tl_four *)sum = all;
 }
 
-static void add_segments(const tl_model *m, size_t begin, size_t count, gathering *to)
+/* Four rows of sums as columns. */
+TL_INLINE void put_sums(double (*of)[4], double (*to)[CHUNK], size_t i)
 {
-    for (size_t i = 0; i < count; i++) {
-        tl_vec3 force = {to->sum[0][i], to->sum[1][i], to->sum[2][i]};
-        tl_segments_gather(m, (uint32_t)(begin + i), &force, &to->touched[i]);
-        to->sum[0][i] = force.x;
-        to->sum[1][i] = force.y;
-        to->sum[2][i] = force.z;
+    const double *const row[4] = {of[0], of[1], of[2], of[3]};
+    tl_lanes_turn(row, to[0] + i, to[1] + i, to[2] + i, to[3] + i);
+}
+
+TL_VECTORIZED static void gather_sums(const struct tl_zones *z, const struct tl_segments *s, size_t begin, size_t count,
+                                      gathering *to)
+{
+    for (size_t i = 0; i < count; i += 4) {
+        _Alignas(TL_ALIGN) double zones[4][4];
+        for (size_t l = 0; l < 4; l++)
+            sum_slots(z, begin + i + l, zones[l]);
+        put_sums(zones, to->zones, i);
     }
+    for (size_t i = 0; i < count && s; i += 4) {
+        _Alignas(TL_ALIGN) double segments[4][4];
+        for (size_t l = 0; l < 4; l++)
+            tl_segments_gather(s, begin + i + l, segments[l]);
+        put_sums(segments, to->segments, i);
+    }
+    for (int c = 0; c < 4 && !s; c++)
+        memset(to->segments[c], 0, count * sizeof to->segments[c][0]);
 }
 
 /* Forces and what they are compared with. `pull`: what gravity gives a mass, m/s2. `share`: of the loads. */
@@ -130,12 +138,12 @@ TL_VECTORIZED static void end_gather(const tl_gridpoints *p, size_t begin, size_
         double *restrict force = p->force[c] + begin;
 #pragma omp simd
         for (size_t i = 0; i < count; i++)
-            force[i] = of->sum[c][i] + mass[i] * by[c] + share * load[i];
+            force[i] = (of->zones[c][i] + of->segments[c][i]) + mass[i] * by[c] + share * load[i];
     }
 #pragma omp simd
     for (size_t i = 0; i < count; i++) {
-        bears[i] = sqrt((double)(int32_t)zones[i] * of->sum[3][i]) + of->touched[i];
-        touched[i] = of->touched[i];
+        touched[i] = of->segments[3][i];
+        bears[i] = sqrt((double)(int32_t)zones[i] * of->zones[3][i]) + touched[i];
     }
 }
 
@@ -146,10 +154,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     const double share = tl_loads_share(m);
     const tl_vec3 pull = tl_v3_scale(share, m->config.gravity);
     gathering of;
-    memset(of.touched, 0, sizeof of.touched);
-    sum_slots(m->zones, begin, end - begin, &of);
-    if (m->segments)
-        add_segments(m, begin, end - begin, &of);
+    gather_sums(m->zones, m->segments, begin, end - begin, &of);
     end_gather(&m->zones->points, begin, end - begin, &of, pull, share);
 }
 
@@ -307,7 +312,7 @@ void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick)
     struct tl_zones *z = m->zones;
     for (size_t k = 0; z && k < z->mesh_count; k++) {
         const tl_mesh_motion *of = &z->motion[k];
-        const bool ends = of->loose ? of->power < 0 : stop, calms = of->strain_power < 0;
+        const bool ends = of->loose ? of->power < 0 : stop && !of->goes_on, calms = stop || of->strain_power < 0;
         brake_mesh(m, &z->mesh[k], ends || !calms ? NULL : of, ends || calms ? lost : 0, kick);
     }
 }

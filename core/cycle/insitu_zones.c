@@ -7,6 +7,7 @@
 
 #include "segment/act.h"
 #include "segment/lay.h"
+#include "segment/preload.h"
 #include "zone/solids.h"
 
 #include <math.h>

@@ -104,6 +104,7 @@ static size_t tables_of_segments(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TAB
 }
 
 const tl_contributor tl_segments_act = {.name = "segments",
+                                        .prepare = tl_segments_prepare,
                                         .apply = apply_segments,
                                         .gather = gather_segments,
                                         .stiffness = stiffness_of_segments,

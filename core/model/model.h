@@ -100,8 +100,8 @@ typedef struct tl_bodies {
     tl_vec3 *moment;
     /* unbalanced, in the last damped step; NULL: no damping has asked for them */
     tl_vec3 *force_before, *moment_before;
-    /* of a relaxation: way in a step, m, up to which it falls by its own mass; NULL: there was none */
-    double *fall;
+    double *fall;           /* of a relaxation: way in a step, m, up to which it falls by its own mass, */
+    struct tl_going *going; /* and how it goes on (cycle/settling.h); NULL: there was none */
     tl_body_load *load;     /* of the user's; NULL: none has ever been set */
     tl_wrench *load_before; /* in the last step; NULL as `load` is, and valid while loads_changed */
     uint32_t *drive;        /* index into drives + 1, or 0 */

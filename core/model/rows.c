@@ -244,8 +244,11 @@ bool tl_median_size(const tl_model *m, double *median)
     if (!sizes)
         return false;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (m->bodies.fixed[body] != TL_FIX_ALL)
+        if (m->bodies.fixed[body] != TL_FIX_ALL || m->bodies.mesh[body] > 0)
             sizes[n++] = tl_body_size(m, body);
+    for (uint32_t body = 0; n == 0 && body < m->bodies.table.rows; body++) /* nothing is free: of all */
+        sizes[body] = tl_body_size(m, body);
+    n = n > 0 ? n : m->bodies.table.rows;
     qsort(sizes, n, sizeof *sizes, compare_sizes);
     *median = n ? sizes[n / 2] : 0;
     free(sizes);

@@ -1,5 +1,14 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
+ * A SIMD group of segments is taken at a time. A side carries the three points of a segment with it. Let x be the
+ * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at sum w
+ * x and has moved by sum w d. With edges a and b from the first corner, how these have changed, a' and b', the size |a x
+ * b| and the normal m of the triangle it turns by
+ *
+ *     turn = ((b . a' - a . b') m / 2 + (m . b') a - (m . a') b) / size
+ *
+ * A rigid side carries its points likewise: x are then the axes of its frame, from its centroid.
+ *
  * Let s be the share of the outline that is B's (overlay.h), and p = s n_A - (1 - s) n_B. Then the common normal is
  * n = p / |p|, and the gap n . e, e = x_B - x_A. So a point on the side with the outline presses along the normal of
  * the other side, by its distance from that: the gradient of the energy, however far the sides tilt.
@@ -15,7 +24,9 @@
 #include "segment/act.h"
 
 #include "base/columns.h"
+#include "base/extremes.h"
 #include "base/inside.h"
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/series.h"
 #include "contact/contacts.h"
@@ -24,13 +35,15 @@
 #include "segment/blend.h"
 #include "segment/closed.h"
 #include "segment/lay.h"
-#include "segment/side.h"
 
 #include <math.h>
 #include <string.h>
+#include <talus/elementary.h>
 
 /* SIMD groups that a law gets at a time. */
 #define TILE 4
+/* Gridpoints that a thread takes at a time. */
+#define CHUNK 1024
 /* Points of a group, and of a tile. */
 #define GROUP_POINTS (TL_SEGMENT_POINTS * TL_LANES)
 #define TILE_POINTS (TILE * GROUP_POINTS)
@@ -41,71 +54,279 @@
  * 1, of slivers cut off of one somewhat more. */
 #define CORNERS_BEYOND 4.0
 
+/* One side of a SIMD group of segments now. A point of weights w lies at origin + sum w x, and has moved by shift +
+ * sum w d. What lies off the side by e has moved by `off` e beside that. Of a triangle x are the places of its corners,
+ * and d how they have moved in the last step. Of a rigid body they are the axes of its frame, and what the ends of
+ * these have moved beside its centroid. */
+typedef struct side_lanes {
+    _Alignas(TL_ALIGN) double x[3][3][TL_LANES]; /* by corner, component */
+    double d[3][3][TL_LANES];
+    double (*origin)[TL_LANES], (*shift)[TL_LANES]; /* zeros unless there are rigid sides: `own` */
+    double own[2][3][TL_LANES];
+    double off[3][3][TL_LANES];                    /* by row, column */
+    double normal[3][TL_LANES], turn[3][TL_LANES]; /* outward */
+    double edge[2][3][TL_LANES];                   /* a and b over the size, 1/m; of rigid sides 0 */
+} side_lanes;
+
 /* What is known of a tile's points only in a step. */
 typedef struct lanes {
     _Alignas(TL_ALIGN) double closure[TILE_POINTS];
     double du_n[TILE_POINTS], normal[3][TILE_POINTS], du_s[3][TILE_POINTS];
     double stored[TILE_POINTS], dissipated[TILE_POINTS], zero[TILE_POINTS];
-    double apart[3][TILE_POINTS];                          /* e */
-    tl_side_now side[TILE * TL_LANES][2];                  /* of the segments */
-    double share[TILE * TL_LANES], per_p[TILE * TL_LANES]; /* s, and 1 / |p| */
-    bool partly[TILE * TL_LANES];                          /* a part of it is closed, and a part is apart: */
+    double apart[3][TILE_POINTS];  /* e */
+    double beside[TILE_POINTS];    /* normal forces that laws do not know: of segments that are closed in part, N */
+    side_lanes side[TILE][2];      /* of the groups */
+    double per_p[TILE * TL_LANES]; /* 1 / |p| */
+    bool rigid[TILE];              /* there may be rigid sides in the group */
+    bool parts;                    /* some segments are closed in part */
+    bool partly[TILE * TL_LANES];  /* a part of it is closed, and a part is apart: */
     tl_closed closed[TILE * TL_LANES];
 } lanes;
 
+/* What points have where there is nothing. */
+static const double nothing[TILE_POINTS];
+
+/* ---------------------------------------------------------------- sides ------------------ */
+
+/* Of triangles. */
+static double zeros[3][TL_LANES];
+
+static void put(double (*to)[TL_LANES], size_t lane, tl_vec3 v)
+{
+    to[0][lane] = v.x;
+    to[1][lane] = v.y;
+    to[2][lane] = v.z;
+}
+
+TL_INLINE double dot_of(tl_vec3 a, tl_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+TL_INLINE tl_vec3 get(double (*from)[TL_LANES], size_t lane)
+{
+    return (tl_vec3){from[0][lane], from[1][lane], from[2][lane]};
+}
+
+/* What a point has moved beside the centroid as the body turned by w, as it acts on its arm now (force/follow.c). */
+static tl_mat3 turned_back(tl_vec3 w)
+{
+    const double a = tl_v3_norm(w);
+    const tl_vec3 h = tl_v3_scale(a > 0 ? tl_tan(0.5 * a) / a : 0.5, w), s = tl_v3_scale(2 / (1 + tl_v3_norm2(h)), h);
+    return (tl_mat3){{{s.y * h.y + s.z * h.z, -s.x * h.y - s.z, -s.x * h.z + s.y},
+                      {-s.y * h.x + s.z, s.z * h.z + s.x * h.x, -s.y * h.z - s.x},
+                      {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
+}
+
+/* An axis of a body's frame. */
+static tl_vec3 axis_of(const tl_mat3 *r, int k)
+{
+    return tl_v3(r->m[0][k], r->m[1][k], r->m[2][k]);
+}
+
+/* A rigid side, whose normal in the body's frame is given, once the others are known. */
+static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t lane, side_lanes *to)
+{
+    const tl_pose *pose = &m->bodies.pose[body];
+    const tl_vec3 turn = tl_v3_scale(m->dt, pose->w_moved), zero = {0, 0, 0};
+    const tl_mat3 back = turned_back(turn);
+    for (int k = 0; k < 3; k++) {
+        const tl_vec3 axis = axis_of(&pose->r, k);
+        put(to->x[k], lane, axis);
+        put(to->d[k], lane, tl_m3_mul(&back, axis));
+        for (int c = 0; c < 3; c++)
+            to->off[k][c][lane] = back.m[k][c];
+    }
+    put(to->origin, lane, tl_body_place(&m->bodies, body));
+    put(to->shift, lane, tl_v3_scale(m->dt, pose->v_moved));
+    put(to->normal, lane, tl_m3_mul(&pose->r, normal));
+    put(to->turn, lane, turn);
+    put(to->edge[0], lane, zero);
+    put(to->edge[1], lane, zero);
+}
+
+/* The corners of triangles. */
+TL_INLINE void load_corners(const struct tl_segments *s, size_t row, bool is_b, side_lanes *restrict to)
+{
+    const double *place = tl_gridpoints_aligned(s->now)->place, *way = tl_gridpoints_aligned(s->now)->way;
+    for (int k = 0; k < 3; k++) {
+        const uint32_t *corner = s->table.corner[is_b][k] + row;
+        for (size_t l = 0; l < TL_LANES; l += 4) {
+            tl_lanes_turn3(place, corner + l, to->x[k][0] + l);
+            tl_lanes_turn3(way, corner + l, to->d[k][0] + l);
+        }
+    }
+}
+
+TL_INLINE void put_lane(double (*to)[TL_LANES], size_t l, double x, double y, double z)
+{
+    to[0][l] = x, to[1][l] = y, to[2][l] = z;
+}
+
+/* The sides A, or B, of the group whose first segment has a row, as if all were triangles. false: some are not. */
+TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bool is_b, side_lanes *to)
+{
+    uint32_t least = UINT32_MAX;
+    load_corners(s, row, is_b, to);
+    to->origin = to->shift = zeros;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_vec3 x = get(to->x[0], l), d = get(to->d[0], l);
+        const tl_vec3 a = tl_v3_sub(get(to->x[1], l), x), b = tl_v3_sub(get(to->x[2], l), x);
+        const tl_vec3 da = tl_v3_sub(get(to->d[1], l), d), db = tl_v3_sub(get(to->d[2], l), d);
+        const tl_vec3 area = tl_v3_cross(a, b);
+        const double per = 1 / sqrt(dot_of(area, area));
+        const tl_vec3 n = {per * area.x, per * area.y, per * area.z}, ea = {per * a.x, per * a.y, per * a.z};
+        const tl_vec3 eb = {per * b.x, per * b.y, per * b.z};
+        const double spin = 0.5 * (dot_of(eb, da) - dot_of(ea, db)), up_a = dot_of(n, da), up_b = dot_of(n, db);
+        const tl_vec3 turn = {spin * n.x + up_b * ea.x - up_a * eb.x, spin * n.y + up_b * ea.y - up_a * eb.y,
+                              spin * n.z + up_b * ea.z - up_a * eb.z};
+        put_lane(to->normal, l, n.x, n.y, n.z);
+        put_lane(to->turn, l, turn.x, turn.y, turn.z);
+        put_lane(to->edge[0], l, ea.x, ea.y, ea.z);
+        put_lane(to->edge[1], l, eb.x, eb.y, eb.z);
+        put_lane(to->off[0], l, 0, -turn.z, turn.y);
+        put_lane(to->off[1], l, turn.z, 0, -turn.x);
+        put_lane(to->off[2], l, -turn.y, turn.x, 0);
+    }
+    for (size_t l = 0; l < TL_LANES; l++)
+        least = s->table.corner[is_b][0][row + l] < least ? s->table.corner[is_b][0][row + l] : least;
+    return least >= TL_SEGMENT_DUMMIES;
+}
+
+/* Rigid sides of a group take their lanes. */
+static void put_rigid_sides(const tl_model *m, size_t row, bool is_b, side_lanes *to)
+{
+    const tl_segment *of = &m->segments->table.of[row];
+    memset(to->own, 0, sizeof to->own);
+    to->origin = to->own[0];
+    to->shift = to->own[1];
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_segment_side *side = is_b ? &of[l].b : &of[l].a;
+        if (of[l].meet != TL_NO_ROW && tl_side_is_rigid(side))
+            put_rigid(m, side->at[0], is_b ? of[l].normal_b : of[l].normal_a, l, to);
+    }
+}
+
 /* ---------------------------------------------------------------- following -------------- */
 
-static void put(double (*to)[TILE_POINTS], size_t at, tl_vec3 v)
+/* Where a point of a side is, or with `d` and `shift` how it has moved. */
+TL_INLINE tl_vec3 carried(double (*x)[3][TL_LANES], double (*from)[TL_LANES], tl_vec3 w, size_t l)
 {
-    to[0][at] = v.x;
-    to[1][at] = v.y;
-    to[2][at] = v.z;
+    return (tl_vec3){from[0][l] + w.x * x[0][0][l] + w.y * x[1][0][l] + w.z * x[2][0][l],
+                     from[1][l] + w.x * x[0][1][l] + w.y * x[1][1][l] + w.z * x[2][1][l],
+                     from[2][l] + w.x * x[0][2][l] + w.y * x[1][2][l] + w.z * x[2][2][l]};
 }
 
-/* The lane of the first point of a segment of a tile. */
-static size_t lane_of(size_t number)
-{
-    return number / TL_LANES * GROUP_POINTS + number % TL_LANES;
-}
+/* The common normals of a group, and how shear turns: g and 2 / (1 + g.g), and whether it does. How far B has moved
+ * more than A where a point is apart by e: by `off` e less. */
+typedef struct turn_lanes {
+    _Alignas(TL_ALIGN) double normal[3][TL_LANES], g[3][TL_LANES], scale[TL_LANES], turns[TL_LANES];
+    double off[3][3][TL_LANES];
+} turn_lanes;
 
-/* Follows a segment, by its number in the tile: its points' lanes, and their shear. Notes when it has slid. */
-static void follow(tl_model *m, uint32_t row, size_t number, lanes *l)
+TL_INLINE void turn_normals(tl_segment_table *t, size_t row, side_lanes *a, side_lanes *b, turn_lanes *restrict to,
+                            double *restrict per_p)
 {
-    const size_t lane = lane_of(number);
-    struct tl_segments *s = m->segments;
-    const tl_segment *of = &s->table.of[row];
-    tl_segment_points *p = &s->points;
-    tl_side_now *sides = l->side[number], *a = &sides[0], *b = &sides[1];
-    *a = tl_side_now_of(m, &of->a, of->normal_a);
-    *b = tl_side_now_of(m, &of->b, of->normal_b);
-    const double share = s->meet[of->meet].share;
-    const tl_vec3 mixed = tl_v3_madd(tl_v3_scale(share, a->normal), share - 1, b->normal);
-    l->share[number] = share;
-    l->per_p[number] = 1 / tl_v3_norm(mixed);
-    const tl_vec3 n = tl_v3_scale(l->per_p[number], mixed), last = tl_columns_get(s->table.normal, row);
-    const tl_vec3 half = tl_v3_scale(0.5, tl_v3_madd(tl_v3_scale(share, a->turn), 1 - share, b->turn));
-    double slid2 = 0;
-    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t at = lane + k * TL_LANES;
-        const size_t point = tl_segment_point_row(row, k);
-        const tl_vec3 at_a = tl_columns_get(p->at_a, point), at_b = tl_columns_get(p->at_b, point);
-        const tl_vec3 on_a = tl_side_now_place(m, a, at_a), apart = tl_v3_sub(tl_side_now_place(m, b, at_b), on_a);
-        const tl_vec3 off_a = tl_v3_scale(share, apart), off_b = tl_v3_scale(share - 1, apart);
-        const tl_vec3 place = tl_v3_add(on_a, off_a);
-        const tl_vec3 du =
-            tl_v3_sub(tl_side_now_motion(m, b, at_b, off_b, place), tl_side_now_motion(m, a, at_a, off_a, place));
-        const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
-        l->closure[at] = -gap - (p->reference ? p->reference[point] : 0);
-        l->du_n[at] = du_n;
-        const tl_vec3 du_s = tl_v3_madd(du, -du_n, n);
-        put(l->normal, at, n);
-        put(l->du_s, at, du_s);
-        put(l->apart, at, apart);
-        tl_columns_put(p->f_s, point, tl_turn_one(tl_columns_get(p->f_s, point), last, n, half));
-        slid2 = fmax(slid2, tl_v3_norm2(tl_v3_madd(apart, -gap, n)));
+    double *restrict nx = t->normal[0] + row, *restrict ny = t->normal[1] + row, *restrict nz = t->normal[2] + row;
+    const double *restrict share = t->share + row;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const double s = share[l], rest = 1 - s;
+        const tl_vec3 na = get(a->normal, l), nb = get(b->normal, l), last = {nx[l], ny[l], nz[l]};
+        const tl_vec3 p = {s * na.x - rest * nb.x, s * na.y - rest * nb.y, s * na.z - rest * nb.z};
+        const tl_vec3 ta = get(a->turn, l), tb = get(b->turn, l);
+        const tl_vec3 turn = {s * ta.x + rest * tb.x, s * ta.y + rest * tb.y, s * ta.z + rest * tb.z};
+        const double per = 1 / sqrt(dot_of(p, p));
+        const tl_vec3 n = {per * p.x, per * p.y, per * p.z};
+        const tl_vec3 g = tl_turn_between(last, n, 0.5 * dot_of(turn, n));
+        const double g2 = dot_of(g, g);
+        per_p[l] = per;
+        nx[l] = n.x, ny[l] = n.y, nz[l] = n.z;
+        put_lane(to->normal, l, n.x, n.y, n.z);
+        put_lane(to->g, l, g.x, g.y, g.z);
+        to->scale[l] = 2 / (1 + g2);
+        to->turns[l] = g2 > 0 ? 1 : 0;
     }
-    tl_columns_put(s->table.normal, row, n);
-    s->table.slid[row] = slid2 > SLID * SLID * s->table.area[row];
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+#pragma omp simd
+            for (size_t l = 0; l < TL_LANES; l++)
+                to->off[k][c][l] = share[l] * a->off[k][c][l] + (1 - share[l]) * b->off[k][c][l];
+}
+
+TL_INLINE tl_vec3 carried_off(double (*off)[3][TL_LANES], tl_vec3 e, size_t l)
+{
+    return (tl_vec3){off[0][0][l] * e.x + off[0][1][l] * e.y + off[0][2][l] * e.z,
+                     off[1][0][l] * e.x + off[1][1][l] * e.y + off[1][2][l] * e.z,
+                     off[2][0][l] * e.x + off[2][1][l] * e.y + off[2][2][l] * e.z};
+}
+
+/* Point k of each segment of a group: what a law gets of it, from `at` on, and its shear. `slid2`: the square of the
+ * farthest that the points of a segment have slid. */
+TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lanes *a, side_lanes *b, turn_lanes *turn,
+                             size_t at, lanes *restrict to, double slid2[TL_LANES])
+{
+    const double *restrict ax = p->at_a[0] + point, *restrict ay = p->at_a[1] + point,
+                           *restrict az = p->at_a[2] + point;
+    const double *restrict bx = p->at_b[0] + point, *restrict by = p->at_b[1] + point,
+                           *restrict bz = p->at_b[2] + point;
+    double *restrict sx = p->f_s[0] + point, *restrict sy = p->f_s[1] + point, *restrict sz = p->f_s[2] + point;
+    const double *restrict reference = p->reference ? p->reference + point : nothing;
+    double(*origin_a)[TL_LANES] = a->origin, (*origin_b)[TL_LANES] = b->origin;
+    double(*shift_a)[TL_LANES] = a->shift, (*shift_b)[TL_LANES] = b->shift;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_vec3 wa = {ax[l], ay[l], az[l]}, wb = {bx[l], by[l], bz[l]}, n = get(turn->normal, l);
+        const tl_vec3 apart = tl_v3_sub(carried(b->x, origin_b, wb, l), carried(a->x, origin_a, wa, l));
+        const tl_vec3 of_sides = tl_v3_sub(carried(b->d, shift_b, wb, l), carried(a->d, shift_a, wa, l));
+        const tl_vec3 off = carried_off(turn->off, apart, l), du = tl_v3_sub(of_sides, off);
+        const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
+        const tl_vec3 aside = tl_v3_madd(apart, -gap, n), f = {sx[l], sy[l], sz[l]};
+        const double aside2 = dot_of(aside, aside);
+        to->closure[at + l] = -gap - reference[l];
+        to->du_n[at + l] = du_n;
+        to->apart[0][at + l] = apart.x, to->apart[1][at + l] = apart.y, to->apart[2][at + l] = apart.z;
+        to->normal[0][at + l] = n.x, to->normal[1][at + l] = n.y, to->normal[2][at + l] = n.z;
+        to->du_s[0][at + l] = du.x - du_n * n.x;
+        to->du_s[1][at + l] = du.y - du_n * n.y;
+        to->du_s[2][at + l] = du.z - du_n * n.z;
+        const tl_vec3 turned = tl_turn_into(f, get(turn->g, l), turn->scale[l], turn->turns[l], n);
+        sx[l] = turned.x, sy[l] = turned.y, sz[l] = turned.z;
+        slid2[l] = aside2 > slid2[l] ? aside2 : slid2[l];
+    }
+}
+
+/* Whether the closure of a point of some segment is below 0, or may be at a corner. */
+TL_INLINE bool may_be_apart(const double *restrict closure)
+{
+    double least[TL_LANES], all = INFINITY;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const double c0 = closure[l], c1 = closure[l + TL_LANES], c2 = closure[l + 2 * TL_LANES];
+        const double low = tl_smaller(c0, tl_smaller(c1, c2)), high = tl_larger(c0, tl_larger(c1, c2));
+        least[l] = low - CORNERS_BEYOND * (high - low);
+    }
+    for (size_t l = 0; l < TL_LANES; l++)
+        all = tl_smaller(least[l], all);
+    return all < 0;
+}
+
+/* Follows a group, by its number in the tile: its points' lanes, and their shear. Notes which segments have slid. true:
+ * some segments may be apart in part. */
+TL_VECTORIZED static bool follow_group(struct tl_segments *s, size_t row, size_t number, lanes *to)
+{
+    const size_t at = number * GROUP_POINTS;
+    side_lanes *a = &to->side[number][0], *b = &to->side[number][1];
+    turn_lanes turn;
+    double slid2[TL_LANES];
+    tl_lanes_clear(slid2);
+    turn_normals(&s->table, row, a, b, &turn, to->per_p + number * TL_LANES);
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
+        follow_points(&s->points, TL_SEGMENT_POINTS * row + k * TL_LANES, a, b, &turn, at + k * TL_LANES, to, slid2);
+    for (size_t l = 0; l < TL_LANES; l++)
+        s->table.slid[row + l] = slid2[l] > SLID * SLID * s->table.area[row + l];
+    return may_be_apart(to->closure + at);
 }
 
 /* ---------------------------------------------------------------- laws ------------------- */
@@ -131,7 +352,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
                                 .dt = job->m->dt,
                                 .area = p->area + first,
                                 .closure = l->closure,
-                                .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,
+                                .f_n0 = p->f_n0 ? p->f_n0 + first : nothing,
                                 .normal = {l->normal[0], l->normal[1], l->normal[2]},
                                 .du_n = l->du_n,
                                 .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
@@ -142,7 +363,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
                                 .stored = l->stored,
                                 .dissipated = l->dissipated,
                                 .closure_edge = l->closure,
-                                .closure_apart = l->zero};
+                                .closure_apart = nothing};
     tl_report report;
     const tl_status status = tl_law_update(law, &batch, &report);
     const size_t bad = report.first_bad < count ? report.first_bad : 0;
@@ -186,15 +407,10 @@ static void find_lifts(const act_job *job, size_t first, size_t count, lanes *l,
     tl_leave();
 }
 
-/* Whether the closure of some point is below 0, or may be at a corner. */
-static bool may_be_apart(const lanes *l, size_t lane)
+/* The lane of the first point of a segment of a tile. */
+static size_t lane_of(size_t number)
 {
-    double low = INFINITY, high = -INFINITY;
-    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        low = fmin(low, l->closure[lane + k * TL_LANES]);
-        high = fmax(high, l->closure[lane + k * TL_LANES]);
-    }
-    return low - CORNERS_BEYOND * (high - low) < 0;
+    return number / TL_LANES * GROUP_POINTS + number % TL_LANES;
 }
 
 /* Gives points of segments that are closed in part the closures of what presses. */
@@ -209,14 +425,15 @@ static void close_parts(const act_job *job, size_t first, size_t count, lanes *l
         const size_t lane = lane_of(i);
         double u[TL_SEGMENT_POINTS];
         l->partly[i] = false;
-        if (s->table.of[row].meet == TL_NO_ROW || !may_be_apart(l, lane) || !pulls_not(law, &s->points, row))
+        if (s->table.of[row].meet == TL_NO_ROW || !pulls_not(law, &s->points, row))
             continue;
         if (!known)
             find_lifts(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, l, lift);
         known = true;
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
             u[k] = l->closure[lane + k * TL_LANES] + lift[lane + k * TL_LANES];
-        l->partly[i] = tl_closed_part(s->outline + s->table.outline[row], s->table.corners[row], u, &l->closed[i]);
+        l->parts |= l->partly[i] =
+            tl_closed_part(s->outline + s->table.outline[row], s->table.corners[row], u, &l->closed[i]);
         for (size_t k = 0; k < TL_SEGMENT_POINTS && l->partly[i]; k++)
             l->closure[lane + k * TL_LANES] = l->closed[i].even[k] - lift[lane + k * TL_LANES];
     }
@@ -234,40 +451,169 @@ static double stiffness_of(const tl_segment_points *p, uint32_t row, const lanes
     return closed > 0 ? force / closed : 0;
 }
 
-/* ---------------------------------------------------------------- forces ----------------- */
+/* What presses on segments that are closed in part beside what their law knows. */
+static void press_parts(const tl_segment_points *p, size_t first, size_t count, lanes *l)
+{
+    memset(l->beside, 0, TL_SEGMENT_POINTS * count * sizeof *l->beside);
+    for (size_t i = 0; i < count; i++) {
+        const double stiffness = stiffness_of(p, (uint32_t)(first + i), l, i);
+        for (size_t k = 0; k < TL_SEGMENT_POINTS && stiffness > 0; k++)
+            l->beside[lane_of(i) + k * TL_LANES] =
+                stiffness * p->area[tl_segment_point_row(first + i, k)] * l->closed[i].rest[k];
+    }
+}
 
-/* What a segment does to its sides. */
-static void push(tl_model *m, uint32_t row, size_t number, const lanes *l)
+/* And what they store beside that. */
+static void store_parts(struct tl_segments *s, size_t first, size_t count, const lanes *l)
+{
+    for (size_t i = 0; i < count; i++)
+        if (l->partly[i])
+            s->table.stored[first + i] += 0.5 * stiffness_of(&s->points, (uint32_t)(first + i), l, i) *
+                                          s->table.area[first + i] * l->closed[i].second;
+}
+
+/* ---------------------------------------------------------------- pushing ---------------- */
+
+/* What a group does to its sides: forces on the corners, on a rigid side likewise on the ends of its axes, with their
+ * sizes. The force on B, and couples on both sides. */
+typedef struct push_lanes {
+    _Alignas(TL_ALIGN) double corner[2][3][4][TL_LANES]; /* by side, corner, component */
+    double force[3][TL_LANES], couple[2][3][TL_LANES];
+} push_lanes;
+
+/* A point: its force on B; of its moments about the side e x f_s and f_n t. */
+typedef struct pushing {
+    tl_vec3 force, moment, tilting;
+} pushing;
+
+TL_INLINE pushing pushing_of(const tl_segment_points *p, const lanes *of, const double *beside, size_t point, size_t at)
+{
+    const tl_vec3 n = {of->normal[0][at], of->normal[1][at], of->normal[2][at]};
+    const tl_vec3 e = {of->apart[0][at], of->apart[1][at], of->apart[2][at]};
+    const tl_vec3 shear = {p->f_s[0][point], p->f_s[1][point], p->f_s[2][point]};
+    const double f = p->f_n[point] + beside[at];
+    const tl_vec3 along = tl_v3_madd(e, -dot_of(e, n), n), tilting = {f * along.x, f * along.y, f * along.z};
+    return (pushing){tl_v3_madd(shear, f, n), tl_v3_cross(e, shear), tilting};
+}
+
+TL_INLINE double size_of(tl_vec3 v)
+{
+    return sqrt(dot_of(v, v));
+}
+
+TL_INLINE tl_vec3 sum_of(tl_vec3 a, tl_vec3 b, tl_vec3 c)
+{
+    return tl_v3_add(tl_v3_add(a, b), c);
+}
+
+/* The force on a corner of which the three points have the weights w[0], w[TL_LANES] and w[2 TL_LANES], and `more`. */
+TL_INLINE void push_corner(double (*to)[TL_LANES], size_t l, const double *w, double sign, pushing p0, pushing p1,
+                           pushing p2, tl_vec3 more)
+{
+    const double w0 = sign * w[0], w1 = sign * w[TL_LANES], w2 = sign * w[2 * TL_LANES];
+    const tl_vec3 f0 = p0.force, f1 = p1.force, f2 = p2.force;
+    const tl_vec3 f = {w0 * f0.x + w1 * f1.x + w2 * f2.x + more.x, w0 * f0.y + w1 * f1.y + w2 * f2.y + more.y,
+                       w0 * f0.z + w1 * f1.z + w2 * f2.z + more.z};
+    put_lane(to, l, f.x, f.y, f.z);
+    to[3][l] = size_of(f);
+}
+
+/* The forces on the corners of a side: `at`, their weights in the points, and what a couple brings. */
+TL_INLINE void push_side(double (*to)[4][TL_LANES], size_t l, double *const at[3], size_t point, double sign,
+                         pushing p0, pushing p1, pushing p2, tl_vec3 couple, side_lanes *side)
+{
+    const tl_vec3 n = get(side->normal, l), a = get(side->edge[0], l), b = get(side->edge[1], l);
+    const double spin = 0.5 * dot_of(couple, n), on_a = dot_of(couple, a), on_b = dot_of(couple, b);
+    const tl_vec3 f1 = {spin * b.x - on_b * n.x, spin * b.y - on_b * n.y, spin * b.z - on_b * n.z};
+    const tl_vec3 f2 = {on_a * n.x - spin * a.x, on_a * n.y - spin * a.y, on_a * n.z - spin * a.z};
+    const tl_vec3 f0 = {-(f1.x + f2.x), -(f1.y + f2.y), -(f1.z + f2.z)};
+    push_corner(to[0], l, at[0] + point, sign, p0, p1, p2, f0);
+    push_corner(to[1], l, at[1] + point, sign, p0, p1, p2, f1);
+    push_corner(to[2], l, at[2] + point, sign, p0, p1, p2, f2);
+}
+
+/* Sums of the points of a group, by its number in the tile, and what it stores and turns into heat. */
+TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *restrict to)
+{
+    const tl_segment_points *p = &s->points;
+    tl_segment_table *t = &s->table;
+    const size_t first = TL_SEGMENT_POINTS * row, at = number * GROUP_POINTS;
+    side_lanes *a = &of->side[number][0], *b = &of->side[number][1];
+    const double *restrict beside = of->parts ? of->beside : nothing, *restrict per_p = of->per_p + number * TL_LANES;
+    double *restrict bears = t->bears + row, *restrict stored = t->stored + row, *restrict heat = t->heat + row;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const size_t i = first + l, j = at + l;
+        const double share = t->share[row + l], rest = 1 - share;
+        const pushing p0 = pushing_of(p, of, beside, i, j);
+        const pushing p1 = pushing_of(p, of, beside, i + TL_LANES, j + TL_LANES);
+        const pushing p2 = pushing_of(p, of, beside, i + 2 * TL_LANES, j + 2 * TL_LANES);
+        const tl_vec3 force = sum_of(p0.force, p1.force, p2.force);
+        const tl_vec3 moment = sum_of(p0.moment, p1.moment, p2.moment);
+        const tl_vec3 tilting = sum_of(p0.tilting, p1.tilting, p2.tilting);
+        const tl_vec3 tilts_a = tl_v3_cross(get(a->normal, l), tilting);
+        const tl_vec3 tilts_b = tl_v3_cross(get(b->normal, l), tilting);
+        const double tilt_a = share * per_p[l], tilt_b = -rest * per_p[l];
+        const tl_vec3 on_a = {tilt_a * tilts_a.x - share * moment.x, tilt_a * tilts_a.y - share * moment.y,
+                              tilt_a * tilts_a.z - share * moment.z};
+        const tl_vec3 on_b = {tilt_b * tilts_b.x - rest * moment.x, tilt_b * tilts_b.y - rest * moment.y,
+                              tilt_b * tilts_b.z - rest * moment.z};
+        bears[l] = size_of(p0.force) + size_of(p1.force) + size_of(p2.force);
+        stored[l] = of->stored[j] + of->stored[j + TL_LANES] + of->stored[j + 2 * TL_LANES];
+        heat[l] = of->dissipated[j] + of->dissipated[j + TL_LANES] + of->dissipated[j + 2 * TL_LANES];
+        put_lane(to->force, l, force.x, force.y, force.z);
+        put_lane(to->couple[0], l, on_a.x, on_a.y, on_a.z);
+        put_lane(to->couple[1], l, on_b.x, on_b.y, on_b.z);
+        push_side(to->corner[0], l, p->at_a, i, -1, p0, p1, p2, on_a, a);
+        push_side(to->corner[1], l, p->at_b, i, 1, p0, p1, p2, on_b, b);
+    }
+}
+
+TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
+{
+    sum_points(s, row, number, of, by);
+    for (size_t l = 0; l < TL_LANES; l += 4) {
+        tl_segment_push *to = s->table.push + row + l;
+        for (int side = 0; side < 2; side++)
+            for (int c = 0; c < 3; c++) {
+                double(*corner)[TL_LANES] = by->corner[side][c];
+                const double *const column[4] = {corner[0] + l, corner[1] + l, corner[2] + l, corner[3] + l};
+                tl_lanes_turn(column, to[0].of[side][c], to[1].of[side][c], to[2].of[side][c], to[3].of[side][c]);
+            }
+    }
+}
+
+/* A rigid side gets the force, and the moment about its centroid: a couple, and that of the forces on the ends of its
+ * axes. */
+static void push_rigid(const tl_model *m, uint32_t body, tl_vec3 force, tl_vec3 couple, double (*to)[4])
+{
+    tl_vec3 moment = couple;
+    for (int k = 0; k < 3; k++)
+        moment =
+            tl_v3_add(moment, tl_v3_cross(axis_of(&m->bodies.pose[body].r, k), tl_v3(to[k][0], to[k][1], to[k][2])));
+    const tl_vec3 both[2] = {force, moment};
+    for (int k = 0; k < 2; k++) {
+        to[k][0] = both[k].x;
+        to[k][1] = both[k].y;
+        to[k][2] = both[k].z;
+    }
+}
+
+static void push_sides(tl_model *m, size_t row, size_t number, lanes *of)
 {
     struct tl_segments *s = m->segments;
-    const tl_segment *of = &s->table.of[row];
-    const tl_segment_points *p = &s->points;
-    const tl_side_now *a = &l->side[number][0], *b = &l->side[number][1];
-    const double share = l->share[number];
-    const size_t lane = lane_of(number);
-    const double stiffness = stiffness_of(p, row, l, number);
-    double sums[2][9] = {{0}}, bears = 0;
-    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t at = lane + k * TL_LANES;
-        const size_t point = tl_segment_point_row(row, k);
-        const tl_vec3 n = tl_v3(l->normal[0][at], l->normal[1][at], l->normal[2][at]);
-        const double more = stiffness > 0 ? stiffness * p->area[point] * l->closed[number].rest[k] : 0;
-        const double normal = p->f_n[point] + more;
-        const tl_vec3 shear = tl_columns_get(p->f_s, point), on_b = tl_v3_madd(shear, normal, n);
-        const tl_vec3 apart = {l->apart[0][at], l->apart[1][at], l->apart[2][at]};
-        const tl_vec3 along = tl_v3_madd(apart, -tl_v3_dot(apart, n), n), couple = tl_v3_cross(apart, shear);
-        const double tilts = normal * l->per_p[number];
-        bears += tl_v3_norm(on_b);
-        tl_side_push(m, &of->a, tl_columns_get(p->at_a, point), tl_v3_neg(on_b), sums[0]);
-        tl_side_push(m, &of->b, tl_columns_get(p->at_b, point), on_b, sums[1]);
-        const tl_vec3 on_normal_a = tl_v3_cross(a->normal, along), on_normal_b = tl_v3_cross(b->normal, along);
-        tl_side_turn(a, tl_v3_madd(tl_v3_scale(-share, couple), tilts * share, on_normal_a), sums[0]);
-        tl_side_turn(b, tl_v3_scale(share - 1, tl_v3_madd(couple, tilts, on_normal_b)), sums[1]);
+    push_lanes by;
+    push_group(s, row, number, of, &by);
+    for (size_t l = 0; l < TL_LANES && of->rigid[number]; l++) {
+        const tl_segment *one = &s->table.of[row + l];
+        if (one->meet == TL_NO_ROW)
+            continue;
+        const tl_vec3 on_b = get(by.force, l);
+        if (tl_side_is_rigid(&one->a))
+            push_rigid(m, one->a.at[0], tl_v3_neg(on_b), get(by.couple[0], l), s->table.push[row + l].of[0]);
+        if (tl_side_is_rigid(&one->b))
+            push_rigid(m, one->b.at[0], on_b, get(by.couple[1], l), s->table.push[row + l].of[1]);
     }
-    for (int side = 0; side < 2; side++)
-        for (int c = 0; c < 9; c++)
-            s->table.push[side][c][row] = sums[side][c];
-    s->table.bears[row] = bears;
 }
 
 static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -275,34 +621,62 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     (void)chunk, (void)thread;
     const act_job *job = user;
     tl_model *m = job->m;
-    struct tl_segments *s = m->segments;
+    const size_t first = (job->span->group_begin + begin) * TL_LANES, groups = end - begin, count = groups * TL_LANES;
+    bool apart = false;
     lanes l;
-    const size_t first = (job->span->group_begin + begin) * TL_LANES, count = (end - begin) * TL_LANES;
-    memset(&l, 0, sizeof l);
-    for (size_t k = 0; k < count; k++)
-        if (s->table.of[first + k].meet != TL_NO_ROW)
-            follow(m, (uint32_t)(first + k), k, &l);
-    close_parts(job, first, count, &l);
+    l.parts = false;
+    for (size_t g = 0; g < groups; g++) {
+        const size_t row = first + g * TL_LANES;
+        l.rigid[g] = false;
+        for (int k = 0; k < 2; k++)
+            if (!find_sides(m->segments, row, k, &l.side[g][k])) {
+                put_rigid_sides(m, row, k, &l.side[g][k]);
+                l.rigid[g] = true;
+            }
+        apart |= follow_group(m->segments, row, g, &l);
+    }
+    if (apart)
+        close_parts(job, first, count, &l);
     if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))
         return;
-    for (size_t k = 0; k < count; k++) {
-        const size_t lane = lane_of(k);
-        if (s->table.of[first + k].meet == TL_NO_ROW)
-            continue;
-        push(m, (uint32_t)(first + k), k, &l);
-        const double stiffness = stiffness_of(&s->points, (uint32_t)(first + k), &l, k);
-        s->table.stored[first + k] = 0.5 * stiffness * s->table.area[first + k] * l.closed[k].second;
-        s->table.heat[first + k] = 0;
-        for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
-            s->table.stored[first + k] += l.stored[lane + i * TL_LANES];
-            s->table.heat[first + k] += l.dissipated[lane + i * TL_LANES];
-        }
-    }
+    if (l.parts)
+        press_parts(&m->segments->points, first, count, &l);
+    for (size_t g = 0; g < groups; g++)
+        push_sides(m, first + g * TL_LANES, g, &l);
+    if (l.parts)
+        store_parts(m->segments, first, count, &l);
+}
+
+static void touch_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const tl_model *m = user;
+    tl_gridpoint_now *now = tl_gridpoints_aligned(m->segments->now) + TL_SEGMENT_DUMMIES;
+    for (size_t k = begin; k < end; k++)
+        tl_gridpoint_put(&now[k], &m->zones->points, m->segments->touched[k], m->zones->moved_dt);
+}
+
+/* Where gridpoints are that segments touch. */
+static void find_touched(tl_model *m)
+{
+    tl_gridpoint_now *now = tl_gridpoints_aligned(m->segments->now);
+    for (int k = 0; k < TL_SEGMENT_DUMMIES; k++)
+        now[k] = (tl_gridpoint_now){{k == 1, k == 2, 0}, {0}};
+    tl_parallel_for(m->pool, m->segments->touched_count, CHUNK, touch_range, m);
+}
+
+tl_status tl_segments_prepare(tl_model *m)
+{
+    struct tl_segments *s = m->segments;
+    const size_t need = s ? s->touched_count + TL_SEGMENT_DUMMIES + 1 : 0;
+    return !s || tl_fit(&s->now, &s->now_capacity, need, sizeof *s->now) ? TL_OK : tl_fail_memory(&m->error);
 }
 
 tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
 {
     struct tl_segments *s = m->segments;
+    if (s)
+        find_touched(m);
     for (size_t k = 0; s && k < s->span_count && failure->error.status == TL_OK; k++) {
         act_job job = {m, failure, &s->span[k]};
         if (job.span->law != TL_NO_ROW)
@@ -313,55 +687,17 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
     return failure->error.status;
 }
 
-/* ---------------------------------------------------------------- initial stress --------- */
-
-void tl_segment_preload(tl_model *m, uint32_t row, tl_sym3 (*stress)(const void *user, tl_vec3 place), const void *user)
-{
-    struct tl_segments *s = m->segments;
-    const tl_segment *of = &s->table.of[row];
-    tl_segment_points *p = &s->points;
-    const double share = s->meet[of->meet].share;
-    const tl_side_now a = tl_side_now_of(m, &of->a, of->normal_a), b = tl_side_now_of(m, &of->b, of->normal_b);
-    const tl_vec3 mixed = tl_v3_madd(tl_v3_scale(share, a.normal), share - 1, b.normal);
-    const tl_vec3 n = tl_v3_scale(1 / tl_v3_norm(mixed), mixed); /* as the step finds it, to the bit */
-    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t point = tl_segment_point_row(row, k);
-        const tl_vec3 on_a = tl_side_now_place(m, &a, tl_columns_get(p->at_a, point));
-        const tl_vec3 apart = tl_v3_sub(tl_side_now_place(m, &b, tl_columns_get(p->at_b, point)), on_a);
-        const tl_vec3 traction = tl_s3_mul(stress(user, tl_v3_madd(on_a, share, apart)), n);
-        const double normal = tl_v3_dot(n, traction);
-        p->reference[point] = -tl_v3_dot(apart, n);
-        p->f_n0[point] = p->f_n[point] = -normal * p->area[point];
-        tl_columns_put(p->f_s, point, tl_v3_scale(-p->area[point], tl_v3_madd(traction, -normal, n)));
-        p->flags[point] = 0;
-    }
-    tl_columns_put(s->table.normal, row, n);
-}
-
 /* ---------------------------------------------------------------- who gets what ---------- */
-
-void tl_segments_gather(const tl_model *m, uint32_t gridpoint, tl_vec3 *force, double *bears)
-{
-    const struct tl_segments *s = m->segments;
-    for (uint32_t k = s->use_start[gridpoint]; k < s->use_start[gridpoint + 1]; k++) {
-        const tl_segment_use *use = &s->use[k];
-        double *const *push = &s->table.push[use->side][3 * use->corner];
-        const tl_vec3 f = tl_v3(push[0][use->segment], push[1][use->segment], push[2][use->segment]);
-        *force = tl_v3_add(*force, f);
-        *bears += tl_v3_norm(f);
-    }
-}
 
 void tl_segments_gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const struct tl_segments *s = m->segments;
     for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
         const tl_segment_use *use = &s->body_use[k];
-        double *const *push = s->table.push[use->side];
-        const uint32_t row = use->segment;
-        on->force = tl_v3_add(on->force, tl_v3(push[0][row], push[1][row], push[2][row]));
-        on->moment = tl_v3_add(on->moment, tl_v3(push[3][row], push[4][row], push[5][row]));
-        on->magnitude += s->table.bears[row];
+        double(*push)[4] = s->table.push[use->segment].of[use->side];
+        on->force = tl_v3_add(on->force, tl_v3(push[0][0], push[0][1], push[0][2]));
+        on->moment = tl_v3_add(on->moment, tl_v3(push[1][0], push[1][1], push[1][2]));
+        on->magnitude += s->table.bears[use->segment];
     }
 }
 
@@ -411,6 +747,10 @@ tl_energies tl_segments_energies(tl_model *m)
 {
     struct tl_segments *s = m->segments;
     tl_energies sum = {0, s ? s->lost : 0};
+    if (s) {
+        sum.stored -= s->blend_stored;
+        sum.heat -= s->blend_heat;
+    }
     for (size_t row = 0; s && row < s->table.table.rows; row++)
         if (s->table.of[row].meet != TL_NO_ROW) {
             sum.stored += s->table.stored[row];

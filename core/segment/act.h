@@ -2,17 +2,26 @@
 #ifndef TL_SEGMENT_ACT_H
 #define TL_SEGMENT_ACT_H
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "model/contributor.h"
 #include "segment/segments.h"
 
+/* Makes room for a step. */
+tl_status tl_segments_prepare(tl_model *m);
 /* Finds the forces of all segments at the present places. */
 tl_status tl_segments_apply(tl_model *m, tl_failure *failure);
-/* Gives the points of a segment, which have initial forces, the traction of a stress; their closure counts from now. */
-void tl_segment_preload(tl_model *m, uint32_t row, tl_sym3 (*stress)(const void *user, tl_vec3 place),
-                        const void *user);
-/* Adds what they do to a gridpoint, with the sum of the sizes, and to a body. */
-void tl_segments_gather(const tl_model *m, uint32_t gridpoint, tl_vec3 *force, double *bears);
+/* What they do to a gridpoint: the components, and the sum of the sizes. */
+TL_INLINE void tl_segments_gather(const struct tl_segments *s, size_t gridpoint, double *restrict sum)
+{
+    tl_four all = {0, 0, 0, 0};
+    for (uint32_t k = s->use_start[gridpoint]; k < s->use_start[gridpoint + 1]; k++) {
+        const tl_segment_use *use = &s->use[k];
+        all += *(const tl_four *)s->table.push[use->segment].of[use->side][use->corner];
+    }
+    *(tl_four *)sum = all;
+}
+/* Adds what they do to a body. */
 void tl_segments_gather_body(const tl_model *m, uint32_t body, tl_acting *on);
 /* Adds how stiff they hold the gridpoints, N/m, and a body. */
 void tl_segments_stiffen(tl_model *m);

@@ -26,8 +26,10 @@ static void add_columns(struct tl_segments *s, uint32_t states)
     for (int k = 0; k < 3; k++)
         TL_COLUMN(&t->table, t, normal[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
     for (int side = 0; side < 2; side++)
-        for (int k = 0; k < 9; k++)
-            TL_COLUMN(&t->table, t, push[side][k], 0);
+        for (int c = 0; c < 3; c++)
+            TL_COLUMN(&t->table, t, corner[side][c], 0);
+    TL_COLUMN(&t->table, t, share, 0);
+    TL_COLUMN(&t->table, t, push, 0);
     TL_COLUMN(&t->table, t, bears, 0);
     TL_COLUMN(&t->table, t, stored, 0);
     TL_COLUMN(&t->table, t, heat, 0);
@@ -63,8 +65,8 @@ void tl_segments_free(struct tl_segments *s)
 {
     tl_table_free(&s->table.table);
     tl_table_free(&s->points.table);
-    void *const owned[] = {s->meet,       s->span,   s->use,         s->body_use, s->use_start,
-                           s->body_start, s->corner, s->room_memory, s->blend,    s->outline};
+    void *const owned[] = {s->meet,   s->span,        s->use,   s->body_use, s->use_start, s->body_start,
+                           s->corner, s->room_memory, s->blend, s->outline,  s->touched,   s->now};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -121,9 +123,11 @@ bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, 
         const bool same = at < count && order_of(&list[at], &s->meet[k]) == 0;
         l->now[k] = same ? (uint32_t)at : TL_NO_ROW;
         if (same) {
+            const double size = list[at].size;
             const bool tilted = list[at].tilted, stale = s->meet[k].area == 0; /* its faces may overlap by now */
             list[at] = s->meet[k];
             list[at].tilted = tilted;
+            list[at].size = size;
             list[at].stale = list[at].stale || stale;
         }
     }
@@ -474,9 +478,39 @@ static void list_uses(const tl_model *m, struct tl_segments *s)
     }
 }
 
+/* Lists the gridpoints that segments touch, by their rows, and the corners of segments among them. There is room. */
+static void list_touched(const tl_model *m, struct tl_segments *s)
+{
+    s->touched_count = 0;
+    for (uint32_t point = 0; point < m->zones->points.table.rows; point++) {
+        if (s->use_start[point] == s->use_start[point + 1])
+            continue;
+        for (uint32_t k = s->use_start[point]; k < s->use_start[point + 1]; k++)
+            s->table.corner[s->use[k].side][s->use[k].corner][s->use[k].segment] =
+                (uint32_t)s->touched_count + TL_SEGMENT_DUMMIES;
+        s->touched[s->touched_count++] = point;
+    }
+}
+
+/* Lists what segments touch, and what their meets tell them. There is room. */
+static void list_all(const tl_model *m, struct tl_segments *s)
+{
+    for (size_t row = 0; row < s->table.table.rows; row++) {
+        const uint32_t meet = s->table.of[row].meet;
+        s->table.share[row] = meet != TL_NO_ROW ? s->meet[meet].share : 0.5;
+        for (uint32_t c = 0; c < TL_SEGMENT_DUMMIES; c++) {
+            s->table.corner[0][c][row] = c;
+            s->table.corner[1][c][row] = (3 - c) % 3; /* the other way round */
+        }
+    }
+    list_uses(m, s);
+    list_touched(m, s);
+}
+
 static bool index_room(const tl_model *m, struct tl_segments *s, size_t segments)
 {
     return tl_grow(&s->use, &s->use_capacity, 6 * segments, sizeof *s->use) &&
+           tl_grow(&s->touched, &s->touched_capacity, 6 * segments, sizeof *s->touched) &&
            tl_grow(&s->body_use, &s->body_use_capacity, 2 * segments, sizeof *s->body_use) &&
            tl_grow(&s->use_start, &s->use_start_capacity, m->zones->points.table.rows + 1, sizeof *s->use_start) &&
            tl_grow(&s->body_start, &s->body_start_capacity, m->bodies.table.rows + 1, sizeof *s->body_start);
@@ -544,7 +578,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
             s->meet[k].stale = false;
         s->version++;
         sum_meets(s);
-        list_uses(m, s);
+        list_all(m, s);
     }
     free(list);
     free(old.list);
@@ -555,7 +589,7 @@ bool tl_segments_index(tl_model *m)
 {
     const bool enough = index_room(m, m->segments, m->segments->table.table.rows);
     if (enough)
-        list_uses(m, m->segments);
+        list_all(m, m->segments);
     return enough;
 }
 

@@ -23,8 +23,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: cos of 12 degrees, up to which faces that meet may be tilted: beyond 10 a field contact has all
- * (blend.c). */
+/* Tolerance: cos of 12 degrees, up to which faces that meet may be tilted: beyond 10 a field contact has all (blend.c).
+ */
 #define LEAST_FACING 0.97814760073380563
 /* Tolerance: distance over the size of the smaller block up to which faces meet. */
 #define NEAR 0.02
@@ -186,7 +186,8 @@ static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list,
                                             .share = 0.5,
                                             .tilted = tilt_cosine(&fa, &fb) < NOT_TILTED,
                                             .alone = true,
-                                            .left = 1};
+                                            .size = fmin(fa.size, fb.size),
+                                            .flat = 1};
         }
     }
     return true;
@@ -393,7 +394,7 @@ tl_status tl_segments_find(tl_model *m)
         mark_changed(m);
     }
     for (size_t row = 0; row < s->table.table.rows && !anew; row++)
-        if (s->table.of[row].meet != TL_NO_ROW && s->table.slid[row])
+        if (s->table.slid[row] && s->table.of[row].meet != TL_NO_ROW)
             s->meet[s->table.of[row].meet].stale = true;
     for (size_t k = 0; k < s->meet_count; k++)
         some = some || s->meet[k].stale;

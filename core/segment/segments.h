@@ -58,15 +58,22 @@ static inline size_t tl_segment_point_row(size_t segment, size_t k)
     return TL_LANES * (TL_SEGMENT_POINTS * (segment / TL_LANES) + k) + segment % TL_LANES;
 }
 
+/* What a segment does to the corners of its sides, by side and corner: three components of a force, and its size, N. To
+ * a rigid side: force, and moment about its body. */
+typedef struct tl_segment_push {
+    double of[2][3][4];
+} tl_segment_push;
+
 typedef struct tl_segment_table {
     tl_table table;
     tl_segment *of;              /* an empty lane has no meet: TL_NO_ROW */
     double *area;                /* m2 */
+    double *share;               /* that of its meet */
     uint32_t *outline, *corners; /* in the list of outlines */
     double *normal[3];           /* in the last step, from A to B */
-    double *
-        push[2][9]; /* what it does to the corners of its sides, N; to a rigid side: force, and moment about its body */
-    double *bears;  /* sum of the sizes of the forces of its points, N */
+    uint32_t *corner[2][3];      /* of its sides, in the list of gridpoints that are touched */
+    tl_segment_push *push;
+    double *bears;         /* sum of the sizes of the forces of its points, N */
     double *stored, *heat; /* J: the latter in the last step */
     uint8_t *slid;         /* its sides have slid or stretched: it is to be laid anew */
 } tl_segment_table;
@@ -93,18 +100,18 @@ typedef struct tl_meet {
     double share;        /* 1: the outline of what the faces have in common is B's; 0: it is A's */
     uint32_t begin, end; /* rows of its segments */
     bool tilted;         /* its faces may be tilted so far that a field contact has a share (blend.c) */
-    bool alone;          /* there is none */
-    double left;         /* what the field contact leaves of its forces and energies */
+    bool alone;          /* the two blocks have none */
+    double size;         /* of the smaller face, m2 */
+    double flat;         /* what its tilt leaves of its forces and energies, */
+    double steep;        /* and the change of that by the cosine of the tilt */
+    tl_vec3 by[2];       /* and of that by the mean vector areas of both sides, 1/m2 */
 } tl_meet;
 
-/* Two blocks a part of whose contact is a field contact (blend.c). */
+/* Two blocks that meet by segments and by a field contact (blend.c). */
 typedef struct tl_blend {
     tl_id a, b;
     uint32_t first, end; /* of their meets */
-    uint32_t meet;       /* whose tilt decides */
     uint32_t contact;    /* row of the field contact, or TL_NO_ROW */
-    double share;        /* of the field contact */
-    tl_vec3 slope[2];    /* of the share by the mean vector areas of both faces, 1/m2 */
 } tl_blend;
 
 /* SIMD groups of one law. */
@@ -117,6 +124,10 @@ typedef struct tl_segment_use {
     uint32_t segment;
     uint8_t side, corner;
 } tl_segment_use;
+
+/* Corners of a triangle that stands for the sides of an empty lane, and for a rigid side, until that is known: they
+ * come before those that are touched. */
+#define TL_SEGMENT_DUMMIES 3
 
 struct tl_segments {
     tl_segment_table table;
@@ -131,6 +142,10 @@ struct tl_segments {
     tl_segment_use *use, *body_use;
     uint32_t *use_start, *body_start;
     size_t use_capacity, use_start_capacity, body_use_capacity, body_start_capacity;
+    /* gridpoints that segments touch, and where they are in a step, after those that stand for other sides */
+    uint32_t *touched;
+    tl_gridpoint_now *now;
+    size_t touched_count, touched_capacity, now_capacity;
     /* of the model, the zones and the pairs of the broad phase, when meets were listed */
     uint64_t structure, laws, zones, lists;
     uint64_t followed; /* structure of the model for which sides have their rows */
@@ -140,8 +155,9 @@ struct tl_segments {
     size_t corner_capacity;
     tl_blend *blend; /* in this step, in the order of the meets */
     size_t blend_count, blend_capacity;
-    uint64_t version; /* counts how often segments were laid */
-    double lost;      /* shear that went when segments were laid: heat of the next step, J */
+    double blend_stored, blend_heat; /* that is counted of field contacts and is none, in this step, J */
+    uint64_t version;                /* counts how often segments were laid */
+    double lost;                     /* shear that went when segments were laid: heat of the next step, J */
 };
 
 #endif

@@ -341,6 +341,8 @@ static bool hold_columns(tl_model *m, const tl_archive *a)
         held = held && tl_bodies_hold_loads(&m->bodies);
     if (tl_archive_find(a, "bodies.fall"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, fall, TL_COLUMN_STEP);
+    if (tl_archive_find(a, "bodies.going"))
+        held = held && TL_COLUMN_NEED(bodies, &m->bodies, going, TL_COLUMN_STEP);
     if (tl_archive_find(a, "bodies.force_before"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, moment_before, TL_COLUMN_STEP) &&
                TL_COLUMN_NEED(bodies, &m->bodies, force_before, TL_COLUMN_STEP);
@@ -495,7 +497,7 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
         !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) || !tl_is_flag(&initial))
         return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
     bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d)) &&
-                (!tl_archive_find(a, "detect.contacts.whole") || tl_detect_hold_carriers(d));
+                (!tl_archive_find(a, "detect.contacts.heat") || tl_detect_hold_carriers(d));
     return held ? TL_OK : tl_fail_memory(&m->error);
 }
 

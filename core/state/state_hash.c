@@ -407,6 +407,8 @@ static void hash_settling(tl_hash *hash, const tl_model *m)
     tl_hash_bytes(hash, words, sizeof words);
     if (m->relaxing && m->bodies.fall)
         tl_hash_bytes(hash, m->bodies.fall, m->bodies.table.rows * sizeof *m->bodies.fall);
+    if (m->relaxing && m->bodies.going)
+        tl_hash_bytes(hash, m->bodies.going, m->bodies.table.rows * sizeof *m->bodies.going);
 }
 
 static void hash_settings(tl_hash *hash, const tl_model *m)

@@ -53,6 +53,7 @@ typedef struct group_sums {
     double middle[TL_LANES];                    /* of volumes half-way, m3 */
     double strain2[TL_LANES];                   /* the square of the largest strain */
     double sound[TL_LANES];                     /* 1: no zone is turned inside out; else 0 */
+    double zones[TL_LANES];                     /* how many */
 } group_sums;
 
 typedef struct pass_job {
@@ -70,14 +71,14 @@ typedef struct row_edges {
     double way[3][3][TL_LANES];
 } row_edges;
 
-TL_INLINE void load_edges(const tl_parcel_points *p, uint16_t *const corner[4], size_t row, row_edges *restrict to)
+TL_INLINE void load_edges(const tl_gridpoint_now *p, uint16_t *const corner[4], size_t row, row_edges *restrict to)
 {
     for (size_t l = row; l < row + TL_LANES; l += 4) {
         double *restrict const edge = &to->edge[0][0][l - row], *restrict const way = &to->way[0][0][l - row];
         for (size_t a = 1; a < 4; a++) {
             const size_t at = 3 * (a - 1) * TL_LANES;
-            tl_lanes_apart(p->of[0].place, corner[a] + l, corner[0] + l, edge + at);
-            tl_lanes_apart(p->of[0].way, corner[a] + l, corner[0] + l, way + at);
+            tl_lanes_apart(p->place, corner[a] + l, corner[0] + l, edge + at);
+            tl_lanes_apart(p->way, corner[a] + l, corner[0] + l, way + at);
         }
     }
 }
@@ -108,18 +109,16 @@ TL_INLINE tl_sym3 turned(tl_sym3 s, tl_vec3 w)
 
 /* The zones of one row of a group: number k of their clusters. All of a zone in one go, so that it stays in
  * registers. */
-TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g, size_t k,
+TL_INLINE void strain_row(const struct tl_zones *z, const tl_gridpoint_now *p, const tl_zone_group *g, size_t k,
                           group_rows *restrict r, group_sums *restrict sums)
 {
     const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
     double *const *s = z->zones.stress;
     double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
     double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
-    double factor[TL_LANES];
+    const double number = (double)k;
     row_edges c;
     load_edges(p, z->zones.corner, row, &c);
-    for (size_t l = 0; l < TL_LANES; l++)
-        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_vec3 e1 = lane_of(c.edge[0], l), e2 = lane_of(c.edge[1], l), e3 = lane_of(c.edge[2], l);
@@ -129,11 +128,11 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_parcel_points *p, c
         r->area[1][0][at + l] = a2.x, r->area[1][1][at + l] = a2.y, r->area[1][2][at + l] = a2.z;
         r->area[2][0][at + l] = a3.x, r->area[2][1][at + l] = a3.y, r->area[2][2][at + l] = a3.z;
         const double six_now = tl_v3_dot(a1, e1);
-        r->volume[at + l] = factor[l] * six_now;
-        r->extent[at + l] = g->extent[l];
+        const double factor = number < sums->zones[l] ? 1.0 / 6 : 0;
+        r->volume[at + l] = factor * six_now;
         const tl_vec3 m1 = tl_v3_madd(e1, -0.5, w1), m2 = tl_v3_madd(e2, -0.5, w2), m3 = tl_v3_madd(e3, -0.5, w3);
         const tl_vec3 b1 = tl_v3_cross(m2, m3), b2 = tl_v3_cross(m3, m1), b3 = tl_v3_cross(m1, m2);
-        const double six = tl_v3_dot(b1, m1), per = 1 / six, middle = factor[l] * six;
+        const double six = tl_v3_dot(b1, m1), per = 1 / six, middle = factor * six;
         const double dxx = per * (w1.x * b1.x + w2.x * b2.x + w3.x * b3.x);
         const double dyy = per * (w1.y * b1.y + w2.y * b2.y + w3.y * b3.y);
         const double dzz = per * (w1.z * b1.z + w2.z * b2.z + w3.z * b3.z);
@@ -204,7 +203,9 @@ typedef struct given {
 TL_INLINE void mean_change(const group_rows *restrict r, double *const stress[6], size_t row, size_t depth,
                            double mean[TL_LANES])
 {
-    double sum[TL_LANES] = {0}, all[TL_LANES] = {0};
+    double sum[TL_LANES], all[TL_LANES];
+    tl_lanes_clear(sum);
+    tl_lanes_clear(all);
     const double *restrict xx = stress[0] + row, *restrict yy = stress[1] + row, *restrict zz = stress[2] + row;
     for (size_t i = 0; i < TL_LANES * depth; i += TL_LANES)
 #pragma omp simd
@@ -254,12 +255,10 @@ TL_INLINE void close_row(const struct tl_zones *z, const tl_zone_group *g, size_
     double *const *s = z->zones.stress;
     double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
     const double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
-    double factor[TL_LANES];
-    for (size_t l = 0; l < TL_LANES; l++)
-        factor[l] = k < g->count[l] ? 1.0 / 6 : 0;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const size_t i = at + l;
+        const double factor = r->volume[i] > 0 ? 1.0 / 6 : 0; /* inert rows push nothing */
         tl_sym3 t = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
         const double x = r->before[0][i], y = r->before[1][i], zz = r->before[2][i];
         const double more = (mean[l] - ((t.xx - x) + (t.yy - y) + (t.zz - zz))) * (1.0 / 3);
@@ -273,8 +272,8 @@ TL_INLINE void close_row(const struct tl_zones *z, const tl_zone_group *g, size_
         sums->work[l] += r->middle[i] * (straight + 2 * shear);
         sums->heat[l] += r->volume[i] * r->dissipated[i];
         sums->lost[l] += r->volume[i] * (more * more);
-        const tl_vec3 f1 = force_of(t, factor[l], r->area[0], i), f2 = force_of(t, factor[l], r->area[1], i);
-        const tl_vec3 f3 = force_of(t, factor[l], r->area[2], i);
+        const tl_vec3 f1 = force_of(t, factor, r->area[0], i), f2 = force_of(t, factor, r->area[1], i);
+        const tl_vec3 f3 = force_of(t, factor, r->area[2], i);
         put_push(&by[0], l, tl_v3_neg(tl_v3_add(tl_v3_add(f1, f2), f3)));
         put_push(&by[1], l, f1);
         put_push(&by[2], l, f2);
@@ -296,17 +295,22 @@ TL_INLINE void push_row(uint16_t *const corner[4], size_t row, const push by[4],
 /* ---------------------------------------------------------------- groups and parcels ----- */
 
 /* false: a zone is turned inside out. `most`: the square of the largest strain. */
-TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_parcel_points *p, const tl_zone_group *g,
+TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_gridpoint_now *p, const tl_zone_group *g,
                                        group_rows *r, double *most)
 {
     group_sums sums;
+    tl_lanes_clear(sums.change);
+    tl_lanes_clear(sums.middle);
+    tl_lanes_clear(sums.strain2);
     for (size_t l = 0; l < TL_LANES; l++) {
-        sums.change[l] = sums.middle[l] = sums.strain2[l] = 0;
         sums.sound[l] = 1;
+        sums.zones[l] = g->count[l];
     }
     for (size_t k = 0; k < g->depth; k++)
         strain_row(z, p, g, k, r, &sums);
     share_volume(r, &sums, g->depth);
+    for (size_t i = 0; i < TL_LANES * g->depth; i += TL_LANES)
+        tl_lanes_load(r->extent + i, g->extent);
     for (size_t l = 0; l < TL_LANES; l++)
         *most = tl_larger(*most, sums.strain2[l]);
     return is_outside_out(&sums);
@@ -317,8 +321,11 @@ TL_VECTORIZED static given close_group(const struct tl_zones *z, const tl_zone_g
                                        tl_slot *slots)
 {
     double mean[TL_LANES];
-    lane_sums sums = {{0}, {0}, {0}};
+    lane_sums sums;
     given out = {0, 0, 0};
+    tl_lanes_clear(sums.work);
+    tl_lanes_clear(sums.heat);
+    tl_lanes_clear(sums.lost);
     push by[4];
     mean_change(r, z->zones.stress, g->start, g->depth, mean);
     for (size_t k = 0; k < g->depth; k++) {
@@ -407,21 +414,16 @@ static bool call_solid(const pass_job *job, const tl_solid *solid, const tl_zone
 }
 
 /* The places of a parcel's gridpoints, and their way in the last step. */
-static void list_points(const pass_job *job, const tl_parcel *of, tl_parcel_points *p)
+static void list_points(const pass_job *job, const tl_parcel *of, tl_gridpoint_now *p)
 {
-    const tl_gridpoints *g = &job->zones->points;
     for (uint32_t k = of->point_begin; k < of->point_end; k++) {
-        const uint32_t row = job->zones->listed[k], at = k - of->point_begin;
-        for (int i = 0; i < 3; i++) {
-            p->of[at].place[i] = g->ref[i][row] + g->u[i][row];
-            p->of[at].way[i] = job->dt * g->moved[i][row];
-        }
+        tl_gridpoint_put(&p[k - of->point_begin], &job->zones->points, job->zones->listed[k], job->dt);
         job->zones->slot[k] = (tl_slot){{0}};
     }
 }
 
 /* Says which zone of a group is turned inside out. */
-static void note_inside_out(const pass_job *job, const tl_parcel_points *p, const tl_zone_group *g, const group_rows *r,
+static void note_inside_out(const pass_job *job, const tl_gridpoint_now *p, const tl_zone_group *g, const group_rows *r,
                             size_t parcel)
 {
     const tl_zone_table *t = &job->zones->zones;
@@ -431,7 +433,7 @@ static void note_inside_out(const pass_job *job, const tl_parcel_points *p, cons
             continue;
         tl_vec3 at = job->m->origin;
         for (int a = 0; a < 4; a++) {
-            const double *x = p->of[t->corner[a][row]].place;
+            const double *x = p[t->corner[a][row]].place;
             at = tl_v3_madd(at, 0.25, tl_v3(x[0], x[1], x[2]));
         }
         char text[TL_ERROR_TEXT / 2];
@@ -445,7 +447,7 @@ static void note_inside_out(const pass_job *job, const tl_parcel_points *p, cons
     }
 }
 
-static void pass_parcel(const pass_job *job, size_t parcel, tl_parcel_points *p)
+static void pass_parcel(const pass_job *job, size_t parcel, tl_gridpoint_now *p)
 {
     struct tl_zones *z = job->zones;
     const tl_parcel *of = &z->parcels.of[parcel];
@@ -480,7 +482,7 @@ static void pass_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     (void)chunk;
     const pass_job *job = user;
     for (size_t parcel = begin; parcel < end; parcel++)
-        pass_parcel(job, parcel, &job->zones->scratch[thread]);
+        pass_parcel(job, parcel, tl_gridpoints_aligned(job->zones->scratch[thread].of));
 }
 
 void tl_zones_pass(tl_model *m, double dt, tl_failure *failure)

@@ -102,15 +102,15 @@ typedef struct tl_slot {
     double of[4];
 } tl_slot;
 
-/* A gridpoint of a parcel: where it is, m, and how it came there in the last step. A line of memory. */
-typedef struct tl_parcel_point {
-    _Alignas(TL_ALIGN) double place[4];
-    double way[4];
-} tl_parcel_point;
+/* A gridpoint among those that a loop takes: where it is, m, and how it came there in the last step. A line of
+ * memory. */
+typedef struct tl_gridpoint_now {
+    double place[4], way[4];
+} tl_gridpoint_now;
 
-/* Those of a parcel. Scratch of a thread. */
+/* Those of a parcel, from the first line of memory on. Scratch of a thread. */
 typedef struct tl_parcel_points {
-    tl_parcel_point of[TL_PARCEL_POINTS];
+    tl_gridpoint_now of[TL_PARCEL_POINTS + 1];
 } tl_parcel_points;
 
 /* A triangle of the surface of a mesh: rows of its gridpoints, counter-clockwise as seen from outside, and the fourth
@@ -143,7 +143,8 @@ typedef struct tl_outer_part {
 typedef struct tl_mesh_motion {
     tl_vec3 velocity, turn;
     double power, strain_power;
-    bool loose; /* next to nothing bears it: it goes its own way */
+    bool loose;   /* next to nothing bears it: it goes its own way */
+    bool goes_on; /* where others stop */
 } tl_mesh_motion;
 
 /* The mesh of a body. */
@@ -205,6 +206,21 @@ static inline bool tl_model_deforms(const tl_model *m)
 static inline tl_vec3 tl_gridpoint_place(const tl_gridpoints *g, size_t row)
 {
     return tl_v3(g->ref[0][row] + g->u[0][row], g->ref[1][row] + g->u[1][row], g->ref[2][row] + g->u[2][row]);
+}
+
+/* The first of some that begins a line of memory. There is one more than needed. */
+static inline tl_gridpoint_now *tl_gridpoints_aligned(tl_gridpoint_now *first)
+{
+    return (tl_gridpoint_now *)(((uintptr_t)first + TL_ALIGN - 1) / TL_ALIGN * TL_ALIGN);
+}
+
+/* A gridpoint after a step of dt. */
+static inline void tl_gridpoint_put(tl_gridpoint_now *to, const tl_gridpoints *g, size_t row, double dt)
+{
+    for (int i = 0; i < 3; i++) {
+        to->place[i] = g->ref[i][row] + g->u[i][row];
+        to->way[i] = dt * g->moved[i][row];
+    }
 }
 
 #endif

@@ -43,13 +43,13 @@ function zones.hull(model, min, max)
     end }
 end
 
--- Moves gridpoints along a field of displacements, a function of the place, by `steps` equal steps, and stops them there. The
--- zones have seen all of it at the end.
+-- Moves gridpoints along a field of displacements, a function of the place and the gridpoint, by `steps` equal steps, and
+-- stops them there. The zones have seen all of it at the end.
 function zones.displace(model, points, field, steps, dt)
     dt = dt or model.dt
     local way = {}
     for i, p in ipairs(points) do
-        way[i] = field(p.position)
+        way[i] = field(p.position, p)
     end
     local i = 0
     points:set { velocity = function()

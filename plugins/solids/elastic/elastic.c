@@ -26,18 +26,23 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_solid_batch *ba
 {
     (void)report;
     const tl_isotropic *elastic = &((const elastic_solid *)self)->elastic;
-    for (uint32_t begin = 0; begin < batch->count; begin += TL_LANES) {
-        tl_lanes6 trial;
-        tl_solid_trial(batch, begin, elastic, trial);
-        for (uint32_t k = 0; k < 6; k++)
-            memcpy(batch->stress[k] + begin, trial[k], sizeof trial[k]);
+    const double lame = elastic->lame, twice = 2 * elastic->shear;
+    const double *xx = batch->strain[0], *yy = batch->strain[1], *zz = batch->strain[2];
+    const uint32_t count = batch->count;
+    uint32_t *flags = batch->flags;
+    for (uint32_t k = 0; k < 6; k++) {
+        const double *strain = batch->strain[k], volumetric = k < 3 ? lame : 0;
+        double *stress = batch->stress[k];
+        TL_EACH_ALONE
+        for (uint32_t i = 0; i < count; i++)
+            stress[i] += volumetric * (xx[i] + yy[i] + zz[i]) + twice * strain[i];
     }
     if (batch->stored)
-        tl_isotropic_energies(elastic, batch->count, (const double *const *)batch->stress, batch->stored);
+        tl_isotropic_energies(elastic, count, (const double *const *)batch->stress, batch->stored);
     if (batch->dissipated)
-        memset(batch->dissipated, 0, batch->count * sizeof *batch->dissipated);
-    for (uint32_t i = 0; i < batch->count; i++)
-        batch->flags[i] = tl_zone_flags(batch->flags[i], 0);
+        memset(batch->dissipated, 0, count * sizeof *batch->dissipated);
+    for (uint32_t i = 0; i < count; i++)
+        flags[i] = tl_zone_flags(flags[i], 0);
     return TL_OK;
 }
 
