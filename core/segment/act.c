@@ -1,9 +1,9 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
  * A SIMD group of segments is taken at a time. A side carries the three points of a segment with it. Let x be the
- * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at sum w
- * x and has moved by sum w d. With edges a and b from the first corner, how these have changed, a' and b', the size |a x
- * b| and the normal m of the triangle it turns by
+ * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at
+ * sum w x and has moved by sum w d. The triangle has the normal m, and from its first corner the edges a and b. These
+ * have changed by a' and b'. With the size |a x b| it turns by
  *
  *     turn = ((b . a' - a . b') m / 2 + (m . b') a - (m . a') b) / size
  *
