@@ -33,9 +33,9 @@
  */
 /**
  * @typedef {{P: number, Z: number, T: number, whole: boolean, body: Uint32Array, points: Uint32Array,
- *   zones: Uint32Array, triangles: Uint32Array, made: Float32Array, corner: Uint32Array, solid: Uint16Array,
- *   triangle: Uint32Array, zone: Uint32Array, block: Uint32Array, face: Uint32Array}} Surface meshes of deformable
- *   bodies: gridpoints, zones and the triangles of their surfaces; not whole: without zones inside
+ *   zones: Uint32Array, triangles: Uint32Array, made: Float32Array, corner: Uint32Array, solid: Uint16Array, home:
+ * Uint32Array, triangle: Uint32Array, zone: Uint32Array, block: Uint32Array, face: Uint32Array}} Surface meshes of
+ * deformable bodies: gridpoints, zones and the triangles of their surfaces; not whole: without zones inside
  */
 /** @typedef {{n: number, place: Float32Array, displacement: Float32Array}} Points gridpoints of a frame */
 /** @typedef {{field: number, value: Float32Array}} ZoneField */
@@ -337,6 +337,7 @@ function readSurface(c, head) {
         made: c.f32(3 * P, "made"),
         corner: c.u32(4 * Z, "corner"),
         solid: c.u16(Z, "solid"),
+        home: c.u32(Z, "home"),
         triangle: c.u32(3 * T, "triangle"),
         zone: c.u32(T, "zone"),
         block: c.u32(T, "block"),

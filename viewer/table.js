@@ -22,17 +22,15 @@ export function directionText(v) {
 function massText(kg) { return kg >= 1000 ? `${figure(kg / 1000)} t` : `${figure(kg)} kg`; }
 
 /**
- * What is known of the zones of a block: of all of its body, where that is of several.
+ * What is known of the zones of a block.
  * @param {import("./frames.js").Frame} frame
  * @param {number} id
  * @returns {[string, string][]}
  */
 function zoneRows(frame, id) {
-    const {surface, head, data} = frame, mesh = surface ? surface.body.indexOf(id) : -1;
-    if (!surface || mesh < 0) return [];
-    const start = surface.zones.subarray(0, mesh).reduce((sum, n) => sum + n, 0), count = surface.zones[mesh];
-    const yielded = zoneColumn(data, head, "state")?.subarray(start, start + count).filter((s) => s > 0).length ?? 0;
-    return [["zones", `${count}, ${yielded} yielded`]];
+    const {surface, head, data} = frame, states = zoneColumn(data, head, "state");
+    const own = surface ? [...surface.home.keys()].filter((z) => surface.home[z] === id) : [];
+    return own.length ? [["zones", `${own.length}, ${own.filter((z) => states && states[z] > 0).length} yielded`]] : [];
 }
 
 /**

@@ -265,26 +265,24 @@ export function cutZones(model, frame, shown, plane) {
     const distance =
         Float32Array.from({length: surface.P}, (_v, i) => dot(plane.normal, triple(x, i)) - plane.position);
     /** @type {ZoneCut} */ const cut = {place: [], from: [], share: [], zone: [], row: []};
-    const rowOf = rowsOf(model, frame, surface.body);
-    for (let m = 0, z = 0, last = 0; m < rowOf.length; m++, z = last) {
-        const row = rowOf[m];
-        last = z + surface.zones[m];
-        for (; row >= 0 && shown.kind[row] === 1 && z < last; z++) {
-            /** @type {number[]} */ const up = [], down = [];
-            for (const i of surface.corner.subarray(4 * z, 4 * z + 4)) (distance[i] > 0 ? up : down).push(i);
-            if (!up.length || !down.length) continue;
-            // the edges that the plane goes through, around the polygon
-            const edges = up.flatMap((i, k) => (k ? [...down].reverse() : down).map((j) => [i, j]));
-            for (let i = 1; i + 1 < edges.length; i++) {
-                for (const [a, b] of [edges[0], edges[i], edges[i + 1]]) {
-                    const t = distance[a] / (distance[a] - distance[b]);
-                    cut.place.push(...add(triple(x, a), scale(sub(triple(x, b), triple(x, a)), t)));
-                    cut.from.push(a, b);
-                    cut.share.push(t);
-                }
-                cut.zone.push(z);
-                cut.row.push(row);
+    const rows = rowsOf(model, frame, surface.home);
+    for (let z = 0; z < surface.Z; z++) {
+        const row = rows[z];
+        if (row < 0 || shown.kind[row] !== 1) continue;
+        /** @type {number[]} */ const up = [], down = [];
+        for (const i of surface.corner.subarray(4 * z, 4 * z + 4)) (distance[i] > 0 ? up : down).push(i);
+        if (!up.length || !down.length) continue;
+        // the edges that the plane goes through, around the polygon
+        const edges = up.flatMap((i, k) => (k ? [...down].reverse() : down).map((j) => [i, j]));
+        for (let i = 1; i + 1 < edges.length; i++) {
+            for (const [a, b] of [edges[0], edges[i], edges[i + 1]]) {
+                const t = distance[a] / (distance[a] - distance[b]);
+                cut.place.push(...add(triple(x, a), scale(sub(triple(x, b), triple(x, a)), t)));
+                cut.from.push(a, b);
+                cut.share.push(t);
             }
+            cut.zone.push(z);
+            cut.row.push(row);
         }
     }
     return cut;

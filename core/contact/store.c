@@ -190,7 +190,7 @@ bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
 static bool hold_carriers(tl_contacts *c)
 {
     const tl_column columns[] = {TL_COLUMN_NEW(c, carrier[0], 0), TL_COLUMN_NEW(c, carrier[1], 0),
-                                 TL_COLUMN_NEW(c, share, 0), TL_COLUMN_NEW(c, whole, 0)};
+                                 TL_COLUMN_NEW(c, share, 0), TL_COLUMN_NEW(c, heat, 0)};
     for (size_t k = 0; k < c->table.column_count; k++)
         if (c->table.columns[k].offset == columns[0].offset)
             return true;
@@ -199,7 +199,7 @@ static bool hold_carriers(tl_contacts *c)
 
 bool tl_detect_hold_carriers(tl_detect *d)
 {
-    if (d->contacts.whole)
+    if (d->contacts.heat)
         return true;
     if (!hold_carriers(&d->contacts))
         return false;

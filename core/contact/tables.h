@@ -46,8 +46,8 @@ typedef struct tl_contacts {
     uint8_t *deep;          /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
     /* of models with deformable blocks; NULL: there has been none */
     tl_carrier *carrier[2]; /* of its sides on deformable blocks */
-    double *share;          /* of its forces and energies that act: segments have the rest (segment/blend.c) */
-    double *whole;          /* energy after the last step, of all of it, J */
+    double *share;          /* of its energy that counts: segments have the rest (segment/blend.c) */
+    double *heat;           /* of all of it in the last step, J */
 } tl_contacts;
 
 /* Faces that a field contact remembers; of one with more the faces are listed in every step. */

@@ -26,6 +26,7 @@
 #include "cycle/damping.h"
 #include "cycle/energy.h"
 #include "cycle/gather.h"
+#include "cycle/held_gridpoints.h"
 #include "cycle/limits.h"
 #include "cycle/motion.h"
 #include "cycle/prepare.h"
@@ -81,6 +82,8 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
         status = ask_contributors(m, false);
     /* false when a user's function ends the run: bodies then go on as they were driven before */
     *driven = status != TL_OK || tl_drives_evaluate(m, m->relaxing ? m->time : m->time + 0.5 * *dt);
+    if (status == TL_OK)
+        tl_gridpoints_expect(m);
     if (status == TL_OK)
         status = tl_motion_check(m, *dt, true);
     return status == TL_OK ? tl_undo_reserve(m) : status;

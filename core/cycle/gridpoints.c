@@ -12,9 +12,11 @@
 #include "base/extremes.h"
 #include "base/lanes.h"
 #include "cycle/gridpoint.h"
+#include "cycle/held_gridpoints.h"
 #include "cycle/meshes.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
+#include "zone/outer.h"
 #include "zone/stiffness.h"
 
 #include <math.h>
@@ -280,6 +282,7 @@ void tl_gridpoints_gather(tl_model *m)
         return;
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
     tl_carriers_push(m);
+    tl_outer_push(m, tl_loads_share(m));
     if (m->relaxing)
         tl_meshes_judge(m);
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, sum_range, m);
@@ -309,7 +312,7 @@ void tl_gridpoints_brake(tl_model *m, bool stop, double lost, double kick)
     struct tl_zones *z = m->zones;
     for (size_t k = 0; z && k < z->mesh_count; k++) {
         const tl_mesh_motion *of = &z->motion[k];
-        const bool ends = of->loose ? of->power < 0 : stop, calms = of->strain_power < 0;
+        const bool ends = of->loose ? of->power < 0 : stop && !of->goes_on, calms = stop || of->strain_power < 0;
         brake_mesh(m, &z->mesh[k], ends || !calms ? NULL : of, ends || calms ? lost : 0, kick);
     }
 }
@@ -470,6 +473,21 @@ TL_VECTORIZED static void book_damping(const tl_gridpoints *p, const free_parts 
             }
 }
 
+/* Mends gridpoints that more than axes hold, and books what pushes them at the surface. */
+static void mend_chunk(const move_job *job, size_t begin, size_t count, const movers *by, chunk_work *work)
+{
+    for (size_t i = 0; i < count; i++) {
+        const tl_point_moved moved = {.v0 = {by->v0[0][i], by->v0[1][i], by->v0[2][i]},
+                                      .mass = by->mass[i],
+                                      .alpha = by->alpha[i],
+                                      .kick = job->kick,
+                                      .drift = job->drift,
+                                      .until = job->until,
+                                      .after = job->after};
+        tl_gridpoint_mend(job->m, begin + i, &moved, i % TL_LANES, work->book);
+    }
+}
+
 static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
@@ -483,6 +501,8 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     find_free(p->fixed + begin, count, &free);
     find_movers(job->m, begin, count, &by);
     move_chunk(p, &free, begin, count, job, &by);
+    if (tl_gridpoints_mend(job->m))
+        mend_chunk(job, begin, count, &by, &work);
     if (tl_is_damped(job->m))
         book_damping(p, &free, begin, count, job, &by, &work);
     book_chunk(p, &free, begin, count, job, &by, &work);
@@ -492,6 +512,7 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 void tl_gridpoints_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt, 0.5 * m->dt, 0.5 * dt};
+    tl_gridpoints_follow_drives(m, dt);
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, move_range, &job);
     m->zones->moved_dt = dt;
     m->zones->steps_kept -= m->zones->steps_kept > 0;

@@ -1,4 +1,5 @@
-/* insitu.c - initial stress put on the contacts of a model: tractions sigma n on the face patches that exist now.
+/* insitu.c - initial stress put on the contacts of a model: tractions sigma n on the face patches that exist now; and
+ * on zones and segments of deformable blocks (insitu_zones.c).
  *
  * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets f_n = -(n .
  * sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now. Field contacts begin
@@ -12,11 +13,15 @@
 #include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
+#include "cycle/insitu_zones.h"
 #include "cycle/undo.h"
 #include "detect/detect.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
 #include "model/options.h"
+#include "segment/meets.h"
+
+#include <stdlib.h>
 
 /* Tolerance: a traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9
@@ -110,6 +115,12 @@ static void say_tension(tl_model *m, const tl_insitu *s)
                 b = m->blocks.id[d->contacts.b[c]];
             }
         }
+    const tl_id zoned = pulled ? TL_NO_ID : tl_insitu_pulls(m, PULL);
+    if (zoned != TL_NO_ID && tl_model_says(m, TL_REMARK_TENSION))
+        tl_model_say(m,
+                     "insitu: the mean stress in block %u is tension, which is positive; give compression as negative "
+                     "numbers",
+                     zoned);
     if (pulled && tl_model_says(m, TL_REMARK_TENSION))
         tl_model_say(m,
                      "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is positive in "
@@ -240,6 +251,37 @@ static tl_status check_gradient(tl_model *m, const tl_insitu *s)
     return TL_OK;
 }
 
+/* Lists which rows of blocks are meant, 1 each, or NULL for all. */
+static tl_status choose_blocks(tl_model *m, const tl_insitu *s, uint8_t **chosen)
+{
+    *chosen = NULL;
+    if (!s->blocks)
+        return TL_OK;
+    *chosen = calloc(m->blocks.table.rows + 1, 1);
+    if (!*chosen)
+        return tl_fail_memory(&m->error);
+    for (size_t k = 0; k < s->block_count; k++)
+        (*chosen)[tl_block_row_quiet(m, s->blocks[k])] = 1;
+    return TL_OK;
+}
+
+/* Puts the stress on what is meant. Rows of blocks have been tidied. */
+static tl_status put_stress(tl_model *m, const tl_insitu *s)
+{
+    uint8_t *chosen;
+    const tl_contacts *c = &m->detect->contacts;
+    tl_status status = choose_blocks(m, s, &chosen);
+    if (status == TL_OK && !(tl_detect_hold_initial(m->detect) && tl_insitu_zones_prepare(m)))
+        status = tl_fail_memory(&m->error);
+    for (uint32_t i = 0; status == TL_OK && i < c->table.rows; i++)
+        if (!chosen || chosen[c->a[i]] || chosen[c->b[i]])
+            load_contact(m, s, i);
+    if (status == TL_OK)
+        tl_insitu_zones(m, s, chosen);
+    free(chosen);
+    return status;
+}
+
 tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
 {
     tl_insitu insitu;
@@ -255,17 +297,21 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
     status = check_gradient(m, &insitu);
     if (status != TL_OK)
         return status;
+    if (insitu.blocks)
+        status = tl_blocks_check(m, insitu.blocks, insitu.block_count);
+    if (status != TL_OK)
+        return status;
     /* in the present places, where a step that failed has left the contacts already */
     status = tl_detect_update(m);
+    if (status == TL_OK)
+        status = tl_segments_find(m);
     outer_blocks outer;
     if (status == TL_OK)
         status = find_outer(m, &insitu, &outer);
+    if (status == TL_OK)
+        status = put_stress(m, &insitu);
     if (status != TL_OK)
         return status;
-    if (!tl_detect_hold_initial(m->detect))
-        return tl_fail_memory(&m->error);
-    for (uint32_t i = 0; i < m->detect->contacts.table.rows; i++)
-        load_contact(m, &insitu, i);
     m->split_count = 0; /* new faces carry what the stress says, and no longer what holds parts as the whole went on */
     m->laws++;          /* contacts hold another energy */
     tl_undo_by_hand(m);

@@ -577,7 +577,7 @@ static void carry_body(const move_job *job, uint32_t body, chunk_work *work)
 {
     tl_bodies *b = &job->m->bodies;
     double dt = job->drift;
-    if (b->drive[body]) {
+    if (b->drive[body] && !b->mesh[body]) {
         const tl_drive_record *drive = &job->m->drives[b->drive[body] - 1];
         b->v[body] = drive->velocity;
         b->w[body] = drive->angular_velocity;

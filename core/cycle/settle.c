@@ -83,10 +83,19 @@
 /* Tolerance: closures, of the body or the mean one, by which a leap carries a body at the most. */
 #define CLOSURES 50.0
 
+/* Tolerance: ways in a row in one direction after which a body goes on where others stop; its speed over the highest of
+ * these ways; and cos of the largest change of direction. What settles becomes slower from stop to stop. */
+#define WAYS 6
+#define AS_FAST 0.3
+#define ONE_WAY 0.7
+
 void tl_settle_begin(tl_model *m, int64_t load_steps)
 {
-    for (size_t body = 0; body < m->bodies.table.rows; body++)
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
         m->bodies.fall[body] = INFINITY;
+        if (m->bodies.going)
+            m->bodies.going[body] = (tl_going){.from = m->bodies.pose[body].u};
+    }
     m->relaxing = true;
     if (m->detect)
         tl_balance_note(m); /* the balance of the motion so far is none of a relaxation's */
@@ -168,14 +177,48 @@ static void stop_all(tl_model *m, double dt)
     put_none(m->cycle, all_lost(m, dt));
 }
 
-/* Stops all but loose bodies when these together work against the motion, and each loose one when it does. */
+/* Whether a body goes on where all others stop: it has gone one way from stop to stop, about as fast as ever; then as
+ * long as it becomes faster. */
+static bool goes_on(const tl_model *m, uint32_t body, tl_vec3 v)
+{
+    tl_going *of = &m->bodies.going[body];
+    const tl_vec3 at = m->bodies.pose[body].u, way = tl_v3_sub(at, of->from);
+    const double speed = tl_v3_norm(v), along = tl_v3_dot(way, of->way);
+    const bool same = along > ONE_WAY * tl_v3_norm(way) * tl_v3_norm(of->way) && tl_v3_dot(v, way) > 0;
+    const int32_t ways = same ? of->ways + 1 : 0;
+    const double fastest = same ? fmax(of->fastest, speed) : speed;
+    const bool on = of->on ? same && speed >= of->speed : ways >= WAYS && speed >= AS_FAST * fastest;
+    *of = (tl_going){at, way, speed, fastest, ways, on};
+    return on;
+}
+
+/* Finds what goes on where all others stop. Of rigid bodies its alpha is left at 0. */
+static void let_go_on(tl_model *m, double lost)
+{
+    const tl_bodies *b = &m->bodies;
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        tl_mesh_motion *of = b->mesh[body] ? &m->zones->motion[b->mesh[body] - 1] : NULL;
+        const bool held = !of && b->fixed[body] == TL_FIX_ALL;
+        const bool on = !held && goes_on(m, body, of ? of->velocity : b->v[body]);
+        if (of)
+            of->goes_on = on;
+        m->cycle->alpha[body] = on ? 0 : lost;
+    }
+}
+
+/* Stops all but loose bodies when these together work against the motion, and each loose one when it does. Where some
+ * block is deformable, what slides on goes on. */
 static void move_on(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
     const tl_bodies *b = &m->bodies;
     const double gravity = tl_v3_norm(m->config.gravity), lost = all_lost(m, dt);
-    put_none(c, c->sums.power < 0 ? lost : 0);
-    tl_gridpoints_brake(m, c->sums.power < 0, lost, 0.5 * (m->dt + dt));
+    const bool stop = c->sums.power < 0, deforms = tl_model_deforms(m);
+    put_none(c, stop ? lost : 0);
+    if (stop && deforms)
+        let_go_on(m, lost);
+    if (deforms)
+        tl_gridpoints_brake(m, stop, lost, 0.5 * (m->dt + dt));
     for (uint32_t body = 0; c->settling.calm && body < b->table.rows; body++)
         if (b->fixed[body] != TL_FIX_ALL && tl_body_is_loose(m, body, tl_weight_of(b, body, gravity)))
             c->alpha[body] = tl_body_power(m, body) < 0 ? lost : 0;

@@ -3,6 +3,7 @@
 #define TL_CYCLE_SETTLING_H
 
 #include <stdint.h>
+#include <talus/types.h>
 
 typedef struct tl_settling {
     double share;      /* of gravity and loads that acts */
@@ -25,5 +26,14 @@ typedef struct tl_settling {
     int32_t calm;      /* the model as a whole is near rest: loose bodies go their own way */
     int32_t gained;    /* leaps of this spell have brought it nearer to rest */
 } tl_settling;
+
+/* How a body goes on from stop to stop, while some block is deformable. */
+typedef struct tl_going {
+    tl_vec3 from;          /* displacement at the last stop, m */
+    tl_vec3 way;           /* gone from the stop before to it, m */
+    double speed, fastest; /* before it, and before all stops of these ways, m/s */
+    int32_t ways;          /* in a row in one direction */
+    int32_t on;            /* went on where all others stopped, 1 or 0 */
+} tl_going;
 
 #endif

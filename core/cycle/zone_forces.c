@@ -4,6 +4,7 @@
 #include "cycle/cycle_data.h"
 #include "cycle/zone_limits.h"
 #include "segment/act.h"
+#include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/pass.h"

@@ -1,5 +1,6 @@
 /* boundary.c - the outer faces of a model by side, plane, box or direction; holding their blocks and loading them.
  *
+ * What is done to deformable blocks is done to triangles of their surfaces: zone_faces.c. A rigid block bears it whole.
  * A traction t = t_o + b z that is linear in the height z gives the body of a face, with r from the body's centroid,
  *
  *     F = int t dS,    M = int r x t dS
@@ -11,16 +12,20 @@
 #include "base/error.h"
 #include "contact/body_contacts.h"
 #include "contact/sides.h"
+#include "cycle/contributors.h"
 #include "detect/detect.h"
+#include "edit/zone_faces.h"
 #include "geometry/point2.h"
 #include "geometry/seam.h"
 #include "model/loads.h"
+#include "zone/body_verbs.h"
+#include "zone/outer.h"
+#include "zone/zones.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/boundary.h>
-#include <talus/elementary.h>
 
 /* Integrals over a plane area in its own coordinates u, v. */
 typedef struct area_sums {
@@ -32,29 +37,11 @@ typedef struct outer_face {
     uint32_t row, face;
     tl_vec3 normal, o, t1, t2; /* axes of the model; o relative to its origin */
     area_sums sums;
+    tl_bare_face bare; /* of a deformable block: its triangles */
 } outer_face;
 
-/* Tolerance: off the plane, or out of the box, by less than this times the block's size a corner is in it. It is what
- * contacts take for touching (TL_CONTACT_TOLERANCE). */
-#define TOLERANCE 1e-3
 /* Tolerance: largest component across an axis of the normal of a face whose roller is held along that axis. */
 #define ALONG 1e-2
-/* Tolerance: by this a cosine may be smaller than that of the angle given: at 45 degrees from {1, 0, 1} lies {1, 0,
- * 0}. Test: lua/test_boundary. */
-#define ROUNDED 1e-12
-
-#define DEGREE (3.14159265358979323846 / 180)
-
-/* Which faces are meant, once the model's bounds are known. */
-typedef struct face_filter {
-    const tl_boundary_where *where;
-    bool plane, box, facing;
-    tl_vec3 normal, at;  /* of the plane, relative to the origin */
-    tl_bounds bounds;    /* of the box, likewise */
-    tl_vec3 direction;   /* unit */
-    double least_cosine; /* with it */
-} face_filter;
-
 /* What is put on faces. */
 typedef struct face_loads {
     tl_face_load *at;
@@ -67,6 +54,20 @@ typedef struct body_sum {
     tl_vec3 arm; /* weighted by the length of the forces */
     double weight;
 } body_sum;
+
+/* One call: what its actions do, before any of it is done. */
+typedef struct plan {
+    tl_model *m;
+    bool add;
+    uint8_t *fix;    /* of each row of blocks: how rigid ones are to be held */
+    uint32_t *drive; /* likewise the number of a drive, or 0 */
+    body_sum *sums;  /* of each body */
+    face_loads loads;
+    tl_covers covers;
+    tl_bare_list bare;
+    tl_outer_list outer;
+    uint32_t now; /* the drive of the action being planned, or 0 */
+} plan;
 
 /* ---------------------------------------------------------------- outer parts of faces ----
  *
@@ -153,6 +154,29 @@ static tl_status take_contacts(tl_model *m, outer_face *f)
     return status;
 }
 
+/* Takes away the triangles of deformable blocks that lie on a face. */
+static tl_status take_zones(tl_model *m, outer_face *f, const tl_covers *covers)
+{
+    size_t at;
+    const size_t end = tl_covers_of(covers, f->row, f->face, &at);
+    for (; at < end; at++) {
+        const tl_surface_part *part = &m->zones->part[covers->list[at].other_part];
+        const uint32_t mine = tl_poly_face_size(m->blocks.shape[f->row], f->face);
+        const size_t capacity = mine + 3;
+        tl_point2 by[3], *memory = malloc(2 * capacity * sizeof *memory), *now = memory, *next = memory + capacity;
+        if (!memory)
+            return tl_fail_memory(&m->error);
+        for (uint32_t i = 0; i < mine; i++)
+            now[i] = flatten(f, corner_at(m, f->row, f->face, i));
+        for (int i = 0; i < 3; i++)
+            by[i] = flatten(f, tl_gridpoint_place(&m->zones->points, part->corner[i]));
+        const size_t count = tl_polygon_common(&now, &next, mine, by, 3);
+        add_polygon(&f->sums, now, count, -1);
+        free(memory);
+    }
+    return TL_OK;
+}
+
 /* Takes away what lies on other blocks of the body, and raises the share that may be left bare. */
 static tl_status take_members(tl_model *m, outer_face *f, double *bare)
 {
@@ -174,7 +198,7 @@ static tl_status take_members(tl_model *m, outer_face *f, double *bare)
 
 /* Measures the outer part of a face of the block in a row, after a tl_detect_refresh. Its area is 0 where all of the
  * face but for roundings lies on others. */
-static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, outer_face *out)
+static tl_status outer_measure(tl_model *m, const tl_covers *covers, uint32_t row, uint32_t face, outer_face *out)
 {
     const tl_poly *shape = m->blocks.shape[row];
     *out = (outer_face){.row = row, .face = face};
@@ -193,6 +217,8 @@ static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, outer_f
     double whole = out->sums.a, bare = UNCOVERED;
     tl_status status = take_contacts(m, out);
     if (status == TL_OK)
+        status = take_zones(m, out, covers);
+    if (status == TL_OK)
         status = take_members(m, out, &bare);
     if (out->sums.a <= bare * whole)
         out->sums = (area_sums){0};
@@ -208,105 +234,37 @@ static tl_vec3 outer_centroid(const outer_face *f)
 
 /* ---------------------------------------------------------------- which faces ------------ */
 
-const char *const *tl_side_names(void)
-{
-    static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
-    return names;
-}
-
-tl_side tl_side_named(const char *name)
-{
-    const char *const *names = tl_side_names();
-    for (int i = 0; names[i]; i++)
-        if (strcmp(names[i], name) == 0)
-            return (tl_side)(TL_SIDE_XMIN + i);
-    return TL_SIDE_ANY;
-}
-
-static tl_vec3 side_normal(int32_t side)
-{
-    static const tl_vec3 normals[] = {
-        [TL_SIDE_XMIN] = {-1, 0, 0}, [TL_SIDE_XMAX] = {1, 0, 0},  [TL_SIDE_YMIN] = {0, -1, 0},
-        [TL_SIDE_YMAX] = {0, 1, 0},  [TL_SIDE_ZMIN] = {0, 0, -1}, [TL_SIDE_ZMAX] = {0, 0, 1}};
-    return normals[side];
-}
-
-/* The farthest place of a vertex along a direction, relative to the origin. */
-static double farthest(const tl_model *m, tl_vec3 direction)
-{
-    double most = -INFINITY;
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
-        for (uint32_t i = 0; i < m->blocks.shape[row]->vertex_count; i++)
-            most = fmax(most, tl_v3_dot(direction, vertex_at(m, row, i)));
-    return most;
-}
-
-static tl_status begin_filter(tl_model *m, const tl_boundary_where *where, face_filter *s)
-{
-    *s = (face_filter){.where = where};
-    s->box = !isnan(where->box.min.x);
-    s->facing = !isnan(where->facing.x);
-    s->plane = where->side != TL_SIDE_ANY || !isnan(where->normal.x);
-    if (where->side != TL_SIDE_ANY) {
-        s->normal = side_normal(where->side);
-        s->at = tl_v3_scale(farthest(m, s->normal), s->normal);
-    } else if (s->plane) {
-        if (!(tl_v3_norm(where->normal) > 0))
-            return tl_fail(&m->error, TL_E_ARGUMENT, "boundary: the normal of the plane must not be zero");
-        s->normal = tl_v3_unit(where->normal);
-        s->at = tl_v3_sub(where->at, m->origin);
-    }
-    if (s->facing && !(tl_v3_norm(where->facing) > 0))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "boundary: facing must not be zero");
-    if (s->facing) {
-        s->direction = tl_v3_unit(where->facing);
-        s->least_cosine = tl_cos(where->within * DEGREE) - ROUNDED;
-    }
-    if (s->box)
-        s->bounds = (tl_bounds){tl_v3_sub(where->box.min, m->origin), tl_v3_sub(where->box.max, m->origin)};
-    return TL_OK;
-}
-
-static bool in_box(const tl_bounds *box, tl_vec3 p, double slack)
-{
-    return p.x >= box->min.x - slack && p.x <= box->max.x + slack && p.y >= box->min.y - slack &&
-           p.y <= box->max.y + slack && p.z >= box->min.z - slack && p.z <= box->max.z + slack;
-}
-
-/* Whether a face is where it is looked for; it may be no outer one. */
-static bool is_there(const tl_model *m, const face_filter *s, uint32_t row, uint32_t face)
-{
-    const tl_poly *shape = m->blocks.shape[row];
-    tl_vec3 n = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
-    double slack = isnan(s->where->tolerance) ? TOLERANCE * m->blocks.size[row] : s->where->tolerance;
-    if ((s->plane && tl_v3_dot(n, s->normal) <= 0) || (s->facing && tl_v3_dot(n, s->direction) < s->least_cosine))
-        return false;
-    for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++) {
-        tl_vec3 p = vertex_at(m, row, shape->loop[i]);
-        if ((s->plane && fabs(tl_v3_dot(s->normal, tl_v3_sub(p, s->at))) > slack) ||
-            (s->box && !in_box(&s->bounds, p, slack)))
-            return false;
-    }
-    return true;
-}
-
 typedef struct face_list {
     outer_face *at;
     size_t count, capacity;
 } face_list;
 
-static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_list *faces)
+/* Measures the triangles of a face of a deformable block that are meant, as its outer part. */
+static tl_status bare_measure(plan *p, const tl_face_filter *filter, uint32_t row, uint32_t face, outer_face *out)
 {
-    face_filter s;
-    tl_status status = begin_filter(m, where, &s);
+    *out = (outer_face){.row = row, .face = face};
+    if (!tl_bare_find(p->m, filter, &p->covers, row, face, &p->bare, &out->bare))
+        return tl_fail_memory(&p->m->error);
+    out->normal = out->bare.normal;
+    out->o = out->bare.centroid;
+    out->sums.a = out->bare.area;
+    return TL_OK;
+}
+
+static tl_status find_faces(plan *p, const tl_face_filter *filter, face_list *faces)
+{
+    tl_model *m = p->m;
+    tl_status status = TL_OK;
     for (uint32_t row = 0; row < m->blocks.table.rows; row++)
         for (uint32_t f = 0; f < m->blocks.shape[row]->face_count && status == TL_OK; f++) {
-            if (!is_there(m, &s, row, f))
+            const bool deforms = tl_block_deforms(m, row);
+            if (!deforms && !tl_face_is_there(m, filter, row, f))
                 continue;
             if (!tl_grow(&faces->at, &faces->capacity, faces->count + 1, sizeof *faces->at))
                 return tl_fail_memory(&m->error);
-            status = outer_measure(m, row, f, &faces->at[faces->count]);
-            faces->count += status == TL_OK && faces->at[faces->count].sums.a > 0;
+            outer_face *out = &faces->at[faces->count];
+            status = deforms ? bare_measure(p, filter, row, f, out) : outer_measure(m, &p->covers, row, f, out);
+            faces->count += status == TL_OK && out->sums.a > 0;
         }
     if (status == TL_OK && faces->count == 0)
         return tl_fail(&m->error, TL_E_NOT_FOUND,
@@ -337,13 +295,14 @@ static void face_load(const tl_model *m, const tl_boundary_action *a, const oute
     *moment = tl_v3_add(tl_v3_cross(arm, sum), tl_v3_add(tl_v3_cross(f->t1, sum_u), tl_v3_cross(f->t2, sum_v)));
 }
 
-static tl_status add_load(tl_model *m, const tl_boundary_action *a, const outer_face *f, body_sum *sums,
-                          face_loads *loads, tl_boundary_result *result)
+static tl_status add_load(plan *p, const tl_boundary_action *a, const outer_face *f, tl_boundary_result *result)
 {
+    tl_model *m = p->m;
+    face_loads *loads = &p->loads;
     uint32_t body = m->blocks.body[f->row];
     tl_vec3 force, moment, place = tl_body_place(&m->bodies, body);
     face_load(m, a, f, &force, &moment);
-    body_sum *sum = &sums[body];
+    body_sum *sum = &p->sums[body];
     double weight = tl_v3_norm(force);
     sum->force = tl_v3_add(sum->force, force);
     sum->moment = tl_v3_add(sum->moment, moment);
@@ -371,9 +330,15 @@ static unsigned roller_of(tl_vec3 n)
     return fmax(x, y) < ALONG ? TL_FIX_Z : 0;
 }
 
-static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const outer_face *f, uint8_t *fix)
+static tl_status add_fixing(plan *p, const tl_boundary_action *a, const outer_face *f)
 {
+    tl_model *m = p->m;
     unsigned what = a->fixed ? TL_FIX_ALL : 0;
+    if (a->quiet)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "boundary: block %u is rigid, and only deformable blocks have quiet faces; give it zones first, "
+                       "or choose other faces",
+                       m->blocks.id[f->row]);
     if (a->roller && !a->fixed) {
         what = roller_of(f->normal);
         if (!what)
@@ -383,8 +348,31 @@ static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const oute
                            f->face + 1, m->blocks.id[f->row], f->normal.x, f->normal.y, f->normal.z);
         what |= a->rotation ? TL_FIX_ROTATION : 0;
     }
-    fix[f->row] |= (uint8_t)what;
+    p->fix[f->row] |= (uint8_t)what;
+    if (p->now)
+        p->drive[f->row] = p->now;
     return TL_OK;
+}
+
+/* Whether an action does something to what it finds. */
+static bool does_something(const tl_boundary_action *a)
+{
+    return a->loads || a->fixed || a->roller || a->quiet || a->drive;
+}
+
+/* What an action does to triangles of a deformable block. */
+static tl_status add_triangles(plan *p, const tl_boundary_action *a, const tl_face_filter *filter, const outer_face *f,
+                               tl_boundary_result *result)
+{
+    tl_model *m = p->m;
+    if (!does_something(a))
+        return TL_OK;
+    if ((a->fixed || a->roller || a->drive) && m->bodies.drive[m->blocks.body[f->row]])
+        return tl_fail(&m->error, TL_E_STATE,
+                       "boundary: block %u is driven as a whole, so its faces cannot be held; let it go first",
+                       m->blocks.id[f->row]);
+    return tl_bare_act(m, a, filter, p->now, f->row, &p->bare, &f->bare, &p->outer, result) ? TL_OK
+                                                                                            : tl_fail_memory(&m->error);
 }
 
 /* Writes what was found; false when out of memory. Faces are in order of rows, and so of ids. */
@@ -404,16 +392,44 @@ static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_r
     return r->faces && r->blocks;
 }
 
-/* Finds the faces of one action and notes what is to be done. */
-static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, body_sum *sums, face_loads *loads,
-                      tl_boundary_result *result)
+/* Refuses what does not go together. */
+static tl_status check_action(tl_model *m, const tl_boundary_action *a)
 {
+    if (a->quiet && (a->fixed || a->roller || a->drive))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "boundary: a quiet face moves, so it cannot be held as well: give quiet without fixed, roller "
+                       "and velocity");
+    if (!a->drive)
+        return TL_OK;
+    if (a->fixed || a->roller)
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "boundary: a face with a velocity is held by that: give it without fixed and roller");
+    if (a->drive->angular_velocity_at || tl_v3_norm2(a->drive->angular_velocity) > 0)
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "boundary: faces get a velocity and do not turn; drive the block to turn it");
+    return tl_check_motion(&m->error, "boundary", a->drive->velocity, a->drive->angular_velocity);
+}
+
+/* Finds the faces of one action and notes what is to be done. */
+static tl_status plan_action(plan *p, const tl_boundary_action *a, tl_boundary_result *result)
+{
+    tl_model *m = p->m;
     face_list faces = {0};
-    tl_status status = find_faces(m, &a->where, &faces);
+    tl_face_filter filter;
+    tl_status status = check_action(m, a);
+    if (status == TL_OK)
+        status = tl_face_filter_begin(m, &a->where, &filter);
+    if (status == TL_OK)
+        status = find_faces(p, &filter, &faces);
     for (size_t i = 0; i < faces.count && status == TL_OK; i++) {
-        status = add_fixing(m, a, &faces.at[i], fix);
+        const outer_face *f = &faces.at[i];
+        if (tl_block_deforms(m, f->row)) {
+            status = add_triangles(p, a, &filter, f, result);
+            continue;
+        }
+        status = add_fixing(p, a, f);
         if (a->loads && status == TL_OK)
-            status = add_load(m, a, &faces.at[i], sums, loads, result);
+            status = add_load(p, a, f, result);
     }
     if (status == TL_OK && !fill_result(m, &faces, result))
         status = tl_fail_memory(&m->error);
@@ -472,41 +488,37 @@ static bool keep_others(const tl_model *m, const body_sum *sums, bool add, face_
     return true;
 }
 
-/* Refuses to hold or load the bodies of deformable blocks. */
-static tl_status check_rigid(tl_model *m, const uint8_t *fix, const body_sum *sums)
+/* Does what was planned: what can fail comes first. */
+static tl_status carry_out(plan *p)
 {
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
-        if (tl_block_deforms(m, row) && (fix[row] || sums[m->blocks.body[row]].weight > 0))
-            return tl_fail(&m->error, TL_E_STATE, "boundary: block %u is deformable; hold or load its gridpoints",
-                           m->blocks.id[row]);
-    return TL_OK;
-}
-
-static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add, face_loads *loads)
-{
-    tl_status status = check_rigid(m, fix, sums);
-    if (status == TL_OK)
-        status = check_loads(m, sums, add);
+    tl_model *m = p->m;
+    tl_status status = check_loads(m, p->sums, p->add);
     size_t replaced = 0;
-    if (status == TL_OK && loads->count && !keep_others(m, sums, add, loads))
+    if (status == TL_OK && p->loads.count && !keep_others(m, p->sums, p->add, &p->loads))
         status = tl_fail_memory(&m->error);
-    if (status == TL_OK && loads->count)
+    if (status == TL_OK && p->outer.count)
+        status = tl_outer_put(m, p->outer.at, p->outer.count, p->add);
+    if (status == TL_OK && p->loads.count)
         m->face_load_count = 0;
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
-        if (!(sums[body].weight > 0))
+        if (!(p->sums[body].weight > 0))
             continue;
-        replaced += !add && tl_body_loaded(&m->bodies, body);
-        tl_load load = load_of(m, body, &sums[body], add);
+        replaced += !p->add && tl_body_loaded(&m->bodies, body);
+        tl_load load = load_of(m, body, &p->sums[body], p->add);
         const tl_id id = m->bodies.id[body]; /* the table may move */
         status = tl_blocks_load(m, &id, 1, &load);
     }
-    if (status == TL_OK && loads->count) {
-        tl_face_loads_set(m, loads->at, loads->count, loads->capacity);
-        loads->at = NULL;
+    if (status == TL_OK && p->loads.count) {
+        tl_face_loads_set(m, p->loads.at, p->loads.count, p->loads.capacity);
+        p->loads.at = NULL;
     }
-    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++)
-        if (fix[row])
-            status = tl_blocks_fix(m, &m->blocks.id[row], 1, fix[row]);
+    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++) {
+        if (p->fix[row])
+            status = tl_blocks_fix(m, &m->blocks.id[row], 1, p->fix[row]);
+        if (p->drive[row])
+            tl_drive_follow(m, m->blocks.body[row], p->drive[row]);
+        m->constraints += p->drive[row] != 0;
+    }
     if (replaced)
         tl_model_say(m,
                      "boundary: %zu bod%s had a load, which this one takes the place of; give all "
@@ -527,6 +539,51 @@ tl_boundary_action tl_boundary_action_default(void)
                                           .tolerance = NAN}};
 }
 
+/* Makes room for a plan. */
+static tl_status begin_plan(plan *p, bool loads)
+{
+    tl_model *m = p->m;
+    p->fix = calloc(m->blocks.table.rows + 1, sizeof *p->fix);
+    p->drive = calloc(m->blocks.table.rows + 1, sizeof *p->drive);
+    p->sums = calloc(m->bodies.table.rows + 1, sizeof *p->sums);
+    const bool enough = p->fix && p->drive && p->sums && (!loads || tl_bodies_hold_loads(&m->bodies)) &&
+                        (!tl_model_deforms(m) || tl_meets_cover(m, &p->covers.list, &p->covers.count));
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+static void end_plan(plan *p)
+{
+    free(p->loads.at);
+    free(p->fix);
+    free(p->drive);
+    free(p->sums);
+    free(p->covers.list);
+    free(p->bare.at);
+    free(p->outer.at);
+}
+
+/* Makes the drive of an action, which it keeps in use until something follows it. `made`: numbers of all so far. */
+static tl_status begin_drive(plan *p, const tl_boundary_action *a, uint32_t *made)
+{
+    *made = p->now = 0;
+    if (!a->drive)
+        return TL_OK;
+    p->now = *made = tl_drive_new(p->m, a->drive);
+    if (!p->now)
+        return tl_fail_memory(&p->m->error);
+    p->m->drives[p->now - 1].bodies = 1;
+    return TL_OK;
+}
+
+/* Drives that were made count what follows them. After a failure they are the caller's as before. */
+static void end_drives(tl_model *m, const uint32_t *made, size_t count, bool failed)
+{
+    for (size_t i = 0; i < count; i++)
+        if (made[i] && failed)
+            m->drives[made[i] - 1] = (tl_drive_record){.bodies = 0};
+    tl_drives_recount(m);
+}
+
 tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size_t count, bool add,
                             tl_boundary_result *results)
 {
@@ -535,33 +592,34 @@ tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size
         if (results)
             results[i] = (tl_boundary_result){0};
         loads = loads || actions[i].loads;
-        acts = acts || loads || actions[i].fixed || actions[i].roller;
+        acts = acts || does_something(&actions[i]);
     }
     tl_status status = acts ? tl_model_may_set(m, "hold or load a boundary") : TL_OK;
     if (status == TL_OK)
         status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
-    face_loads put = {0};
-    uint8_t *fix = calloc(m->blocks.table.rows + 1, sizeof *fix);
-    body_sum *sums = calloc(m->bodies.table.rows + 1, sizeof *sums);
-    if (!fix || !sums || (loads && !tl_bodies_hold_loads(&m->bodies)))
-        status = tl_fail_memory(&m->error);
+    plan p = {.m = m, .add = add};
+    uint32_t *made = calloc(count + 1, sizeof *made);
+    status = made ? begin_plan(&p, loads) : tl_fail_memory(&m->error);
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         tl_boundary_result found = {0};
-        status = plan(m, &actions[i], fix, sums, &put, &found);
+        status = begin_drive(&p, &actions[i], &made[i]);
+        if (status == TL_OK)
+            status = plan_action(&p, &actions[i], &found);
         if (results)
             results[i] = found;
         else
             tl_boundary_free(&found);
     }
     if (status == TL_OK)
-        status = carry_out(m, fix, sums, add, &put);
+        status = carry_out(&p);
     for (size_t i = 0; i < count && results && status != TL_OK; i++)
         tl_boundary_free(&results[i]);
-    free(put.at);
-    free(fix);
-    free(sums);
+    if (acts && made)
+        end_drives(m, made, count, status != TL_OK);
+    free(made);
+    end_plan(&p);
     return status;
 }
 
@@ -572,7 +630,7 @@ void tl_boundary_free(tl_boundary_result *r)
     *r = (tl_boundary_result){0};
 }
 
-/* What contacts, weight and load put on a body, as of the last step. */
+/* What contacts, segments, weight and load put on a body, as of the last step. */
 static tl_vec3 acting_on(const tl_model *m, uint32_t body)
 {
     const tl_contacts *c = &m->detect->contacts;
@@ -580,7 +638,7 @@ static tl_vec3 acting_on(const tl_model *m, uint32_t body)
     tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
         force = tl_v3_madd(force, tl_contact_sign(c, at.contact, at.block), c->force[at.contact]);
-    return force;
+    return tl_model_deforms(m) ? tl_v3_add(force, tl_body_pushed(m, body)) : force;
 }
 
 tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec3 *force)
@@ -597,6 +655,12 @@ tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec
             continue;
         }
         uint32_t body = m->blocks.body[row];
+        if (m->bodies.mesh[body]) {
+            if (!seen[body])
+                tl_mesh_reaction(m, m->bodies.mesh[body] - 1, force);
+            seen[body] = 1;
+            continue;
+        }
         unsigned fixed = m->bodies.fixed[body];
         tl_vec3 f = fixed && !seen[body] ? acting_on(m, body) : tl_v3(0, 0, 0);
         seen[body] = 1;

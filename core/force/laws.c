@@ -568,16 +568,10 @@ static bool sum_group(const span_job *job, const tl_simd_group *group, const tl_
         tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         tl_vec3 moment = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
         heat[l] = sum.dissipated[l] + contacts->released[c];
-        if (contacts->share) { /* segments have the rest (segment/blend.c) */
-            const double share = contacts->share[c];
-            contacts->whole[c] = sum.stored[l];
-            force = tl_v3_scale(share, force);
-            moment = tl_v3_scale(share, moment);
-            sum.stored[l] *= share;
-            heat[l] *= share;
-        }
         if (contacts->handed_over[c] || (opened >> l & 1))
             heat[l] = tl_contact_lost(m, c, force, moment, sum.stored[l]);
+        if (contacts->heat)
+            contacts->heat[c] = heat[l];
         any_heat |= heat[l] != 0;
         contacts->stored[c] = sum.stored[l];
         contacts->handed_over[c] = false;

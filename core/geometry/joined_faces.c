@@ -24,9 +24,11 @@
 
 #define NONE UINT32_MAX
 
-/* Tolerance: faces lie flat on each other, and corners are in one place, within this times the size of the smallest
- * block. Joined blocks were cut by one plane, or were placed by coordinates of six digits. */
-#define FIT 2e-6
+/* Tolerance: faces lie flat on each other, and corners are in one place, within this times the size of the body. Joined
+ * blocks were cut by one plane, or were placed by coordinates of six digits. */
+#define FIT 1e-6
+/* Limit: that, as a share of the shortest edge: corners that differ stay apart. */
+#define MOST_OF_EDGE 1e-3
 /* Tolerance: what faces have in common is nothing below this share of the smaller one. */
 #define NOTHING 1e-5
 
@@ -191,12 +193,6 @@ static tl_status number_corners(splitting *s)
             uint32_t *own = s->corner + s->corner_start[b];
             if (put == NONE)
                 return tl_fail_memory(s->error);
-            for (uint32_t k = 0; k < v; k++)
-                if (own[k] == put)
-                    return tl_fail(s->error, TL_E_GEOMETRY,
-                                   "two corners of block %u are nearer than %.3g m: too near for the blocks that it is "
-                                   "joined to; filter slivers before blocks get zones",
-                                   s->id[b], s->places.near);
             own[v] = put;
         }
     return TL_OK;
@@ -480,16 +476,17 @@ static tl_status make_block(splitting *s, uint32_t block, tl_joined_block *to)
             l.loop[at++] = (uint16_t)s->vertex[corner_of(s, of->of, k)];
     }
     l.start[s->part_count] = at;
-    tl_error why = {0};
+    tl_error why = {0}; /* of counts that do not fit */
     const tl_status status =
         tl_poly_make(l.vertex, vertices, l.plane, NULL, l.start, l.loop, s->part_count, &to->poly, &why);
     free(l.vertex), free(l.plane), free(l.start), free(l.loop);
     to->how = (tl_zone_parts){s->blocks[block]->vertex_count, s->blocks[block]->face_count, to->face_of, s->shortest};
     if (status == TL_E_GEOMETRY)
-        return tl_fail(s->error, TL_E_GEOMETRY,
-                       "the faces of block %u do not fit those of the blocks that it is joined "
-                       "to: %s",
-                       s->id[block], why.text);
+        return tl_fail(
+            s->error, TL_E_GEOMETRY,
+            "the faces of block %u do not fit those of the blocks that it is joined to within %.3g m: give its "
+            "corners more digits, or cut it off by planes",
+            s->id[block], s->places.near);
     return status == TL_OK ? TL_OK : tl_fail_memory(s->error);
 }
 
@@ -503,6 +500,11 @@ static tl_status list_block(splitting *s, uint32_t block)
     for (uint32_t f = 0; enough && f < s->blocks[block]->face_count; f++)
         enough = list_face(s, block, f);
     return enough ? TL_OK : tl_fail_memory(s->error);
+}
+
+static double edge_length(const tl_poly *poly, uint32_t edge)
+{
+    return tl_v3_norm(tl_v3_sub(poly->vertex[poly->edge[edge].a], poly->vertex[poly->edge[edge].b]));
 }
 
 /* The shortest edge of all blocks. */
@@ -545,15 +547,29 @@ static tl_status make_all(splitting *s, const tl_vec3 *more, size_t more_count, 
     return status;
 }
 
+/* How near places are that are one. */
+static double nearness(const tl_poly *const *blocks, size_t count)
+{
+    tl_bounds all = tl_poly_bounds(blocks[0]);
+    double shortest = INFINITY;
+    for (size_t b = 0; b < count; b++) {
+        const tl_bounds own = tl_poly_bounds(blocks[b]);
+        all.min = tl_v3_min(all.min, own.min);
+        all.max = tl_v3_max(all.max, own.max);
+        for (uint32_t e = 0; e < blocks[b]->edge_count; e++)
+            shortest = fmin(shortest, edge_length(blocks[b], e));
+    }
+    return fmin(FIT * tl_v3_norm(tl_v3_sub(all.max, all.min)), MOST_OF_EDGE * shortest);
+}
+
 tl_status tl_joined_faces_make(const tl_poly *const *blocks, const tl_id *id, size_t count, const tl_vec3 *more,
                                size_t more_count, tl_joined_faces *splits, tl_error *error)
 {
-    splitting s = {.blocks = blocks, .id = id, .count = count, .error = error, .places = {.near = INFINITY}};
+    splitting s = {.blocks = blocks, .id = id, .count = count, .error = error};
     *splits = (tl_joined_faces){.block = calloc(count + 1, sizeof *splits->block), .count = count};
     if (!splits->block)
         return tl_fail_memory(error);
-    for (size_t b = 0; b < count; b++)
-        s.places.near = fmin(s.places.near, FIT * blocks[b]->size);
+    s.places.near = nearness(blocks, count);
     const tl_status status = make_all(&s, more, more_count, splits);
     tl_zone_places_free(&s.places);
     free(s.corner);

@@ -527,10 +527,13 @@ static tl_status make_once(tl_zone_scratch *s, const attempt *a, tl_zone_mesh *m
     return status;
 }
 
-/* The bulge with which a block is tried first: 0 where its faces are flat. */
+/* The bulge with which a block is tried first: 0 where its faces are flat. Faces in parts count as flat: a bulge would
+ * let the two sides of a part choose by its bend, and not alike. */
 static double first_bulge(const tl_zone_points *p)
 {
     double bend = 0;
+    if (p->zoning->parts)
+        return 0;
     for (uint32_t f = 0; f < p->poly->face_count; f++)
         bend = fmax(bend, p->bend[f]);
     bend /= p->extent;

@@ -536,8 +536,8 @@ typedef struct contacts {
     tl_model *model;
     uint32_t *rows;          /* of contacts with points, in the order of their blocks */
     tl_contact_facts *facts; /* of each */
-    size_t listed;
-    uint32_t *picked; /* of these, the contacts of the frame */
+    size_t listed, meetings; /* of all, those by segments are the last */
+    uint32_t *picked;        /* of these, the contacts of the frame */
     size_t count;
     tl_law_states states;
     const tl_field *of[COLUMNS];
@@ -619,7 +619,9 @@ static tl_status put_columns(contacts *c, const tl_contact_polygons *p, tl_piece
     }
     tl_parallel_for(c->model->pool, n, CONTACT_CHUNK, put_range, c);
     for (size_t i = 0; i < n; i++) /* the law is asked, on one thread */
-        tl_put_f32(c->at[USED] + 4 * i, tl_contact_shear_used(c->model, c->rows[c->picked[i]]));
+        tl_put_f32(c->at[USED] + 4 * i, c->picked[i] < c->listed - c->meetings
+                                            ? tl_contact_shear_used(c->model, c->rows[c->picked[i]])
+                                            : (double)NAN);
     put_polygons(p, to);
     return TL_OK;
 }
@@ -655,7 +657,7 @@ static tl_status put_contact_chunks(tl_model *m, const tl_html *options, double 
 {
     const bool wanted = options->contacts != TL_HTML_CONTACTS_NONE;
     contacts c = {.model = m};
-    tl_status status = tl_contacts_listed(m, &c.rows, &c.listed);
+    tl_status status = tl_contacts_listed(m, &c.rows, &c.listed, &c.meetings);
     if (status == TL_OK)
         status = tl_law_states_list(m, &c.states);
     if (status == TL_OK) {
@@ -666,7 +668,7 @@ static tl_status put_contact_chunks(tl_model *m, const tl_html *options, double 
     }
     if (status == TL_OK) {
         tl_parallel_for(m->pool, c.listed, CONTACT_CHUNK, find_range, &c);
-        status = tl_verdict_of(m, median, c.rows, c.facts, c.listed, verdict);
+        status = tl_verdict_of(m, median, c.rows, c.facts, c.listed - c.meetings, verdict);
     }
     if (status == TL_OK && wanted) {
         pick(&c, options->contacts);

@@ -141,7 +141,7 @@ static tl_status find_shown(tl_model *m, shown *s)
 /* ---------------------------------------------------------------- SURF ------------------- */
 
 typedef struct surface_columns {
-    unsigned char *body, *points, *zones, *triangles, *made, *corner, *solid, *triangle, *zone, *block, *face;
+    unsigned char *body, *points, *zones, *triangles, *made, *corner, *solid, *home, *triangle, *zone, *block, *face;
 } surface_columns;
 
 static void put_mesh(const shown *s, size_t k, surface_columns *to)
@@ -158,6 +158,7 @@ static void put_mesh(const shown *s, size_t k, surface_columns *to)
         for (int a = 0; a < 4; a++)
             to->corner = tl_put_u32(to->corner, tl_zone_list_point(l, k, tl_zone_list_corner(l, i, a)));
         to->solid = tl_put_u16(to->solid, z->parcels.of[l->parcel[i]].solid);
+        to->home = tl_put_u32(to->home, z->parcels.of[l->parcel[i]].block);
         zones++;
     }
     for (uint32_t i = l->part_start[k]; i < l->part_start[k + 1]; i++) {
@@ -177,7 +178,7 @@ static void put_mesh(const shown *s, size_t k, surface_columns *to)
 static tl_status put_surface(tl_model *m, const shown *s, tl_piece *out)
 {
     const size_t n = s->list.meshes, points = s->list.points, zones = s->count, triangles = s->list.parts;
-    const size_t bytes = 20 + 16 * n + 12 * points + 16 * zones + tl_scene_column_bytes(zones, 2) + 24 * triangles;
+    const size_t bytes = 20 + 16 * n + 12 * points + 20 * zones + tl_scene_column_bytes(zones, 2) + 24 * triangles;
     unsigned char *to = tl_scene_chunk(out, "SURF", bytes, &m->error);
     if (!to)
         return m->error.status;
@@ -193,6 +194,7 @@ static tl_status put_surface(tl_model *m, const shown *s, tl_piece *out)
                                .made = tl_scene_column(&to, points, 12),
                                .corner = tl_scene_column(&to, zones, 16),
                                .solid = tl_scene_column(&to, zones, 2),
+                               .home = tl_scene_column(&to, zones, 4),
                                .triangle = tl_scene_column(&to, triangles, 12),
                                .zone = tl_scene_column(&to, triangles, 4),
                                .block = tl_scene_column(&to, triangles, 4),

@@ -388,10 +388,11 @@ tl_status tl_verdict_of(tl_model *m, double median, const uint32_t *rows, const 
 tl_status tl_model_verdict(tl_model *m, tl_verdict *out)
 {
     uint32_t *rows;
-    size_t count;
-    tl_status status = tl_contacts_listed(m, &rows, &count);
+    size_t count, meetings;
+    tl_status status = tl_contacts_listed(m, &rows, &count, &meetings);
     if (status != TL_OK)
         return status;
+    count -= meetings; /* of which nothing is said */
     tl_contact_facts *facts = malloc((count + 1) * sizeof *facts);
     for (size_t i = 0; facts && i < count; i++)
         facts[i] = tl_contact_facts_of(m, rows[i]);

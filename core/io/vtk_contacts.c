@@ -47,6 +47,7 @@
 #include "io/vtk_file.h"
 #include "query/contact_fields.h"
 #include "query/contact_polygons.h"
+#include "query/meeting.h"
 #include "query/point_fields.h"
 
 #include <math.h>
@@ -290,7 +291,8 @@ static tl_status put_contacts(const contacts *c, tl_pieces *out)
 tl_status tl_vtk_contacts(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
 {
     contacts c = {.model = m};
-    tl_status status = tl_contacts_listed(m, &c.rows, &c.count);
+    size_t meetings;
+    tl_status status = tl_contacts_listed(m, &c.rows, &c.count, &meetings);
     if (status == TL_OK)
         status = tl_vtk_countable(2 * c.count, "contacts", &m->error);
     if (status == TL_OK)
@@ -332,6 +334,10 @@ static unsigned char *mark_touching(const joints *j, const size_t *first, size_t
     unsigned char *touching = calloc(faces + 1, 1);
     for (size_t i = 0; touching && i < j->contacts; i++) {
         uint32_t row = j->rows[i];
+        if (tl_row_is_meeting(j->model, row)) {
+            tl_meeting_mark(j->model, row, first, touching);
+            continue;
+        }
         if (c->facet[row].kind != TL_FACET_PATCH)
             continue;
         touching[first[c->a[row]] + c->facet[row].ia] = 1;
@@ -428,11 +434,26 @@ static void fill_polygon_rows(void *user, size_t begin, size_t end, size_t chunk
             fill_face(j, i);
 }
 
+/* Vectors of the corners of a segment's outline, as points that move as its first block does as a whole. */
+static unsigned char *put_segment(const joints *j, size_t i, uint32_t contact, tl_vtk_point_fn of, unsigned char *to)
+{
+    const tl_model *m = j->model;
+    const uint32_t block = tl_block_row_quiet(m, tl_meeting_named(m, contact).a), body = m->blocks.body[block];
+    for (uint32_t k = j->of.start[i]; k < j->of.start[i + 1]; k++) {
+        const tl_vec3 arm = tl_v3_sub(j->of.corner[k], tl_body_place(&m->bodies, body));
+        to = of(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm), to);
+    }
+    return to;
+}
+
 /* Vectors of the corners of a contact's polygon, as points of its first block. */
 static unsigned char *put_contact(const joints *j, size_t i, tl_vtk_point_fn of, unsigned char *to)
 {
     const tl_model *m = j->model;
-    uint32_t contact = j->rows[j->contact[i]], side = tl_contact_sides(m, contact).a;
+    const uint32_t contact = j->rows[j->contact[i]];
+    if (tl_row_is_meeting(m, contact))
+        return put_segment(j, i, contact, of, to);
+    const uint32_t side = tl_contact_sides(m, contact).a;
     for (uint32_t k = j->of.start[i]; k < j->of.start[i + 1]; k++)
         to = of(m, m->detect->contacts.a[contact], tl_side_local(m, side, j->of.corner[k]), to);
     return to;
@@ -504,7 +525,8 @@ static tl_status put_joints(const joints *j, tl_pieces *out)
 
 static tl_status find_polygons(tl_model *m, joints *j)
 {
-    tl_status status = tl_contacts_listed(m, &j->rows, &j->contacts);
+    size_t meetings;
+    tl_status status = tl_contacts_listed(m, &j->rows, &j->contacts, &meetings);
     if (status == TL_OK)
         status = tl_contact_polygons_find(m, j->rows, j->contacts, &j->of);
     if (status == TL_OK && !(note_contacts(j) && find_faces(j)))

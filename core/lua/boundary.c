@@ -18,7 +18,7 @@ typedef struct boundary_args {
     const char *side;
     tl_vec3 facing;
     double within, tolerance;
-    int32_t fixed, roller, rotation;
+    int32_t fixed, roller, rotation, quiet;
     double pressure;
     tl_vec3 traction, at;
     int32_t add;
@@ -37,8 +37,12 @@ static const tl_param boundary_params[] = {
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_BOOL, boundary_args, fixed, "", "holds the bodies in all components", .def = {0.0}),
     TL_PARAM(TL_PARAM_BOOL, boundary_args, roller, "",
-             "holds the bodies across their faces, which must look along x, y or z", .def = {0.0}),
-    TL_PARAM(TL_PARAM_BOOL, boundary_args, rotation, "", "with roller: holds their rotation, too", .def = {0.0}),
+             "holds the bodies across their faces; those of rigid blocks must look along x, y or z", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, rotation, "", "with roller: holds the rotation of rigid blocks, too",
+             .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, quiet, "",
+             "of deformable blocks: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), and bears what it bore",
+             .def = {0.0}),
     TL_PARAM(TL_PARAM_REAL, boundary_args, pressure, "Pa", "pressure on the faces, inward", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, traction, "Pa", "force per area on the faces", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, at, "m",
@@ -53,6 +57,8 @@ static const tl_lua_key boundary_keys[] = {
     {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "stress, Pa, tension positive: the traction on a face is stress times its outward normal"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}", "change of the stress with height z, Pa/m"},
+    {"velocity", "{x, y, z} or function(t)",
+     "prescribes the velocity of the faces, m/s; rigid bodies move with it whole"},
     {"xmin, xmax", "\"roller\", \"fixed\" or a table of what is to be done", "several sides in one call"},
     {"ymin, ymax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {"zmin, zmax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
@@ -61,8 +67,9 @@ static const tl_lua_key boundary_keys[] = {
 
 /* The keys as they stand in a table. */
 static const tl_lua_key table_keys[] = {
-    {"plane", "", ""}, {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""}, {"xmin", "", ""},   {"xmax", "", ""},
-    {"ymin", "", ""},  {"ymax", "", ""}, {"zmin", "", ""},   {"zmax", "", ""},     {NULL, NULL, NULL},
+    {"plane", "", ""},    {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""},
+    {"velocity", "", ""}, {"xmin", "", ""}, {"xmax", "", ""},   {"ymin", "", ""},
+    {"ymax", "", ""},     {"zmin", "", ""}, {"zmax", "", ""},   {NULL, NULL, NULL},
 };
 
 static const tl_lua_spec boundary_spec = {"boundary", boundary_params, TL_LUA_COUNT(boundary_params), boundary_keys};
@@ -174,9 +181,41 @@ static void read_plane(lua_State *L, int index, tl_boundary_where *where)
     tl_lua_read(L, -1, &spec, false, where);
 }
 
+/* One action, with room for its drive. */
+typedef struct asked {
+    tl_boundary_action action;
+    tl_drive drive;
+} asked;
+
+/* Reads a velocity, or a function that gives one. */
+static void read_velocity(lua_State *L, int index, asked *of)
+{
+    static const tl_param params[] = {TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0})};
+    const int type = lua_getfield(L, index, "velocity");
+    if (type == LUA_TNIL) {
+        lua_pop(L, 1);
+        return;
+    }
+    of->action.drive = &of->drive;
+    if (type == LUA_TFUNCTION) {
+        lua_pushnil(L);
+        tl_lua_anchor_push(L, 1, &of->drive);
+        return;
+    }
+    if (type != LUA_TTABLE)
+        tl_lua_fail(L, "boundary: velocity must be a list of 3 numbers or a function(t), not %s",
+                    tl_lua_describe(L, -1));
+    const tl_lua_spec spec = {"boundary", params, 1, NULL};
+    tl_drive read;
+    tl_lua_read_one(L, lua_gettop(L), &spec, "velocity", &read);
+    of->drive = tl_drive_default();
+    of->drive.velocity = read.velocity;
+}
+
 /* What is to be done, of the table at `index` and the parameters read of it. */
 static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_boundary_action *a)
 {
+    a->quiet = args->quiet;
     a->fixed = args->fixed;
     a->roller = args->roller;
     a->rotation = args->rotation;
@@ -198,8 +237,9 @@ static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_bo
 }
 
 /* Reads the table at `index`, which says where and what. */
-static void read_action(lua_State *L, int index, boundary_args *args, tl_boundary_action *a)
+static void read_action(lua_State *L, int index, boundary_args *args, asked *of)
 {
+    tl_boundary_action *a = &of->action;
     *a = tl_boundary_action_default();
     tl_lua_spec spec = boundary_spec;
     spec.keys = table_keys;
@@ -212,6 +252,7 @@ static void read_action(lua_State *L, int index, boundary_args *args, tl_boundar
     a->where.within = args->within;
     a->where.tolerance = args->tolerance;
     read_deeds(L, index, args, a);
+    read_velocity(L, index, of);
 }
 
 static bool is_anywhere(const tl_boundary_where *w)
@@ -220,14 +261,15 @@ static bool is_anywhere(const tl_boundary_where *w)
 }
 
 /* Reads what the value at the top of the stack says of a side: "roller", "fixed" or a table. */
-static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_boundary_action *a)
+static void read_side_value(lua_State *L, int32_t side, double tolerance, asked *of)
 {
+    tl_boundary_action *a = &of->action;
     const char *name = name_of(side);
     const char *word = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
     boundary_args args;
     *a = tl_boundary_action_default();
     if (lua_istable(L, -1)) {
-        read_action(L, lua_gettop(L), &args, a);
+        read_action(L, lua_gettop(L), &args, of);
         if (!is_anywhere(&a->where))
             tl_lua_fail(L, "boundary: %s says where; side, plane, box and facing do not go with it", name);
         if (args.add)
@@ -245,7 +287,7 @@ static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_bou
 }
 
 /* Reads the sides of the table at index 2; returns their number. */
-static size_t read_sides(lua_State *L, double tolerance, tl_boundary_action *actions)
+static size_t read_sides(lua_State *L, double tolerance, asked *actions)
 {
     size_t count = 0;
     for (int32_t i = 0; i < SIDES; i++) {
@@ -261,29 +303,29 @@ static size_t read_sides(lua_State *L, double tolerance, tl_boundary_action *act
 
 static bool does_nothing(const tl_boundary_action *a)
 {
-    return !a->loads && !a->fixed && !a->roller;
+    return !a->loads && !a->fixed && !a->roller && !a->quiet && !a->drive;
 }
 
 /* Reads the argument at index 2; returns the number of sides, or 0 for one action that says itself where. */
-static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
+static size_t read_call(lua_State *L, asked *actions, bool *add)
 {
     *add = false;
     if (lua_type(L, 2) == LUA_TSTRING) {
-        actions[0] = tl_boundary_action_default();
-        actions[0].where.side = tl_lua_side(L, "boundary", lua_tostring(L, 2));
+        actions[0].action = tl_boundary_action_default();
+        actions[0].action.where.side = tl_lua_side(L, "boundary", lua_tostring(L, 2));
         return 0;
     }
     if (!lua_istable(L, 2))
         tl_lua_fail(L, "boundary: a side (\"xmin\") or a table is expected, not %s", tl_lua_describe(L, 2));
     boundary_args args;
-    tl_boundary_action one;
+    asked one;
     read_action(L, 2, &args, &one);
     *add = args.add;
     size_t count = read_sides(L, args.tolerance, actions);
-    if (count && (!is_anywhere(&one.where) || !does_nothing(&one)))
+    if (count && (!is_anywhere(&one.action.where) || !does_nothing(&one.action)))
         tl_lua_fail(L, "boundary: with xmin and the like only tolerance and add are given beside; "
                        "what is to be done goes into their tables");
-    if (!count && is_anywhere(&one.where))
+    if (!count && is_anywhere(&one.action.where))
         tl_lua_fail(L, "boundary: say where: side, plane, box or facing, or sides as in {xmin = \"roller\"}");
     if (!count)
         actions[0] = one;
@@ -307,6 +349,9 @@ static void rewrite(lua_State *L, const char *name, tl_vec3 v)
 static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions, size_t sides, bool add, holder *done)
 {
     tl_lua_ok(L, model, tl_model_boundary(model, actions, sides ? sides : 1, add, done->result));
+    for (size_t i = 0; i < (sides ? sides : 1); i++)
+        if (actions[i].drive && actions[i].drive->user)
+            ((tl_lua_anchor *)actions[i].drive->user)->ended = false;
     for (size_t i = 0; i < (sides ? sides : 1); i++) {
         if (sides)
             lua_getfield(L, -1, name_of(actions[i].where.side));
@@ -319,16 +364,19 @@ static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions
 
 static int model_boundary(lua_State *L, tl_model *model)
 {
-    tl_boundary_action actions[SIDES];
+    asked given[SIDES];
+    tl_boundary_action actions[SIDES], found[SIDES];
     bool add;
-    size_t sides = read_call(L, actions, &add);
-    tl_boundary_action found[SIDES];
+    size_t sides = read_call(L, given, &add);
     size_t count = sides ? sides : 1;
     bool acts = false;
     for (size_t i = 0; i < count; i++) {
+        actions[i] = given[i].action;
+        actions[i].drive = actions[i].drive ? &given[i].drive : NULL;
         acts = acts || !does_nothing(&actions[i]);
         found[i] = actions[i];
-        found[i].loads = found[i].fixed = found[i].roller = false;
+        found[i].loads = found[i].fixed = found[i].roller = found[i].quiet = false;
+        found[i].drive = NULL;
     }
     holder *h = push_holder(L), *done = push_holder(L);
     tl_lua_ok(L, model, tl_model_boundary(model, found, count, add, h->result));
@@ -351,7 +399,9 @@ const tl_lua_topic tl_lua_boundary_topics[] = {
      .doc = "Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, "
             "or puts a traction on them as a load: its force and moment about each body's centroid take the place of "
             "the load the body had, keep their direction and go with the body. What one call puts on a body adds up. "
-            "When a face is cut, each part of it gets its share.",
+            "When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are "
+            "meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle "
+            "takes the place of all that was done to it before, or with add is added.",
      .spec = &boundary_spec,
      .title = "Fields of the result",
      .verbs = boundary_results,

@@ -117,7 +117,7 @@ void tl_model_destroy(tl_model *m)
         tl_law_clear(&m->joint_laws[i]);
     tl_damping_clear(m);
     for (size_t i = 0; i < m->drive_count; i++)
-        if (m->drives[i].bodies && m->drives[i].drive.release)
+        if (m->drives[i].drive.release)
             m->drives[i].drive.release(m->drives[i].drive.user);
     free(m->drives);
     while (m->history_count > 0)

@@ -1,6 +1,7 @@
 /* loads.c - what acts on bodies from outside: loads, prescribed motion (drives), and what holds them. */
 #include "model/loads.h"
 
+#include "model/deformable.h"
 #include "model/inertia.h"
 #include "model/options.h"
 
@@ -121,6 +122,18 @@ void tl_load_begins_anew(tl_model *m, uint32_t body)
     m->bodies.load_before[body].force = tl_v3(NAN, NAN, NAN);
 }
 
+/* Whether all blocks live, and deformable ones can take the load. */
+static tl_status check_loaded(tl_model *m, const tl_id *ids, size_t count, const tl_load *load)
+{
+    tl_status status = tl_blocks_check(m, ids, count);
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        const uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        if (m->bodies.mesh[body])
+            status = m->zone_verbs->check_load(m, body, load);
+    }
+    return status;
+}
+
 tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_load *given)
 {
     tl_load load;
@@ -132,7 +145,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     bool placed = !isnan(load.at.x);
     if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) || (placed && !tl_v3_finite(load.at)))
         return tl_fail(&m->error, TL_E_ARGUMENT, "load: force, moment and at must be finite numbers");
-    status = tl_blocks_check_rigid(m, ids, count, "load blocks", "load its gridpoints");
+    status = check_loaded(m, ids, count, &load);
     if (status != TL_OK)
         return status;
     if (count && (!tl_bodies_hold_loads(&m->bodies) || !face_loads_forget(m, ids, count)))
@@ -141,6 +154,10 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
         note_loads(m);
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        if (m->bodies.mesh[body]) {
+            m->zone_verbs->load(m, body, &load);
+            continue;
+        }
         tl_vec3 from = tl_v3_sub(tl_v3_sub(load.at, m->origin), tl_body_place(&m->bodies, body));
         m->bodies.load[body] = (tl_body_load){load.force, load.moment,
                                               placed ? tl_m3_tmul(&m->bodies.pose[body].r, from) : tl_v3(0, 0, 0)};
@@ -189,10 +206,14 @@ void tl_drive_leave(tl_model *m, uint32_t body)
     if (index == 0)
         return;
     m->bodies.drive[body] = 0;
-    m->bodies.fixed[body] = 0;
-    tl_load_begins_anew(m, body);
     if (--m->drives[index - 1].bodies == 0 && !m->drives[index - 1].held)
         release(&m->drives[index - 1]);
+    if (m->bodies.mesh[body]) {
+        m->zone_verbs->free(m, body);
+        return;
+    }
+    m->bodies.fixed[body] = 0;
+    tl_load_begins_anew(m, body);
 }
 
 void tl_drives_recount(tl_model *m)
@@ -202,6 +223,8 @@ void tl_drives_recount(tl_model *m)
     for (size_t body = 0; body < m->bodies.table.rows; body++)
         if (m->bodies.drive[body])
             m->drives[m->bodies.drive[body] - 1].bodies++;
+    if (m->zone_verbs)
+        m->zone_verbs->count_drives(m);
 }
 
 void tl_drives_hold(tl_model *m, bool hold)
@@ -220,18 +243,42 @@ void tl_drives_hold(tl_model *m, bool hold)
     }
 }
 
-/* An unused record, or a new one; NULL when out of memory. */
-static tl_drive_record *new_record(tl_model *m)
+uint32_t tl_drive_new(tl_model *m, const tl_drive *drive)
 {
-    for (size_t i = 0; i < m->drive_count; i++)
-        if (m->drives[i].bodies == 0)
-            return &m->drives[i];
-    tl_drive_record *drives = realloc(m->drives, (m->drive_count + 1) * sizeof *drives);
-    if (!drives)
-        return NULL;
-    m->drives = drives;
-    m->drives[m->drive_count] = (tl_drive_record){0};
-    return &m->drives[m->drive_count++];
+    size_t i = 0;
+    while (i < m->drive_count && m->drives[i].bodies > 0)
+        i++;
+    if (i == m->drive_count) {
+        tl_drive_record *drives = realloc(m->drives, (m->drive_count + 1) * sizeof *drives);
+        if (!drives)
+            return 0;
+        m->drives = drives;
+        m->drives[m->drive_count++] = (tl_drive_record){0};
+    }
+    release(&m->drives[i]); /* that of gridpoints that have gone, or none */
+    m->drives[i].drive = *drive;
+    m->drives[i].velocity = drive->velocity;
+    m->drives[i].angular_velocity = drive->angular_velocity;
+    return (uint32_t)i + 1;
+}
+
+void tl_drive_follow(tl_model *m, uint32_t body, uint32_t index)
+{
+    tl_drive_record *record = &m->drives[index - 1];
+    if (m->bodies.drive[body] == index)
+        return;
+    record->bodies++; /* held while the body leaves its old drive */
+    tl_drive_leave(m, body);
+    m->bodies.drive[body] = index;
+    if (m->bodies.mesh[body]) {
+        m->zone_verbs->free(m, body);
+        m->zone_verbs->fix(m, body, TL_FIX_ALL);
+        m->zone_verbs->move(m, body, record->drive.velocity, record->drive.angular_velocity);
+        return;
+    }
+    m->bodies.fixed[body] = TL_FIX_ALL;
+    m->bodies.v[body] = record->drive.velocity;
+    m->bodies.w[body] = record->drive.angular_velocity;
 }
 
 tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_drive *given)
@@ -244,7 +291,7 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
         return status;
     status = tl_check_motion(&m->error, "drive", drive.velocity, drive.angular_velocity);
     if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, "drive blocks", "give its gridpoints velocities");
+        status = tl_blocks_check(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count == 0) {
@@ -252,26 +299,11 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
             drive.release(drive.user);
         return TL_OK;
     }
-    tl_drive_record *record = new_record(m);
-    if (!record)
+    const uint32_t index = tl_drive_new(m, &drive);
+    if (!index)
         return tl_fail_memory(&m->error);
-    record->bodies = 1; /* held while bodies leave their old drives */
-    record->drive = drive;
-    record->velocity = drive.velocity;
-    record->angular_velocity = drive.angular_velocity;
-    uint32_t index = (uint32_t)(record - m->drives) + 1;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
-        if (m->bodies.drive[body] == index)
-            continue;
-        tl_drive_leave(m, body);
-        m->bodies.drive[body] = index;
-        m->bodies.fixed[body] = TL_FIX_ALL;
-        m->bodies.v[body] = drive.velocity;
-        m->bodies.w[body] = drive.angular_velocity;
-        record->bodies++;
-    }
-    record->bodies--;
+    for (size_t i = 0; i < count; i++)
+        tl_drive_follow(m, m->blocks.body[tl_block_row_quiet(m, ids[i])], index);
     m->constraints++;
     return TL_OK;
 }
@@ -316,6 +348,10 @@ static bool has_constraint(const tl_model *m, uint32_t body, constraint before)
 
 static void fix_body(tl_model *m, uint32_t body, unsigned what)
 {
+    if (m->bodies.mesh[body]) {
+        m->zone_verbs->fix(m, body, what);
+        return;
+    }
     tl_vec3 *v = &m->bodies.v[body];
     m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
     v->x = what & TL_FIX_X ? 0 : v->x;
@@ -327,9 +363,22 @@ static void fix_body(tl_model *m, uint32_t body, unsigned what)
 
 static void free_body(tl_model *m, uint32_t body, unsigned what)
 {
+    if (m->bodies.mesh[body]) {
+        m->zone_verbs->free(m, body);
+        return;
+    }
     if (m->bodies.fixed[body] & what)
         tl_load_begins_anew(m, body);
     m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] & ~what);
+}
+
+/* Refuses to hold the rotation of deformable bodies, but with all the rest. */
+static tl_status check_rotation(tl_model *m, const tl_id *ids, size_t count, unsigned what)
+{
+    if (!(what & TL_FIX_ROTATION) || what == TL_FIX_ALL)
+        return TL_OK;
+    return tl_blocks_check_rigid(m, ids, count, "fix rotations",
+                                 "it has no rotation to hold: fix some of its gridpoints, or all of the block");
 }
 
 /* Lets the bodies of blocks go from their drives, and changes in what way they are held. */
@@ -338,14 +387,16 @@ static tl_status change_fixing(tl_model *m, const tl_id *ids, size_t count, cons
 {
     tl_status status = tl_model_may_set(m, verb);
     if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, verb, "hold or let go of its gridpoints");
+        status = tl_blocks_check(m, ids, count);
+    if (status == TL_OK && change == fix_body)
+        status = check_rotation(m, ids, count, what);
     bool changed = false;
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
         constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
         change(m, body, what);
-        changed = changed || !has_constraint(m, body, before);
+        changed = changed || m->bodies.mesh[body] || !has_constraint(m, body, before);
     }
     m->constraints += changed;
     return status;

@@ -30,6 +30,11 @@ static inline void tl_loads_stepped(tl_model *m)
 
 /* Evaluates all drives at time t; false when a user's function ends the run. */
 bool tl_drives_evaluate(tl_model *m, double t);
+/* Makes a drive that nothing follows yet, and gives its number, from 1; 0: out of memory. It is ended, and its number
+ * used again, unless something follows it before the next one is made. */
+uint32_t tl_drive_new(tl_model *m, const tl_drive *drive);
+/* Lets a body follow a drive, in the place of any other and of what held it. */
+void tl_drive_follow(tl_model *m, uint32_t body, uint32_t index);
 /* Lets a body go from its drive. */
 void tl_drive_leave(tl_model *m, uint32_t body);
 /* The motion of a body begins anew, as it is set or was held: its load before does not count. */

@@ -100,8 +100,8 @@ typedef struct tl_bodies {
     tl_vec3 *moment;
     /* unbalanced, in the last damped step; NULL: no damping has asked for them */
     tl_vec3 *force_before, *moment_before;
-    /* of a relaxation: way in a step, m, up to which it falls by its own mass; NULL: there was none */
-    double *fall;
+    double *fall;           /* of a relaxation: way in a step, m, up to which it falls by its own mass, */
+    struct tl_going *going; /* and how it goes on (cycle/settling.h); NULL: there was none */
     tl_body_load *load;     /* of the user's; NULL: none has ever been set */
     tl_wrench *load_before; /* in the last step; NULL as `load` is, and valid while loads_changed */
     uint32_t *drive;        /* index into drives + 1, or 0 */
@@ -248,12 +248,10 @@ struct tl_model {
     void (*cycle_destroy)(struct tl_cycle *);
     struct tl_zones *zones; /* meshes of deformable bodies and their materials, or NULL: module zone */
     void (*zones_destroy)(struct tl_zones *);
-    void (*zones_follow)(struct tl_model *); /* lets meshes follow rows that have moved; NULL: there are no zones */
-    /* gives the zones of blocks another solid, by its name */
-    tl_status (*zones_resolid)(struct tl_model *, const tl_id *blocks, size_t count, const char *solid);
-    struct tl_segments *segments; /* their flush contacts, or NULL: module segment */
+    const struct tl_zone_verbs *zone_verbs; /* what is done to their bodies: deformable.h; NULL: there are no zones */
+    struct tl_segments *segments;           /* their flush contacts, or NULL: module segment */
     void (*segments_destroy)(struct tl_segments *);
-    void (*segments_follow)(struct tl_model *); /* likewise */
+    void (*segments_follow)(struct tl_model *); /* lets them follow rows that have moved */
     struct tl_outputs *outputs;                 /* of the module state: files written so far */
     void (*outputs_destroy)(struct tl_outputs *);
 };

@@ -10,6 +10,7 @@
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "geometry/seam.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "model/loads.h"
 #include "model/options.h"
@@ -735,6 +736,10 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     tl_bodies *b = &m->bodies;
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
+        if (b->mesh[body]) {
+            m->zone_verbs->move(m, body, set->velocity, set->angular_velocity);
+            continue;
+        }
         if (given(set->velocity) && moved) {
             double mass = m->blocks.density[row] * m->blocks.volume[row];
             tl_vec3 arm = tl_m3_mul(&b->pose[body].r, tl_block_local(m, row));
@@ -748,6 +753,8 @@ static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_blo
     }
     for (size_t i = 0; i < count && given(set->velocity); i++) {
         uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
+        if (b->mesh[body])
+            continue;
         b->v[body] = set->velocity;
         if (moved && b->member_count[body] > 1)
             b->v[body] = tl_v3_sub(set->velocity,
@@ -760,10 +767,10 @@ static tl_status set_solid(tl_model *m, const tl_id *ids, size_t count, const tl
 {
     if (!isnan(set->density))
         return tl_fail(&m->error, TL_E_ARGUMENT, "set: give density before the blocks get zones, and solid after it");
-    if (!m->zones_resolid)
+    if (!m->zone_verbs)
         return tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%.80s': name it with %s first", set->solid,
                        tl_words(m, "model:solid", "tl_model_solid"));
-    return m->zones_resolid(m, ids, count, set->solid);
+    return m->zone_verbs->resolid(m, ids, count, set->solid);
 }
 
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
@@ -773,11 +780,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     tl_status status = TL_OPTIONS_READ(tl_block_set, values, &read, &m->error);
     if (status == TL_OK)
         status = tl_model_may_set(m, "set properties of blocks");
-    const bool moves = given(set->velocity) || given(set->angular_velocity);
-    if (status == TL_OK && !moves && isnan(set->density))
+    if (status == TL_OK && isnan(set->density))
         status = tl_blocks_check(m, ids, count);
     else if (status == TL_OK)
-        status = tl_blocks_check_rigid(m, ids, count, "set density or velocities", "set them before it gets zones");
+        status = tl_blocks_check_rigid(m, ids, count, "set density", "set it before it gets zones");
     if (status == TL_OK)
         status = check_set(m, ids, count, set);
     if (status != TL_OK)

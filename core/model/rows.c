@@ -5,6 +5,7 @@
 #include "model/rows.h"
 
 #include "model/body_shape.h"
+#include "model/deformable.h"
 #include "model/inertia.h"
 #include "model/loads.h"
 
@@ -81,8 +82,8 @@ void tl_rows_tidy(tl_model *m)
     if (m->gone)
         rows_keep(m, m->blocks.stays); /* what is read of it has not moved yet */
     m->gone = 0;
-    if (m->zones_follow)
-        m->zones_follow(m);
+    if (m->zone_verbs)
+        m->zone_verbs->follow(m);
     if (m->segments_follow)
         m->segments_follow(m);
 }
@@ -243,8 +244,11 @@ bool tl_median_size(const tl_model *m, double *median)
     if (!sizes)
         return false;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (m->bodies.fixed[body] != TL_FIX_ALL)
+        if (m->bodies.fixed[body] != TL_FIX_ALL || m->bodies.mesh[body] > 0)
             sizes[n++] = tl_body_size(m, body);
+    for (uint32_t body = 0; n == 0 && body < m->bodies.table.rows; body++) /* nothing is free: of all */
+        sizes[body] = tl_body_size(m, body);
+    n = n > 0 ? n : m->bodies.table.rows;
     qsort(sizes, n, sizeof *sizes, compare_sizes);
     *median = n ? sizes[n / 2] : 0;
     free(sizes);

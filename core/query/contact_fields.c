@@ -11,6 +11,7 @@
 #include "model/joints.h"
 #include "model/options.h"
 #include "model/rows.h"
+#include "query/meeting.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -102,7 +103,7 @@ size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, dou
 
 size_t tl_point_count(const tl_model *m, uint32_t contact)
 {
-    return tl_contact_areas(m->detect, contact);
+    return tl_row_is_meeting(m, contact) ? 0 : tl_contact_areas(m->detect, contact);
 }
 
 static void forces(const tl_model *m, uint32_t c, double *normal, tl_vec3 *shear)
@@ -155,11 +156,18 @@ tl_contact_counts tl_model_contact_counts(const tl_model *m)
 {
     tl_contact_counts counts = {0, 0, 0};
     const tl_detect *d = tl_detect_lasting(m);
-    size_t rows = d ? d->contacts.table.rows : 0;
+    const size_t rows = d ? d->contacts.table.rows : 0;
     for (uint32_t row = 0; row < rows; row++) {
         if (d->contacts.point_count[row] == 0)
             continue;
         tl_contact_state state = state_of(d, row);
+        counts.contacts++;
+        counts.slipping += state == TL_CONTACT_SLIPPING;
+        counts.open += state == TL_CONTACT_OPEN;
+    }
+    for (uint32_t row = TL_NO_ROW; d && (row = tl_meeting_next(m, row)) != TL_NO_ROW;) {
+        const tl_meeting by = tl_meeting_of(m, row);
+        const tl_contact_state state = tl_contact_state_of_flags(by.any, by.all);
         counts.contacts++;
         counts.slipping += state == TL_CONTACT_SLIPPING;
         counts.open += state == TL_CONTACT_OPEN;
@@ -183,11 +191,41 @@ int64_t tl_contact_number(tl_contact_name name)
 static tl_contact_name name_of(const tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
+    if (tl_row_is_meeting(m, contact)) {
+        const tl_meeting by = tl_meeting_named(m, contact);
+        return (tl_contact_name){by.a, by.b, 0};
+    }
     return (tl_contact_name){m->blocks.id[c->a[contact]], m->blocks.id[c->b[contact]], c->born[contact]};
+}
+
+/* Of blocks that meet by segments: begun when the model was, as it is not kept when they met. */
+static tl_contact_facts facts_of_meeting(const tl_model *m, uint32_t row)
+{
+    const tl_meeting by = tl_meeting_of(m, row);
+    const tl_contact_name name = {by.a, by.b, 0};
+    tl_contact_facts out = {.number = tl_contact_number(name),
+                            .a = by.a,
+                            .b = by.b,
+                            .tag = by.tag,
+                            .law = by.law,
+                            .state = tl_contact_state_of_flags(by.any, by.all),
+                            .area = by.area,
+                            .gap = by.gap,
+                            .normal_force = by.pressing,
+                            .normal_stress = by.pressing / by.area,
+                            .normal = by.normal,
+                            .point = tl_v3_add(m->origin, by.point),
+                            .shear_force = by.shear,
+                            .shear_stress = tl_v3_norm(by.shear) / by.area,
+                            .opening = tl_v3_dot(by.passed, by.normal)};
+    out.shear_displacement = tl_v3_madd(by.passed, -out.opening, by.normal);
+    return out;
 }
 
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
 {
+    if (tl_row_is_meeting(m, contact))
+        return facts_of_meeting(m, contact);
     const tl_contacts *c = &m->detect->contacts;
     const tl_contact_name name = name_of(m, contact);
     tl_contact_facts out = {.number = tl_contact_number(name),
@@ -236,6 +274,9 @@ tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row)
     tl_status status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
+    *row = tl_meeting_row(m, contact.a, contact.b);
+    if (*row != TL_NO_ROW)
+        return TL_OK;
     *row = tl_contact_row(m, contact.a, contact.b);
     if (*row == TL_NO_ROW || !is_listed(&m->detect->contacts, *row))
         return fail_ended(m, contact);
@@ -270,21 +311,24 @@ tl_status tl_contact_field(tl_model *m, tl_contact_name contact, size_t index, t
 
 /* ---------------------------------------------------------------- lists ------------------ */
 
-tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count)
+tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count, size_t *meetings)
 {
     *rows = NULL;
-    *count = 0;
+    *count = *meetings = 0;
     tl_status status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
     const tl_contacts *c = &m->detect->contacts;
-    uint32_t *list = malloc((c->table.rows + 1) * sizeof *list);
+    const size_t meets = m->segments ? m->segments->meet_count : 0;
+    uint32_t *list = malloc((c->table.rows + meets + 1) * sizeof *list);
     if (!list)
         return tl_fail_memory(&m->error);
     for (uint32_t block = 0; block < m->blocks.table.rows; block++)
         for (tl_body_contacts at = tl_contacts_of_block(m, block); tl_next_contact(&at);)
             if (c->a[at.contact] == block && is_listed(c, at.contact))
                 list[(*count)++] = at.contact;
+    for (uint32_t row = TL_NO_ROW; (row = tl_meeting_next(m, row)) != TL_NO_ROW; ++*meetings)
+        list[(*count)++] = row;
     *rows = list;
     return TL_OK;
 }
@@ -308,6 +352,11 @@ static unsigned char *mark(tl_model *m, const tl_id *ids, size_t count, tl_statu
     return marks;
 }
 
+static tl_tag tag_of(const tl_model *m, uint32_t contact)
+{
+    return tl_row_is_meeting(m, contact) ? tl_meeting_named(m, contact).tag : m->detect->contacts.tag[contact];
+}
+
 static bool is_between(const unsigned char *ma, const unsigned char *mb, uint32_t a, uint32_t b)
 {
     return !ma || !mb || (ma[a] && mb[b]) || (ma[b] && mb[a]);
@@ -320,11 +369,11 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_con
     tl_tag joint = {0, 0};
     tl_contact_filter filter;
     uint32_t *rows = NULL;
-    size_t all = 0;
+    size_t all = 0, meetings;
     tl_contact_name *list = NULL;
     tl_status status = TL_OPTIONS_READ(tl_contact_filter, given, &filter, &m->error);
     if (status == TL_OK)
-        status = tl_contacts_listed(m, &rows, &all);
+        status = tl_contacts_listed(m, &rows, &all, &meetings);
     if (status == TL_OK && filter.joint)
         status = tl_joint_parse(m, filter.joint, &joint);
     unsigned char *ma = NULL, *mb = NULL;
@@ -335,10 +384,10 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_con
     if (status == TL_OK && !(list = malloc((all + 1) * sizeof *list)))
         status = tl_fail_memory(&m->error);
     for (size_t i = 0; status == TL_OK && i < all; i++) {
-        const tl_contacts *c = &m->detect->contacts;
-        uint32_t row = rows[i];
-        if (tl_tag_matches(joint, c->tag[row]) && is_between(ma, mb, c->a[row], c->b[row]))
-            list[(*count)++] = name_of(m, row);
+        const tl_contact_name name = name_of(m, rows[i]);
+        if (tl_tag_matches(joint, tag_of(m, rows[i])) &&
+            is_between(ma, mb, tl_block_row_quiet(m, name.a), tl_block_row_quiet(m, name.b)))
+            list[(*count)++] = name;
     }
     free(rows);
     free(ma);
@@ -360,12 +409,18 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
         return status;
     const tl_contacts *c = &m->detect->contacts;
     tl_body_contacts at = tl_contacts_of_block(m, row);
-    tl_id *list = malloc((size_t)(at.end - at.next + 1) * sizeof *list);
+    const size_t meets = m->segments ? m->segments->meet_count : 0;
+    tl_id *list = malloc(((size_t)(at.end - at.next) + meets + 1) * sizeof *list);
     if (!list)
         return tl_fail_memory(&m->error);
     while (tl_next_contact(&at))
         if (is_listed(c, at.contact))
             list[(*count)++] = m->blocks.id[tl_contact_partner(c, at.contact, row)];
+    for (uint32_t meeting = TL_NO_ROW; (meeting = tl_meeting_next(m, meeting)) != TL_NO_ROW;) {
+        const tl_meeting by = tl_meeting_named(m, meeting);
+        if (by.a == block || by.b == block)
+            list[(*count)++] = by.a == block ? by.b : by.a;
+    }
     *ids = list;
     return TL_OK;
 }

@@ -37,7 +37,7 @@ const int64_t *tl_contact_long(const tl_contact_facts *facts, const tl_field *of
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3]);
 
 /* Points of a contact that are told of: all of a patch, and of a field contact the one at the centre of its pressure.
- * The other one, of torsion, has the same normal force once more. */
+ * The other one, of torsion, has the same normal force once more. Those of segments are not told of. */
 size_t tl_point_count(const tl_model *m, uint32_t contact);
 /* What a law's flags mean: those that some point has, and those that all have. */
 tl_contact_state tl_contact_state_of_flags(uint32_t any, uint32_t all);
@@ -48,8 +48,8 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact);
 tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x);
 /* Brings the contacts up to date and finds the row of one; TL_E_STALE with a sentence when it is gone. */
 tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row);
-/* Brings the contacts up to date and gives the rows of those with points, in the order of their blocks; the caller
- * frees the list. */
-tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count);
+/* Brings the contacts up to date and gives the rows of those with points, in the order of their blocks. Behind them
+ * come those of blocks that meet by segments (meeting.h), `*meetings` of all `*count`. The caller frees the list. */
+tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count, size_t *meetings);
 
 #endif

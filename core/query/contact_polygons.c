@@ -6,6 +6,7 @@
 #include "contact/pair_view.h"
 #include "narrow/narrow.h"
 #include "narrow/surface.h"
+#include "query/meeting.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -26,14 +27,6 @@ typedef struct job {
     part *parts;
 } job;
 
-/* Adds a contact's polygons in the frame of its first block's body. */
-static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl_surface *surface)
-{
-    tl_pair_view view = tl_contact_view(m, c);
-    return tl_pair_place(&view, scratch) &&
-           tl_contact_kind_of(m->detect, c)->place->show(m, c, &view, scratch, surface);
-}
-
 /* From the frame of a side to places relative to the model's origin, rounded as the user's coordinates are. */
 static void place(const tl_model *m, uint32_t side, tl_vec3 *x, size_t count)
 {
@@ -43,17 +36,28 @@ static void place(const tl_model *m, uint32_t side, tl_vec3 *x, size_t count)
     }
 }
 
+/* Adds a contact's polygons. */
+static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl_surface *surface)
+{
+    if (tl_row_is_meeting(m, c))
+        return tl_meeting_outlines(m, c, surface);
+    const size_t corners = surface->corners;
+    tl_pair_view view = tl_contact_view(m, c);
+    if (!tl_pair_place(&view, scratch) || !tl_contact_kind_of(m->detect, c)->place->show(m, c, &view, scratch, surface))
+        return false;
+    place(m, tl_contact_sides(m, c).a, surface->corner + corners, surface->corners - corners);
+    return true;
+}
+
 static void find_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     const job *j = user;
     part *p = &j->parts[chunk];
     for (size_t i = begin; i < end && !p->failed; i++) {
-        size_t polygons = p->surface.polygons, corners = p->surface.corners;
+        const size_t polygons = p->surface.polygons;
         p->failed = !add_polygons(j->model, j->rows[i], &j->model->detect->narrow[thread], &p->surface);
         if (p->failed)
             break;
-        place(j->model, tl_contact_sides(j->model, j->rows[i]).a, p->surface.corner + corners,
-              p->surface.corners - corners);
         j->out->first[i] = (uint32_t)(p->surface.polygons - polygons);
     }
 }

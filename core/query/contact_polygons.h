@@ -4,8 +4,9 @@
 
 #include "model/model.h"
 
-/* Of each listed contact. A flush one has one polygon, halfway between its two faces. A field contact has one for
- * each pair of faces that are the nearest on the surface of its pressure. */
+/* Of each listed contact. A flush one has one polygon, halfway between its two faces. A field contact has one for each
+ * pair of faces that are the nearest on the surface of its pressure. Blocks that meet by segments have one for each
+ * segment. */
 typedef struct tl_contact_polygons {
     size_t contacts, polygons, corners;
     uint32_t *first; /* [contacts + 1] number of a contact's first polygon */

@@ -9,6 +9,7 @@
 #include "detect/detect.h"
 #include "query/block_fields.h"
 #include "query/contact_fields.h"
+#include "query/meeting.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -133,7 +134,8 @@ static const tl_law_state *law_states_find(const tl_law_states *states, const ch
 /* First column of an entry in the law of a contact, or TL_NO_ROW. */
 static uint32_t column_of(const tl_model *m, const tl_law_states *states, const tl_law_state *of, uint32_t contact)
 {
-    uint32_t law = m->detect->contacts.law[contact];
+    const uint32_t law =
+        tl_row_is_meeting(m, contact) ? tl_meeting_named(m, contact).law : m->detect->contacts.law[contact];
     if (law == TL_NO_ROW)
         return TL_NO_ROW;
     return states->column[law * states->count + (size_t)(of - states->at)];
@@ -168,6 +170,10 @@ void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, con
     uint32_t column = column_of(m, states, of, contact);
     size_t count = tl_point_count(m, contact);
     bool adds = of->state->transfer == TL_TRANSFER_SPLIT || of->state->transfer == TL_TRANSFER_ENERGY;
+    if (tl_row_is_meeting(m, contact) && column != TL_NO_ROW) {
+        tl_meeting_state(m, contact, column, of->width, adds, value);
+        return;
+    }
     double area = 0, sum[3] = {0, 0, 0};
     for (size_t k = 0; k < count && column != TL_NO_ROW; k++) {
         size_t row = tl_point_row(&m->detect->contacts, contact, k);
@@ -411,6 +417,8 @@ static tl_status write_contact(tl_model *m, writer *w, tl_contact_name name)
     tl_status status = tl_contact_find(m, name, &row);
     if (status != TL_OK)
         return status;
+    if (tl_point_count(m, row) == 0)
+        return TL_OK;
     if (w->of.field == F_position || w->of.field == F_gap || w->of.field == F_closure) {
         if (!reserve(w, m->detect->contacts.point_count[row]))
             return tl_fail_memory(&m->error);

@@ -2,8 +2,8 @@
  *
  * A SIMD group of segments is taken at a time. A side carries the three points of a segment with it. Let x be the
  * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at
- * sum w x and has moved by sum w d. The triangle has the normal m, and from its first corner the edges a and b. These
- * have changed by a' and b'. With the size |a x b| it turns by
+ * sum w x and has moved by sum w d. Let a and b be the edges from the first corner, a' and b' how they have changed,
+ * and m the normal. With size = |a x b| the triangle turns by
  *
  *     turn = ((b . a' - a . b') m / 2 + (m . b') a - (m . a') b) / size
  *
@@ -753,6 +753,10 @@ tl_energies tl_segments_energies(tl_model *m)
 {
     struct tl_segments *s = m->segments;
     tl_energies sum = {0, s ? s->lost : 0};
+    if (s) {
+        sum.stored -= s->blend_stored;
+        sum.heat -= s->blend_heat;
+    }
     for (size_t row = 0; s && row < s->table.table.rows; row++)
         if (s->table.of[row].meet != TL_NO_ROW) {
             sum.stored += s->table.stored[row];

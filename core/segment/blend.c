@@ -1,22 +1,25 @@
 /* blend.c - from segments to field contacts, while faces tilt.
  *
  * Faces that lie flush meet by segments, blocks askew by a field contact. Between them one energy, with the smoothstep
- * S(x) = x^2 (3 - 2 x), x between the two limits:
+ * S(x) = x^2 (3 - 2 x), x between the two limits. Of the field U_f, and of the segments U_k of each pair of faces,
  *
- *     U = w U_f + (1 - w) U_s,    w = S(sin tilt; 5, 10 degrees)
+ *     U = w U_f + sum l_k U_k,    l_k = f_k S(r; 0.1, 0.5),    w = prod (1 - l_k)
+ *     f_k = 1 - S(sin tilt; 5, 10 degrees),    r = sum f_k U_k / U_f
  *
- * Segments and the field contact both go by their laws as if they bore all. What acts is that share of it. The force is
- * the gradient of the whole, with a couple
+ * so faces that bear much less than the field are none. Segments and the field contact go by their laws as if they bore
+ * all. What acts is the gradient of the whole. With S' = dS/dr, E_k = U_k - U_f prod_(j != k) (1 - l_j) and
+ * G = S' sum E_k f_k
  *
- *     M = -(U_f - U_s) dw/d(tilt)
+ *     forces of segments, and their heat, count by  l_k + G f_k / U_f,
+ *     those of the field contact by                 w - G r / U_f,
  *
- * on the segments of the faces. The tilt is that between the means, by area, of the normals of both sides of the
- * segments. With the mean vector areas N_A, N_B and c = -N_A . N_B / (|N_A| |N_B|) its cosine,
+ * and a couple M = -(E_k S + G U_k / U_f) df_k/d(tilt) turns the segments of the faces. The tilt is that between the
+ * means, by area, of the normals of both sides of the segments. Let N_A and N_B be the mean vector areas. With the
+ * cosine of the tilt c = -N_A . N_B / (|N_A| |N_B|)
  *
  *     dc/dN_A = -(n_B + c n_A) / |N_A|,    dc/dN_B = -(n_A + c n_B) / |N_B|
  *
- * so a segment of area A and normal n turns its side A by -(U_f - U_s) dw/dc A n x dc/dN_A. Of several pairs of faces of
- * two blocks that which is tilted the least decides. */
+ * so a segment of area A and normal n turns its side A by -(E_k S + G U_k / U_f) df_k/dc A n x dc/dN_A. */
 #include "segment/blend.h"
 
 #include "contact/detection.h"
@@ -26,11 +29,17 @@
 #include <math.h>
 
 /* Tolerance: sines of 5 and 10 degrees, between which the field contact takes over: zoned faces curve by some degrees
- * and lie flush all the same. Test: property/deform_contacts. */
+ * and lie flush all the same. Test: property/deform_properties. */
 #define LEAST_TILT 0.087155742747658174
 #define MOST_TILT 0.17364817766693033
 /* Tolerance: sine of 4.8 degrees, from which on there is a field contact: before it has a share. */
 #define NEARLY 0.083677843332315490
+
+/* Tolerance: share of the smaller face from which on flush faces bear all: of others the field may have more. */
+#define MOST_OF 0.5
+
+/* Limit: pairs of faces of two blocks that take part. Convex blocks have three or so within 12 degrees. */
+#define MOST_BLENDED 16
 
 /* ---------------------------------------------------------------- shares ----------------- */
 
@@ -58,39 +67,30 @@ static tilt tilt_of(const tl_model *m, const tl_meet *meet)
     return out;
 }
 
-/* The share of a field contact, with its slopes by the mean vector areas. */
-static void put_share(const tilt *by, tl_blend *to)
+/* What the tilt of two faces leaves them. */
+static void put_tilt(const tilt *by, tl_meet *to)
 {
     const double x = fmin(fmax((by->sine - LEAST_TILT) / (MOST_TILT - LEAST_TILT), 0), 1);
     const double rise = 6 * x * (1 - x) / (MOST_TILT - LEAST_TILT); /* by the sine */
-    to->share = x * x * (3 - 2 * x);
-    for (int side = 0; side < 2; side++)
-        to->slope[side] = tl_v3_scale(rise > 0 ? -rise * by->cosine / by->sine : 0, by->slope[side]);
+    to->flat = 1 - x * x * (3 - 2 * x);
+    to->steep = rise > 0 ? rise * by->cosine / by->sine : 0;
+    to->by[0] = by->slope[0];
+    to->by[1] = by->slope[1];
 }
 
-/* The meets of two blocks: shares, or none. */
-static tl_blend blend_of(const tl_model *m, uint32_t first, uint32_t end, bool *alone)
+/* The meets of two blocks: whether they meet by segments alone. */
+static bool tilt_meets(tl_model *m, uint32_t first, uint32_t end)
 {
-    const tl_meet *meet = m->segments->meet;
-    tl_blend out = {.a = meet[first].a, .b = meet[first].b, .first = first, .end = end, .meet = TL_NO_ROW};
-    tilt least = {.sine = INFINITY};
-    out.contact = TL_NO_ROW;
-    *alone = false;
-    for (uint32_t k = first; k < end; k++)
-        *alone = *alone || (meet[k].area > 0 && !meet[k].tilted);
-    for (uint32_t k = first; k < end && !*alone; k++) {
-        if (!(meet[k].area > 0))
-            continue;
-        const tilt by = tilt_of(m, &meet[k]);
-        if (by.sine < least.sine) {
-            least = by;
-            out.meet = k;
-        }
+    tl_meet *meet = m->segments->meet;
+    bool alone = false;
+    for (uint32_t k = first; k < end; k++) {
+        tilt by = {.cosine = 1};
+        if (meet[k].tilted && meet[k].area > 0)
+            by = tilt_of(m, &meet[k]);
+        put_tilt(&by, &meet[k]);
+        alone = alone || (by.sine < NEARLY && meet[k].area > MOST_OF * meet[k].size);
     }
-    if (!*alone && out.meet != TL_NO_ROW)
-        put_share(&least, &out);
-    *alone = *alone || least.sine < NEARLY;
-    return out;
+    return alone;
 }
 
 bool tl_blends_find(tl_model *m)
@@ -98,19 +98,20 @@ bool tl_blends_find(tl_model *m)
     struct tl_segments *s = m->segments;
     bool changed = false;
     s->blend_count = 0;
+    s->blend_stored = s->blend_heat = 0;
     for (uint32_t first = 0, end; first < s->meet_count; first = end) {
-        for (end = first;
-             end < s->meet_count && s->meet[end].a == s->meet[first].a && s->meet[end].b == s->meet[first].b;)
+        const tl_id a = s->meet[first].a, b = s->meet[first].b;
+        for (end = first; end < s->meet_count && s->meet[end].a == a && s->meet[end].b == b;)
             end++;
-        bool alone;
-        const tl_blend blend = blend_of(m, first, end, &alone);
+        const bool alone = tilt_meets(m, first, end);
+        double area = 0;
         for (uint32_t k = first; k < end; k++) {
             changed = changed || s->meet[k].alone != alone;
             s->meet[k].alone = alone;
-            s->meet[k].left = 1 - blend.share;
+            area += s->meet[k].area;
         }
-        if (!alone && blend.meet != TL_NO_ROW)
-            s->blend[s->blend_count++] = blend;
+        if (area > 0)
+            s->blend[s->blend_count++] = (tl_blend){a, b, first, end, TL_NO_ROW};
     }
     return changed;
 }
@@ -137,49 +138,49 @@ void tl_blends_share(tl_model *m)
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; m->segments && c->share && i < c->table.rows; i++) {
         c->share[i] = 1;
+        c->heat[i] = 0; /* of one without a law or room for points it stays so */
         if (!tl_blocks_deform_either(m, c->a[i], c->b[i]))
             continue;
         const tl_id a = m->blocks.id[c->a[i]], b = m->blocks.id[c->b[i]];
         tl_blend *blend = find_blend(m->segments, a < b ? a : b, a < b ? b : a);
-        if (blend) {
+        if (blend)
             blend->contact = i;
-            c->share[i] = blend->share;
-        } else if (tl_blocks_meet(m, c->a[i], c->b[i])) {
+        if (tl_blocks_meet(m, c->a[i], c->b[i]))
             c->share[i] = 0;
-        }
     }
 }
 
-/* The energy that the segments of two blocks would store if they bore all. */
-static double stored_by(const struct tl_segments *s, const tl_blend *blend)
+/* The energy that the segments of a meet would store if they bore all. */
+static double stored_by(const struct tl_segments *s, const tl_meet *meet)
 {
     double sum = 0;
-    for (uint32_t k = blend->first; k < blend->end; k++)
-        for (uint32_t row = s->meet[k].begin; row < s->meet[k].end; row++)
-            sum += s->table.of[row].meet != TL_NO_ROW ? s->table.stored[row] : 0;
+    for (uint32_t row = meet->begin; row < meet->end; row++)
+        sum += s->table.of[row].meet != TL_NO_ROW ? s->table.stored[row] : 0;
     return sum;
 }
 
-static void scale_segment(struct tl_segments *s, uint32_t row, double by)
+/* Lets so much of a segment's forces and energy act. */
+static void scale_segment(struct tl_segments *s, uint32_t row, double forces, double energy)
 {
     for (int side = 0; side < 2; side++)
         for (int corner = 0; corner < 3; corner++)
             for (int k = 0; k < 4; k++)
-                s->table.push[row].of[side][corner][k] *= by;
-    s->table.bears[row] *= by;
-    s->table.stored[row] *= by;
-    s->table.heat[row] *= by;
+                s->table.push[row].of[side][corner][k] *= forces;
+    s->table.bears[row] *= forces;
+    s->table.stored[row] *= energy;
+    s->table.heat[row] *= forces;
 }
 
-/* Adds what the change of the share by the tilt does to the sides of a segment. `more`: of the field's energy, J. */
-static void turn_segment(tl_model *m, uint32_t row, const tl_blend *blend, double more)
+/* Adds what the change of its share by the tilt does to the sides of a segment. `more`: that of the energy, J, by the
+ * cosine. */
+static void turn_segment(tl_model *m, uint32_t row, const tl_meet *meet, double more)
 {
     struct tl_segments *s = m->segments;
     const tl_segment *of = &s->table.of[row];
     for (int side = 0; side < 2; side++) {
         const tl_side_now now = tl_side_now_of(m, side ? &of->b : &of->a, side ? of->normal_b : of->normal_a);
         double sum[9] = {0};
-        tl_side_turn(&now, tl_v3_scale(-more * s->table.area[row], tl_v3_cross(now.normal, blend->slope[side])), sum);
+        tl_side_turn(&now, tl_v3_scale(-more * s->table.area[row], tl_v3_cross(now.normal, meet->by[side])), sum);
         for (int corner = 0; corner < 3; corner++) {
             double *to = s->table.push[row].of[side][corner];
             for (int k = 0; k < 3; k++)
@@ -189,21 +190,90 @@ static void turn_segment(tl_model *m, uint32_t row, const tl_blend *blend, doubl
     }
 }
 
-void tl_blends_apply(tl_model *m)
+/* Tolerance: energy of the segments of two faces over that of the field below which they are none, and from which on
+ * they are all: as of patches (narrow/share.c). */
+#define LEAST_PART 0.1
+#define MOST_PART 0.5
+
+/* The meets of two blocks: their energies, and how much of them counts. */
+typedef struct parts {
+    uint32_t count;
+    double energy[MOST_BLENDED], share[MOST_BLENDED];
+    double field, ratio, step, slope; /* U_f, r, S and S' */
+} parts;
+
+static parts parts_of(const struct tl_segments *s, const tl_blend *blend, double field)
+{
+    parts out = {.count = blend->end - blend->first, .field = field, .step = 1};
+    double sum = 0;
+    out.count = out.count < MOST_BLENDED ? out.count : MOST_BLENDED;
+    for (uint32_t k = 0; k < out.count; k++) {
+        out.energy[k] = stored_by(s, &s->meet[blend->first + k]);
+        sum += s->meet[blend->first + k].flat * out.energy[k];
+    }
+    if (field > 0) {
+        out.ratio = sum / field;
+        const double x = fmin(fmax((out.ratio - LEAST_PART) / (MOST_PART - LEAST_PART), 0), 1);
+        out.step = x * x * (3 - 2 * x);
+        out.slope = 6 * x * (1 - x) / (MOST_PART - LEAST_PART);
+    }
+    for (uint32_t k = 0; k < out.count; k++)
+        out.share[k] = s->meet[blend->first + k].area > 0 ? s->meet[blend->first + k].flat * out.step : 0;
+    return out;
+}
+
+/* What the meets leave to the field, but for one of them, or TL_NO_ROW. */
+static double rest_of(const parts *of, uint32_t without)
+{
+    double rest = 1;
+    for (uint32_t k = 0; k < of->count; k++)
+        rest *= k != without ? 1 - of->share[k] : 1;
+    return rest;
+}
+
+static void apply_blend(tl_model *m, const tl_blend *blend)
 {
     struct tl_segments *s = m->segments;
     const tl_contacts *c = &m->detect->contacts;
-    for (size_t i = 0; s && i < s->blend_count; i++) {
-        const tl_blend *blend = &s->blend[i];
-        const bool pressed = blend->contact != TL_NO_ROW && c->whole && c->point_count[blend->contact] > 0;
-        const double more = (pressed ? c->whole[blend->contact] : 0) - stored_by(s, blend);
-        for (uint32_t k = blend->first; k < blend->end; k++)
-            for (uint32_t row = s->meet[k].begin; row < s->meet[k].end; row++)
-                if (s->table.of[row].meet != TL_NO_ROW)
-                    scale_segment(s, row, s->meet[k].left);
-        const tl_meet *meet = &s->meet[blend->meet];
-        for (uint32_t row = meet->begin; row < meet->end; row++)
-            if (s->table.of[row].meet != TL_NO_ROW)
-                turn_segment(m, row, blend, more);
+    const uint32_t i = blend->contact;
+    const bool alone = s->meet[blend->first].alone;
+    if (alone && i == TL_NO_ROW && blend->end == blend->first + 1)
+        return; /* as most */
+    const bool pressed = i != TL_NO_ROW && !alone && c->point_count[i] > 0 && c->law[i] != TL_NO_ROW;
+    const parts of = parts_of(s, blend, pressed ? c->stored[i] : 0);
+    const double rest = alone ? 0 : rest_of(&of, TL_NO_ROW), per = of.field > 0 ? 1 / of.field : 0;
+    double more[MOST_BLENDED], grows = 0;
+    for (uint32_t k = 0; k < of.count; k++) {
+        more[k] = of.energy[k] - (alone ? 0 : of.field * rest_of(&of, k));
+        grows += of.slope * more[k] * s->meet[blend->first + k].flat;
     }
+    for (uint32_t k = 0; k < of.count; k++) {
+        const tl_meet *meet = &s->meet[blend->first + k];
+        const double forces = of.share[k] + per * grows * meet->flat;
+        const double turns = meet->steep * (more[k] * of.step + per * grows * of.energy[k]);
+        for (uint32_t row = meet->begin; row < meet->end; row++) {
+            if (s->table.of[row].meet == TL_NO_ROW)
+                continue;
+            scale_segment(s, row, forces, of.share[k]);
+            if (turns != 0)
+                turn_segment(m, row, meet, turns);
+        }
+    }
+    if (i == TL_NO_ROW)
+        return;
+    const double by_field = rest - per * grows * of.ratio;
+    c->share[i] = rest;
+    c->force[i] = tl_v3_scale(by_field, c->force[i]);
+    c->moment[i] = tl_v3_scale(by_field, c->moment[i]);
+    if (c->point_capacity[i] > 0 && c->law[i] != TL_NO_ROW) /* else it is not counted (cycle/contact_forces.c) */
+        s->blend_stored += (1 - rest) * c->stored[i];
+    s->blend_heat += (1 - by_field) * c->heat[i];
+}
+
+void tl_blends_apply(tl_model *m)
+{
+    struct tl_segments *s = m->segments;
+    s->blend_stored = s->blend_heat = 0;
+    for (size_t i = 0; i < s->blend_count; i++)
+        apply_blend(m, &s->blend[i]);
 }

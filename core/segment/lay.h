@@ -26,15 +26,17 @@ bool tl_segments_begin(tl_model *m);
 void tl_segments_free(struct tl_segments *s);
 void tl_laying_begin(tl_laying *l);
 bool tl_laying_add(tl_laying *l, const tl_new_segment *segment);
-/* Puts a list of meets in the place of the present ones. Those that there were stay as they are. false: out of memory,
- * and the list has been freed. */
-bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, size_t count);
+/* Puts a list of meets in the place of the present ones. Those that there were stay as they are; the shear of others is
+ * heat. false: out of memory, and the list has been freed. */
+bool tl_laying_change_meets(const tl_model *m, tl_laying *l, tl_meet *list, size_t count);
 /* Lays all segments anew. false: out of memory, and nothing has changed. */
 bool tl_lay_segments(tl_model *m, const tl_laying *l);
 void tl_laying_end(tl_laying *l);
 /* Lists the segments of gridpoints and bodies; makes columns of states. false: out of memory. */
 bool tl_segments_index(tl_model *m);
 bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns);
+/* Makes the columns of initial forces. false: out of memory. */
+bool tl_segments_hold_initial(struct tl_segments *s);
 
 /* Where a point of a side lies, from the model's origin. */
 tl_vec3 tl_segment_place(const tl_model *m, const tl_segment_side *side, tl_vec3 at);

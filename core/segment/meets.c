@@ -23,8 +23,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: cos of 12 degrees, up to which faces that meet may be tilted: beyond 10 a field contact has all
- * (blend.c). */
+/* Tolerance: cos of 12 degrees, up to which faces that meet may be tilted: beyond 10 a field contact has all (blend.c).
+ */
 #define LEAST_FACING 0.97814760073380563
 /* Tolerance: distance over the size of the smaller block up to which faces meet. */
 #define NEAR 0.02
@@ -114,21 +114,20 @@ static double tilt_cosine(const face *a, const face *b)
     return -tl_v3_dot(tl_v3_unit(a->area), tl_v3_unit(b->area));
 }
 
-/* Whether two faces look at each other and are near. */
+/* Whether two faces look at each other and are near: the centre of one is near the plane of the other. */
 static bool faces_meet(const tl_model *m, const face *a, const face *b)
 {
-    const tl_vec3 na = tl_v3_unit(a->area), nb = tl_v3_unit(b->area), apart = tl_v3_sub(b->centre, a->centre);
+    const tl_vec3 apart = tl_v3_sub(b->centre, a->centre);
     const double near = NEAR * fmin(m->blocks.size[a->block], m->blocks.size[b->block]);
-    const tl_vec3 n = tl_v3_unit(tl_v3_sub(na, nb));
-    const double gap = tl_v3_dot(apart, n), aside = tl_v3_norm(tl_v3_madd(apart, -gap, n));
-    return tilt_cosine(a, b) > LEAST_FACING && fabs(gap) < near + TILTS_BY * fmin(a->reach, b->reach) &&
-           aside < a->reach + b->reach;
+    const double of_b = fabs(tl_v3_dot(apart, tl_v3_unit(a->area))), of_a = fabs(tl_v3_dot(apart, tl_v3_unit(b->area)));
+    return tilt_cosine(a, b) > LEAST_FACING && fmin(of_a, of_b) < near + TILTS_BY * fmin(a->reach, b->reach) &&
+           tl_v3_norm(apart) < a->reach + b->reach + near;
 }
 
 /* ---------------------------------------------------------------- depth ------------------ */
 
 /* Tolerance: how much deeper than along another face the blocks may overlap along one that touches, and what of their
- * size beside: as of patches (narrow/manifold.c). Test: property/deform_contacts. */
+ * size beside: as of patches (narrow/manifold.c). Test: property/deform_properties. */
 #define DEEPER 4.0
 #define DEEPER_SIZE 1e-3
 
@@ -186,7 +185,8 @@ static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list,
                                             .share = 0.5,
                                             .tilted = tilt_cosine(&fa, &fb) < NOT_TILTED,
                                             .alone = true,
-                                            .left = 1};
+                                            .size = fmin(fa.size, fb.size),
+                                            .flat = 1};
         }
     }
     return true;
@@ -225,34 +225,40 @@ static tl_meet *list_meets(const tl_model *m, size_t *count, bool *enough)
 
 /* ---------------------------------------------------------------- segments --------------- */
 
-/* Finds what two parts, or a part and a rigid face, have in common. false: they do not lie over each other. */
-static bool lay_over(tl_model *m, double share, const face *a, size_t i, const face *b, size_t k, tl_overlay *over)
+/* Two faces, or parts of them: a rigid face has one part, itself. */
+typedef struct face_parts {
+    const face *of[2];
+    size_t at[2];
+} face_parts;
+
+/* Lays two parts over each other. `scratch`: room for the corners of a rigid one. false: nothing in common. */
+static bool lay_over(const tl_model *m, const face_parts *p, double share, tl_vec3 *scratch, tl_overlay_room *room,
+                     tl_overlay *over)
 {
-    tl_vec3 ca[3], cb[3];
-    const face *of[2] = {a, b};
-    const size_t at[2] = {i, k};
+    tl_vec3 corner[2][3];
     tl_outer_face outer[2];
-    tl_vec3 *corner[2] = {ca, cb};
     for (int s = 0; s < 2; s++) {
-        if (of[s]->part) {
+        const face *of = p->of[s];
+        if (of->part) {
             for (int c = 0; c < 3; c++)
-                corner[s][c] = corner_of(m, &of[s]->part[at[s]], c);
+                corner[s][c] = corner_of(m, &of->part[p->at[s]], c);
             outer[s] = (tl_outer_face){corner[s], 3};
         } else {
-            const uint32_t count = tl_poly_face_size(m->blocks.shape[of[s]->block], of[s]->number);
+            const uint32_t count = tl_poly_face_size(m->blocks.shape[of->block], of->number);
             for (uint32_t c = 0; c < count; c++)
-                m->segments->corner[c] = rigid_corner(m, of[s]->block, of[s]->number, c);
-            outer[s] = (tl_outer_face){m->segments->corner, count};
+                scratch[c] = rigid_corner(m, of->block, of->number, c);
+            outer[s] = (tl_outer_face){scratch, count};
         }
     }
-    return tl_overlay_find(&outer[0], &outer[1], share, &m->segments->room, over);
+    return tl_overlay_find(&outer[0], &outer[1], share, room, over);
 }
 
 /* Notes a segment of two parts, or of a part and a rigid face, that lie over each other. false: out of memory. */
 static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a, size_t i, const face *b, size_t k)
 {
     tl_new_segment made = {.meet = meet, .key = {(uint32_t)i, (uint32_t)k}};
-    if (!lay_over(m, m->segments->meet[meet].share, a, i, b, k, &made.over))
+    struct tl_segments *to = m->segments;
+    if (!lay_over(m, &(face_parts){{a, b}, {i, k}}, to->meet[meet].share, to->corner, &to->room, &made.over))
         return true;
     const face *of[2] = {a, b};
     const size_t at[2] = {i, k};
@@ -267,24 +273,35 @@ static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a
     return tl_laying_add(l, &made);
 }
 
-/* Room for the corners of the faces of a meet. */
-static bool make_room(tl_model *m, const face *a, const face *b)
+/* Corners that scratch for a pair of faces has room for. */
+static size_t corners_for(const tl_model *m, const face *a, const face *b)
 {
-    struct tl_segments *s = m->segments;
     const size_t na = a->part ? 3 : tl_poly_face_size(m->blocks.shape[a->block], a->number);
     const size_t nb = b->part ? 3 : tl_poly_face_size(m->blocks.shape[b->block], b->number);
-    const size_t need = na + nb + 4;
-    if (!tl_grow(&s->corner, &s->corner_capacity, need, sizeof *s->corner))
-        return false;
-    if (need <= s->room.capacity)
+    return na + nb + 4;
+}
+
+/* Room for overlays of polygons of so many corners together. */
+static bool make_overlay_room(tl_overlay_room *room, tl_point2 **memory, size_t need)
+{
+    if (need <= room->capacity)
         return true;
     tl_point2 *all = malloc(3 * need * sizeof *all);
     if (!all)
         return false;
-    free(s->room_memory);
-    s->room_memory = all;
-    s->room = (tl_overlay_room){all, all + need, all + 2 * need, need};
+    free(*memory);
+    *memory = all;
+    *room = (tl_overlay_room){all, all + need, all + 2 * need, need};
     return true;
+}
+
+/* Room for the corners of the faces of a meet. */
+static bool make_room(tl_model *m, const face *a, const face *b)
+{
+    struct tl_segments *s = m->segments;
+    const size_t need = corners_for(m, a, b);
+    return tl_grow(&s->corner, &s->corner_capacity, need, sizeof *s->corner) &&
+           make_overlay_room(&s->room, &s->room_memory, need);
 }
 
 /* Tolerance: share of a face that counts as left out when all is covered: two faces that cover each other share their
@@ -305,7 +322,9 @@ static double common_area(tl_model *m, const face *a, const face *b)
     tl_overlay over;
     for (size_t i = 0; i < (a->part ? a->part_count : 1); i++)
         for (size_t k = 0; k < (b->part ? b->part_count : 1); k++)
-            sum += lay_over(m, 0.5, a, i, b, k, &over) ? over.area : 0;
+            sum += lay_over(m, &(face_parts){{a, b}, {i, k}}, 0.5, m->segments->corner, &m->segments->room, &over)
+                       ? over.area
+                       : 0;
     return sum;
 }
 
@@ -368,7 +387,7 @@ tl_status tl_segments_find(tl_model *m)
         size_t count;
         tl_meet *list = list_meets(m, &count, &enough);
         if (enough)
-            tl_laying_change_meets(&l, s, list, count);
+            tl_laying_change_meets(m, &l, list, count);
         else
             free(list);
         mark_changed(m);
@@ -393,4 +412,98 @@ tl_status tl_segments_find(tl_model *m)
     s->zones = m->zones->version;
     s->lists = m->detect->lists;
     return TL_OK;
+}
+
+/* ---------------------------------------------------------------- covers ----------------- */
+
+/* The list of covers on its way. */
+typedef struct covering {
+    const tl_model *m;
+    tl_cover *list;
+    size_t count, capacity;
+    tl_vec3 *corner;
+    size_t corner_capacity;
+    tl_overlay_room room;
+    tl_point2 *memory;
+} covering;
+
+static uint32_t part_row(const tl_model *m, const face *f, size_t k)
+{
+    return f->part ? (uint32_t)(f->part - m->zones->part + (ptrdiff_t)k) : TL_NO_ROW;
+}
+
+/* Notes two parts that lie on each other, for both. false: out of memory. */
+static bool note_cover(covering *c, const face_parts *p)
+{
+    const tl_model *m = c->m;
+    const face *a = p->of[0], *b = p->of[1];
+    tl_overlay over;
+    double gap = 0;
+    if (!lay_over(m, p, 0.5, c->corner, &c->room, &over))
+        return true;
+    for (int k = 0; k < TL_SEGMENT_POINTS; k++)
+        gap += tl_v3_dot(tl_v3_sub(over.on_b[k], over.on_a[k]), over.n) / TL_SEGMENT_POINTS;
+    if (gap > TL_CONTACT_TOLERANCE * fmin(m->blocks.size[a->block], m->blocks.size[b->block]))
+        return true;
+    if (!tl_grow(&c->list, &c->capacity, c->count + 2, sizeof *c->list))
+        return false;
+    const uint32_t x = part_row(m, a, p->at[0]), y = part_row(m, b, p->at[1]);
+    c->list[c->count++] = (tl_cover){a->block, a->number, x, b->block, b->number, y, over.area};
+    c->list[c->count++] = (tl_cover){b->block, b->number, y, a->block, a->number, x, over.area};
+    return true;
+}
+
+static bool cover_faces(covering *c, const face *a, const face *b)
+{
+    const size_t need = corners_for(c->m, a, b);
+    bool enough = tl_grow(&c->corner, &c->corner_capacity, need, sizeof *c->corner) &&
+                  make_overlay_room(&c->room, &c->memory, need);
+    for (size_t i = 0; enough && i < (a->part ? a->part_count : 1); i++)
+        for (size_t k = 0; enough && k < (b->part ? b->part_count : 1); k++)
+            enough = note_cover(c, &(face_parts){{a, b}, {i, k}});
+    return enough;
+}
+
+static bool cover_blocks(covering *c, uint32_t a, uint32_t b)
+{
+    const tl_poly *pa = c->m->blocks.shape[a], *pb = c->m->blocks.shape[b];
+    bool enough = true;
+    for (uint32_t i = 0; i < pa->face_count; i++) {
+        const face fa = face_of(c->m, a, i);
+        for (uint32_t k = 0; enough && k < pb->face_count; k++) {
+            const face fb = face_of(c->m, b, k);
+            if (!pa->covered[i] && !pb->covered[k] && faces_meet(c->m, &fa, &fb))
+                enough = cover_faces(c, &fa, &fb);
+        }
+    }
+    return enough;
+}
+
+static int compare_covers(const void *x, const void *y)
+{
+    const tl_cover *a = x, *b = y;
+    const uint32_t p[5] = {a->block, a->face, a->part, a->other_block, a->other_part};
+    const uint32_t q[5] = {b->block, b->face, b->part, b->other_block, b->other_part};
+    for (int k = 0; k < 5; k++)
+        if (p[k] != q[k])
+            return p[k] < q[k] ? -1 : 1;
+    return 0;
+}
+
+bool tl_meets_cover(const tl_model *m, tl_cover **list, size_t *count)
+{
+    covering c = {.m = m};
+    bool enough = true;
+    for (size_t k = 0; enough && m->detect && k < m->detect->pair_count; k++) {
+        const uint32_t a = m->detect->pairs[k].a, b = m->detect->pairs[k].b;
+        if (m->blocks.body[a] != m->blocks.body[b] && tl_blocks_deform_either(m, a, b))
+            enough = cover_blocks(&c, a, b);
+    }
+    if (c.count > 0)
+        qsort(c.list, c.count, sizeof *c.list, compare_covers);
+    free(c.corner);
+    free(c.memory);
+    *list = c.list;
+    *count = c.count;
+    return enough;
 }

@@ -4,6 +4,18 @@
 
 #include "segment/segments.h"
 
+/* A part of a face that lies on one of another block: rows of the blocks, numbers of the faces, and their parts, or
+ * TL_NO_ROW of a rigid face. */
+typedef struct tl_cover {
+    uint32_t block, face, part;
+    uint32_t other_block, other_face, other_part;
+    double area; /* that both have in common, m2 */
+} tl_cover;
+
+/* Lists, at the present places, what lies on what where one of two blocks is deformable: each overlay for both sides,
+ * by block, face and part. Segments stay as they are. false: out of memory. The caller frees the list in any case. */
+bool tl_meets_cover(const tl_model *m, tl_cover **list, size_t *count);
+
 /* Brings meets and their segments up to the present places. */
 tl_status tl_segments_find(tl_model *m);
 

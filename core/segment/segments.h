@@ -100,18 +100,18 @@ typedef struct tl_meet {
     double share;        /* 1: the outline of what the faces have in common is B's; 0: it is A's */
     uint32_t begin, end; /* rows of its segments */
     bool tilted;         /* its faces may be tilted so far that a field contact has a share (blend.c) */
-    bool alone;          /* there is none */
-    double left;         /* what the field contact leaves of its forces and energies */
+    bool alone;          /* the two blocks have none */
+    double size;         /* of the smaller face, m2 */
+    double flat;         /* what its tilt leaves of its forces and energies, */
+    double steep;        /* and the change of that by the cosine of the tilt */
+    tl_vec3 by[2];       /* and of that by the mean vector areas of both sides, 1/m2 */
 } tl_meet;
 
-/* Two blocks a part of whose contact is a field contact (blend.c). */
+/* Two blocks that meet by segments and by a field contact (blend.c). */
 typedef struct tl_blend {
     tl_id a, b;
     uint32_t first, end; /* of their meets */
-    uint32_t meet;       /* whose tilt decides */
     uint32_t contact;    /* row of the field contact, or TL_NO_ROW */
-    double share;        /* of the field contact */
-    tl_vec3 slope[2];    /* of the share by the mean vector areas of both faces, 1/m2 */
 } tl_blend;
 
 /* SIMD groups of one law. */
@@ -155,8 +155,9 @@ struct tl_segments {
     size_t corner_capacity;
     tl_blend *blend; /* in this step, in the order of the meets */
     size_t blend_count, blend_capacity;
-    uint64_t version; /* counts how often segments were laid */
-    double lost;      /* shear that went when segments were laid: heat of the next step, J */
+    double blend_stored, blend_heat; /* that is counted of field contacts and is none, in this step, J */
+    uint64_t version;                /* counts how often segments were laid */
+    double lost;                     /* shear that went when segments were laid: heat of the next step, J */
 };
 
 #endif

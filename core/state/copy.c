@@ -104,11 +104,11 @@ static tl_status fill(tl_model *to, tl_model *from, const tl_drives_again *again
         if ((*part)->copy)
             status = (*part)->copy(to, from);
     if (status == TL_OK)
-        status = tl_drives_copy(to, from, again);
-    if (status == TL_OK)
         status = copy_detection(to, from);
     if (status == TL_OK)
         status = copy_zones(to, from);
+    if (status == TL_OK) /* gridpoints may follow them */
+        status = tl_drives_copy(to, from, again);
     return status == TL_OK ? copy_cycle(to, from) : status;
 }
 

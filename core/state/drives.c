@@ -4,6 +4,8 @@
 #include "state/drives.h"
 
 #include "model/loads.h"
+#include "zone/zones.h"
+
 #include <stdlib.h>
 
 /* What is kept of all drives; NULL when out of memory. */
@@ -23,6 +25,18 @@ static tl_drive_kept *keep_all(const tl_model *m)
     return all;
 }
 
+/* Whether gridpoints of a mesh follow a drive, or conditions on its surface name it. */
+static bool has_driven(const struct tl_zones *z, const tl_body_mesh *mesh, size_t index)
+{
+    for (uint32_t row = mesh->point_begin; z->points.drive && row < mesh->point_end; row++)
+        if (z->points.drive[row] == index)
+            return true;
+    for (size_t k = 0; k < z->outer_count; k++)
+        if (z->outer[k].drive == index && z->outer[k].part >= mesh->part_begin && z->outer[k].part < mesh->part_end)
+            return true;
+    return false;
+}
+
 /* The lowest block that a drive, counted from 1, moves, and how many bodies. */
 static tl_drive_asked asked_of(const tl_model *m, size_t index)
 {
@@ -32,6 +46,14 @@ static tl_drive_asked asked_of(const tl_model *m, size_t index)
             continue;
         if (asked.bodies++ == 0)
             asked.block = m->bodies.id[body];
+    }
+    for (size_t k = 0; m->zones && k < m->zones->mesh_count; k++) {
+        const tl_body_mesh *mesh = &m->zones->mesh[k];
+        if (m->bodies.drive[mesh->row] == index || !has_driven(m->zones, mesh, index))
+            continue;
+        if (asked.bodies == 0 || mesh->body < asked.block)
+            asked.block = mesh->body;
+        asked.bodies++;
     }
     return asked;
 }

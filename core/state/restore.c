@@ -23,9 +23,11 @@
 #include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
+#include "zone/columns.h"
 #include "zone/follow.h"
 #include "zone/grid.h"
 #include "zone/life.h"
+#include "zone/outer.h"
 #include "zone/sound.h"
 #include "zone/walk.h"
 
@@ -339,6 +341,8 @@ static bool hold_columns(tl_model *m, const tl_archive *a)
         held = held && tl_bodies_hold_loads(&m->bodies);
     if (tl_archive_find(a, "bodies.fall"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, fall, TL_COLUMN_STEP);
+    if (tl_archive_find(a, "bodies.going"))
+        held = held && TL_COLUMN_NEED(bodies, &m->bodies, going, TL_COLUMN_STEP);
     if (tl_archive_find(a, "bodies.force_before"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, moment_before, TL_COLUMN_STEP) &&
                TL_COLUMN_NEED(bodies, &m->bodies, force_before, TL_COLUMN_STEP);
@@ -493,7 +497,7 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
         !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) || !tl_is_flag(&initial))
         return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
     bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d)) &&
-                (!tl_archive_find(a, "detect.contacts.whole") || tl_detect_hold_carriers(d));
+                (!tl_archive_find(a, "detect.contacts.heat") || tl_detect_hold_carriers(d));
     return held ? TL_OK : tl_fail_memory(&m->error);
 }
 
@@ -544,7 +548,23 @@ static bool hold_gridpoints(tl_gridpoints *p, const tl_archive *a)
 {
     const bool load = tl_archive_find(a, "zones.points.load[k]"), damped = tl_archive_find(a, "zones.points.alpha");
     const bool before = tl_archive_find(a, "zones.points.force_before[k]");
-    return (!load || tl_gridpoints_hold_loads(p)) && (!damped || tl_gridpoints_hold_damping(p, before));
+    const bool pushed = tl_archive_find(a, "zones.points.pushed[k]"),
+               quiet = tl_archive_find(a, "zones.points.quiet[k]");
+    const bool held = tl_archive_find(a, "zones.points.held[d][k]"), drive = tl_archive_find(a, "zones.points.drive");
+    return (!load || tl_gridpoints_hold_loads(p)) && (!damped || tl_gridpoints_hold_damping(p, before)) &&
+           (!pushed || tl_gridpoints_hold_pushed(p)) && (!quiet || tl_gridpoints_hold_quiet(p)) &&
+           (!held || tl_gridpoints_hold_directions(p)) && (!drive || tl_gridpoints_hold_drives(p));
+}
+
+/* Whether gridpoints follow drives that there are. */
+static bool drives_fit(const struct tl_zones *z, size_t drives)
+{
+    bool fit = true;
+    for (size_t row = 0; z->points.drive && row < z->points.table.rows; row++)
+        fit = fit && z->points.drive[row] <= drives;
+    for (size_t k = 0; k < z->outer_count; k++)
+        fit = fit && z->outer[k].drive <= drives;
+    return fit;
 }
 
 static tl_status read_zones(tl_model *m, const tl_archive *a)
@@ -565,6 +585,8 @@ static tl_status read_zones(tl_model *m, const tl_archive *a)
         return status;
     z->zones.state_columns = columns;
     const char *bad = tl_zones_unsound(m, z);
+    if (!bad && !drives_fit(z, tl_archive_items(a, "drives")))
+        bad = "a gridpoint follows no drive";
     if (bad)
         return unsound(a, m, bad);
     const bool enough = tl_grow(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot) && tl_zones_index(z, 0);
@@ -579,6 +601,8 @@ static tl_status read_segments(tl_model *m, const tl_archive *a)
     if (!m->zones || !tl_archive_find(a, "segments.table.rows"))
         return TL_OK;
     if (!tl_segments_begin(m) || !tl_segments_hold_states(m->segments, states_needed(m)))
+        return tl_fail_memory(&m->error);
+    if (tl_archive_find(a, "segments.points.f_n0") && !tl_segments_hold_initial(m->segments))
         return tl_fail_memory(&m->error);
     const uint32_t columns = m->segments->points.state_columns;
     reader r = {.archive = a};
@@ -617,8 +641,6 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
     for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
         status = (*part)->restore(m, a);
     if (status == TL_OK)
-        status = tl_drives_restore(m, a, again);
-    if (status == TL_OK)
         status = derive_rows(m);
     if (status == TL_OK)
         status = read_detection(m, a);
@@ -628,6 +650,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = read_segments(m, a);
     if (status == TL_OK)
         status = unsound(a, m, tl_carriers_unsound(m));
+    if (status == TL_OK) /* gridpoints may follow them */
+        status = tl_drives_restore(m, a, again);
     return status == TL_OK ? read_cycle(m, a) : status;
 }
 

@@ -241,9 +241,34 @@ static void hash_rock(tl_hash *hash, const tl_model *m)
 
 /* ---------------------------------------------------------------- deformable blocks ------ */
 
-static void hash_mesh(tl_hash *hash, const struct tl_zones *z, const tl_body_mesh *mesh)
+/* What acts on the surface of a mesh, and drives its gridpoints. */
+static void hash_outer(tl_hash *hash, const tl_model *m, const tl_body_mesh *mesh)
 {
+    const struct tl_zones *z = m->zones;
+    for (size_t k = 0; k < z->outer_count; k++) {
+        tl_outer_part of = z->outer[k];
+        if (of.part < mesh->part_begin || of.part >= mesh->part_end)
+            continue;
+        if (of.drive)
+            hash_drive(hash, &m->drives[of.drive - 1].drive);
+        if (of.quiet)
+            hash_text(hash, z->solid[of.solid].name);
+        of.part -= mesh->part_begin;
+        of.drive = of.solid = 0;
+        tl_hash_bytes(hash, &of, sizeof of);
+    }
+    for (uint32_t row = mesh->point_begin; z->points.drive && row < mesh->point_end; row++)
+        if (z->points.drive[row]) {
+            tl_hash_word(hash, row - mesh->point_begin);
+            hash_drive(hash, &m->drives[z->points.drive[row] - 1].drive);
+        }
+}
+
+static void hash_mesh(tl_hash *hash, const tl_model *m, const tl_body_mesh *mesh)
+{
+    const struct tl_zones *z = m->zones;
     hash_rows(hash, &z->points.table, mesh->point_begin, mesh->point_end);
+    hash_outer(hash, m, mesh);
     for (uint32_t k = mesh->parcel_begin; k < mesh->parcel_end; k++) {
         const tl_parcel *of = &z->parcels.of[k];
         const tl_named_solid *solid = &z->solid[of->solid];
@@ -267,7 +292,7 @@ static void hash_meshes(tl_hash *hash, const tl_model *m)
     for (size_t k = 0; k < m->zones->mesh_count; k++) {
         tl_hash one = tl_hash_start();
         tl_hash_word(&one, m->zones->mesh[k].body);
-        hash_mesh(&one, m->zones, &m->zones->mesh[k]);
+        hash_mesh(&one, m, &m->zones->mesh[k]);
         hash_any_order(&sum, &one);
     }
     tl_hash_word(hash, sum.a);
@@ -378,6 +403,8 @@ static void hash_settling(tl_hash *hash, const tl_model *m)
     tl_hash_bytes(hash, words, sizeof words);
     if (m->relaxing && m->bodies.fall)
         tl_hash_bytes(hash, m->bodies.fall, m->bodies.table.rows * sizeof *m->bodies.fall);
+    if (m->relaxing && m->bodies.going)
+        tl_hash_bytes(hash, m->bodies.going, m->bodies.table.rows * sizeof *m->bodies.going);
 }
 
 static void hash_settings(tl_hash *hash, const tl_model *m)

@@ -3,8 +3,11 @@
  * All bodies are divided before any is changed. Then each gets its mesh, in the order of their first blocks. */
 #include "base/columns.h"
 #include "geometry/zoning.h"
+#include "model/deformable.h"
+#include "model/loads.h"
 #include "model/rows.h"
 #include "zone/body_zones.h"
+#include "zone/columns.h"
 #include "zone/corner_keys.h"
 #include "zone/solids.h"
 #include "zone/stiffness.h"
@@ -12,6 +15,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <talus/zones.h>
+
+/* Tolerance: distance over the block's size up to which a loaded point outside counts as one of the surface. */
+#define TOUCHES 1e-6
 
 /* A body on its way. */
 typedef struct part {
@@ -39,6 +45,35 @@ static tl_status refuse(tl_model *m, tl_id block, const char *why)
     return tl_fail(&m->error, TL_E_STATE, "block %u cannot get zones: %s", block, why);
 }
 
+/* Whether a place, in a body's frame, lies in one of its blocks. */
+static bool lies_in(const tl_model *m, uint32_t body, tl_vec3 at)
+{
+    bool some = false;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        const uint32_t row = tl_body_blocks(m, body)[k];
+        const tl_poly *shape = m->blocks.shape[row];
+        bool inside = true;
+        for (uint32_t f = 0; f < shape->face_count; f++)
+            inside = inside &&
+                     tl_v3_dot(shape->plane[f].normal, at) <= shape->plane[f].offset + TOUCHES * m->blocks.size[row];
+        some = some || inside;
+    }
+    return some;
+}
+
+/* A load goes over to the zone at its point, or without one to all gridpoints by mass. */
+static tl_status check_load(tl_model *m, uint32_t row)
+{
+    const tl_id block = m->blocks.id[row];
+    const tl_vec3 at = m->bodies.load[m->blocks.body[row]].arm;
+    for (size_t k = 0; k < m->face_load_count; k++)
+        if (m->face_loads[k].block == block)
+            return refuse(m, block, "its faces are loaded; take the load off, and put it on when it has zones");
+    if (!lies_in(m, m->blocks.body[row], at))
+        return refuse(m, block, "it carries a load at a point outside of it; take that off");
+    return tl_gridpoints_hold_loads(&m->zones->points) ? TL_OK : tl_fail_memory(&m->error);
+}
+
 static tl_status check_block(tl_model *m, uint32_t row)
 {
     const tl_bodies *b = &m->bodies;
@@ -46,11 +81,7 @@ static tl_status check_block(tl_model *m, uint32_t row)
     const tl_id block = m->blocks.id[row];
     if (b->mesh[body])
         return refuse(m, block, "it has zones already");
-    if (b->drive[body])
-        return refuse(m, block, "it is driven; drive gridpoints instead");
-    if (tl_body_loaded(b, body))
-        return refuse(m, block, "it carries a load; load gridpoints instead");
-    return TL_OK;
+    return tl_body_loaded(b, body) ? check_load(m, row) : TL_OK;
 }
 
 /* A body comes whole: all blocks that are joined to a chosen one are chosen. */
@@ -134,6 +165,22 @@ static tl_status divide_body(dividing *d, part *of)
 
 /* ---------------------------------------------------------------- laying ----------------- */
 
+/* The load of a block acts on its gridpoints, and no longer on the block. */
+static void take_over_load(tl_model *m, uint32_t body)
+{
+    if (!tl_body_loaded(&m->bodies, body))
+        return;
+    const tl_body_load had = m->bodies.load[body];
+    tl_load load = tl_load_default();
+    load.force = had.force;
+    load.moment = had.moment;
+    if (!tl_v3_is_zero(had.arm))
+        load.at = tl_model_point(m, body, had.arm);
+    m->bodies.load[body] = (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    tl_load_begins_anew(m, body);
+    m->zone_verbs->load(m, body, &load);
+}
+
 /* Gridpoints move and are held as their body was, whose own motion ends. */
 static void take_over_motion(tl_model *m, const tl_body_mesh *mesh, uint8_t fixed)
 {
@@ -149,6 +196,7 @@ static void take_over_motion(tl_model *m, const tl_body_mesh *mesh, uint8_t fixe
         p->fixed[row] = held;
     }
     b->v[mesh->row] = b->w[mesh->row] = tl_v3(0, 0, 0);
+    take_over_load(m, mesh->row);
     for (uint32_t k = 0; k < b->member_count[mesh->row]; k++)
         tl_block_changes(m, tl_body_blocks(m, mesh->row)[k]);
 }

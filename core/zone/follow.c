@@ -1,7 +1,9 @@
 /* follow.c - meshes follow their bodies: when rows move, and when bodies go. */
 #include "zone/follow.h"
 
+#include "model/loads.h"
 #include "zone/grid.h"
+#include "zone/outer.h"
 
 #include <string.h>
 
@@ -79,6 +81,18 @@ static void move_lists(struct tl_zones *z, const spans *of)
     }
 }
 
+/* Moves what acts on the triangles of a mesh: those of the list before `*from` have been passed, `kept` stay. */
+static size_t move_outer(struct tl_zones *z, const spans *of, size_t *from, size_t kept)
+{
+    while (*from < z->outer_count && z->outer[*from].part < of->parts.begin)
+        ++*from;
+    for (; *from < z->outer_count && z->outer[*from].part < of->parts.end; ++*from) {
+        z->outer[kept] = z->outer[*from];
+        z->outer[kept++].part -= (uint32_t)of->parts.shift;
+    }
+    return kept;
+}
+
 /* Moves a mesh down to where the last one that stays has ended. */
 static void move_mesh(struct tl_zones *z, uint32_t number, const spans *of)
 {
@@ -118,15 +132,17 @@ static void go_on(spans *to, const spans *of)
 }
 
 /* Takes out the meshes of bodies that have gone. */
-static void keep_meshes(const tl_model *m, struct tl_zones *z)
+static void keep_meshes(tl_model *m, struct tl_zones *z)
 {
     spans to;
     memset(&to, 0, sizeof to);
     uint32_t kept = 0;
+    size_t from = 0, outer = 0;
     for (uint32_t k = 0; k < z->mesh_count; k++) {
         const spans of = spans_of(z, &z->mesh[k], &to);
         if (tl_block_row_quiet(m, z->mesh[k].body) == TL_NO_ROW)
             continue;
+        outer = move_outer(z, &of, &from, outer);
         z->mesh[kept] = z->mesh[k];
         move_mesh(z, kept++, &of);
         go_on(&to, &of);
@@ -141,6 +157,9 @@ static void keep_meshes(const tl_model *m, struct tl_zones *z)
     z->listed_count = to.listed.begin;
     z->row_of_count = to.numbers.begin;
     z->part_count = to.parts.begin;
+    z->outer_count = outer;
+    tl_outer_forget(&z->points);
+    tl_drives_recount(m);
     tl_zones_index(z, 0); /* there is room: there were more */
     z->version++;
 }

@@ -1,7 +1,8 @@
 /* gridpoints.c - what a user does to gridpoints: holds and loads them, gives them velocities, asks what holds them. */
 #include "base/columns.h"
+#include "zone/columns.h"
 #include "zone/grid.h"
-#include "zone/life.h"
+#include "zone/held.h"
 
 #include <talus/zones.h>
 
@@ -26,6 +27,16 @@ static tl_status check(tl_model *m, const tl_zone_name *names, size_t count, con
     return status;
 }
 
+/* Ends the drive of a gridpoint. */
+static void leave_drive(tl_model *m, uint32_t row)
+{
+    tl_gridpoints *p = &m->zones->points;
+    if (!p->drive || !p->drive[row])
+        return;
+    m->drives[p->drive[row] - 1].bodies--;
+    p->drive[row] = 0;
+}
+
 static tl_status change_fixing(tl_model *m, const tl_zone_name *names, size_t count, uint32_t hold, uint32_t let)
 {
     const tl_status status = check(m, names, count, "hold gridpoints");
@@ -35,9 +46,16 @@ static tl_status change_fixing(tl_model *m, const tl_zone_name *names, size_t co
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "gridpoints are held along x, y and z alone: they have no rotation (%u was given)", hold | let);
     for (size_t k = 0; k < count; k++) {
-        uint8_t *fixed = &m->zones->points.fixed[row_of(m, names[k])];
-        *fixed = (uint8_t)((*fixed | hold) & ~let);
+        const uint32_t row = row_of(m, names[k]);
+        tl_gridpoints *p = &m->zones->points;
+        p->fixed[row] = (uint8_t)((p->fixed[row] | hold) & ~let);
+        for (int d = 0; let && d < 2 && p->held[0][0]; d++)
+            tl_columns_put(p->held[d], row, tl_v3(0, 0, 0));
+        if (let)
+            leave_drive(m, row);
     }
+    if (count > 0)
+        m->zones->rated_for = 0; /* others may be the stiffest that move */
     m->constraints += count > 0;
     return TL_OK;
 }
@@ -71,8 +89,10 @@ tl_status tl_gridpoints_velocity(tl_model *m, const tl_zone_name *names, size_t 
     for (size_t k = 0; status == TL_OK && k < count; k++)
         if (!tl_v3_finite(velocity[k]))
             status = tl_fail(&m->error, TL_E_ARGUMENT, "the velocity of a gridpoint must be finite");
-    for (size_t k = 0; status == TL_OK && k < count; k++)
+    for (size_t k = 0; status == TL_OK && k < count; k++) {
+        leave_drive(m, row_of(m, names[k]));
         tl_columns_put(m->zones->points.v, row_of(m, names[k]), velocity[k]);
+    }
     if (status == TL_OK && count > 0)
         m->zones->steps_kept = TL_STEPS_KEPT;
     return status;
@@ -85,10 +105,7 @@ tl_status tl_gridpoints_reaction(tl_model *m, const tl_zone_name *names, size_t 
         const uint32_t row = row_of(m, names[k]);
         if (row == TL_NO_ROW)
             return m->error.status;
-        const tl_vec3 f = tl_columns_get(m->zones->points.force, row);
-        const unsigned fixed = m->zones->points.fixed[row];
-        *force = tl_v3_sub(*force,
-                           tl_v3(fixed & TL_FIX_X ? f.x : 0, fixed & TL_FIX_Y ? f.y : 0, fixed & TL_FIX_Z ? f.z : 0));
+        *force = tl_v3_add(*force, tl_gridpoint_reaction(&m->zones->points, row));
     }
     return TL_OK;
 }

@@ -1,8 +1,7 @@
 /* life.c - the tables of zones come and go. */
 #include "zone/life.h"
 
-#include "zone/follow.h"
-#include "zone/resolid.h"
+#include "zone/body_verbs.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
@@ -55,8 +54,7 @@ tl_status tl_zones_begin(tl_model *m)
     if (!m->zones)
         return tl_fail_memory(&m->error);
     m->zones_destroy = tl_zones_free;
-    m->zones_follow = tl_zones_follow;
-    m->zones_resolid = tl_blocks_resolid;
+    m->zone_verbs = &tl_zone_body_verbs;
     add_columns(m->zones);
     return TL_OK;
 }
@@ -67,27 +65,9 @@ void tl_zones_free(struct tl_zones *z)
     tl_table_free(&z->zones.table);
     tl_table_free(&z->parcels.table);
     void *const owned[] = {z->group, z->listed, z->slot,    z->use,     z->use_start, z->row_of,
-                           z->part,  z->mesh,   z->meeting, z->scratch, z->motion};
+                           z->part,  z->mesh,   z->meeting, z->scratch, z->motion,    z->outer};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     tl_solids_free(z);
     free(z);
-}
-
-bool tl_gridpoints_hold_damping(tl_gridpoints *p, bool before)
-{
-    bool enough = TL_COLUMN_NEED(&p->table, p, alpha, 0);
-    for (int k = 0; k < 3; k++) {
-        enough = enough && TL_COLUMN_NEED(&p->table, p, damping[k], 0);
-        enough = enough && (!before || TL_COLUMN_NEED(&p->table, p, force_before[k], TL_COLUMN_STEP));
-    }
-    return enough;
-}
-
-bool tl_gridpoints_hold_loads(tl_gridpoints *p)
-{
-    bool enough = true;
-    for (int k = 0; k < 3; k++)
-        enough = enough && TL_COLUMN_NEED(&p->table, p, load[k], TL_COLUMN_STATE);
-    return enough;
 }

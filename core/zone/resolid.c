@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "model/rows.h"
 #include "zone/grid.h"
+#include "zone/outer.h"
 #include "zone/solids.h"
 
 #include <math.h>
@@ -468,6 +469,7 @@ static tl_status change(changing *c)
     if (status != TL_OK)
         return status;
     store(c->z);
+    tl_outer_find_solids(c->z);
     c->z->version++;
     c->m->laws++; /* the balance takes the change of what is stored for one by hand */
     return TL_OK;

@@ -100,6 +100,20 @@ static bool parts_are_sound(const tl_model *m, const struct tl_zones *z)
     return sound;
 }
 
+static bool outer_is_sound(const struct tl_zones *z)
+{
+    bool sound = true;
+    for (size_t k = 0; sound && k < z->outer_count; k++) {
+        const tl_outer_part *of = &z->outer[k];
+        const tl_vec3 all = tl_v3(of->share + of->density, of->at, tl_v3_norm2(of->along));
+        sound = of->part < z->part_count && (k == 0 || of->part > z->outer[k - 1].part) && of->solid < z->solid_count &&
+                of->fixed <= (TL_FIX_X | TL_FIX_Y | TL_FIX_Z) && of->density >= 0 && tl_v3_finite(all) &&
+                z->points.pushed[0] && (!of->quiet || z->points.quiet[0]) &&
+                (tl_v3_norm2(of->along) == 0 || z->points.held[0][0]) && (!of->drive || z->points.drive);
+    }
+    return sound;
+}
+
 const char *tl_zones_unsound(const tl_model *m, const struct tl_zones *z)
 {
     if (z->mesh_count >= TL_NO_ROW || !points_are_sound(z))
@@ -108,5 +122,7 @@ const char *tl_zones_unsound(const tl_model *m, const struct tl_zones *z)
         return "meshes do not fit their bodies";
     if (!groups_are_sound(z) || !parcels_are_sound(m, z))
         return "zones do not fit their meshes";
-    return parts_are_sound(m, z) ? NULL : "the surface of a mesh does not fit its block";
+    if (!parts_are_sound(m, z))
+        return "the surface of a mesh does not fit its block";
+    return outer_is_sound(z) ? NULL : "what acts on the surface of a mesh has an impossible value";
 }

@@ -102,19 +102,36 @@ bool tl_zones_stiffen(tl_model *m)
     return true;
 }
 
-void tl_zones_rate(tl_model *m)
+/* Whether something else than gridpoints can move. */
+static bool bodies_move(const tl_model *m)
 {
-    struct tl_zones *z = m->zones;
+    bool some = false;
+    for (size_t body = 0; body < m->bodies.table.rows; body++)
+        some = some || m->bodies.fixed[body] != TL_FIX_ALL;
+    return some;
+}
+
+/* Finds the rates of the gridpoints that may move, or of those that are held. */
+static void rate(struct tl_zones *z, bool held)
+{
     const tl_gridpoints *p = &z->points;
     z->highest_rate = 0;
     z->lowest_rate = INFINITY;
-    z->highest = TL_NO_ROW;
+    z->highest = z->lowest = TL_NO_ROW;
     for (uint32_t row = 0; row < p->table.rows; row++) {
         const double rate = p->holds[row] / p->mass[row];
-        if (p->fixed[row] == (TL_FIX_X | TL_FIX_Y | TL_FIX_Z))
+        if ((p->fixed[row] == (TL_FIX_X | TL_FIX_Y | TL_FIX_Z)) != held || p->zones[row] == 0)
             continue;
+        z->lowest = rate < z->lowest_rate ? row : z->lowest;
         z->lowest_rate = rate < z->lowest_rate ? rate : z->lowest_rate;
         z->highest = rate > z->highest_rate ? row : z->highest;
         z->highest_rate = rate > z->highest_rate ? rate : z->highest_rate;
     }
+}
+
+void tl_zones_rate(tl_model *m)
+{
+    rate(m->zones, false);
+    if (m->zones->highest == TL_NO_ROW && !bodies_move(m)) /* all go as they are driven, in steps that suit the zones */
+        rate(m->zones, true);
 }

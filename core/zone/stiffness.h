@@ -7,7 +7,7 @@
 /* Finds `stiffness` of all gridpoints, as their zones hold them. It stands (false) where meshes and solids have not
  * changed, and few steps have been made since. */
 bool tl_zones_stiffen(tl_model *m);
-/* Finds the gridpoints with the highest and the lowest rate of those that may move. */
+/* Finds the gridpoints with the highest and the lowest rate of those that may move or, where nothing may, of all. */
 void tl_zones_rate(tl_model *m);
 
 #endif

@@ -17,6 +17,7 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     LIST(STATE, row_of, row_of_count, row_of_capacity);
     LIST(STATE, part, part_count, part_capacity);
     LIST(STATE, mesh, mesh_count, mesh_capacity);
+    LIST(STATE, outer, outer_count, outer_capacity);
     LIST(DERIVED, use, use_capacity, use_capacity);
     LIST(DERIVED, use_start, use_start_capacity, use_start_capacity);
     LIST(SCRATCH, slot, slot_capacity, slot_capacity);
@@ -29,6 +30,7 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     VALUE(CACHE, highest_rate);
     VALUE(CACHE, lowest_rate);
     VALUE(CACHE, highest);
+    VALUE(CACHE, lowest);
     VALUE(CACHE, rated_for);
     VALUE(CACHE, rated_at);
     VALUE(CACHE, segments_rated);

@@ -54,6 +54,11 @@ typedef struct tl_gridpoints {
     uint8_t *fixed;    /* TL_FIX_X, _Y, _Z */
     uint8_t *bare;     /* 1: it is on the surface of its body */
     double *load[3];   /* of the user's, N; NULL: none has ever been set */
+    double *held[2][3]; /* unit vectors along which it is held beside `fixed`, or zeros; NULL: nowhere is one */
+    uint32_t *drive;    /* whose velocity it has: index into the model's drives + 1, or 0; NULL: none is driven */
+    double *rolled[3];  /* force by which these directions hold it, in the last step, N; NULL as they are */
+    double *pushed[3];  /* by what acts on the surface, in the last step, N; NULL: nothing ever has */
+    double *quiet[6];   /* resistance of quiet boundaries, kg/s: xx yy zz xy yz zx; NULL: there has been none */
     double *damping[3], *alpha; /* what the damping gave; NULL: there has been none */
     double *force_before[3];    /* in the last damped step; NULL: no damping has asked for them */
 } tl_gridpoints;
@@ -115,12 +120,31 @@ typedef struct tl_surface_part {
     tl_id block;
 } tl_surface_part;
 
+/* What acts from outside on a triangle of a surface, or holds it: outer.c. */
+typedef struct tl_outer_part {
+    uint32_t part;  /* in `part` */
+    uint32_t drive; /* whose velocity its gridpoints have: index into the model's drives + 1, or 0 */
+    uint32_t solid; /* of its zone: for quiet ones */
+    uint8_t fixed;  /* TL_FIX_X, _Y, _Z: how its gridpoints are held */
+    uint8_t quiet;  /* it lets waves out */
+    uint8_t loaded; /* stress, gradient and traction count */
+    uint8_t unused;
+    tl_vec3 along;            /* unit vector along which its gridpoints are held; zero: none */
+    double share;             /* of its area that lies on no other block */
+    double density;           /* of its block, kg/m3 */
+    double at;                /* height, in the user's coordinates, at which `stress` holds, m */
+    tl_sym3 stress, gradient; /* Pa, and Pa/m of height, tension positive */
+    tl_vec3 traction;         /* beside them, Pa */
+    tl_vec3 rest[3];          /* forces on its corners that stay as they are, N */
+} tl_outer_part;
+
 /* How a mesh moves in a step of a relaxation (settle.c): as a whole, m/s and rad/s; the power of its unbalanced forces
  * on that, and on what it moves beside it, W. */
 typedef struct tl_mesh_motion {
     tl_vec3 velocity, turn;
     double power, strain_power;
-    bool loose; /* next to nothing bears it: it goes its own way */
+    bool loose;   /* next to nothing bears it: it goes its own way */
+    bool goes_on; /* where others stop */
 } tl_mesh_motion;
 
 /* The mesh of a body. */
@@ -151,6 +175,8 @@ struct tl_zones {
     size_t row_of_count, row_of_capacity;
     tl_surface_part *part; /* of the surfaces, mesh by mesh; of a mesh by block and face */
     size_t part_count, part_capacity;
+    tl_outer_part *outer; /* by ascending parts, each at most once */
+    size_t outer_count, outer_capacity;
     tl_body_mesh *mesh;
     size_t mesh_count, mesh_capacity;
     tl_mesh_motion *motion; /* of each mesh: scratch of a step of a relaxation */
@@ -166,7 +192,7 @@ struct tl_zones {
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */
     double highest_rate, lowest_rate; /* stiffness over mass of the gridpoints that may move, 1/s2; 0: there are none */
-    uint32_t highest;                 /* row of that with the highest, or TL_NO_ROW */
+    uint32_t highest, lowest;         /* rows of those with these, or TL_NO_ROW */
     uint64_t rated_for;               /* version then; 0: not known */
     int64_t rated_at;                 /* steps made then */
     uint64_t segments_rated;          /* version of the segments then */

@@ -12,6 +12,7 @@ import vtk
 VOLUME_TOLERANCE = 1e-6  # relative; the writer loses no digits, the sum here loses a few
 UNIT_TOLERANCE = 1e-12   # of unit vectors
 SINGLE = 2.0 ** -23      # relative; arrays in single precision
+STRETCH = 1e-3           # of areas: a segment is laid anew when its sides have stretched by so much
 
 BLOCK_ARRAYS = {"displacement_size": 1, "block_id": 1, "group": 1, "body": 1, "volume": 1, "velocity": 3, "fixed": 1,
                 "hidden": 1, "density": 1, "mass": 1, "displacement": 3, "rotation": 3,
@@ -355,6 +356,20 @@ def check_invariants(name, cells, cell):
     check((cells.GetArray("state").GetValue(cell) != 0) == (cells.GetArray("plastic").GetValue(cell) != 0), f"{name}: state of zone {cell}")
 
 
+def check_segments(folder):
+    """The column is in contact with the floor and what lies on it, by segments: their outlines make up the areas."""
+    contacts, joints = (read(folder / f"zoned_{what}_000001.vtk", vtk.vtkPolyDataReader) for what in ("contacts", "joints"))
+    points, cells = contacts.GetPointData(), joints.GetCellData()
+    ids = [(points.GetArray("block_a").GetValue(i), points.GetArray("block_b").GetValue(i)) for i in range(contacts.GetNumberOfPoints())]
+    check(ids == [(1, 2), (2, 3)], f"zones: contacts of {ids}")
+    for i, pair in enumerate(ids):
+        area, force, normal = points.GetArray("area").GetValue(i), points.GetArray("normal_force").GetValue(i), points.GetArray("normal").GetTuple(i)
+        check(abs(area - 2) < 1e-3 and force > 1e4 and normal[2] > 0.999, f"zones: contact {pair} has an area of {area}, {force} N, normal {normal}")
+        own = [cell for cell in range(joints.GetNumberOfPolys()) if cells.GetArray("contact_id").GetValue(cell) == points.GetArray("contact_id").GetValue(i)]
+        whole = sum(polygon_area(joints, cell, normal) for cell in own)
+        check(len(own) > 4 and abs(whole - area) < STRETCH * area, f"zones: {len(own)} segments of contact {pair} have {whole} m2, not {area}")
+
+
 def check_zones(folder):
     """The column of zones: its volume and stress, the names of solid and group, and its surface in the file of the blocks."""
     times = check_series(folder, "zoned", "zones", 2)
@@ -385,6 +400,7 @@ def check_zones(folder):
     wanted = [float(x) for x in expected["stress"].split()]
     check(all(abs(a - b) < 1e-5 * max(map(abs, wanted)) for a, b in zip(sums, wanted)), f"{name}: stress {sums}, expected {wanted}")
     check(0 < plastic == int(expected["plastic"]) < count, f"{name}: {plastic} zones have yielded, expected {expected['plastic']}")
+    check_segments(folder)
     blocks = read(folder / "zoned_blocks_000001.vtk", vtk.vtkUnstructuredGridReader)
     loops = face_loops(blocks, 1)
     edges = [edge for loop in loops for edge in zip(loop, loop[1:] + loop[:1])]

@@ -81,8 +81,11 @@ static void meddle(tl_model *m, uint64_t seed)
                                &(tl_drive){.size = sizeof(tl_drive), .velocity = v, .angular_velocity = tl_v3_neg(v)}));
         break;
     case 5:
-        scene_ok(m,
-                 tl_blocks_set(m, &id, 1, &(tl_block_set){sizeof(tl_block_set), NAN, NULL, v, tl_v3(NAN, NAN, NAN)}));
+        scene_ok(m, tl_blocks_set(m, &id, 1,
+                                  &(tl_block_set){.size = sizeof(tl_block_set),
+                                                  .density = NAN,
+                                                  .velocity = v,
+                                                  .angular_velocity = tl_v3(NAN, NAN, NAN)}));
         break;
     case 6: scene_law(m, "coulomb", 1e8 * (1 + check_random(&seed)), 1e8, 20 + 20 * check_random(&seed)); break;
     default:

@@ -1,6 +1,7 @@
 /* test_joined.c - bodies of several blocks get zones: their blocks share gridpoints, and hang together as one solid does. */
 #include "contact_scene.h"
 #include "segment/segments.h"
+#include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
@@ -175,6 +176,41 @@ TEST(blocks_of_cut_boxes_are_strained_as_one)
             check_uniform_strain(m);
             tl_model_destroy(m);
         }
+}
+
+/* The blocks of a model once more, by corners that are rounded to a multiple of a unit. */
+static tl_model *rounded(tl_model *from, double unit)
+{
+    tl_model *m = scene_model(2);
+    for (uint32_t row = 0; row < from->blocks.table.rows; row++) {
+        const tl_poly *p = from->blocks.shape[row];
+        tl_vec3 *x = malloc(p->vertex_count * sizeof *x);
+        tl_stage stage;
+        for (uint32_t v = 0; v < p->vertex_count; v++) {
+            x[v] = tl_v3_scale(1 / unit, tl_model_point(from, from->blocks.body[row], p->vertex[v]));
+            x[v] = tl_v3(unit * floor(x[v].x + 0.5), unit * floor(x[v].y + 0.5), unit * floor(x[v].z + 0.5));
+        }
+        scene_ok(m, stage_begin(m, &stage));
+        scene_ok(m, tl_stage_add_hull(&stage, x, p->vertex_count, 2000, "hull"));
+        scene_ok(m, tl_stage_commit(&stage));
+        free(x);
+    }
+    return m;
+}
+
+/* Corners that are known to seven digits leave faces bent a little, and a little apart. */
+TEST(blocks_of_rounded_corners_fit)
+{
+    for (uint64_t seed = 1; seed <= 6; seed++) {
+        tl_model *exact = cut_box(seed, 3, true), *m = rounded(exact, 1e-7);
+        solid(m, 1e9, 0.25);
+        join_and_divide(m, 0, 0.45);
+        CHECK_NEAR(volume_of(m, 0), 8, 1e-5);
+        CHECK_NEAR(surface_of(m), 24, 1e-5);
+        check_uniform_strain(m);
+        tl_model_destroy(m);
+        tl_model_destroy(exact);
+    }
 }
 
 /* A small block on a large one, which lies bare around it. */
@@ -456,7 +492,8 @@ TEST(joined_blocks_with_a_gap_are_refused)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(blocks_of_cut_boxes_are_strained_as_one(), a_small_block_on_a_large_one(), eight_blocks_about_a_tunnel(),
-          two_joined_cubes_are_as_stiff_as_one_block(), joined_blocks_have_the_same_bits_on_any_threads(),
-          a_joined_body_turns_ten_times_without_stress_of_its_own(), a_stiff_joined_cube_falls_as_a_rigid_one(),
-          bodies_get_zones_whole_and_stay_whole(), joined_blocks_with_a_gap_are_refused())
+TEST_MAIN(blocks_of_cut_boxes_are_strained_as_one(), blocks_of_rounded_corners_fit(), a_small_block_on_a_large_one(),
+          eight_blocks_about_a_tunnel(), two_joined_cubes_are_as_stiff_as_one_block(),
+          joined_blocks_have_the_same_bits_on_any_threads(), a_joined_body_turns_ten_times_without_stress_of_its_own(),
+          a_stiff_joined_cube_falls_as_a_rigid_one(), bodies_get_zones_whole_and_stay_whole(),
+          joined_blocks_with_a_gap_are_refused())

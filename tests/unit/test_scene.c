@@ -208,7 +208,7 @@ static surface surface_of(const frame *f)
             CHECK_INT(u32(at + 20), 2); /* the body */
             s.made = at + 36;
             s.corner = s.made + 12 * (size_t)s.points;
-            s.triangle = s.corner + 16 * (size_t)s.zones + ((size_t)s.zones * 2 + 3) / 4 * 4;
+            s.triangle = s.corner + 20 * (size_t)s.zones + ((size_t)s.zones * 2 + 3) / 4 * 4;
             s.zone = s.triangle + 12 * (size_t)s.triangles;
             s.block = s.zone + 4 * (size_t)s.triangles;
             CHECK_INT(f->length[i], 36 + (size_t)(s.block - s.made) + 8 * (size_t)s.triangles);
@@ -345,7 +345,7 @@ TEST(what_has_changed_is_sent_again)
 
     const tl_id small = 2;
     const tl_vec3 unchanged = {NAN, NAN, NAN};
-    tl_block_set set = {sizeof(tl_block_set), NAN, "small", unchanged, unchanged};
+    tl_block_set set = {sizeof set, NAN, "small", unchanged, unchanged, NULL};
     CHECK_INT(tl_blocks_set(m, &small, 1, &set), TL_OK);
     CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP FRAM LINE FIND DONE");
     CHECK_INT(first_of(&f, "SHAP"), 1);

@@ -307,7 +307,7 @@ static int remarks_of(double share, double density, bool scaling)
 {
     remark_log h = {0, ""};
     tl_model *m = eight_cubes(1, share, &h);
-    tl_block_set lighter = {sizeof(tl_block_set), density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
+    tl_block_set lighter = {sizeof(tl_block_set), density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}, NULL};
     scene_ok(m, tl_blocks_set(m, &m->blocks.id[2], 1, &lighter));
     scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){sizeof(tl_mass_scaling), scaling, NAN, NAN}));
     scene_ok(m, ten_steps(m));

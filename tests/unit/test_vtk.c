@@ -51,7 +51,7 @@ static void add_box(tl_model *m, double x, double y, double z, const char *group
     generate(m, "box", values, 3);
     const tl_id first = 1;
     const tl_vec3 unchanged = {NAN, NAN, NAN};
-    const tl_block_set set = {sizeof(tl_block_set), NAN, group, unchanged, unchanged};
+    const tl_block_set set = {sizeof(tl_block_set), NAN, group, unchanged, unchanged, NULL};
     CHECK_INT(tl_blocks_set(m, &first, 1, &set), TL_OK);
 }
 

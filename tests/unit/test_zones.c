@@ -1,6 +1,7 @@
 /* test_zones.c - zones of a deformable body: uniform strain, energy, momentum, frequencies, the same bits on any threads. */
 #include "contact_scene.h"
 #include "segment/segments.h"
+#include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"

@@ -22,7 +22,7 @@ GOLDEN = {
     "zones_mesh": "#frame=2&motion=3&camera=25,20,5,0,0.5,1.2",
     "zones_section": f"#frame=2&zones=stress%20zz&colour=group&{CUT}",
     "zones_smooth": f"#frame=2&zones=deviator&smooth=1&mesh=0&colour=group&{CUT}",
-    "zones_yielded": f"#frame=2&zones=state&crosses=1&colour=group&{CUT}",
+    "zones_cross_section": f"#frame=2&mesh=0&crosses=1&colour=group&{CUT}",
     "zones_crosses": "#frame=2&crosses=1&colour=group&camera=15,12,4.4,0,0.5,1.2",
 }
 

@@ -36,16 +36,20 @@ typedef struct tl_boundary_where {
     double tolerance;   /* m, off the plane or out of the box; NaN: 1e-3 of the block's size */
 } tl_boundary_where;
 
-/* What is done at these faces. */
+/* What is done at these faces: to rigid bodies whole, to deformable ones at the gridpoints of the faces' triangles. */
 typedef struct tl_boundary_action {
     tl_boundary_where where;
-    bool fixed;    /* the bodies are held in all components */
-    bool roller;   /* they are held across their faces, which must look along an axis */
-    bool rotation; /* with roller: they do not turn either */
+    bool fixed;    /* held in all components */
+    bool roller;   /* held across the faces: across the plane or side or, without one, each along its mean normal. Those
+                      of rigid blocks must look along an axis */
+    bool rotation; /* with roller: rigid bodies do not turn either */
     /* the traction (stress + gradient (z - at.z)) n + traction, Pa, on outward normals n; tension positive */
     bool loads;
     tl_sym3 stress, gradient;
     tl_vec3 at, traction;
+    bool quiet; /* deformable blocks only: lets waves out, and bears what it bore until now */
+    const tl_drive
+        *drive; /* prescribes velocities, without turning; NULL: none. Functions are the model's from then on */
 } tl_boundary_action;
 
 /* All outer faces, and nothing is done. */
@@ -71,15 +75,23 @@ typedef struct tl_boundary_result {
 /* Finds the faces of each action, TL_E_NOT_FOUND when there is none, and does what they say: all of them or none. What
  * the actions put on one body adds up; it takes the place of the load the body had or, with `add`, is added to that. As
  * with tl_blocks_load the force keeps its direction and its point goes with the body. Where a face is cut, its parts
- * get their shares: for a traction that is uniform, or normal and linear, what it is on each. Free the results with
- * tl_boundary_free, one by one; a failed call leaves them empty. `results` may be NULL. */
+ * get their shares: for a traction that is uniform, or normal and linear, what it is on each.
+ *
+ * Of a deformable block each triangle of a face counts by itself for `where`. Tractions act on the triangles as they
+ * are in each step, by their present normals and heights. What is done to a triangle takes the place of all that an
+ * earlier call did to it or, with `add`, is added. A triangle that other blocks cover in part bears its bare share.
+ *
+ * TL_E_STATE: quiet faces of rigid blocks; held faces of a block that is driven. TL_E_ARGUMENT: what does not go
+ * together. Free the results with tl_boundary_free, one by one; a failed call leaves them empty. `results` may be
+ * NULL. */
 TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count, bool add,
                                    tl_boundary_result *results);
 /* Frees the lists of a result and empties it. NULL and an empty one are left alone. */
 TL_API void tl_boundary_free(tl_boundary_result *result);
 
 /* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts, in the last
- * step, weight and load put on them, the other way. Each body counts once; inertia of driven ones does not. */
+ * step, weight and load put on them, the other way. Each body counts once; inertia of driven ones does not. Of
+ * deformable bodies it is the sum over their held gridpoints, as of the last step. */
 TL_API tl_status tl_blocks_reaction(tl_model *model, const tl_id *ids, size_t count, tl_vec3 *force);
 
 #ifdef __cplusplus

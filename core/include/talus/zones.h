@@ -60,13 +60,14 @@ typedef struct tl_zoned {
 } tl_zoned;
 
 /* Gives blocks zones, free of stress where the blocks are, with the blocks' velocities. A block that is held, in some
- * components or all, has gridpoints that are held so. Where faces of two blocks are the same polygon, the triangles of
- * both are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed
- * when it fails:
+ * components or all, has gridpoints that are held so. A drive moves all gridpoints as the block; a load goes over to
+ * the zone at its point, or to all gridpoints. Where faces of two blocks are the same polygon, the triangles of both
+ * are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed when it
+ * fails:
  *
  * TL_E_ARGUMENT: the edge is not positive, or makes too many zones; there is no such solid. TL_E_STALE: no such block.
- * TL_E_STATE: a block has zones, is joined to one that is not given, or is driven or loaded. TL_E_GEOMETRY: a block
- * cannot be divided, or joined blocks do not lie flat on each other. */
+ * TL_E_STATE: a block has zones, is joined to one that is not given, or is loaded on its faces or at a point outside.
+ * TL_E_GEOMETRY: a block cannot be divided, or joined blocks do not lie flat on each other. */
 TL_API tl_status tl_blocks_deform(tl_model *model, const tl_id *blocks, size_t count, const tl_zoning *how,
                                   tl_zoned *made);
 
@@ -136,6 +137,20 @@ TL_API tl_status tl_gridpoints_velocity(tl_model *model, const tl_zone_name *nam
                                         const tl_vec3 *velocity);
 /* The force with which what holds them acts on them, N: the sum over their held components. */
 TL_API tl_status tl_gridpoints_reaction(tl_model *model, const tl_zone_name *names, size_t count, tl_vec3 *force);
+
+/* ---------------------------------------------------------------- step ------------------- */
+
+/* The gridpoint that controls the step that the next cycle will use (tl_model_timestep_report); of body 0: none does.
+ */
+TL_API tl_status tl_model_timestep_gridpoint(tl_model *model, tl_zone_name *gridpoint);
+
+/* What mass scaling to a step that was given (tl_mass_scaling) has added to gridpoints in the last step. */
+typedef struct tl_gridpoints_added {
+    size_t gridpoints;  /* that have been given some */
+    tl_zone_name worst; /* the one that has the highest factor of all bodies and gridpoints; of body 0: it is a body */
+} tl_gridpoints_added;
+
+TL_API tl_gridpoints_added tl_model_gridpoints_added(const tl_model *model);
 
 #ifdef __cplusplus
 }

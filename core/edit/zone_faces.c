@@ -1,0 +1,129 @@
+/* zone_faces.c - outer faces of deformable blocks: triangles that lie bare, and what is done to them. */
+#include "edit/zone_faces.h"
+
+#include "zone/grid.h"
+#include "zone/outer.h"
+
+#include <math.h>
+
+/* Tolerance: share of a triangle that may be left bare, or covered, for roundings. */
+#define UNCOVERED 1e-5
+/* Tolerance: component across an axis up to which a direction is that axis. */
+#define AXIAL 1e-9
+
+size_t tl_covers_of(const tl_covers *covers, uint32_t row, uint32_t face, size_t *begin)
+{
+    size_t low = 0, high = covers->count;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        const tl_cover *at = &covers->list[middle];
+        if (at->block < row || (at->block == row && at->face < face))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *begin = low;
+    while (low < covers->count && covers->list[low].block == row && covers->list[low].face == face)
+        low++;
+    return low;
+}
+
+static void corners_of(const tl_model *m, const tl_surface_part *part, tl_vec3 x[3])
+{
+    for (int a = 0; a < 3; a++)
+        x[a] = tl_gridpoint_place(&m->zones->points, part->corner[a]);
+}
+
+/* The share of a triangle that lies bare. Covers come by the numbers of the triangles. */
+static double bare_share(const tl_covers *covers, uint32_t part, double area, size_t *at, size_t end)
+{
+    double covered = 0;
+    while (*at < end && covers->list[*at].part < part)
+        ++*at;
+    for (; *at < end && covers->list[*at].part == part; ++*at)
+        covered += covers->list[*at].area;
+    const double share = 1 - covered / area;
+    return share < UNCOVERED ? 0 : share > 1 - UNCOVERED ? 1 : share;
+}
+
+bool tl_bare_find(const tl_model *m, const tl_face_filter *filter, const tl_covers *covers, uint32_t row, uint32_t face,
+                  tl_bare_list *list, tl_bare_face *out)
+{
+    size_t count, at;
+    const tl_surface_part *part = tl_face_parts(m, m->blocks.id[row], face, &count);
+    const size_t end = tl_covers_of(covers, row, face, &at);
+    tl_vec3 normal = {0, 0, 0};
+    *out = (tl_bare_face){.begin = list->count, .end = list->count};
+    for (size_t k = 0; k < count && !m->blocks.shape[row]->covered[face]; k++) {
+        tl_vec3 x[3];
+        corners_of(m, &part[k], x);
+        const tl_vec3 area = tl_v3_scale(0.5, tl_v3_cross(tl_v3_sub(x[1], x[0]), tl_v3_sub(x[2], x[0])));
+        const uint32_t number = (uint32_t)(&part[k] - m->zones->part);
+        const double size = tl_v3_norm(area), share = bare_share(covers, number, size, &at, end);
+        if (share == 0 || !tl_triangle_is_there(m, filter, row, x))
+            continue;
+        if (!tl_grow(&list->at, &list->capacity, list->count + 1, sizeof *list->at))
+            return false;
+        list->at[list->count++] = (tl_bare_triangle){number, share};
+        out->area += share * size;
+        normal = tl_v3_add(normal, area);
+        out->centroid = tl_v3_madd(out->centroid, share * size / 3, tl_v3_add(x[0], tl_v3_add(x[1], x[2])));
+    }
+    out->end = list->count;
+    out->normal = out->area > 0 ? tl_v3_unit(normal) : normal;
+    out->centroid = tl_v3_scale(out->area > 0 ? 1 / out->area : 0, out->centroid);
+    return true;
+}
+
+/* Holds along a direction: an axis, or any other. */
+static void roll(tl_outer_part *to, tl_vec3 n)
+{
+    const double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+    if (fmax(y, z) < AXIAL)
+        to->fixed = TL_FIX_X;
+    else if (fmax(x, z) < AXIAL)
+        to->fixed = TL_FIX_Y;
+    else if (fmax(x, y) < AXIAL)
+        to->fixed = TL_FIX_Z;
+    else
+        to->along = n;
+}
+
+static void add_load(const tl_model *m, const tl_outer_part *of, tl_boundary_result *result)
+{
+    tl_vec3 force[3], x[3];
+    tl_outer_forces(m, of, force);
+    corners_of(m, &m->zones->part[of->part], x);
+    for (int a = 0; a < 3; a++) {
+        const tl_vec3 moment = tl_v3_cross(tl_v3_add(m->origin, x[a]), force[a]);
+        result->force = tl_v3_add(result->force, force[a]);
+        result->moment = tl_v3_add(result->moment, moment);
+    }
+}
+
+bool tl_bare_act(const tl_model *m, const tl_boundary_action *a, const tl_face_filter *filter, uint32_t drive,
+                 uint32_t row, const tl_bare_list *list, const tl_bare_face *face, tl_outer_list *to,
+                 tl_boundary_result *result)
+{
+    if (!tl_grow(&to->at, &to->capacity, to->count + (face->end - face->begin), sizeof *to->at))
+        return false;
+    for (size_t k = face->begin; k < face->end; k++) {
+        tl_outer_part *of = &to->at[to->count++];
+        *of = (tl_outer_part){.part = list->at[k].part,
+                              .drive = drive,
+                              .fixed = a->fixed ? TL_FIX_X | TL_FIX_Y | TL_FIX_Z : 0,
+                              .quiet = a->quiet,
+                              .loaded = a->loads,
+                              .share = list->at[k].share,
+                              .density = m->blocks.density[row],
+                              .at = a->at.z,
+                              .stress = a->stress,
+                              .gradient = a->gradient,
+                              .traction = a->traction};
+        if (a->roller && !a->fixed)
+            roll(of, filter->plane ? filter->normal : face->normal);
+        if (a->loads)
+            add_load(m, of, result);
+    }
+    return true;
+}

@@ -1,0 +1,51 @@
+/* preload.c - initial stress of segments. */
+#include "segment/preload.h"
+
+#include "base/columns.h"
+#include "contact/contacts.h"
+#include "segment/side.h"
+
+#include <math.h>
+
+/* Where a point of a side is. */
+static tl_vec3 place_of(const tl_model *m, const tl_segment_side *side, tl_vec3 at)
+{
+    if (tl_side_is_rigid(side))
+        return tl_body_point(&m->bodies, side->at[0], at);
+    const double weight[3] = {at.x, at.y, at.z};
+    tl_vec3 place = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        place = tl_v3_madd(place, weight[k], tl_gridpoint_place(&m->zones->points, side->at[k]));
+    return place;
+}
+
+/* The common normal of a segment, as a step finds it. */
+static tl_vec3 normal_of(const tl_model *m, const tl_segment *of, double share)
+{
+    const tl_vec3 a = tl_side_now_of(m, &of->a, of->normal_a).normal,
+                  b = tl_side_now_of(m, &of->b, of->normal_b).normal;
+    const double rest = 1 - share;
+    const tl_vec3 p = {share * a.x - rest * b.x, share * a.y - rest * b.y, share * a.z - rest * b.z};
+    return tl_v3_scale(1 / tl_v3_norm(p), p);
+}
+
+void tl_segment_preload(tl_model *m, uint32_t row, tl_sym3 (*stress)(const void *user, tl_vec3 place), const void *user)
+{
+    struct tl_segments *s = m->segments;
+    const tl_segment *of = &s->table.of[row];
+    tl_segment_points *p = &s->points;
+    const double share = s->meet[of->meet].share;
+    const tl_vec3 n = normal_of(m, of, share);
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t point = tl_segment_point_row(row, k);
+        const tl_vec3 on_a = place_of(m, &of->a, tl_columns_get(p->at_a, point));
+        const tl_vec3 apart = tl_v3_sub(place_of(m, &of->b, tl_columns_get(p->at_b, point)), on_a);
+        const tl_vec3 traction = tl_s3_mul(stress(user, tl_v3_madd(on_a, share, apart)), n);
+        const double normal = tl_v3_dot(n, traction);
+        p->reference[point] = -tl_v3_dot(apart, n);
+        p->f_n0[point] = p->f_n[point] = -normal * p->area[point];
+        tl_columns_put(p->f_s, point, tl_v3_scale(-p->area[point], tl_v3_madd(traction, -normal, n)));
+        p->flags[point] = 0;
+    }
+    tl_columns_put(s->table.normal, row, n);
+}

@@ -1,0 +1,11 @@
+/* preload.h - initial stress of segments. */
+#ifndef TL_SEGMENT_PRELOAD_H
+#define TL_SEGMENT_PRELOAD_H
+
+#include "segment/segments.h"
+
+/* Gives the points of a segment, which have initial forces, the traction of a stress; their closure counts from now. */
+void tl_segment_preload(tl_model *m, uint32_t row, tl_sym3 (*stress)(const void *user, tl_vec3 place),
+                        const void *user);
+
+#endif
