@@ -1,5 +1,4 @@
--- Zones that flow: a footing up to its bearing capacity, and a hole in rock that yields. Constant strain alone bears a fifth
--- too much, and closes too little.
+-- Zones that flow: a footing up to its bearing capacity. Constant strain alone bears up to a fifth too much.
 package.path = "tests/verify/?.lua;tests/lua/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require "reference_deformable"
@@ -7,9 +6,7 @@ local zones = require "check_zones"
 
 local COHESIVE = { [4] = 0.03, [8] = 0.02 } -- relative, by zones a half width
 local FRICTIONAL = 0.05                     -- relative
-local RADIUS, WALL = 0.04, 0.05             -- relative, with 22 rings
 local LEDGER = 5e-3                         -- of the largest term, with plastic zones
-local AT_REST = 1e-4                        -- unbalanced force ratio
 
 local ledger = {}
 
@@ -25,7 +22,8 @@ local function footing(what)
         local x, z = math.max(0, p[1] - what.half), p[3] - what.depth
         return zone * math.max(1, math.min(what.coarse, math.sqrt(x * x + z * z) / (4 * what.half) + 0.75))
     end or zone }
-    for _, wall in ipairs { { "x", 0 }, { "x", what.width }, { "z", 0 }, { "y", 0 }, { "y", zone } } do
+    zones.on(model, "z", 0):fix() -- a smooth base would let the whole layer be squeezed out at a lower load
+    for _, wall in ipairs { { "x", 0 }, { "x", what.width }, { "y", 0 }, { "y", zone } } do
         zones.on(model, wall[1], wall[2]):fix { [wall[1]] = true }
     end
     local under = model:gridpoints { where = function(p)
@@ -63,8 +61,8 @@ do
     local series = {}
     for _, count in ipairs { 4, 8 } do
         local p, way, model = footing { half = i.half_width, count = count, width = i.domain[1], depth = i.domain[2],
-            params = { young = i.E, poisson = i.nu, cohesion = i.cohesion, friction = i.friction, tension = 1e9 }, way = 0.06,
-            cycles = 100 * count }
+            params = { young = i.E, poisson = i.nu, cohesion = i.cohesion, friction = i.friction, tension = 1e9 }, way = 0.036,
+            cycles = 34 * count }
         for k, x in ipairs(p) do
             p[k] = x / i.cohesion
         end
