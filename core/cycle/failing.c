@@ -9,7 +9,7 @@
  * model may settle: the mean closure of its loaded contacts, weighted by their forces, times the number of blocks on
  * end. Zones of modulus M and volume V, which store U, settle by sqrt(2 U / (M V)) of the extent of their blocks.
  *
- * A deformable body may fail as a whole, as a rigid one does, or be crushed where it stands. So the gridpoint that moves
+ * A deformable body may fail as a whole, as a rigid one does, or be crushed where it stands. So the gridpoint that is
  * the fastest against its body is followed as well, in legs that are a share of the zones there. It is another one once
  * one is faster by far.
  *

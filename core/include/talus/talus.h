@@ -230,13 +230,13 @@ TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep)
 TL_API tl_status tl_model_dt(tl_model *model, double *dt);
 
 /* Why a block asks for a short step: its mass on its springs, its inertia on them, or its own speed. */
-typedef enum tl_step_by { TL_STEP_BY_PUSH, TL_STEP_BY_TURN, TL_STEP_BY_SPEED } tl_step_by;
+typedef enum tl_step_by { TL_STEP_BY_PUSH, TL_STEP_BY_TURN, TL_STEP_BY_SPEED, TL_STEP_BY_ZONES } tl_step_by;
 
 typedef struct tl_timestep_report {
     double dt;
     tl_id block, partner; /* the block that controls it, and the block of the contact; 0: none */
-    double mass;          /* of the block's body, kg */
-    /* of the contact, of all contacts of the body or of the part of its largest face that counts, N/m; of corners and
+    double mass;          /* of the block's body, kg; by zones that of a gridpoint */
+    /* by zones of what holds the gridpoint; else of the contact, of all contacts of the body or of the part of its largest face that counts, N/m; of corners and
      * edges as it is when they are pressed in twice as deep */
     double stiffness;
     int32_t by; /* tl_step_by: what of the block is so fast */

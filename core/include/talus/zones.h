@@ -138,6 +138,20 @@ TL_API tl_status tl_gridpoints_velocity(tl_model *model, const tl_zone_name *nam
 /* The force with which what holds them acts on them, N: the sum over their held components. */
 TL_API tl_status tl_gridpoints_reaction(tl_model *model, const tl_zone_name *names, size_t count, tl_vec3 *force);
 
+/* ---------------------------------------------------------------- step ------------------- */
+
+/* The gridpoint that controls the step that the next cycle will use (tl_model_timestep_report); of body 0: none does.
+ */
+TL_API tl_status tl_model_timestep_gridpoint(tl_model *model, tl_zone_name *gridpoint);
+
+/* What mass scaling to a step that was given (tl_mass_scaling) has added to gridpoints in the last step. */
+typedef struct tl_gridpoints_added {
+    size_t gridpoints;  /* that have been given some */
+    tl_zone_name worst; /* the one that has the highest factor of all bodies and gridpoints; of body 0: it is a body */
+} tl_gridpoints_added;
+
+TL_API tl_gridpoints_added tl_model_gridpoints_added(const tl_model *model);
+
 #ifdef __cplusplus
 }
 #endif
