@@ -1,7 +1,7 @@
 /* driven.c - how driven gridpoints move.
  *
- * A drive has a velocity c, and a gradient L about a point a. A gridpoint is at x now. Its velocity v in a step h is what
- * the drive gives in the middle of its way:
+ * A drive has a velocity c, and a gradient L about a point a. A gridpoint is at x now. Its velocity v in a step h is
+ * what the drive gives in the middle of its way:
  *
  *     v = c + L (x + v h / 2 - a),    v = (I - L h / 2)^-1 (c + L (x - a))
  *

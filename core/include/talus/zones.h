@@ -107,8 +107,8 @@ TL_API tl_status tl_zones_select(tl_model *model, const tl_zone_filter *filter, 
 TL_API tl_status tl_gridpoints_select(tl_model *model, const tl_zone_filter *filter, tl_zone_name **names,
                                       size_t *count);
 
-/* A point of the material, by the zone in which it lies. Its place is the sum over the zone's gridpoints of weight times
- * place, and so are its displacement and velocity. The weights add up to 1, and stay as the zone deforms. */
+/* A point of the material, by the zone in which it lies. Its place is the sum of weight times place over the zone's
+ * gridpoints, and so are its displacement and velocity. The weights add up to 1, and stay as the zone deforms. */
 typedef struct tl_material_point {
     tl_zone_name zone;
     tl_zone_name gridpoint[4];
@@ -156,8 +156,9 @@ TL_API tl_status tl_gridpoints_load(tl_model *model, const tl_zone_name *names, 
 /* Gives them velocities, m/s: names[i] gets velocity[i]. Held components go on with theirs. */
 TL_API tl_status tl_gridpoints_velocity(tl_model *model, const tl_zone_name *names, size_t count,
                                         const tl_vec3 *velocity);
-/* Prescribes their velocity in all components, until they are let go: drive->velocity, or what its function tells in the
- * middle of each step, and drive->gradient times the place from drive->at. TL_E_STATE: their block is driven whole. */
+/* Prescribes their velocity in all components, until they are let go. It is drive->velocity, or what its function tells
+ * in the middle of each step, and drive->gradient times the place from drive->at. TL_E_STATE: their block is driven
+ * whole. */
 TL_API tl_status tl_gridpoints_drive(tl_model *model, const tl_zone_name *names, size_t count, const tl_drive *drive);
 /* The force with which what holds them acts on them, N: the sum over their held components. */
 TL_API tl_status tl_gridpoints_reaction(tl_model *model, const tl_zone_name *names, size_t count, tl_vec3 *force);
