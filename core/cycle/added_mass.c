@@ -19,6 +19,7 @@
 
 #include <float.h>
 #include <stdio.h>
+#include <talus/zones.h>
 
 /* Tolerance: halvings in the search for the longest step that the mass allows. */
 #define HALVINGS 40
@@ -211,5 +212,17 @@ tl_mass_added tl_model_mass_added(const tl_model *m)
         out.factor = m->cycle->added.bodies > 0 ? m->cycle->added.factor : 1;
         out.worst = m->cycle->added_block;
     }
+    return out;
+}
+
+tl_gridpoints_added tl_model_gridpoints_added(const tl_model *m)
+{
+    tl_gridpoints_added out = {0, {TL_NO_ID, 0}};
+    if (!m->cycle || !tl_adds_mass(m))
+        return out;
+    const struct tl_added *added = &m->cycle->added;
+    out.gridpoints = added->points;
+    if (added->points > 0 && added->worst_point != TL_NO_ROW)
+        out.worst = (tl_zone_name){m->cycle->added_block, added->worst_point};
     return out;
 }

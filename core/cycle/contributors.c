@@ -3,6 +3,7 @@
 
 #include "cycle/contact_forces.h"
 #include "cycle/zone_forces.h"
+#include "segment/segments.h"
 #include "zone/zones.h"
 
 /* Those of every model. */
@@ -36,4 +37,15 @@ double tl_body_stiffness(const tl_model *m, uint32_t body)
     for (tl_contributors with = m->cycle->contributor; *with; with++)
         sum += (*with)->stiffness ? (*with)->stiffness(m, body) : 0;
     return sum;
+}
+
+tl_vec3 tl_body_pushed(const tl_model *m, uint32_t body)
+{
+    tl_acting on = {{0, 0, 0}, {0, 0, 0}, 0};
+    if (!m->cycle || !m->segments || m->segments->structure != m->structure)
+        return on.force;
+    for (tl_contributors with = m->cycle->contributor; *with; with++)
+        if (*with != &tl_contacts_act && (*with)->gather)
+            (*with)->gather(m, body, body + 1, &on);
+    return on.force;
 }

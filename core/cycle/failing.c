@@ -9,7 +9,7 @@
  * model may settle: the mean closure of its loaded contacts, weighted by their forces, times the number of blocks on
  * end. Zones of modulus M and volume V, which store U, settle by sqrt(2 U / (M V)) of the extent of their blocks.
  *
- * A deformable body may fail as a whole, as a rigid one does, or be crushed where it stands. So the gridpoint that moves
+ * A deformable body may fail as a whole, as a rigid one does, or be crushed where it stands. So the gridpoint that is
  * the fastest against its body is followed as well, in legs that are a share of the zones there. It is another one once
  * one is faster by far.
  *
@@ -52,8 +52,8 @@
  * carried along. */
 #define LEAST_PUSH 1e-4
 
-/* Tolerance: how far a gridpoint must go against its body over the edge of its zones, if that is less than the share of
- * the body's size. Zones that are strained by more are soon turned inside out. */
+/* Tolerance: how far a gridpoint must go against its body, over the edge of its zones. The share of the body's size
+ * counts where that is less. Zones that are strained by more are soon turned inside out. */
 #define STRAINED_SHARE 0.25
 /* Tolerance: speed of a gridpoint over that of the one that is followed, from which on it is followed instead. */
 #define FASTER 2.0

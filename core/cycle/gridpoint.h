@@ -47,6 +47,13 @@ static inline double tl_gridpoint_borne(const tl_model *m, size_t row, double gr
     return tl_larger(tl_larger(p->bears[row], weight), p->rounded[row]);
 }
 
+/* By its body and its number there. */
+static inline tl_zone_name tl_gridpoint_name(const tl_model *m, uint32_t row)
+{
+    const tl_body_mesh *mesh = &m->zones->mesh[m->zones->points.mesh[row]];
+    return (tl_zone_name){mesh->body, row - mesh->point_begin};
+}
+
 /* Whether all components of a gridpoint are held. */
 static inline bool tl_gridpoint_is_held(const tl_gridpoints *p, size_t row)
 {

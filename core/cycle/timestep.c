@@ -14,6 +14,7 @@
 #include "contact/sides.h"
 #include "cycle/added_mass.h"
 #include "cycle/energy.h"
+#include "cycle/gridpoint.h"
 #include "cycle/gridpoints.h"
 #include "cycle/limits.h"
 #include "cycle/prepare.h"
@@ -23,7 +24,9 @@
 #include "force/joint_laws.h"
 #include "model/options.h"
 
+#include <stdio.h>
 #include <string.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- rates -------------------
  *
@@ -413,9 +416,10 @@ typedef struct bound {
     uint32_t body;    /* row, or TL_NO_ROW: there is no bound */
     uint32_t contact; /* row of the contact, or TL_NO_ROW */
     double stiffness;
+    uint32_t point; /* row of the gridpoint, or TL_NO_ROW */
 } bound;
 
-static const bound no_bound = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+static const bound no_bound = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0, TL_NO_ROW};
 
 static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
@@ -444,14 +448,15 @@ static bound paper_rule(tl_model *m)
     tl_row_value stiffest = row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
     if (stiffest.row == TL_NO_ROW)
         return no_bound;
-    return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row, stiffest.value};
+    return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row, stiffest.value,
+                   TL_NO_ROW};
 }
 
 /* What controls the step. `report`: looked at anew, and the stiffness as well; nothing is kept then. */
 static bound controlling(tl_model *m, bool report)
 {
     tl_row_value fastest = report ? tl_rates_anew(m, 0) : rates_keep(m, 0);
-    bound out = {INFINITY, fastest.row, TL_NO_ROW, 0};
+    bound out = {INFINITY, fastest.row, TL_NO_ROW, 0, TL_NO_ROW};
     if (fastest.row != TL_NO_ROW)
         out.least = 0.5 / fastest.value;
     if (!tl_rates_points(m)) {
@@ -556,12 +561,23 @@ static void judge_step(tl_model *m)
     double far_above = TOO_LONG / m->timestep.dt, bearable = 2 * far_above * far_above;
     tl_row_value fastest = tl_rates_anew(m, bearable);
     double stable = 2 * sqrt(0.5 / fastest.value);
-    c->long_step = fastest.row != TL_NO_ROW && fastest.value > bearable;
-    if (c->long_step && tl_model_says(m, TL_REMARK_STEP))
-        tl_model_say(m,
-                     "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block %u "
-                     "sets: contact forces will grow without bound; give a shorter one, or leave dt out",
-                     m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
+    const double zones = 2 * sqrt(tl_gridpoints_least(m));
+    c->long_step = (fastest.row != TL_NO_ROW && fastest.value > bearable) || m->timestep.dt > TOO_LONG * zones;
+    if (!c->long_step || !tl_model_says(m, TL_REMARK_STEP))
+        return;
+    char name[64];
+    const bool by_zones = fastest.row == TL_NO_ROW || zones < stable;
+    const uint32_t point = by_zones ? m->zones->highest : TL_NO_ROW;
+    if (by_zones)
+        snprintf(name, sizeof name, "gridpoint %u of block %u", tl_gridpoint_name(m, point).number,
+                 tl_gridpoint_name(m, point).body);
+    else
+        snprintf(name, sizeof name, "block %u", m->bodies.id[fastest.row]);
+    stable = by_zones ? zones : stable;
+    tl_model_say(m,
+                 "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which %s sets: contact forces "
+                 "will grow without bound; give a shorter one, or leave dt out",
+                 m->timestep.dt, m->timestep.dt / stable, stable, name);
 }
 
 /* The step that inertia is added for, or a shorter one that is given as well. */
@@ -588,13 +604,23 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
     return TL_OK;
 }
 
-/* With what gridpoints ask for: `least` is a square of a step, over 4, for all of the critical step. */
-static double with_zones(tl_model *m, double least)
+/* With what gridpoints ask for: `least` is a square of a step, over 4, for all of the critical step. Where they control
+ * it `by`, which may be NULL, is told. */
+static double with_zones(tl_model *m, double least, bound *by)
 {
     const double own = tl_gridpoints_least(m), share = m->timestep.zone_fraction / tl_timestep_fraction(m);
-    if (!isfinite(own) || tl_scales_all(m))
-        return !isfinite(own) ? least : isfinite(least) ? fmax(least, own) : own;
-    return fmin(least, share * share * own);
+    if (!isfinite(own))
+        return least;
+    const bool all = tl_scales_all(m);
+    const double asked = all ? own : share * share * own;
+    if (isfinite(least) && (all ? least >= asked : least <= asked))
+        return least;
+    if (by) {
+        const uint32_t point = all ? m->zones->lowest : m->zones->highest;
+        const uint32_t body = m->zones->mesh[m->zones->points.mesh[point]].row;
+        *by = (bound){asked, body, TL_NO_ROW, m->zones->points.holds[point], point};
+    }
+    return asked;
 }
 
 /* The step; 0 where nothing can move or does. A report gets `by`, what controls it, and leaves the inertia alone. */
@@ -615,11 +641,12 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     double least = 0;
     if (by) {
         *by = controlling(m, true);
-        least = with_zones(m, by->least);
+        least = with_zones(m, by->least, by);
     } else if (tl_scales_all(m) || !given) {
-        least = with_zones(m, controlling(m, false).least);
+        least = with_zones(m, controlling(m, false).least, NULL);
         c->mass_scale = tl_scales_all(m) && isfinite(least) ? least : 0;
     } else {
+        tl_gridpoints_least(m); /* what holds each of them counts at rest, too */
         c->mass_scale = 0;
     }
     if (given) {
@@ -642,7 +669,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     uint32_t body;
     status = tl_travel_shorten(m, dt, &body);
     if (by && body != TL_NO_ROW)
-        *by = (bound){0.25 * *dt * *dt, body, TL_NO_ROW, 0};
+        *by = (bound){0.25 * *dt * *dt, body, TL_NO_ROW, 0, TL_NO_ROW};
     return status;
 }
 
@@ -679,45 +706,43 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
     return TL_OK;
 }
 
-/* The gridpoint that allows no longer step than all bodies, or TL_NO_ROW. */
-static uint32_t gridpoint_in_control(tl_model *m, const bound *by)
+/* What controls the step, and the step, s. */
+static tl_status report_bound(tl_model *m, bound *by, double *dt)
 {
-    const double own = tl_gridpoints_least(m), share = m->timestep.zone_fraction / tl_timestep_fraction(m);
-    const bool scaled = tl_scales_all(m) || tl_adds_mass(m);
-    return !scaled && isfinite(own) && share * share * own < by->least ? m->zones->highest : TL_NO_ROW;
-}
-
-tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
-{
-    *report = (tl_timestep_report){0};
+    *by = no_bound;
     tl_status status = tl_cycle_prepare(m);
     if (status == TL_OK)
         status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
-    struct tl_cycle *c = m->cycle;
-    double in_use = c->dt;
+    const double in_use = m->cycle->dt;
+    status = choose(m, dt, by);
+    m->cycle->dt = in_use;
+    return status;
+}
+
+/* What of a block is so fast. */
+static tl_step_by cause_of(const bound *by, double mass)
+{
+    if (by->point != TL_NO_ROW)
+        return TL_STEP_BY_ZONES;
+    if (!(by->stiffness > 0))
+        return TL_STEP_BY_SPEED;
+    const bool turns = by->contact == TL_NO_ROW && 0.5 / by->least > MOSTLY * by->stiffness / mass;
+    return turns ? TL_STEP_BY_TURN : TL_STEP_BY_PUSH;
+}
+
+tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
+{
+    *report = (tl_timestep_report){0};
     bound by;
-    status = choose(m, &report->dt, &by);
-    c->dt = in_use;
-    const uint32_t gridpoint = status == TL_OK ? gridpoint_in_control(m, &by) : TL_NO_ROW;
-    if (gridpoint != TL_NO_ROW) {
-        const tl_gridpoints *p = &m->zones->points;
-        *report = (tl_timestep_report){.dt = report->dt,
-                                       .block = m->zones->mesh[p->mesh[gridpoint]].body,
-                                       .mass = p->mass[gridpoint],
-                                       .stiffness = p->holds[gridpoint],
-                                       .by = TL_STEP_BY_GRIDPOINT};
-        return TL_OK;
-    }
+    const tl_status status = report_bound(m, &by, &report->dt);
     if (status != TL_OK || by.body == TL_NO_ROW)
         return status;
     report->block = m->bodies.id[by.body];
-    report->mass = m->bodies.mass[by.body];
+    report->mass = by.point == TL_NO_ROW ? m->bodies.mass[by.body] : m->zones->points.mass[by.point];
     report->stiffness = by.stiffness;
-    report->by = !(by.stiffness > 0)                                                                ? TL_STEP_BY_SPEED
-                 : by.contact == TL_NO_ROW && 0.5 / by.least > MOSTLY * by.stiffness / report->mass ? TL_STEP_BY_TURN
-                                                                                                    : TL_STEP_BY_PUSH;
+    report->by = cause_of(&by, report->mass);
     if (by.contact != TL_NO_ROW) {
         /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
         const tl_contacts *contacts = &m->detect->contacts;
@@ -725,6 +750,17 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
         report->partner = m->blocks.id[a_free ? contacts->a[by.contact] : contacts->b[by.contact]];
     }
     return TL_OK;
+}
+
+tl_status tl_model_timestep_gridpoint(tl_model *m, tl_zone_name *name)
+{
+    *name = (tl_zone_name){TL_NO_ID, 0};
+    bound by;
+    double dt;
+    const tl_status status = report_bound(m, &by, &dt);
+    if (status == TL_OK && by.point != TL_NO_ROW)
+        *name = tl_gridpoint_name(m, by.point);
+    return status;
 }
 
 tl_status tl_model_dt(tl_model *m, double *dt)

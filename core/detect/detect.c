@@ -218,8 +218,8 @@ static void note_birth(tl_births *births, const tl_birth *birth)
 /* Cost only: gap along a face, over the reach of the coarse test, from which on that test is spared. */
 #define FAR_APART 0.25
 
-/* Tolerance: way over the size after which it is seen that segments no longer are all of a contact: a tilt of 0.1 degrees
- * (segment/blend.c). */
+/* Tolerance: way over the size after which it is seen that segments no longer are all of a contact: a tilt of 0.1
+ * degrees (segment/blend.c). */
 #define TILTS 0.002
 
 /* How far a pair may move before it is tested again; negative: it is near enough to become a contact; NAN: out of

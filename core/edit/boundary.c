@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "contact/body_contacts.h"
 #include "contact/sides.h"
+#include "cycle/contributors.h"
 #include "detect/detect.h"
 #include "edit/zone_faces.h"
 #include "geometry/point2.h"
@@ -19,6 +20,7 @@
 #include "model/loads.h"
 #include "zone/body_verbs.h"
 #include "zone/outer.h"
+#include "zone/zones.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -628,7 +630,7 @@ void tl_boundary_free(tl_boundary_result *r)
     *r = (tl_boundary_result){0};
 }
 
-/* What contacts, weight and load put on a body, as of the last step. */
+/* What contacts, segments, weight and load put on a body, as of the last step. */
 static tl_vec3 acting_on(const tl_model *m, uint32_t body)
 {
     const tl_contacts *c = &m->detect->contacts;
@@ -636,7 +638,7 @@ static tl_vec3 acting_on(const tl_model *m, uint32_t body)
     tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
         force = tl_v3_madd(force, tl_contact_sign(c, at.contact, at.block), c->force[at.contact]);
-    return force;
+    return tl_model_deforms(m) ? tl_v3_add(force, tl_body_pushed(m, body)) : force;
 }
 
 tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec3 *force)

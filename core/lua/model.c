@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- life ------------------- */
 
@@ -130,7 +131,10 @@ static int push_timestep_report(lua_State *L, tl_model *model)
     tl_lua_set_block(L, "partner", report.partner);
     if (report.block != TL_NO_ID)
         TL_LUA_SET_NUMBERS(L, {"mass", report.mass}, {"stiffness", report.stiffness});
-    tl_lua_push_timestep(L, &report);
+    tl_zone_name point;
+    if (report.by == TL_STEP_BY_ZONES && tl_model_timestep_gridpoint(model, &point) == TL_OK)
+        tl_lua_set_count(L, "gridpoint", point.number);
+    tl_lua_push_timestep(L, model, &report);
     lua_setfield(L, -2, "message");
     return 1;
 }
@@ -155,11 +159,15 @@ static int push_mass_added(lua_State *L, const tl_model *model)
     if (isnan(added.dt))
         return 1;
     TL_LUA_SET_NUMBERS(L, {"dt", added.dt}, {"most", added.most}, {"added", added.share});
+    const tl_gridpoints_added points = tl_model_gridpoints_added(model);
     tl_lua_set_count(L, "bodies", added.bodies);
+    tl_lua_set_count(L, "gridpoints", points.gridpoints);
     if (added.worst != TL_NO_ID) {
         lua_createtable(L, 0, 2);
         tl_lua_set_count(L, "block", added.worst); /* a number: it may have been deleted */
         tl_lua_set_number(L, "factor", added.factor);
+        if (points.worst.body != TL_NO_ID)
+            tl_lua_set_count(L, "gridpoint", points.worst.number);
         lua_setfield(L, -2, "worst");
     }
     return 1;
@@ -356,8 +364,10 @@ static const tl_lua_key timestep_results[] = {
     {"dt", "", "the step the next cycle will use, s; 0 where nothing can move and no law is set"},
     {"block", "", "the block that controls it, or nil"},
     {"partner", "", "the block at the stiffest contact, or nil"},
+    {"gridpoint", "", "where zones control it the number of the gridpoint in its block, or nil"},
     {"mass, stiffness", "",
-     "of the block's body, kg; of the contact, of all its contacts or of the part of its largest "
+     "of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts "
+     "or of the part of its largest "
      "face that counts, N/m"},
     {"message", "", "the same in a sentence"},
     {NULL, NULL, NULL},
@@ -367,10 +377,11 @@ static const tl_lua_key mass_scaling_results[] = {
     {"on", "", "whether inertia is scaled; the other fields are there after mass_scaling{dt =} only"},
     {"dt, most", "", "the step, s, and the largest share, as given"},
     {"added", "", "mass that the last step has added, as a share of that of the bodies that can move"},
-    {"bodies", "", "how many have got some"},
+    {"bodies, gridpoints", "", "how many have got some; a deformable body by some gridpoint"},
     {"worst", "",
      "{block =, factor =}: the number of the block with the highest factor, and its inertia over "
-     "its own; nil when none has got any"},
+     "its own; of a deformable one {block =, gridpoint =, factor =}, and the mass of the gridpoint; nil when none has "
+     "got any"},
     {NULL, NULL, NULL},
 };
 

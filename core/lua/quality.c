@@ -12,9 +12,19 @@
 #include <stdlib.h>
 #include <talus/zones.h>
 
-void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
+/* The block that controls the step and, by zones, its gridpoint. */
+static void name_controlling(tl_model *model, const tl_timestep_report *r, char *text, size_t size)
 {
-    char numbers[120];
+    tl_zone_name point;
+    if (r->by == TL_STEP_BY_ZONES && tl_model_timestep_gridpoint(model, &point) == TL_OK && point.body != TL_NO_ID)
+        tl_text_print(text, size, "gridpoint %u of block %u", point.number, point.body);
+    else
+        tl_text_print(text, size, "block %u", r->block);
+}
+
+void tl_lua_push_timestep(lua_State *L, tl_model *model, const tl_timestep_report *r)
+{
+    char numbers[120], name[64];
     tl_text_print(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt, r->mass,
                   r->stiffness);
     if (r->by == TL_STEP_BY_SPEED)
@@ -25,11 +35,10 @@ void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
         lua_pushfstring(L, "no block controls the step: dt = %s s", lua_tostring(L, -1));
         lua_insert(L, -3);
         lua_pop(L, 2);
-    } else if (r->by == TL_STEP_BY_GRIDPOINT) {
-        lua_pushfstring(L, "a gridpoint of block %I controls the step: %s", (lua_Integer)r->block, numbers);
     } else if (r->partner == TL_NO_ID) {
-        static const char *const how[] = {"", " by turning", " by the speed at which it moves"};
-        lua_pushfstring(L, "block %I controls the step%s: %s", (lua_Integer)r->block, how[r->by], numbers);
+        static const char *const how[] = {"", " by turning", " by the speed at which it moves", ""};
+        name_controlling(model, r, name, sizeof name);
+        lua_pushfstring(L, "%s controls the step%s: %s", name, how[r->by], numbers);
     } else {
         lua_pushfstring(L, "block %I controls the step, with the stiffest contact at block %I: %s",
                         (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
@@ -153,7 +162,7 @@ static void set_timestep(lua_State *L, tl_model *model)
     }
     tl_lua_set_number(L, "dt", step.dt);
     tl_lua_set_block(L, "timestep_block", step.block);
-    tl_lua_push_timestep(L, &step);
+    tl_lua_push_timestep(L, model, &step);
     lua_setfield(L, -2, "timestep_message");
 }
 

@@ -5,7 +5,7 @@
 #include "lua/front.h"
 
 /* Pushes the sentence that says which block controls the time step. */
-void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *report);
+void tl_lua_push_timestep(lua_State *L, tl_model *model, const tl_timestep_report *report);
 /* With the arguments of the method, pushes a userdata that holds a tl_keyblocks as long as it lives; 1. */
 int tl_lua_keyblocks_find(lua_State *L);
 

@@ -165,12 +165,12 @@ static const tl_param relax_params[] = {
              .def = {1.0}),
     TL_PARAM(TL_PARAM_INT, tl_relax, max_cycles, "", "largest number of steps of this call", .def = {1000000.0},
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
-    TL_PARAM(
-        TL_PARAM_INT, tl_relax, load_steps, "",
-        "gravity and loads come on in so many equal parts, each near rest before the next: put on at once they "
-        "settle a rock mass some per cent deeper, for friction follows its path. For loads that come on for the first "
-        "time: a model that has borne them before is unloaded first",
-        .def = {1.0}, .min = 1.0, .max = 10000.0),
+    TL_PARAM(TL_PARAM_INT, tl_relax, load_steps, "",
+             "gravity and loads come on in so many equal parts, each near rest before the next: put on at once they "
+             "settle a rock mass some per cent deeper, and zones yield that would not, for both follow their path. For "
+             "loads that come on for the first "
+             "time: a model that has borne them before is unloaded first",
+             .def = {1.0}, .min = 1.0, .max = 10000.0),
     TL_PARAM(TL_PARAM_INT, tl_relax, every, "", "steps between calls of on_progress and stop", .def = {500.0},
              .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };

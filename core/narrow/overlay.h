@@ -14,9 +14,9 @@ typedef struct tl_outer_face {
     size_t count;
 } tl_outer_face;
 
-/* What the common polygon stands for: its area, the normal from A to B along which it was found, and the places of its
- * three points on the planes of A's face and of B's. Its outline in y, x = c + L y: the room has it until it is used
- * again. */
+/* What the common polygon stands for: its area, and the normal from A to B along which it was found. The places of its
+ * three points are on the planes of A's face and of B's. Its outline is in y, x = c + L y; the room has it until it is
+ * used again. */
 typedef struct tl_overlay {
     double area;
     tl_vec3 n, on_a[3], on_b[3];

@@ -82,13 +82,26 @@ static tl_vec3 moved_of(const tl_model *m, const tl_segment_side *side, tl_id bl
     return sum;
 }
 
+/* What a segment does to its side B, N. */
+static tl_vec3 force_of(const struct tl_segments *s, size_t row)
+{
+    double(*push)[4] = s->table.push[row].of[1];
+    tl_vec3 sum = {0, 0, 0};
+    for (int corner = 0; corner < (tl_side_is_rigid(&s->table.of[row].b) ? 1 : 3); corner++)
+        sum = tl_v3_add(sum, tl_v3(push[corner][0], push[corner][1], push[corner][2]));
+    return sum;
+}
+
 /* Adds a segment; place and way are divided by the area at the end. */
 static void add_segment(const tl_model *m, const tl_meet *meet, size_t row, tl_meeting *sum)
 {
     const struct tl_segments *s = m->segments;
     const tl_segment_points *p = &s->points;
     const tl_segment *of = &s->table.of[row];
-    const tl_vec3 n = tl_columns_get(s->table.normal, row);
+    const tl_vec3 n = tl_columns_get(s->table.normal, row), force = force_of(s, row);
+    const double press = tl_v3_dot(force, n);
+    sum->pressing += press;
+    sum->shear = tl_v3_add(sum->shear, tl_v3_madd(force, -press, n));
     sum->area += s->table.area[row];
     sum->normal = tl_v3_madd(sum->normal, s->table.area[row], n);
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
@@ -98,8 +111,6 @@ static void add_segment(const tl_model *m, const tl_meet *meet, size_t row, tl_m
         const double area = p->area[point];
         sum->gap = fmin(sum->gap, tl_v3_dot(n, tl_v3_sub(b, a)));
         sum->point = tl_v3_madd(sum->point, 0.5 * area, tl_v3_add(a, b));
-        sum->pressing += meet->flat * p->f_n[point];
-        sum->shear = tl_v3_madd(sum->shear, meet->flat, tl_columns_get(p->f_s, point));
         const tl_vec3 moved_a = moved_of(m, &of->a, meet->a, at_a), moved_b = moved_of(m, &of->b, meet->b, at_b);
         sum->passed = tl_v3_madd(sum->passed, area, tl_v3_sub(moved_b, moved_a));
         sum->any |= p->flags[point];

@@ -1,9 +1,9 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
  * A SIMD group of segments is taken at a time. A side carries the three points of a segment with it. Let x be the
- * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at sum w
- * x and has moved by sum w d. With edges a and b from the first corner, how these have changed, a' and b', the size |a x
- * b| and the normal m of the triangle it turns by
+ * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at
+ * sum w x and has moved by sum w d. Let a and b be the edges from the first corner, a' and b' how they have changed,
+ * and m the normal. With size = |a x b| the triangle turns by
  *
  *     turn = ((b . a' - a . b') m / 2 + (m . b') a - (m . a') b) / size
  *
@@ -475,25 +475,17 @@ static void store_parts(struct tl_segments *s, size_t first, size_t count, const
 /* ---------------------------------------------------------------- pushing ---------------- */
 
 /* What a group does to its sides: forces on the corners, on a rigid side likewise on the ends of its axes, with their
- * sizes. The force on B, and couples on both sides. */
+ * sizes; and what these come from: forces of the points, and couples. */
 typedef struct push_lanes {
     _Alignas(TL_ALIGN) double corner[2][3][4][TL_LANES]; /* by side, corner, component */
-    double force[3][TL_LANES], couple[2][3][TL_LANES];
+    double point[3][3][TL_LANES];                        /* of the points on B */
+    double couple[2][3][TL_LANES];
 } push_lanes;
 
-/* A point: its force on B; of its moments about the side e x f_s and f_n t. */
-typedef struct pushing {
-    tl_vec3 force, moment, tilting;
-} pushing;
-
-TL_INLINE pushing pushing_of(const tl_segment_points *p, const lanes *of, const double *beside, size_t point, size_t at)
+/* How far the sides are apart at a point. */
+TL_INLINE tl_vec3 apart_at(const lanes *of, size_t at)
 {
-    const tl_vec3 n = {of->normal[0][at], of->normal[1][at], of->normal[2][at]};
-    const tl_vec3 e = {of->apart[0][at], of->apart[1][at], of->apart[2][at]};
-    const tl_vec3 shear = {p->f_s[0][point], p->f_s[1][point], p->f_s[2][point]};
-    const double f = p->f_n[point] + beside[at];
-    const tl_vec3 along = tl_v3_madd(e, -dot_of(e, n), n), tilting = {f * along.x, f * along.y, f * along.z};
-    return (pushing){tl_v3_madd(shear, f, n), tl_v3_cross(e, shear), tilting};
+    return (tl_vec3){of->apart[0][at], of->apart[1][at], of->apart[2][at]};
 }
 
 TL_INLINE double size_of(tl_vec3 v)
@@ -507,29 +499,35 @@ TL_INLINE tl_vec3 sum_of(tl_vec3 a, tl_vec3 b, tl_vec3 c)
 }
 
 /* The force on a corner of which the three points have the weights w[0], w[TL_LANES] and w[2 TL_LANES], and `more`. */
-TL_INLINE void push_corner(double (*to)[TL_LANES], size_t l, const double *w, double sign, pushing p0, pushing p1,
-                           pushing p2, tl_vec3 more)
+TL_INLINE void push_corner(double (*to)[TL_LANES], size_t l, const double *w, double sign, tl_vec3 f0, tl_vec3 f1,
+                           tl_vec3 f2, tl_vec3 more)
 {
     const double w0 = sign * w[0], w1 = sign * w[TL_LANES], w2 = sign * w[2 * TL_LANES];
-    const tl_vec3 f0 = p0.force, f1 = p1.force, f2 = p2.force;
     const tl_vec3 f = {w0 * f0.x + w1 * f1.x + w2 * f2.x + more.x, w0 * f0.y + w1 * f1.y + w2 * f2.y + more.y,
                        w0 * f0.z + w1 * f1.z + w2 * f2.z + more.z};
     put_lane(to, l, f.x, f.y, f.z);
     to[3][l] = size_of(f);
 }
 
-/* The forces on the corners of a side: `at`, their weights in the points, and what a couple brings. */
-TL_INLINE void push_side(double (*to)[4][TL_LANES], size_t l, double *const at[3], size_t point, double sign,
-                         pushing p0, pushing p1, pushing p2, tl_vec3 couple, side_lanes *side)
+/* The forces on the corners of a side: those of points by their weights, from rows of a column on, and a couple's. */
+TL_INLINE void push_corners(push_lanes *restrict of, int number, double *const at[3], size_t first, double sign,
+                            side_lanes *side)
 {
-    const tl_vec3 n = get(side->normal, l), a = get(side->edge[0], l), b = get(side->edge[1], l);
-    const double spin = 0.5 * dot_of(couple, n), on_a = dot_of(couple, a), on_b = dot_of(couple, b);
-    const tl_vec3 f1 = {spin * b.x - on_b * n.x, spin * b.y - on_b * n.y, spin * b.z - on_b * n.z};
-    const tl_vec3 f2 = {on_a * n.x - spin * a.x, on_a * n.y - spin * a.y, on_a * n.z - spin * a.z};
-    const tl_vec3 f0 = {-(f1.x + f2.x), -(f1.y + f2.y), -(f1.z + f2.z)};
-    push_corner(to[0], l, at[0] + point, sign, p0, p1, p2, f0);
-    push_corner(to[1], l, at[1] + point, sign, p0, p1, p2, f1);
-    push_corner(to[2], l, at[2] + point, sign, p0, p1, p2, f2);
+    const double *restrict w0 = at[0] + first, *restrict w1 = at[1] + first, *restrict w2 = at[2] + first;
+    double(*to)[4][TL_LANES] = of->corner[number], (*couples)[TL_LANES] = of->couple[number];
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_vec3 f0 = get(of->point[0], l), f1 = get(of->point[1], l), f2 = get(of->point[2], l);
+        const tl_vec3 n = get(side->normal, l), a = get(side->edge[0], l), b = get(side->edge[1], l);
+        const tl_vec3 couple = get(couples, l);
+        const double spin = 0.5 * dot_of(couple, n), on_a = dot_of(couple, a), on_b = dot_of(couple, b);
+        const tl_vec3 c1 = {spin * b.x - on_b * n.x, spin * b.y - on_b * n.y, spin * b.z - on_b * n.z};
+        const tl_vec3 c2 = {on_a * n.x - spin * a.x, on_a * n.y - spin * a.y, on_a * n.z - spin * a.z};
+        const tl_vec3 c0 = {-(c1.x + c2.x), -(c1.y + c2.y), -(c1.z + c2.z)};
+        push_corner(to[0], l, w0 + l, sign, f0, f1, f2, c0);
+        push_corner(to[1], l, w1 + l, sign, f0, f1, f2, c1);
+        push_corner(to[2], l, w2 + l, sign, f0, f1, f2, c2);
+    }
 }
 
 /* Sums of the points of a group, by its number in the tile, and what it stores and turns into heat. */
@@ -541,16 +539,21 @@ TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t number, lane
     side_lanes *a = &of->side[number][0], *b = &of->side[number][1];
     const double *restrict beside = of->parts ? of->beside : nothing, *restrict per_p = of->per_p + number * TL_LANES;
     double *restrict bears = t->bears + row, *restrict stored = t->stored + row, *restrict heat = t->heat + row;
+    const double *restrict sx = p->f_s[0] + first, *restrict sy = p->f_s[1] + first, *restrict sz = p->f_s[2] + first;
+    const double *restrict f_n = p->f_n + first, *restrict shares = t->share + row;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const size_t i = first + l, j = at + l;
-        const double share = t->share[row + l], rest = 1 - share;
-        const pushing p0 = pushing_of(p, of, beside, i, j);
-        const pushing p1 = pushing_of(p, of, beside, i + TL_LANES, j + TL_LANES);
-        const pushing p2 = pushing_of(p, of, beside, i + 2 * TL_LANES, j + 2 * TL_LANES);
-        const tl_vec3 force = sum_of(p0.force, p1.force, p2.force);
-        const tl_vec3 moment = sum_of(p0.moment, p1.moment, p2.moment);
-        const tl_vec3 tilting = sum_of(p0.tilting, p1.tilting, p2.tilting);
+        const size_t j = at + l, l1 = l + TL_LANES, l2 = l + 2 * TL_LANES, j1 = j + TL_LANES, j2 = j + 2 * TL_LANES;
+        const double share = shares[l], rest = 1 - share;
+        const tl_vec3 n = {of->normal[0][j], of->normal[1][j], of->normal[2][j]};
+        const tl_vec3 e0 = apart_at(of, j), e1 = apart_at(of, j1), e2 = apart_at(of, j2);
+        const tl_vec3 s0 = {sx[l], sy[l], sz[l]}, s1 = {sx[l1], sy[l1], sz[l1]}, s2 = {sx[l2], sy[l2], sz[l2]};
+        const double q0 = f_n[l] + beside[j], q1 = f_n[l1] + beside[j1], q2 = f_n[l2] + beside[j2];
+        const tl_vec3 f0 = tl_v3_madd(s0, q0, n), f1 = tl_v3_madd(s1, q1, n), f2 = tl_v3_madd(s2, q2, n);
+        const tl_vec3 moment = sum_of(tl_v3_cross(e0, s0), tl_v3_cross(e1, s1), tl_v3_cross(e2, s2));
+        const tl_vec3 pressed = {q0 * e0.x + q1 * e1.x + q2 * e2.x, q0 * e0.y + q1 * e1.y + q2 * e2.y,
+                                 q0 * e0.z + q1 * e1.z + q2 * e2.z};
+        const tl_vec3 tilting = tl_v3_madd(pressed, -dot_of(pressed, n), n);
         const tl_vec3 tilts_a = tl_v3_cross(get(a->normal, l), tilting);
         const tl_vec3 tilts_b = tl_v3_cross(get(b->normal, l), tilting);
         const double tilt_a = share * per_p[l], tilt_b = -rest * per_p[l];
@@ -558,20 +561,23 @@ TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t number, lane
                               tilt_a * tilts_a.z - share * moment.z};
         const tl_vec3 on_b = {tilt_b * tilts_b.x - rest * moment.x, tilt_b * tilts_b.y - rest * moment.y,
                               tilt_b * tilts_b.z - rest * moment.z};
-        bears[l] = size_of(p0.force) + size_of(p1.force) + size_of(p2.force);
-        stored[l] = of->stored[j] + of->stored[j + TL_LANES] + of->stored[j + 2 * TL_LANES];
-        heat[l] = of->dissipated[j] + of->dissipated[j + TL_LANES] + of->dissipated[j + 2 * TL_LANES];
-        put_lane(to->force, l, force.x, force.y, force.z);
+        bears[l] = size_of(f0) + size_of(f1) + size_of(f2);
+        stored[l] = of->stored[j] + of->stored[j1] + of->stored[j2];
+        heat[l] = of->dissipated[j] + of->dissipated[j1] + of->dissipated[j2];
+        put_lane(to->point[0], l, f0.x, f0.y, f0.z);
+        put_lane(to->point[1], l, f1.x, f1.y, f1.z);
+        put_lane(to->point[2], l, f2.x, f2.y, f2.z);
         put_lane(to->couple[0], l, on_a.x, on_a.y, on_a.z);
         put_lane(to->couple[1], l, on_b.x, on_b.y, on_b.z);
-        push_side(to->corner[0], l, p->at_a, i, -1, p0, p1, p2, on_a, a);
-        push_side(to->corner[1], l, p->at_b, i, 1, p0, p1, p2, on_b, b);
     }
 }
 
 TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
 {
+    const size_t first = TL_SEGMENT_POINTS * row;
     sum_points(s, row, number, of, by);
+    push_corners(by, 0, s->points.at_a, first, -1, &of->side[number][0]);
+    push_corners(by, 1, s->points.at_b, first, 1, &of->side[number][1]);
     for (size_t l = 0; l < TL_LANES; l += 4) {
         tl_segment_push *to = s->table.push + row + l;
         for (int side = 0; side < 2; side++)
@@ -608,7 +614,7 @@ static void push_sides(tl_model *m, size_t row, size_t number, lanes *of)
         const tl_segment *one = &s->table.of[row + l];
         if (one->meet == TL_NO_ROW)
             continue;
-        const tl_vec3 on_b = get(by.force, l);
+        const tl_vec3 on_b = sum_of(get(by.point[0], l), get(by.point[1], l), get(by.point[2], l));
         if (tl_side_is_rigid(&one->a))
             push_rigid(m, one->a.at[0], tl_v3_neg(on_b), get(by.couple[0], l), s->table.push[row + l].of[0]);
         if (tl_side_is_rigid(&one->b))

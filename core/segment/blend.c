@@ -13,9 +13,9 @@
  *     forces of segments, and their heat, count by  l_k + G f_k / U_f,
  *     those of the field contact by                 w - G r / U_f,
  *
- * and a couple M = -(E_k S + G U_k / U_f) df_k/d(tilt) turns the segments of the faces. The tilt is that between the means, by area, of the
- * normals of both sides of the segments. With the mean vector areas N_A, N_B and c = -N_A . N_B / (|N_A| |N_B|), its
- * cosine,
+ * and a couple M = -(E_k S + G U_k / U_f) df_k/d(tilt) turns the segments of the faces. The tilt is that between the
+ * means, by area, of the normals of both sides of the segments. Let N_A and N_B be the mean vector areas. With the
+ * cosine of the tilt c = -N_A . N_B / (|N_A| |N_B|)
  *
  *     dc/dN_A = -(n_B + c n_A) / |N_A|,    dc/dN_B = -(n_A + c n_B) / |N_B|
  *
@@ -29,7 +29,7 @@
 #include <math.h>
 
 /* Tolerance: sines of 5 and 10 degrees, between which the field contact takes over: zoned faces curve by some degrees
- * and lie flush all the same. Test: property/deform_contacts. */
+ * and lie flush all the same. Test: property/deform_properties. */
 #define LEAST_TILT 0.087155742747658174
 #define MOST_TILT 0.17364817766693033
 /* Tolerance: sine of 4.8 degrees, from which on there is a field contact: before it has a share. */

@@ -4,8 +4,8 @@
 
 #include "segment/segments.h"
 
-/* Finds the shares of field contacts in the present place. There is room for as many as meets. Whether other blocks than
- * before meet by segments alone. */
+/* Finds how pairs of faces are tilted, and which blocks meet by a field contact, too. There is room for as many as
+ * meets. Whether other blocks than before meet by segments alone. */
 bool tl_blends_find(tl_model *m);
 /* Gives field contacts their shares of forces and energies. */
 void tl_blends_share(tl_model *m);

@@ -10,9 +10,9 @@
  *
  *     U = kn A / 2 mean of max(0, u)^2
  *
- * has this force for its gradient: whatever pieces a face is divided into, they sum up to the same. A law must not get a
- * closure below 0 where nothing pulls. So it gets those above 0, all by the factor that leaves the sum. What is left
- * over, of force and energy, is added behind the law with the stiffness that it has told by its forces. */
+ * has this force for its gradient. So whatever pieces a face is divided into, they sum up to the same. A law must not
+ * get a closure below 0 where nothing pulls. So it gets those above 0, all by the factor that leaves the sum. What is
+ * left over, of force and energy, is added behind the law with the stiffness that it has told by its forces. */
 #include "segment/closed.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
 
 #include "segment/segments.h"
 
-/* Of what presses on a segment: closures that its points get, what the exact ones are beside these, and the mean of the
- * square of what presses, less that of the points, m2. */
+/* What presses on a segment: closures that its points get, and how much more the exact ones are. `second`: the mean of
+ * the square of what presses, less that of the points, m2. */
 typedef struct tl_closed {
     double even[TL_SEGMENT_POINTS], rest[TL_SEGMENT_POINTS], second;
 } tl_closed;

@@ -109,8 +109,33 @@ static int order_of(const tl_meet *a, const tl_meet *b)
     return 0;
 }
 
-bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, size_t count)
+/* Twice the energy of the shear springs of a segment, times ks. */
+static double shear_energy(const tl_segment_points *p, size_t segment)
 {
+    double sum = 0;
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t row = tl_segment_point_row(segment, k);
+        double f2 = 0;
+        for (int c = 0; c < 3; c++)
+            f2 += p->f_s[c][row] * p->f_s[c][row];
+        sum += p->area[row] > 0 ? f2 / p->area[row] : 0;
+    }
+    return sum;
+}
+
+/* What the springs of shear of a meet hold that goes, J: heat, as of contacts that end. */
+static double shear_of(const tl_model *m, const struct tl_segments *s, const tl_meet *meet)
+{
+    const double ks = meet->law < m->joint_law_count ? m->joint_laws[meet->law].ks : 0;
+    double sum = 0;
+    for (uint32_t row = meet->begin; row < meet->end; row++)
+        sum += s->table.of[row].meet != TL_NO_ROW ? shear_energy(&s->points, row) : 0;
+    return ks > 0 ? 0.5 * meet->flat * sum / ks : 0;
+}
+
+bool tl_laying_change_meets(const tl_model *m, tl_laying *l, tl_meet *list, size_t count)
+{
+    struct tl_segments *s = m->segments;
     l->now = malloc((s->meet_count + 1) * sizeof *l->now);
     if (!l->now) {
         free(list);
@@ -122,6 +147,8 @@ bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, 
             at++;
         const bool same = at < count && order_of(&list[at], &s->meet[k]) == 0;
         l->now[k] = same ? (uint32_t)at : TL_NO_ROW;
+        if (!same)
+            s->lost += shear_of(m, s, &s->meet[k]);
         if (same) {
             const double size = list[at].size;
             const bool tilted = list[at].tilted, stale = s->meet[k].area == 0; /* its faces may overlap by now */
@@ -292,20 +319,6 @@ static void lay_points(const old_segments *old, struct tl_segments *to, size_t r
 
 /* ---------------------------------------------------------------- laying ----------------- */
 
-/* Twice the energy of the shear springs of a segment, times ks. */
-static double shear_energy(const tl_segment_points *p, size_t segment)
-{
-    double sum = 0;
-    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-        const size_t row = tl_segment_point_row(segment, k);
-        double f2 = 0;
-        for (int c = 0; c < 3; c++)
-            f2 += p->f_s[c][row] * p->f_s[c][row];
-        sum += p->area[row] > 0 ? f2 / p->area[row] : 0;
-    }
-    return sum;
-}
-
 /* Lets the springs of shear of stale meets hold no more than they did. Returns what they hold less, J. */
 static double keep_energy(const tl_model *m, const old_segments *old, struct tl_segments *to)
 {
@@ -330,7 +343,7 @@ static double keep_energy(const tl_model *m, const old_segments *old, struct tl_
         const uint32_t law = m->segments->meet[k].law;
         const double ks = law != TL_NO_ROW ? m->joint_laws[law].ks : 0;
         if (m->segments->meet[k].stale && ks > 0 && sum[2 * k] > sum[2 * k + 1])
-            lost += 0.5 * (sum[2 * k] - sum[2 * k + 1]) / ks;
+            lost += 0.5 * m->segments->meet[k].flat * (sum[2 * k] - sum[2 * k + 1]) / ks;
     }
     free(sum);
     return lost;
@@ -542,12 +555,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
     entry *list = malloc(most * sizeof *list);
     old_segments old = {m, s, malloc(most * sizeof *old.list), 0};
     add_columns(&fresh, states_of(m));
-    if (s->points.f_n0 && !tl_segments_hold_initial(&fresh)) {
-        free(list);
-        free(old.list);
-        return false;
-    }
-    bool enough = list && old.list;
+    bool enough = list && old.list && (!s->points.f_n0 || tl_segments_hold_initial(&fresh));
     const size_t count = enough ? list_entries(m, l, list, &old) : 0;
     const size_t rows = rows_of(list, count);
     enough = enough && tl_table_resize(&fresh.table.table, rows) &&

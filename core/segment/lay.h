@@ -26,9 +26,9 @@ bool tl_segments_begin(tl_model *m);
 void tl_segments_free(struct tl_segments *s);
 void tl_laying_begin(tl_laying *l);
 bool tl_laying_add(tl_laying *l, const tl_new_segment *segment);
-/* Puts a list of meets in the place of the present ones. Those that there were stay as they are. false: out of memory,
- * and the list has been freed. */
-bool tl_laying_change_meets(tl_laying *l, struct tl_segments *s, tl_meet *list, size_t count);
+/* Puts a list of meets in the place of the present ones. Those that there were stay as they are; the shear of others is
+ * heat. false: out of memory, and the list has been freed. */
+bool tl_laying_change_meets(const tl_model *m, tl_laying *l, tl_meet *list, size_t count);
 /* Lays all segments anew. false: out of memory, and nothing has changed. */
 bool tl_lay_segments(tl_model *m, const tl_laying *l);
 void tl_laying_end(tl_laying *l);

@@ -114,21 +114,20 @@ static double tilt_cosine(const face *a, const face *b)
     return -tl_v3_dot(tl_v3_unit(a->area), tl_v3_unit(b->area));
 }
 
-/* Whether two faces look at each other and are near. */
+/* Whether two faces look at each other and are near: the centre of one is near the plane of the other. */
 static bool faces_meet(const tl_model *m, const face *a, const face *b)
 {
-    const tl_vec3 na = tl_v3_unit(a->area), nb = tl_v3_unit(b->area), apart = tl_v3_sub(b->centre, a->centre);
+    const tl_vec3 apart = tl_v3_sub(b->centre, a->centre);
     const double near = NEAR * fmin(m->blocks.size[a->block], m->blocks.size[b->block]);
-    const tl_vec3 n = tl_v3_unit(tl_v3_sub(na, nb));
-    const double gap = tl_v3_dot(apart, n), aside = tl_v3_norm(tl_v3_madd(apart, -gap, n));
-    return tilt_cosine(a, b) > LEAST_FACING && fabs(gap) < near + TILTS_BY * fmin(a->reach, b->reach) &&
-           aside < a->reach + b->reach;
+    const double of_b = fabs(tl_v3_dot(apart, tl_v3_unit(a->area))), of_a = fabs(tl_v3_dot(apart, tl_v3_unit(b->area)));
+    return tilt_cosine(a, b) > LEAST_FACING && fmin(of_a, of_b) < near + TILTS_BY * fmin(a->reach, b->reach) &&
+           tl_v3_norm(apart) < a->reach + b->reach + near;
 }
 
 /* ---------------------------------------------------------------- depth ------------------ */
 
 /* Tolerance: how much deeper than along another face the blocks may overlap along one that touches, and what of their
- * size beside: as of patches (narrow/manifold.c). Test: property/deform_contacts. */
+ * size beside: as of patches (narrow/manifold.c). Test: property/deform_properties. */
 #define DEEPER 4.0
 #define DEEPER_SIZE 1e-3
 
@@ -388,7 +387,7 @@ tl_status tl_segments_find(tl_model *m)
         size_t count;
         tl_meet *list = list_meets(m, &count, &enough);
         if (enough)
-            tl_laying_change_meets(&l, s, list, count);
+            tl_laying_change_meets(m, &l, list, count);
         else
             free(list);
         mark_changed(m);

@@ -2,7 +2,7 @@
 #ifndef TL_ZONE_LIFE_H
 #define TL_ZONE_LIFE_H
 
-#include "zone/zones.h"
+#include "zone/columns.h"
 
 /* Makes the model's zones, without any; nothing when they are there. */
 tl_status tl_zones_begin(tl_model *m);

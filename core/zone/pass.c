@@ -150,7 +150,7 @@ TL_INLINE void strain_row(const struct tl_zones *z, const tl_gridpoint_now *p, c
         sums->change[l] += middle * trace;
         sums->middle[l] += middle;
         sums->strain2[l] = square > sums->strain2[l] ? square : sums->strain2[l];
-        sums->sound[l] = (six > 0) & (six_now > 0) ? sums->sound[l] : 0;
+        sums->sound[l] = ((six > 0) & (six_now > 0)) ? sums->sound[l] : 0;
         const tl_vec3 spin = {0.5 * (dzy - dyz), 0.5 * (dxz - dzx), 0.5 * (dyx - dxy)};
         r->spin[0][at + l] = spin.x, r->spin[1][at + l] = spin.y, r->spin[2][at + l] = spin.z;
         const tl_sym3 was = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};

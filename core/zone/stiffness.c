@@ -117,11 +117,12 @@ static void rate(struct tl_zones *z, bool held)
     const tl_gridpoints *p = &z->points;
     z->highest_rate = 0;
     z->lowest_rate = INFINITY;
-    z->highest = TL_NO_ROW;
+    z->highest = z->lowest = TL_NO_ROW;
     for (uint32_t row = 0; row < p->table.rows; row++) {
         const double rate = p->holds[row] / p->mass[row];
         if ((p->fixed[row] == (TL_FIX_X | TL_FIX_Y | TL_FIX_Z)) != held || p->zones[row] == 0)
             continue;
+        z->lowest = rate < z->lowest_rate ? row : z->lowest;
         z->lowest_rate = rate < z->lowest_rate ? rate : z->lowest_rate;
         z->highest = rate > z->highest_rate ? row : z->highest;
         z->highest_rate = rate > z->highest_rate ? rate : z->highest_rate;

@@ -30,6 +30,7 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     VALUE(CACHE, highest_rate);
     VALUE(CACHE, lowest_rate);
     VALUE(CACHE, highest);
+    VALUE(CACHE, lowest);
     VALUE(CACHE, rated_for);
     VALUE(CACHE, rated_at);
     VALUE(CACHE, segments_rated);

@@ -192,7 +192,7 @@ struct tl_zones {
     uint64_t version;                 /* counts changes of meshes and solids */
     uint64_t followed;                /* structure of the model for which meshes have the rows of their bodies */
     double highest_rate, lowest_rate; /* stiffness over mass of the gridpoints that may move, 1/s2; 0: there are none */
-    uint32_t highest;                 /* row of that with the highest, or TL_NO_ROW */
+    uint32_t highest, lowest;         /* rows of those with these, or TL_NO_ROW */
     uint64_t rated_for;               /* version then; 0: not known */
     int64_t rated_at;                 /* steps made then */
     uint64_t segments_rated;          /* version of the segments then */

@@ -689,8 +689,9 @@ function Model:damping(damping, options) end
 ---@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set
 ---@field block talus.Block? the block that controls it, or nil
 ---@field partner talus.Block? the block at the stiffest contact, or nil
----@field mass number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
----@field stiffness number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
+---@field gridpoint any where zones control it the number of the gridpoint in its block, or nil
+---@field mass number of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts or of the part of its largest face that counts, N/m
+---@field stiffness number of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts or of the part of its largest face that counts, N/m
 ---@field message string the same in a sentence
 
 --- Chooses how the time step is found.
@@ -711,8 +712,9 @@ function Model:timestep(options) end
 ---@field dt number the step, s, and the largest share, as given
 ---@field most number the step, s, and the largest share, as given
 ---@field added number mass that the last step has added, as a share of that of the bodies that can move
----@field bodies integer how many have got some
----@field worst { block: integer, factor: number }? {block =, factor =}: the number of the block with the highest factor, and its inertia over its own; nil when none has got any
+---@field bodies integer how many have got some; a deformable body by some gridpoint
+---@field gridpoints integer how many have got some; a deformable body by some gridpoint
+---@field worst { block: integer, factor: number }? {block =, factor =}: the number of the block with the highest factor, and its inertia over its own; of a deformable one {block =, gridpoint =, factor =}, and the mass of the gridpoint; nil when none has got any
 
 --- Scales the inertia, not the weight, of free bodies up to that of the one with the longest stable step, for finding equilibria: times and velocities then mean nothing. With dt it is for dynamics: inertia is added to the few bodies that need it. Without arguments it tells what the last step has added.
 ---
@@ -1179,7 +1181,7 @@ function Model:solve(options) end
 ---@field measure? "average"|"maximum"|"local" default "local": which unbalanced force ratio ends it: see theory.md, Convergence
 ---@field stop_at_failure? boolean default true: ends when some block is seen to fail steadily
 ---@field max_cycles? integer >= 0, default 1000000: largest number of steps of this call
----@field load_steps? integer in [1, 10000], default 1: gravity and loads come on in so many equal parts, each near rest before the next: put on at once they settle a rock mass some per cent deeper, for friction follows its path. For loads that come on for the first time: a model that has borne them before is unloaded first
+---@field load_steps? integer in [1, 10000], default 1: gravity and loads come on in so many equal parts, each near rest before the next: put on at once they settle a rock mass some per cent deeper, and zones yield that would not, for both follow their path. For loads that come on for the first time: a model that has borne them before is unloaded first
 ---@field every? integer >= 1, default 500: steps between calls of on_progress and stop
 ---@field stop? fun(model: talus.Model): any called every `every` steps; ends the run when it answers true
 ---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps

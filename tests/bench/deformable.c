@@ -312,6 +312,7 @@ int main(int count, char **words)
             if (strcmp(s.workload, "jointed") != 0 && s.side[0] == 0) {
                 s.size = "in cache";
                 s.side[0] = s.side[1] = s.side[2] = 1;
+                s.apart = 1;
                 s.edge = 0.139;
             } else if (small && s.side[0] > 2)
                 s.side[0] /= 10;

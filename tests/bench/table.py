@@ -10,7 +10,9 @@ MEMORY = ("total", "points", "contacts", "facets", "pairs", "broad", "index", "s
 # Contacts up to which the columns of a step fit into a cache of 1 or 2 MiB.
 IN_CACHE = 30000
 # First words of workloads that have tables of their own.
-APART = ("limit", "yade", "talus", "rockable", "box3d")
+APART = ("limit", "yade", "talus", "rockable", "box3d", "zones", "plastic", "jointed")
+# And of deformable blocks.
+DEFORMABLE = ("zones", "plastic", "jointed")
 # Units of figures of which the smaller one is the better: seconds, and seconds that a second of the model takes.
 TIMES = ("s", "s/s")
 BEGIN, END = "<!-- Figures: begin. Written by tests/bench/run.py. -->", "<!-- Figures: end. -->"
@@ -96,6 +98,14 @@ def limit_table(rows):
              for row in rows if row["workload"].startswith("limit ")])
 
 
+def zone_table(rows):
+    """Steps of zones, and points of segments; the bare loop ran in turn."""
+    return (["workload", "where", "zones or points", "threads", "rate", "unit", "of bare loop", "B/zone"],
+            [[row["workload"], row["size"], row["zones"], row["threads"], short(number(row, "rate")), row["unit"],
+              short(number(row, "of_bare")), short(number(row, "bytes"))]
+             for row in rows if row["workload"].split()[0] in DEFORMABLE])
+
+
 def figure_table(rows):
     return (["workload", "what", "blocks", "threads", "figure", "unit"],
             [[row["workload"], row.get("size", ""), row.get("blocks", ""), row.get("threads", ""),
@@ -165,7 +175,7 @@ def beside_table(rows, peer):
 def text(rows):
     parts = []
     for head, body in (limit_table(rows), workload_table(rows), memory_table(rows),
-                       figure_table(rows), peer_table(rows), beside_table(rows, "rockable"),
+                       zone_table(rows), figure_table(rows), peer_table(rows), beside_table(rows, "rockable"),
                        beside_table(rows, "box3d")):
         if not body:
             continue
@@ -199,6 +209,7 @@ def section(path):
             ("What the machine could do:", limit_table(rows)),
             ("Contact updates; the phases in ns a contact update:", workload_table(rows)),
             ("Memory, bytes a block, one thread:", memory_table(rows)),
+            ("Deformable blocks:", zone_table(rows)),
             ("Times and rates of whole runs:", figure_table(rows)),
             ("The same blocks in Yade's polyhedra, one thread:", peer_table(rows)),
             ("Beside Rockable in the same run, one thread, in turn:", beside_table(rows, "rockable")),

@@ -341,4 +341,24 @@ scene("edited", function(note)
     note(model, "unjoined")
 end)
 
+-- Zones of each solid, jointed, on a rigid floor.
+scene("deformable", function(note)
+    local model = talus.model { gravity = { 1, 0.5, -10 } }
+    local strength = { young = 2e7, poisson = 0.25, cohesion = 2e3, friction = 30, dilation = 10, tension = 1e3 }
+    floor(model, { -2, -2, -1 }, { 4, 4, 0 })
+    cut_box(model, { 2, 2, 2 }, { { dip = 15, dip_direction = 70, spacing = 0.9 } })
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    model:solid("rock", "mohr_coulomb", strength)
+    model:solid("mass", "hoek_brown", { young = 2e7, poisson = 0.2, sigma_ci = 5e4, mb = 2, s = 0.02, a = 0.51 })
+    model:solid("stone", "elastic", { young = 3e7, poisson = 0.3 })
+    local solids = { "rock", "mass", "stone" }
+    for i, block in ipairs(model:blocks { group = "rock" }) do
+        model:blocks { id = block.id }:deformable { zone = 0.45, solid = solids[i % 3 + 1] }
+    end
+    note(model, "divided")
+    model:damping "local"
+    model:cycle(300)
+    note(model, "settles")
+end)
+
 return scenes

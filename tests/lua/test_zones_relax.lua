@@ -55,3 +55,15 @@ do -- after a relaxation nothing moves, and one that is refused leaves all as it
         check.equal(v[1] == 0 and v[2] == 0 and v[3] == 0, true)
     end
 end
+
+do -- what holds a rigid block under a zoned one bears both
+    local model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { min = { -1, -1, -1 }, max = { 2, 2, 0 }, density = 1000 })
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
+    model:solid("rock", "elastic", { young = YOUNG, poisson = 0.2 })
+    model:joint("*", "coulomb", { kn = 1e10, ks = 1e10, friction = 30 })
+    model:blocks { id = 1 }:fix()
+    model:blocks { id = 2 }:deformable { zone = 0.5, solid = "rock" }
+    check.equal(model:relax { ratio = 1e-8 }.reason, "rest")
+    check.near(model:blocks { id = 1 }:reaction()[3], 9 * 1000 * 10 + 2500 * 10, 1e-4 * 25000)
+end

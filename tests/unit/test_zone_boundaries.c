@@ -636,10 +636,10 @@ static bool again(void *user, const tl_drive_asked *asked, tl_drive *drive)
 }
 
 /* Two blocks with everything on their faces. */
-static tl_model *furnished(int *calls)
+static tl_model *furnished(int *calls, unsigned threads)
 {
     const tl_quat turn = scene_turn(tl_v3(1, 2, 3), 0.4);
-    tl_model *m = scene_model(2);
+    tl_model *m = scene_model(threads);
     scene_block(m, scene_box_shape(1, 1, 1), turn, tl_v3(5, 5, 5));
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_box(m, tl_v3(0, 0, 1), tl_v3(1, 1, 2));
@@ -686,7 +686,7 @@ TEST(boundaries_are_copied_saved_and_follow)
 {
     int calls = 0;
     const char *path = "zone_boundaries.talus";
-    tl_model *m = furnished(&calls), *copy, *restored;
+    tl_model *m = furnished(&calls, 2), *copy, *restored;
     tl_error error;
     char text[3][64];
     run(m, 50);
@@ -720,6 +720,47 @@ TEST(boundaries_are_copied_saved_and_follow)
     }
     for (int k = 0; k < 3; k++)
         tl_model_destroy(all[k]);
+}
+
+/* Any number of threads gives the same bits. */
+TEST(threads_make_no_difference)
+{
+    int calls = 0;
+    char text[2][64];
+    for (unsigned k = 0; k < 2; k++) {
+        tl_model *m = furnished(&calls, 1 + 3 * k);
+        run(m, 100);
+        scene_ok(m, tl_state_hash(m, text[k]));
+        tl_model_destroy(m);
+    }
+    CHECK_TEXT(text[0], text[1]);
+}
+
+/* Quiet faces resist by the solid that their zones have now. */
+TEST(quiet_faces_follow_their_solid)
+{
+    const tl_id block = 1;
+    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = 4e9},
+                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = 0.25}};
+    tl_model *m = box(tl_v3(0, 0, 0), tl_v3(1, 1, 1), 0.5, 1e9, 0.25, 1);
+    tl_boundary_action a = at_side(TL_SIDE_ZMIN);
+    a.quiet = true;
+    put(m, a);
+    run(m, 1);
+    double sum[2] = {0, 0};
+    const tl_gridpoints *p = &m->zones->points;
+    for (size_t row = 0; row < p->table.rows; row++)
+        sum[0] += p->quiet[2][row];
+    CHECK_NEAR(sum[0], sqrt(2000 * 1.2e9), 1e-3); /* of 1 m2: the square root of density times modulus */
+    scene_ok(m, tl_solid_set(m, "stiff", tl_plugin_find(TL_KIND_SOLID, "elastic"), &(tl_args){values, 2}));
+    tl_block_set set = tl_block_set_default();
+    set.solid = "stiff";
+    scene_ok(m, tl_blocks_set(m, &block, 1, &set));
+    run(m, 1);
+    for (size_t row = 0; row < p->table.rows; row++)
+        sum[1] += p->quiet[2][row];
+    CHECK_NEAR(sum[1] / sum[0], 2, 1e-12);
+    tl_model_destroy(m);
 }
 
 /* ---------------------------------------------------------------- errors ----------------- */
@@ -774,5 +815,5 @@ TEST_MAIN(a_squeezed_cube_is_at_rest(), a_column_of_cut_rock_bears_its_weight(),
           two_rollers_leave_their_edge_one_direction(), a_quiet_face_lets_pulses_out(),
           a_quiet_face_bears_what_held_it(), a_face_follows_a_function(), a_driven_block_turns_without_strain(),
           loads_of_blocks_have_their_force_and_moment(), loads_and_drives_go_over_to_zones(),
-          blocks_are_held_and_set_in_motion(), boundaries_are_copied_saved_and_follow(),
-          what_does_not_go_together_is_refused())
+          blocks_are_held_and_set_in_motion(), boundaries_are_copied_saved_and_follow(), threads_make_no_difference(),
+          quiet_faces_follow_their_solid(), what_does_not_go_together_is_refused())

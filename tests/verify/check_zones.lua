@@ -103,6 +103,49 @@ function zones.strain(model, points, by, dt)
     model:cycle(1)
 end
 
+-- Degrees that a sector of a ring takes up.
+local SECTOR = 10
+
+-- A sector of a ring about the z axis in plane strain: rollers on both sides and both ends, zones as many as `rings` from the
+-- inner to the outer wall, as large as their radius asks for. Gives the planes of the walls, which are flat.
+function zones.sector(model, what)
+    local a = math.rad(SECTOR)
+    local c, s, half = math.cos(a), math.sin(a), math.cos(a / 2)
+    local base = { { what.inner, 0, 0 }, { what.outer, 0, 0 }, { what.outer * c, what.outer * s, 0 },
+        { what.inner * c, what.inner * s, 0 } }
+    model:generate("prism", { base = base, axis = { 0, 0, what.thickness }, density = 2500 })
+    local share = math.log(what.outer / what.inner) / what.rings
+    model:blocks():deformable { solid = "rock", zone = function(p)
+        return share * math.sqrt(p[1] * p[1] + p[2] * p[2])
+    end }
+    for _, plane in ipairs { { normal = { 0, -1, 0 }, at = { 0, 0, 0 } }, { normal = { -s, c, 0 }, at = { 0, 0, 0 } },
+        { normal = { 0, 0, -1 }, at = { 0, 0, 0 } }, { normal = { 0, 0, 1 }, at = { 0, 0, what.thickness } } } do
+        model:boundary { plane = plane, roller = true }
+    end
+    local n = { math.cos(a / 2), math.sin(a / 2), 0 }
+    local function wall(r, sign)
+        return { normal = { sign * n[1], sign * n[2], 0 }, at = { r * half * n[1], r * half * n[2], 0 } }
+    end
+    return { inner = wall(what.inner, -1), outer = wall(what.outer, 1) }
+end
+
+-- The section of such a sector from its axis to a radius, over the square of that.
+zones.SECTOR_AREA = math.sin(math.rad(SECTOR)) / 2
+
+-- Mean radial displacement of gridpoints of a sector that were made at a radius: its edges there.
+function zones.radial(model, radius)
+    local sum, count = 0, 0
+    for _, p in ipairs(model:gridpoints {}) do
+        local x, u = p.position, p.displacement
+        local X, Y = x[1] - u[1], x[2] - u[2]
+        local r = math.sqrt(X * X + Y * Y)
+        if math.abs(r - radius) < ON_PLANE * radius then
+            sum, count = sum + (u[1] * X + u[2] * Y) / r, count + 1
+        end
+    end
+    return sum / count
+end
+
 -- Mean of a component of stress or strain over zones, by volume.
 function zones.mean(selection, what, component)
     local sum, volume = 0, 0

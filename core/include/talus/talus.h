@@ -230,14 +230,14 @@ TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep)
 TL_API tl_status tl_model_dt(tl_model *model, double *dt);
 
 /* Why a block asks for a short step: its mass on its springs, its inertia on them, or its own speed. */
-typedef enum tl_step_by { TL_STEP_BY_PUSH, TL_STEP_BY_TURN, TL_STEP_BY_SPEED, TL_STEP_BY_GRIDPOINT } tl_step_by;
+typedef enum tl_step_by { TL_STEP_BY_PUSH, TL_STEP_BY_TURN, TL_STEP_BY_SPEED, TL_STEP_BY_ZONES } tl_step_by;
 
 typedef struct tl_timestep_report {
     double dt;
     tl_id block, partner; /* the block that controls it, and the block of the contact; 0: none */
-    double mass;          /* of the block's body, or of its gridpoint, kg */
-    /* of the contact, of all contacts of the body or of the part of its largest face that counts, N/m; of corners and
-     * edges as it is when they are pressed in twice as deep; or of what holds the gridpoint */
+    double mass;          /* of the block's body, kg; by zones that of a gridpoint */
+    /* N/m: by zones of what holds the gridpoint; else of the contact, of all contacts of the body or of the part of its
+     * largest face that counts. That of corners and edges is as when they are pressed in twice as deep. */
     double stiffness;
     int32_t by; /* tl_step_by: what of the block is so fast */
 } tl_timestep_report;
@@ -536,8 +536,8 @@ typedef struct tl_block_set {
 } tl_block_set;
 
 /* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those
- * that are listed. TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not
- * finite; likewise for a solid that is not there. TL_E_STATE for a solid of a rigid block. Then no block is changed. */
+ * that are listed. TL_E_ARGUMENT: a density that is not > 0, a group that is no UTF-8, a motion that is not finite, no
+ * such solid. TL_E_STATE for a solid of a rigid block. Then no block is changed. */
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count, const tl_block_set *set);
 
 /* Makes one rigid body of the blocks and of all blocks joined to them before. Mass, momentum and angular

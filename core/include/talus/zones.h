@@ -107,8 +107,8 @@ TL_API tl_status tl_zones_select(tl_model *model, const tl_zone_filter *filter, 
 TL_API tl_status tl_gridpoints_select(tl_model *model, const tl_zone_filter *filter, tl_zone_name **names,
                                       size_t *count);
 
-/* A point of the material, by the zone in which it lies. Its place is the sum of weight times place over the zone's
- * gridpoints, and so are its displacement and velocity. The weights add up to 1, and stay as the zone deforms. */
+/* A point of the material, by the zone in which it lies. Its place is the sum over that zone's gridpoints of weight
+ * times place, and so are its displacement and velocity. The weights add up to 1, and stay as zones deform. */
 typedef struct tl_material_point {
     tl_zone_name zone;
     tl_zone_name gridpoint[4];
@@ -156,12 +156,26 @@ TL_API tl_status tl_gridpoints_load(tl_model *model, const tl_zone_name *names, 
 /* Gives them velocities, m/s: names[i] gets velocity[i]. Held components go on with theirs. */
 TL_API tl_status tl_gridpoints_velocity(tl_model *model, const tl_zone_name *names, size_t count,
                                         const tl_vec3 *velocity);
-/* Prescribes their velocity in all components, until they are let go. It is drive->velocity, or what its function tells
- * in the middle of each step, and drive->gradient times the place from drive->at. TL_E_STATE: their block is driven
+/* Prescribes their velocity in all components, until they are let go: drive->velocity, or what its function tells in
+ * the middle of each step, and drive->gradient times the place from drive->at. TL_E_STATE: their block is driven as a
  * whole. */
 TL_API tl_status tl_gridpoints_drive(tl_model *model, const tl_zone_name *names, size_t count, const tl_drive *drive);
 /* The force with which what holds them acts on them, N: the sum over their held components. */
 TL_API tl_status tl_gridpoints_reaction(tl_model *model, const tl_zone_name *names, size_t count, tl_vec3 *force);
+
+/* ---------------------------------------------------------------- step ------------------- */
+
+/* The gridpoint that controls the step that the next cycle will use (tl_model_timestep_report); of body 0: none does.
+ */
+TL_API tl_status tl_model_timestep_gridpoint(tl_model *model, tl_zone_name *gridpoint);
+
+/* What mass scaling to a step that was given (tl_mass_scaling) has added to gridpoints in the last step. */
+typedef struct tl_gridpoints_added {
+    size_t gridpoints;  /* that have been given some */
+    tl_zone_name worst; /* the one that has the highest factor of all bodies and gridpoints; of body 0: it is a body */
+} tl_gridpoints_added;
+
+TL_API tl_gridpoints_added tl_model_gridpoints_added(const tl_model *model);
 
 #ifdef __cplusplus
 }

@@ -13,8 +13,10 @@
 
 /* Tolerance: width of the bracket of F, and what f may be, relative to the stresses. */
 #define CLOSED 1e-15
-/* Limit: passes; every third halves the bracket, so 160 leave no number in it. Most returns take some ten. */
-#define MOST_PASSES 160
+/* Limit: passes; from the twelfth on every third halves the bracket, so 180 leave no number in it. Most returns take
+ * some eight. */
+#define MOST_PASSES 180
+#define FALSE_POSITIONS 12
 
 typedef struct params {
     double young, poisson, bulk, shear;
@@ -123,12 +125,13 @@ typedef struct line_lanes {
     tl_lanes u, w, many_u, many_w;
 } line_lanes;
 
-/* Ends of a bracket of F, of which over is above 0 at `low` and below 0 at `high`. */
+/* Ends of a bracket of F, of which over is above 0 at `low` and below 0 at `high`; `moved` is 1 when the last pass has
+ * moved the former, -1 when the latter. */
 typedef struct brackets {
-    tl_lanes low, high, over_low, over_high, scale, open;
+    tl_lanes low, high, over_low, over_high, scale, open, moved;
 } brackets;
 
-/* False position, with the value at an end that stays halved (Illinois), or the middle. */
+/* False position, with the value at an end that stays for a second time halved (Illinois), or the middle. */
 TL_IN_LOOP int narrow(const mass *m, const line_lanes *l, brackets *b, int pass)
 {
     double any = 0;
@@ -139,13 +142,15 @@ TL_IN_LOOP int narrow(const mass *m, const line_lanes *l, brackets *b, int pass)
         double low = b->low[i], high = b->high[i], from = b->over_low[i], to = b->over_high[i];
         double apart = from - to, cut = low + (high - low) * (from / (apart > 0 ? apart : 1));
         double middle = 0.5 * (low + high);
-        double next = pass % 3 == 2 || !(cut > low && cut < high) ? middle : cut;
+        int halves = pass >= FALSE_POSITIONS && pass % 3 == 2;
+        double next = halves || !(cut > low && cut < high) ? middle : cut;
         double over = line_at(m, &own, next).over;
         int opens = b->open[i] > 0, up = over > 0;
         b->low[i] = opens && up ? next : low;
         b->high[i] = opens && !up ? next : high;
-        b->over_low[i] = opens ? (up ? over : 0.5 * from) : from;
-        b->over_high[i] = opens ? (up ? 0.5 * to : over) : to;
+        b->over_low[i] = opens ? (up ? over : b->moved[i] < 0 ? 0.5 * from : from) : from;
+        b->over_high[i] = opens ? (up ? (b->moved[i] > 0 ? 0.5 * to : to) : over) : to;
+        b->moved[i] = up ? 1 : -1;
         int done = fabs(over) <= CLOSED * b->scale[i] || b->high[i] - b->low[i] <= CLOSED * b->scale[i];
         /* the last one tried is the best */
         b->low[i] = opens && done ? next : b->low[i];
@@ -156,11 +161,19 @@ TL_IN_LOOP int narrow(const mass *m, const line_lanes *l, brackets *b, int pass)
     return any > 0;
 }
 
+TL_IN_LOOP double sum_of(const tl_lanes of)
+{
+    double sum = 0;
+    TL_EACH_LANE(i)
+    sum += of[i];
+    return sum;
+}
+
 /* The strengths F at the ends of lines of a group; `met` is 0 where the line passes the cut-off first. */
 TL_IN_LOOP void find_ends(const mass *m, const line_lanes *l, const tl_lanes wanted, tl_lanes strength, tl_lanes met)
 {
     brackets b;
-    double any = 0;
+    TL_EACH_ALONE
     TL_EACH_LANE(i)
     {
         const line own = {l->u[i], l->w[i], l->many_u[i], l->many_w[i]};
@@ -168,27 +181,30 @@ TL_IN_LOOP void find_ends(const mass *m, const line_lanes *l, const tl_lanes wan
         double volume = 2 * m->elastic.lame * flow, twice = 2 * m->elastic.shear;
         double rate = (volume - twice * (1 - flow) / own.many_w) / (volume + twice * (1 + flow) / own.many_u);
         /* without any strength the line would end where s1 = s3 */
-        double alike = (own.w - rate * own.u) / (1 - rate);
-        b.scale[i] = fabs(own.u) + fabs(own.w);
-        b.low[i] = strength_at(m, nearest);
-        b.high[i] = strength_at(m, alike < nearest ? alike : nearest) + CLOSED * b.scale[i];
-        b.over_low[i] = line_at(m, &own, b.low[i]).over;
-        b.over_high[i] = line_at(m, &own, b.high[i]).over;
-        met[i] = b.over_low[i] >= 0 ? 1 : 0;
-        b.open[i] = wanted[i] > 0 && b.over_low[i] > 0 && b.over_high[i] < 0 ? 1 : 0;
-        any += b.open[i];
+        double alike = (own.w - rate * own.u) / (1 - rate), scale = fabs(own.u) + fabs(own.w);
+        double low = strength_at(m, nearest);
+        double high = strength_at(m, alike < nearest ? alike : nearest) + CLOSED * scale;
+        double over_low = line_at(m, &own, low).over, over_high = line_at(m, &own, high).over;
+        b.scale[i] = scale;
+        b.low[i] = low;
+        b.high[i] = high;
+        b.over_low[i] = over_low;
+        b.over_high[i] = over_high;
+        b.moved[i] = 0;
+        met[i] = over_low >= 0 ? 1 : 0;
+        b.open[i] = ((wanted[i] > 0) & (over_low > 0) & (over_high < 0)) ? 1 : 0;
     }
-    for (int pass = 0; pass < MOST_PASSES && any > 0; pass++)
-        any = narrow(m, l, &b, pass) ? 1 : 0;
+    int any = sum_of(b.open) > 0;
+    for (int pass = 0; pass < MOST_PASSES && any; pass++)
+        any = narrow(m, l, &b, pass);
     TL_EACH_LANE(i)
     strength[i] = b.low[i];
 }
 
-/* Principal stresses and directions of a group, and how they yield. */
+/* Principal stresses and directions of a group, how they yield, what they come to and its flags. */
 typedef struct group {
-    tl_principal at[TL_LANES];
-    tl_returned to[TL_LANES];
-    tl_lanes shears, tears;
+    tl_lanes s[3], v[3][3];
+    tl_lanes shears, tears, to[3], mark;
 } group;
 
 /* The plane first, and an edge of it where the order of the stresses would change. */
@@ -196,64 +212,80 @@ TL_IN_LOOP void return_shear(const mass *m, group *g)
 {
     line_lanes l;
     tl_lanes strength, met, edge;
-    double any = 0;
     TL_EACH_LANE(i)
     {
-        l.u[i] = g->at[i].s[0];
-        l.w[i] = g->at[i].s[2];
+        l.u[i] = g->s[0][i];
+        l.w[i] = g->s[2][i];
         l.many_u[i] = l.many_w[i] = 1;
     }
     find_ends(m, &l, g->shears, strength, met);
+    TL_EACH_ALONE
     TL_EACH_LANE(i)
     {
-        const double *s = g->at[i].s;
-        const line own = {s[0], s[2], 1, 1};
+        double s1 = g->s[0][i], s2 = g->s[1][i], s3 = g->s[2][i];
+        const line own = {s1, s3, 1, 1};
         line_point end = line_at(m, &own, strength[i]);
-        double a = end.t, c = end.t - strength[i], b = s[1] - 2 * m->elastic.lame * end.dilation * end.flow;
+        double a = end.t, c = end.t - strength[i], b = s2 - 2 * m->elastic.lame * end.dilation * end.flow;
         int upper = b > a, lower = b < c;
-        g->to[i] = (tl_returned){a, b, c, met[i] > 0 ? TL_ZONE_SHEAR : 0};
-        edge[i] = g->shears[i] > 0 && (upper || lower) ? 1 : 0;
-        l.u[i] = upper ? 0.5 * (s[0] + s[1]) : s[0];
-        l.w[i] = upper ? s[2] : 0.5 * (s[1] + s[2]);
+        g->to[0][i] = a;
+        g->to[1][i] = b;
+        g->to[2][i] = c;
+        g->mark[i] = met[i] > 0 ? TL_ZONE_SHEAR : 0;
+        double which = upper ? 1 : lower ? 2 : 0;
+        edge[i] = g->shears[i] > 0 ? which : 0;
+        l.u[i] = upper ? 0.5 * (s1 + s2) : s1;
+        l.w[i] = upper ? s3 : 0.5 * (s2 + s3);
         l.many_u[i] = upper ? 2 : 1;
         l.many_w[i] = upper ? 1 : 2;
-        any += edge[i];
-        edge[i] = edge[i] > 0 ? (upper ? 1 : 2) : 0;
     }
-    if (!(any > 0))
+    if (!(sum_of(edge) > 0))
         return;
     find_ends(m, &l, edge, strength, met);
+    TL_EACH_ALONE
     TL_EACH_LANE(i)
     {
         const line own = {l.u[i], l.w[i], l.many_u[i], l.many_w[i]};
         line_point end = line_at(m, &own, strength[i]);
-        double a = end.t, c = end.t - strength[i];
-        tl_returned to = {a, edge[i] > 1 ? c : a, c, met[i] > 0 ? TL_ZONE_SHEAR : 0};
-        g->to[i] = edge[i] > 0 ? to : g->to[i];
+        double a = end.t, c = end.t - strength[i], mark = met[i] > 0 ? TL_ZONE_SHEAR : 0;
+        g->to[0][i] = edge[i] > 0 ? a : g->to[0][i];
+        g->to[1][i] = edge[i] > 0 ? (edge[i] > 1 ? c : a) : g->to[1][i];
+        g->to[2][i] = edge[i] > 0 ? c : g->to[2][i];
+        g->mark[i] = edge[i] > 0 ? mark : g->mark[i];
     }
 }
 
-/* Of the ways to yield the right one, as for Mohr-Coulomb. */
-TL_IN_LOOP tl_returned choose(const mass *m, const group *g, uint32_t i)
+/* Of the ways to yield the right one, as for Mohr-Coulomb. Stays as it is what does not yield. */
+TL_IN_LOOP void choose(const mass *m, group *g)
 {
-    const double *s = g->at[i].s, tension = m->tension;
-    const double strength = strength_at(m, tension), y = strength / m->sigma;
-    tl_returned by_shear = g->to[i], by_tension = tl_return_tension(&m->elastic, tension, s[0], s[1], s[2]);
-    double dilation = dilation_at(m, m->s - m->m * tension / m->sigma, y);
-    tl_returned by_both = tl_return_both(&m->elastic, dilation, tension, tension - strength, s[0], s[1], s[2]);
-    int shears = g->shears[i] > 0, tears = g->tears[i] > 0;
-    if (shears && by_shear.mark > 0)
-        return by_shear;
-    if (tears && by_tension.a - by_tension.c <= strength)
-        return by_tension;
-    return by_both;
+    const double tension = m->tension, strength = strength_at(m, tension);
+    const double dilation = dilation_at(m, m->s - m->m * tension / m->sigma, strength / m->sigma);
+    TL_EACH_ALONE
+    TL_EACH_LANE(i)
+    {
+        double s1 = g->s[0][i], s2 = g->s[1][i], s3 = g->s[2][i];
+        tl_returned by_tension = tl_return_tension(&m->elastic, tension, s1, s2, s3);
+        tl_returned by_both = tl_return_both(&m->elastic, dilation, tension, tension - strength, s1, s2, s3);
+        int shears = g->shears[i] > 0, tears = g->tears[i] > 0, by_shear = shears & (g->mark[i] > 0);
+        int torn = tears & (by_tension.a - by_tension.c <= strength);
+        double a = torn ? by_tension.a : by_both.a, b = torn ? by_tension.b : by_both.b;
+        double c = torn ? by_tension.c : by_both.c, mark = torn ? by_tension.mark : by_both.mark;
+        a = by_shear ? g->to[0][i] : a;
+        b = by_shear ? g->to[1][i] : b;
+        c = by_shear ? g->to[2][i] : c;
+        mark = by_shear ? g->mark[i] : mark;
+        int yields = shears | tears;
+        g->to[0][i] = yields ? a : s1;
+        g->to[1][i] = yields ? b : s2;
+        g->to[2][i] = yields ? c : s3;
+        g->mark[i] = yields ? mark : 0;
+    }
 }
 
 /* Whether a zone may yield, 1 or 0, by bounds in the mean stress p and J2: s1 <= p + sqrt(4 J2 / 3), and s1 - s3 <=
  * 2 sqrt(J2). Gives whether any may. */
 TL_IN_LOOP int may_yield(const mass *m, const tl_lanes6 s, tl_lanes may)
 {
-    double any = 0;
+    TL_EACH_ALONE
     TL_EACH_LANE(i)
     {
         double p = (s[0][i] + s[1][i] + s[2][i]) / 3, xx = s[0][i] - p, yy = s[1][i] - p, zz = s[2][i] - p;
@@ -261,9 +293,21 @@ TL_IN_LOOP int may_yield(const mass *m, const tl_lanes6 s, tl_lanes may)
         double j2 = 0.5 * (xx * xx + yy * yy + zz * zz) + shear, highest = p + sqrt(4. / 3 * j2);
         int stays = (highest <= m->tension) & (2 * sqrt(j2) <= strength_at(m, highest));
         may[i] = stays ? 0 : 1;
-        any += may[i];
     }
-    return any > 0;
+    return sum_of(may) > 0;
+}
+
+/* Principal stresses of a group. */
+TL_IN_LOOP void find_principal(const tl_lanes6 s, group *g)
+{
+    TL_EACH_LANE(i)
+    {
+        tl_principal p = tl_principal_of(s[0][i], s[1][i], s[2][i], s[3][i], s[4][i], s[5][i]);
+        g->s[0][i] = p.s[0], g->s[1][i] = p.s[1], g->s[2][i] = p.s[2];
+        g->v[0][0][i] = p.v[0][0], g->v[0][1][i] = p.v[0][1], g->v[0][2][i] = p.v[0][2];
+        g->v[1][0][i] = p.v[1][0], g->v[1][1][i] = p.v[1][1], g->v[1][2][i] = p.v[1][2];
+        g->v[2][0][i] = p.v[2][0], g->v[2][1][i] = p.v[2][1], g->v[2][2][i] = p.v[2][2];
+    }
 }
 
 /* The stresses of a group brought back; 0: none yields. */
@@ -271,34 +315,36 @@ TL_IN_LOOP int bring_back(const mass *m, const tl_lanes6 s, tl_lanes6 after, tl_
 {
     group g;
     tl_lanes may;
-    double any = 0;
     if (!may_yield(m, s, may))
         return 0;
+    find_principal(s, &g);
+    TL_EACH_ALONE
     TL_EACH_LANE(i)
     {
-        g.at[i] = tl_principal_of(s[0][i], s[1][i], s[2][i], s[3][i], s[4][i], s[5][i]);
-        const double *p = g.at[i].s, strength = strength_at(m, p[0]);
-        double scale = TL_YIELD_ROUNDING * (fabs(p[0]) + fabs(p[2]) + strength);
-        g.shears[i] = may[i] > 0 && p[0] - p[2] - strength > scale ? 1 : 0;
-        g.tears[i] = may[i] > 0 && p[0] - m->tension > scale ? 1 : 0;
-        any += g.shears[i] + g.tears[i];
+        double s1 = g.s[0][i], s3 = g.s[2][i], strength = strength_at(m, s1);
+        double scale = TL_YIELD_ROUNDING * (fabs(s1) + fabs(s3) + strength);
+        g.shears[i] = ((may[i] > 0) & (s1 - s3 - strength > scale)) ? 1 : 0;
+        g.tears[i] = ((may[i] > 0) & (s1 - m->tension > scale)) ? 1 : 0;
     }
-    if (!(any > 0))
+    if (!(sum_of(g.shears) + sum_of(g.tears) > 0))
         return 0;
     return_shear(m, &g);
+    choose(m, &g);
+    TL_EACH_ALONE
     TL_EACH_LANE(i)
     {
-        const tl_principal *p = &g.at[i];
-        int yields = g.shears[i] + g.tears[i] > 0;
-        tl_returned to = choose(m, &g, i);
-        double a = yields ? p->s[0] - to.a : 0, b = yields ? p->s[1] - to.b : 0, c = yields ? p->s[2] - to.c : 0;
-        mark[i] = yields ? to.mark : 0;
-        after[0][i] = s[0][i] - tl_principal_part(p, a, b, c, 0, 0);
-        after[1][i] = s[1][i] - tl_principal_part(p, a, b, c, 1, 1);
-        after[2][i] = s[2][i] - tl_principal_part(p, a, b, c, 2, 2);
-        after[3][i] = s[3][i] - tl_principal_part(p, a, b, c, 0, 1);
-        after[4][i] = s[4][i] - tl_principal_part(p, a, b, c, 1, 2);
-        after[5][i] = s[5][i] - tl_principal_part(p, a, b, c, 2, 0);
+        const tl_principal p = {{0, 0, 0},
+                                {{g.v[0][0][i], g.v[0][1][i], g.v[0][2][i]},
+                                 {g.v[1][0][i], g.v[1][1][i], g.v[1][2][i]},
+                                 {g.v[2][0][i], g.v[2][1][i], g.v[2][2][i]}}};
+        double a = g.s[0][i] - g.to[0][i], b = g.s[1][i] - g.to[1][i], c = g.s[2][i] - g.to[2][i];
+        mark[i] = g.mark[i];
+        after[0][i] = s[0][i] - tl_principal_part(&p, a, b, c, 0, 0);
+        after[1][i] = s[1][i] - tl_principal_part(&p, a, b, c, 1, 1);
+        after[2][i] = s[2][i] - tl_principal_part(&p, a, b, c, 2, 2);
+        after[3][i] = s[3][i] - tl_principal_part(&p, a, b, c, 0, 1);
+        after[4][i] = s[4][i] - tl_principal_part(&p, a, b, c, 1, 2);
+        after[5][i] = s[5][i] - tl_principal_part(&p, a, b, c, 2, 0);
     }
     return 1;
 }
