@@ -689,7 +689,7 @@ function Model:damping(damping, options) end
 ---@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set
 ---@field block talus.Block? the block that controls it, or nil
 ---@field partner talus.Block? the block at the stiffest contact, or nil
----@field gridpoint any where zones control it the number of the gridpoint in its block, or nil
+---@field gridpoint integer? the number of the gridpoint in its block where zones control it, or nil
 ---@field mass number of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts or of the part of its largest face that counts, N/m
 ---@field stiffness number of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts or of the part of its largest face that counts, N/m
 ---@field message string the same in a sentence
