@@ -3,6 +3,7 @@
  * A segment knows its two parts by blocks, faces and numbers, which stay. */
 #include "segment/follow.h"
 
+#include "segment/uses.h"
 #include "zone/grid.h"
 
 #include <string.h>
@@ -37,5 +38,7 @@ void tl_segments_follow(tl_model *m)
             s->table.area[row] = 0;
         }
     }
+    if (tl_segments_uses_room(m, s, s->table.table.rows)) /* else they stay as they were until segments are laid */
+        tl_segments_list_uses(m);
     s->followed = m->structure;
 }
