@@ -39,11 +39,11 @@ typedef struct tl_contacts {
     tl_vec3 *moment;  /* of the forces on B, about A's body's centroid */
     /* a bond or an initial stress acted across a gap in the last step: it ends only with that force */
     uint8_t *holds_over_gap;
-    uint8_t *handed_over;   /* in this step, and its heat is what it has lost */
-    uint8_t *new_points;    /* its points were placed in this step: TL_POINTS_* */
-    uint8_t *pending;       /* what the parallel phase leaves to the serial one: TL_PENDING_* */
-    uint8_t *held;          /* both its bodies are held still: contacts.c */
-    uint8_t *deep;          /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
+    uint8_t *handed_over; /* in this step, and its heat is what it has lost */
+    uint8_t *new_points;  /* its points were placed in this step: TL_POINTS_* */
+    uint8_t *pending;     /* what the parallel phase leaves to the serial one: TL_PENDING_* */
+    uint8_t *held;        /* both its bodies are held still: contacts.c */
+    uint8_t *deep;        /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
     /* of models with deformable blocks; NULL: there has been none */
     tl_carrier *carrier[2]; /* of its sides on deformable blocks */
     double *share;          /* of its energy that counts: segments have the rest (segment/blend.c) */

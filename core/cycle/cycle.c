@@ -36,6 +36,7 @@
 #include "cycle/split.h"
 #include "cycle/timestep.h"
 #include "cycle/undo.h"
+#include "cycle/zone_forces.h"
 #include "cycle/zone_limits.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
@@ -50,6 +51,8 @@ static tl_status ask_contributors(tl_model *m, bool apply)
 {
     tl_status status = TL_OK;
     for (tl_contributors with = m->cycle->contributor; *with && status == TL_OK; with++) {
+        if (apply && *with == &tl_zones_act) /* segments come after it */
+            tl_phase_ends(m, TL_PHASE_LAWS);
         tl_status (*ask)(tl_model *) = apply ? (*with)->apply : (*with)->prepare;
         status = ask ? ask(m) : TL_OK;
     }
@@ -103,7 +106,7 @@ static void begin_loads(tl_model *m, double dt)
 static tl_status apply_forces(tl_model *m, double dt)
 {
     tl_status status = ask_contributors(m, true);
-    tl_phase_ends(m, TL_PHASE_LAWS);
+    tl_phase_ends(m, tl_model_deforms(m) ? TL_PHASE_ZONES : TL_PHASE_LAWS);
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);
         begin_loads(m, dt);

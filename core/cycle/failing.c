@@ -52,8 +52,8 @@
  * carried along. */
 #define LEAST_PUSH 1e-4
 
-/* Tolerance: how far a gridpoint must go against its body over the edge of its zones, if that is less than the share of
- * the body's size. Zones that are strained by more are soon turned inside out. */
+/* Tolerance: how far a gridpoint must go against its body, over the edge of its zones. The share of the body's size
+ * counts where that is less. Zones that are strained by more are soon turned inside out. */
 #define STRAINED_SHARE 0.25
 /* Tolerance: speed of a gridpoint over that of the one that is followed, from which on it is followed instead. */
 #define FASTER 2.0

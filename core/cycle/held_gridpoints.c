@@ -12,6 +12,7 @@
 #include "base/columns.h"
 #include "cycle/turn.h"
 #include "geometry/polar.h"
+#include "zone/driven.h"
 #include "zone/held.h"
 
 /* ---------------------------------------------------------------- drives ----------------- */
@@ -49,7 +50,7 @@ void tl_gridpoints_follow_drives(tl_model *m, double dt)
     drive_bodies(m, dt);
     for (size_t row = 0; p->drive && row < p->table.rows; row++)
         if (p->drive[row])
-            tl_columns_put(p->v, row, m->drives[p->drive[row] - 1].velocity);
+            tl_columns_put(p->v, row, tl_gridpoint_driven(m, (uint32_t)row, dt));
 }
 
 /* A velocity that jumps may turn zones inside out: the steps until that is seen can be undone. */
@@ -60,7 +61,7 @@ void tl_gridpoints_expect(tl_model *m)
     const tl_gridpoints *p = &m->zones->points;
     for (size_t row = 0; p->drive && row < p->table.rows; row++) {
         const tl_vec3 v = tl_columns_get(p->v, row);
-        if (p->drive[row] && tl_v3_norm2(tl_v3_sub(m->drives[p->drive[row] - 1].velocity, v)) > tl_v3_norm2(v))
+        if (p->drive[row] && tl_v3_norm2(tl_v3_sub(tl_gridpoint_driven(m, (uint32_t)row, m->dt), v)) > tl_v3_norm2(v))
             m->zones->steps_kept = TL_STEPS_KEPT;
     }
 }

@@ -630,8 +630,8 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     sum_chunk(m, thread, &work, count * TL_LANES);
 }
 
-/* The mean motion of a mesh, by mass, is that of its body: with X the places as made, from the mean, and x those now,
- * it has turned by the rotation in sum m x (x) X since then. */
+/* The mean motion of a mesh, by mass, is that of its body. Let X be the places as made, from the mean, and x those now.
+ * It has turned by the rotation in sum m x (x) X since then. */
 static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk, (void)thread;

@@ -106,7 +106,9 @@ static const tl_param block_params[] = {
     TL_PARAM(TL_PARAM_STRING, block_args, boundary, "",
              "blocks with an outer face on this side of the model: \"xmin\", \"xmax\" ... \"zmax\"",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "", "fixed blocks, or free ones", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "",
+             "blocks held in every component, of deformable ones all gridpoints, or the others",
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_key block_keys[] = {
@@ -664,7 +666,7 @@ static const tl_lua_key block_methods[] = {
     {"sel:reaction()", "", "sum of the forces that hold their bodies, N: {x, y, z}, of held components only"},
     {"sel:reset_displacement()", "", "displacements count from now"},
     {"sel:deformable{zone =, solid =}", "", "divides them into zones: talus help deformable"},
-    {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "changes properties: talus help set"},
+    {"sel:set{density =, group =, velocity =, angular_velocity =, solid =}", "", "changes properties: talus help set"},
     {NULL, NULL, NULL},
 };
 

@@ -415,6 +415,18 @@ const char *tl_lua_number_text(double number, int digits, char text[TL_LUA_NUMBE
 }
 
 /* Laws, dampings and settings have no texts and no lists of points. */
+/* The rows of a table, of two numbers each where it is flat. */
+static void push_points(lua_State *L, const tl_param *param, const char *at)
+{
+    tl_points points;
+    memcpy(&points, at, sizeof points);
+    lua_createtable(L, (int)points.count, 0);
+    for (size_t k = 0; k < points.count; k++) {
+        tl_lua_push_numbers(L, &points.at[k].x, param->flags & TL_PARAM_FLAT ? 2 : 3);
+        lua_rawseti(L, -2, (lua_Integer)k + 1);
+    }
+}
+
 void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params)
 {
     const char *at = (const char *)params + param->offset;
@@ -445,6 +457,7 @@ void tl_lua_push_param(lua_State *L, const tl_param *param, const void *params)
         memcpy(&small, at, sizeof small);
         lua_pushstring(L, param->choices[small]);
         break;
+    case TL_PARAM_POINTS: push_points(L, param, at); break;
     default: lua_pushnil(L);
     }
 }

@@ -17,11 +17,13 @@
 #include <stdio.h>
 #include <string.h>
 #include <talus/fields.h>
+#include <talus/zones.h>
 
 /* ---------------------------------------------------------------- what is asked ---------- */
 
 typedef struct history_args {
     const char *name, *field;
+    tl_vec3 at;
     int64_t every;
     int32_t take, remove;
 } history_args;
@@ -34,7 +36,12 @@ static const tl_param history_params[] = {
     TL_PARAM(TL_PARAM_INT, history_args, every, "", "steps between two samples; the first is taken at once",
              .def = {10.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_STRING, history_args, field, "",
-             "field of numbers of what `of` gives (\"displacement\", \"normal_force\")", .flags = TL_PARAM_OPTIONAL),
+             "field of numbers of what `of` gives (\"displacement\", \"normal_force\"), or of what is `at` a point",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, history_args, at, "m",
+             "of the point of a deformable block that is here now, and then goes with the block: a field of the zone "
+             "in which it lies, or its position, displacement or velocity, between those of the zone's gridpoints",
+             .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_ENUM, history_args, take, "", "of a selection: what is made of the values of its items",
              .def = {TL_TAKE_MEAN}, .choices = take_names),
     TL_PARAM(TL_PARAM_BOOL, history_args, remove, "", "ends the history of that name, with all its samples",
@@ -270,6 +277,8 @@ static void ask_items(lua_State *L, tl_model *model, tl_history *h, latest *now)
             continue;
         }
         tl_lua_ok(L, model, status);
+        for (size_t k = 0; h->weights && k < width; k++)
+            value.number[k] *= h->weights[i];
         take_in(h->take, now, value.number, i == gone);
     }
     if (gone)
@@ -419,16 +428,66 @@ static void read_items(lua_State *L, tl_history *h, const history_args *args)
     check_field(L, h, args->field);
 }
 
-/* Makes the history what the table at index 2 asks for, and leaves its value or what it is of on the stack. */
-static void read_source(lua_State *L, tl_history *h, const history_args *args)
+/* Fields of a point that are between those of gridpoints. */
+static const char *const point_fields[] = {"position", "displacement", "velocity"};
+
+/* Raises: a point has no such field. */
+static void refuse_point_field(lua_State *L, const tl_history *h, const char *name)
 {
+    tl_lua_names names = {0};
+    size_t count;
+    const tl_field *fields = tl_lua_zone_kind.fields(&count);
+    for (size_t i = 0; i < count; i++)
+        if (is_numbers(fields[i].kind))
+            tl_lua_names_add(&names, fields[i].name);
+    for (size_t i = 0; i < TL_LUA_COUNT(point_fields); i++)
+        tl_lua_names_add(&names, point_fields[i]);
+    tl_lua_unknown(L, lua_pushfstring(L, "history '%s': a point has no field of numbers", h->name), name, &names);
+}
+
+/* Makes the history one of the point of the material that is at a place now. */
+static void read_point(lua_State *L, tl_model *model, tl_history *h, const history_args *args, tl_material_point *point)
+{
+    bool between = false;
+    if (!args->field)
+        tl_lua_fail(L, "history '%s': say which field is to be sampled: field = \"stress\"", h->name);
+    for (size_t i = 0; i < TL_LUA_COUNT(point_fields); i++)
+        between = between || strcmp(args->field, point_fields[i]) == 0;
+    strncpy(h->asked, args->field, TL_HISTORY_NAME);
+    h->source = between ? TL_FROM_GRIDPOINTS : TL_FROM_ZONES;
+    size_t index;
+    if (!history_field(h, &index))
+        refuse_point_field(L, h, args->field);
+    if (tl_material_point_at(model, args->at, point) != TL_OK)
+        tl_lua_fail(L, "history '%s': %s", h->name, tl_model_error(model)->text);
+    h->zones = between ? point->gridpoint : &point->zone;
+    h->weights = between ? point->weight : NULL;
+    h->id_count = between ? 4 : 1;
+    h->selection = between;
+    h->take = between ? TL_TAKE_SUM : TL_TAKE_MEAN;
+}
+
+/* Makes the history what the table at index 2 asks for, and leaves its value or what it is of on the stack. */
+static void read_source(lua_State *L, tl_model *model, tl_history *h, const history_args *args,
+                        tl_material_point *point)
+{
+    const bool at = !isnan(args->at.x);
+    if (at && (tl_lua_option(L, 2, "of") != LUA_TNIL || tl_lua_option(L, 2, "value") != LUA_TNIL ||
+               tl_lua_option(L, 2, "take") != LUA_TNIL))
+        tl_lua_fail(L, "history '%s': with at give field, and neither of, value nor take", h->name);
+    if (at) {
+        read_point(L, model, h, args, point);
+        return;
+    }
     bool of = lua_getfield(L, 2, "of") != LUA_TNIL;
     if (!of && lua_getfield(L, 2, "take") != LUA_TNIL)
         tl_lua_fail(L, "history '%s': take is for a history of blocks, contacts, zones or gridpoints, with of",
                     h->name);
     bool value = lua_getfield(L, 2, "value") != LUA_TNIL;
     if (value == of)
-        tl_lua_fail(L, "history '%s': give either value = function(model) ... end or of = a selection with field",
+        tl_lua_fail(L,
+                    "history '%s': give either value = function(model) ... end or of = a selection with field, or at = "
+                    "{x, y, z} with field",
                     h->name);
     if (value && args->field)
         tl_lua_fail(L, "history '%s': field = '%s' is the field of what `of` gives, and there is no of", h->name,
@@ -444,7 +503,8 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
 static int model_history(lua_State *L, tl_model *model)
 {
     tl_lua_model *owner = lua_touserdata(L, 1);
-    history_args args = {0};
+    history_args args = {.at = {NAN, NAN, NAN}};
+    tl_material_point point;
     tl_lua_read(L, 2, &history_spec, false, &args);
     check_name(L, args.name);
     if (owner->sampling)
@@ -458,7 +518,7 @@ static int model_history(lua_State *L, tl_model *model)
                            args.name, args.name);
     tl_history what = {.every = args.every}, *h;
     strcpy(what.name, args.name);
-    read_source(L, &what, &args);
+    read_source(L, model, &what, &args, &point);
     if (what.source == TL_FROM_FUNCTION)
         history_set_function(L, 1, what.name);
     tl_lua_ok(L, model, tl_history_add(model, &what, &h));
@@ -731,7 +791,8 @@ static int model_write_histories(lua_State *L, tl_model *model)
 const tl_lua_topic tl_lua_history_topics[] = {
     {.name = "history",
      .usage = "model:history{name = \"gap\", every = 10, value = function(m) return m:contacts():max(\"gap\") end}  or "
-              " model:history{name = \"wedge\", of = selection, field = \"displacement\"}",
+              " model:history{name = \"wedge\", of = selection, field = \"displacement\"}  or "
+              " model:history{name = \"arch\", at = {3.5, 0.4, 1.8}, field = \"stress\"}",
      .doc = "Samples a value at once and then every so many steps of all runs, until it is removed.",
      .spec = &history_spec,
      .arguments = 1,

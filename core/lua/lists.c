@@ -1,13 +1,16 @@
-/* lists.c - what there is: model:joints(), laws(), groups(), parameters(). */
+/* lists.c - what there is: model:joints(), laws(), solids(), groups(), parameters(). */
 #include "lua/lists.h"
 
 #include "lua/convert.h"
+#include "lua/item.h"
 #include "lua/living.h"
+#include "lua/zones.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <talus/fields.h>
+#include <talus/zones.h>
 
 static const tl_lua_key joints_results[] = {
     {"name, planes", "", "of the joint set; number of its planes so far"},
@@ -17,6 +20,12 @@ static const tl_lua_key joints_results[] = {
 static const tl_lua_key laws_results[] = {
     {"joint, law", "", "\"*\", \"J1\" or \"J1:3\", and the name of the law that was set for it"},
     {"parameters", "", "{NAME = value}, as they are now; one that may be left out and was is nil"},
+    {NULL, NULL, NULL},
+};
+static const tl_lua_key solids_results[] = {
+    {"name, kind", "", "of the solid, and of the kind that it is of"},
+    {"parameters", "", "{NAME = value}, as they are now; of a table its rows"},
+    {"zones, volume", "", "number of its zones in visible blocks, and their volume, m3"},
     {NULL, NULL, NULL},
 };
 static const tl_lua_key groups_results[] = {
@@ -75,6 +84,12 @@ static void value_text(const tl_param *param, const void *params, char text[VALU
     char value[120], x[32], y[32], z[32];
     double number[3];
     int count = numbers_of(param, params, number);
+    if (param->type == TL_PARAM_POINTS) {
+        tl_points points;
+        memcpy(&points, (const char *)params + param->offset, sizeof points);
+        snprintf(text, VALUE_TEXT, points.count > 0 ? "%zu rows" : "not given", points.count);
+        return;
+    }
     bool standard = !(param->flags & (TL_PARAM_REQUIRED | TL_PARAM_OPTIONAL));
     for (int k = 0; k < count; k++)
         standard = standard && number[k] == param->def[k];
@@ -150,6 +165,43 @@ static int model_laws(lua_State *L, tl_model *model)
         tl_lua_set_text(L, "joint", joint);
         tl_lua_set_text(L, "law", law.kind->name);
         set_params(L, NULL, law.kind, law.params);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    return 1;
+}
+
+/* The zones of a solid: how many, and their volume. */
+static void set_zones_of(lua_State *L, tl_model *model, const char *solid)
+{
+    tl_zone_filter filter = tl_zone_filter_default();
+    filter.solid = solid;
+    tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_zone_kind, 1);
+    tl_zone_name *names = NULL;
+    size_t width;
+    const tl_status status = tl_zones_select(model, &filter, &names, &found->count);
+    found->names = names;
+    tl_lua_ok(L, model, status);
+    double *volume = lua_newuserdatauv(L, (found->count + 1) * sizeof *volume, 0), sum = 0;
+    tl_lua_ok(L, model, tl_zones_values(model, names, found->count, "volume", volume, &width));
+    for (size_t k = 0; k < found->count; k++)
+        sum += volume[k];
+    const size_t count = found->count;
+    lua_pop(L, 2);
+    tl_lua_set_count(L, "zones", count);
+    tl_lua_set_number(L, "volume", sum);
+}
+
+static int model_solids(lua_State *L, tl_model *model)
+{
+    const size_t count = tl_solid_count(model);
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        const tl_solid_info solid = tl_solid_at(model, i);
+        lua_createtable(L, 0, 5);
+        tl_lua_set_text(L, "name", solid.name);
+        tl_lua_set_text(L, "kind", solid.kind->name);
+        set_params(L, NULL, solid.kind, solid.params);
+        set_zones_of(L, model, solid.name);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     return 1;
@@ -302,6 +354,22 @@ static void add_areas(lua_State *L, tl_model *model, FILE *page)
     lua_setfield(L, -2, "contact_area");
 }
 
+static void add_solids(lua_State *L, tl_model *model, FILE *page)
+{
+    lua_newtable(L);
+    for (size_t i = 0; i < tl_solid_count(model); i++) {
+        const tl_solid_info solid = tl_solid_at(model, i);
+        char name[160];
+        snprintf(name, sizeof name, "solid %s", solid.name);
+        print_row(page, name, solid.kind->name);
+        lua_createtable(L, 0, 2);
+        tl_lua_set_text(L, "kind", solid.kind->name);
+        set_params(L, page, solid.kind, solid.params);
+        lua_setfield(L, -2, solid.name);
+    }
+    lua_setfield(L, -2, "solids");
+}
+
 /* model:parameters() */
 static int model_parameters(lua_State *L, tl_model *model)
 {
@@ -313,6 +381,7 @@ static int model_parameters(lua_State *L, tl_model *model)
     add_damping(L, model, page);
     add_laws(L, model, page);
     add_areas(L, model, page);
+    add_solids(L, model, page);
     fflush(stdout);
     return 1;
 }
@@ -327,6 +396,7 @@ static const tl_lua_key parameters_fields[] = {
     {"laws", "", "by joint (\"*\", \"J1\", \"J1:3\"): law, its name; parameters: a table of them by name"},
     {"joints", "", "by joint set: the joint whose law it has, \"\" for none"},
     {"contact_area", "", "by joint, \"*\" for all others: fraction, or absolute, m2"},
+    {"solids", "", "by name: kind, its name; parameters: a table of them by name"},
     {NULL, NULL, NULL},
 };
 
@@ -343,6 +413,13 @@ const tl_lua_topic tl_lua_lists_topics[] = {
      .title = "Fields of each law",
      .verbs = laws_results,
      .method = model_laws},
+    {.name = "solids",
+     .usage = "list = model:solids()",
+     .doc = "Lists the solids that were named by model:solid, in their order. talus.solids() lists the kinds that are "
+            "loaded.",
+     .title = "Fields of each solid",
+     .verbs = solids_results,
+     .method = model_solids},
     {.name = "groups",
      .usage = "list = model:groups()",
      .doc = "Lists the groups that blocks have.",

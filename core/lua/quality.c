@@ -96,8 +96,19 @@ static void set_refused_cuts(lua_State *L, tl_model *model, const tl_quality *q)
     lua_setfield(L, -2, "refused_cuts");
 }
 
+static void print_zones(const tl_zone_summary *zones)
+{
+    char numbers[120];
+    if (zones->zones == 0)
+        return;
+    printf("%-18s%zu in %zu blocks, with %zu gridpoints and %zu segments\n", "zones", zones->zones, zones->blocks,
+           zones->gridpoints, zones->segments);
+    tl_text_print(numbers, sizeof numbers, "%.4g m", zones->least_altitude);
+    printf("%-18s%s, block %u\n", "smallest altitude", numbers, zones->worst);
+}
+
 /* The page, from the table of the report at the top of the stack. */
-static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
+static void print_page(lua_State *L, tl_model *model, const tl_quality *q, const tl_zone_summary *zones)
 {
     enum { SHOWN = 5 }; /* refused cuts of the page; the table has them all */
     printf("%-18s%zu in %zu bodies\n", "blocks", q->blocks, q->bodies);
@@ -111,6 +122,7 @@ static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
         tl_text_print(numbers, sizeof numbers, "%.4g%s", e.value, extremes[i].unit);
         printf("%-18s%s, block %u\n", extremes[i].label, numbers, e.block);
     }
+    print_zones(zones);
     printf("%-18s%zu made, %zu refused, %zu on existing faces\n", "cuts", q->cuts, q->refused, q->coincident);
     for (size_t i = 0; i < q->refused_listed && i < SHOWN; i++) {
         push_reason(L, model, &q->refused_cuts[i]);
@@ -127,6 +139,17 @@ static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
     lua_getfield(L, -1, "timestep_message");
     printf("%-18s%s\n", "time step", lua_tostring(L, -1));
     lua_pop(L, 1);
+}
+
+/* What deformable blocks there are, in the table of the report. */
+static void set_zones(lua_State *L, const tl_zone_summary *zones)
+{
+    TL_LUA_SET_COUNTS(L, {"deformable", zones->blocks}, {"zones", zones->zones}, {"gridpoints", zones->gridpoints},
+                      {"clusters", zones->clusters}, {"segments", zones->segments});
+    if (zones->zones == 0)
+        return;
+    tl_lua_set_number(L, "smallest_altitude", zones->least_altitude);
+    tl_lua_set_block(L, "smallest_altitude_block", zones->worst);
 }
 
 /* Without a law for some contact there is no time step to tell of; the report then says why. */
@@ -151,7 +174,7 @@ static int module_report(lua_State *L)
     tl_model *model = tl_lua_model_of(L, "report");
     tl_quality q;
     tl_lua_ok(L, model, tl_model_quality(model, &q));
-    lua_createtable(L, 0, 23);
+    lua_createtable(L, 0, 30);
     TL_LUA_SET_COUNTS(L, {"blocks", q.blocks}, {"bodies", q.bodies}, {"cuts", q.cuts}, {"refused", q.refused},
                       {"coincident", q.coincident}, {"slivers", q.slivers});
     TL_LUA_SET_NUMBERS(L, {"volume", q.volume}, {"volume_error", q.volume_error}, {"sliver_share", q.sliver_share},
@@ -162,9 +185,11 @@ static int module_report(lua_State *L)
         tl_lua_set_block(L, extremes[i].block_field, e.block);
     }
     set_refused_cuts(L, model, &q);
+    const tl_zone_summary zones = tl_model_zone_summary(model);
+    set_zones(L, &zones);
     set_timestep(L, model);
     if (!tl_lua_options_of(L)->quiet)
-        print_page(L, model, &q);
+        print_page(L, model, &q, &zones);
     return 1;
 }
 
@@ -423,7 +448,7 @@ static int model_profile(lua_State *L, tl_model *model)
         return 0;
     }
     tl_profile profile = tl_model_profile(model);
-    lua_createtable(L, 0, 6);
+    lua_createtable(L, 0, 9);
     lua_createtable(L, 0, TL_PHASE_COUNT);
 #define SET(item, name, doc)                                                                                           \
     lua_pushnumber(L, profile.seconds[TL_PHASE_##item]);                                                               \
@@ -431,8 +456,10 @@ static int model_profile(lua_State *L, tl_model *model)
     TL_PHASES(SET)
 #undef SET
     lua_setfield(L, -2, "seconds");
+    const tl_zone_summary zones = tl_model_zone_summary(model);
     TL_LUA_SET_COUNTS(L, {"steps", (size_t)profile.steps}, {"pairs", profile.pairs}, {"contacts", profile.contacts},
-                      {"loaded", profile.loaded}, {"points", profile.points});
+                      {"loaded", profile.loaded}, {"points", profile.points}, {"zones", zones.zones},
+                      {"gridpoints", zones.gridpoints}, {"segments", zones.segments});
     return 1;
 }
 
@@ -455,6 +482,7 @@ static const tl_lua_key profile_fields[] = {
     {"pairs", "", "candidate pairs of the broad phase, now"},
     {"contacts, loaded", "", "contacts there are, and those that carry a force"},
     {"points", "", "contact points"},
+    {"zones, gridpoints, segments", "", "of deformable blocks; segments are where their surfaces lie on others"},
     {NULL, NULL, NULL},
 };
 
@@ -480,6 +508,10 @@ static const tl_lua_key report_results[] = {
      "the "
      "volume; model:filter{auto = true} joins them"},
     {"sliver_gain", "", "how many times longer a step the others allow"},
+    {"deformable, zones, gridpoints, clusters, segments", "",
+     "number of blocks that have zones, and what they have; segments are where their surfaces lie on others"},
+    {"smallest_altitude, smallest_altitude_block", "",
+     "smallest altitude of a zone over its largest side, m, and the block that has it; nil without zones"},
     {"cuts, refused, coincident", "",
      "cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made"},
     {"refused_cuts", "",

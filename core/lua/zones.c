@@ -305,6 +305,67 @@ static tl_status load(lua_State *L, const tl_lua_selection *of)
     return tl_gridpoints_load(of->owner->model, of->names, of->count, given.force);
 }
 
+static const tl_param drive_params[] = {
+    TL_PARAM(TL_PARAM_VEC3, tl_drive, at, "m", "where the gradient gives no velocity", .def = {0.0}),
+};
+
+static const tl_lua_key drive_keys[] = {
+    {"velocity", "{x, y, z} or function(t)",
+     "velocity, m/s; the function gives it for a time t, s: the middle of each step. Zero when left out"},
+    {"gradient", "{{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}}",
+     "1/s: gradient times the place from `at` comes to the velocity"},
+    {NULL, NULL, NULL},
+};
+
+/* Reads the gradient of the table at index 2; false: it has none. */
+static bool read_gradient(lua_State *L, double gradient[3][3])
+{
+    if (tl_lua_option(L, 2, "gradient") == LUA_TNIL)
+        return false;
+    const int rows = lua_gettop(L);
+    for (int i = 0; i < 3; i++) {
+        const bool row = lua_istable(L, rows) && lua_rawlen(L, rows) == 3 &&
+                         lua_rawgeti(L, rows, i + 1) == LUA_TTABLE && lua_rawlen(L, -1) == 3;
+        for (int j = 0; j < 3; j++) {
+            if (!row || lua_rawgeti(L, rows + 1, j + 1) != LUA_TNUMBER || !isfinite(lua_tonumber(L, -1)))
+                tl_lua_fail(L, "drive: gradient must be a list of 3 lists of 3 finite numbers, 1/s");
+            gradient[i][j] = lua_tonumber(L, -1);
+        }
+        lua_settop(L, rows);
+    }
+    return true;
+}
+
+/* Prescribes motion. An anchor holds a function: block.c. */
+static tl_status drive(lua_State *L, const tl_lua_selection *of)
+{
+    static const tl_lua_spec spec = {"drive", drive_params, TL_LUA_COUNT(drive_params), drive_keys};
+    static const tl_param vector[] = {TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0})};
+    static const tl_lua_spec one = {"drive", vector, 1, NULL};
+    tl_drive given = tl_drive_default(), read;
+    tl_lua_read(L, 2, &spec, true, &given);
+    const tl_vec3 at = given.at;
+    lua_settop(L, 2);
+    lua_getiuservalue(L, 1, 1);
+    const int type = tl_lua_option(L, 2, "velocity");
+    if (type == LUA_TFUNCTION) {
+        lua_pushnil(L);
+        tl_lua_anchor_push(L, 3, &given);
+    } else if (type == LUA_TTABLE) {
+        tl_lua_read_one(L, lua_gettop(L), &one, "velocity", &read);
+        given.velocity = read.velocity;
+    } else if (type != LUA_TNIL) {
+        tl_lua_fail(L, "drive: velocity must be a list of 3 numbers or a function(t), not %s", tl_lua_describe(L, -1));
+    }
+    given.at = at;
+    if (!read_gradient(L, given.gradient) && type == LUA_TNIL)
+        tl_lua_fail(L, "drive: give velocity, gradient or both; to hold gridpoints use fix, to let them go free");
+    const tl_status status = tl_gridpoints_drive(of->owner->model, of->names, of->count, &given);
+    if (status == TL_OK && of->count > 0 && given.user)
+        ((tl_lua_anchor *)given.user)->ended = false;
+    return status;
+}
+
 /* Three numbers that a function gave, from stack index `from` on, or a list of them there. */
 static tl_vec3 read_vector(lua_State *L, int function, int from)
 {
@@ -411,6 +472,7 @@ static const tl_lua_verb gridpoint_verbs[] = {
     {.name = "fix", .arguments = 1, .act = fix, .done = "held"},
     {.name = "free", .arguments = 1, .act = let_go, .done = "set free"},
     {.name = "load", .arguments = 1, .act = load, .done = "loaded"},
+    {.name = "drive", .arguments = 1, .act = drive, .done = "driven"},
     {.name = "set", .arguments = 1, .act = set, .done = "changed"},
     {.name = "reaction", .ask = reaction},
     {.name = NULL},
@@ -476,6 +538,10 @@ static const tl_lua_key gridpoint_methods[] = {
      "holds components of their motion at their velocity, which is 0 unless it was set; all when none is named"},
     {"sel:free{x =, y =, z =}", "", "lets components go; all when none is named"},
     {"sel:load{force = {x, y, z}}", "", "a force on each, N, in the place of what it had"},
+    {"sel:drive{velocity =, gradient =, at =}", "",
+     "prescribes their motion in all components, until sel:free(): velocity, m/s, is {x, y, z} or a function(t), "
+     "called "
+     "in the middle of each step; gradient, three rows of three numbers, 1/s, adds gradient times the place from at"},
     {"sel:set{velocity =}", "", "velocities, m/s: {x, y, z} or a function(place, velocity)"},
     {"sel:reaction()", "", "sum of the forces that hold their held components, N: {x, y, z}"},
     {NULL, NULL, NULL},

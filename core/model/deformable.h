@@ -17,6 +17,8 @@ typedef struct tl_zone_verbs {
     void (*fix)(tl_model *m, uint32_t body, unsigned what);
     /* Lets all gridpoints go from what holds and drives them. */
     void (*free)(tl_model *m, uint32_t body);
+    /* Whether all gridpoints are held in every component. */
+    bool (*is_held)(const tl_model *m, uint32_t body);
     /* Gives all gridpoints the velocity and, about their mean by mass, the angular velocity; NaN: the one is that of
      * the mean, the other 0. */
     void (*move)(tl_model *m, uint32_t body, tl_vec3 velocity, tl_vec3 angular_velocity);
@@ -25,5 +27,11 @@ typedef struct tl_zone_verbs {
     /* Gives the zones of blocks another solid, by its name. Nothing has changed when it fails. */
     tl_status (*resolid)(tl_model *m, const tl_id *blocks, size_t count, const char *solid);
 } tl_zone_verbs;
+
+/* Whether a body is held in every component: of a deformable one, all its gridpoints. */
+static inline bool tl_body_is_held(const tl_model *m, uint32_t body)
+{
+    return m->bodies.mesh[body] ? m->zone_verbs->is_held(m, body) : m->bodies.fixed[body] == TL_FIX_ALL;
+}
 
 #endif

@@ -33,6 +33,7 @@ static void history_free(tl_history *h)
     free(h->ids);
     free(h->contacts);
     free(h->zones);
+    free(h->weights);
     free(h->cycles);
     free(h->times);
     free(h->values);
@@ -64,10 +65,12 @@ tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples)
     h->ids = h->source == TL_FROM_BLOCKS ? malloc(h->id_count * sizeof *h->ids) : NULL;
     h->contacts = h->source == TL_FROM_CONTACTS ? malloc(h->id_count * sizeof *h->contacts) : NULL;
     h->zones = zones ? malloc(h->id_count * sizeof *h->zones) : NULL;
+    h->weights = what->weights ? malloc(h->id_count * sizeof *h->weights) : NULL;
     h->cycles = NULL;
     h->times = h->values = NULL;
     h->capacity = 0;
-    if ((h->id_count && !h->ids && !h->contacts && !h->zones) || (samples && !hold_samples(h, samples))) {
+    if ((h->id_count && !h->ids && !h->contacts && !h->zones) || (what->weights && !h->weights) ||
+        (samples && !hold_samples(h, samples))) {
         history_free(h);
         return NULL;
     }
@@ -95,6 +98,8 @@ tl_status tl_history_add(tl_model *m, const tl_history *what, tl_history **wante
         memcpy(h->contacts, what->contacts, h->id_count * sizeof *h->contacts);
     if (h->zones)
         memcpy(h->zones, what->zones, h->id_count * sizeof *h->zones);
+    if (h->weights)
+        memcpy(h->weights, what->weights, h->id_count * sizeof *h->weights);
     *made = h;
     return TL_OK;
 }

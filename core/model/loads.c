@@ -281,6 +281,15 @@ void tl_drive_follow(tl_model *m, uint32_t body, uint32_t index)
     m->bodies.w[body] = record->drive.angular_velocity;
 }
 
+bool tl_drive_has_gradient(const tl_drive *drive)
+{
+    bool some = false;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            some = some || drive->gradient[i][j] != 0;
+    return some;
+}
+
 tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_drive *given)
 {
     tl_drive drive;
@@ -290,6 +299,8 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
     if (status != TL_OK)
         return status;
     status = tl_check_motion(&m->error, "drive", drive.velocity, drive.angular_velocity);
+    if (status == TL_OK && tl_drive_has_gradient(&drive))
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "drive: a gradient of velocity drives gridpoints, not blocks");
     if (status == TL_OK)
         status = tl_blocks_check(m, ids, count);
     if (status != TL_OK)

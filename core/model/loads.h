@@ -33,6 +33,8 @@ bool tl_drives_evaluate(tl_model *m, double t);
 /* Makes a drive that nothing follows yet, and gives its number, from 1; 0: out of memory. It is ended, and its number
  * used again, unless something follows it before the next one is made. */
 uint32_t tl_drive_new(tl_model *m, const tl_drive *drive);
+/* Whether a drive has a gradient of velocity. */
+bool tl_drive_has_gradient(const tl_drive *drive);
 /* Lets a body follow a drive, in the place of any other and of what held it. */
 void tl_drive_follow(tl_model *m, uint32_t body, uint32_t index);
 /* Lets a body go from its drive. */

@@ -1,5 +1,6 @@
 /* select.c - which blocks: the filters of a selection. Positions are the present ones and boundaries are included. */
 #include "geometry/measure.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "model/model.h"
 #include "model/options.h"
@@ -46,7 +47,7 @@ static bool passes(const tl_model *m, const tl_block_filter *f, tl_tag joint, ui
         return false;
     if (f->group && strcmp(m->groups[b->group[row]], f->group) != 0)
         return false;
-    if (f->fixed >= 0 && (m->bodies.fixed[b->body[row]] == TL_FIX_ALL) != (f->fixed != 0))
+    if (f->fixed >= 0 && tl_body_is_held(m, b->body[row]) != (f->fixed != 0))
         return false;
     if (f->joint && !has_joint(b->shape[row], joint))
         return false;

@@ -1,6 +1,7 @@
 /* block_fields.c - what can be asked of a block: its named fields. */
 #include "query/block_fields.h"
 
+#include "model/deformable.h"
 #include "model/regroup.h"
 #include "query/zone_at.h"
 #include "zone/grid.h"
@@ -54,7 +55,8 @@ static double gridpoints_of(const tl_model *m, uint32_t body)
     FIELD(angular_velocity, VEC3, "rad/s", "of its body", bodies->w[body])                                             \
     FIELD(force, VEC3, "N", "unbalanced force on its body", bodies->force[body])                                       \
     FIELD(moment, VEC3, "N m", "unbalanced moment about its body's centroid", bodies->moment[body])                    \
-    FIELD(fixed, BOOL, "", "whether its body is held in every component", bodies->fixed[body] == TL_FIX_ALL)           \
+    FIELD(fixed, BOOL, "", "whether its body, or all its gridpoints, are held in every component",                     \
+          tl_body_is_held(m, body))                                                                                    \
     FIELD(hidden, BOOL, "", "hidden blocks are not cut", b->hidden[row] != 0)                                          \
     FIELD(body, COUNT, "", "id of its rigid body: the lowest id of its blocks", bodies->id[body])                      \
     FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(tl_block_velocity(m, row)))                       \

@@ -6,7 +6,9 @@
 #include "model/loads.h"
 #include "zone/zones.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* What is kept of all drives; NULL when out of memory. */
 static tl_drive_kept *keep_all(const tl_model *m)
@@ -80,6 +82,12 @@ static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept, const
         asked.velocity && asked.angular_velocity ? " and its " : "", asked.angular_velocity ? "angular_velocity" : "");
 }
 
+static void put_gradient(tl_drive *drive, const double gradient[3][3], tl_vec3 at)
+{
+    memcpy(drive->gradient, gradient, sizeof drive->gradient);
+    drive->at = at;
+}
+
 /* `from` has the drives of the original, of a copy; of a file it is NULL. */
 static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count, const tl_drive_record *from,
                       const tl_drives_again *again)
@@ -98,6 +106,8 @@ static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count, cons
         record->drive = tl_drive_default();
         record->drive.velocity = kept[i].velocity;
         record->drive.angular_velocity = kept[i].angular_velocity;
+        if (from)
+            put_gradient(&record->drive, (const double(*)[3])from[i].drive.gradient, from[i].drive.at);
         record->velocity = kept[i].velocity_now;
         record->angular_velocity = kept[i].angular_velocity_now;
         if (!kept[i].velocity_asked && !kept[i].angular_velocity_asked)
@@ -109,8 +119,45 @@ static tl_status make(tl_model *m, const tl_drive_kept *kept, size_t count, cons
     return TL_OK;
 }
 
+static void save_gradients(const tl_model *m, tl_archive_writer *w)
+{
+    bool some = false;
+    for (size_t i = 0; i < m->drive_count; i++)
+        some = some || (m->drives[i].bodies > 0 && tl_drive_has_gradient(&m->drives[i].drive));
+    if (!some)
+        return;
+    tl_gradient_kept *kept = calloc(m->drive_count, sizeof *kept);
+    for (size_t i = 0; kept && i < m->drive_count; i++) {
+        memcpy(kept[i].gradient, m->drives[i].drive.gradient, sizeof kept[i].gradient);
+        kept[i].at = m->drives[i].drive.at;
+    }
+    if (kept)
+        tl_archive_put(w, "drive_gradients", kept, sizeof *kept, m->drive_count);
+    w->lost = w->lost || !kept;
+    free(kept);
+}
+
+static tl_status restore_gradients(tl_model *m, const tl_archive *a)
+{
+    if (!tl_archive_find(a, "drive_gradients"))
+        return TL_OK;
+    tl_gradient_kept *kept = malloc((m->drive_count + 1) * sizeof *kept);
+    if (!kept)
+        return tl_fail_memory(&m->error);
+    bool read = tl_archive_get(a, "drive_gradients", kept, sizeof *kept, m->drive_count);
+    for (size_t i = 0; read && i < m->drive_count; i++) {
+        read = tl_v3_finite(kept[i].at);
+        for (int k = 0; k < 9; k++)
+            read = read && isfinite(kept[i].gradient[k / 3][k % 3]);
+        put_gradient(&m->drives[i].drive, (const double(*)[3])kept[i].gradient, kept[i].at);
+    }
+    free(kept);
+    return read ? TL_OK : tl_archive_bad(a, &m->error, "'drive_gradients' does not fit");
+}
+
 void tl_drives_save(const tl_model *m, tl_archive_writer *w)
 {
+    save_gradients(m, w);
     tl_drive_kept *kept = keep_all(m);
     if (kept)
         tl_archive_put(w, "drives", kept, sizeof *kept, m->drive_count);
@@ -131,6 +178,8 @@ tl_status tl_drives_restore(tl_model *m, const tl_archive *a, const tl_drives_ag
     tl_status status =
         read ? make(m, kept, count, NULL, again) : tl_archive_bad(a, &m->error, "'drives' is missing or does not fit");
     free(kept);
+    if (status == TL_OK)
+        status = restore_gradients(m, a);
     if (status == TL_E_STATE)
         tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
     return status;

@@ -12,6 +12,12 @@ typedef struct tl_drive_kept {
     uint8_t velocity_asked, angular_velocity_asked; /* 1: a function gave it */
 } tl_drive_kept;
 
+/* A gradient of a drive, as a file keeps it: the chunk "drive_gradients", of all drives if one has any. */
+typedef struct tl_gradient_kept {
+    double gradient[3][3];
+    tl_vec3 at;
+} tl_gradient_kept;
+
 /* Who gives the functions of drives again. */
 typedef struct tl_drives_again {
     tl_drive_again_fn fn; /* NULL: nobody */

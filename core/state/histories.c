@@ -4,6 +4,7 @@
  *     histories.K.ids       of its blocks
  *     histories.K.contacts  names of its contacts
  *     histories.K.zones     names of its zones or gridpoints
+ *     histories.K.weights   by which their values are multiplied, where it has them
  *     histories.K.cycles    of its samples
  *     histories.K.times     s
  *     histories.K.values    width numbers for each sample
@@ -21,18 +22,23 @@ typedef struct history_kept {
     char name[TL_HISTORY_NAME + 1], asked[TL_HISTORY_NAME + 1];
     int64_t every, first;
     uint64_t ids, width, count;
-    uint8_t source, take, selection, lost, list, spare[3];
+    uint8_t source, take, selection, lost, list, weighs, spare[2];
 } history_kept;
 
-/* A list of a history, by its name in a file: "ids" of its blocks ("contacts", "zones"), and of its samples "cycles",
- * "times" and "values". */
+/* A list of a history, by its name in a file: "ids" of its blocks ("contacts", "zones"), of its samples "cycles",
+ * "times" and "values", and "weights" if it has them. */
 typedef struct history_list {
     const char *name;
     void *at;
     size_t size, items;
 } history_list;
 
-enum { HISTORY_LISTS = 4 };
+enum { HISTORY_LISTS = 5, WEIGHTS = 4 };
+
+static unsigned lists_of(const tl_history *h)
+{
+    return h->weights ? HISTORY_LISTS : WEIGHTS;
+}
 
 static history_list history_list_at(const tl_history *h, unsigned k)
 {
@@ -44,6 +50,7 @@ static history_list history_list_at(const tl_history *h, unsigned k)
                                              : (history_list){"ids", h->ids, sizeof *h->ids, h->id_count};
     case 1: return (history_list){"cycles", h->cycles, sizeof *h->cycles, h->count};
     case 2: return (history_list){"times", h->times, sizeof *h->times, h->count};
+    case WEIGHTS: return (history_list){"weights", h->weights, sizeof *h->weights, h->id_count};
     default: return (history_list){"values", h->values, sizeof *h->values, h->count * h->width};
     }
 }
@@ -64,6 +71,7 @@ static void keep(const tl_history *h, history_kept *kept)
     kept->selection = h->selection;
     kept->lost = h->lost;
     kept->list = h->list;
+    kept->weighs = h->weights != NULL;
 }
 
 static void save_histories(const tl_model *m, tl_archive_writer *w)
@@ -74,7 +82,7 @@ static void save_histories(const tl_model *m, tl_archive_writer *w)
     w->lost = w->lost || !kept;
     for (size_t k = 0; kept && k < m->history_count; k++) {
         keep(m->histories[k], &kept[k]);
-        for (unsigned i = 0; i < HISTORY_LISTS; i++) {
+        for (unsigned i = 0; i < lists_of(m->histories[k]); i++) {
             char name[TL_CHUNK_NAME];
             const history_list list = history_list_at(m->histories[k], i);
             tl_chunk_name(name, "histories.%zu.%s", k, list.name);
@@ -90,14 +98,16 @@ static void save_histories(const tl_model *m, tl_archive_writer *w)
 
 static bool kept_is_sound(const tl_model *m, const history_kept *kept)
 {
-    return kept->selection <= 1 && kept->lost <= 1 && kept->list <= 1 && kept->first >= 0 && kept->first <= m->cycles &&
-           kept->ids <= UINT32_MAX && kept->width <= TL_HISTORY_WIDEST && (kept->width > 0 || kept->count == 0) &&
-           (kept->list || kept->width <= 1) &&
+    return kept->selection <= 1 && kept->lost <= 1 && kept->list <= 1 && kept->weighs <= 1 && kept->first >= 0 &&
+           kept->first <= m->cycles && kept->ids <= UINT32_MAX && kept->width <= TL_HISTORY_WIDEST &&
+           (kept->width > 0 || kept->count == 0) && (kept->list || kept->width <= 1) &&
            (kept->count == 0 || kept->count - 1 <= (uint64_t)(m->cycles - kept->first));
 }
 
+/* A history without lists; that it has weights shows. */
 static tl_history history_of(const history_kept *kept)
 {
+    static double weighs;
     tl_history h = {.every = kept->every,
                     .first = kept->first,
                     .source = (tl_history_source)kept->source,
@@ -105,6 +115,7 @@ static tl_history history_of(const history_kept *kept)
                     .selection = kept->selection,
                     .lost = kept->lost,
                     .list = kept->list,
+                    .weights = kept->weighs ? &weighs : NULL,
                     .id_count = (size_t)kept->ids,
                     .width = (size_t)kept->width,
                     .count = (size_t)kept->count};
@@ -116,7 +127,7 @@ static tl_history history_of(const history_kept *kept)
 /* Whether an archive has the lists, of so many items: before there is memory for them. */
 static bool has_lists(const tl_archive *a, size_t k, const tl_history *h)
 {
-    for (unsigned i = 0; i < HISTORY_LISTS; i++) {
+    for (unsigned i = 0; i < lists_of(h); i++) {
         char name[TL_CHUNK_NAME];
         const history_list list = history_list_at(h, i);
         tl_chunk_name(name, "histories.%zu.%s", k, list.name);
@@ -132,12 +143,15 @@ static bool samples_are_sound(const tl_model *m, const tl_history *h)
         if ((i ? h->cycles[i] <= h->cycles[i - 1] : h->cycles[i] < h->first) || h->cycles[i] > m->cycles ||
             !isfinite(h->times[i]))
             return false;
-    return true;
+    bool finite = true;
+    for (size_t i = 0; h->weights && i < h->id_count; i++)
+        finite = finite && isfinite(h->weights[i]);
+    return finite;
 }
 
 static bool read_lists(const tl_model *m, const tl_archive *a, size_t k, tl_history *h)
 {
-    for (unsigned i = 0; i < HISTORY_LISTS; i++) {
+    for (unsigned i = 0; i < lists_of(h); i++) {
         char name[TL_CHUNK_NAME];
         const history_list list = history_list_at(h, i);
         tl_chunk_name(name, "histories.%zu.%s", k, list.name);
@@ -191,7 +205,7 @@ static tl_status copy_histories(tl_model *to, const tl_model *from)
         tl_history *copy = tl_history_hold(to, h, h->count);
         if (!copy)
             return tl_fail_memory(&to->error);
-        for (unsigned i = 0; i < HISTORY_LISTS; i++) {
+        for (unsigned i = 0; i < lists_of(h); i++) {
             const history_list list = history_list_at(h, i);
             if (list.items)
                 memcpy(history_list_at(copy, i).at, list.at, list.items * list.size);

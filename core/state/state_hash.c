@@ -204,6 +204,10 @@ static void hash_drive(tl_hash *hash, const tl_drive *drive)
                             drive->angular_velocity.x, drive->angular_velocity.y, drive->angular_velocity.z};
     tl_hash_numbers(hash, parts, sizeof parts / sizeof *parts);
     tl_hash_word(hash, (uint64_t)(drive->velocity_at != NULL) << 1 | (uint64_t)(drive->angular_velocity_at != NULL));
+    if (tl_drive_has_gradient(drive)) {
+        tl_hash_numbers(hash, &drive->gradient[0][0], 9);
+        tl_hash_numbers(hash, &drive->at.x, 3);
+    }
 }
 
 static void hash_blocks(tl_hash *hash, const tl_model *m, uint32_t begin, uint32_t end)

@@ -90,6 +90,17 @@ static void let_go(tl_model *m, uint32_t body)
     changed(m);
 }
 
+static bool is_held(const tl_model *m, uint32_t body)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    const tl_body_mesh *of = mesh_of(m, body);
+    bool held = true;
+    for (uint32_t row = of->point_begin; held && row < of->point_end; row++)
+        for (int k = 0; held && k < 3; k++)
+            held = tl_v3_is_zero(tl_gridpoint_free_part(p, row, tl_v3(k == 0, k == 1, k == 2)));
+    return held;
+}
+
 static void count_drives(tl_model *m)
 {
     const struct tl_zones *z = m->zones;
@@ -231,6 +242,7 @@ const tl_zone_verbs tl_zone_body_verbs = {.follow = tl_zones_follow,
                                           .load = load,
                                           .fix = fix,
                                           .free = let_go,
+                                          .is_held = is_held,
                                           .move = move,
                                           .count_drives = count_drives,
                                           .resolid = tl_blocks_resolid};

@@ -1,6 +1,9 @@
 /* gridpoints.c - what a user does to gridpoints: holds and loads them, gives them velocities, asks what holds them. */
 #include "base/columns.h"
+#include "model/loads.h"
+#include "model/options.h"
 #include "zone/columns.h"
+#include "zone/driven.h"
 #include "zone/grid.h"
 #include "zone/held.h"
 
@@ -96,6 +99,61 @@ tl_status tl_gridpoints_velocity(tl_model *m, const tl_zone_name *names, size_t 
     if (status == TL_OK && count > 0)
         m->zones->steps_kept = TL_STEPS_KEPT;
     return status;
+}
+
+/* Whether a motion can be prescribed: it is finite, and no block is driven whole. */
+static tl_status check_drive(tl_model *m, const tl_zone_name *names, size_t count, const tl_drive *drive)
+{
+    tl_status status = tl_check_motion(&m->error, "drive", drive->velocity, drive->angular_velocity);
+    if (status == TL_OK && !tl_v3_finite(drive->at))
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "drive: at must be a finite point");
+    for (int i = 0; status == TL_OK && i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (!isfinite(drive->gradient[i][j]))
+                status = tl_fail(&m->error, TL_E_ARGUMENT, "drive: gradient[%d][%d] = %g 1/s must be finite", i + 1,
+                                 j + 1, drive->gradient[i][j]);
+    for (size_t k = 0; status == TL_OK && k < count; k++)
+        if (m->bodies.drive[m->zones->mesh[tl_mesh_of(m, names[k].body)].row])
+            status = tl_fail(&m->error, TL_E_STATE, "drive: block %u is driven whole; let it go with %s first",
+                             names[k].body, tl_words(m, "selection:free", "tl_blocks_free"));
+    if (status == TL_OK && (!tl_v3_is_zero(drive->angular_velocity) || drive->angular_velocity_at))
+        status = tl_fail(&m->error, TL_E_ARGUMENT,
+                         "drive: gridpoints do not turn; give a gradient for an angular "
+                         "velocity");
+    return status;
+}
+
+static void follow_drive(tl_model *m, uint32_t row, uint32_t index)
+{
+    tl_gridpoints *p = &m->zones->points;
+    leave_drive(m, row);
+    for (int d = 0; d < 2 && p->held[0][0]; d++)
+        tl_columns_put(p->held[d], row, tl_v3(0, 0, 0));
+    p->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+    p->drive[row] = index;
+    m->drives[index - 1].bodies++;
+    tl_columns_put(p->v, row, tl_gridpoint_driven(m, row, 0));
+}
+
+tl_status tl_gridpoints_drive(tl_model *m, const tl_zone_name *names, size_t count, const tl_drive *given)
+{
+    tl_drive drive;
+    tl_status status = TL_OPTIONS_READ(tl_drive, given, &drive, &m->error);
+    if (status == TL_OK)
+        status = check(m, names, count, "drive gridpoints");
+    if (status == TL_OK)
+        status = check_drive(m, names, count, &drive);
+    if (status != TL_OK || count == 0)
+        return status;
+    const uint32_t index = tl_gridpoints_hold_drives(&m->zones->points) ? tl_drive_new(m, &drive) : 0;
+    if (index == 0)
+        return tl_fail_memory(&m->error);
+    for (size_t k = 0; k < count; k++)
+        follow_drive(m, row_of(m, names[k]), index);
+    m->zones->rated_for = 0; /* others may be the stiffest that move */
+    m->zones->steps_kept = TL_STEPS_KEPT;
+    m->constraints++;
+    return TL_OK;
 }
 
 tl_status tl_gridpoints_reaction(tl_model *m, const tl_zone_name *names, size_t count, tl_vec3 *force)

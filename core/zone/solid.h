@@ -20,8 +20,8 @@ typedef struct tl_solid {
 tl_status tl_solid_make(const tl_kind *kind, const tl_args *args, const tl_solid *from, const char *context,
                         tl_error *error, tl_solid *out);
 void tl_solid_clear(tl_solid *solid);
-/* What zones store at a stress, J/m3. `count` is a multiple of TL_LANES. A solid without an operation for it is asked for
- * an update without strain; what it changes in that is dropped. */
+/* What zones store at a stress, J/m3. `count` is a multiple of TL_LANES. A solid without an operation for it is asked
+ * for an update without strain; what it changes in that is dropped. */
 void tl_solid_energy(const tl_solid *solid, uint32_t count, const double *const stress[6], double *const *state,
                      double *stored);
 /* Asks a solid for the stresses of zones. */

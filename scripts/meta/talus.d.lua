@@ -355,7 +355,7 @@ local Model = {}
 ---@field angular_velocity talus.Vector rad/s: of its body
 ---@field force talus.Vector N: unbalanced force on its body
 ---@field moment talus.Vector N m: unbalanced moment about its body's centroid
----@field fixed boolean whether its body is held in every component
+---@field fixed boolean whether its body, or all its gridpoints, are held in every component
 ---@field hidden boolean hidden blocks are not cut
 ---@field body integer id of its rigid body: the lowest id of its blocks
 ---@field speed number m/s: length of the velocity
@@ -764,7 +764,7 @@ function Model:state_hash() end
 ---@field containing? talus.Vector m: blocks that contain this point
 ---@field joint? string blocks with a face on this joint or plane
 ---@field boundary? string blocks with an outer face on this side of the model: "xmin", "xmax" ... "zmax"
----@field fixed? boolean fixed blocks, or free ones
+---@field fixed? boolean blocks held in every component, of deformable ones all gridpoints, or the others
 ---@field id? integer|integer[] the blocks of these ids
 ---@field inside? { min: talus.Vector, max: talus.Vector } blocks whose centroid is in this box
 ---@field above? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is above this plane
@@ -933,6 +933,19 @@ function Model:joints() end
 ---@return talus.Law[]
 function Model:laws() end
 
+---@class (exact) talus.Solid
+---@field name string of the solid, and of the kind that it is of
+---@field kind string of the solid, and of the kind that it is of
+---@field parameters { poisson: number, young: number } {NAME = value}, as they are now; of a table its rows
+---@field zones integer number of its zones in visible blocks, and their volume, m3
+---@field volume number number of its zones in visible blocks, and their volume, m3
+
+--- Lists the solids that were named by model:solid, in their order. talus.solids() lists the kinds that are loaded.
+---
+---     list = model:solids()
+---@return talus.Solid[]
+function Model:solids() end
+
 ---@class (exact) talus.Group
 ---@field name string of the group
 ---@field blocks integer number of its blocks, hidden ones, too, and their volume, m3
@@ -990,6 +1003,7 @@ function talus.solids() end
 ---@field laws { *: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } }, J1: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } } } by joint ("*", "J1", "J1:3"): law, its name; parameters: a table of them by name
 ---@field joints { J1: string } by joint set: the joint whose law it has, "" for none
 ---@field contact_area { *: { fraction: number } } by joint, "*" for all others: fraction, or absolute, m2
+---@field solids { granite: { kind: string, parameters: { poisson: number, young: number } } } by name: kind, its name; parameters: a table of them by name
 
 --- Tells all parameters the model has now, with defaults and units, as a table, and prints them (not with --quiet).
 ---
@@ -1198,7 +1212,8 @@ function Model:relax(options) end
 ---@class (exact) talus.HistoryOptions
 ---@field name string what it is called, one of its own
 ---@field every? integer >= 1, default 10: steps between two samples; the first is taken at once
----@field field? string field of numbers of what `of` gives ("displacement", "normal_force")
+---@field field? string field of numbers of what `of` gives ("displacement", "normal_force"), or of what is `at` a point
+---@field at? talus.Vector m: of the point of a deformable block that is here now, and then goes with the block: a field of the zone in which it lies, or its position, displacement or velocity, between those of the zone's gridpoints
 ---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its items
 ---@field remove? boolean default false: ends the history of that name, with all its samples
 ---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external", "strain", "plastic" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
@@ -1206,8 +1221,9 @@ function Model:relax(options) end
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.
 ---
----     model:history{name = "gap", every = 10, value = function(m) return m:contacts():max("gap") end}  or  model:history{name = "wedge", of = selection, field = "displacement"}
+---     model:history{name = "gap", every = 10, value = function(m) return m:contacts():max("gap") end}  or  model:history{name = "wedge", of = selection, field = "displacement"}  or  model:history{name = "arch", at = {3.5, 0.4, 1.8}, field = "stress"}
 ---@param options talus.HistoryOptions
+---@overload fun(self: talus.Model, options: talus.HistoryOptions)
 ---@overload fun(self: talus.Model, options: talus.HistoryOptions)
 function Model:history(options) end
 
@@ -1289,6 +1305,13 @@ function talus.write_file(path, text) end
 ---@field slivers integer number of bodies whose shape makes the time step short where all joints are equally stiff, and their share of the volume; model:filter{auto = true} joins them
 ---@field sliver_share number number of bodies whose shape makes the time step short where all joints are equally stiff, and their share of the volume; model:filter{auto = true} joins them
 ---@field sliver_gain number how many times longer a step the others allow
+---@field deformable integer number of blocks that have zones, and what they have; segments are where their surfaces lie on others
+---@field zones integer number of blocks that have zones, and what they have; segments are where their surfaces lie on others
+---@field gridpoints integer number of blocks that have zones, and what they have; segments are where their surfaces lie on others
+---@field clusters integer number of blocks that have zones, and what they have; segments are where their surfaces lie on others
+---@field segments integer number of blocks that have zones, and what they have; segments are where their surfaces lie on others
+---@field smallest_altitude number? smallest altitude of a zone over its largest side, m, and the block that has it; nil without zones
+---@field smallest_altitude_block talus.Block? smallest altitude of a zone over its largest side, m, and the block that has it; nil without zones
 ---@field cuts integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
 ---@field refused integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
 ---@field coincident integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
@@ -1381,12 +1404,15 @@ function Model:stage(name) end
 function Model:verdict() end
 
 ---@class (exact) talus.ProfileResult
----@field seconds { damping: number, detect: number, energy: number, gather: number, laws: number, move: number, timestep: number }
+---@field seconds { damping: number, detect: number, energy: number, gather: number, laws: number, move: number, timestep: number, zones: number }
 ---@field steps integer steps since profiling began
 ---@field pairs integer candidate pairs of the broad phase, now
 ---@field contacts integer contacts there are, and those that carry a force
 ---@field loaded integer contacts there are, and those that carry a force
 ---@field points integer contact points
+---@field zones integer of deformable blocks; segments are where their surfaces lie on others
+---@field gridpoints integer of deformable blocks; segments are where their surfaces lie on others
+---@field segments integer of deformable blocks; segments are where their surfaces lie on others
 
 --- Times the phases of the steps, and tells what a step works on.
 ---

@@ -46,13 +46,14 @@ typedef struct tl_history {
     tl_id *ids; /* of blocks */
     tl_contact_name *contacts;
     tl_zone_name *zones;           /* or gridpoints */
+    double *weights;               /* by which their values are multiplied; NULL: by 1 */
     size_t width, count, capacity; /* numbers of a sample; samples; room for them */
     int64_t *cycles;               /* of each sample, ascending */
     double *times, *values;        /* s; width numbers for each sample */
 } tl_history;
 
 /* Makes a history without samples at the end of the model's list: `what` gives its name, asked, every, source, take,
- * selection and names, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a
+ * selection, names and weights, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a
  * name that is empty, not of one line, or that of another history; every < 1; no ids. `made` may be NULL. */
 TL_API tl_status tl_history_add(struct tl_model *model, const tl_history *what, tl_history **made);
 /* Ends history i, with its samples. */

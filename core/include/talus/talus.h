@@ -236,8 +236,8 @@ typedef struct tl_timestep_report {
     double dt;
     tl_id block, partner; /* the block that controls it, and the block of the contact; 0: none */
     double mass;          /* of the block's body, kg; by zones that of a gridpoint */
-    /* by zones of what holds the gridpoint; else of the contact, of all contacts of the body or of the part of its largest face that counts, N/m; of corners and
-     * edges as it is when they are pressed in twice as deep */
+    /* N/m: by zones of what holds the gridpoint; else of the contact, of all contacts of the body or of the part of its
+     * largest face that counts. That of corners and edges is as when they are pressed in twice as deep. */
     double stiffness;
     int32_t by; /* tl_step_by: what of the block is so fast */
 } tl_timestep_report;
@@ -384,6 +384,7 @@ TL_API void tl_model_interrupt_if(tl_model *model, bool (*asked)(void));
     X(DETECT, detect, "pairs and contacts up to date, gaps and motion of the contact points")                          \
     X(TIMESTEP, timestep, "the step to take")                                                                          \
     X(LAWS, laws, "contact forces, and their sums over each contact")                                                  \
+    X(ZONES, zones, "deformable blocks: strain and stress of zones, and forces of segments")                           \
     X(GATHER, gather, "forces and moments of each body")                                                               \
     X(DAMPING, damping, "the damping's forces")                                                                        \
     X(MOVE, move, "velocities, places and rotations")                                                                  \
@@ -535,8 +536,8 @@ typedef struct tl_block_set {
 } tl_block_set;
 
 /* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those
- * that are listed. TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not
- * finite, or a solid that is not there; TL_E_STATE for a solid of a rigid block. Then no block is changed. */
+ * that are listed. TL_E_ARGUMENT: a density that is not > 0, a group that is no UTF-8, a motion that is not finite, no
+ * such solid. TL_E_STATE for a solid of a rigid block. Then no block is changed. */
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count, const tl_block_set *set);
 
 /* Makes one rigid body of the blocks and of all blocks joined to them before. Mass, momentum and angular
@@ -565,6 +566,9 @@ typedef struct tl_drive {
     tl_drive_fn velocity_at, angular_velocity_at; /* in their place, or NULL */
     void *user;
     void (*release)(void *user); /* called when the drive ends, or NULL */
+    /* of driven gridpoints (zones.h): gradient (x - at) comes to the velocity, x the present place; 1/s and m */
+    double gradient[3][3];
+    tl_vec3 at;
 } tl_drive;
 
 /* Prescribes the motion of the blocks' bodies, in the place of any fixing; free ends it. A function is

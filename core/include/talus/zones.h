@@ -18,8 +18,8 @@ extern "C" {
 
 /* Names a solid: "granite", of the kind "mohr_coulomb" with properties. With `kind` NULL, or the kind it has already,
  * only the properties that are given change. Zones of a solid that changes keep their stress, and the states that the
- * new kind has by the same names; what they store changes, as of tl_zones_solid. TL_E_NOT_FOUND for a kind that no plugin has, or a solid that is to be changed and is
- * not there; TL_E_ARGUMENT for a bad property. */
+ * new kind has by the same names; what they store changes, as of tl_zones_solid. TL_E_NOT_FOUND for a kind that no
+ * plugin has, or a solid that is to be changed and is not there; TL_E_ARGUMENT for a bad property. */
 TL_API tl_status tl_model_solid(tl_model *model, const char *name, const char *kind, const tl_args *properties);
 
 typedef struct tl_solid_info {
@@ -71,6 +71,16 @@ typedef struct tl_zoned {
 TL_API tl_status tl_blocks_deform(tl_model *model, const tl_id *blocks, size_t count, const tl_zoning *how,
                                   tl_zoned *made);
 
+/* What a model has of deformable blocks, as they are now. */
+typedef struct tl_zone_summary {
+    size_t blocks, zones, gridpoints, clusters;
+    size_t segments;       /* through which they touch */
+    double least_altitude; /* of all zones over their largest sides, m; NaN: there are none */
+    tl_id worst;           /* the block that has it, or TL_NO_ID */
+} tl_zone_summary;
+
+TL_API tl_zone_summary tl_model_zone_summary(const tl_model *model);
+
 /* ---------------------------------------------------------------- which ------------------ */
 
 /* Which zones, or gridpoints; all that is set must hold. */
@@ -96,6 +106,17 @@ TL_API tl_zone_filter tl_zone_filter_default(void);
 TL_API tl_status tl_zones_select(tl_model *model, const tl_zone_filter *filter, tl_zone_name **names, size_t *count);
 TL_API tl_status tl_gridpoints_select(tl_model *model, const tl_zone_filter *filter, tl_zone_name **names,
                                       size_t *count);
+
+/* A point of the material, by the zone in which it lies. Its place is the sum over that zone's gridpoints of weight
+ * times place, and so are its displacement and velocity. The weights add up to 1, and stay as zones deform. */
+typedef struct tl_material_point {
+    tl_zone_name zone;
+    tl_zone_name gridpoint[4];
+    double weight[4];
+} tl_material_point;
+
+/* The point of the material that is at a place now. TL_E_NOT_FOUND: it is in no zone of a visible block. */
+TL_API tl_status tl_material_point_at(tl_model *model, tl_vec3 place, tl_material_point *point);
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
@@ -135,6 +156,10 @@ TL_API tl_status tl_gridpoints_load(tl_model *model, const tl_zone_name *names, 
 /* Gives them velocities, m/s: names[i] gets velocity[i]. Held components go on with theirs. */
 TL_API tl_status tl_gridpoints_velocity(tl_model *model, const tl_zone_name *names, size_t count,
                                         const tl_vec3 *velocity);
+/* Prescribes their velocity in all components, until they are let go: drive->velocity, or what its function tells in
+ * the middle of each step, and drive->gradient times the place from drive->at. TL_E_STATE: their block is driven as a
+ * whole. */
+TL_API tl_status tl_gridpoints_drive(tl_model *model, const tl_zone_name *names, size_t count, const tl_drive *drive);
 /* The force with which what holds them acts on them, N: the sum over their held components. */
 TL_API tl_status tl_gridpoints_reaction(tl_model *model, const tl_zone_name *names, size_t count, tl_vec3 *force);
 
