@@ -515,6 +515,15 @@ static void mark_changed(tl_model *m)
     }
 }
 
+/* Lays the segments that have been found: in their rows, where nothing is in the way. false: out of memory. */
+static bool lay_found(tl_model *m, const tl_laying *l, bool others)
+{
+    const bool in_place = !others && tl_laying_fits(m, l);
+    if (in_place)
+        tl_renew_segments(m, l);
+    return in_place || tl_lay_segments(m, l);
+}
+
 tl_status tl_segments_find(tl_model *m)
 {
     if (!tl_model_deforms(m))
@@ -524,7 +533,9 @@ tl_status tl_segments_find(tl_model *m)
     struct tl_segments *s = m->segments;
     const bool anew = m->cycles % LIST_EVERY == 0 || s->structure != m->structure || s->zones != m->zones->version ||
                       s->lists != m->detect->lists;
-    bool some = anew || s->laws != m->laws, enough = true;
+    const bool others = s->version == 0 || s->structure != m->structure || s->zones != m->zones->version ||
+                        s->laws != m->laws; /* rows, parts or laws are others */
+    bool some = anew || others, enough = true;
     tl_laying l;
     tl_laying_begin(&l);
     if (anew) {
@@ -544,8 +555,9 @@ tl_status tl_segments_find(tl_model *m)
     for (uint32_t k = 0; enough && some && k < s->meet_count; k++)
         if (s->meet[k].stale)
             enough = find_segments(m, &l, k);
-    enough = enough && (!some || tl_lay_segments(m, &l)) &&
-             tl_grow(&s->blend, &s->blend_capacity, s->meet_count + 1, sizeof *s->blend);
+    if (enough && some)
+        enough = lay_found(m, &l, others);
+    enough = enough && tl_grow(&s->blend, &s->blend_capacity, s->meet_count + 1, sizeof *s->blend);
     if (enough && (tl_blends_find(m) || some))
         enough = list_meeting(m);
     tl_laying_end(&l);
