@@ -514,7 +514,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
              tl_grow(&fresh.outline, &fresh.outline_capacity,
                      s->outline_count + l->outline_count + OUTLINE_ROOM * count + 1, sizeof *fresh.outline) &&
              tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) &&
-             tl_segments_uses_room(m, s, count);
+             tl_segment_uses_room(m, s, count);
     if (!enough) {
         tl_table_free(&fresh.table.table);
         tl_table_free(&fresh.points.table);
@@ -538,7 +538,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
             s->meet[k].stale = false;
         s->version++;
         sum_meets(s);
-        tl_segments_list_uses(m);
+        tl_segment_uses_list(m, s);
     }
     free(list);
     return enough;
@@ -612,14 +612,6 @@ void tl_renew_segments(tl_model *m, const tl_laying *l)
     }
     s->lost += lost;
     s->version++;
-}
-
-bool tl_segments_index(tl_model *m)
-{
-    const bool enough = tl_segments_uses_room(m, m->segments, m->segments->table.table.rows);
-    if (enough)
-        tl_segments_list_uses(m);
-    return enough;
 }
 
 bool tl_segments_hold_initial(struct tl_segments *s)
