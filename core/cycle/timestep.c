@@ -742,7 +742,7 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
     report->block = m->bodies.id[by.body];
     report->mass = by.point == TL_NO_ROW ? m->bodies.mass[by.body] : m->zones->points.mass[by.point];
     report->stiffness = by.stiffness;
-    report->by = cause_of(&by, report->mass);
+    report->by = (int32_t)cause_of(&by, report->mass);
     if (by.contact != TL_NO_ROW) {
         /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
         const tl_contacts *contacts = &m->detect->contacts;

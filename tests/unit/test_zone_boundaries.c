@@ -51,7 +51,7 @@ static void run(tl_model *m, int64_t steps)
 static tl_boundary_action at_side(tl_side side)
 {
     tl_boundary_action a = tl_boundary_action_default();
-    a.where.side = side;
+    a.where.side = (int32_t)side;
     return a;
 }
 
