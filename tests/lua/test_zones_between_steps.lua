@@ -123,3 +123,22 @@ end, "lies in no zone of block 2")
 model = cubes { group = "high" }
 model:blocks { group = "low" }:load { force = { 1, 0, 0 } }
 check.refused(model, function() model:blocks():deformable { zone = 0.7, solid = "rock" } end, "it has zones already")
+
+-- ---------------------------------------------------------------- contacts in the order of their blocks
+
+-- Those of zones lie between those of rigid blocks.
+model = talus.model { gravity = { 0, 0, -10 } }
+local pile = {}
+for i = 1, 6 do
+    pile[i] = { min = { 0, 0, i - 1 }, max = { 1, 1, i }, density = 2500, group = i == 3 and "soft" or "hard" }
+end
+model:generate("box", pile)
+model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+model:blocks { group = "soft" }:deformable { zone = 0.7, solid = "rock" }
+model:cycle(2)
+local ids = model:contacts():values "id"
+check.equal(#ids, 5)
+for i = 2, #ids do
+    check.holds(ids[i] > ids[i - 1], "contacts are in the order of their blocks")
+end
