@@ -737,7 +737,7 @@ void tl_segments_hold(const tl_model *m, uint32_t body, tl_holding *sum)
         return;
     for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
         const tl_segment *of = &s->table.of[s->body_use[k].segment];
-        const uint32_t law = s->meet[of->meet].law;
+        const uint32_t law = of->meet != TL_NO_ROW ? s->meet[of->meet].law : TL_NO_ROW;
         if (law == TL_NO_ROW)
             continue;
         const double stiff = tl_law_stiffness(&m->joint_laws[law]);
