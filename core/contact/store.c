@@ -248,6 +248,7 @@ static void walk_pairs(tl_detect *d, const tl_walk *walk)
     LIST(CACHE, pairs, pair_count, pair_capacity, pairs);
     LIST(CACHE, chunks, chunk_capacity, chunk_capacity, pairs);
     FLAG(CACHE, listed);
+    VALUE(CACHE, lists);
     VALUE(CACHE, reach);
     VALUE(CACHE, balance_left);
     LIST(CACHE, odometer_0, odometer_capacity, odometer_capacity, broad);

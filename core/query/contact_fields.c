@@ -362,6 +362,12 @@ static bool is_between(const unsigned char *ma, const unsigned char *mb, uint32_
     return !ma || !mb || (ma[a] && mb[b]) || (ma[b] && mb[a]);
 }
 
+static int compare_names(const void *x, const void *y)
+{
+    const tl_contact_name *a = x, *b = y;
+    return a->a != b->a ? (a->a > b->a) - (a->a < b->a) : (a->b > b->b) - (a->b < b->b);
+}
+
 tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_contact_name **names, size_t *count)
 {
     *names = NULL;
@@ -369,7 +375,7 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_con
     tl_tag joint = {0, 0};
     tl_contact_filter filter;
     uint32_t *rows = NULL;
-    size_t all = 0, meetings;
+    size_t all = 0, meetings = 0;
     tl_contact_name *list = NULL;
     tl_status status = TL_OPTIONS_READ(tl_contact_filter, given, &filter, &m->error);
     if (status == TL_OK)
@@ -389,6 +395,8 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_con
             is_between(ma, mb, tl_block_row_quiet(m, name.a), tl_block_row_quiet(m, name.b)))
             list[(*count)++] = name;
     }
+    if (meetings > 0 && meetings < all) /* these come behind the others */
+        qsort(list, *count, sizeof *list, compare_names);
     free(rows);
     free(ma);
     free(mb);

@@ -255,11 +255,14 @@ const char *tl_carriers_unsound(const tl_model *m)
     for (uint32_t i = 0; c && c->carrier[0] && i < c->table.rows; i++)
         for (int side = 0; side < 2; side++) {
             const tl_carrier *by = &c->carrier[side][i];
-            if (!by->on)
+            /* contacts have the rows that blocks had when the detection last looked; some may have gone */
+            const tl_id block = m->detect->known_blocks[(side ? c->b : c->a)[i]].id;
+            const uint32_t row = tl_block_row_quiet(m, block);
+            if (!by->on || row == TL_NO_ROW)
                 continue;
-            if (by->on != 1 || !tl_block_deforms(m, (side ? c->b : c->a)[i]))
+            if (by->on != 1 || !tl_block_deforms(m, row))
                 return "a contact is carried by a block without zones";
-            const tl_body_mesh *mesh = &m->zones->mesh[m->bodies.mesh[m->blocks.body[(side ? c->b : c->a)[i]]] - 1];
+            const tl_body_mesh *mesh = &m->zones->mesh[m->bodies.mesh[m->blocks.body[row]] - 1];
             for (int a = 0; a < 4; a++)
                 if (by->point[a] >= mesh->point_end - mesh->point_begin)
                     return "a contact is carried by an impossible gridpoint";

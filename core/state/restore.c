@@ -183,7 +183,8 @@ static bool struct_is_sound(const tl_model *m, tl_settings of)
 static bool settings_are_sound(const tl_model *m)
 {
     return struct_is_sound(m, tl_config_settings()) && struct_is_sound(m, tl_timestep_settings()) &&
-           tl_v3_finite(m->gravity_before) && (!m->loads_changed || m->bodies.load_before) && tl_v3_finite(m->origin) &&
+           tl_v3_finite(m->gravity_before) &&
+           (!m->loads_changed || m->bodies.load_before || m->bodies.table.rows == 0) && tl_v3_finite(m->origin) &&
            isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 && memchr(m->stage, 0, sizeof m->stage) &&
            tl_text_is_clean(m->stage) && m->cycles >= 0 && m->cycles <= MOST_CYCLES && m->gone == 0 &&
            (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) && !(m->added_most < 0) && m->still >= 0 &&
@@ -436,6 +437,8 @@ static tl_status read_rows(tl_model *m, const tl_archive *a)
         return tl_fail_memory(&m->error);
     tl_model_walk(m, &(tl_walk){read_entry, &r});
     tl_status status = told(&r, m);
+    if (status == TL_OK && m->loads_changed && m->bodies.table.rows == 0 && !tl_bodies_hold_loads(&m->bodies))
+        status = tl_fail_memory(&m->error); /* files have no columns without rows */
     if (status == TL_OK)
         status = read_names(m, a, "groups", take_group);
     if (status == TL_OK)

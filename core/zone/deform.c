@@ -71,7 +71,7 @@ static tl_status check_load(tl_model *m, uint32_t row)
             return refuse(m, block, "its faces are loaded; take the load off, and put it on when it has zones");
     if (!lies_in(m, m->blocks.body[row], at))
         return refuse(m, block, "it carries a load at a point outside of it; take that off");
-    return tl_gridpoints_hold_loads(&m->zones->points) ? TL_OK : tl_fail_memory(&m->error);
+    return TL_OK;
 }
 
 static tl_status check_block(tl_model *m, uint32_t row)
@@ -225,7 +225,11 @@ static tl_status lay_all(dividing *d, uint32_t solid)
     tl_model *m = d->m;
     const uint32_t meshes = (uint32_t)m->zones->mesh_count;
     uint8_t *fixed = malloc(d->count + 1);
-    tl_status status = fixed ? TL_OK : tl_fail_memory(&m->error);
+    bool loaded = false;
+    for (size_t k = 0; k < d->count; k++)
+        loaded = loaded || tl_body_loaded(&m->bodies, d->part[k].body);
+    const bool enough = fixed && (!loaded || tl_gridpoints_hold_loads(&m->zones->points));
+    tl_status status = enough ? TL_OK : tl_fail_memory(&m->error);
     for (size_t k = 0; status == TL_OK && k < d->count; k++) {
         fixed[k] = m->bodies.fixed[d->part[k].body];
         status = lay(d, &d->part[k], solid);

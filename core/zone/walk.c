@@ -18,6 +18,7 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     LIST(STATE, part, part_count, part_capacity);
     LIST(STATE, mesh, mesh_count, mesh_capacity);
     LIST(STATE, outer, outer_count, outer_capacity);
+    LIST(STATE, meeting, meeting_count, meeting_capacity);
     LIST(DERIVED, use, use_capacity, use_capacity);
     LIST(DERIVED, use_start, use_start_capacity, use_start_capacity);
     LIST(SCRATCH, slot, slot_capacity, slot_capacity);

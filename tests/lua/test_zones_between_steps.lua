@@ -62,9 +62,106 @@ model:cycle(5)
 restored:cycle(5)
 check.equal(restored:state_hash(), model:state_hash())
 
+-- ---------------------------------------------------------------- copies and saves of what moves
+
+local function restored_from(of)
+    local name = os.tmpname()
+    of:save(name)
+    local made = talus.restore(name)
+    os.remove(name)
+    return made
+end
+
+-- Faces come to lie on others beside them. A copy finds them when the model does.
+for seed = 1, 6 do
+    model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 },
+        { min = { 0, 0, 1 }, max = { 1.3, 1, 2 }, density = 2500 } })
+    model:generate("joint", { joint = "J1", dip = 15 * seed, dip_direction = 50 * seed, origin = { 0.5, 0.5, 0.5 } })
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+    model:blocks():deformable { zone = 0.6, solid = "rock" }
+    model:blocks { inside = { min = { 0, 0, 1 }, max = { 2, 2, 2 } } }:set { velocity = { 0.1, 0.3, -0.1 } }
+    model:cycle(3)
+    local others = { model:copy(), restored_from(model) }
+    model:cycle(8)
+    for _, other in ipairs(others) do
+        other:cycle(8)
+        check.equal(other:state_hash(), model:state_hash())
+    end
+end
+
+-- Blocks that meet by segments have no contact of edges beside, in a copy neither, when contacts are found anew.
+for _, plane in ipairs { { 39, 39 }, { 75, 256 }, { 48, 9 } } do
+    model = talus.model { gravity = { 0, 0, -9.81 } }
+    model:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 },
+        { min = { 0, 0, 1 }, max = { 1.3, 1, 2 }, density = 2500 } })
+    model:generate("joint", { joint = "J1", dip = plane[1], dip_direction = plane[2], origin = { 0.5, 0.5, 0.5 } })
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+    model:blocks():deformable { zone = 0.5, solid = "rock" }
+    model:blocks():load { force = { 1e5, 2e5, 0 } }
+    model:cycle(20)
+    model:contact_area { fraction = 0.05 }
+    local others = { model:copy(), restored_from(model) }
+    for _, other in ipairs(others) do
+        check.equal(other:state_hash(), model:state_hash())
+    end
+    model:cycle(2)
+    for _, other in ipairs(others) do
+        other:cycle(2)
+        check.equal(other:state_hash(), model:state_hash())
+    end
+end
+
+-- ---------------------------------------------------------------- saves after blocks have gone
+
+model = talus.model { gravity = { 0, 0, -10 } }
+model:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 },
+    { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2500 } })
+model:generate("joint", { joint = "J1", dip = 40, dip_direction = 90, origin = { 0.5, 0.5, 1.2 } })
+model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+model:blocks():deformable { zone = 0.7, solid = "rock" }
+model:blocks():set { velocity = { 0.1, 0, 0.1 }, angular_velocity = { 1, 0, 0 } }
+model:cycle(50)
+model:blocks { id = model:blocks()[1].id }:delete()
+restored = restored_from(model)
+check.equal(restored:state_hash(), model:state_hash())
+model:blocks():load { force = { 1, 0, 0 } }
+model:blocks():delete()
+restored = restored_from(model)
+restored:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
+restored:cycle(2)
+
 -- ---------------------------------------------------------------- a load that one of two blocks cannot take
 
 model = cubes()
 check.refused(model, function()
     model:blocks():load { force = { 1, 0, 0 }, at = { 0.5, 0.5, 0.2 } }
 end, "lies in no zone of block 2")
+
+-- ---------------------------------------------------------------- zones for a loaded block and one that has some
+
+model = cubes { group = "high" }
+model:blocks { group = "low" }:load { force = { 1, 0, 0 } }
+check.refused(model, function() model:blocks():deformable { zone = 0.7, solid = "rock" } end, "it has zones already")
+
+-- ---------------------------------------------------------------- contacts in the order of their blocks
+
+-- Those of zones lie between those of rigid blocks.
+model = talus.model { gravity = { 0, 0, -10 } }
+local pile = {}
+for i = 1, 6 do
+    pile[i] = { min = { 0, 0, i - 1 }, max = { 1, 1, i }, density = 2500, group = i == 3 and "soft" or "hard" }
+end
+model:generate("box", pile)
+model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+model:blocks { group = "soft" }:deformable { zone = 0.7, solid = "rock" }
+model:cycle(2)
+local ids = model:contacts():values "id"
+check.equal(#ids, 5)
+for i = 2, #ids do
+    check.holds(ids[i] > ids[i - 1], "contacts are in the order of their blocks")
+end
