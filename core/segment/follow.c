@@ -38,7 +38,7 @@ void tl_segments_follow(tl_model *m)
             s->table.area[row] = 0;
         }
     }
-    if (tl_segments_uses_room(m, s, s->table.table.rows)) /* else they stay as they were until segments are laid */
-        tl_segments_list_uses(m);
     s->followed = m->structure;
+    if (!tl_segments_index(m))
+        s->bodies_listed = 0; /* out of memory: the next step says so */
 }

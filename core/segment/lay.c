@@ -1,7 +1,8 @@
 /* lay.c - segments laid into their tables, with what points take over.
  *
  * Segments come by the laws of their meets, and of one law by meets and triangles. A meet that is not stale keeps its
- * segments, whatever rows they get. */
+ * segments, whatever rows they get. While stale meets have segments of the same triangles as before, as most have in
+ * most steps, these stay in their rows, and nothing else is touched. */
 #include "segment/lay.h"
 
 #include "contact/contacts.h"
@@ -66,8 +67,8 @@ void tl_segments_free(struct tl_segments *s)
 {
     tl_table_free(&s->table.table);
     tl_table_free(&s->points.table);
-    void *const owned[] = {s->meet,   s->span,        s->use,   s->body_use, s->use_start, s->body_start,
-                           s->corner, s->room_memory, s->blend, s->outline,  s->touched,   s->now};
+    void *const owned[] = {s->meet,        s->span,  s->use,     s->body_use, s->use_start, s->body_start, s->corner,
+                           s->room_memory, s->blend, s->outline, s->touched,  s->now,       s->box};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -143,11 +144,13 @@ bool tl_laying_change_meets(const tl_model *m, tl_laying *l, tl_meet *list, size
         return false;
     }
     size_t at = 0;
+    l->other_meets = count != s->meet_count;
     for (size_t k = 0; k < s->meet_count; k++) {
         while (at < count && order_of(&list[at], &s->meet[k]) < 0)
             at++;
         const bool same = at < count && order_of(&list[at], &s->meet[k]) == 0;
         l->now[k] = same ? (uint32_t)at : TL_NO_ROW;
+        l->other_meets = l->other_meets || !same;
         if (!same)
             s->lost += shear_of(m, s, &s->meet[k]);
         if (same) {
@@ -198,20 +201,10 @@ static tl_vec3 keep_to(const tl_model *m, const tl_segment_side *side, tl_vec3 p
 
 /* A segment to be laid: an old row, or a new one of the list. */
 typedef struct entry {
-    uint32_t law, meet, key[2];
+    uint32_t law, meet;
     uint32_t old; /* row; TL_NO_ROW: it is new */
     uint32_t fresh;
 } entry;
-
-static int compare_entries(const void *x, const void *y)
-{
-    const entry *a = x, *b = y;
-    const uint32_t p[4] = {a->law, a->meet, a->key[0], a->key[1]}, q[4] = {b->law, b->meet, b->key[0], b->key[1]};
-    for (int k = 0; k < 4; k++)
-        if (p[k] != q[k])
-            return p[k] < q[k] ? -1 : 1;
-    return 0;
-}
 
 static void copy_point(tl_segment_points *to, size_t at, const tl_segment_points *from, size_t row, double scale)
 {
@@ -241,45 +234,36 @@ static void begin_point(tl_segment_points *p, size_t at, const tl_kind *law, boo
             p->state[s.begin][at] = s.state->initial;
 }
 
-/* Old segments by meet and triangles, for those who take over. */
-typedef struct old_segments {
-    const tl_model *m;
-    const struct tl_segments *s;
-    entry *list;
-    size_t count;
-} old_segments;
-
-/* The first old segment that is not before a meet and its triangles. */
-static size_t first_from(const old_segments *old, const entry *of)
+/* The row of the old segment of a meet that has the same triangles, or TL_NO_ROW. */
+static uint32_t same_segment(const struct tl_segments *s, const tl_meet *meet, const uint32_t key[2])
 {
-    size_t low = 0, high = old->count;
-    while (low < high) {
-        const size_t middle = (low + high) / 2;
-        const entry *at = &old->list[middle];
-        const uint32_t p[3] = {at->meet, at->key[0], at->key[1]}, q[3] = {of->meet, of->key[0], of->key[1]};
-        int order = 0;
-        for (int k = 0; k < 3 && order == 0; k++)
-            order = p[k] < q[k] ? -1 : p[k] > q[k];
+    uint32_t found = TL_NO_ROW;
+    for (uint32_t low = meet->begin, high = meet->end; low < high && found == TL_NO_ROW;) {
+        const uint32_t middle = low + (high - low) / 2;
+        const uint32_t *at = s->table.of[middle].key;
+        const int order = at[0] != key[0] ? (at[0] < key[0] ? -1 : 1) : (at[1] > key[1]) - (at[1] < key[1]);
         if (order < 0)
             low = middle + 1;
         else
             high = middle;
+        if (order == 0)
+            found = middle;
     }
-    return low;
+    return found == TL_NO_ROW || s->table.of[found].meet == TL_NO_ROW ? TL_NO_ROW : found;
 }
 
 /* The row of the old point of the meet that is nearest to a place, or TL_NO_ROW. */
-static size_t nearest_point(const old_segments *old, uint32_t meet, tl_vec3 place)
+static size_t nearest_point(const tl_model *m, const tl_meet *meet, tl_vec3 place)
 {
-    const tl_segment_points *p = &old->s->points;
+    const struct tl_segments *s = m->segments;
+    const tl_segment_points *p = &s->points;
     size_t found = TL_NO_ROW;
     double least = INFINITY;
-    for (size_t i = first_from(old, &(entry){.meet = meet}); i < old->count && old->list[i].meet == meet; i++)
-        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-            const size_t row = tl_segment_point_row(old->list[i].old, k);
+    for (uint32_t i = meet->begin; i < meet->end; i++)
+        for (size_t k = 0; k < TL_SEGMENT_POINTS && s->table.of[i].meet != TL_NO_ROW; k++) {
+            const size_t row = tl_segment_point_row(i, k);
             const tl_vec3 at = tl_v3(p->at_a[0][row], p->at_a[1][row], p->at_a[2][row]);
-            const double d2 =
-                tl_v3_norm2(tl_v3_sub(place, tl_segment_place(old->m, &old->s->table.of[old->list[i].old].a, at)));
+            const double d2 = tl_v3_norm2(tl_v3_sub(place, tl_segment_place(m, &s->table.of[i].a, at)));
             if (d2 < least) {
                 least = d2;
                 found = row;
@@ -288,17 +272,23 @@ static size_t nearest_point(const old_segments *old, uint32_t meet, tl_vec3 plac
     return found;
 }
 
-/* Points of a new segment in row `row` of fresh tables. */
-static void lay_points(const old_segments *old, struct tl_segments *to, size_t row, const entry *of,
-                       const tl_new_segment *made, const tl_kind *law)
+/* Where a law acts: the kind of that of a row of the model, or NULL. */
+static const tl_kind *kind_of(const tl_model *m, uint32_t law)
 {
-    const tl_model *m = old->m;
-    tl_segment_points *p = &to->points;
-    const size_t at = first_from(old, of);
-    const bool same = at < old->count && old->list[at].meet == of->meet && old->list[at].key[0] == of->key[0] &&
-                      old->list[at].key[1] == of->key[1];
+    return law != TL_NO_ROW ? m->joint_laws[law].kind : NULL;
+}
+
+/* Points of a segment that has been found, in row `row` of a table. `same`: the old row of these triangles, or
+ * TL_NO_ROW; it may be that very row. */
+static void lay_points(const tl_model *m, tl_segment_points *p, size_t row, const tl_new_segment *made, uint32_t same)
+{
+    const tl_meet *meet = &m->segments->meet[made->meet];
+    const tl_segment_points *old = &m->segments->points;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t point = tl_segment_point_row(row, k);
+        const size_t from =
+            same != TL_NO_ROW ? tl_segment_point_row(same, k) : nearest_point(m, meet, made->over.on_a[k]);
+        const double size = from != TL_NO_ROW ? old->area[from] : 0;
         const tl_vec3 a = keep_to(m, &made->a, made->over.on_a[k]), b = keep_to(m, &made->b, made->over.on_b[k]);
         const double gap = tl_v3_dot(tl_v3_sub(made->over.on_b[k], made->over.on_a[k]), made->over.n);
         p->at_a[0][point] = a.x;
@@ -308,116 +298,147 @@ static void lay_points(const old_segments *old, struct tl_segments *to, size_t r
         p->at_b[1][point] = b.y;
         p->at_b[2][point] = b.z;
         p->area[point] = made->over.area / TL_SEGMENT_POINTS;
-        const size_t from =
-            same ? tl_segment_point_row(old->list[at].old, k) : nearest_point(old, of->meet, made->over.on_a[k]);
-        const double size = from != TL_NO_ROW ? old->s->points.area[from] : 0;
         if (size > 0)
-            copy_point(p, point, &old->s->points, from, p->area[point] / size);
+            copy_point(p, point, old, from, p->area[point] / size);
         else
-            begin_point(p, point, law, gap > TL_CONTACT_TOLERANCE * sqrt(made->over.area));
+            begin_point(p, point, kind_of(m, meet->law), gap > TL_CONTACT_TOLERANCE * sqrt(made->over.area));
     }
+}
+
+/* Sides, area and normal of a segment that has been found, in row `row` of a table. */
+static void lay_sides(tl_segment_table *to, size_t row, const tl_new_segment *made)
+{
+    to->of[row] =
+        (tl_segment){made->meet, made->a, made->b, {made->key[0], made->key[1]}, made->normal_a, made->normal_b};
+    to->area[row] = made->over.area;
+    to->normal[0][row] = made->over.n.x;
+    to->normal[1][row] = made->over.n.y;
+    to->normal[2][row] = made->over.n.z;
 }
 
 /* ---------------------------------------------------------------- laying ----------------- */
 
-/* Lets the springs of shear of stale meets hold no more than they did. Returns what they hold less, J. */
-static double keep_energy(const tl_model *m, const old_segments *old, struct tl_segments *to)
+/* What rows of segments hold of the energy of shear springs, times 2 ks. */
+static double energy_of_rows(const struct tl_segments *s, uint32_t begin, uint32_t end)
 {
-    double *sum = calloc(2 * m->segments->meet_count + 1, sizeof *sum), lost = 0; /* before, and now */
-    if (!sum)
-        return 0;
-    for (size_t i = 0; i < old->count; i++)
-        sum[2 * old->list[i].meet] += shear_energy(&old->s->points, old->list[i].old);
-    for (size_t row = 0; row < to->table.table.rows; row++)
-        if (to->table.of[row].meet != TL_NO_ROW)
-            sum[2 * to->table.of[row].meet + 1] += shear_energy(&to->points, row);
-    for (size_t row = 0; row < to->table.table.rows; row++) {
-        const uint32_t meet = to->table.of[row].meet;
-        if (meet == TL_NO_ROW || !m->segments->meet[meet].stale || !(sum[2 * meet + 1] > sum[2 * meet]))
-            continue;
-        const double scale = sqrt(sum[2 * meet] / sum[2 * meet + 1]);
+    double sum = 0;
+    for (uint32_t row = begin; row < end; row++)
+        sum += s->table.of[row].meet != TL_NO_ROW ? shear_energy(&s->points, row) : 0;
+    return sum;
+}
+
+/* Lets the springs of shear of a meet, whose rows are given, hold no more than `before`. Returns what they hold less, J.
+ */
+static double keep_energy(const tl_model *m, struct tl_segments *to, const tl_meet *meet, double before, uint32_t begin,
+                          uint32_t end)
+{
+    const double now = energy_of_rows(to, begin, end), ks = meet->law != TL_NO_ROW ? m->joint_laws[meet->law].ks : 0;
+    const double scale = now > before ? sqrt(before / now) : 1;
+    for (uint32_t row = begin; row < end && now > before; row++)
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
             for (int c = 0; c < 3; c++)
                 to->points.f_s[c][tl_segment_point_row(row, k)] *= scale;
+    return ks > 0 && before > now ? 0.5 * meet->flat * (before - now) / ks : 0;
+}
+
+/* And those of all stale meets, which fresh tables have. The old ones are still there. */
+static double keep_energies(const tl_model *m, struct tl_segments *to)
+{
+    const struct tl_segments *s = m->segments;
+    double lost = 0;
+    uint32_t end;
+    for (uint32_t row = 0; row < to->table.table.rows; row = end) {
+        const uint32_t number = to->table.of[row].meet;
+        for (end = row + 1; end < to->table.table.rows && to->table.of[end].meet == number;)
+            end++;
+        if (number == TL_NO_ROW || !s->meet[number].stale)
+            continue;
+        const tl_meet *meet = &s->meet[number];
+        lost += keep_energy(m, to, meet, energy_of_rows(s, meet->begin, meet->end), row, end);
     }
-    for (size_t k = 0; k < m->segments->meet_count; k++) {
-        const uint32_t law = m->segments->meet[k].law;
-        const double ks = law != TL_NO_ROW ? m->joint_laws[law].ks : 0;
-        if (m->segments->meet[k].stale && ks > 0 && sum[2 * k] > sum[2 * k + 1])
-            lost += 0.5 * m->segments->meet[k].flat * (sum[2 * k] - sum[2 * k + 1]) / ks;
-    }
-    free(sum);
     return lost;
 }
 
-/* Which old segments go over as they are, and which are looked at. */
-static size_t list_entries(const tl_model *m, const tl_laying *l, entry *list, old_segments *old)
+/* Whether a stale meet has lost all of its segments: no fresh row tells of it. */
+static bool has_none(const tl_laying *l, size_t first, uint32_t meet)
+{
+    return first >= l->count || l->list[first].meet != meet;
+}
+
+/* Lists the segments to be laid, by laws, meets and triangles. There is room. `lost`: adds what springs of shear held
+ * of stale meets that have none any more, J. */
+static size_t list_entries(const tl_model *m, const tl_laying *l, entry *list, double *lost)
 {
     const struct tl_segments *s = m->segments;
     size_t count = 0;
-    for (uint32_t row = 0; row < s->table.table.rows; row++) {
-        const tl_segment *of = &s->table.of[row];
-        const uint32_t meet = of->meet == TL_NO_ROW ? TL_NO_ROW : l->now ? l->now[of->meet] : of->meet;
-        if (meet == TL_NO_ROW)
-            continue;
-        const entry one = {s->meet[meet].law, meet, {of->key[0], of->key[1]}, row, TL_NO_ROW};
-        if (!s->meet[meet].stale)
-            list[count++] = one;
-        old->list[old->count] = one;
-        old->list[old->count++].law = 0; /* they are looked for by meets alone */
+    for (uint32_t i = 0; i <= m->joint_law_count; i++) {
+        const uint32_t law = i < m->joint_law_count ? i : TL_NO_ROW;
+        size_t fresh = 0;
+        for (uint32_t k = 0; k < s->meet_count; k++) {
+            const tl_meet *meet = &s->meet[k];
+            while (fresh < l->count && l->list[fresh].meet < k)
+                fresh++;
+            if (meet->law != law)
+                continue;
+            if (meet->stale && has_none(l, fresh, k))
+                *lost += shear_of(m, s, meet);
+            for (uint32_t row = meet->begin; row < meet->end && !meet->stale; row++)
+                if (s->table.of[row].meet != TL_NO_ROW)
+                    list[count++] = (entry){law, k, row, TL_NO_ROW};
+            for (; fresh < l->count && l->list[fresh].meet == k; fresh++)
+                list[count++] = (entry){law, k, TL_NO_ROW, (uint32_t)fresh};
+        }
     }
-    for (uint32_t k = 0; k < l->count; k++) {
-        const tl_new_segment *of = &l->list[k];
-        list[count++] = (entry){s->meet[of->meet].law, of->meet, {of->key[0], of->key[1]}, TL_NO_ROW, k};
-    }
-    if (count > 0)
-        qsort(list, count, sizeof *list, compare_entries);
-    if (old->count > 0)
-        qsort(old->list, old->count, sizeof *old->list, compare_entries);
     return count;
 }
+
+/* Corners that the list of outlines has room for, of each segment: of two triangles as many as they may have. */
+#define OUTLINE_ROOM 6
 
 /* Copies the outline of a segment to the end of the list, where there is room. */
 static void put_outline(struct tl_segments *to, size_t row, const tl_point2 *outline, size_t corners)
 {
     to->table.outline[row] = (uint32_t)to->outline_count;
     to->table.corners[row] = (uint32_t)corners;
-    for (size_t k = 0; k < corners; k++)
-        to->outline[to->outline_count++] = outline[k];
+    for (size_t k = 0; k < corners || k < OUTLINE_ROOM; k++)
+        to->outline[to->outline_count++] = k < corners ? outline[k] : (tl_point2){0, 0};
 }
 
-static void lay_entry(const old_segments *old, const tl_laying *l, struct tl_segments *to, size_t row, const entry *e)
+/* Corners that the outline of a segment may have where it is: up to that of the next segment. */
+static size_t outline_room(const struct tl_segments *s, size_t row)
 {
-    const tl_model *m = old->m;
-    const tl_kind *law = e->law != TL_NO_ROW ? m->joint_laws[e->law].kind : NULL;
-    if (e->old != TL_NO_ROW) {
-        const struct tl_segments *s = old->s;
-        to->table.of[row] = s->table.of[e->old];
-        to->table.of[row].meet = e->meet;
-        to->table.area[row] = s->table.area[e->old];
-        put_outline(to, row, s->outline + s->table.outline[e->old], s->table.corners[e->old]);
-        for (int c = 0; c < 3; c++)
-            to->table.normal[c][row] = s->table.normal[c][e->old];
-        for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
-            const size_t at = tl_segment_point_row(row, k), from = tl_segment_point_row(e->old, k);
-            for (int c = 0; c < 3; c++) {
-                to->points.at_a[c][at] = s->points.at_a[c][from];
-                to->points.at_b[c][at] = s->points.at_b[c][from];
-            }
-            to->points.area[at] = s->points.area[from];
-            copy_point(&to->points, at, &s->points, from, 1);
-        }
+    size_t next = row + 1;
+    while (next < s->table.table.rows && s->table.of[next].meet == TL_NO_ROW)
+        next++;
+    const size_t end = next < s->table.table.rows ? s->table.outline[next] : s->outline_count;
+    return end > s->table.outline[row] ? end - s->table.outline[row] : 0;
+}
+
+static void lay_entry(const tl_model *m, const tl_laying *l, struct tl_segments *to, size_t row, const entry *e)
+{
+    const struct tl_segments *s = m->segments;
+    if (e->old == TL_NO_ROW) {
+        const tl_new_segment *made = &l->list[e->fresh];
+        lay_sides(&to->table, row, made);
+        put_outline(to, row, l->outline + made->outline, made->over.corners);
+        lay_points(m, &to->points, row, made, same_segment(s, &s->meet[made->meet], made->key));
         return;
     }
-    const tl_new_segment *made = &l->list[e->fresh];
-    to->table.of[row] =
-        (tl_segment){made->meet, made->a, made->b, {made->key[0], made->key[1]}, made->normal_a, made->normal_b};
-    to->table.area[row] = made->over.area;
-    put_outline(to, row, l->outline + made->outline, made->over.corners);
-    to->table.normal[0][row] = made->over.n.x;
-    to->table.normal[1][row] = made->over.n.y;
-    to->table.normal[2][row] = made->over.n.z;
-    lay_points(old, to, row, e, made, law);
+    to->table.of[row] = s->table.of[e->old];
+    to->table.of[row].meet = e->meet;
+    to->table.area[row] = s->table.area[e->old];
+    put_outline(to, row, s->outline + s->table.outline[e->old], s->table.corners[e->old]);
+    for (int c = 0; c < 3; c++)
+        to->table.normal[c][row] = s->table.normal[c][e->old];
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const size_t at = tl_segment_point_row(row, k), from = tl_segment_point_row(e->old, k);
+        for (int c = 0; c < 3; c++) {
+            to->points.at_a[c][at] = s->points.at_a[c][from];
+            to->points.at_b[c][at] = s->points.at_b[c][from];
+        }
+        to->points.area[at] = s->points.area[from];
+        copy_point(&to->points, at, &s->points, from, 1);
+    }
 }
 
 /* Rows of all segments, each law from a new group on. */
@@ -441,8 +462,7 @@ static uint32_t states_of(const tl_model *m)
     return most;
 }
 
-static void fill_tables(const old_segments *old, const tl_laying *l, struct tl_segments *to, const entry *list,
-                        size_t count)
+static void fill_tables(const tl_model *m, const tl_laying *l, struct tl_segments *to, const entry *list, size_t count)
 {
     size_t row = 0;
     for (size_t k = 0; k < to->table.table.rows; k++)
@@ -453,7 +473,7 @@ static void fill_tables(const old_segments *old, const tl_laying *l, struct tl_s
             row = (row + TL_LANES - 1) / TL_LANES * TL_LANES;
             to->span[to->span_count++] = (tl_segment_span){list[k].law, (uint32_t)(row / TL_LANES), 0};
         }
-        lay_entry(old, l, to, row, &list[k]);
+        lay_entry(m, l, to, row, &list[k]);
         to->span[to->span_count - 1].group_end = (uint32_t)(row / TL_LANES + 1);
     }
 }
@@ -484,25 +504,25 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
         s->meet[k].law = tl_law_row(m, s->meet[k].tag);
     const size_t most = s->table.table.rows + l->count + 1;
     entry *list = malloc(most * sizeof *list);
-    old_segments old = {m, s, malloc(most * sizeof *old.list), 0};
+    double lost = 0;
     add_columns(&fresh, states_of(m));
-    bool enough = list && old.list && (!s->points.f_n0 || tl_segments_hold_initial(&fresh));
-    const size_t count = enough ? list_entries(m, l, list, &old) : 0;
+    bool enough = list && (!s->points.f_n0 || tl_segments_hold_initial(&fresh));
+    const size_t count = enough ? list_entries(m, l, list, &lost) : 0;
     const size_t rows = rows_of(list, count);
     enough = enough && tl_table_resize(&fresh.table.table, rows) &&
              tl_table_resize(&fresh.points.table, TL_SEGMENT_POINTS * rows) &&
-             tl_grow(&fresh.outline, &fresh.outline_capacity, s->outline_count + l->outline_count + 1,
-                     sizeof *fresh.outline) &&
+             tl_grow(&fresh.outline, &fresh.outline_capacity,
+                     s->outline_count + l->outline_count + OUTLINE_ROOM * count + 1, sizeof *fresh.outline) &&
              tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) &&
-             tl_segments_uses_room(m, s, count);
+             tl_segment_uses_room(m, s, count);
     if (!enough) {
         tl_table_free(&fresh.table.table);
         tl_table_free(&fresh.points.table);
         free(fresh.outline);
     } else {
         fresh.span = s->span;
-        fill_tables(&old, l, &fresh, list, count);
-        s->lost += keep_energy(m, &old, &fresh);
+        fill_tables(m, l, &fresh, list, count);
+        s->lost += lost + keep_energies(m, &fresh);
         tl_table_free(&s->table.table);
         tl_table_free(&s->points.table);
         s->table = fresh.table;
@@ -518,19 +538,80 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
             s->meet[k].stale = false;
         s->version++;
         sum_meets(s);
-        tl_segments_list_uses(m);
+        tl_segment_uses_list(m, s);
     }
     free(list);
-    free(old.list);
     return enough;
 }
 
-bool tl_segments_index(tl_model *m)
+/* ---------------------------------------------------------------- in their rows ---------- */
+
+/* Whether the segments that have been found of a meet, from one of the list on, are those that it has. */
+static bool meet_fits(const struct tl_segments *s, const tl_laying *l, uint32_t number, size_t fresh)
 {
-    const bool enough = tl_segments_uses_room(m, m->segments, m->segments->table.table.rows);
-    if (enough)
-        tl_segments_list_uses(m);
-    return enough;
+    const tl_meet *meet = &s->meet[number];
+    bool fits = true;
+    for (uint32_t row = meet->begin; fits && row < meet->end; row++, fresh++) {
+        const tl_new_segment *made = &l->list[fresh];
+        const uint32_t *key = s->table.of[row].key;
+        fits = fresh < l->count && made->meet == number && s->table.of[row].meet == number && key[0] == made->key[0] &&
+               key[1] == made->key[1] && made->over.corners <= outline_room(s, row);
+    }
+    return fits && has_none(l, fresh, number);
+}
+
+bool tl_laying_fits(const tl_model *m, const tl_laying *l)
+{
+    const struct tl_segments *s = m->segments;
+    bool fits = !l->other_meets;
+    for (size_t k = 0, end; fits && k < l->count; k = end) {
+        for (end = k + 1; end < l->count && l->list[end].meet == l->list[k].meet;)
+            end++;
+        fits = meet_fits(s, l, l->list[k].meet, k);
+    }
+    size_t fresh = 0;
+    for (uint32_t k = 0; fits && k < s->meet_count; k++) {
+        while (fresh < l->count && l->list[fresh].meet < k)
+            fresh++;
+        fits = !s->meet[k].stale || !has_none(l, fresh, k) || s->meet[k].begin == s->meet[k].end;
+    }
+    return fits;
+}
+
+/* Gives a segment its new polygon and points, in its row. */
+static void renew_segment(tl_model *m, const tl_laying *l, uint32_t row, const tl_new_segment *made)
+{
+    struct tl_segments *s = m->segments;
+    tl_point2 *outline = s->outline + s->table.outline[row];
+    lay_points(m, &s->points, row, made, row);
+    lay_sides(&s->table, row, made);
+    s->table.share[row] = s->meet[made->meet].share;
+    s->table.slid[row] = 0;
+    s->table.corners[row] = (uint32_t)made->over.corners;
+    for (size_t k = 0; k < made->over.corners; k++)
+        outline[k] = l->outline[made->outline + k];
+}
+
+void tl_renew_segments(tl_model *m, const tl_laying *l)
+{
+    struct tl_segments *s = m->segments;
+    size_t fresh = 0;
+    double lost = 0;
+    for (size_t k = 0; k < s->meet_count; k++) {
+        tl_meet *meet = &s->meet[k];
+        if (!meet->stale)
+            continue;
+        const double before = energy_of_rows(s, meet->begin, meet->end);
+        meet->area = 0;
+        for (uint32_t row = meet->begin; row < meet->end; row++, fresh++) {
+            renew_segment(m, l, row, &l->list[fresh]);
+            meet->area += s->table.area[row];
+        }
+        lost += keep_energy(m, s, meet, before, meet->begin, meet->end);
+        meet->stale = false;
+    }
+    s->lost += lost;
+    s->version++;
 }
 
 bool tl_segments_hold_initial(struct tl_segments *s)

@@ -19,7 +19,8 @@ typedef struct tl_laying {
     size_t count, capacity;
     tl_point2 *outline;
     size_t outline_count, outline_capacity;
-    uint32_t *now; /* of each meet that there was: its number now, or TL_NO_ROW; NULL: the same */
+    uint32_t *now;    /* of each meet that there was: its number now, or TL_NO_ROW; NULL: the same */
+    bool other_meets; /* some have come or gone */
 } tl_laying;
 
 bool tl_segments_begin(tl_model *m);
@@ -31,9 +32,13 @@ bool tl_laying_add(tl_laying *l, const tl_new_segment *segment);
 bool tl_laying_change_meets(const tl_model *m, tl_laying *l, tl_meet *list, size_t count);
 /* Lays all segments anew. false: out of memory, and nothing has changed. */
 bool tl_lay_segments(tl_model *m, const tl_laying *l);
+/* Whether stale meets have segments of the same triangles as before, and no meet has come or gone. */
+bool tl_laying_fits(const tl_model *m, const tl_laying *l);
+/* Then gives these their new polygons and points where they are, to the bit as if all were laid anew. Laws, zones and
+ * blocks are as they were. */
+void tl_renew_segments(tl_model *m, const tl_laying *l);
 void tl_laying_end(tl_laying *l);
-/* Lists the segments of gridpoints and bodies; makes columns of states. false: out of memory. */
-bool tl_segments_index(tl_model *m);
+/* Makes columns of states. false: out of memory. */
 bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns);
 /* Makes the columns of initial forces. false: out of memory. */
 bool tl_segments_hold_initial(struct tl_segments *s);

@@ -146,50 +146,107 @@ static double depth_behind(const tl_model *m, uint32_t block, uint32_t number, u
     return -least;
 }
 
-/* The depth up to which faces of two blocks touch: behind others they lie side by side. */
-static double most_depth(const tl_model *m, uint32_t a, uint32_t b)
+/* ---------------------------------------------------------------- meets ------------------ */
+
+/* A list of meets on its way. Each face is measured once, when it is first asked for; until then its reach is below 0.
+ */
+typedef struct listing {
+    const tl_model *m;
+    tl_meet *list;
+    size_t count, capacity;
+    face *face;
+    size_t *start;    /* of each block, in `face` */
+    double *depth[2]; /* of each face of two blocks: how deep the other block reaches behind it, m */
+} listing;
+
+/* false: out of memory. */
+static bool listing_begin(listing *l, const tl_model *m)
 {
+    size_t all = 0, most = 0;
+    *l = (listing){.m = m, .start = malloc((m->blocks.table.rows + 1) * sizeof *l->start)};
+    for (size_t row = 0; l->start && row < m->blocks.table.rows; row++) {
+        const size_t faces = m->blocks.shape[row]->face_count;
+        l->start[row] = all;
+        all += faces;
+        most = faces > most ? faces : most;
+    }
+    l->face = malloc((all + 1) * sizeof *l->face);
+    for (int side = 0; side < 2; side++)
+        l->depth[side] = malloc((most + 1) * sizeof *l->depth[side]);
+    for (size_t k = 0; l->face && k < all; k++)
+        l->face[k].reach = -1;
+    return l->start && l->face && l->depth[0] && l->depth[1];
+}
+
+/* Leaves the list itself. */
+static void listing_end(listing *l)
+{
+    free(l->face);
+    free(l->start);
+    free(l->depth[0]);
+    free(l->depth[1]);
+}
+
+static const face *measured(listing *l, uint32_t block, uint32_t number)
+{
+    face *at = &l->face[l->start[block] + number];
+    if (at->reach < 0)
+        *at = face_of(l->m, block, number);
+    return at;
+}
+
+/* Finds the depths behind the faces of two blocks that no joined block covers. Returns that up to which faces touch:
+ * behind others the blocks lie side by side. */
+static double find_depths(listing *l, uint32_t a, uint32_t b)
+{
+    const tl_model *m = l->m;
     double least = INFINITY;
     for (int side = 0; side < 2; side++) {
         const uint32_t block = side ? b : a, other = side ? a : b;
-        for (uint32_t k = 0; k < m->blocks.shape[block]->face_count; k++)
-            if (!m->blocks.shape[block]->covered[k])
-                least = fmin(least, depth_behind(m, block, k, other));
+        for (uint32_t k = 0; k < m->blocks.shape[block]->face_count; k++) {
+            if (m->blocks.shape[block]->covered[k])
+                continue;
+            l->depth[side][k] = depth_behind(m, block, k, other);
+            least = fmin(least, l->depth[side][k]);
+        }
     }
     return DEEPER * fmax(least, 0) + DEEPER_SIZE * fmin(m->blocks.size[a], m->blocks.size[b]);
 }
 
-/* ---------------------------------------------------------------- meets ------------------ */
+/* Adds the meet of two faces, if they meet. false: out of memory. */
+static bool list_faces(listing *l, const face *a, const face *b)
+{
+    const tl_model *m = l->m;
+    if (is_inside(a) || is_inside(b) || !faces_meet(m, a, b))
+        return true;
+    if (!tl_grow(&l->list, &l->capacity, l->count + 1, sizeof *l->list))
+        return false;
+    l->list[l->count++] = (tl_meet){
+        .a = m->blocks.id[a->block],
+        .b = m->blocks.id[b->block],
+        .face_a = a->number,
+        .face_b = b->number,
+        .tag = tl_flush_tag(m->blocks.shape[a->block]->tag[a->number], m->blocks.shape[b->block]->tag[b->number]),
+        .stale = true,
+        .share = 0.5,
+        .tilted = tilt_cosine(a, b) < NOT_TILTED,
+        .alone = true,
+        .size = fmin(a->size, b->size),
+        .flat = 1};
+    return true;
+}
 
 /* Adds the meets of two blocks. false: out of memory. */
-static bool list_pair(const tl_model *m, uint32_t a, uint32_t b, tl_meet **list, size_t *count, size_t *capacity)
+static bool list_pair(listing *l, uint32_t a, uint32_t b)
 {
-    const tl_poly *pa = m->blocks.shape[a], *pb = m->blocks.shape[b];
-    const double most = most_depth(m, a, b);
-    for (uint32_t i = 0; i < pa->face_count; i++) {
-        const face fa = face_of(m, a, i);
-        for (uint32_t k = 0; k < pb->face_count && !pa->covered[i]; k++) {
-            if (pb->covered[k] || (depth_behind(m, a, i, b) > most && depth_behind(m, b, k, a) > most))
-                continue;
-            const face fb = face_of(m, b, k);
-            if (is_inside(&fa) || is_inside(&fb) || !faces_meet(m, &fa, &fb))
-                continue;
-            if (!tl_grow(list, capacity, *count + 1, sizeof **list))
-                return false;
-            (*list)[(*count)++] = (tl_meet){.a = m->blocks.id[a],
-                                            .b = m->blocks.id[b],
-                                            .face_a = i,
-                                            .face_b = k,
-                                            .tag = tl_flush_tag(pa->tag[i], pb->tag[k]),
-                                            .stale = true,
-                                            .share = 0.5,
-                                            .tilted = tilt_cosine(&fa, &fb) < NOT_TILTED,
-                                            .alone = true,
-                                            .size = fmin(fa.size, fb.size),
-                                            .flat = 1};
-        }
-    }
-    return true;
+    const tl_poly *pa = l->m->blocks.shape[a], *pb = l->m->blocks.shape[b];
+    const double most = find_depths(l, a, b);
+    bool enough = true;
+    for (uint32_t i = 0; i < pa->face_count; i++)
+        for (uint32_t k = 0; enough && k < pb->face_count && !pa->covered[i]; k++)
+            if (!pb->covered[k] && !(l->depth[0][i] > most && l->depth[1][k] > most))
+                enough = list_faces(l, measured(l, a, i), measured(l, b, k));
+    return enough;
 }
 
 static int compare_meets(const void *x, const void *y)
@@ -204,23 +261,22 @@ static int compare_meets(const void *x, const void *y)
     return (a->face_b > b->face_b) - (a->face_b < b->face_b);
 }
 
-/* Lists the meets of all pairs, in the order of their ids. Those that there were keep what they have: `was` tells of
- * each the number it had, or TL_NO_ROW. */
+/* Lists the meets of all pairs, in the order of their ids. */
 static tl_meet *list_meets(const tl_model *m, size_t *count, bool *enough)
 {
-    tl_meet *list = NULL;
-    size_t capacity = 0;
-    *count = 0;
-    *enough = true;
+    listing l;
+    *enough = listing_begin(&l, m);
     for (size_t k = 0; *enough && k < m->detect->pair_count; k++) {
         const uint32_t a = m->detect->pairs[k].a, b = m->detect->pairs[k].b;
         const bool seen = !m->blocks.hidden[a] && !m->blocks.hidden[b] && m->blocks.body[a] != m->blocks.body[b];
         if (seen && tl_blocks_deform_either(m, a, b))
-            *enough = list_pair(m, a, b, &list, count, &capacity);
+            *enough = list_pair(&l, a, b);
     }
-    if (*count > 0)
-        qsort(list, *count, sizeof *list, compare_meets);
-    return list;
+    listing_end(&l);
+    if (l.count > 0)
+        qsort(l.list, l.count, sizeof *l.list, compare_meets);
+    *count = l.count;
+    return l.list;
 }
 
 /* ---------------------------------------------------------------- segments --------------- */
@@ -252,6 +308,83 @@ static bool lay_over(const tl_model *m, const face_parts *p, double share, tl_ve
     }
     return tl_overlay_find(&outer[0], &outer[1], share, room, over);
 }
+
+/* ---------------------------------------------------------------- boxes ------------------ */
+
+/* Tolerance: distance over the reach of two faces by which boxes of parts must be apart beyond doubt: rounding of the
+ * projection is far below. */
+#define APART_SURELY 1e-9
+
+static size_t parts_of(const face *f)
+{
+    return f->part ? f->part_count : 1;
+}
+
+/* Corner c of a part of a face. */
+static tl_vec3 part_corner(const tl_model *m, const face *f, size_t part, size_t c)
+{
+    return f->part ? corner_of(m, &f->part[part], (int)c) : rigid_corner(m, f->block, f->number, (uint32_t)c);
+}
+
+/* The box of a part of a face, in a frame whose third axis goes along an outward normal: `sign` -1 means inward. */
+static tl_part_box box_of(const tl_model *m, const face *f, size_t part, const tl_vec3 axis[3], double sign)
+{
+    tl_part_box box = {.low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}};
+    const size_t corners = f->part ? 3 : tl_poly_face_size(m->blocks.shape[f->block], f->number);
+    const tl_vec3 first = part_corner(m, f, part, 0);
+    tl_vec3 area = {0, 0, 0};
+    for (size_t c = 0; c < corners; c++) {
+        const tl_vec3 x = part_corner(m, f, part, c);
+        for (int k = 0; k < 3; k++) {
+            const double at = tl_v3_dot(axis[k], tl_v3_sub(x, f->centre));
+            box.low[k] = at < box.low[k] ? at : box.low[k];
+            box.high[k] = at > box.high[k] ? at : box.high[k];
+        }
+        if (c + 1 < corners)
+            area = tl_v3_add(area, tl_v3_cross(tl_v3_sub(x, first), tl_v3_sub(part_corner(m, f, part, c + 1), first)));
+    }
+    const double up = sign * tl_v3_dot(axis[2], area), x = tl_v3_dot(axis[0], area), y = tl_v3_dot(axis[1], area);
+    box.slope = up > 0 ? sqrt(x * x + y * y) / up : INFINITY;
+    return box;
+}
+
+/* Finds the boxes of all parts of two faces, in one frame: those of A, then those of B. false: out of memory. */
+static bool find_boxes(tl_model *m, const face *a, const face *b)
+{
+    struct tl_segments *s = m->segments;
+    const size_t count_a = parts_of(a), count = count_a + parts_of(b);
+    if (!tl_grow(&s->box, &s->box_capacity, count, sizeof *s->box))
+        return false;
+    const tl_vec3 n = tl_v3_unit(a->area), e = tl_v3_perpendicular(n), axis[3] = {e, tl_v3_cross(n, e), n};
+    const tl_vec3 apart = tl_v3_sub(b->centre, a->centre);
+    for (size_t k = 0; k < count; k++)
+        s->box[k] = k < count_a ? box_of(m, a, k, axis, 1) : box_of(m, b, k - count_a, axis, -1);
+    for (size_t k = count_a; k < count; k++)
+        for (int i = 0; i < 3; i++) {
+            s->box[k].low[i] += tl_v3_dot(axis[i], apart);
+            s->box[k].high[i] += tl_v3_dot(axis[i], apart);
+        }
+    return true;
+}
+
+/* Whether two parts have nothing in common beyond doubt. They are projected along a direction between their normals:
+ * over their distance in height that goes aside by no more than the steeper slope. `margin`: for rounding, m. */
+static bool boxes_apart(const tl_part_box *a, const tl_part_box *b, double margin)
+{
+    double wide = -INFINITY;
+    for (int k = 0; k < 2; k++) {
+        const double before = a->low[k] - b->high[k], behind = b->low[k] - a->high[k];
+        wide = before > wide ? before : wide;
+        wide = behind > wide ? behind : wide;
+    }
+    if (!(wide > margin))
+        return false;
+    const double above = a->high[2] - b->low[2], below = b->high[2] - a->low[2];
+    const double height = above > below ? above : below, slope = a->slope > b->slope ? a->slope : b->slope;
+    return wide > margin + height * slope;
+}
+
+/* ---------------------------------------------------------------- segments of meets ------ */
 
 /* Notes a segment of two parts, or of a part and a rigid face, that lie over each other. false: out of memory. */
 static bool note_segment(tl_model *m, tl_laying *l, uint32_t meet, const face *a, size_t i, const face *b, size_t k)
@@ -315,31 +448,42 @@ static double share_of(double common, const face *a, const face *b)
     return out_a / (out_a + out_b);
 }
 
-/* The area that two faces have in common, m2. */
+/* The distance by which boxes of the parts of two faces must be apart. */
+static double margin_of(const face *a, const face *b)
+{
+    return APART_SURELY * (a->reach + b->reach);
+}
+
+/* The area that two faces have in common, m2. Their boxes are known. */
 static double common_area(tl_model *m, const face *a, const face *b)
 {
+    const tl_part_box *box = m->segments->box;
+    const double margin = margin_of(a, b);
     double sum = 0;
     tl_overlay over;
-    for (size_t i = 0; i < (a->part ? a->part_count : 1); i++)
-        for (size_t k = 0; k < (b->part ? b->part_count : 1); k++)
-            sum += lay_over(m, &(face_parts){{a, b}, {i, k}}, 0.5, m->segments->corner, &m->segments->room, &over)
-                       ? over.area
-                       : 0;
+    for (size_t i = 0; i < parts_of(a); i++)
+        for (size_t k = 0; k < parts_of(b); k++)
+            if (!boxes_apart(&box[i], &box[parts_of(a) + k], margin) &&
+                lay_over(m, &(face_parts){{a, b}, {i, k}}, 0.5, m->segments->corner, &m->segments->room, &over))
+                sum += over.area;
     return sum;
 }
 
-/* Notes the segments of a meet. */
+/* Notes the segments of a meet, in the order of their parts. */
 static bool find_segments(tl_model *m, tl_laying *l, uint32_t number)
 {
     tl_meet *meet = &m->segments->meet[number];
     const face a = face_of(m, tl_block_row_quiet(m, meet->a), meet->face_a);
     const face b = face_of(m, tl_block_row_quiet(m, meet->b), meet->face_b);
-    bool enough = make_room(m, &a, &b);
+    bool enough = make_room(m, &a, &b) && find_boxes(m, &a, &b);
+    const tl_part_box *box = m->segments->box;
+    const double margin = margin_of(&a, &b);
     if (enough)
         meet->share = share_of(meet->area > 0 ? meet->area : common_area(m, &a, &b), &a, &b);
-    for (size_t i = 0; enough && i < (a.part ? a.part_count : 1); i++)
-        for (size_t k = 0; enough && k < (b.part ? b.part_count : 1); k++)
-            enough = note_segment(m, l, number, &a, i, &b, k);
+    for (size_t i = 0; enough && i < parts_of(&a); i++)
+        for (size_t k = 0; enough && k < parts_of(&b); k++)
+            if (!boxes_apart(&box[i], &box[parts_of(&a) + k], margin))
+                enough = note_segment(m, l, number, &a, i, &b, k);
     return enough;
 }
 
@@ -371,6 +515,15 @@ static void mark_changed(tl_model *m)
     }
 }
 
+/* Lays the segments that have been found: in their rows, where nothing is in the way. false: out of memory. */
+static bool lay_found(tl_model *m, const tl_laying *l, bool others)
+{
+    const bool in_place = !others && tl_laying_fits(m, l);
+    if (in_place)
+        tl_renew_segments(m, l);
+    return in_place || tl_lay_segments(m, l);
+}
+
 tl_status tl_segments_find(tl_model *m)
 {
     if (!tl_model_deforms(m))
@@ -380,7 +533,9 @@ tl_status tl_segments_find(tl_model *m)
     struct tl_segments *s = m->segments;
     const bool anew = m->cycles % LIST_EVERY == 0 || s->structure != m->structure || s->zones != m->zones->version ||
                       s->lists != m->detect->lists;
-    bool some = anew || s->laws != m->laws, enough = true;
+    const bool others = s->version == 0 || s->structure != m->structure || s->zones != m->zones->version ||
+                        s->laws != m->laws; /* rows, parts or laws are others */
+    bool some = anew || others, enough = true;
     tl_laying l;
     tl_laying_begin(&l);
     if (anew) {
@@ -400,8 +555,9 @@ tl_status tl_segments_find(tl_model *m)
     for (uint32_t k = 0; enough && some && k < s->meet_count; k++)
         if (s->meet[k].stale)
             enough = find_segments(m, &l, k);
-    enough = enough && (!some || tl_lay_segments(m, &l)) &&
-             tl_grow(&s->blend, &s->blend_capacity, s->meet_count + 1, sizeof *s->blend);
+    if (enough && some)
+        enough = lay_found(m, &l, others);
+    enough = enough && tl_grow(&s->blend, &s->blend_capacity, s->meet_count + 1, sizeof *s->blend);
     if (enough && (tl_blends_find(m) || some))
         enough = list_meeting(m);
     tl_laying_end(&l);
@@ -458,8 +614,8 @@ static bool cover_faces(covering *c, const face *a, const face *b)
     const size_t need = corners_for(c->m, a, b);
     bool enough = tl_grow(&c->corner, &c->corner_capacity, need, sizeof *c->corner) &&
                   make_overlay_room(&c->room, &c->memory, need);
-    for (size_t i = 0; enough && i < (a->part ? a->part_count : 1); i++)
-        for (size_t k = 0; enough && k < (b->part ? b->part_count : 1); k++)
+    for (size_t i = 0; enough && i < parts_of(a); i++)
+        for (size_t k = 0; enough && k < parts_of(b); k++)
             enough = note_cover(c, &(face_parts){{a, b}, {i, k}});
     return enough;
 }

@@ -129,6 +129,12 @@ typedef struct tl_segment_use {
  * come before those that are touched. */
 #define TL_SEGMENT_DUMMIES 3
 
+/* Where a part of a face lies, in a frame of two faces, m: its third axis goes along the normal of one. `slope`: tangent
+ * of the angle between the part's normal and that axis. */
+typedef struct tl_part_box {
+    double low[3], high[3], slope;
+} tl_part_box;
+
 struct tl_segments {
     tl_segment_table table;
     tl_segment_points points;
@@ -142,6 +148,7 @@ struct tl_segments {
     tl_segment_use *use, *body_use;
     uint32_t *use_start, *body_start;
     size_t use_capacity, use_start_capacity, body_use_capacity, body_start_capacity;
+    size_t bodies_listed; /* rows of bodies that the lists know: none acts on those that came later */
     /* gridpoints that segments touch, and where they are in a step, after those that stand for other sides */
     uint32_t *touched;
     tl_gridpoint_now *now;
@@ -153,6 +160,8 @@ struct tl_segments {
     tl_point2 *room_memory;
     tl_vec3 *corner; /* scratch: of a rigid face */
     size_t corner_capacity;
+    tl_part_box *box; /* scratch: of the parts of two faces */
+    size_t box_capacity;
     tl_blend *blend; /* in this step, in the order of the meets */
     size_t blend_count, blend_capacity;
     double blend_stored, blend_heat; /* that is counted of field contacts and is none, in this step, J */

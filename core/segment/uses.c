@@ -1,4 +1,4 @@
-/* uses.c - what segments act on: of each gridpoint and body the segments, and of segments the gridpoints. */
+/* uses.c - which segments act on a gridpoint, and which on a body. */
 #include "segment/uses.h"
 
 #include <string.h>
@@ -49,9 +49,8 @@ static void list_touched(const tl_model *m, struct tl_segments *s)
     }
 }
 
-void tl_segments_list_uses(const tl_model *m)
+void tl_segment_uses_list(const tl_model *m, struct tl_segments *s)
 {
-    struct tl_segments *s = m->segments;
     for (size_t row = 0; row < s->table.table.rows; row++) {
         const uint32_t meet = s->table.of[row].meet;
         s->table.share[row] = meet != TL_NO_ROW ? s->meet[meet].share : 0.5;
@@ -62,13 +61,22 @@ void tl_segments_list_uses(const tl_model *m)
     }
     list_uses(m, s);
     list_touched(m, s);
+    s->bodies_listed = m->bodies.table.rows;
 }
 
-bool tl_segments_uses_room(const tl_model *m, struct tl_segments *s, size_t segments)
+bool tl_segment_uses_room(const tl_model *m, struct tl_segments *s, size_t segments)
 {
     return tl_grow(&s->use, &s->use_capacity, 6 * segments, sizeof *s->use) &&
            tl_grow(&s->touched, &s->touched_capacity, 6 * segments, sizeof *s->touched) &&
            tl_grow(&s->body_use, &s->body_use_capacity, 2 * segments, sizeof *s->body_use) &&
            tl_grow(&s->use_start, &s->use_start_capacity, m->zones->points.table.rows + 1, sizeof *s->use_start) &&
            tl_grow(&s->body_start, &s->body_start_capacity, m->bodies.table.rows + 1, sizeof *s->body_start);
+}
+
+bool tl_segments_index(tl_model *m)
+{
+    const bool enough = tl_segment_uses_room(m, m->segments, m->segments->table.table.rows);
+    if (enough)
+        tl_segment_uses_list(m, m->segments);
+    return enough;
 }

@@ -28,8 +28,13 @@ const tl_surface_part *tl_face_parts(const tl_model *m, tl_id block, uint32_t nu
     if (mesh == TL_NO_ROW)
         return NULL;
     const tl_surface_part *at = z->part + z->mesh[mesh].part_begin, *end = z->part + z->mesh[mesh].part_end;
-    while (at < end && (at->block < block || (at->block == block && at->face < number)))
-        at++;
+    for (const tl_surface_part *beyond = end; at < beyond;) {
+        const tl_surface_part *middle = at + (beyond - at) / 2;
+        if (middle->block < block || (middle->block == block && middle->face < number))
+            at = middle + 1;
+        else
+            beyond = middle;
+    }
     while (at + *count < end && at[*count].block == block && at[*count].face == number)
         ++*count;
     return at;
