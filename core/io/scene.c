@@ -668,7 +668,7 @@ static tl_status put_contact_chunks(tl_model *m, const tl_html *options, double 
     }
     if (status == TL_OK) {
         tl_parallel_for(m->pool, c.listed, CONTACT_CHUNK, find_range, &c);
-        status = tl_verdict_of(m, median, c.rows, c.facts, c.listed - c.meetings, verdict);
+        status = tl_verdict_of(m, median, c.rows, c.facts, c.listed, verdict);
     }
     if (status == TL_OK && wanted) {
         pick(&c, options->contacts);

@@ -10,6 +10,7 @@
 #include "force/joint_laws.h"
 #include "model/body_shape.h"
 #include "model/rows.h"
+#include "query/meeting.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -113,10 +114,13 @@ static void find_bodies(const tl_model *m, const motion_list *list, tl_verdict *
 static double sprung(const tl_model *m, uint32_t contact, const tl_contact_facts *facts)
 {
     const tl_detect *d = m->detect;
-    const uint32_t law = d->contacts.law[contact];
-    const double kn = law == TL_NO_ROW ? 0 : m->joint_laws[law].kn;
-    const double ks = law == TL_NO_ROW ? 0 : m->joint_laws[law].ks;
+    const double kn = facts->law == TL_NO_ROW ? 0 : m->joint_laws[facts->law].kn;
+    const double ks = facts->law == TL_NO_ROW ? 0 : m->joint_laws[facts->law].ks;
     double pressed = 0;
+    if (tl_row_is_meeting(m, contact) && kn > 0) {
+        const tl_meeting by = tl_meeting_of(m, contact);
+        pressed = fabs(by.pressing - by.initial) / kn;
+    }
     for (size_t k = 0; k < tl_point_count(m, contact) && kn > 0; k++) {
         const size_t i = tl_point_row(&d->contacts, contact, k);
         pressed += fabs(d->points.f_n[i] - (d->points.f_n0 ? d->points.f_n0[i] : 0)) / kn;
@@ -235,10 +239,22 @@ static void add_point(means *to, double weight, tl_vec3 point, tl_vec3 passed)
     to->passed = tl_v3_madd(to->passed, weight, passed);
 }
 
-/* Adds what a contact's points carry, and where. */
-static void add_forces(const tl_model *m, uint32_t contact, double sign, means *to)
+/* How far b has gone from a by the facts of a contact, m. */
+static tl_vec3 passed_of(const tl_contact_facts *facts)
+{
+    return tl_v3_madd(facts->shear_displacement, facts->opening, facts->normal);
+}
+
+/* Adds what a contact's points carry, and where; of segments what all of them do. */
+static void add_forces(const tl_model *m, uint32_t contact, const tl_contact_facts *facts, double sign, means *to)
 {
     const tl_detect *d = m->detect;
+    if (tl_row_is_meeting(m, contact)) {
+        const double force = fabs(facts->normal_force);
+        if (force > 0)
+            add_point(to, force, tl_v3_sub(facts->point, m->origin), tl_v3_scale(sign, passed_of(facts)));
+        return;
+    }
     const tl_vec3 from = tl_side_place(m, tl_contact_sides(m, contact).a);
     means own = {0};
     for (size_t k = 0; k < tl_point_count(m, contact); k++) {
@@ -269,9 +285,8 @@ static void add_contact(const tl_model *m, motion_list *list, size_t first, cons
     }
     to->area += facts->area;
     to->sprung += sprung(m, row, facts);
-    add_point(&to->mean, facts->area, tl_v3_sub(facts->point, m->origin),
-              tl_v3_scale(sign, tl_v3_madd(facts->shear_displacement, facts->opening, facts->normal)));
-    add_forces(m, row, sign, &to->by_force);
+    add_point(&to->mean, facts->area, tl_v3_sub(facts->point, m->origin), tl_v3_scale(sign, passed_of(facts)));
+    add_forces(m, row, facts, sign, &to->by_force);
 }
 
 /* Makes means of the sums of a meeting. */
@@ -286,6 +301,13 @@ static void end_meeting(meeting *of)
     of->sprung /= of->area;
 }
 
+static tl_sides bodies_of(const tl_model *m, uint32_t row, const tl_contact_facts *facts)
+{
+    if (!tl_row_is_meeting(m, row))
+        return tl_contact_bodies(m, row);
+    return (tl_sides){m->blocks.body[tl_block_row_quiet(m, facts->a)], m->blocks.body[tl_block_row_quiet(m, facts->b)]};
+}
+
 /* Finds the meetings; edges that only touch are none. false: out of memory. */
 static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_contact_facts *facts, size_t count,
                           motion_list *list)
@@ -298,7 +320,7 @@ static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_cont
         return false;
     }
     for (size_t i = 0; i < count; i++) {
-        const tl_sides on = tl_contact_bodies(m, rows[i]);
+        const tl_sides on = bodies_of(m, rows[i], &facts[i]);
         if (facts[i].area > 0)
             list_of[many++] = on.a < on.b ? (between){on.a, on.b, i, false} : (between){on.b, on.a, i, true};
     }
@@ -392,7 +414,6 @@ tl_status tl_model_verdict(tl_model *m, tl_verdict *out)
     tl_status status = tl_contacts_listed(m, &rows, &count, &meetings);
     if (status != TL_OK)
         return status;
-    count -= meetings; /* of which nothing is said */
     tl_contact_facts *facts = malloc((count + 1) * sizeof *facts);
     for (size_t i = 0; facts && i < count; i++)
         facts[i] = tl_contact_facts_of(m, rows[i]);

@@ -1,4 +1,4 @@
-/* vtk_zones.c - the zones of a frame, and the surfaces of deformable blocks.
+/* vtk_zones.c - the zones of a frame, those that a section cuts, and the surfaces of deformable blocks.
  *
  * Zones are an UNSTRUCTURED_GRID of tetrahedra (cell type 10). Their points are the gridpoints where they are now.
  * Bodies share none.
@@ -28,6 +28,7 @@
 #include "io/zone_list.h"
 #include "query/zone_fields.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,7 +79,8 @@ enum { POINT_COLUMNS = sizeof point_columns / sizeof *point_columns };
 typedef struct zones {
     tl_model *model;
     tl_zone_list list;
-    const column *of; /* that is being written */
+    const column *of;       /* that is being written */
+    const uint32_t *picked; /* of a section: the number in the list of each row's zone; NULL: rows are the zones */
 } zones;
 
 static double whole_of(const zones *j, size_t i)
@@ -95,7 +97,7 @@ static double whole_of(const zones *j, size_t i)
 }
 
 /* Values of zones, or gridpoints, begin to end, at most ASKED. There is such a field, and they all are there. */
-static void ask(const zones *j, size_t begin, size_t end, double *values)
+static void ask_listed(const zones *j, size_t begin, size_t end, double *values)
 {
     const column *of = j->of;
     size_t width = 1;
@@ -108,6 +110,23 @@ static void ask(const zones *j, size_t begin, size_t end, double *values)
         tl_gridpoints_values(j->model, j->list.point_name + begin, end - begin, of->field, values, &width);
     else
         tl_zones_values(j->model, j->list.zone_name + begin, end - begin, of->field, values, &width);
+}
+
+/* Those of rows. A row without a zone has NaN, or -1 among whole numbers. */
+static void ask(const zones *j, size_t begin, size_t end, double *values)
+{
+    const column *of = j->of;
+    if (!j->picked) {
+        ask_listed(j, begin, end, values);
+        return;
+    }
+    for (size_t i = begin; i < end; i++, values += of->width) {
+        const uint32_t zone = j->picked[i];
+        if (zone != TL_NO_ROW)
+            ask_listed(j, zone, (size_t)zone + 1, values);
+        for (size_t w = 0; zone == TL_NO_ROW && w < of->width; w++)
+            values[w] = of->type[0] == 'i' ? -1 : NAN;
+    }
 }
 
 static size_t number_bytes(const column *of)
@@ -127,7 +146,7 @@ static void fill_column(const void *user, size_t begin, size_t end, tl_piece *pi
         for (size_t k = 0; k < (next - begin) * of->width; k++)
             to = of->type[0] == 'd'   ? tl_vtk_put_double(to, values[k])
                  : of->type[0] == 'f' ? tl_vtk_put_float(to, values[k])
-                                      : tl_vtk_put_int(to, (int32_t)(uint32_t)values[k]);
+                                      : tl_vtk_put_int(to, (int32_t)(int64_t)values[k]);
     }
 }
 
@@ -275,6 +294,31 @@ tl_status tl_vtk_zones(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
     free(added.list);
     free(added.name);
     tl_zone_list_free(&j.list);
+    return status;
+}
+
+/* ---------------------------------------------------------------- sections --------------- */
+
+/* Columns after the first that sections have of all blocks. */
+enum { OF_BLOCKS = 2 };
+
+tl_status tl_vtk_picked_zones(tl_model *m, const tl_zone_list *list, const uint32_t *picked, size_t count,
+                              tl_pieces *out)
+{
+    const tl_vtk_parts none = tl_vtk_parts_default();
+    zones j = {.model = m, .list = *list, .picked = picked};
+    more states = {0};
+    tl_status status = list_more(m, &none, list->zones, &states);
+    if (status == TL_OK) {
+        tl_vtk_field(out->output->file, "ZoneData", ZONE_COLUMNS - OF_BLOCKS + states.count);
+        status = put_columns(&j, zone_columns, 1, count, out);
+    }
+    if (status == TL_OK)
+        status = put_columns(&j, zone_columns + 1 + OF_BLOCKS, ZONE_COLUMNS - 1 - OF_BLOCKS, count, out);
+    if (status == TL_OK)
+        status = put_columns(&j, states.list, states.count, count, out);
+    free(states.list);
+    free(states.name);
     return status;
 }
 

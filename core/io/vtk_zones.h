@@ -1,12 +1,17 @@
-/* vtk_zones.h - the zones of a frame, and the surfaces of deformable blocks. */
+/* vtk_zones.h - the zones of a frame, those that a section cuts, and the surfaces of deformable blocks. */
 #ifndef TL_IO_VTK_ZONES_H
 #define TL_IO_VTK_ZONES_H
 
 #include "io/pieces.h"
+#include "io/zone_list.h"
 
 #include <talus/output.h>
 
 tl_status tl_vtk_zones(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out);
+/* The arrays of zones, but for block and group, for `count` cells: picked[i] is the number in the list of the zone of
+ * cell i. TL_NO_ROW: its block is rigid, and has NaN, or -1 where numbers are whole. */
+tl_status tl_vtk_picked_zones(tl_model *m, const tl_zone_list *list, const uint32_t *picked, size_t count,
+                              tl_pieces *out);
 
 /* The surfaces of all deformable blocks, by row of the block; a rigid one has no vertices and no triangles. */
 typedef struct tl_block_surfaces {

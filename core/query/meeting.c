@@ -5,6 +5,7 @@
 #include "base/table.h"
 #include "contact/detection.h"
 #include "contact/index.h"
+#include "contact/sides.h"
 #include "segment/lay.h"
 
 #include <math.h>
@@ -70,13 +71,19 @@ uint32_t tl_meeting_row(const tl_model *m, tl_id a, tl_id b)
 
 /* ---------------------------------------------------------------- sums ------------------- */
 
-/* How far a point of a side has moved, m: since displacements began to count, of gridpoints since they were made. */
-static tl_vec3 moved_of(const tl_model *m, const tl_segment_side *side, tl_id block, tl_vec3 at)
+/* How far a point of a side has moved since displacements of its block began to count, m; x is where it is, from the
+ * model's origin. Gridpoints know that since they were made. What the block's frame had done before, and what of it
+ * does not count, is that of a rigid body: strains at the last reset are left out. */
+static tl_vec3 moved_of(const tl_model *m, const tl_segment_side *side, tl_id block, tl_vec3 at, tl_vec3 x)
 {
+    const uint32_t row = tl_block_row_quiet(m, block);
     if (tl_side_is_rigid(side))
-        return tl_block_point_displacement(m, tl_block_row_quiet(m, block), at);
+        return tl_block_point_displacement(m, row, at);
+    const tl_body_mesh *mesh = &m->zones->mesh[m->zones->points.mesh[side->at[0]]];
+    const tl_base made = {mesh->made_u, mesh->made_q};
+    const tl_vec3 local = tl_side_local(m, mesh->row, x);
     const double w[3] = {at.x, at.y, at.z};
-    tl_vec3 sum = {0, 0, 0};
+    tl_vec3 sum = tl_v3_sub(tl_block_point_displacement(m, row, local), tl_block_point_moved(m, row, &made, local));
     for (int k = 0; k < 3; k++)
         sum = tl_v3_madd(sum, w[k], tl_columns_get(m->zones->points.u, side->at[k]));
     return sum;
@@ -111,8 +118,9 @@ static void add_segment(const tl_model *m, const tl_meet *meet, size_t row, tl_m
         const double area = p->area[point];
         sum->gap = fmin(sum->gap, tl_v3_dot(n, tl_v3_sub(b, a)));
         sum->point = tl_v3_madd(sum->point, 0.5 * area, tl_v3_add(a, b));
-        const tl_vec3 moved_a = moved_of(m, &of->a, meet->a, at_a), moved_b = moved_of(m, &of->b, meet->b, at_b);
+        const tl_vec3 moved_a = moved_of(m, &of->a, meet->a, at_a, a), moved_b = moved_of(m, &of->b, meet->b, at_b, b);
         sum->passed = tl_v3_madd(sum->passed, area, tl_v3_sub(moved_b, moved_a));
+        sum->initial += p->f_n0 ? p->f_n0[point] : 0;
         sum->any |= p->flags[point];
         sum->all &= p->flags[point];
     }

@@ -18,6 +18,7 @@ typedef struct tl_meeting {
     tl_vec3 normal;    /* unit, from a to b */
     tl_vec3 point;     /* centroid of the area, from the model's origin, m */
     double pressing;   /* N */
+    double initial;    /* that of stresses that were there before anything moved, N */
     tl_vec3 shear;     /* N, on b */
     tl_vec3 passed;    /* how far b has moved against a, mean over the area, m */
     uint32_t any, all; /* flags that some point has, and that all have */

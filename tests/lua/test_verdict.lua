@@ -46,6 +46,43 @@ check.near(failed.slip, failed.displacement, 1e-4 * failed.slip)
 check.equal(failed.slipping, 1)
 check.holds(failed.text:find('failed: 1 block (4 m3) has moved since stage "weaker", towards 090/00, block 2 the farthest', 1, true), failed.text)
 
+-- A block of zones that slides on a rigid one is told as sliding, and by how much: its contacts are by segments.
+local function slope_of_zones(friction)
+    local zoned = slope(friction)
+    zoned:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+    zoned:blocks { id = 2 }:deformable { zone = 0.5, solid = "rock" }
+    return zoned
+end
+
+local zoned = slope_of_zones(40)
+zoned:solve { ratio = 1e-5 }
+local stands = zoned:verdict()
+check.equal(stands.contacts, 1)
+check.equal(stands.moved, 0)
+check.near(stands.slip, zoned:contacts()[1].shear_displacement[1], 1e-6 * stands.slip)
+zoned:stage "weaker"
+check.holds(zoned:verdict().slip < stands.slip, "what has slipped before a stage does not count")
+joint(zoned, 1e9, 20)
+zoned:cycle(4000)
+local slides = zoned:verdict()
+check.equal(slides.moved, 1)
+check.equal(slides.farthest, 2)
+check.equal(slides.contacts, 1)
+check.equal(slides.slipping, 1)
+check.near(slides.slip, slides.displacement, 1e-4 * slides.slip)
+check.equal(slides.text:match "; largest slip [%d.]+ m%.$" ~= nil, true)
+
+-- Displacements of zones count from a stage as those of the rigid block do that they lie on: both go down together.
+local both = slope_of_zones(40)
+both:blocks { id = 1 }:drive { velocity = { 0, 0, -10 } }
+both:cycle(2000)
+local went = both:verdict()
+check.holds(went.displacement > 1, "both blocks go down")
+local before = went.slip
+both:stage "on"
+both:cycle(1)
+check.holds(both:verdict().slip < 1e-2 and before < 1e-1 and both:verdict().opening < 1e-2, both:verdict().text)
+
 -- The same of a copy and from a file; to ask changes nothing.
 local twin = model:copy()
 model:save(folder .. "/verdict.talus")

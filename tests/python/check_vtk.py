@@ -370,6 +370,48 @@ def check_segments(folder):
         check(len(own) > 4 and abs(whole - area) < STRETCH * area, f"zones: {len(own)} segments of contact {pair} have {whole} m2, not {area}")
 
 
+def cut_zones(data, axis, height):
+    """The zones that a plane across an axis cuts, and the area in which it does, by VTK itself."""
+    plane, cut, mass = vtk.vtkPlane(), vtk.vtkCutter(), vtk.vtkMassProperties()
+    plane.SetNormal(*(float(k == axis) for k in range(3)))
+    plane.SetOrigin(*(height * (k == axis) for k in range(3)))
+    cut.SetInputData(data)
+    cut.SetCutFunction(plane)
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputConnection(cut.GetOutputPort())
+    mass.SetInputConnection(triangles.GetOutputPort())
+    mass.Update()
+    heights = [[data.GetPoint(data.GetCell(i).GetPointId(k))[axis] for k in range(4)] for i in range(data.GetNumberOfCells())]
+    return [i for i, of in enumerate(heights) if min(of) < height < max(of)], mass.GetSurfaceArea()
+
+
+def check_zone_section(path, data, axis, height, normal, rigid):
+    """A polygon for each zone that is cut, with the zone's values, behind those of the rigid blocks."""
+    section, name = read(path, vtk.vtkPolyDataReader), path.name
+    zones, area = cut_zones(data, axis, height)
+    cells, count = section.GetCellData(), section.GetNumberOfPolys()
+    if not check(count == len(zones) + len(rigid) and len(zones) > 10, f"{name}: {count} polygons of {len(zones)} zones and {len(rigid)} blocks"):
+        return
+    ids = [int(cells.GetArray("block_id").GetValue(i)) for i in range(count)]
+    check(ids == rigid + [2] * len(zones), f"{name}: blocks {ids}")
+    areas = [polygon_area(section, i, normal) for i in range(count)]
+    check(min(areas) > 0 and abs(sum(areas[len(rigid):]) - area) < 1e-5 * area, f"{name}: area {sum(areas[len(rigid):])}, not {area}")
+    check(max(section.GetCell(i).GetNumberOfPoints() for i in range(len(rigid), count)) == 4, f"{name}: zones have no quadrangles")
+    check(all(abs(section.GetPoint(i)[axis] - height) < 1e-6 for i in range(section.GetNumberOfPoints())), f"{name}: points off the plane")
+    for array, width in {**ZONE_ARRAYS, "plastic_shear": 1}.items():
+        of_zones, of_section = data.GetCellData().GetArray(array), cells.GetArray(array)
+        if not check(of_section is not None and of_section.GetNumberOfComponents() == width, f"{name}: no array {array}"):
+            continue
+        same = all(of_zones.GetTuple(zone) == of_section.GetTuple(len(rigid) + i) for i, zone in enumerate(zones))
+        check(same, f"{name}: {array} is not that of the zones")
+        if array not in ("block_id", "group"):
+            values = [value for i in range(len(rigid)) for value in of_section.GetTuple(i)]
+            check(all(value == -1 or math.isnan(value) for value in values), f"{name}: {array} of rigid blocks {values}")
+    if axis == 2:
+        own = [cells.GetArray("displacement").GetTuple(i)[2] for i in range(count)]
+        check(max(own) < 0 and moved(section) <= moved(data), f"{name}: displacements {own}")
+
+
 def check_zones(folder):
     """The column of zones: its volume and stress, the names of solid and group, and its surface in the file of the blocks."""
     times = check_series(folder, "zoned", "zones", 2)
@@ -401,6 +443,8 @@ def check_zones(folder):
     check(all(abs(a - b) < 1e-5 * max(map(abs, wanted)) for a, b in zip(sums, wanted)), f"{name}: stress {sums}, expected {wanted}")
     check(0 < plastic == int(expected["plastic"]) < count, f"{name}: {plastic} zones have yielded, expected {expected['plastic']}")
     check_segments(folder)
+    check_zone_section(folder / "zoned_level_section_000000.vtk", data, 2, 1.4, (0, 0, 1), [])
+    check_zone_section(folder / "zoned_upright_section_000000.vtk", data, 1, 0.45, (0, 1, 0), [1, 3])
     blocks = read(folder / "zoned_blocks_000001.vtk", vtk.vtkUnstructuredGridReader)
     loops = face_loops(blocks, 1)
     edges = [edge for loop in loops for edge in zip(loop, loop[1:] + loop[:1])]

@@ -210,6 +210,10 @@ TEST(zones_for_the_reader)
     CHECK_INT(tl_write_vtk(m, FOLDER "/zoned", &parts), TL_OK);
     CHECK_TEXT(tl_model_error(m)->text, "");
     note_zones(m, FOLDER "/zoned.txt");
+    const tl_halfspace level = {0, 0, {0, 0, 1.4}}, upright = {90, 0, {0, 0.45, 0}};
+    CHECK_INT(tl_write_section(m, FOLDER "/zoned_level", &level), TL_OK);
+    CHECK_INT(tl_write_section(m, FOLDER "/zoned_upright", &upright), TL_OK);
+    CHECK_TEXT(tl_model_error(m)->text, "");
     free(values);
     tl_model_destroy(m);
 }
