@@ -67,8 +67,11 @@ void tl_segments_free(struct tl_segments *s)
 {
     tl_table_free(&s->table.table);
     tl_table_free(&s->points.table);
-    void *const owned[] = {s->meet,        s->span,  s->use,     s->body_use, s->use_start, s->body_start, s->corner,
-                           s->room_memory, s->blend, s->outline, s->touched,  s->now,       s->box};
+    tl_table_free(&s->spare.table);
+    tl_table_free(&s->spare_points.table);
+    void *const owned[] = {s->meet,       s->span,   s->use,         s->body_use,     s->use_start,
+                           s->body_start, s->corner, s->room_memory, s->blend,        s->outline,
+                           s->touched,    s->now,    s->box,         s->spare_outline};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -497,24 +500,69 @@ static void sum_meets(struct tl_segments *s)
     }
 }
 
+static void move_tables(struct tl_segments *to, const tl_segment_table *table, const tl_segment_points *points)
+{
+    to->table = *table;
+    to->table.table.owner = &to->table;
+    to->points = *points;
+    to->points.table.owner = &to->points;
+}
+
+/* Fresh tables of so many rows, and room for outlines, in the memory of those before the last. false: out of memory. */
+static bool make_fresh(struct tl_segments *s, struct tl_segments *fresh, uint32_t states, size_t rows, size_t corners)
+{
+    const bool fits = s->spare.table.capacity > 0 && s->spare_points.state_columns == states &&
+                      !s->spare_points.f_n0 == !s->points.f_n0;
+    bool enough = true;
+    if (fits) {
+        move_tables(fresh, &s->spare, &s->spare_points);
+    } else {
+        tl_table_free(&s->spare.table);
+        tl_table_free(&s->spare_points.table);
+        add_columns(fresh, states);
+        enough = !s->points.f_n0 || tl_segments_hold_initial(fresh);
+    }
+    memset(&s->spare, 0, sizeof s->spare);
+    memset(&s->spare_points, 0, sizeof s->spare_points);
+    fresh->outline = s->spare_outline;
+    fresh->outline_capacity = s->spare_outline_capacity;
+    s->spare_outline = NULL;
+    s->spare_outline_capacity = 0;
+    return enough && tl_table_resize(&fresh->table.table, 0) && tl_table_resize(&fresh->points.table, 0) &&
+           tl_table_resize(&fresh->table.table, rows) &&
+           tl_table_resize(&fresh->points.table, TL_SEGMENT_POINTS * rows) &&
+           tl_grow(&fresh->outline, &fresh->outline_capacity, corners, sizeof *fresh->outline);
+}
+
+/* Puts fresh tables in the place of those that there are, which become spare ones. */
+static void take_fresh(struct tl_segments *s, struct tl_segments *fresh)
+{
+    s->spare = s->table;
+    s->spare.table.owner = &s->spare;
+    s->spare_points = s->points;
+    s->spare_points.table.owner = &s->spare_points;
+    s->spare_outline = s->outline;
+    s->spare_outline_capacity = s->outline_capacity;
+    move_tables(s, &fresh->table, &fresh->points);
+    s->span_count = fresh->span_count;
+    s->outline = fresh->outline;
+    s->outline_count = fresh->outline_count;
+    s->outline_capacity = fresh->outline_capacity;
+}
+
 bool tl_lay_segments(tl_model *m, const tl_laying *l)
 {
     struct tl_segments *s = m->segments, fresh = {.span = NULL};
     for (size_t k = 0; k < s->meet_count; k++)
         s->meet[k].law = tl_law_row(m, s->meet[k].tag);
-    const size_t most = s->table.table.rows + l->count + 1;
-    entry *list = malloc(most * sizeof *list);
+    entry *list = malloc((s->table.table.rows + l->count + 1) * sizeof *list);
     double lost = 0;
-    add_columns(&fresh, states_of(m));
-    bool enough = list && (!s->points.f_n0 || tl_segments_hold_initial(&fresh));
-    const size_t count = enough ? list_entries(m, l, list, &lost) : 0;
-    const size_t rows = rows_of(list, count);
-    enough = enough && tl_table_resize(&fresh.table.table, rows) &&
-             tl_table_resize(&fresh.points.table, TL_SEGMENT_POINTS * rows) &&
-             tl_grow(&fresh.outline, &fresh.outline_capacity,
-                     s->outline_count + l->outline_count + OUTLINE_ROOM * count + 1, sizeof *fresh.outline) &&
-             tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) &&
-             tl_segment_uses_room(m, s, count);
+    const size_t count = list ? list_entries(m, l, list, &lost) : 0;
+    const bool enough = list &&
+                        make_fresh(s, &fresh, states_of(m), rows_of(list, count),
+                                   s->outline_count + l->outline_count + OUTLINE_ROOM * count + 1) &&
+                        tl_grow(&s->span, &s->span_capacity, m->joint_law_count + 1, sizeof *s->span) &&
+                        tl_segment_uses_room(m, s, count);
     if (!enough) {
         tl_table_free(&fresh.table.table);
         tl_table_free(&fresh.points.table);
@@ -523,17 +571,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
         fresh.span = s->span;
         fill_tables(m, l, &fresh, list, count);
         s->lost += lost + keep_energies(m, &fresh);
-        tl_table_free(&s->table.table);
-        tl_table_free(&s->points.table);
-        s->table = fresh.table;
-        s->table.table.owner = &s->table;
-        s->points = fresh.points;
-        s->points.table.owner = &s->points;
-        s->span_count = fresh.span_count;
-        free(s->outline);
-        s->outline = fresh.outline;
-        s->outline_count = fresh.outline_count;
-        s->outline_capacity = fresh.outline_capacity;
+        take_fresh(s, &fresh);
         for (size_t k = 0; k < s->meet_count; k++)
             s->meet[k].stale = false;
         s->version++;

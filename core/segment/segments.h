@@ -140,6 +140,11 @@ struct tl_segments {
     tl_segment_points points;
     tl_point2 *outline; /* of all segments, as of tl_overlay */
     size_t outline_count, outline_capacity;
+    /* memory of those before the last, for the next: their rows mean nothing */
+    tl_segment_table spare;
+    tl_segment_points spare_points;
+    tl_point2 *spare_outline;
+    size_t spare_outline_capacity;
     tl_meet *meet;
     size_t meet_count, meet_capacity;
     tl_segment_span *span;

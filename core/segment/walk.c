@@ -10,6 +10,9 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     const size_t counts = offsetof(tl_memory, zones);
     tl_walk_table(walk, TL_KEEP_STATE, "segments.table", &s->table.table, counts);
     tl_walk_table(walk, TL_KEEP_STATE, "segments.points", &s->points.table, counts);
+    tl_walk_table(walk, TL_KEEP_SCRATCH, "segments.spare", &s->spare.table, counts);
+    tl_walk_table(walk, TL_KEEP_SCRATCH, "segments.spare_points", &s->spare_points.table, counts);
+    LIST(SCRATCH, spare_outline, spare_outline_capacity, spare_outline_capacity);
     VALUE(STATE, points.state_columns);
     LIST(STATE, outline, outline_count, outline_capacity);
     LIST(STATE, meet, meet_count, meet_capacity);
