@@ -364,7 +364,7 @@ static const tl_lua_key timestep_results[] = {
     {"dt", "", "the step the next cycle will use, s; 0 where nothing can move and no law is set"},
     {"block", "", "the block that controls it, or nil"},
     {"partner", "", "the block at the stiffest contact, or nil"},
-    {"gridpoint", "", "where zones control it the number of the gridpoint in its block, or nil"},
+    {"gridpoint", "", "the number of the gridpoint in its block where zones control it, or nil"},
     {"mass, stiffness", "",
      "of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts "
      "or of the part of its largest "

@@ -9,8 +9,10 @@
 typedef struct tl_zone_verbs {
     /* Lets meshes follow rows that have moved. */
     void (*follow)(tl_model *m);
-    /* Whether a load can be put on a body; makes room for it. Nothing has changed when it fails. */
+    /* Whether a load can be put on a body. */
     tl_status (*check_load)(tl_model *m, uint32_t body, const tl_load *load);
+    /* Makes room for loads. false: out of memory. */
+    bool (*hold_loads)(tl_model *m);
     /* Puts it on, in the place of all loads on its gridpoints. */
     void (*load)(tl_model *m, uint32_t body, const tl_load *load);
     /* Holds components of all gridpoints (TL_FIX_X, _Y, _Z), which then stand still along them. */

@@ -122,16 +122,19 @@ void tl_load_begins_anew(tl_model *m, uint32_t body)
     m->bodies.load_before[body].force = tl_v3(NAN, NAN, NAN);
 }
 
-/* Whether all blocks live, and deformable ones can take the load. */
+/* Whether all blocks live, and deformable ones can take the load; makes room in these. */
 static tl_status check_loaded(tl_model *m, const tl_id *ids, size_t count, const tl_load *load)
 {
     tl_status status = tl_blocks_check(m, ids, count);
+    bool some = false;
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         const uint32_t body = m->blocks.body[tl_block_row_quiet(m, ids[i])];
-        if (m->bodies.mesh[body])
+        const bool zoned = m->bodies.mesh[body];
+        some = some || zoned;
+        if (zoned)
             status = m->zone_verbs->check_load(m, body, load);
     }
-    return status;
+    return status == TL_OK && some && !m->zone_verbs->hold_loads(m) ? tl_fail_memory(&m->error) : status;
 }
 
 tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_load *given)

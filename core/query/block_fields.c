@@ -1,6 +1,7 @@
 /* block_fields.c - what can be asked of a block: its named fields. */
 #include "query/block_fields.h"
 
+#include "base/columns.h"
 #include "model/deformable.h"
 #include "model/regroup.h"
 #include "query/zone_at.h"
@@ -10,19 +11,53 @@
 #include <string.h>
 #include <talus/fields.h>
 
-static double kinetic_energy(const tl_model *m, uint32_t row)
-{
-    tl_vec3 w = m->bodies.w[m->blocks.body[row]];
-    double mass = m->blocks.density[row] * m->blocks.volume[row];
-    return 0.5 * mass * tl_v3_norm2(tl_block_velocity(m, row)) +
-           0.5 * tl_v3_dot(w, tl_s3_mul(tl_block_inertia(m, row), w));
-}
-
 /* The mesh of a block's body; NULL: it is rigid. */
 static const tl_body_mesh *mesh_of(const tl_model *m, uint32_t body)
 {
     const uint32_t mesh = tl_mesh_of(m, m->bodies.id[body]);
     return mesh != TL_NO_ROW ? &m->zones->mesh[mesh] : NULL;
+}
+
+/* The mean velocity of a mesh, by mass. */
+static tl_vec3 mean_velocity(const tl_model *m, const tl_body_mesh *mesh)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    tl_vec3 sum = {0, 0, 0};
+    double mass = 0;
+    for (uint32_t k = mesh->point_begin; k < mesh->point_end; k++) {
+        sum = tl_v3_madd(sum, p->mass[k], tl_columns_get(p->v, k));
+        mass += p->mass[k];
+    }
+    return tl_v3_scale(1 / mass, sum);
+}
+
+/* The kinetic energy of a mesh per mass, J/kg. */
+static double mean_energy(const tl_model *m, const tl_body_mesh *mesh)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    double sum = 0, mass = 0;
+    for (uint32_t k = mesh->point_begin; k < mesh->point_end; k++) {
+        sum += 0.5 * p->mass[k] * tl_v3_norm2(tl_columns_get(p->v, k));
+        mass += p->mass[k];
+    }
+    return sum / mass;
+}
+
+static tl_vec3 velocity(const tl_model *m, uint32_t row)
+{
+    const tl_body_mesh *mesh = mesh_of(m, m->blocks.body[row]);
+    return mesh ? mean_velocity(m, mesh) : tl_block_velocity(m, row);
+}
+
+static double kinetic_energy(const tl_model *m, uint32_t row)
+{
+    const tl_body_mesh *mesh = mesh_of(m, m->blocks.body[row]);
+    const double mass = m->blocks.density[row] * m->blocks.volume[row];
+    if (mesh)
+        return mass * mean_energy(m, mesh);
+    const tl_vec3 w = m->bodies.w[m->blocks.body[row]];
+    return 0.5 * mass * tl_v3_norm2(tl_block_velocity(m, row)) +
+           0.5 * tl_v3_dot(w, tl_s3_mul(tl_block_inertia(m, row), w));
 }
 
 static double zones_of(const tl_model *m, uint32_t body)
@@ -51,16 +86,18 @@ static double gridpoints_of(const tl_model *m, uint32_t body)
     FIELD(displacement, VEC3, "m", "of the centroid, since creation or reset_displacement",                            \
           tl_block_displacement(m, row))                                                                               \
     FIELD(rotation, QUAT, "", "unit quaternion w, x, y, z of its body", bodies->q[body])                               \
-    FIELD(velocity, VEC3, "m/s", "of the centroid, half a step ago", tl_block_velocity(m, row))                        \
-    FIELD(angular_velocity, VEC3, "rad/s", "of its body", bodies->w[body])                                             \
+    FIELD(velocity, VEC3, "m/s", "of the centroid, half a step ago; of a deformable block the mean of its body",       \
+          velocity(m, row))                                                                                            \
+    FIELD(angular_velocity, VEC3, "rad/s", "of its body; 0 of a deformable one", bodies->w[body])                      \
     FIELD(force, VEC3, "N", "unbalanced force on its body", bodies->force[body])                                       \
     FIELD(moment, VEC3, "N m", "unbalanced moment about its body's centroid", bodies->moment[body])                    \
     FIELD(fixed, BOOL, "", "whether its body, or all its gridpoints, are held in every component",                     \
           tl_body_is_held(m, body))                                                                                    \
     FIELD(hidden, BOOL, "", "hidden blocks are not cut", b->hidden[row] != 0)                                          \
     FIELD(body, COUNT, "", "id of its rigid body: the lowest id of its blocks", bodies->id[body])                      \
-    FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(tl_block_velocity(m, row)))                       \
-    FIELD(kinetic_energy, SCALAR, "J", "of the block alone", kinetic_energy(m, row))                                   \
+    FIELD(speed, SCALAR, "m/s", "length of the velocity", tl_v3_norm(velocity(m, row)))                                \
+    FIELD(kinetic_energy, SCALAR, "J", "of the block alone; of a deformable body the share by its mass",               \
+          kinetic_energy(m, row))                                                                                      \
     FIELD(deformable, BOOL, "", "whether it has zones", mesh_of(m, body) != NULL)                                      \
     FIELD(zones, COUNT, "", "of its body", zones_of(m, body))                                                          \
     FIELD(gridpoints, COUNT, "", "of its body", gridpoints_of(m, body))                                                \

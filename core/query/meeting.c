@@ -85,10 +85,10 @@ static tl_vec3 moved_of(const tl_model *m, const tl_segment_side *side, tl_id bl
 /* What a segment does to its side B, N. */
 static tl_vec3 force_of(const struct tl_segments *s, size_t row)
 {
-    double(*push)[4] = s->table.push[row].of[1];
+    const tl_segment_push *push = &s->table.push[row];
     tl_vec3 sum = {0, 0, 0};
     for (int corner = 0; corner < (tl_side_is_rigid(&s->table.of[row].b) ? 1 : 3); corner++)
-        sum = tl_v3_add(sum, tl_v3(push[corner][0], push[corner][1], push[corner][2]));
+        sum = tl_v3_add(sum, tl_v3(push->of[1][corner][0], push->of[1][corner][1], push->of[1][corner][2]));
     return sum;
 }
 

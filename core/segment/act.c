@@ -698,6 +698,8 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
 void tl_segments_gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const struct tl_segments *s = m->segments;
+    if (body >= s->bodies_listed)
+        return;
     for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
         const tl_segment_use *use = &s->body_use[k];
         double(*push)[4] = s->table.push[use->segment].of[use->side];
@@ -731,9 +733,11 @@ void tl_segments_stiffen(tl_model *m)
 void tl_segments_hold(const tl_model *m, uint32_t body, tl_holding *sum)
 {
     const struct tl_segments *s = m->segments;
+    if (body >= s->bodies_listed)
+        return;
     for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
         const tl_segment *of = &s->table.of[s->body_use[k].segment];
-        const uint32_t law = s->meet[of->meet].law;
+        const uint32_t law = of->meet != TL_NO_ROW ? s->meet[of->meet].law : TL_NO_ROW;
         if (law == TL_NO_ROW)
             continue;
         const double stiff = tl_law_stiffness(&m->joint_laws[law]);

@@ -3,6 +3,7 @@
  * A segment knows its two parts by blocks, faces and numbers, which stay. */
 #include "segment/follow.h"
 
+#include "segment/uses.h"
 #include "zone/grid.h"
 
 #include <string.h>
@@ -38,4 +39,6 @@ void tl_segments_follow(tl_model *m)
         }
     }
     s->followed = m->structure;
+    if (!tl_segments_index(m))
+        s->bodies_listed = 0; /* out of memory: the next step says so */
 }

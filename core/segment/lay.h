@@ -38,8 +38,7 @@ bool tl_laying_fits(const tl_model *m, const tl_laying *l);
  * blocks are as they were. */
 void tl_renew_segments(tl_model *m, const tl_laying *l);
 void tl_laying_end(tl_laying *l);
-/* Lists the segments of gridpoints and bodies; makes columns of states. false: out of memory. */
-bool tl_segments_index(tl_model *m);
+/* Makes columns of states. false: out of memory. */
 bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns);
 /* Makes the columns of initial forces. false: out of memory. */
 bool tl_segments_hold_initial(struct tl_segments *s);

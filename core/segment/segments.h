@@ -153,6 +153,7 @@ struct tl_segments {
     tl_segment_use *use, *body_use;
     uint32_t *use_start, *body_start;
     size_t use_capacity, use_start_capacity, body_use_capacity, body_start_capacity;
+    size_t bodies_listed; /* rows of bodies that the lists know: none acts on those that came later */
     /* gridpoints that segments touch, and where they are in a step, after those that stand for other sides */
     uint32_t *touched;
     tl_gridpoint_now *now;

@@ -21,6 +21,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     LIST(DERIVED, body_use, body_use_capacity, body_use_capacity);
     LIST(DERIVED, use_start, use_start_capacity, use_start_capacity);
     LIST(DERIVED, body_start, body_start_capacity, body_start_capacity);
+    VALUE(DERIVED, bodies_listed);
     LIST(DERIVED, touched, touched_capacity, touched_capacity);
     VALUE(DERIVED, touched_count);
     LIST(SCRATCH, now, now_capacity, now_capacity);

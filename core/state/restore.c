@@ -20,6 +20,7 @@
 #include "segment/carriers.h"
 #include "segment/lay.h"
 #include "segment/sound.h"
+#include "segment/uses.h"
 #include "segment/walk.h"
 #include "state/drives.h"
 #include "state/parts.h"
@@ -600,7 +601,10 @@ static tl_status read_segments(tl_model *m, const tl_archive *a)
 {
     if (!m->zones || !tl_archive_find(a, "segments.table.rows"))
         return TL_OK;
-    if (!tl_segments_begin(m) || !tl_segments_hold_states(m->segments, states_needed(m)))
+    uint32_t saved; /* fewer than the laws need where one was set since the segments were laid */
+    if (!tl_archive_get(a, "segments.points.state_columns", &saved, sizeof saved, 1) || saved > TL_STATE_COLUMNS)
+        return tl_archive_bad(a, &m->error, "'segments.points' is missing or does not fit");
+    if (!tl_segments_begin(m) || !tl_segments_hold_states(m->segments, saved))
         return tl_fail_memory(&m->error);
     if (tl_archive_find(a, "segments.points.f_n0") && !tl_segments_hold_initial(m->segments))
         return tl_fail_memory(&m->error);

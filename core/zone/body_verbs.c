@@ -181,7 +181,12 @@ static tl_status check_load(tl_model *m, uint32_t body, const tl_load *load)
                            "block, or none",
                            load->at.x, load->at.y, load->at.z, m->bodies.id[body]);
     }
-    return tl_gridpoints_hold_loads(&m->zones->points) ? TL_OK : tl_fail_memory(&m->error);
+    return TL_OK;
+}
+
+static bool hold_loads(tl_model *m)
+{
+    return tl_gridpoints_hold_loads(&m->zones->points);
 }
 
 /* Puts a load on the zone at its point. */
@@ -239,6 +244,7 @@ static void load(tl_model *m, uint32_t body, const tl_load *given)
 
 const tl_zone_verbs tl_zone_body_verbs = {.follow = tl_zones_follow,
                                           .check_load = check_load,
+                                          .hold_loads = hold_loads,
                                           .load = load,
                                           .fix = fix,
                                           .free = let_go,

@@ -351,15 +351,15 @@ local Model = {}
 ---@field centroid talus.Vector m: present place of the centroid
 ---@field displacement talus.Vector m: of the centroid, since creation or reset_displacement
 ---@field rotation number[] unit quaternion w, x, y, z of its body
----@field velocity talus.Vector m/s: of the centroid, half a step ago
----@field angular_velocity talus.Vector rad/s: of its body
+---@field velocity talus.Vector m/s: of the centroid, half a step ago; of a deformable block the mean of its body
+---@field angular_velocity talus.Vector rad/s: of its body; 0 of a deformable one
 ---@field force talus.Vector N: unbalanced force on its body
 ---@field moment talus.Vector N m: unbalanced moment about its body's centroid
 ---@field fixed boolean whether its body, or all its gridpoints, are held in every component
 ---@field hidden boolean hidden blocks are not cut
 ---@field body integer id of its rigid body: the lowest id of its blocks
 ---@field speed number m/s: length of the velocity
----@field kinetic_energy number J: of the block alone
+---@field kinetic_energy number J: of the block alone; of a deformable body the share by its mass
 ---@field deformable boolean whether it has zones
 ---@field zones integer of its body
 ---@field gridpoints integer of its body
@@ -689,7 +689,7 @@ function Model:damping(damping, options) end
 ---@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set
 ---@field block talus.Block? the block that controls it, or nil
 ---@field partner talus.Block? the block at the stiffest contact, or nil
----@field gridpoint any where zones control it the number of the gridpoint in its block, or nil
+---@field gridpoint integer? the number of the gridpoint in its block where zones control it, or nil
 ---@field mass number of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts or of the part of its largest face that counts, N/m
 ---@field stiffness number of the block's body or that gridpoint, kg; of what holds the gridpoint, or of the contact, of all its contacts or of the part of its largest face that counts, N/m
 ---@field message string the same in a sentence

@@ -159,7 +159,7 @@ check.equal(report.gridpoints, #runs:gridpoints())
 check.holds(report.clusters > 0 and report.segments > 0)
 check.holds(report.smallest_altitude > 0.02 and report.smallest_altitude < 0.3)
 check.equal(report.smallest_altitude_block.group, "high")
-check.holds(report.timestep_message:find("a gridpoint of block 2 controls the step", 1, true), report.timestep_message)
+check.holds(report.timestep_message:find("gridpoint %d+ of block 2 controls the step"), report.timestep_message)
 check.equal(report.timestep_block.group, "high")
 check.equal(talus.report(talus.model {}).zones, 0)
 

@@ -4,8 +4,8 @@ local zones = require "check_zones"
 
 local waves = {}
 
--- Bars one after the other along z from 0, each as long as `lengths` says, as many zones wide and thick as `wide`, on rollers:
--- P waves move gridpoints along z alone, S waves along x alone. The joints between them are of `law`.
+-- Bars one after the other along z from 0, each as long as `lengths` says, as many zones wide and thick as `wide`, on
+-- rollers: P waves move gridpoints along z alone, S waves along x alone. The joints between them are of `law`.
 function waves.bars(i, wave, zone, wide, lengths, law, params)
     local model, z = zones.model { young = i.E or 1e10, poisson = i.nu or 0.25 }, 0
     for _, length in ipairs(lengths) do
@@ -29,8 +29,8 @@ function waves.speed(points, wave)
     return sum / #points
 end
 
--- Runs a model for a time, its end at z = 0 driven by a velocity, a function of time. Gives times and velocities at receivers;
--- `look` is called after each step with the time that stresses are of.
+-- Runs a model for a time, its end at z = 0 driven by a velocity, a function of time. Gives times and velocities at
+-- receivers; `look` is called after each step with the time that stresses are of.
 function waves.shoot(model, wave, time, velocity, receivers, look)
     local source, dt, out = zones.on(model, "z", 0), model.dt, { t = {} }
     local driven = wave == "P" and { z = true } or { x = true }

@@ -1,5 +1,5 @@
--- check_zones.lua - what the tests of deformable blocks share: a model of one solid, gridpoints on a plane, motions that
--- end where they are to, and means of stress.
+-- check_zones.lua - what the tests of deformable blocks share: a model of one solid, gridpoints on a plane, motions
+-- that end where they are to, and means of stress.
 local talus = require "talus"
 
 local zones = {}
@@ -43,8 +43,8 @@ function zones.hull(model, min, max)
     end }
 end
 
--- Moves gridpoints along a field of displacements, a function of the place and the gridpoint, by `steps` equal steps, and
--- stops them there. The zones have seen all of it at the end.
+-- Moves gridpoints along a field of displacements, a function of the place and the gridpoint, by `steps` equal steps,
+-- and stops them there. The zones have seen all of it at the end.
 function zones.displace(model, points, field, steps, dt)
     dt = dt or model.dt
     local way = {}
@@ -78,8 +78,8 @@ local function inverse(m)
     return out
 end
 
--- Strains all zones of a model in one step by exactly the six components of `by`, without a turn. Zones take the gradient half
--- way, e = H (I + H / 2)^-1, so H = (I - e / 2)^-1 e. All gridpoints must be held.
+-- Strains all zones of a model in one step by exactly the six components of `by`, without a turn. Zones take the
+-- gradient half way, e = H (I + H / 2)^-1, so H = (I - e / 2)^-1 e. All gridpoints must be held.
 function zones.strain(model, points, by, dt)
     local e = { { by[1], by[4], by[6] }, { by[4], by[2], by[5] }, { by[6], by[5], by[3] } }
     local half, h = {}, {}
@@ -106,8 +106,8 @@ end
 -- Degrees that a sector of a ring takes up.
 local SECTOR = 10
 
--- A sector of a ring about the z axis in plane strain: rollers on both sides and both ends, zones as many as `rings` from the
--- inner to the outer wall, as large as their radius asks for. Gives the planes of the walls, which are flat.
+-- A sector of a ring about the z axis in plane strain: rollers on both sides and both ends, zones as many as `rings`
+-- from the inner to the outer wall, as large as their radius asks for. Gives the planes of the walls, which are flat.
 function zones.sector(model, what)
     local a = math.rad(SECTOR)
     local c, s, half = math.cos(a), math.sin(a), math.cos(a / 2)

@@ -1,4 +1,5 @@
--- Beams of zones: how they ring. Constant strain alone would lock, strains averaged over all neighbours would be too soft.
+-- Beams of zones: how they ring. Constant strain alone would lock, strains averaged over all neighbours would be too
+-- soft.
 package.path = "tests/verify/?.lua;tests/lua/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require "reference_deformable"
@@ -107,8 +108,8 @@ local function frequency(i, zone, field, periods, guess)
     return (passed - 1) / 2 / (last_at - first_at), x, y
 end
 
--- The slowest motion that is left of random velocities when all rigid ones are taken out: their mean over time with the weights
--- exp(-(t / s)^2 / 2) has of a mode of w the share exp(-(w s)^2 / 2).
+-- The slowest motion that is left of random velocities when all rigid ones are taken out: their mean over time with the
+-- weights exp(-(t / s)^2 / 2) has of a mode of w the share exp(-(w s)^2 / 2).
 local function slowest(i, zone, guess)
     local model, points = beam(i, zone)
     local masses, x = points:values "mass", points:values("position", "flat")

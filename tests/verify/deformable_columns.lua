@@ -52,8 +52,8 @@ do
         zones.mean(model:zones {}, "stress", "xx") / zones.mean(model:zones {}, "stress", "zz"), e.k0, SETTLED)
 end
 
--- The top is moved down by as much as the closed form shortens zones, by their logarithmic strain, and joints: then the stress
--- must be that of the load.
+-- The top is moved down by as much as the closed form shortens zones, by their logarithmic strain, and joints: then the
+-- stress must be that of the load.
 for _, n in ipairs { 1, 3, 9 } do
     local case = reference["DF.series_column_" .. n]
     local i = case.inputs

@@ -13,8 +13,8 @@ local AT_REST = 1e-7     -- unbalanced force ratio: places are known to 1e-16 m,
 
 -- ------------------------------------------------------------------ springs at an angle
 
--- A stress s along z strains rock by Hooke's law, and each joint with the normal n gives way by (n.s.n) / kn along n and by
--- the rest of s.n over ks. Blocks so strained and shifted bear s everywhere.
+-- A stress s along z strains rock by Hooke's law, and each joint with the normal n gives way by (n.s.n) / kn along n
+-- and by the rest of s.n over ks. Blocks so strained and shifted bear s everywhere.
 do
     local case = reference["DF.goodman"]
     local i, LOAD = case.inputs, -1e3 -- small, so strains are of first order

@@ -64,8 +64,8 @@ local function kirsch(r, t)
         (px + py) / 2 * (1 + q) - (px - py) / 2 * (1 + 3 * q * q) * c, -(px - py) / 2 * (1 + 2 * q - 3 * q * q) * s
 end
 
--- The reference at points of rays; zones hold means: the mean of the differences from the closed form over the zones about a
--- point is what the point is off.
+-- The reference at points of rays; zones hold means: the mean of the differences from the closed form over the zones
+-- about a point is what the point is off.
 local most = -math.min(i.sxx, i.syy)
 local all = model:zones {}
 local x, y, wx, wy = {}, {}, {}, {}

@@ -23,8 +23,8 @@ end
 
 -- ------------------------------------------------------------------ one axis
 
--- Gridpoints begin with the velocities of a bar that is pressed, so nothing swings; then the ends are held, and the sides
--- are free. The strain is logarithmic: Cauchy stress goes with it.
+-- Gridpoints begin with the velocities of a bar that is pressed, so nothing swings; then the ends are held, and the
+-- sides are free. The strain is logarithmic: Cauchy stress goes with it.
 do
     local case = reference["DF.uniaxial"]
     figures.case("DF.uniaxial", "A cube is pressed along z between smooth plates, its sides are free.", case.source)
@@ -48,7 +48,8 @@ do
     figures.near("strain along x, worst zone", zones.off(all, "strain", "xx", side), 0, UNIFORM * -e)
     local area = math.exp(2 * side)
     figures.relative("force on the plate, N", top:reaction()[3], case.inputs.stress * area, UNIFORM)
-    -- The reference has the energy of a volume that stays: here it changes by exp(q s) as the stress grows by s from 0 to 1.
+    -- The reference has the energy of a volume that stays: here it changes by exp(q s) as the stress grows by s from 0
+    -- to 1.
     local q = e + 2 * side
     figures.relative("stored, J", model:energy().strain, 2 * case.expected.energy * (1 / 2 + q / 3 + q * q / 8), UNIFORM)
 end

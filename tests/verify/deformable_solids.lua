@@ -1,5 +1,5 @@
--- Strength and stiffness of zones: what one zone answers to paths of strain and stress (talus.solid_test), and a block of
--- zones that is led along the same strains.
+-- Strength and stiffness of zones: what one zone answers to paths of strain and stress (talus.solid_test), and a block
+-- of zones that is led along the same strains.
 package.path = "tests/verify/?.lua;tests/lua/?.lua;" .. package.path -- run in the source root
 local talus = require "talus"
 local figures = require "check_figures"
@@ -33,8 +33,8 @@ local function cube(solid, params)
     return model, points
 end
 
--- Leads a block of zones along the strains of a curve, whose zone began without stress. The largest difference of a component
--- of stress in any zone at every tenth point, over the largest there was.
+-- Leads a block of zones along the strains of a curve, whose zone began without stress. The largest difference of a
+-- component of stress in any zone at every tenth point, over the largest there was.
 local function replay(solid, params, curve)
     local model, points = cube(solid, params)
     local off, most = 0, 0

@@ -146,8 +146,8 @@ do
             local _, now = momentum(two)
             force[n], last = (now - last) / dt, now
         end
-        -- In contact while the force is more than half of what elastic waves give, in the mean over the time that a wave takes
-        -- through two zones: fronts ring over a zone's width.
+        -- In contact while the force is more than half of what elastic waves give, in the mean over the time that a
+        -- wave takes through two zones: fronts ring over a zone's width.
         local plateau, span = 0.5 * math.sqrt(i.rho * M) * zone ^ 2, math.ceil(zone / math.sqrt(M / i.rho) / dt)
         local steps = 0
         for n = 1, #force do

@@ -1,6 +1,7 @@
--- reference_deformable.lua - what the tests of deformable blocks must obtain: closed forms and independent calculations,
--- with their inputs and sources. SI units, angles in degrees; stress and strain tension positive, six components in the
--- order xx yy zz xy yz zx with shear strains of the tensor; pressures, far stresses and strengths compression positive.
+-- reference_deformable.lua - what the tests of deformable blocks must obtain: closed forms and independent
+-- calculations, with their inputs and sources. SI units, angles in degrees; stress and strain tension positive, six
+-- components in the order xx yy zz xy yz zx with shear strains of the tensor; pressures, far stresses and strengths
+-- compression positive.
 local solids = require "solid_reference"
 
 local reference = {}

@@ -536,8 +536,8 @@ typedef struct tl_block_set {
 } tl_block_set;
 
 /* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those
- * that are listed. TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not
- * finite. TL_E_ARGUMENT for a solid that is not there. TL_E_STATE for a solid of a rigid block. Then no block is changed. */
+ * that are listed. TL_E_ARGUMENT: a density that is not > 0, a group that is no UTF-8, a motion that is not finite, no
+ * such solid. TL_E_STATE for a solid of a rigid block. Then no block is changed. */
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count, const tl_block_set *set);
 
 /* Makes one rigid body of the blocks and of all blocks joined to them before. Mass, momentum and angular

@@ -157,7 +157,8 @@ TL_API tl_status tl_gridpoints_load(tl_model *model, const tl_zone_name *names, 
 TL_API tl_status tl_gridpoints_velocity(tl_model *model, const tl_zone_name *names, size_t count,
                                         const tl_vec3 *velocity);
 /* Prescribes their velocity in all components, until they are let go: drive->velocity, or what its function tells in
- * the middle of each step, and drive->gradient times the place from drive->at. TL_E_STATE: their block is driven whole. */
+ * the middle of each step, and drive->gradient times the place from drive->at. TL_E_STATE: their block is driven as a
+ * whole. */
 TL_API tl_status tl_gridpoints_drive(tl_model *model, const tl_zone_name *names, size_t count, const tl_drive *drive);
 /* The force with which what holds them acts on them, N: the sum over their held components. */
 TL_API tl_status tl_gridpoints_reaction(tl_model *model, const tl_zone_name *names, size_t count, tl_vec3 *force);

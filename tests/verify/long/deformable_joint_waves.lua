@@ -19,8 +19,9 @@ end
 
 -- ------------------------------------------------------------------ one elastic joint
 
--- A tone of three periods meets a joint after 6 wavelengths. It has passed a place two wavelengths before the joint when what is
--- reflected comes by there. What goes through is beside what goes through a joint that is a hundred times as stiff as for x = 1.
+-- A tone of three periods meets a joint after 6 wavelengths. It has passed a place two wavelengths before the joint
+-- when what is reflected comes by there. What goes through is beside what goes through a joint that is a hundred times
+-- as stiff as for x = 1.
 do
     local case = reference["DF.pyrak_nolte"]
     local BEFORE, AFTER, PERIODS, SIZE, HZ, STIFFEST = 6, 12, 3, 0.01, 1000, 0.01
