@@ -1,8 +1,8 @@
 /* lay.c - segments laid into their tables, with what points take over.
  *
  * Segments come by the laws of their meets, and of one law by meets and triangles. A meet that is not stale keeps its
- * segments, whatever rows they get. While stale meets have segments of the same triangles as before, as most have in
- * most steps, these stay in their rows, and nothing else is touched. */
+ * segments, whatever rows they get. Stale meets mostly have segments of the same triangles as before. Then these
+ * stay in their rows, and nothing else is touched. */
 #include "segment/lay.h"
 
 #include "contact/contacts.h"
@@ -330,8 +330,7 @@ static double energy_of_rows(const struct tl_segments *s, uint32_t begin, uint32
     return sum;
 }
 
-/* Lets the springs of shear of a meet, whose rows are given, hold no more than `before`. Returns what they hold less, J.
- */
+/* Lets the springs of shear of a meet, whose rows are given, hold no more than `before`. Gives what they hold less. */
 static double keep_energy(const tl_model *m, struct tl_segments *to, const tl_meet *meet, double before, uint32_t begin,
                           uint32_t end)
 {

@@ -129,8 +129,8 @@ typedef struct tl_segment_use {
  * come before those that are touched. */
 #define TL_SEGMENT_DUMMIES 3
 
-/* Where a part of a face lies, in a frame of two faces, m: its third axis goes along the normal of one. `slope`: tangent
- * of the angle between the part's normal and that axis. */
+/* Where a part of a face lies, in a frame of two faces, m: its third axis goes along the normal of one. `slope`: the
+ * tangent of the angle between the part's normal and that axis. */
 typedef struct tl_part_box {
     double low[3], high[3], slope;
 } tl_part_box;
