@@ -381,6 +381,8 @@ static const tl_body_mesh *mesh_of(tl_model *m, tl_zone_name name, bool point)
     const uint32_t end = !of ? 0 : point ? of->point_end - of->point_begin : of->zone_end - of->zone_begin;
     if (name.number < end)
         return of;
+    if (tl_block_row(m, name.body) == TL_NO_ROW)
+        return NULL; /* the block has gone: said */
     tl_fail(&m->error, TL_E_STALE, "block %u has no %s %u: it is not deformable any more, or has %u", name.body,
             point ? "gridpoint" : "zone", name.number, end);
     return NULL;

@@ -137,10 +137,13 @@ static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint3
         tl_rows_tidy(m);
     if (status == TL_OK && !d->how->edge_at && !(d->how->edge > 0))
         status = tl_fail(&m->error, TL_E_ARGUMENT, "the edge of zones must be > 0 m (it is %g)", d->how->edge);
-    *solid = status == TL_OK && m->zones && d->how->solid ? tl_solid_find(m, d->how->solid) : TL_NO_ROW;
+    if (status == TL_OK && !d->how->solid)
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "no solid is given for the zones: give one that was named with %s",
+                         tl_words(m, "model:solid", "tl_model_solid"));
+    *solid = status == TL_OK && m->zones ? tl_solid_find(m, d->how->solid) : TL_NO_ROW;
     if (status == TL_OK && *solid == TL_NO_ROW)
-        status = tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%s': name one with %s first",
-                         d->how->solid ? d->how->solid : "", tl_words(m, "model:solid", "tl_model_solid"));
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%s': name one with %s first", d->how->solid,
+                         tl_words(m, "model:solid", "tl_model_solid"));
     return status == TL_OK ? list_bodies(d, blocks, count) : status;
 }
 
