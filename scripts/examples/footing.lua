@@ -4,7 +4,8 @@
 --
 -- Prandtl (1920): the strip of half width b carries q = (2 + pi) c per area, with the cohesion c of a clay without
 -- friction. Half of the strip is modelled, in a slice one zone thick. The clay keeps its volume when it flows, which
--- plain tetrahedra cannot: they carry a quarter too much. Zones of Talus share their change of volume in clusters.
+-- plain tetrahedra cannot: they carry a quarter too much. Zones of Talus share their change of volume in clusters. The clay
+-- is stiff, so it flows before its surface has moved much, as the solution has it.
 local talus = require "talus"
 
 local footing = {}
@@ -18,7 +19,7 @@ function footing.build(zones)
     local wide, deep, thick = 5 * footing.half, 3 * footing.half, edge
     local model = talus.model { gravity = { 0, 0, 0 } }
     model:generate("box", { min = { 0, 0, -deep }, max = { wide, thick, 0 }, density = 2000 })
-    model:solid("clay", "mohr_coulomb", { young = 100e6, poisson = 0.3, cohesion = footing.cohesion, friction = 0,
+    model:solid("clay", "mohr_coulomb", { young = 1e9, poisson = 0.3, cohesion = footing.cohesion, friction = 0,
         tension = 10 * footing.cohesion })
     model:blocks():deformable { zone = edge, solid = "clay" }
     model:boundary { xmin = "roller", xmax = "roller", ymin = "roller", ymax = "roller", zmin = "fixed" }
@@ -31,7 +32,7 @@ end
 
 -- Presses the strip down by `depth` and gives the curve of settlement, m, against pressure over cohesion.
 function footing.press(model, under, area, depth)
-    local speed = 1e-6 / model.dt -- so much a step
+    local speed = 2e-7 / model.dt -- so much a step
     local curve = { x = {}, y = {} }
     under:set { velocity = { 0, 0, -speed } }
     for step = 0, 40 do
@@ -46,7 +47,7 @@ end
 
 function footing.main(folder)
     local model, under, area = footing.build(4)
-    local curve = footing.press(model, under, area, 0.04)
+    local curve = footing.press(model, under, area, 0.006)
     local last = curve.y[#curve.y]
     print(string.format("%d zones; the strip carries %.3f c, Prandtl's solution is %.3f c: %+.1f %%", #model:zones(), last,
         2 + math.pi, 100 * (last / (2 + math.pi) - 1)))
