@@ -18,6 +18,7 @@
 #include "narrow/patch.h"
 #include "narrow/press.h"
 #include "narrow/region.h"
+#include "zone/zones.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -77,13 +78,26 @@ tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now)
     return tl_m3_mul(&at.r, m->blocks.shape[touch->row]->plane[touch->face].normal);
 }
 
+/* Components of a translation that are held: of a deformable body those in which any gridpoint is. */
+static unsigned held_components(const tl_model *m, uint32_t body)
+{
+    if (!m->bodies.mesh[body])
+        return m->bodies.fixed[body];
+    const tl_body_mesh *mesh = &m->zones->mesh[m->bodies.mesh[body] - 1];
+    unsigned held = 0;
+    for (uint32_t row = mesh->point_begin; row < mesh->point_end; row++)
+        held |= m->zones->points.fixed[row];
+    return held;
+}
+
 size_t tl_held_axes(const tl_model *m, uint32_t body, tl_vec3 held[3])
 {
     static const uint8_t fix[] = {TL_FIX_X, TL_FIX_Y, TL_FIX_Z};
     const tl_vec3 axis[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const unsigned components = held_components(m, body);
     size_t count = 0;
     for (int k = 0; k < 3; k++)
-        if (m->bodies.fixed[body] & fix[k])
+        if (components & fix[k])
             held[count++] = axis[k];
     return count;
 }
