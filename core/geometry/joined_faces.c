@@ -480,7 +480,7 @@ static tl_status make_block(splitting *s, uint32_t block, tl_joined_block *to)
     const tl_status status =
         tl_poly_make(l.vertex, vertices, l.plane, NULL, l.start, l.loop, s->part_count, &to->poly, &why);
     free(l.vertex), free(l.plane), free(l.start), free(l.loop);
-    to->how = (tl_zone_parts){s->blocks[block]->vertex_count, s->blocks[block]->face_count, to->face_of, s->shortest};
+    to->how = (tl_zone_parts){s->blocks[block]->vertex_count, to->face_of, s->shortest};
     if (status == TL_E_GEOMETRY)
         return tl_fail(
             s->error, TL_E_GEOMETRY,

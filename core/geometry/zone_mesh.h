@@ -14,7 +14,6 @@ typedef double (*tl_zone_size_fn)(const void *user, tl_vec3 place);
  * one plane, and zones end at the edges between them. */
 typedef struct tl_zone_parts {
     uint32_t corner_count;   /* of the polyhedron's vertices, those that are corners of the block: they come first */
-    uint32_t face_count;     /* of the block */
     const uint32_t *face_of; /* [faces of the polyhedron] the face of the block that each is a part of, ascending */
     double shortest;         /* edge of all the joined blocks: their weights are alike */
 } tl_zone_parts;

@@ -65,14 +65,10 @@ static inline uint64_t tl_zone_corner_key(const tl_zone_points *p, uint32_t corn
 {
     return p->zoning->corner_key ? p->zoning->corner_key[corner] : corner;
 }
-/* The face of the block that a face is a part of, and how many the block has. */
+/* The face of the block that a face is a part of. */
 static inline uint32_t tl_zone_block_face(const tl_zone_points *p, uint32_t face)
 {
     return p->zoning->parts ? p->zoning->parts->face_of[face] : face;
-}
-static inline uint32_t tl_zone_block_faces(const tl_zone_points *p)
-{
-    return p->zoning->parts ? p->zoning->parts->face_count : p->poly->face_count;
 }
 /* The least altitude of a zone: 3 volumes over its largest triangle. Negative where it is turned inside out. */
 static inline double tl_zone_altitude(tl_vec3 a, tl_vec3 b, tl_vec3 c, tl_vec3 d)

@@ -80,7 +80,7 @@ static const tl_param deformable_params[] = {
 };
 
 static const tl_lua_key deformable_keys[] = {
-    {"zone", "number or function({x, y, z})",
+    {"zone", "number or function({x, y, z}), required",
      "wanted edge of zones, m, > 0, the same everywhere or at a place. Larger than a block: zones between its corners "
      "and its centroid"},
     {NULL, NULL, NULL},
@@ -162,7 +162,7 @@ static const tl_lua_key deformable_results[] = {
 
 const tl_lua_topic tl_lua_deformable_topics[] = {
     {.name = "solid",
-     .usage = "model:solid(\"NAME\", \"KIND\", {...})  or  model:solid(\"NAME\", {cohesion = 1e6})",
+     .usage = "model:solid(\"granite\", \"SOLID\", {...})  or  model:solid(\"granite\", {young = 2e9})",
      .doc = "Names a solid, the material of zones: a kind of solid with its properties. Without a kind it changes "
             "properties of one that has been named. Zones keep their stress, and the states that the new kind has by "
             "the same names.",

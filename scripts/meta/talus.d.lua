@@ -844,16 +844,22 @@ function Model:contacts(options) end
 
 --- Names a solid, the material of zones: a kind of solid with its properties. Without a kind it changes properties of one that has been named. Zones keep their stress, and the states that the new kind has by the same names.
 ---
----     model:solid("NAME", "KIND", {...})  or  model:solid("NAME", {cohesion = 1e6})
+---     model:solid("granite", "SOLID", {...})  or  model:solid("granite", {young = 2e9})
 ---@param name string
----@param name string
+---@param solid string
 ---@param options? table
+---@overload fun(self: talus.Model, name: string, solid: "drucker_prager", options: talus.solid.DruckerPrager)
+---@overload fun(self: talus.Model, name: string, solid: "elastic", options?: talus.solid.Elastic)
+---@overload fun(self: talus.Model, name: string, solid: "hoek_brown", options: talus.solid.HoekBrown)
+---@overload fun(self: talus.Model, name: string, solid: "mohr_coulomb", options?: talus.solid.MohrCoulomb)
+---@overload fun(self: talus.Model, name: string, solid: "transverse", options: talus.solid.Transverse)
+---@overload fun(self: talus.Model, name: string, solid: "ubiquitous", options: talus.solid.Ubiquitous)
 ---@overload fun(self: talus.Model, name: string, options?: table)
-function Model:solid(name, name, options) end
+function Model:solid(name, solid, options) end
 
 ---@class (exact) talus.DeformableOptions
 ---@field solid string name of the solid that the zones are made of: model:solid
----@field zone? number|fun(place: talus.Vector): number wanted edge of zones, m, > 0, the same everywhere or at a place. Larger than a block: zones between its corners and its centroid
+---@field zone number|fun(place: talus.Vector): number wanted edge of zones, m, > 0, the same everywhere or at a place. Larger than a block: zones between its corners and its centroid
 
 ---@class (exact) talus.DeformableResult
 ---@field blocks integer how many have been made

@@ -83,7 +83,7 @@ local WORDS = {
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(zone)"] = "fun(zone: talus.Zone): any",
     ["function(gridpoint)"] = "fun(gridpoint: talus.Gridpoint): any",
-    ["number or function({x, y, z})"] = "number|fun(place: talus.Vector): number",
+    ["number or function({x, y, z}), required"] = "number|fun(place: talus.Vector): number",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
     ["function(t)"] = "(fun(t: number): number|talus.Vector, number?, number?)",
@@ -298,7 +298,7 @@ end
 local OWNERS = { model = "talus.Model", selection = "talus.Blocks", sel = "talus.Blocks", talus = "talus" }
 -- What a result is called that no call has given.
 local RESULT_WORDS = { model = "talus.Model", selection = "talus.Blocks", text = "string" }
-local PLUGIN_WORDS = { GENERATOR = "generator", LAW = "law", DAMPING = "damping" }
+local PLUGIN_WORDS = { GENERATOR = "generator", LAW = "law", DAMPING = "damping", SOLID = "solid" }
 
 -- Name and type of an argument as a usage line writes it; `rows` are the function's parameters.
 local function argument_of(text, rows, options, plugins)

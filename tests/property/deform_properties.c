@@ -1,34 +1,15 @@
 /* deform_properties.c - contact of deformable blocks over random models: it makes no energy and no momentum, a stiff block
  * goes as a rigid one does, and the bits do not hang on threads or copies. */
-#include "contact_scene.h"
 #include "segment/segments.h"
 #include "zone/life.h"
 #include "zone/solids.h"
+#include "zone_scene.h"
 #include <talus/zones.h>
 
 #include <stdlib.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------- models ----------------- */
-
-static void solid(tl_model *m, double young)
-{
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = 0.2}};
-    const tl_args args = {values, 2};
-    tl_error error = {0};
-    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
-}
-
-static void divide(tl_model *m, uint32_t row, double edge)
-{
-    const tl_zoning how = {.size = sizeof how, .edge = edge, .solid = "rock"};
-    tl_zoned made = {0};
-    scene_ok(m, tl_blocks_deform(m, m->blocks.id + row, 1, &how, &made));
-}
 
 /* How a cube of 1 m falls on a floor. */
 typedef struct fall {
@@ -68,11 +49,11 @@ static tl_model *model_of(const fall *f, unsigned threads)
     scene_law(m, "coulomb", f->kn, f->ks, f->friction);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
     m->bodies.v[1] = f->velocity;
-    solid(m, f->young);
+    scene_solid(m, f->young, 0.2);
     if (f->cube)
-        divide(m, 1, f->edge);
+        scene_divide(m, 1, 1, f->edge);
     if (f->floor)
-        divide(m, 0, 0.8);
+        scene_divide(m, 0, 1, 0.8);
     else
         scene_ok(m, tl_blocks_fix(m, &floor, 1, TL_FIX_ALL));
     tl_gridpoints *p = &m->zones->points;
@@ -183,9 +164,9 @@ static tl_model *two_hulls(uint64_t seed, double friction, unsigned threads)
         m->bodies.v[k] = tl_v3(k ? -2 : 2, scene_between(&seed, -0.5, 0.5), scene_between(&seed, -0.5, 0.5));
     }
     scene_law(m, "coulomb", 1e8, 1e8, friction);
-    solid(m, 3e9);
+    scene_solid(m, 3e9, 0.2);
     for (uint32_t k = 0; k < 2; k++)
-        divide(m, k, 0.5);
+        scene_divide(m, k, 1, 0.5);
     return m;
 }
 
@@ -246,9 +227,9 @@ TEST(ends_of_bricks_do_not_push)
         scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
         scene_box(m, tl_v3(1 - slip[k], 0, 1 - over), tl_v3(2 - slip[k], 1, 2 - over));
         scene_law(m, "coulomb", 1e9, 1e9, 0);
-        solid(m, 1e12);
-        divide(m, 0, 0.5);
-        divide(m, 1, 0.5);
+        scene_solid(m, 1e12, 0.2);
+        scene_divide(m, 0, 1, 0.5);
+        scene_divide(m, 1, 1, 0.5);
         scene_ok(m, tl_model_cycle(m, 1, &result));
         tl_vec3 sum = {0, 0, 0};
         const tl_body_mesh *mesh = &m->zones->mesh[1];
@@ -275,9 +256,9 @@ static tl_model *pile(uint64_t seed, int count, unsigned threads, bool deforms, 
     scene_ok(m, tl_blocks_fix(m, &floor, 1, TL_FIX_ALL));
     scene_law(m, "coulomb", 1e8, 1e8, 30);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
-    solid(m, 3e9);
+    scene_solid(m, 3e9, 0.2);
     for (uint32_t k = 1; deforms && k < m->blocks.table.rows; k++)
-        divide(m, k, edge);
+        scene_divide(m, k, 1, edge);
     return m;
 }
 /* The bits do not hang on threads, nor on a copy in the middle of the run; the ledger holds. */

@@ -1,26 +1,14 @@
 /* test_deform.c - blocks of a cut rock get zones: what these fill, share, take over, and how they stand. */
-#include "contact_scene.h"
 #include "segment/segments.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
+#include "zone_scene.h"
 #include <talus/zones.h>
 
 #include <string.h>
 
 /* ---------------------------------------------------------------- scenes ----------------- */
-
-static void solid(tl_model *m, double young, double poisson)
-{
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
-    const tl_args args = {values, 2};
-    tl_error error = {0};
-    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
-}
 
 /* A box of 2 m, cut by random planes near its centre. */
 static tl_model *cut_rock(uint64_t seed, int cuts)
@@ -35,10 +23,7 @@ static tl_model *cut_rock(uint64_t seed, int cuts)
 /* Divides all blocks from one row on. */
 static tl_zoned divide(tl_model *m, uint32_t from, double edge)
 {
-    const tl_zoning how = {.size = sizeof how, .edge = edge, .solid = "rock"};
-    tl_zoned made = {0};
-    scene_ok(m, tl_blocks_deform(m, m->blocks.id + from, m->blocks.table.rows - from, &how, &made));
-    return made;
+    return scene_divide(m, from, m->blocks.table.rows - from, edge);
 }
 
 /* ---------------------------------------------------------------- tests ------------------ */
@@ -64,7 +49,7 @@ TEST(zones_fill_the_blocks_of_cut_rock)
 {
     for (uint64_t seed = 1; seed <= 10; seed++) {
         tl_model *m = cut_rock(seed, 5);
-        solid(m, 1e9, 0.25);
+        scene_solid(m, 1e9, 0.25);
         const size_t blocks = m->blocks.table.rows;
         const tl_zoned made = divide(m, 0, 0.4);
         CHECK_INT(made.blocks, blocks);
@@ -97,7 +82,7 @@ TEST(both_sides_of_a_cut_have_the_same_triangles)
         uint64_t random = seed;
         tl_model *m = cut_rock(seed, 0);
         scene_cut(m, "joint", scene_direction(&random), tl_v3_scale(0.3, scene_direction(&random)));
-        solid(m, 1e9, 0.25);
+        scene_solid(m, 1e9, 0.25);
         divide(m, 0, 0.5);
         const struct tl_zones *z = m->zones;
         size_t shared = 0, parts[2] = {0, 0};
@@ -118,20 +103,11 @@ TEST(both_sides_of_a_cut_have_the_same_triangles)
 TEST(cut_rock_is_strained_alike)
 {
     tl_model *m = cut_rock(7, 4);
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     scene_law(m, "coulomb", 1e10, 1e10, 30);
     divide(m, 0, 0.5);
-    tl_gridpoints *p = &m->zones->points;
     const double rate[3][3] = {{-1e-3, 2e-4, -3e-4}, {5e-4, -2e-3, 1e-4}, {3e-4, 6e-4, -7e-4}};
-    for (size_t row = 0; row < p->table.rows; row++) {
-        p->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
-        for (int i = 0; i < 3; i++)
-            p->v[i][row] = rate[i][0] * p->ref[0][row] + rate[i][1] * p->ref[1][row] + rate[i][2] * p->ref[2][row];
-    }
-    m->constraints++;
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-3}));
-    tl_solve_result result;
-    scene_ok(m, tl_model_cycle(m, 2, &result));
+    scene_strain(m, rate);
     const double g = 1e9 / 2.5, trace = rate[0][0] + rate[1][1] + rate[2][2];
     const double right[6] = {2 * g * rate[0][0] + g * trace, 2 * g * rate[1][1] + g * trace,
                              2 * g * rate[2][2] + g * trace, g * (rate[0][1] + rate[1][0]),
@@ -149,7 +125,7 @@ TEST(cut_rock_is_strained_alike)
 TEST(gridpoints_go_on_as_their_block_went)
 {
     tl_model *m = cut_rock(3, 3);
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     m->bodies.v[0] = tl_v3(1, -2, 0.5);
     m->bodies.w[0] = tl_v3(0.1, 0.2, -0.3);
     m->bodies.fixed[1] = TL_FIX_X | TL_FIX_Z;
@@ -174,7 +150,7 @@ TEST(gridpoints_go_on_as_their_block_went)
 TEST(what_cannot_be_divided_is_refused)
 {
     tl_model *m = cut_rock(5, 2);
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     tl_zoned made;
     const tl_id good[2] = {m->blocks.id[0], m->blocks.id[1]}, stale[2] = {m->blocks.id[0], 999};
     tl_zoning how = {.size = sizeof how, .edge = 0.5, .solid = "rock"};
@@ -206,7 +182,7 @@ TEST(cut_rock_of_zones_stands)
         tl_model *m = scene_model(2);
         scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
         scene_box(m, tl_v3(-1, -1, 0), tl_v3(1, 1, 2));
-        solid(m, 1e10, 0.25);
+        scene_solid(m, 1e10, 0.25);
         for (int k = 0; k < 2; k++) {
             const tl_vec3 tilt = tl_v3_scale(0.2, scene_direction(&random));
             const tl_vec3 normal = tl_v3_unit(tl_v3(tilt.x, tilt.y, 1)), at = {0, 0, 0.6 + 0.7 * k};
@@ -240,7 +216,7 @@ static tl_model *cubes_and_far_blocks(void)
     scene_box(m, tl_v3(-1, -1, 0), tl_v3(1, 1, 1));
     scene_box(m, tl_v3(-1, -1, 1), tl_v3(1, 1, 2));
     scene_box(m, tl_v3(5, 5, 5), tl_v3(6, 6, 6));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     scene_law(m, "coulomb", 1e10, 1e10, 40);
     scene_ok(m, tl_blocks_fix(m, held, 3, TL_FIX_ALL));
     scene_ok(m, tl_model_set_gravity(m, tl_v3(1, 0, -10)));
@@ -299,7 +275,7 @@ TEST(meshes_follow_when_blocks_go)
 TEST(deformable_blocks_refuse_what_is_for_rigid_ones)
 {
     tl_model *m = cut_rock(5, 1);
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     const tl_id both[2] = {m->blocks.id[0], m->blocks.id[1]};
     const tl_zoning how = {.size = sizeof how, .edge = 0.5, .solid = "rock"};
     tl_zoned made;

@@ -1,10 +1,10 @@
 /* test_joined.c - bodies of several blocks get zones: their blocks share gridpoints, and hang together as one solid does. */
-#include "contact_scene.h"
 #include "segment/segments.h"
 #include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
+#include "zone_scene.h"
 #include <talus/zones.h>
 
 #include <stdlib.h>
@@ -12,28 +12,13 @@
 
 /* ---------------------------------------------------------------- scenes ----------------- */
 
-static void solid(tl_model *m, double young, double poisson)
-{
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
-    const tl_args args = {values, 2};
-    tl_error error = {0};
-    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
-}
-
 /* Joins all blocks from one row on, and divides them. */
 static tl_zoned join_and_divide(tl_model *m, uint32_t from, double edge)
 {
-    const tl_zoning how = {.size = sizeof how, .edge = edge, .solid = "rock"};
     const size_t count = m->blocks.table.rows - from;
-    tl_zoned made = {0};
     if (count > 1)
         scene_ok(m, tl_blocks_join(m, m->blocks.id + from, count));
-    scene_ok(m, tl_blocks_deform(m, m->blocks.id + from, count, &how, &made));
-    return made;
+    return scene_divide(m, from, count, edge);
 }
 
 /* A box of 2 m, cut into blocks by random planes: each goes through all of them, or through one alone. */
@@ -135,15 +120,7 @@ static void check_uniform_strain(tl_model *m)
 {
     tl_gridpoints *p = &m->zones->points;
     const double rate[3][3] = {{-1e-3, 2e-4, -3e-4}, {5e-4, -2e-3, 1e-4}, {3e-4, 6e-4, -7e-4}};
-    for (size_t row = 0; row < p->table.rows; row++) {
-        p->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
-        for (int i = 0; i < 3; i++)
-            p->v[i][row] = rate[i][0] * p->ref[0][row] + rate[i][1] * p->ref[1][row] + rate[i][2] * p->ref[2][row];
-    }
-    m->constraints++;
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-3}));
-    tl_solve_result result;
-    scene_ok(m, tl_model_cycle(m, 2, &result));
+    scene_strain(m, rate);
     const tl_zone_table *t = &m->zones->zones;
     double most = 0, most_force = 0, off = 0;
     for (size_t row = 0; row < t->table.rows; row++)
@@ -167,7 +144,7 @@ TEST(blocks_of_cut_boxes_are_strained_as_one)
     for (int through_one = 0; through_one <= 1; through_one++)
         for (uint64_t seed = 1; seed <= 6; seed++) {
             tl_model *m = cut_box(seed, 3, through_one);
-            solid(m, 1e9, 0.25);
+            scene_solid(m, 1e9, 0.25);
             CHECK(m->blocks.table.rows > 3);
             const size_t blocks = m->blocks.table.rows;
             const tl_zoned made = join_and_divide(m, 0, 0.45);
@@ -203,7 +180,7 @@ TEST(blocks_of_rounded_corners_fit)
 {
     for (uint64_t seed = 1; seed <= 6; seed++) {
         tl_model *exact = cut_box(seed, 3, true), *m = rounded(exact, 1e-7);
-        solid(m, 1e9, 0.25);
+        scene_solid(m, 1e9, 0.25);
         join_and_divide(m, 0, 0.45);
         CHECK_NEAR(volume_of(m, 0), 8, 1e-5);
         CHECK_NEAR(surface_of(m), 24, 1e-5);
@@ -219,7 +196,7 @@ TEST(a_small_block_on_a_large_one)
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
     scene_box(m, tl_v3(-0.5, -0.3, 0), tl_v3(0.9, 0.4, 1));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     join_and_divide(m, 0, 0.5);
     check_mesh(m, 16 + 1.4 * 0.7, 32 + 16 + 2 * (1.4 + 0.7));
     check_uniform_strain(m);
@@ -231,7 +208,7 @@ TEST(eight_blocks_about_a_tunnel)
     const double edges[3] = {2, 0.5, 0.31};
     for (int k = 0; k < 3; k++) {
         tl_model *m = tunnel(2);
-        solid(m, 1e9, 0.25);
+        scene_solid(m, 1e9, 0.25);
         join_and_divide(m, 0, edges[k]);
         check_mesh(m, 8 * 2.2, 2 * 8 + (12 + 4) * 2.2);
         for (size_t p = 0; p < m->zones->part_count; p++)
@@ -251,7 +228,7 @@ static tl_vec3 pushed(bool joined, double edge)
     } else {
         scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 2));
     }
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     join_and_divide(m, 0, edge);
     tl_gridpoints *g = &m->zones->points;
     scene_ok(m, tl_gridpoints_hold_loads(g) ? TL_OK : TL_E_MEMORY);
@@ -311,7 +288,7 @@ TEST(joined_blocks_have_the_same_bits_on_any_threads)
     char hash[3][64];
     for (int k = 0; k < 2; k++) {
         m[k] = tunnel(k ? 3 : 1);
-        solid(m[k], 1e9, 0.25);
+        scene_solid(m[k], 1e9, 0.25);
         join_and_divide(m[k], 0, 0.4);
         tl_gridpoints *p = &m[k]->zones->points;
         for (size_t row = 0; row < p->table.rows; row++)
@@ -339,7 +316,7 @@ TEST(a_joined_body_turns_ten_times_without_stress_of_its_own)
     scene_box(m, tl_v3(0, 0, 0.5), tl_v3(0.4, 0.5, 1));
     scene_box(m, tl_v3(0.4, 0, 0.5), tl_v3(1, 0.5, 1));
     const double w = 2 * TL_PI, density = 2000;
-    solid(m, 1e8, 0.25);
+    scene_solid(m, 1e8, 0.25);
     scene_ok(m, tl_blocks_join(m, m->blocks.id, 3));
     m->bodies.w[0] = tl_v3(0, w, 0);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
@@ -371,7 +348,7 @@ static tl_model *falling(bool deforms, tl_quat turn)
     scene_box(m, tl_v3(-4, -4, -2), tl_v3(4, 4, 0));
     scene_block(m, scene_box_shape(1, 1, 0.4), turn, tl_v3_add(tl_v3(0, 0, 1), tl_q_rotate(turn, tl_v3(0, 0, -0.3))));
     scene_block(m, scene_box_shape(1, 1, 0.6), turn, tl_v3_add(tl_v3(0, 0, 1), tl_q_rotate(turn, tl_v3(0, 0, 0.2))));
-    solid(m, 1e10, 0.2);
+    scene_solid(m, 1e10, 0.2);
     scene_ok(m, tl_blocks_fix(m, &floor, 1, TL_FIX_ALL));
     scene_law(m, "coulomb", 1e8, 1e8, 30);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
@@ -411,7 +388,7 @@ TEST(bodies_get_zones_whole_and_stay_whole)
 {
     tl_model *m = tunnel(1);
     scene_box(m, tl_v3(0, 0, -1), tl_v3(3, 2.2, 0));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     scene_law(m, "coulomb", 1e9, 1e9, 30);
     tl_zoned made;
     tl_zoning how = {.size = sizeof how, .edge = 0.6, .solid = "rock"};
@@ -483,7 +460,7 @@ TEST(joined_blocks_with_a_gap_are_refused)
     const tl_zoning how = {.size = sizeof how, .edge = 0.6, .solid = "rock"};
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_box(m, tl_v3(0, 0, 1.0003), tl_v3(1, 1, 2));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     scene_ok(m, tl_blocks_join(m, both, 2));
     CHECK_INT(tl_blocks_deform(m, both, 2, &how, &made), TL_E_GEOMETRY);
     CHECK(strstr(m->error.text, "blocks 1 and 2 were joined with up to 0.0003 m between their faces") != NULL);

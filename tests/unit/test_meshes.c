@@ -1,27 +1,18 @@
 /* test_meshes.c - a mesh as a whole: what acts on it, how it moves and turns, and which of its gridpoints are strained. */
-#include "contact_scene.h"
 #include "cycle/meshes.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
+#include "zone_scene.h"
 #include <talus/zones.h>
 
 /* A box that gets zones of an edge. */
 static tl_model *box_of_zones(double edge)
 {
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = 1e9},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = 0.25}};
-    const tl_args args = {values, 2};
-    const tl_zoning how = {.size = sizeof how, .edge = edge, .solid = "rock"};
-    tl_error error = {0};
-    tl_zoned made;
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(1, 2, 3), tl_v3(2, 4, 4));
-    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
-    scene_ok(m, tl_blocks_deform(m, m->blocks.id, 1, &how, &made));
+    scene_solid(m, 1e9, 0.25);
+    scene_divide(m, 0, 1, edge);
     return m;
 }
 

@@ -1,10 +1,10 @@
 /* test_zone_boundaries.c - initial stress in deformable blocks, and what acts on their faces: tractions, rollers,
  * velocities, quiet faces; loads and drives of whole blocks. */
-#include "contact_scene.h"
 #include "segment/segments.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
+#include "zone_scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,23 +13,9 @@
 
 /* ---------------------------------------------------------------- scenes ----------------- */
 
-static void solid(tl_model *m, double young, double poisson)
-{
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
-    const tl_args args = {values, 2};
-    tl_error error = {0};
-    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
-}
-
 static void divide(tl_model *m, uint32_t from, double edge)
 {
-    const tl_zoning how = {.size = sizeof how, .edge = edge, .solid = "rock"};
-    tl_zoned made = {0};
-    scene_ok(m, tl_blocks_deform(m, m->blocks.id + from, m->blocks.table.rows - from, &how, &made));
+    scene_divide(m, from, m->blocks.table.rows - from, edge);
 }
 
 /* A box of zones of 2000 kg/m3, alone. */
@@ -37,7 +23,7 @@ static tl_model *box(tl_vec3 min, tl_vec3 max, double edge, double young, double
 {
     tl_model *m = scene_model(threads);
     scene_box(m, min, max);
-    solid(m, young, poisson);
+    scene_solid(m, young, poisson);
     divide(m, 0, edge);
     return m;
 }
@@ -147,7 +133,7 @@ TEST(a_column_of_cut_rock_bears_its_weight)
     scene_cut(m, "joint", tl_v3(0.3, 0.2, 1), tl_v3_add(centre, tl_v3(0.1, 0.2, 0.7)));
     scene_cut(m, "joint", tl_v3(1, -0.4, 0.1), tl_v3_add(centre, tl_v3(0.1, 0.1, -1)));
     CHECK(m->blocks.table.rows >= 3);
-    solid(m, 1e9, 0.2);
+    scene_solid(m, 1e9, 0.2);
     scene_law(m, "coulomb", 1e10, 5e9, 60);
     divide(m, 0, 0.9);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
@@ -170,7 +156,7 @@ TEST(a_block_between_held_ones_is_at_rest)
     scene_box(m, tl_v3(-1, -1, -1), tl_v3(2, 2, 0));
     scene_box(m, tl_v3(-1, -1, 1), tl_v3(2, 2, 2));
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     scene_law(m, "coulomb", 1e10, 1e10, 30);
     scene_ok(m, tl_blocks_fix(m, held, 2, TL_FIX_ALL));
     divide(m, 2, 0.3);
@@ -199,7 +185,7 @@ TEST(initial_forces_stay_when_segments_are_laid_anew)
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_box(m, tl_v3(0, 0, 1), tl_v3(1, 1, 2));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     scene_law(m, "coulomb", 1e10, 1e10, 60);
     divide(m, 0, 0.3);
     stress_all(m, (tl_sym3){.zz = -1e6}, (tl_sym3){0}, tl_v3(0, 0, 0));
@@ -287,7 +273,7 @@ TEST(a_roller_holds_along_any_normal)
     const tl_vec3 n = tl_q_rotate(turn, tl_v3(0, 0, 1)), g = {0, 0, -10};
     tl_model *m = scene_model(1);
     scene_block(m, scene_box_shape(1, 1, 1), turn, tl_v3(5, 6, 7));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     divide(m, 0, 0.4);
     scene_ok(m, tl_model_set_gravity(m, g));
     tl_boundary_action a = tl_boundary_action_default();
@@ -323,7 +309,7 @@ TEST(two_rollers_leave_their_edge_one_direction)
     const tl_vec3 z = tl_q_rotate(turn, tl_v3(0, 0, 1));
     tl_model *m = scene_model(1);
     scene_block(m, scene_box_shape(1, 1, 1), turn, tl_v3(0, 0, 0));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     divide(m, 0, 0.4);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(1, 2, -3)));
     tl_boundary_action both[2] = {tl_boundary_action_default(), tl_boundary_action_default()};
@@ -549,7 +535,7 @@ TEST(loads_and_drives_go_over_to_zones)
     tl_model *m = scene_model(1);
     for (int k = 0; k < 3; k++)
         scene_box(m, tl_v3(3 * k, 0, 0), tl_v3(3 * k + 1, 1, 1));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     tl_load load = tl_load_default();
     load.force = tl_v3(0, 0, 700);
     load.moment = tl_v3(0, 10, 0);
@@ -571,7 +557,7 @@ TEST(loads_and_drives_go_over_to_zones)
 
     m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     tl_boundary_action a = at_side(TL_SIDE_ZMAX);
     a.loads = true;
     a.stress.zz = -1e3;
@@ -643,7 +629,7 @@ static tl_model *furnished(int *calls, unsigned threads)
     scene_block(m, scene_box_shape(1, 1, 1), turn, tl_v3(5, 5, 5));
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_box(m, tl_v3(0, 0, 1), tl_v3(1, 1, 2));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     scene_law(m, "coulomb", 1e10, 1e10, 60);
     divide(m, 0, 0.5);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 1, -10)));
@@ -771,7 +757,7 @@ TEST(what_does_not_go_together_is_refused)
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_box(m, tl_v3(3, 0, 0), tl_v3(4, 1, 1));
-    solid(m, 1e9, 0.25);
+    scene_solid(m, 1e9, 0.25);
     divide(m, 1, 0.5);
     char before[64], after[64];
     scene_ok(m, tl_state_hash(m, before));

@@ -1,7 +1,7 @@
 /* test_zone_points.c - points of the material of deformable blocks, driven gridpoints, held blocks, and what a model has of
  * zones. */
-#include "contact_scene.h"
 #include "zone/zones.h"
+#include "zone_scene.h"
 #include <talus/zones.h>
 
 #include <stdlib.h>
@@ -11,18 +11,11 @@
 /* Two cubes of 2 m in a row along x, the first with zones, far from the origin. */
 static tl_model *cubes(unsigned threads, size_t *zoned)
 {
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = 1e9},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = 0.25}};
-    tl_error error = {0};
     tl_model *m = scene_model(threads);
     scene_box(m, tl_v3(999, -1, -1), tl_v3(1001, 1, 1));
     scene_box(m, tl_v3(1005, -1, -1), tl_v3(1007, 1, 1));
-    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
-    scene_ok(m, tl_model_solid(m, "rock", "elastic", &(tl_args){values, 2}));
-    const tl_zoning how = {.size = sizeof how, .edge = 0.6, .solid = "rock"};
-    tl_zoned made;
-    scene_ok(m, tl_blocks_deform(m, m->blocks.id, 1, &how, &made));
+    scene_solid(m, 1e9, 0.25);
+    const tl_zoned made = scene_divide(m, 0, 1, 0.6);
     if (zoned)
         *zoned = made.zones;
     return m;

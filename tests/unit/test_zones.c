@@ -1,10 +1,10 @@
 /* test_zones.c - zones of a deformable body: uniform strain, energy, momentum, frequencies, the same bits on any threads. */
-#include "contact_scene.h"
 #include "segment/segments.h"
 #include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
+#include "zone_scene.h"
 #include <talus/zones.h>
 
 #include <stdlib.h>
@@ -108,25 +108,13 @@ static void zone_box(tl_model *m, tl_id block, const int n[3], tl_vec3 min, tl_v
     box_free(&b);
 }
 
-static void solid(tl_model *m, double young, double poisson)
-{
-    const tl_value values[] = {{.key = "young", .type = TL_VALUE_NUMBER, .number = young},
-                               {.key = "poisson", .type = TL_VALUE_NUMBER, .number = poisson}};
-    const tl_args args = {values, 2};
-    tl_error error = {0};
-    if (!tl_plugin_find(TL_KIND_SOLID, "elastic"))
-        CHECK_INT(tl_plugin_load(TALUS_TEST_PLUGIN_DIR "/solid_elastic.so", &error), TL_OK);
-    CHECK_INT(tl_zones_begin(m), TL_OK);
-    scene_ok(m, tl_solid_set(m, "rock", tl_plugin_find(TL_KIND_SOLID, "elastic"), &args));
-}
-
 /* A box of zones, alone. */
 static tl_model *zoned(const int n[3], tl_vec3 size, double young, double poisson, double density, unsigned threads)
 {
     tl_model *m = scene_model(threads);
     const tl_vec3 half = tl_v3_scale(0.5, size);
     scene_box(m, tl_v3_neg(half), half);
-    solid(m, young, poisson);
+    scene_solid(m, young, poisson);
     zone_box(m, 1, n, tl_v3_neg(half), half, density);
     return m;
 }
@@ -366,7 +354,7 @@ TEST(columns_on_a_joint_shorten_in_series)
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 2));
     scene_box(m, tl_v3(0, 0, 2), tl_v3(1, 1, 4));
     scene_law(m, "coulomb", kn, kn, 30);
-    solid(m, young, poisson);
+    scene_solid(m, young, poisson);
     zone_box(m, 1, n[0], tl_v3(0, 0, 0), tl_v3(1, 1, 2), 2500);
     zone_box(m, 2, n[1], tl_v3(0, 0, 2), tl_v3(1, 1, 4), 2500);
     tl_gridpoints *g = &m->zones->points;
@@ -419,7 +407,7 @@ static tl_model *pair(int which, double friction, double young)
     scene_box(m, tl_v3(-1.5, -0.4, 0), tl_v3(-0.7, 0.4, 0.6));
     scene_law(m, "coulomb", 1e9, 1e9, friction);
     const tl_id floor = 1;
-    solid(m, young, 0.25);
+    scene_solid(m, young, 0.25);
     if (which & 1)
         zone_box(m, 1, base, tl_v3(-2, -1, -1), tl_v3(2, 1, 0), 2500);
     else
@@ -496,7 +484,7 @@ static tl_model *falling(bool deforms, tl_quat turn, tl_vec3 velocity)
     m->bodies.v[1] = velocity;
     if (!deforms)
         return m;
-    solid(m, 1e10, 0.2);
+    scene_solid(m, 1e10, 0.2);
     box b = box_of(n, tl_v3(-0.5, -0.5, -0.5), tl_v3(0.5, 0.5, 0.5), 2000);
     for (size_t k = 0; k < b.grid.point_count; k++)
         b.point[k] = tl_v3_sub(tl_v3_add(tl_q_rotate(turn, b.point[k]), place), m->origin);
