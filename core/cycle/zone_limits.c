@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "cycle/cycle_data.h"
 #include "cycle/gridpoints.h"
+#include "geometry/measure.h"
 #include "zone/zones.h"
 
 #include <math.h>
@@ -29,12 +30,6 @@ typedef struct check_job {
     tl_model *m;
     double dt;
 } check_job;
-
-/* Six times the volume of a zone. */
-static double volume_of(const tl_vec3 x[4])
-{
-    return tl_v3_dot(tl_v3_cross(tl_v3_sub(x[1], x[0]), tl_v3_sub(x[2], x[0])), tl_v3_sub(x[3], x[0]));
-}
 
 /* The largest change of an edge over its length. */
 static double most_change(const tl_vec3 now[4], const tl_vec3 then[4])
@@ -74,7 +69,7 @@ static bool check_zone(const check_job *job, const tl_parcel *of, size_t parcel,
         half[a] = tl_v3_madd(now[a], 0.5 * job->dt, v);
         then[a] = tl_v3_madd(now[a], job->dt, v);
     }
-    if (volume_of(half) > 0 && volume_of(then) > 0)
+    if (tl_tetrahedron_volume(half) > 0 && tl_tetrahedron_volume(then) > 0)
         return true;
     note_zone(job, parcel, row, now, then);
     return false;

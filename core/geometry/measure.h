@@ -4,6 +4,8 @@
 
 #include "geometry/polyhedron.h"
 
+#include <talus/vmath.h>
+
 /* Volume, centroid and inertia at density 1 about the centroid, exact up to rounding. They are sums over tetrahedra
  * about a vertex, so that an offset costs no digits. */
 typedef struct tl_mass {
@@ -19,6 +21,12 @@ tl_bounds tl_points_bounds(const tl_vec3 *points, size_t count);
 static inline tl_bounds tl_poly_bounds(const tl_poly *poly)
 {
     return tl_points_bounds(poly->vertex, poly->vertex_count);
+}
+/* The volume of a tetrahedron of corners x; above 0 where 0, 1, 2 are counter-clockwise as seen from the side without
+ * corner 3. */
+static inline double tl_tetrahedron_volume(const tl_vec3 x[4])
+{
+    return tl_v3_dot(tl_v3_sub(x[1], x[0]), tl_v3_cross(tl_v3_sub(x[2], x[0]), tl_v3_sub(x[3], x[0]))) / 6;
 }
 /* Whether two bounds have a point in common. */
 static inline bool tl_bounds_meet(const tl_bounds *a, const tl_bounds *b)

@@ -318,9 +318,7 @@ static double surface_of(const tl_poly *poly)
 static double volume_of(const tl_zone_mesh *m, uint32_t zone)
 {
     const uint32_t *v = m->zone[zone];
-    const tl_vec3 a = m->point[v[0]];
-    const tl_vec3 b = tl_v3_sub(m->point[v[1]], a), c = tl_v3_sub(m->point[v[2]], a), d = tl_v3_sub(m->point[v[3]], a);
-    return tl_v3_dot(b, tl_v3_cross(c, d)) / 6;
+    return tl_tetrahedron_volume((tl_vec3[4]){m->point[v[0]], m->point[v[1]], m->point[v[2]], m->point[v[3]]});
 }
 
 /* Measures the zones: altitudes in the frame, where places are not rounded by where the block is. */

@@ -34,11 +34,6 @@ tl_zone_at tl_zone_at_number(const tl_model *m, const tl_body_mesh *mesh, uint32
     return at;
 }
 
-double tl_tetrahedron_volume(const tl_vec3 x[4])
-{
-    return tl_v3_dot(tl_v3_sub(x[1], x[0]), tl_v3_cross(tl_v3_sub(x[2], x[0]), tl_v3_sub(x[3], x[0]))) / 6;
-}
-
 tl_vec3 tl_zone_centroid(const tl_zone_at *at)
 {
     const tl_vec3 sum = tl_v3_add(tl_v3_add(at->x[0], at->x[1]), tl_v3_add(at->x[2], at->x[3]));

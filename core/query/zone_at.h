@@ -2,6 +2,7 @@
 #ifndef TL_QUERY_ZONE_AT_H
 #define TL_QUERY_ZONE_AT_H
 
+#include "geometry/measure.h"
 #include "zone/zones.h"
 
 /* A zone where it is: its mesh, row and parcel, and the places of its corners now and as made. */
@@ -15,7 +16,6 @@ typedef struct tl_zone_at {
 
 /* A zone by its number in its mesh. */
 tl_zone_at tl_zone_at_number(const tl_model *m, const tl_body_mesh *mesh, uint32_t number);
-double tl_tetrahedron_volume(const tl_vec3 x[4]);
 tl_vec3 tl_zone_centroid(const tl_zone_at *at);
 tl_sym3 tl_zone_stress(const tl_zone_at *at);
 /* Logarithmic strain, ln V of F = V R, in the axes of the model. */

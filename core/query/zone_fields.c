@@ -239,11 +239,14 @@ static bool in_box(const tl_bounds *box, tl_vec3 p)
            p.z <= box->max.z;
 }
 
+/* Tolerance: by how much a point may lie outside of a zone and still be on a side of it, as a share of its volume. */
+#define ON_A_SIDE 1e-12
+
 /* Whether a point lies in a zone, or on a side of it. */
 static bool zone_contains(const tl_zone_at *at, tl_vec3 p)
 {
     const tl_vec3 q = tl_v3_sub(p, at->m->origin);
-    const double least = -1e-12 * tl_tetrahedron_volume(at->x);
+    const double least = -ON_A_SIDE * tl_tetrahedron_volume(at->x);
     bool inside = true;
     for (int a = 0; a < 4; a++) {
         tl_vec3 x[4];

@@ -5,6 +5,7 @@
  * padded to whole lanes: those beyond its points are fixed and have no zones. */
 #include "zone/grid.h"
 
+#include "geometry/measure.h"
 #include "zone/solids.h"
 
 #include <stdlib.h>
@@ -149,9 +150,7 @@ static void sort_clusters(laying *l, uint32_t first, uint32_t end)
 static double volume_of(const tl_grid *g, uint32_t zone)
 {
     const uint32_t *c = g->zone[zone];
-    const tl_vec3 x = g->point[c[0]];
-    const tl_vec3 a = tl_v3_sub(g->point[c[1]], x), b = tl_v3_sub(g->point[c[2]], x), d = tl_v3_sub(g->point[c[3]], x);
-    return tl_v3_dot(a, tl_v3_cross(b, d)) / 6;
+    return tl_tetrahedron_volume((tl_vec3[4]){g->point[c[0]], g->point[c[1]], g->point[c[2]], g->point[c[3]]});
 }
 
 /* Puts zone `number` of the mesh in a row. */

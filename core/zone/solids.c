@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/solid_columns.h"
+#include "geometry/measure.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,8 +115,7 @@ static double volume_of(const struct tl_zones *z, const tl_parcel *of, size_t ro
     tl_vec3 x[4];
     for (int a = 0; a < 4; a++)
         x[a] = tl_gridpoint_place(&z->points, z->listed[of->point_begin + z->zones.corner[a][row]]);
-    const tl_vec3 a = tl_v3_sub(x[1], x[0]), b = tl_v3_sub(x[2], x[0]), c = tl_v3_sub(x[3], x[0]);
-    return z->zones.number[row] != TL_NO_ROW ? tl_v3_dot(a, tl_v3_cross(b, c)) / 6 : 0;
+    return z->zones.number[row] != TL_NO_ROW ? tl_tetrahedron_volume(x) : 0;
 }
 
 double tl_parcel_stored(const struct tl_zones *z, const tl_parcel *parcel)
