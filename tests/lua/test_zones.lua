@@ -33,6 +33,21 @@ check.equal(low[1].zones, 0)
 check.near(model:zones():sum("volume"), 1, 1e-12)
 check.near(model:gridpoints():sum("mass"), 2500, 1e-9)
 
+-- What is asked for is looked at before zones are made.
+local again = pair_of_cubes()
+check.raises(function() again:blocks():deformable { edge = 0.3, solid = "granite" } end, "deformable: unknown parameter 'edge'")
+check.raises(function() again:blocks():deformable { zone = 1e-3, solid = "granite" } end,
+    "block 1 would get some 8.5e+09 zones with an edge of 0.001 m, and can have 5e+08: give larger ones")
+check.raises(function() again:blocks():deformable { zone = 0.3, solid = "basalt" } end,
+    "there is no solid 'basalt': name it with model:solid first")
+check.raises(function() again:solid("basalt", { young = 1e9 }) end,
+    "there is no solid 'basalt' in this model yet: name its kind, as in model:solid(\"basalt\", \"elastic\", {...})")
+check.raises(function() again:solid("granite", "mohr_coulomb", { young = 1e9, poisson = 0.2, cohesion = { { 0, 1e6 }, { 0.1, 0 } } }) end,
+    "cohesion must be a number, not a list of rows of 2 numbers")
+check.raises(function() again:solid("granite", "elastic", { young = 1e9, bulk = 1e9 }) end, "none of the other pair")
+check.raises(function() again:deformable { zone = 0.3, solid = "granite" } end,
+    "a model has no field 'deformable'; a selection has it: model:blocks{...}:deformable")
+
 -- A function of the place: fine below, coarse above.
 local graded = pair_of_cubes()
 graded:blocks { group = "high" }:deformable { zone = function(p) return 0.15 + 0.4 * (p[3] - 1) end, solid = "granite" }
@@ -144,7 +159,7 @@ for given, sentence in pairs {
     [{ solid = "granite" }] = "deformable: zone must be the wanted edge of zones",
     [{ zone = "small", solid = "granite" }] = "not the string 'small'",
     [{ zone = 1 }] = "solid",
-    [{ zone = 1, solid = "granit" }] = "there is no solid 'granit'",
+    [{ zone = 1, solid = "granit" }] = "there is no solid 'granit'; did you mean 'granite'?",
     [{ zone = 1, solid = "granite", size = 3 }] = "unknown parameter 'size'",
 } do
     local before = fresh:state_hash()
