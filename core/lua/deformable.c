@@ -149,15 +149,15 @@ int tl_lua_deformable(lua_State *L, const tl_lua_selection *blocks)
 
 static const tl_lua_key deformable_results[] = {
     {"blocks, zones, gridpoints, clusters", "", "how many have been made"},
-    {"smallest_altitude", "m", "smallest altitude of a zone over its largest side"},
+    {"smallest_altitude", "", "of a zone over its largest side, m"},
     {"altitude_ratio", "", "smallest altitude over the wanted edge"},
-    {"worst_block", "block", "the block that has it"},
-    {"time_step", "s", "step that the gridpoints would allow if nothing touched them"},
+    {"worst_block", "", "the block that has it"},
+    {"time_step", "", "step that the gridpoints would allow if nothing touched them, s"},
     {"inertia", "",
      "largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an "
      "edge. "
      "Blocks that topple or rock in time want 8 zones to an edge, or stay rigid"},
-    {"memory", "bytes", "memory that the model has grown by"},
+    {"memory", "", "that the model has grown by, bytes"},
     {NULL, NULL, NULL},
 };
 

@@ -140,6 +140,34 @@ model:solid("granite", "ubiquitous", { young = 1e9, poisson = 0.25, cohesion = 1
 check.equal(one.plastic_shear, 0.0)
 model:cycle(10)
 
+-- Components of vectors and tensors are columns of their own, and samples of a tensor have their names.
+local all = model:zones()
+local vertical, stresses = all:values("stress.zz"), all:values("stress")
+for i, tensor in ipairs(stresses) do
+    check.equal(vertical[i], tensor.zz)
+end
+check.equal(all:min("stress.zz"), math.min(table.unpack(vertical)))
+check.equal(all:max("principal.x") >= all:max("principal.z"), true)
+check.near(all:sum("principal.y"), all:sum("principal")[2], 1e-6)
+check.raises(function() all:max("stress") end, "max: the field 'stress' of a zone is not a number: ask for a component, as 'stress.zz'")
+check.raises(function() all:min("principal") end, "only single numbers are compared: ask for a component, as 'principal.z'")
+check.raises(function() model:blocks():min("displacement") end, "only single numbers are compared")
+check.equal(model:gridpoints():values("displacement.z")[3], model:gridpoints()[3].displacement[3])
+check.raises(function() all:values("stress.z") end, "a zone has no field 'stress.z'")
+check.raises(function() all:max("volume.x") end, "a zone has no field of numbers 'volume.x'")
+check.raises(function() model:gridpoints():values("displacement.") end, "a gridpoint has no field 'displacement.'")
+model:history { name = "six", every = 1, value = function() return 1, 2, 3, 4, 5, 6 end }
+local samples = model:histories()
+check.equal(samples.stress.zz[2], samples.stress.value[2][3])
+check.equal(#samples.stress.zx, #samples.stress.value)
+check.equal(samples.six.zz, nil)
+local csv = os.getenv("TALUS_TEST_TMP") .. "/zones.csv"
+model:write_histories(csv)
+local head_line = io.lines(csv)()
+check.holds(head_line:find("stress.xx,stress.yy,stress.zz,stress.xy,stress.yz,stress.zx", 1, true), head_line)
+check.holds(head_line:find("six.1,six.2", 1, true), head_line)
+model:history { name = "six", remove = true }
+
 -- ---------------------------------------------------------------- saves
 
 local path = os.getenv("TALUS_TEST_TMP") .. "/zones.talus"
