@@ -127,6 +127,7 @@ says(zoned:format("1e15", "30"), "is improbably stiff: block 2 shortens by 2.4e-
 says(zoned:format("3e10", "0.6"), "solid 'rock', of kind 'mohr_coulomb': friction = 0.6 deg", "0.6 is 31 deg")
 is_silent(zoned:format("3e10", "30"))
 is_silent(zoned:format("1e6", "0"))
+says((zoned:format("3e10", "30"):gsub("stack%(%)", "stack { density = 26500 }")), "density = 26500 of block 2 is not that of a solid")
 
 -- Gravity.
 says("stack { gravity = { 0, 0, 9.81 } }:cycle(1)", "gravity = {0, 0, 9.81} points upward", "{0, 0, -9.81}")
