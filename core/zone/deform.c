@@ -281,6 +281,7 @@ static tl_status lay_all(dividing *d, uint32_t solid)
         tl_zones_end_at(m, meshes);
     else
         m->structure++;
+    tl_zones_trim(m->zones);
     free(fixed);
     return status;
 }
