@@ -6,6 +6,7 @@
 #include "contact/places.h"
 #include "contact/sides.h"
 #include "cycle/cycle_data.h"
+#include "cycle/meshes.h"
 #include "cycle/rest.h"
 #include "force/joint_laws.h"
 #include "model/body_shape.h"
@@ -353,20 +354,36 @@ static void find_slip(const motion_list *list, tl_verdict *out)
     }
 }
 
+/* The unbalanced force on a body, what it bears, N, and its velocity; of a mesh those of the whole. */
+typedef struct push {
+    tl_vec3 force, velocity;
+    double borne;
+} push;
+
+static push push_of(const tl_model *m, uint32_t body, double gravity)
+{
+    const tl_bodies *b = &m->bodies;
+    const tl_body_mesh *mesh = tl_mesh_of_body(m, body);
+    if (!mesh)
+        return (push){b->force[body], b->v[body], tl_borne(m, body, tl_weight_of(b, body, gravity))};
+    const tl_mesh_whole whole = tl_mesh_whole_of(m, mesh);
+    return (push){whole.force, whole.velocity, fmax(whole.borne, whole.weight)};
+}
+
 /* Whether the unbalanced forces push bodies on, the way they go. */
 static bool accelerates(const tl_model *m)
 {
-    const tl_bodies *b = &m->bodies;
     const double gravity = tl_v3_norm(m->config.gravity);
     tl_addends power = {.count = 0}, most = {.count = 0}, unbalanced = {.count = 0}, borne = {.count = 0};
-    for (uint32_t body = 0; body < b->table.rows; body++) {
-        if (b->fixed[body] == TL_FIX_ALL)
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (!tl_body_is_free(m, body))
             continue;
-        double force = tl_v3_norm(b->force[body]);
-        tl_addends_put(&power, tl_v3_dot(b->force[body], b->v[body]));
-        tl_addends_put(&most, force * tl_v3_norm(b->v[body]));
+        const push of = push_of(m, body, gravity);
+        const double force = tl_v3_norm(of.force);
+        tl_addends_put(&power, tl_v3_dot(of.force, of.velocity));
+        tl_addends_put(&most, force * tl_v3_norm(of.velocity));
         tl_addends_put(&unbalanced, force);
-        tl_addends_put(&borne, tl_borne(m, body, tl_weight_of(b, body, gravity)));
+        tl_addends_put(&borne, of.borne);
     }
     return tl_addends_sum(&power) > PUSHES * tl_addends_sum(&most) &&
            tl_addends_sum(&unbalanced) > LEAST_UNBALANCED * tl_addends_sum(&borne);

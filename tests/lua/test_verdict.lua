@@ -56,6 +56,8 @@ local function slope_of_zones(friction)
 end
 
 local zoned = slope_of_zones(40)
+zoned:cycle(3)
+check.equal(zoned:verdict().standing, "accelerating")
 zoned:solve { ratio = 1e-5 }
 local stands = zoned:verdict()
 check.equal(stands.contacts, 1)
@@ -83,6 +85,17 @@ local before = went.slip
 both:stage "on"
 both:cycle(1)
 check.holds(both:verdict().slip < 1e-2 and before < 1e-1 and both:verdict().opening < 1e-2, both:verdict().text)
+
+-- A block of zones that nothing bears accelerates, as a rigid one does.
+for _, zones in ipairs { false, true } do
+    local falls = talus.model { gravity = { 0, 0, -10 } }
+    falls:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
+    falls:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+    if zones then falls:blocks():deformable { zone = 0.5, solid = "rock" } end
+    joint(falls, 1e9, 30)
+    falls:cycle(50)
+    check.equal(falls:verdict().standing, "accelerating")
+end
 
 -- The same of a copy and from a file; to ask changes nothing.
 local twin = model:copy()
