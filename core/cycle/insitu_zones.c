@@ -91,11 +91,13 @@ void tl_insitu_zones(tl_model *m, const tl_insitu *insitu, const uint8_t *chosen
         }
         z->parcels.stored[k] = tl_parcel_stored(z, of);
     }
-    for (uint32_t row = 0; m->segments && row < m->segments->table.table.rows; row++) {
-        const uint32_t number = m->segments->table.of[row].meet;
-        const tl_meet *meet = number != TL_NO_ROW ? &m->segments->meet[number] : NULL;
-        if (meet && (is_meant(m, chosen, meet->a) || is_meant(m, chosen, meet->b)))
-            tl_segment_preload(m, row, stress_at, &from);
+    for (size_t k = 0; m->segments && k < m->segments->meet_count; k++) {
+        const tl_meet *meet = &m->segments->meet[k];
+        if ((!is_meant(m, chosen, meet->a) && !is_meant(m, chosen, meet->b)) || !tl_meet_is_together(m, meet))
+            continue;
+        for (uint32_t row = meet->begin; row < meet->end; row++)
+            if (m->segments->table.of[row].meet == k)
+                tl_segment_preload(m, row, stress_at, &from);
     }
     z->steps_kept = TL_STEPS_KEPT;
 }
