@@ -604,8 +604,11 @@ static bool note_cover(covering *c, const face_parts *p)
     if (!tl_grow(&c->list, &c->capacity, c->count + 2, sizeof *c->list))
         return false;
     const uint32_t x = part_row(m, a, p->at[0]), y = part_row(m, b, p->at[1]);
-    c->list[c->count++] = (tl_cover){a->block, a->number, x, b->block, b->number, y, over.area};
-    c->list[c->count++] = (tl_cover){b->block, b->number, y, a->block, a->number, x, over.area};
+    tl_cover *of_a = &c->list[c->count++], *of_b = &c->list[c->count++];
+    *of_a = (tl_cover){a->block, a->number, x, b->block, b->number, y, over.area, {{0, 0, 0}}};
+    *of_b = (tl_cover){b->block, b->number, y, a->block, a->number, x, over.area, {{0, 0, 0}}};
+    memcpy(of_a->at, over.on_a, sizeof of_a->at);
+    memcpy(of_b->at, over.on_b, sizeof of_b->at);
     return true;
 }
 

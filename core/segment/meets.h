@@ -9,7 +9,8 @@
 typedef struct tl_cover {
     uint32_t block, face, part;
     uint32_t other_block, other_face, other_part;
-    double area; /* that both have in common, m2 */
+    double area;   /* that both have in common, m2 */
+    tl_vec3 at[3]; /* on the plane of the first: three points of a third of it each, which integrate over it */
 } tl_cover;
 
 /* Lists, at the present places, what lies on what where one of two blocks is deformable: each overlay for both sides,
