@@ -227,11 +227,13 @@ static bool list_faces(listing *l, const face *a, const face *b)
         .face_a = a->number,
         .face_b = b->number,
         .tag = tl_flush_tag(m->blocks.shape[a->block]->tag[a->number], m->blocks.shape[b->block]->tag[b->number]),
+        .born = -1,
         .stale = true,
         .share = 0.5,
         .tilted = tilt_cosine(a, b) < NOT_TILTED,
         .alone = true,
         .size = fmin(a->size, b->size),
+        .counts = 1,
         .flat = 1};
     return true;
 }
@@ -568,6 +570,30 @@ tl_status tl_segments_find(tl_model *m)
     s->zones = m->zones->version;
     s->lists = m->detect->lists;
     return TL_OK;
+}
+
+tl_status tl_segments_ask(tl_model *m)
+{
+    const struct tl_segments *s = m->segments;
+    const bool found = s && s->structure == m->structure && s->laws == m->laws && s->zones == m->zones->version &&
+                       s->lists == m->detect->lists;
+    if (!tl_model_deforms(m) || (s && !s->asked) || found)
+        return TL_OK;
+    tl_segments_forget_asked(m);
+    const tl_status status = tl_segments_find(m);
+    if (m->segments)
+        m->segments->asked = true;
+    return status;
+}
+
+void tl_segments_forget_asked(tl_model *m)
+{
+    if (!m->segments || !m->segments->asked)
+        return;
+    tl_segments_free(m->segments);
+    m->segments = NULL;
+    m->segments_follow = NULL;
+    m->zones->meeting_count = 0;
 }
 
 /* ---------------------------------------------------------------- covers ----------------- */

@@ -19,5 +19,9 @@ bool tl_meets_cover(const tl_model *m, tl_cover **list, size_t *count);
 
 /* Brings meets and their segments up to the present places. */
 tl_status tl_segments_find(tl_model *m);
+/* Finds them for somebody who asks, where no step has yet. Pairs and contacts are up to date. */
+tl_status tl_segments_ask(tl_model *m);
+/* Forgets what has been found so: the next step, or what is put on segments, begins as if nobody had asked. */
+void tl_segments_forget_asked(tl_model *m);
 
 #endif
