@@ -227,11 +227,13 @@ static bool list_faces(listing *l, const face *a, const face *b)
         .face_a = a->number,
         .face_b = b->number,
         .tag = tl_flush_tag(m->blocks.shape[a->block]->tag[a->number], m->blocks.shape[b->block]->tag[b->number]),
+        .born = -1,
         .stale = true,
         .share = 0.5,
         .tilted = tilt_cosine(a, b) < NOT_TILTED,
         .alone = true,
         .size = fmin(a->size, b->size),
+        .counts = 1,
         .flat = 1};
     return true;
 }
@@ -570,6 +572,30 @@ tl_status tl_segments_find(tl_model *m)
     return TL_OK;
 }
 
+tl_status tl_segments_ask(tl_model *m)
+{
+    const struct tl_segments *s = m->segments;
+    const bool found = s && s->structure == m->structure && s->laws == m->laws && s->zones == m->zones->version &&
+                       s->lists == m->detect->lists;
+    if (!tl_model_deforms(m) || (s && !s->asked) || found)
+        return TL_OK;
+    tl_segments_forget_asked(m);
+    const tl_status status = tl_segments_find(m);
+    if (m->segments)
+        m->segments->asked = true;
+    return status;
+}
+
+void tl_segments_forget_asked(tl_model *m)
+{
+    if (!m->segments || !m->segments->asked)
+        return;
+    tl_segments_free(m->segments);
+    m->segments = NULL;
+    m->segments_follow = NULL;
+    m->zones->meeting_count = 0;
+}
+
 /* ---------------------------------------------------------------- covers ----------------- */
 
 /* The list of covers on its way. */
@@ -604,8 +630,11 @@ static bool note_cover(covering *c, const face_parts *p)
     if (!tl_grow(&c->list, &c->capacity, c->count + 2, sizeof *c->list))
         return false;
     const uint32_t x = part_row(m, a, p->at[0]), y = part_row(m, b, p->at[1]);
-    c->list[c->count++] = (tl_cover){a->block, a->number, x, b->block, b->number, y, over.area};
-    c->list[c->count++] = (tl_cover){b->block, b->number, y, a->block, a->number, x, over.area};
+    tl_cover *of_a = &c->list[c->count++], *of_b = &c->list[c->count++];
+    *of_a = (tl_cover){a->block, a->number, x, b->block, b->number, y, over.area, {{0, 0, 0}}};
+    *of_b = (tl_cover){b->block, b->number, y, a->block, a->number, x, over.area, {{0, 0, 0}}};
+    memcpy(of_a->at, over.on_a, sizeof of_a->at);
+    memcpy(of_b->at, over.on_b, sizeof of_b->at);
     return true;
 }
 
