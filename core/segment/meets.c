@@ -2,7 +2,7 @@
  *
  * Of two blocks that the broad phase lists, one of which is deformable, faces meet that look at each other and are
  * near. All triangles of one that lie over triangles of the other make a segment, closed or open. Segments stand until
- * their sides have slid by a share of their size, or until meets are listed anew. What points carry goes over:
+ * their sides have slid by a share of a triangle's size, or faces that met no longer do. What points carry goes over:
  *
  *   - a segment of the same two triangles takes over from its own three points, by area;
  *   - another one takes the stress of the nearest old point of its meet;
@@ -540,6 +540,9 @@ tl_status tl_segments_find(tl_model *m)
     bool some = anew || others, enough = true;
     tl_laying l;
     tl_laying_begin(&l);
+    for (size_t row = 0; row < s->table.table.rows; row++)
+        if (s->table.slid[row] && s->table.of[row].meet != TL_NO_ROW)
+            s->meet[s->table.of[row].meet].stale = true;
     if (anew) {
         size_t count;
         tl_meet *list = list_meets(m, &count, &enough);
@@ -549,9 +552,6 @@ tl_status tl_segments_find(tl_model *m)
             free(list);
         mark_changed(m);
     }
-    for (size_t row = 0; row < s->table.table.rows && !anew; row++)
-        if (s->table.slid[row] && s->table.of[row].meet != TL_NO_ROW)
-            s->meet[s->table.of[row].meet].stale = true;
     for (size_t k = 0; k < s->meet_count; k++)
         some = some || s->meet[k].stale;
     for (uint32_t k = 0; enough && some && k < s->meet_count; k++)
