@@ -11,6 +11,7 @@
 #include "cycle/limits.h"
 #include "detect/overlap.h"
 #include "model/body_shape.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "zone/zones.h"
 
@@ -59,7 +60,7 @@ static densities find_densities(const tl_model *m)
     densities d = {INFINITY, 0, TL_NO_ROW, TL_NO_ROW};
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         double density = m->blocks.density[row];
-        if (m->bodies.fixed[m->blocks.body[row]] == TL_FIX_ALL)
+        if (tl_body_is_held(m, m->blocks.body[row]))
             continue;
         if (density < d.least) {
             d.least = density;

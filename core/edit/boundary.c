@@ -66,7 +66,8 @@ typedef struct plan {
     tl_covers covers;
     tl_bare_list bare;
     tl_outer_list outer;
-    uint32_t now; /* the drive of the action being planned, or 0 */
+    uint32_t now;    /* the drive of the action being planned, or 0 */
+    double left_out; /* area of triangles that reach out of its box, m2 */
 } plan;
 
 /* ---------------------------------------------------------------- outer parts of faces ----
@@ -248,7 +249,18 @@ static tl_status bare_measure(plan *p, const tl_face_filter *filter, uint32_t ro
     out->normal = out->bare.normal;
     out->o = out->bare.centroid;
     out->sums.a = out->bare.area;
+    p->left_out += out->bare.left_out;
     return TL_OK;
+}
+
+/* Zones that do not end at the box make the area another one than is wanted. */
+static void remark_left_out(const plan *p, double area)
+{
+    if (p->left_out > 0)
+        tl_model_say(p->m,
+                     "boundary: triangles with %.3g m2 have their middle in the box, but reach out of it and are left "
+                     "out; %.3g m2 are in it: let zones end where the box does, at a joint, or make them smaller",
+                     p->left_out, area);
 }
 
 static tl_status find_faces(plan *p, const tl_face_filter *filter, face_list *faces)
@@ -416,6 +428,7 @@ static tl_status plan_action(plan *p, const tl_boundary_action *a, tl_boundary_r
     tl_model *m = p->m;
     face_list faces = {0};
     tl_face_filter filter;
+    p->left_out = 0;
     tl_status status = check_action(m, a);
     if (status == TL_OK)
         status = tl_face_filter_begin(m, &a->where, &filter);
@@ -435,6 +448,8 @@ static tl_status plan_action(plan *p, const tl_boundary_action *a, tl_boundary_r
         status = tl_fail_memory(&m->error);
     if (status == TL_OK && (!tl_v3_finite(result->force) || !tl_v3_finite(result->moment)))
         status = tl_fail(&m->error, TL_E_NUMERIC, "boundary: the load is not finite");
+    if (status == TL_OK && does_something(a))
+        remark_left_out(p, result->area);
     free(faces.at);
     return status;
 }

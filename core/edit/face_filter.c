@@ -122,6 +122,15 @@ bool tl_face_is_there(const tl_model *m, const tl_face_filter *s, uint32_t row, 
     return there;
 }
 
+bool tl_triangle_reaches_out(const tl_model *m, const tl_face_filter *s, uint32_t row, const tl_vec3 corner[3])
+{
+    const tl_vec3 middle = tl_v3_scale(1.0 / 3, tl_v3_add(corner[0], tl_v3_add(corner[1], corner[2])));
+    tl_face_filter whole = *s;
+    whole.box = false;
+    return s->plane && s->box && in_box(&s->bounds, middle, 0) && tl_triangle_is_there(m, &whole, row, corner) &&
+           !tl_triangle_is_there(m, s, row, corner);
+}
+
 bool tl_triangle_is_there(const tl_model *m, const tl_face_filter *s, uint32_t row, const tl_vec3 corner[3])
 {
     const tl_vec3 area = tl_v3_cross(tl_v3_sub(corner[1], corner[0]), tl_v3_sub(corner[2], corner[0]));

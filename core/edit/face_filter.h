@@ -21,5 +21,7 @@ tl_status tl_face_filter_begin(tl_model *m, const tl_boundary_where *where, tl_f
 bool tl_face_is_there(const tl_model *m, const tl_face_filter *s, uint32_t row, uint32_t face);
 /* The same of a triangle of the surface of a deformable block: places of its corners, relative to the origin. */
 bool tl_triangle_is_there(const tl_model *m, const tl_face_filter *s, uint32_t row, const tl_vec3 corner[3]);
+/* Whether one in the plane that is meant has its middle in the box, but reaches out of it. */
+bool tl_triangle_reaches_out(const tl_model *m, const tl_face_filter *s, uint32_t row, const tl_vec3 corner[3]);
 
 #endif

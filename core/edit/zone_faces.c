@@ -60,6 +60,7 @@ bool tl_bare_find(const tl_model *m, const tl_face_filter *filter, const tl_cove
         const tl_vec3 area = tl_v3_scale(0.5, tl_v3_cross(tl_v3_sub(x[1], x[0]), tl_v3_sub(x[2], x[0])));
         const uint32_t number = (uint32_t)(&part[k] - m->zones->part);
         const double size = tl_v3_norm(area), share = bare_share(covers, number, size, &at, end);
+        out->left_out += tl_triangle_reaches_out(m, filter, row, x) ? share * size : 0;
         if (share == 0 || !tl_triangle_is_there(m, filter, row, x))
             continue;
         if (!tl_grow(&list->at, &list->capacity, list->count + 1, sizeof *list->at))

@@ -22,6 +22,7 @@ typedef struct tl_bare_triangle {
 typedef struct tl_bare_face {
     size_t begin, end;
     double area;
+    double left_out; /* area of triangles with the middle in the box that reach out of it, m2 */
     tl_vec3 normal, centroid;
 } tl_bare_face;
 

@@ -14,6 +14,7 @@
 #include "io/scene_put.h"
 #include "io/scene_zones.h"
 #include "io/verdict.h"
+#include "model/deformable.h"
 #include "model/joints.h"
 #include "model/regroup.h"
 #include "model/rows.h"
@@ -412,7 +413,7 @@ static void put_block(const frame *f, size_t i)
     tl_put_vec3(f->rotation + 12 * i, tl_q_vector(q));
     tl_put_vec3(f->spin + 12 * i, bodies->w[body]);
     tl_put_f32(f->unbalanced + 4 * i, tl_v3_norm(bodies->force[body]));
-    tl_put_u8(f->flags + i, (bodies->fixed[body] == TL_FIX_ALL ? HELD : 0u) | (m->blocks.hidden[row] ? HIDDEN : 0u));
+    tl_put_u8(f->flags + i, (tl_body_is_held(m, body) ? HELD : 0u) | (m->blocks.hidden[row] ? HIDDEN : 0u));
 }
 
 static void put_blocks_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)

@@ -7,16 +7,23 @@
 
 #include <math.h>
 
-/* Where a point of a side is. */
-static tl_vec3 place_of(const tl_model *m, const tl_segment_side *side, tl_vec3 at)
+/* A place that goes with a side, the first corner of a triangle or the centroid of a rigid body. */
+static tl_vec3 origin_of(const tl_model *m, const tl_segment_side *side)
+{
+    return tl_side_is_rigid(side) ? tl_body_place(&m->bodies, side->at[0])
+                                  : tl_gridpoint_place(&m->zones->points, side->at[0]);
+}
+
+/* Where a point of a side lies from there. A step finds it by the same differences, so far from the origin of the model
+ * as well it finds the same distance of the walls. */
+static tl_vec3 lies_at(const tl_model *m, const tl_segment_side *side, tl_vec3 at)
 {
     if (tl_side_is_rigid(side))
-        return tl_body_point(&m->bodies, side->at[0], at);
-    const double weight[3] = {at.x, at.y, at.z};
-    tl_vec3 place = {0, 0, 0};
-    for (int k = 0; k < 3; k++)
-        place = tl_v3_madd(place, weight[k], tl_gridpoint_place(&m->zones->points, side->at[k]));
-    return place;
+        return tl_m3_mul(&m->bodies.pose[side->at[0]].r, at);
+    const tl_vec3 first = origin_of(m, side);
+    const tl_vec3 a = tl_v3_sub(tl_gridpoint_place(&m->zones->points, side->at[1]), first),
+                  b = tl_v3_sub(tl_gridpoint_place(&m->zones->points, side->at[2]), first);
+    return tl_v3_madd(tl_v3_scale(at.y, a), at.z, b);
 }
 
 /* The common normal of a segment, as a step finds it. */
@@ -35,12 +42,13 @@ void tl_segment_preload(tl_model *m, uint32_t row, tl_sym3 (*stress)(const void 
     const tl_segment *of = &s->table.of[row];
     tl_segment_points *p = &s->points;
     const double share = s->meet[of->meet].share;
-    const tl_vec3 n = normal_of(m, of, share);
+    const tl_vec3 n = normal_of(m, of, share), a = origin_of(m, &of->a), between = tl_v3_sub(origin_of(m, &of->b), a);
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t point = tl_segment_point_row(row, k);
-        const tl_vec3 on_a = place_of(m, &of->a, tl_columns_get(p->at_a, point));
-        const tl_vec3 apart = tl_v3_sub(place_of(m, &of->b, tl_columns_get(p->at_b, point)), on_a);
-        const tl_vec3 traction = tl_s3_mul(stress(user, tl_v3_madd(on_a, share, apart)), n);
+        const tl_vec3 on_a = lies_at(m, &of->a, tl_columns_get(p->at_a, point));
+        const tl_vec3 on_b = lies_at(m, &of->b, tl_columns_get(p->at_b, point));
+        const tl_vec3 apart = tl_v3_add(between, tl_v3_sub(on_b, on_a));
+        const tl_vec3 traction = tl_s3_mul(stress(user, tl_v3_madd(tl_v3_add(a, on_a), share, apart)), n);
         const double normal = tl_v3_dot(n, traction);
         p->reference[point] = -tl_v3_dot(apart, n);
         p->f_n0[point] = p->f_n[point] = -normal * p->area[point];

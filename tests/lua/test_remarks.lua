@@ -127,6 +127,17 @@ says(zoned:format("1e15", "30"), "is improbably stiff: block 2 shortens by 2.4e-
 says(zoned:format("3e10", "0.6"), "solid 'rock', of kind 'mohr_coulomb': friction = 0.6 deg", "0.6 is 31 deg")
 is_silent(zoned:format("3e10", "30"))
 is_silent(zoned:format("1e6", "0"))
+says((zoned:format("3e10", "30"):gsub("stack%(%)", "stack { density = 26500 }")), "density = 26500 of block 2 is not that of a solid")
+
+-- Triangles of zones that reach out of the box of a boundary; with a joint at its side there are none.
+local loaded = [[local m = talus.model {}
+m:generate("box", { min = { 0, 0, 0 }, max = { 4, 1, 1 }, density = 2600 })
+m:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { %s, 0, 0 } })
+m:solid("rock", "elastic", { young = 3e10, poisson = 0.2 })
+m:blocks():deformable { zone = 0.5, solid = "rock" }
+m:boundary { side = "zmax", box = { min = { 0, 0, 0 }, max = { 1.8, 1, 1 } }, pressure = 1e5 }]]
+says(loaded:format(3), "have their middle in the box, but reach out of it and are left out", "m2 are in it")
+is_silent(loaded:format(1.8))
 
 -- Gravity.
 says("stack { gravity = { 0, 0, 9.81 } }:cycle(1)", "gravity = {0, 0, 9.81} points upward", "{0, 0, -9.81}")

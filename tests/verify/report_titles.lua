@@ -55,6 +55,7 @@ local TITLES = {
     { "DF.insitu_rest", "zones: jointed cube at rest under stress in situ" },
     { "DF.cantilever", "zones: cantilever under a load at its end" },
     { "DF.prandtl", "zones: rough footing on soil with cohesion" },
+    { "DF.prandtl_phi(%d+)", "zones: rough footing on soil with cohesion and friction of %1 degrees" },
     { "DF.salencon_psi(%d+)", "zones: hole in rock that yields, dilation of %1 degrees" },
     { "DF.kirsch", "zones: hole in elastic rock under two stresses" },
     { "DF.ledger.plastic", "zones: energy of zones that flow" },

@@ -112,6 +112,7 @@ def test_mesh(chrome, folder):
     zones = told(folder, "zones")
     yielded = sum(z["state"] != "elastic" for z in zones)
     check(chrome.run("document.querySelector('#picked h2').textContent") == "Block 2" and table["zones"] == f"{len(zones)}, {yielded} yielded", f"a click on the mesh tells {table}")
+    check(table["held"] == "no", f"a deformable block that nothing holds counts as held: {table}")
     low = {}
     for motion in (1, 10):
         show(chrome, folder / "zones.html", f"#frame=2&motion={motion}")
