@@ -74,13 +74,15 @@ TL_VECTORIZED static void find_free(const uint8_t *fixed, size_t count, free_par
     unsigned held = 0;
     for (size_t i = 0; i < count; i++)
         held |= fixed[i];
-    for (int c = 0; c < 3; c++)
-        if ((held & TL_FIX_X << c) == 0)
+    for (int c = 0; c < 3; c++) {
+        const unsigned bit = (unsigned)TL_FIX_X << c;
+        if ((held & bit) == 0)
             for (size_t i = 0; i < count; i++)
                 out->of[c][i] = 1;
         else
             for (size_t i = 0; i < count; i++)
-                out->of[c][i] = (fixed[i] & TL_FIX_X << c) != 0 ? 0 : 1;
+                out->of[c][i] = (fixed[i] & bit) != 0 ? 0 : 1;
+    }
 }
 
 /* What a component is where it is free, else 0. */
