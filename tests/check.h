@@ -91,8 +91,8 @@ static inline double check_random(uint64_t *state)
     return (double)((x * 2685821657736338717u) >> 11) * 0x1p-53;
 }
 
-/* Of a number of cases how many are tried: all, or one in TALUS_TEST_SHARE. "./bootstrap test" tries one in ten, with --full only
- * with sanitizers, and "./bootstrap soak" all. */
+/* Of a number of cases how many are tried: all, or one in TALUS_TEST_SHARE. "./bootstrap test" tries one in ten, with --full one
+ * in four (with sanitizers one in twenty), and "./bootstrap soak" all. */
 static inline int check_cases(int count)
 {
     const char *share = getenv("TALUS_TEST_SHARE");

@@ -111,10 +111,11 @@ TL_INLINE void tl_lanes_turn(const double *const row[4], double *restrict x, dou
     *(tl_four *)w = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
 }
 
-/* Rows of TL_ROW numbers. Four of them, less tl_four others, become three columns of TL_LANES: x, y, z of the first
- * three numbers of each. */
+/* Rows of TL_ROW numbers. Four of them, less tl_four others, become three columns: x, y, z of the first three
+ * numbers of each. */
 #define TL_ROW 8
-TL_INLINE void tl_lanes_apart(const double *rows, const uint16_t of[4], const uint16_t from[4], double *restrict xyz)
+TL_INLINE void tl_lanes_apart(const double *rows, const uint16_t of[4], const uint16_t from[4], double *restrict x,
+                              double *restrict y, double *restrict z)
 {
 #define TL_ROWS_APART(i)                                                                                               \
     (*(const tl_four *)(rows + TL_ROW * (size_t)of[i]) - *(const tl_four *)(rows + TL_ROW * (size_t)from[i]))
@@ -124,9 +125,9 @@ TL_INLINE void tl_lanes_apart(const double *rows, const uint16_t of[4], const ui
                   odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
     const tl_four even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
                   odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    *(tl_four *)xyz = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
-    *(tl_four *)(xyz + TL_LANES) = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
-    *(tl_four *)(xyz + 2 * TL_LANES) = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+    *(tl_four *)x = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+    *(tl_four *)y = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+    *(tl_four *)z = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
 }
 
 /* The same of rows that nothing is taken from. */

@@ -99,7 +99,7 @@ static void describe_value(const tl_value *value, char *text, size_t size)
     case TL_VALUE_POINTS:
         snprintf(text, size, "a list of %zu point%s", value->count, value->count == 1 ? "" : "s");
         break;
-    case TL_VALUE_FLAT: snprintf(text, size, "a list whose row 1 has 2 numbers, not 3"); break;
+    case TL_VALUE_FLAT: snprintf(text, size, "a list of rows of 2 numbers"); break;
     case TL_VALUE_OTHER:
     default: snprintf(text, size, "a %.100s", value->text ? value->text : "value of another type"); break;
     }

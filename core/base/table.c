@@ -78,6 +78,19 @@ bool tl_grow(void *slot, size_t *capacity, size_t need, size_t size)
     return need <= *capacity || tl_fit(slot, capacity, need + need / 2 + 16, size);
 }
 
+void tl_trim(void *slot, size_t *capacity, size_t count, size_t size)
+{
+    void *data;
+    memcpy(&data, slot, sizeof data);
+    if (count == 0 || count >= *capacity)
+        return;
+    data = realloc(data, count * size);
+    if (!data)
+        return;
+    memcpy(slot, &data, sizeof data);
+    *capacity = count;
+}
+
 static size_t column_bytes(const tl_column *column, size_t capacity)
 {
     return (capacity * column->size + TL_ALIGN - 1) / TL_ALIGN * TL_ALIGN;

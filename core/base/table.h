@@ -82,6 +82,8 @@ size_t tl_table_bytes(const tl_table *table);
 bool tl_grow(void *slot, size_t *capacity, size_t need, size_t size);
 /* The same without any to spare: for what has a place for each block or body. */
 bool tl_fit(void *slot, size_t *capacity, size_t need, size_t size);
+/* Gives back what an array of `count` items has to spare. */
+void tl_trim(void *slot, size_t *capacity, size_t count, size_t size);
 
 /* Asks the system to keep allocated memory in large pages, as far as it has not been written to yet. A loop over many
  * columns then has the address of each at hand. Nothing where there is no such thing, or for little memory. Not for

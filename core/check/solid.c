@@ -30,7 +30,8 @@
 #define DT 1e-4
 /* Tolerance: relative error of stresses that rounding explains, as a law's. Test: unit/test_check. */
 #define ROUNDING 1e-11
-/* Tolerance: change of a stress without strain, relative to the stresses. */
+/* Tolerance: change without strain, of a stress relative to the stresses, of a state to 1 and itself: axes are made of
+ * unit length anew. Test: unit/test_check. */
 #define UNCHANGED 1e-12
 /* Tolerance: share by which a modulus may be exceeded: that of differences of stresses. */
 #define SLACK 1e-6
@@ -49,9 +50,9 @@
     RULE(WRITES, "writes", "nothing is written but stresses, flags, energies and declared states")                     \
     RULE(READS, "reads", "nothing depends on states that are not declared, nor on what is to be written")              \
     RULE(FINITE, "finite", "stresses, states and energies are finite numbers")                                         \
-    RULE(STILL, "no strain", "without strain the stresses stay as they are, unless a state changes")                   \
+    RULE(STILL, "no strain", "without strain stresses stay, unless a state changes; without time, too, no state does") \
     RULE(TURNED, "turned", "a turned zone gets the turned stresses, the same energies and states")                     \
-    RULE(MODULI, "moduli", "no zone that stays elastic is stiffer than moduli() says")                                 \
+    RULE(MODULI, "moduli", "stresses of a zone that stays elastic rise with its strain, as moduli() says at the most") \
     RULE(CYCLE, "closed cycle", "a closed path of small strains that stays elastic gives no energy")                   \
     RULE(BALANCE, "balance", "the work on a path is stored or turned to heat")                                         \
     RULE(HEAT, "heat", "dissipated is not negative, and 0 where nothing yields")                                       \
@@ -90,6 +91,7 @@ typedef struct trial {
     zones now, in, out;
     double scale[ZONES];    /* Pa, of a zone's stresses */
     bool other, no_energy;  /* what is nobody's holds other numbers than usually; energies are not asked for */
+    bool stands;            /* no time passes */
     uint32_t written, read; /* bit k: state column k has been */
     bool matters[TL_CHECK_PARAMS];
 } trial;
@@ -216,7 +218,7 @@ static bool call_some(trial *t, const zones *in, zones *out, const size_t *order
     memcpy(before.flags, now.flags, end_of(padded) * sizeof now.flags[0]);
     tl_solid_batch batch = tl_solid_batch_of(now.c[0], MOST, now.flags, state, 2 * TL_SOLID_COLUMNS);
     batch.count = (uint32_t)padded;
-    batch.dt = DT;
+    batch.dt = t->stands ? 0 : DT;
     if (t->no_energy)
         batch.stored = batch.dissipated = NULL;
     tl_report report = {.size = sizeof report};
@@ -262,18 +264,37 @@ static bool same(const trial *t, const zones *a, const zones *b, size_t i, bool 
     return a->flags[i] == b->flags[i];
 }
 
+/* What a solid gives in a column. */
+static const char *column_name(const trial *t, int column)
+{
+    static const char *const names[] = {"stress xx", "stress yy", "stress zz", "stress xy",
+                                        "stress yz", "stress zx", "stored",    "dissipated"};
+    int at = TL_ZONE_AT_STATE;
+    if (column < at)
+        return names[column - TL_ZONE_AT_STRESS];
+    for (uint32_t k = 0; k < t->c->kind->state_count; k++) {
+        at += (int)tl_state_width(t->c->kind->states[k].kind);
+        if (column < at)
+            return t->c->kind->states[k].name;
+    }
+    return "flags";
+}
+
+/* Tells the first thing that two calls gave a zone otherwise. */
 static void compare(trial *t, int check, const zones *other, bool energies, const char *how)
 {
-    for (size_t i = 0; i < ZONES; i++)
-        if (!same(t, &t->out, other, i, energies)) {
-            const int k = TL_ZONE_AT_STRESS;
-            tl_check_note(t->c, check,
-                          "the stress has xx = %.17g, yy = %.17g, xy = %.17g Pa, flags %u, in a batch of 64 zones; "
-                          "%.17g, %.17g, %.17g, %u %s",
-                          t->out.c[k][i], t->out.c[k + 1][i], t->out.c[k + 3][i], t->out.flags[i], other->c[k][i],
-                          other->c[k + 1][i], other->c[k + 3][i], other->flags[i], how);
-            return;
-        }
+    for (size_t i = 0; i < ZONES; i++) {
+        if (same(t, &t->out, other, i, energies))
+            continue;
+        const int end = TL_ZONE_AT_STATE + (int)t->columns;
+        int k = TL_ZONE_AT_STRESS;
+        while (k < end && ((!energies && (k == TL_ZONE_AT_STORED || k == TL_ZONE_AT_DISSIPATED)) ||
+                           memcmp(&t->out.c[k][i], &other->c[k][i], sizeof(double)) == 0))
+            k++;
+        const double is = k < end ? t->out.c[k][i] : t->out.flags[i], was = k < end ? other->c[k][i] : other->flags[i];
+        tl_check_note(t->c, check, "%s is %.17g in a batch of 64 zones, and %.17g %s", column_name(t, k), is, was, how);
+        return;
+    }
 }
 
 /* The step as a whole, again, zone by zone, in parts of another order, without energies. */
@@ -358,12 +379,28 @@ static void clear_strains(zones *z)
         memset(z->c[TL_ZONE_AT_STRAIN + k], 0, sizeof z->c[0]);
 }
 
-/* From the end of a step, one without strain. */
+static bool states_move(const trial *t, const zones *a, const zones *b, size_t i)
+{
+    for (int k = TL_ZONE_AT_STATE; k < TL_ZONE_AT_STATE + (int)t->columns; k++)
+        if (fabs(b->c[k][i] - a->c[k][i]) > UNCHANGED * (1 + fabs(a->c[k][i])))
+            return true;
+    return false;
+}
+
+/* From the end of a step, one without strain, and one without time as well. */
 static void check_still(trial *t)
 {
     zones in = t->out, out;
     clear_strains(&in);
-    if (!call_all(t, &in, &out))
+    t->stands = true;
+    const bool stood = call_all(t, &in, &out);
+    t->stands = false;
+    for (size_t i = 0; stood && i < ZONES; i++)
+        if (!(out.flags[i] & NOW) && states_move(t, &in, &out, i))
+            tl_check_note(t->c, STILL,
+                          "without strain and time (dt = 0) a state of a zone that does not yield changes: it would "
+                          "depend on how many steps are made");
+    if (!stood || !call_all(t, &in, &out))
         return;
     for (size_t i = 0; i < ZONES; i++) {
         double off = apart(&in, &out, i);
@@ -469,9 +506,17 @@ static void check_moduli(trial *t, int step)
                 stress +=
                     (k < 3 ? 1 : 2) * part[i][k] * (b.c[TL_ZONE_AT_STRESS + k][i] - a.c[TL_ZONE_AT_STRESS + k][i]);
             double stiff = stress / strain, most = shear ? t->shear : t->constrained;
-            if (stiff > most * (1 + SLACK) && !((a.flags[i] | b.flags[i]) & NOW))
-                tl_check_note(t->c, MODULI, "a zone has the %s modulus %g Pa, but moduli() says %g",
-                              shear ? "shear" : "constrained", stiff, most);
+            const char *which = shear ? "shear" : "constrained";
+            if ((a.flags[i] | b.flags[i]) & NOW)
+                continue;
+            if (stiff > most * (1 + SLACK))
+                tl_check_note(t->c, MODULI, "a zone has the %s modulus %g Pa, but moduli() says %g", which, stiff,
+                              most);
+            if (stiff < -most * SLACK)
+                tl_check_note(t->c, MODULI,
+                              "a zone has the %s modulus %g Pa: its stress falls where the strain grows; both are "
+                              "positive in tension",
+                              which, stiff);
         }
     }
 }
@@ -493,8 +538,8 @@ static void check_stored(trial *t)
     tl_leave();
     for (size_t i = 0; i < ZONES; i++)
         if (fabs(told[i] - z.c[TL_ZONE_AT_STORED][i]) > ROUNDING * t->scale[i] * t->scale[i] / t->shear)
-            tl_check_note(t->c, STORED, "energy() tells %g J/m3, and update() has told %g", told[i],
-                          z.c[TL_ZONE_AT_STORED][i]);
+            tl_check_note(t->c, STORED, "energy() tells %g J/m3, which is %g more than update() has told", told[i],
+                          told[i] - z.c[TL_ZONE_AT_STORED][i]);
 }
 
 /* ---------------------------------------------------------------- paths ------------------ */

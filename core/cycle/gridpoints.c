@@ -170,36 +170,61 @@ TL_INLINE double size2_of(double x, double y, double z)
     return x * x + y * y + z * z;
 }
 
-/* Unbalanced forces, by themselves and over what the gridpoints bear. */
-TL_VECTORIZED static void note_ratios(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
-                                      double gravity, addends *of)
+/* The larger of each. One choice a loop: of several, one after the other, compilers make branches. */
+TL_INLINE void take_larger(double to[TL_LANES], const double *of)
 {
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++)
+        to[l] = tl_larger(of[l], to[l]);
+}
+
+/* Unbalanced forces, by themselves and over what the gridpoints bear. What is largest is kept on the stack: compilers
+ * store there unasked, so they choose without branches. */
+TL_VECTORIZED static void note_ratios(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
+                                      double gravity, addends *restrict of)
+{
+    const double *restrict force[3] = {p->force[0] + begin, p->force[1] + begin, p->force[2] + begin};
+    const double *restrict v[3] = {p->v[0] + begin, p->v[1] + begin, p->v[2] + begin};
+    const double *restrict mass = p->mass + begin, *restrict borne = p->bears + begin;
+    const double *restrict rounded = p->rounded + begin, *load[3];
+    for (int c = 0; c < 3; c++)
+        load[c] = p->load[0] ? p->load[c] + begin : none;
+    double largest[TL_LANES] = {0}, fastest2[TL_LANES] = {0}, most[TL_LANES];
+    double size[TL_LANES], bears[TL_LANES], moves[TL_LANES], speed2[TL_LANES], over[TL_LANES];
+    for (size_t l = 0; l < TL_LANES; l++)
+        most[l] = -1;
     for (size_t first = 0; first < count; first += TL_LANES) {
-        double load2[TL_LANES] = {0};
-        for (int c = 0; c < 3 && p->load[0]; c++)
-            for (size_t l = 0; l < TL_LANES; l++)
-                load2[l] += p->load[c][begin + first + l] * p->load[c][begin + first + l];
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = first + l, row = begin + i;
-            const double fx = if_free(free->of[0][i], p->force[0][row]);
-            const double fy = if_free(free->of[1][i], p->force[1][row]);
-            const double fz = if_free(free->of[2][i], p->force[2][row]);
-            const double moves = free->of[0][i] + free->of[1][i] + free->of[2][i] > 0 ? 1 : 0;
-            const double size = sqrt(size2_of(fx, fy, fz)), weight = p->mass[row] * gravity + sqrt(load2[l]);
-            const double bears = tl_larger(tl_larger(p->bears[row], weight), p->rounded[row]);
-            const double carries = bears > 0 ? bears : 1;
-            const double own = bears > 0 ? size / carries : (size > 0 ? 1.0 : 0.0), ratio = moves > 0 ? own : -1;
-            const double speed2 = if_free(moves, size2_of(p->v[0][row], p->v[1][row], p->v[2][row]));
-            of->number[TL_SUM_UNBALANCED][l] += size;
-            of->number[TL_SUM_CONTACT_FORCE][l] += if_free(moves, bears);
-            of->largest[l] = tl_larger(of->largest[l], size);
-            of->speed2[l] = tl_larger(of->speed2[l], speed2);
-            of->most[l] = tl_larger(of->most[l], ratio);
-            of->movable[l] += moves;
-            of->ratio[i] = ratio;
+            const size_t i = first + l;
+            const double x = free->of[0][i], y = free->of[1][i], z = free->of[2][i];
+            const double fx = x * force[0][i], fy = y * force[1][i], fz = z * force[2][i];
+            const double may = 1 - (1 - x) * (1 - y) * (1 - z);
+            size[l] = sqrt(size2_of(fx, fy, fz));
+            moves[l] = may;
+            speed2[l] = may * size2_of(v[0][i], v[1][i], v[2][i]);
+            bears[l] = mass[i] * gravity + sqrt(size2_of(load[0][i], load[1][i], load[2][i]));
         }
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++)
+            over[l] = size[l] > 0 ? size[l] : 1; /* of what bears nothing */
+        take_larger(bears, borne + first);
+        take_larger(bears, rounded + first);
+        take_larger(largest, size);
+        take_larger(fastest2, speed2);
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            over[l] = bears[l] > 0 ? bears[l] : over[l];
+            of->number[TL_SUM_UNBALANCED][l] += size[l];
+            of->number[TL_SUM_CONTACT_FORCE][l] += moves[l] * bears[l];
+            of->movable[l] += moves[l];
+            of->ratio[first + l] = moves[l] * (size[l] / over[l]) + (moves[l] - 1);
+        }
+        take_larger(most, of->ratio + first);
     }
+    tl_lanes_load(of->largest, largest);
+    tl_lanes_load(of->speed2, fastest2);
+    tl_lanes_load(of->most, most);
 }
 
 /* The mass of a chunk that energies count, kg: of its own or, with inertia added, what is in `scaled`. */
@@ -262,8 +287,6 @@ static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     free_parts free;
     addends of;
     memset(&of, 0, offsetof(addends, ratio));
-    for (size_t l = 0; l < TL_LANES; l++)
-        of.most[l] = -1;
     find_free(z->points.fixed + begin, end - begin, &free);
     note_ratios(&z->points, &free, begin, end - begin, tl_v3_norm(m->config.gravity), &of);
     if (totals) {
@@ -419,28 +442,28 @@ TL_INLINE double dot_of(tl_vec3 a, tl_vec3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-TL_INLINE tl_vec3 at_row(double *const column[3], size_t row)
-{
-    return (tl_vec3){column[0][row], column[1][row], column[2][row]};
-}
-
 /* As motion.c books a body. Then the last motion is this one. */
 TL_VECTORIZED static void book_chunk(const tl_gridpoints *p, const free_parts *free, size_t begin, size_t count,
                                      const move_job *job, const movers *by, chunk_work *work)
 {
     const double until = job->until, after = job->after, share = until / (until + after);
     double(*restrict book)[TL_LANES] = work->book;
+    double *restrict mx = p->moved[0] + begin, *restrict my = p->moved[1] + begin, *restrict mz = p->moved[2] + begin;
+    const double *restrict x = p->v[0] + begin, *restrict y = p->v[1] + begin, *restrict z = p->v[2] + begin;
+    const double *restrict fx = p->force[0] + begin, *restrict fy = p->force[1] + begin;
+    const double *restrict fz = p->force[2] + begin, *restrict mass = p->mass + begin, *restrict counted = by->counted;
+    const double *restrict load[3] = {by->load[0], by->load[1], by->load[2]};
     for (size_t first = 0; first < count; first += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = first + l, row = begin + i;
-            const tl_vec3 v0 = {by->v0[0][i], by->v0[1][i], by->v0[2][i]}, v1 = at_row(p->v, row);
-            const tl_vec3 moved = at_row(p->moved, row), dv = tl_v3_sub(v1, v0), v = tl_v3_madd(v0, share, dv);
-            const double mass = by->counted[i], half = 0.5 * mass, dv2 = dot_of(dv, dv);
-            const tl_vec3 load = {by->load[0][i], by->load[1][i], by->load[2][i]};
-            const tl_vec3 held = {free->of[0][i] > 0 ? 0 : p->force[0][row], free->of[1][i] > 0 ? 0 : p->force[1][row],
-                                  free->of[2][i] > 0 ? 0 : p->force[2][row]};
-            const tl_vec3 outside = tl_v3_sub(load, held), weight = tl_v3_scale(p->mass[row], by->gravity);
+            const size_t i = first + l;
+            const tl_vec3 v0 = {by->v0[0][i], by->v0[1][i], by->v0[2][i]}, v1 = {x[i], y[i], z[i]};
+            const tl_vec3 moved = {mx[i], my[i], mz[i]}, dv = tl_v3_sub(v1, v0), v = tl_v3_madd(v0, share, dv);
+            const double own = counted[i], half = 0.5 * own, dv2 = dot_of(dv, dv);
+            const tl_vec3 outside = {load[0][i] - (1 - free->of[0][i]) * fx[i],
+                                     load[1][i] - (1 - free->of[1][i]) * fy[i],
+                                     load[2][i] - (1 - free->of[2][i]) * fz[i]};
+            const tl_vec3 weight = tl_v3_scale(mass[i], by->gravity);
             book[TL_BOOK_KINETIC][l] += half * (dot_of(v, v) - share * (1 - share) * dv2);
             book[TL_BOOK_FIRST][l] += half * dv2;
             book[TL_BOOK_MOTION0][l] += half * dot_of(v0, v0);
@@ -448,11 +471,9 @@ TL_VECTORIZED static void book_chunk(const tl_gridpoints *p, const free_parts *f
             book[TL_BOOK_UNTIL(TL_WORK_GRAVITY)][l] += until * dot_of(weight, moved);
             book[TL_BOOK_AFTER(TL_WORK_GRAVITY)][l] += after * dot_of(weight, v1);
             book[TL_BOOK_UNTIL(TL_WORK_EXTERNAL)][l] +=
-                until * dot_of(outside, moved) + share * mass * dot_of(tl_v3_sub(v0, moved), dv);
+                until * dot_of(outside, moved) + share * own * dot_of(tl_v3_sub(v0, moved), dv);
             book[TL_BOOK_AFTER(TL_WORK_EXTERNAL)][l] += after * dot_of(outside, v1);
-            p->moved[0][row] = v1.x;
-            p->moved[1][row] = v1.y;
-            p->moved[2][row] = v1.z;
+            mx[i] = v1.x, my[i] = v1.y, mz[i] = v1.z;
         }
 }
 

@@ -7,6 +7,7 @@
 #include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
+#include "cycle/remarks.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
 #include "detect/fields.h"
@@ -17,6 +18,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 /* ---------------------------------------------------------------- fields ------------------
  *
@@ -378,24 +380,6 @@ static tl_law *place_of(tl_model *m, tl_tag tag)
     return &laws[m->joint_law_count];
 }
 
-/* An angle that is rather a coefficient, or in radians. */
-static void remark_friction(tl_model *m, const char *joint, const tl_law *law)
-{
-    for (uint32_t i = 0; i < law->kind->param_count; i++) {
-        tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
-        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 || strcmp(p.unit, "deg") != 0)
-            continue;
-        double value;
-        memcpy(&value, (const char *)law->params + p.offset, sizeof value);
-        if (value > 0 && value <= 1 && tl_model_says(m, TL_REMARK_FRICTION))
-            tl_model_say(m,
-                         "joint '%s', law '%s': friction = %g deg is nearly none: it is an angle "
-                         "in degrees; a coefficient of %g is %.3g deg, and %g rad are %.3g deg",
-                         joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI, value,
-                         value * 180 / TL_PI);
-    }
-}
-
 /* Puts a law in its place, which it owns then; after a failure nothing has changed. */
 static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
 {
@@ -403,7 +387,9 @@ static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
     tl_law *place = place_of(m, law->tag);
     tl_status status = place ? prepare_contacts(m, law, &kept) : tl_fail_memory(&m->error);
     if (status == TL_OK) {
-        remark_friction(m, joint, law);
+        char of[200];
+        tl_text_print(of, sizeof of, "joint '%.80s', law '%.40s'", joint, law->kind->name);
+        tl_remark_friction(m, of, law->kind, law->params);
         rebase(m, law);
         const uint32_t row = (uint32_t)(place - m->joint_laws);
         if (row == m->joint_law_count)

@@ -26,6 +26,8 @@
 #include "geometry/polar.h"
 #include "segment/carriers.h"
 
+#include <string.h>
+
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
  * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
  * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
@@ -630,6 +632,52 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     sum_chunk(m, thread, &work, count * TL_LANES);
 }
 
+/* Sums over the gridpoints of a mesh, lane by lane. X: place as made, from `centre`; d: displacement, from that of the
+ * first gridpoint. `turn`: sum m (X + d) (x) X. */
+typedef struct mesh_sums {
+    _Alignas(TL_ALIGN) double mass[TL_LANES], made[3][TL_LANES], moved[3][TL_LANES], turn[3][3][TL_LANES];
+    double fastest2[TL_LANES];
+} mesh_sums;
+
+TL_VECTORIZED static void sum_mesh(const tl_gridpoints *p, size_t begin, size_t end, tl_vec3 centre,
+                                   mesh_sums *restrict to)
+{
+    const double ux = p->u[0][begin], uy = p->u[1][begin], uz = p->u[2][begin];
+    const double *restrict ref[3] = {p->ref[0], p->ref[1], p->ref[2]}, *restrict u[3] = {p->u[0], p->u[1], p->u[2]};
+    const double *restrict v[3] = {p->v[0], p->v[1], p->v[2]}, *restrict own = p->mass;
+    const uint32_t *restrict zones = p->zones;
+    for (size_t first = begin; first < end; first += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            const size_t row = first + l;
+            const double mass = own[row] * ((int32_t)zones[row] > 0 ? 1.0 : 0.0); /* rows beyond the last have none */
+            const double X = ref[0][row] - centre.x, Y = ref[1][row] - centre.y, Z = ref[2][row] - centre.z;
+            const double dx = u[0][row] - ux, dy = u[1][row] - uy, dz = u[2][row] - uz;
+            const double mx = mass * X, my = mass * Y, mz = mass * Z, x = X + dx, y = Y + dy, z = Z + dz;
+            const double vx = v[0][row], vy = v[1][row], vz = v[2][row], v2 = vx * vx + vy * vy + vz * vz;
+            to->mass[l] += mass;
+            to->made[0][l] += mx, to->made[1][l] += my, to->made[2][l] += mz;
+            to->moved[0][l] += mass * dx, to->moved[1][l] += mass * dy, to->moved[2][l] += mass * dz;
+            to->turn[0][0][l] += x * mx, to->turn[0][1][l] += x * my, to->turn[0][2][l] += x * mz;
+            to->turn[1][0][l] += y * mx, to->turn[1][1][l] += y * my, to->turn[1][2][l] += y * mz;
+            to->turn[2][0][l] += z * mx, to->turn[2][1][l] += z * my, to->turn[2][2][l] += z * mz;
+            to->fastest2[l] = tl_larger(v2, to->fastest2[l]);
+        }
+}
+
+static double sum_of(const double lane[TL_LANES])
+{
+    double sum = 0;
+    for (size_t l = 0; l < TL_LANES; l++)
+        sum += lane[l];
+    return sum;
+}
+
+static tl_vec3 sum3_of(double (*lane)[TL_LANES])
+{
+    return tl_v3(sum_of(lane[0]), sum_of(lane[1]), sum_of(lane[2]));
+}
+
 /* The mean motion of a mesh, by mass, is that of its body. Let X be the places as made, from the mean, and x those now.
  * It has turned by the rotation in sum m x (x) X since then. */
 static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -641,24 +689,21 @@ static void pose_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     for (size_t k = begin; k < end; k++) {
         const tl_body_mesh *mesh = &m->zones->mesh[k];
         tl_pose *pose = &m->bodies.pose[mesh->row];
-        tl_vec3 u = {0, 0, 0};
-        double mass = 0, fastest2 = 0;
-        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
-            u = tl_v3_madd(u, p->mass[row], tl_columns_get(p->u, row));
-            mass += p->mass[row];
-            fastest2 = tl_larger(fastest2, tl_v3_norm2(tl_columns_get(p->v, row)));
+        const tl_vec3 centre = tl_v3_add(pose->x_ref, mesh->made_u);
+        mesh_sums sums;
+        memset(&sums, 0, sizeof sums);
+        sum_mesh(p, mesh->point_begin, mesh->point_end, centre, &sums);
+        const tl_vec3 mean = tl_v3_scale(1 / sum_of(sums.mass), sum3_of(sums.moved)), made = sum3_of(sums.made);
+        pose->u = tl_v3_add(mesh->made_u, tl_v3_add(tl_columns_get(p->u, mesh->point_begin), mean));
+        const tl_vec3 less[3] = {tl_v3_scale(mean.x, made), tl_v3_scale(mean.y, made), tl_v3_scale(mean.z, made)};
+        tl_mat3 turn;
+        double fastest2 = 0;
+        for (int i = 0; i < 3; i++) {
+            const tl_vec3 row = tl_v3_sub(sum3_of(sums.turn[i]), less[i]);
+            turn.m[i][0] = row.x, turn.m[i][1] = row.y, turn.m[i][2] = row.z;
         }
-        const tl_vec3 shift = tl_v3_scale(1 / mass, u), centre = tl_v3_add(pose->x_ref, mesh->made_u);
-        pose->u = tl_v3_add(mesh->made_u, shift);
-        tl_mat3 turn = {{{0}}};
-        for (size_t row = mesh->point_begin; row < mesh->point_end; row++) {
-            const tl_vec3 made = tl_v3_sub(tl_columns_get(p->ref, row), centre);
-            const tl_vec3 now = tl_v3_add(made, tl_v3_sub(tl_columns_get(p->u, row), shift));
-            const double x[3] = {now.x, now.y, now.z}, y[3] = {made.x, made.y, made.z};
-            for (int i = 0; i < 3; i++)
-                for (int j = 0; j < 3; j++)
-                    turn.m[i][j] += p->mass[row] * x[i] * y[j];
-        }
+        for (size_t l = 0; l < TL_LANES; l++)
+            fastest2 = tl_larger(fastest2, sums.fastest2[l]);
         const tl_mat3 r = tl_m3_polar(&turn);
         m->bodies.q[mesh->row] = tl_q_trim(tl_q_mul(tl_q_of_matrix(&r), mesh->made_q));
         pose->r = tl_q_matrix(m->bodies.q[mesh->row]);

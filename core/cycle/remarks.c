@@ -1,17 +1,22 @@
 /* remarks.c - what is legal and yet improbable: said once a model, with what to do.
  *
  * Units are any consistent set, so only ratios tell. Under its own weight a block of density rho and size L closes a
- * face contact by about rho g L / kn: rho g / kn of its size, whatever the units. Gravity near 10 tells metres and
- * seconds; then densities have a unit of mass, t or kg, that goes with kN or N. */
+ * face contact by about rho g L / kn: rho g / kn of its size, whatever the units. Its zones shorten by rho g L / M of
+ * its size, with the constrained modulus M. Gravity near 10 tells metres and seconds; then densities have a unit of
+ * mass, t or kg, that goes with kN or N. */
 #include "cycle/remarks.h"
 
+#include "base/params.h"
 #include "contact/contacts.h"
 #include "cycle/limits.h"
 #include "detect/overlap.h"
 #include "model/body_shape.h"
 #include "model/joints.h"
+#include "zone/zones.h"
 
 #include <string.h>
+#include <talus/elementary.h>
+#include <talus/number.h>
 
 /* Tolerance: closure under its own weight over a block's size beyond which a remark doubts kn: faces pass through each
  * other's corners. */
@@ -19,6 +24,11 @@
 /* Tolerance: closure over a block's size below which a remark doubts kn. It is lost in the rounding of places, some
  * 1e-13 of a size, and steps are needlessly short. */
 #define STIFF 1e-10
+/* Tolerance: shortening of a block's zones under its own weight, over its size, beyond which a remark doubts the moduli
+ * of a solid: 10 m of soft clay shorten by 7 %. */
+#define SQUEEZED 0.1
+/* Tolerance: the same below which it doubts them: hard rock 1 mm thick shortens by more. */
+#define UNSQUEEZED 1e-10
 /* Tolerance: gravity between these is the Earth's in m/s2. */
 #define EARTH_LEAST 9.0
 #define EARTH_MOST 11.0
@@ -101,13 +111,56 @@ static void remark_stiffness(tl_model *m, const densities *d, double g, const tl
                      tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->lightest], least);
 }
 
+/* ---------------------------------------------------------------- solids ----------------- */
+
+void tl_remark_friction(tl_model *m, const char *of, const tl_kind *kind, const void *params)
+{
+    for (uint32_t i = 0; i < kind->param_count; i++) {
+        tl_param p = tl_param_row(kind->params, i, kind->param_stride);
+        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 || strcmp(p.unit, "deg") != 0)
+            continue;
+        double value;
+        memcpy(&value, (const char *)params + p.offset, sizeof value);
+        if (value > 0 && value <= 1 && tl_model_says(m, TL_REMARK_FRICTION))
+            tl_model_say(m,
+                         "%s: friction = %g deg is nearly none: it is an angle in degrees; a coefficient of %g is %.3g "
+                         "deg, and %g rad are %.3g deg",
+                         of, value, value, tl_atan2(value, 1) * 180 / TL_PI, value, value * 180 / TL_PI);
+    }
+}
+
+/* What the zones of a parcel say of their solid. */
+static void remark_solid(tl_model *m, double g, const tl_parcel *parcel)
+{
+    const tl_named_solid *solid = &m->zones->solid[parcel->solid];
+    const uint32_t row = tl_block_row_quiet(m, parcel->block);
+    const double weight = m->blocks.density[row] * g * m->blocks.size[row], squeezed = weight / solid->of.constrained;
+    char of[200];
+    tl_text_print(of, sizeof of, "solid '%.80s', of kind '%.40s'", solid->name, solid->of.kind->name);
+    tl_remark_friction(m, of, solid->of.kind, solid->of.params);
+    if (squeezed > SQUEEZED && tl_model_says(m, TL_REMARK_SOFT))
+        tl_model_say(
+            m,
+            "%s is soft: block %u would shorten by %.3g of its size under its own weight; give larger moduli, or "
+            "look at their units (Pa), density and gravity",
+            of, parcel->block, squeezed);
+    else if (weight > 0 && squeezed < UNSQUEEZED && tl_model_says(m, TL_REMARK_STIFF))
+        tl_model_say(
+            m,
+            "%s is improbably stiff: block %u shortens by %.2g of its size under its own weight, and steps are "
+            "short for nothing; look at the units of its moduli (Pa), density and gravity",
+            of, parcel->block, squeezed);
+}
+
 void tl_remark_units(tl_model *m)
 {
-    uint64_t version = 1 + m->structure + m->constraints + m->laws;
+    uint64_t version = 1 + m->structure + m->constraints + m->laws + (m->zones ? m->zones->version : 0);
     if (m->remarked == version)
         return;
     m->remarked = version;
     double g = tl_v3_norm(m->config.gravity);
+    for (size_t k = 0; m->zones && k < m->zones->parcels.table.rows; k++)
+        remark_solid(m, g, &m->zones->parcels.of[k]);
     densities d = find_densities(m);
     if (d.densest == TL_NO_ROW || !(g > 0))
         return;

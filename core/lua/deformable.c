@@ -95,6 +95,8 @@ static void read_zoning(lua_State *L, edge_of *of, tl_zoning *how)
     if (!lua_istable(L, AT_TABLE))
         tl_lua_fail(L, "deformable: give the parameters in a table, as in {zone = 1.0, solid = \"granite\"}, not %s",
                     tl_lua_describe(L, AT_TABLE));
+    tl_lua_read(L, AT_TABLE, &deformable_spec, true, how);
+    lua_settop(L, AT_TABLE);
     const int type = lua_getfield(L, AT_TABLE, "zone");
     if (type == LUA_TFUNCTION) {
         how->edge_at = edge_at;
@@ -131,7 +133,6 @@ int tl_lua_deformable(lua_State *L, const tl_lua_selection *blocks)
     tl_zoned made = {0};
     lua_settop(L, AT_TABLE);
     read_zoning(L, &of, &how);
-    tl_lua_read(L, AT_TABLE, &deformable_spec, true, &how);
     const size_t before = tl_model_memory(model).total;
     const tl_status status = tl_blocks_deform(model, blocks->names, blocks->count, &how, &made);
     if (of.failed) {
@@ -148,15 +149,15 @@ int tl_lua_deformable(lua_State *L, const tl_lua_selection *blocks)
 
 static const tl_lua_key deformable_results[] = {
     {"blocks, zones, gridpoints, clusters", "", "how many have been made"},
-    {"smallest_altitude", "m", "smallest altitude of a zone over its largest side"},
+    {"smallest_altitude", "", "of a zone over its largest side, m"},
     {"altitude_ratio", "", "smallest altitude over the wanted edge"},
-    {"worst_block", "block", "the block that has it"},
-    {"time_step", "s", "step that the gridpoints would allow if nothing touched them"},
+    {"worst_block", "", "the block that has it"},
+    {"time_step", "", "step that the gridpoints would allow if nothing touched them, s"},
     {"inertia", "",
      "largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an "
      "edge. "
      "Blocks that topple or rock in time want 8 zones to an edge, or stay rigid"},
-    {"memory", "bytes", "memory that the model has grown by"},
+    {"memory", "", "that the model has grown by, bytes"},
     {NULL, NULL, NULL},
 };
 

@@ -653,7 +653,14 @@ void tl_lua_histories_again(lua_State *L, const char *path, int model_index)
 
 /* ---------------------------------------------------------------- model:histories -------- */
 
-static const char *const axes[] = {"x", "y", "z"};
+/* The names of the components of values that are lists: of three numbers, and of a field that is a tensor. NULL: they
+ * have numbers. */
+static const char *const *component_names(const tl_history *h)
+{
+    static const char *const axes[] = {"x", "y", "z"}, *const tensor[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+    const bool field = h->source != TL_FROM_FUNCTION && h->source != TL_FROM_MODEL;
+    return h->list && h->width == 3 ? axes : h->list && h->width == 6 && field ? tensor : NULL;
+}
 
 static void push_samples(lua_State *L, const tl_history *h)
 {
@@ -668,9 +675,10 @@ static void push_samples(lua_State *L, const tl_history *h)
     lua_setfield(L, -2, "time");
     tl_lua_push_rows(L, h->values, h->count, h->width, h->list ? h->width : 0);
     lua_setfield(L, -2, "value");
-    for (size_t k = 0; h->list && h->width == 3 && k < 3; k++) {
-        tl_lua_push_rows(L, h->values + k, h->count, 3, 0);
-        lua_setfield(L, -2, axes[k]);
+    const char *const *names = component_names(h);
+    for (size_t k = 0; names && k < h->width; k++) {
+        tl_lua_push_rows(L, h->values + k, h->count, h->width, 0);
+        lua_setfield(L, -2, names[k]);
     }
 }
 
@@ -690,6 +698,7 @@ static const tl_lua_key histories_fields[] = {
     {"time", "", "list of the times, s"},
     {"value", "", "list of the values, each a number or a list of numbers"},
     {"x, y, z", "", "lists of the components, where each value is a list of three"},
+    {"xx, yy, zz, xy, yz, zx", "", "the same of a field that is a tensor, as \"stress\""},
     {NULL, NULL, NULL},
 };
 
@@ -720,9 +729,10 @@ static void add_name(luaL_Buffer *b, const char *name, const char *component)
 static void add_head(luaL_Buffer *b, const tl_history *h)
 {
     char component[16] = "";
+    const char *const *names = component_names(h);
     for (size_t k = 0; k < h->width; k++) {
-        if (h->list && h->width == 3)
-            snprintf(component, sizeof component, ".%s", axes[k]);
+        if (names)
+            snprintf(component, sizeof component, ".%s", names[k]);
         else if (h->list)
             snprintf(component, sizeof component, ".%d", (int)k + 1);
         add_name(b, h->name, component);
@@ -806,7 +816,8 @@ const tl_lua_topic tl_lua_history_topics[] = {
     {.name = "write_histories",
      .usage = "model:write_histories(\"out/run.csv\")",
      .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one for each history, in "
-            "the order in which they were made, or name.x, name.y and name.z. A cell is empty where a history has no "
+            "the order in which they were made, or name.x, name.y and name.z, of a tensor name.xx to name.zx. A cell "
+            "is empty where a history has no "
             "sample of that cycle. Folders are made; the file is written whole or not at all.",
      .arguments = 1,
      .method = model_write_histories},

@@ -332,6 +332,16 @@ typedef struct column {
     size_t width;
 } column;
 
+/* How a component of a field is asked for, where items of a kind tell it; else nothing. */
+static const char *component_hint(lua_State *L, const tl_lua_kind *kind, const char *name, const char *part)
+{
+    size_t width;
+    tl_model *model = tl_lua_living(L, ((tl_lua_selection *)lua_touserdata(L, 1))->owner);
+    const char *whole = lua_pushfstring(L, "%s.%s", name, part);
+    const bool told = kind->values(model, NULL, whole, NULL, &width) == TL_OK;
+    return told ? lua_pushfstring(L, ": ask for a component, as '%s'", whole) : "";
+}
+
 /* The column named at stack index 2; pushes its values. */
 static column read_column(lua_State *L, const tl_lua_selection *selection, const char *method)
 {
@@ -342,7 +352,8 @@ static column read_column(lua_State *L, const tl_lua_selection *selection, const
     size_t index, width;
     const tl_field *field = tl_lua_field_named(kind, name, &index);
     if (field && field->kind > TL_FIELD_VEC3)
-        tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
+        tl_lua_fail(L, "%s: the field '%s' of a %s is not a number%s", method, name, kind->item,
+                    component_hint(L, kind, name, "zz"));
     if (kind->values(model, NULL, name, NULL, &width) == TL_E_NOT_FOUND) {
         refuse_extra(L, kind, name, method);
         tl_lua_names names = {0};
@@ -383,8 +394,9 @@ static int extreme(lua_State *L, const char *method, double sign)
     const char *name = lua_tostring(L, 2);
     bool truth = c.field && c.field->kind == TL_FIELD_BOOL;
     if (c.width > 1 || truth)
-        tl_lua_fail(L, "%s: the %s '%s' is %s; only single numbers are compared", method, c.field ? "field" : "state",
-                    name, truth ? "true or false" : "a vector");
+        tl_lua_fail(L, "%s: the %s '%s' is %s; only single numbers are compared%s", method, c.field ? "field" : "state",
+                    name, truth ? "true or false" : "a vector",
+                    truth ? "" : component_hint(L, selection->kind, name, "z"));
     if (c.field && selection->count == 0)
         tl_lua_fail(L, "%s: the selection is empty, so '%s' has no value", method, name);
     double best = c.field ? c.values[0] : NAN;

@@ -8,6 +8,7 @@
 #include "lua/quality.h"
 #include "lua/run.h"
 #include "lua/view.h"
+#include "lua/zones.h"
 
 #include <math.h>
 #include <string.h>
@@ -272,6 +273,17 @@ static int unknown_field(lua_State *L, const char *what, const char *name)
     return tl_lua_unknown(L, what, name, &names);
 }
 
+/* Raises an error where the name is that of what selections do. */
+static void fail_as_verb(lua_State *L, const char *name)
+{
+    static const tl_lua_kind *const kinds[] = {&tl_lua_block_kind, &tl_lua_zone_kind, &tl_lua_gridpoint_kind};
+    for (size_t k = 0; k < TL_LUA_COUNT(kinds); k++)
+        for (const tl_lua_verb *verb = kinds[k]->verbs; verb->name; verb++)
+            if (strcmp(verb->name, name) == 0)
+                tl_lua_fail(L, "a model has no field '%s'; a selection has it: model:%s{...}:%s", name, kinds[k]->items,
+                            name);
+}
+
 /* Upvalue 1 is the table of methods. */
 static int model_index(lua_State *L)
 {
@@ -296,8 +308,10 @@ static int model_index(lua_State *L)
         double dt;
         tl_lua_ok(L, model, tl_model_dt(model, &dt));
         lua_pushnumber(L, dt);
-    } else
+    } else {
+        fail_as_verb(L, name);
         return unknown_field(L, "a model has no field", name);
+    }
     return 1;
 }
 

@@ -517,7 +517,9 @@ const tl_lua_kind tl_lua_gridpoint_kind = {
 static const tl_lua_key zone_methods[] = {
     {"#sel, sel[i], ipairs(sel)", "", "number of zones, the i-th one, all in order of id"},
     {"sel:sum(field)", "", "sum of a field of numbers, or of a state of a solid; of a vector a vector"},
-    {"sel:max(field), sel:min(field)", "", "largest and smallest value of a field of numbers, or of a state"},
+    {"sel:max(field), sel:min(field)", "",
+     "largest and smallest value of a field of numbers, of a component, as \"stress.zz\" (of \"principal\" x is the "
+     "largest, z the least), or of a state"},
     {"sel:values(field)", "",
      "list of the field's values, in the order of the selection; likewise a state of a solid, by its name, NaN where "
      "the zone's solid has no such state. With \"flat\" after it vectors and tensors are not lists of their own"},
@@ -531,7 +533,8 @@ static const tl_lua_key zone_methods[] = {
 
 static const tl_lua_key gridpoint_methods[] = {
     {"#sel, sel[i], ipairs(sel)", "", "number of gridpoints, the i-th one, all in order of id"},
-    {"sel:sum(field), sel:max(field), sel:min(field)", "", "sum, largest and smallest value of a field of numbers"},
+    {"sel:sum(field), sel:max(field), sel:min(field)", "",
+     "sum, largest and smallest value of a field of numbers, or of a component, as \"displacement.z\""},
     {"sel:values(field)", "", "list of the field's values, in the order of the selection; \"flat\" as of blocks"},
     {"sel:where(function(gridpoint) ... end)", "", "those for which the function answers true"},
     {"sel:fix{x =, y =, z =}", "",

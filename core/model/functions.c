@@ -307,7 +307,8 @@ typedef struct model_function {
 
 static const model_function functions[] = {
     {"model", "Makes an empty model.", PARAMS(model_params)},
-    {"insitu", "Puts an initial stress on the face contacts that exist now, once.", PARAMS(insitu_params)},
+    {"insitu", "Puts an initial stress in the zones, and on the face contacts, that exist now, once.",
+     PARAMS(insitu_params)},
     {"tensor", "A symmetric tensor by its components.", PARAMS(tensor_params)},
     {"timestep", "Chooses how the time step is found.", PARAMS(timestep_params)},
     {"mass_scaling",

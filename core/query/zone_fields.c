@@ -452,13 +452,27 @@ static void put_state(const tl_zone_at *at, const char *name, size_t width, doub
         out[k] = has ? z->zones.state[begin + k][at->row] : NAN;
 }
 
-/* The field of a name among some; `count`: there is none. */
-static size_t field_named(const tl_field *fields, size_t count, const char *name)
+/* What a name asks for: all numbers of a field, or one component, as "stress.zz" and "displacement.z". */
+typedef struct column {
+    size_t field, first, width; /* the number of the field, or of fields: there is none */
+} column;
+
+static column column_named(const tl_field *fields, size_t count, const char *name)
 {
-    size_t k = 0;
-    while (k < count && strcmp(fields[k].name, name) != 0)
-        k++;
-    return k;
+    static const char *const parts[] = {"x", "y", "z", "xx", "yy", "zz", "xy", "yz", "zx"};
+    const char *point = strchr(name, '.');
+    const size_t length = point ? (size_t)(point - name) : strlen(name);
+    column c = {0, 0, 0};
+    while (c.field < count &&
+           (strncmp(fields[c.field].name, name, length) != 0 || fields[c.field].name[length] != '\0'))
+        c.field++;
+    c.width = c.field < count ? tl_field_width(fields[c.field].kind) : 0;
+    if (!point || (c.width != 3 && c.width != 6))
+        return point ? (column){count, 0, 0} : c;
+    const char *const *of = parts + (c.width == 3 ? 0 : 3);
+    while (c.first < c.width && strcmp(of[c.first], point + 1) != 0)
+        c.first++;
+    return c.first < c.width ? (column){c.field, c.first, 1} : (column){count, 0, 0};
 }
 
 static tl_status no_column(tl_model *m, const char *what, const char *name, bool text)
@@ -470,22 +484,23 @@ static tl_status no_column(tl_model *m, const char *what, const char *name, bool
 tl_status tl_zones_values(tl_model *m, const tl_zone_name *names, size_t count, const char *name, double *out,
                           size_t *width)
 {
-    const size_t field = field_named(zone_fields, Z_COUNT, name), state = state_width(m, name);
-    const bool text = field < Z_COUNT && zone_fields[field].kind == TL_FIELD_TEXT;
-    if (text || (field == Z_COUNT && state == 0))
+    const column c = column_named(zone_fields, Z_COUNT, name);
+    const size_t state = state_width(m, name);
+    const bool text = c.field < Z_COUNT && c.width == 0;
+    if (text || (c.field == Z_COUNT && state == 0))
         return no_column(m, "zone", name, text);
-    *width = field < Z_COUNT ? tl_field_width(zone_fields[field].kind) : state;
+    *width = c.field < Z_COUNT ? c.width : state;
     for (size_t k = 0; out && k < count; k++) {
         const tl_body_mesh *mesh = mesh_of(m, names[k], false);
         double all[6] = {0};
         if (!mesh)
             return m->error.status;
         const tl_zone_at at = tl_zone_at_number(m, mesh, names[k].number);
-        if (field < Z_COUNT)
-            zone_numbers(&at, field, all);
+        if (c.field < Z_COUNT)
+            zone_numbers(&at, c.field, all);
         else
             put_state(&at, name, state, all);
-        memcpy(out + k * *width, all, *width * sizeof *out);
+        memcpy(out + k * *width, all + c.first, *width * sizeof *out);
     }
     return TL_OK;
 }
@@ -493,18 +508,18 @@ tl_status tl_zones_values(tl_model *m, const tl_zone_name *names, size_t count, 
 tl_status tl_gridpoints_values(tl_model *m, const tl_zone_name *names, size_t count, const char *name, double *out,
                                size_t *width)
 {
-    const size_t field = field_named(point_fields, P_COUNT, name);
-    const bool text = field < P_COUNT && point_fields[field].kind == TL_FIELD_TEXT;
-    if (text || field == P_COUNT)
+    const column c = column_named(point_fields, P_COUNT, name);
+    const bool text = c.field < P_COUNT && c.width == 0;
+    if (text || c.field == P_COUNT)
         return no_column(m, "gridpoint", name, text);
-    *width = tl_field_width(point_fields[field].kind);
+    *width = c.width;
     for (size_t k = 0; out && k < count; k++) {
         const tl_body_mesh *mesh = mesh_of(m, names[k], true);
         double all[6] = {0};
         if (!mesh)
             return m->error.status;
-        point_numbers(m, mesh, mesh->point_begin + names[k].number, field, all);
-        memcpy(out + k * *width, all, *width * sizeof *out);
+        point_numbers(m, mesh, mesh->point_begin + names[k].number, c.field, all);
+        memcpy(out + k * *width, all + c.first, *width * sizeof *out);
     }
     return TL_OK;
 }

@@ -1,21 +1,21 @@
 /* act.c - segments follow their sides, and push them apart by the laws of their joints.
  *
  * A SIMD group of segments is taken at a time. A side carries the three points of a segment with it. Let x be the
- * places of the corners of its triangle, and d how they have moved in the last step. A point of weights w lies at
- * sum w x and has moved by sum w d. Let a and b be the edges from the first corner, a' and b' how they have changed,
- * and m the normal. With size = |a x b| the triangle turns by
+ * place of the first corner of its triangle, and a and b the edges from there. Let x', a' and b' be how these have
+ * changed in the last step. A point of weights w lies at x + w1 a + w2 b and has moved by x' + w1 a' + w2 b'. With the
+ * normal m and size = |a x b| the triangle turns by
  *
  *     turn = ((b . a' - a . b') m / 2 + (m . b') a - (m . a') b) / size
  *
- * A rigid side carries its points likewise: x are then the axes of its frame, from its centroid.
+ * A rigid side carries its points likewise: x is then its centroid, and it has three edges, the axes of its frame.
  *
  * Let s be the share of the outline that is B's (overlay.h), and p = s n_A - (1 - s) n_B. Then the common normal is
  * n = p / |p|, and the gap n . e, e = x_B - x_A. So a point on the side with the outline presses along the normal of
  * the other side, by its distance from that: the gradient of the energy, however far the sides tilt.
  *
- * Forces act at the place x_A + s e. The motion is that of both sides there. Shear turns from the last normal to this
- * one, and by the spin of s A + (1 - s) B about it. A force f on B acts on the corners by the weights. The rest is
- * couples,
+ * Forces act at the place x_A + s e. The motion is that of both sides there. Shear v turns from the last normal to this
+ * one, v - (n . v) (n_last + n) / (1 + n_last . n), and by the spin of s A + (1 - s) B about it. A force f on B acts on
+ * the corners by the weights. Weights add up to 1, so the first corner gets what the others leave. The rest is couples,
  *
  *     on A  -s e x f_s + f_n s n_A x t / |p|,    on B  -(1 - s) e x f_s - f_n (1 - s) n_B x t / |p|
  *
@@ -30,7 +30,6 @@
 #include "base/parallel.h"
 #include "base/series.h"
 #include "contact/contacts.h"
-#include "contact/plane_turn.h"
 #include "force/joint_laws.h"
 #include "model/law_time.h"
 #include "segment/blend.h"
@@ -55,19 +54,27 @@
  * 1, of slivers cut off of one somewhat more. */
 #define CORNERS_BEYOND 4.0
 
-/* One side of a SIMD group of segments now. A point of weights w lies at origin + sum w x, and has moved by shift +
- * sum w d. What lies off the side by e has moved by `off` e beside that. Of a triangle x are the places of its corners,
- * and d how they have moved in the last step. Of a rigid body they are the axes of its frame, and what the ends of
- * these have moved beside its centroid. */
+/* One side of a SIMD group of segments now, as couples act on it. */
 typedef struct side_lanes {
-    _Alignas(TL_ALIGN) double x[3][3][TL_LANES]; /* by corner, component */
-    double d[3][3][TL_LANES];
-    double (*origin)[TL_LANES], (*shift)[TL_LANES]; /* zeros unless there are rigid sides: `own` */
-    double own[2][3][TL_LANES];
-    double off[3][3][TL_LANES];                    /* by row, column */
-    double normal[3][TL_LANES], turn[3][TL_LANES]; /* outward */
+    _Alignas(TL_ALIGN) double normal[3][TL_LANES]; /* outward */
     double edge[2][3][TL_LANES];                   /* a and b over the size, 1/m; of rigid sides 0 */
 } side_lanes;
+
+/* How the sides of a group, A and B, carry points. A point of weights w lies at x[0] + w1 x[1] + w2 x[2], and has moved
+ * by d[0] + w1 d[1] + w2 d[2]. Of a triangle x are the place of the first corner and the edges from it. d are their
+ * changes in the last step. Of a rigid body x are its centroid and two axes of its frame. */
+typedef struct carry_lanes {
+    _Alignas(TL_ALIGN) double x[2][3][3][TL_LANES]; /* by side, number, component */
+    double d[2][3][3][TL_LANES];
+    double turn[2][3][TL_LANES];
+} carry_lanes;
+
+/* What a group has more where some sides are rigid: w0 times the first axis of the frame, which of triangles is 0. What
+ * lies off a side by e has moved by `off` e beside it, of triangles turn x e. */
+typedef struct rigid_lanes {
+    _Alignas(TL_ALIGN) double x[2][3][TL_LANES], d[2][3][TL_LANES];
+    double off[2][3][3][TL_LANES]; /* by side, row, column */
+} rigid_lanes;
 
 /* What is known of a tile's points only in a step. */
 typedef struct lanes {
@@ -78,9 +85,10 @@ typedef struct lanes {
     double beside[TILE_POINTS];    /* normal forces that laws do not know: of segments that are closed in part, N */
     side_lanes side[TILE][2];      /* of the groups */
     double per_p[TILE * TL_LANES]; /* 1 / |p| */
-    bool rigid[TILE];              /* there may be rigid sides in the group */
-    bool parts;                    /* some segments are closed in part */
-    bool partly[TILE * TL_LANES];  /* a part of it is closed, and a part is apart: */
+    bool rigid[TILE];              /* there may be rigid sides in the group: */
+    bool rigid_side[TILE][2][TL_LANES];
+    bool parts;                   /* some segments are closed in part */
+    bool partly[TILE * TL_LANES]; /* a part of it is closed, and a part is apart: */
     tl_closed closed[TILE * TL_LANES];
 } lanes;
 
@@ -88,9 +96,6 @@ typedef struct lanes {
 static const double nothing[TILE_POINTS];
 
 /* ---------------------------------------------------------------- sides ------------------ */
-
-/* Of triangles. */
-static double zeros[3][TL_LANES];
 
 static void put(double (*to)[TL_LANES], size_t lane, tl_vec3 v)
 {
@@ -126,35 +131,36 @@ static tl_vec3 axis_of(const tl_mat3 *r, int k)
 }
 
 /* A rigid side, whose normal in the body's frame is given, once the others are known. */
-static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t lane, side_lanes *to)
+static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t lane, int side, carry_lanes *to,
+                      rigid_lanes *more, side_lanes *now)
 {
     const tl_pose *pose = &m->bodies.pose[body];
     const tl_vec3 turn = tl_v3_scale(m->dt, pose->w_moved), zero = {0, 0, 0};
     const tl_mat3 back = turned_back(turn);
     for (int k = 0; k < 3; k++) {
         const tl_vec3 axis = axis_of(&pose->r, k);
-        put(to->x[k], lane, axis);
-        put(to->d[k], lane, tl_m3_mul(&back, axis));
+        put(k > 0 ? to->x[side][k] : more->x[side], lane, axis);
+        put(k > 0 ? to->d[side][k] : more->d[side], lane, tl_m3_mul(&back, axis));
         for (int c = 0; c < 3; c++)
-            to->off[k][c][lane] = back.m[k][c];
+            more->off[side][k][c][lane] = back.m[k][c];
     }
-    put(to->origin, lane, tl_body_place(&m->bodies, body));
-    put(to->shift, lane, tl_v3_scale(m->dt, pose->v_moved));
-    put(to->normal, lane, tl_m3_mul(&pose->r, normal));
-    put(to->turn, lane, turn);
-    put(to->edge[0], lane, zero);
-    put(to->edge[1], lane, zero);
+    put(to->x[side][0], lane, tl_body_place(&m->bodies, body));
+    put(to->d[side][0], lane, tl_v3_scale(m->dt, pose->v_moved));
+    put(to->turn[side], lane, turn);
+    put(now->normal, lane, tl_m3_mul(&pose->r, normal));
+    put(now->edge[0], lane, zero);
+    put(now->edge[1], lane, zero);
 }
 
 /* The corners of triangles. */
-TL_INLINE void load_corners(const struct tl_segments *s, size_t row, bool is_b, side_lanes *restrict to)
+TL_INLINE void load_corners(const struct tl_segments *s, size_t row, int side, carry_lanes *restrict to)
 {
     const double *place = tl_gridpoints_aligned(s->now)->place, *way = tl_gridpoints_aligned(s->now)->way;
     for (int k = 0; k < 3; k++) {
-        const uint32_t *corner = s->table.corner[is_b][k] + row;
+        const uint32_t *corner = s->table.corner[side][k] + row;
         for (size_t l = 0; l < TL_LANES; l += 4) {
-            tl_lanes_turn3(place, corner + l, to->x[k][0] + l);
-            tl_lanes_turn3(way, corner + l, to->d[k][0] + l);
+            tl_lanes_turn3(place, corner + l, to->x[side][k][0] + l);
+            tl_lanes_turn3(way, corner + l, to->d[side][k][0] + l);
         }
     }
 }
@@ -164,70 +170,79 @@ TL_INLINE void put_lane(double (*to)[TL_LANES], size_t l, double x, double y, do
     to[0][l] = x, to[1][l] = y, to[2][l] = z;
 }
 
-/* The sides A, or B, of the group whose first segment has a row, as if all were triangles. false: some are not. */
-TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, bool is_b, side_lanes *to)
+/* One side of the group whose first segment has a row, as if all were triangles. Whether some are not. */
+TL_INLINE bool find_side(const struct tl_segments *s, size_t row, int side, carry_lanes *restrict to,
+                         side_lanes *restrict now)
 {
+    double(*x)[3][TL_LANES] = to->x[side], (*d)[3][TL_LANES] = to->d[side];
     uint32_t least = UINT32_MAX;
-    load_corners(s, row, is_b, to);
-    to->origin = to->shift = zeros;
+    load_corners(s, row, side, to);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_vec3 x = get(to->x[0], l), d = get(to->d[0], l);
-        const tl_vec3 a = tl_v3_sub(get(to->x[1], l), x), b = tl_v3_sub(get(to->x[2], l), x);
-        const tl_vec3 da = tl_v3_sub(get(to->d[1], l), d), db = tl_v3_sub(get(to->d[2], l), d);
+        const tl_vec3 first = get(x[0], l), moved = get(d[0], l);
+        const tl_vec3 a = tl_v3_sub(get(x[1], l), first), b = tl_v3_sub(get(x[2], l), first);
+        const tl_vec3 da = tl_v3_sub(get(d[1], l), moved), db = tl_v3_sub(get(d[2], l), moved);
         const tl_vec3 area = tl_v3_cross(a, b);
         const double per = 1 / sqrt(dot_of(area, area));
         const tl_vec3 n = {per * area.x, per * area.y, per * area.z}, ea = {per * a.x, per * a.y, per * a.z};
         const tl_vec3 eb = {per * b.x, per * b.y, per * b.z};
         const double spin = 0.5 * (dot_of(eb, da) - dot_of(ea, db)), up_a = dot_of(n, da), up_b = dot_of(n, db);
-        const tl_vec3 turn = {spin * n.x + up_b * ea.x - up_a * eb.x, spin * n.y + up_b * ea.y - up_a * eb.y,
-                              spin * n.z + up_b * ea.z - up_a * eb.z};
-        put_lane(to->normal, l, n.x, n.y, n.z);
-        put_lane(to->turn, l, turn.x, turn.y, turn.z);
-        put_lane(to->edge[0], l, ea.x, ea.y, ea.z);
-        put_lane(to->edge[1], l, eb.x, eb.y, eb.z);
-        put_lane(to->off[0], l, 0, -turn.z, turn.y);
-        put_lane(to->off[1], l, turn.z, 0, -turn.x);
-        put_lane(to->off[2], l, -turn.y, turn.x, 0);
+        put_lane(x[1], l, a.x, a.y, a.z);
+        put_lane(x[2], l, b.x, b.y, b.z);
+        put_lane(d[1], l, da.x, da.y, da.z);
+        put_lane(d[2], l, db.x, db.y, db.z);
+        put_lane(to->turn[side], l, spin * n.x + up_b * ea.x - up_a * eb.x, spin * n.y + up_b * ea.y - up_a * eb.y,
+                 spin * n.z + up_b * ea.z - up_a * eb.z);
+        put_lane(now->normal, l, n.x, n.y, n.z);
+        put_lane(now->edge[0], l, ea.x, ea.y, ea.z);
+        put_lane(now->edge[1], l, eb.x, eb.y, eb.z);
     }
     for (size_t l = 0; l < TL_LANES; l++)
-        least = s->table.corner[is_b][0][row + l] < least ? s->table.corner[is_b][0][row + l] : least;
-    return least >= TL_SEGMENT_DUMMIES;
+        least = s->table.corner[side][0][row + l] < least ? s->table.corner[side][0][row + l] : least;
+    return least < TL_SEGMENT_DUMMIES;
+}
+
+/* Both sides of the group. */
+TL_VECTORIZED static bool find_sides(const struct tl_segments *s, size_t row, carry_lanes *to, side_lanes now[2])
+{
+    const bool a = find_side(s, row, 0, to, &now[0]), b = find_side(s, row, 1, to, &now[1]);
+    return a || b;
 }
 
 /* Rigid sides of a group take their lanes. */
-static void put_rigid_sides(const tl_model *m, size_t row, bool is_b, side_lanes *to)
+static void put_rigid_sides(const tl_model *m, size_t row, carry_lanes *to, rigid_lanes *more, side_lanes now[2],
+                            bool (*rigid)[TL_LANES])
 {
     const tl_segment *of = &m->segments->table.of[row];
-    memset(to->own, 0, sizeof to->own);
-    to->origin = to->own[0];
-    to->shift = to->own[1];
-    for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_segment_side *side = is_b ? &of[l].b : &of[l].a;
-        if (of[l].meet != TL_NO_ROW && tl_side_is_rigid(side))
-            put_rigid(m, side->at[0], is_b ? of[l].normal_b : of[l].normal_a, l, to);
-    }
+    memset(more, 0, sizeof *more);
+    for (int side = 0; side < 2; side++)
+        for (size_t l = 0; l < TL_LANES; l++) {
+            const tl_segment_side *one = side ? &of[l].b : &of[l].a;
+            const tl_vec3 turn = get(to->turn[side], l);
+            rigid[side][l] = of[l].meet != TL_NO_ROW && tl_side_is_rigid(one);
+            if (rigid[side][l]) {
+                put_rigid(m, one->at[0], side ? of[l].normal_b : of[l].normal_a, l, side, to, more, &now[side]);
+                continue;
+            }
+            put(more->off[side][0], l, tl_v3(0, -turn.z, turn.y));
+            put(more->off[side][1], l, tl_v3(turn.z, 0, -turn.x));
+            put(more->off[side][2], l, tl_v3(-turn.y, turn.x, 0));
+        }
 }
 
 /* ---------------------------------------------------------------- following -------------- */
 
-/* Where a point of a side is, or with `d` and `shift` how it has moved. */
-TL_INLINE tl_vec3 carried(double (*x)[3][TL_LANES], double (*from)[TL_LANES], tl_vec3 w, size_t l)
-{
-    return (tl_vec3){from[0][l] + w.x * x[0][0][l] + w.y * x[1][0][l] + w.z * x[2][0][l],
-                     from[1][l] + w.x * x[0][1][l] + w.y * x[1][1][l] + w.z * x[2][1][l],
-                     from[2][l] + w.x * x[0][2][l] + w.y * x[1][2][l] + w.z * x[2][2][l]};
-}
-
-/* The common normals of a group, and how shear turns: g and 2 / (1 + g.g), and whether it does. How far B has moved
- * more than A where a point is apart by e: by `off` e less. */
+/* The common normals of a group: from the last ones, `from`, plus these. Shear v turns into the plane of n by
+ * v - swing (n . v) (from + n), and about n by an angle of which cos and sin are known. Beside that: where B's first
+ * place lies from A's, how far it has moved more, and the turn of both. */
 typedef struct turn_lanes {
-    _Alignas(TL_ALIGN) double normal[3][TL_LANES], g[3][TL_LANES], scale[TL_LANES], turns[TL_LANES];
-    double off[3][3][TL_LANES];
+    _Alignas(TL_ALIGN) double normal[3][TL_LANES], both[3][TL_LANES];
+    double swing[TL_LANES], cosine[TL_LANES], sine[TL_LANES];
+    double x[3][TL_LANES], d[3][TL_LANES], turn[3][TL_LANES];
 } turn_lanes;
 
-TL_INLINE void turn_normals(tl_segment_table *t, size_t row, side_lanes *a, side_lanes *b, turn_lanes *restrict to,
-                            double *restrict per_p)
+TL_INLINE void turn_normals(tl_segment_table *t, size_t row, carry_lanes *c, side_lanes *a, side_lanes *b,
+                            turn_lanes *restrict to, double *restrict per_p)
 {
     double *restrict nx = t->normal[0] + row, *restrict ny = t->normal[1] + row, *restrict nz = t->normal[2] + row;
     const double *restrict share = t->share + row;
@@ -236,55 +251,90 @@ TL_INLINE void turn_normals(tl_segment_table *t, size_t row, side_lanes *a, side
         const double s = share[l], rest = 1 - s;
         const tl_vec3 na = get(a->normal, l), nb = get(b->normal, l), last = {nx[l], ny[l], nz[l]};
         const tl_vec3 p = {s * na.x - rest * nb.x, s * na.y - rest * nb.y, s * na.z - rest * nb.z};
-        const tl_vec3 ta = get(a->turn, l), tb = get(b->turn, l);
+        const tl_vec3 ta = get(c->turn[0], l), tb = get(c->turn[1], l);
         const tl_vec3 turn = {s * ta.x + rest * tb.x, s * ta.y + rest * tb.y, s * ta.z + rest * tb.z};
+        const tl_vec3 x = tl_v3_sub(get(c->x[1][0], l), get(c->x[0][0], l));
+        const tl_vec3 d = tl_v3_sub(get(c->d[1][0], l), get(c->d[0][0], l));
         const double per = 1 / sqrt(dot_of(p, p));
         const tl_vec3 n = {per * p.x, per * p.y, per * p.z};
-        const tl_vec3 g = tl_turn_between(last, n, 0.5 * dot_of(turn, n));
-        const double g2 = dot_of(g, g);
+        const double half = 0.5 * dot_of(turn, n), half2 = half * half, scale = 1 / (1 + half2);
+        const double cosine = 1 + dot_of(last, n);
+        const double same = n.x == last.x ? (n.y == last.y ? (n.z == last.z ? 1 : 0) : 0) : 0;
+        const double swings = cosine > 0 ? 1 / (cosine > 0 ? cosine : 1) : 0;
         per_p[l] = per;
         nx[l] = n.x, ny[l] = n.y, nz[l] = n.z;
         put_lane(to->normal, l, n.x, n.y, n.z);
-        put_lane(to->g, l, g.x, g.y, g.z);
-        to->scale[l] = 2 / (1 + g2);
-        to->turns[l] = g2 > 0 ? 1 : 0;
+        put_lane(to->both, l, last.x + n.x, last.y + n.y, last.z + n.z);
+        put_lane(to->x, l, x.x, x.y, x.z);
+        put_lane(to->d, l, d.x, d.y, d.z);
+        put_lane(to->turn, l, turn.x, turn.y, turn.z);
+        to->swing[l] = same > 0 ? 0 : swings;
+        to->cosine[l] = (1 - half2) * scale;
+        to->sine[l] = 2 * half * scale;
     }
-    for (int k = 0; k < 3; k++)
-        for (int c = 0; c < 3; c++)
-#pragma omp simd
-            for (size_t l = 0; l < TL_LANES; l++)
-                to->off[k][c][l] = share[l] * a->off[k][c][l] + (1 - share[l]) * b->off[k][c][l];
 }
 
-TL_INLINE tl_vec3 carried_off(double (*off)[3][TL_LANES], tl_vec3 e, size_t l)
+/* What B moved more than A where sides are rigid, and points lie apart by e, but for the motion of both sides. */
+TL_INLINE tl_vec3 carried_off(rigid_lanes *of, double share, tl_vec3 e, size_t l)
 {
-    return (tl_vec3){off[0][0][l] * e.x + off[0][1][l] * e.y + off[0][2][l] * e.z,
-                     off[1][0][l] * e.x + off[1][1][l] * e.y + off[1][2][l] * e.z,
-                     off[2][0][l] * e.x + off[2][1][l] * e.y + off[2][2][l] * e.z};
+    double sum[3];
+    for (int k = 0; k < 3; k++) {
+        const double x = share * of->off[0][k][0][l] + (1 - share) * of->off[1][k][0][l];
+        const double y = share * of->off[0][k][1][l] + (1 - share) * of->off[1][k][1][l];
+        const double z = share * of->off[0][k][2][l] + (1 - share) * of->off[1][k][2][l];
+        sum[k] = x * e.x + y * e.y + z * e.z;
+    }
+    return (tl_vec3){sum[0], sum[1], sum[2]};
+}
+
+/* What a point adds to the first place of a side, or to its motion. */
+TL_INLINE tl_vec3 carried(double (*x)[3][TL_LANES], tl_vec3 w, size_t l)
+{
+    return (tl_vec3){w.y * x[1][0][l] + w.z * x[2][0][l], w.y * x[1][1][l] + w.z * x[2][1][l],
+                     w.y * x[1][2][l] + w.z * x[2][2][l]};
+}
+
+/* How a point is turned that was shear of the last plane. */
+TL_INLINE tl_vec3 turned_shear(tl_vec3 f, const turn_lanes *turn, tl_vec3 n, size_t l)
+{
+    const double off = turn->swing[l] * dot_of(f, n), cosine = turn->cosine[l], sine = turn->sine[l];
+    const tl_vec3 v = {f.x - off * turn->both[0][l], f.y - off * turn->both[1][l], f.z - off * turn->both[2][l]};
+    const tl_vec3 across = tl_v3_cross(n, v);
+    return (tl_vec3){cosine * v.x + sine * across.x, cosine * v.y + sine * across.y, cosine * v.z + sine * across.z};
 }
 
 /* Point k of each segment of a group: what a law gets of it, from `at` on, and its shear. `slid2`: the square of the
- * farthest that the points of a segment have slid. */
-TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lanes *a, side_lanes *b, turn_lanes *turn,
-                             size_t at, lanes *restrict to, double slid2[TL_LANES])
+ * farthest that the points of a segment have slid. `more`: NULL where no side is rigid. */
+TL_INLINE void follow_points(const struct tl_segments *s, size_t row, size_t k, carry_lanes *c, rigid_lanes *more,
+                             turn_lanes *turn, size_t at, lanes *restrict to, double slid2[TL_LANES])
 {
+    const tl_segment_points *p = &s->points;
+    const size_t point = TL_SEGMENT_POINTS * row + k * TL_LANES;
     const double *restrict ax = p->at_a[0] + point, *restrict ay = p->at_a[1] + point,
                            *restrict az = p->at_a[2] + point;
     const double *restrict bx = p->at_b[0] + point, *restrict by = p->at_b[1] + point,
                            *restrict bz = p->at_b[2] + point;
     double *restrict sx = p->f_s[0] + point, *restrict sy = p->f_s[1] + point, *restrict sz = p->f_s[2] + point;
     const double *restrict reference = p->reference ? p->reference + point : nothing;
-    double(*origin_a)[TL_LANES] = a->origin, (*origin_b)[TL_LANES] = b->origin;
-    double(*shift_a)[TL_LANES] = a->shift, (*shift_b)[TL_LANES] = b->shift;
+    const double *restrict share = s->table.share + row;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_vec3 wa = {ax[l], ay[l], az[l]}, wb = {bx[l], by[l], bz[l]}, n = get(turn->normal, l);
-        const tl_vec3 apart = tl_v3_sub(carried(b->x, origin_b, wb, l), carried(a->x, origin_a, wa, l));
-        const tl_vec3 of_sides = tl_v3_sub(carried(b->d, shift_b, wb, l), carried(a->d, shift_a, wa, l));
-        const tl_vec3 off = carried_off(turn->off, apart, l), du = tl_v3_sub(of_sides, off);
-        const double gap = tl_v3_dot(apart, n), du_n = tl_v3_dot(du, n);
-        const tl_vec3 aside = tl_v3_madd(apart, -gap, n), f = {sx[l], sy[l], sz[l]};
-        const double aside2 = dot_of(aside, aside);
+        const tl_vec3 wa = {more ? ax[l] : 0, ay[l], az[l]}, wb = {more ? bx[l] : 0, by[l], bz[l]};
+        const tl_vec3 n = get(turn->normal, l), t = get(turn->turn, l), f = {sx[l], sy[l], sz[l]};
+        tl_vec3 on_b = carried(c->x[1], wb, l), on_a = carried(c->x[0], wa, l);
+        tl_vec3 b_moved = carried(c->d[1], wb, l), a_moved = carried(c->d[0], wa, l);
+        if (more) {
+            on_a = tl_v3_madd(on_a, wa.x, get(more->x[0], l));
+            on_b = tl_v3_madd(on_b, wb.x, get(more->x[1], l));
+            a_moved = tl_v3_madd(a_moved, wa.x, get(more->d[0], l));
+            b_moved = tl_v3_madd(b_moved, wb.x, get(more->d[1], l));
+        }
+        const tl_vec3 apart = tl_v3_add(get(turn->x, l), tl_v3_sub(on_b, on_a));
+        const tl_vec3 of_sides = tl_v3_add(get(turn->d, l), tl_v3_sub(b_moved, a_moved));
+        const tl_vec3 off = more ? carried_off(more, share[l], apart, l) : tl_v3_cross(t, apart);
+        const tl_vec3 du = tl_v3_sub(of_sides, off);
+        const double gap = dot_of(apart, n), du_n = dot_of(du, n), aside2 = dot_of(apart, apart) - gap * gap;
+        const tl_vec3 turned = turned_shear(f, turn, n, l);
         to->closure[at + l] = -gap - reference[l];
         to->du_n[at + l] = du_n;
         to->apart[0][at + l] = apart.x, to->apart[1][at + l] = apart.y, to->apart[2][at + l] = apart.z;
@@ -292,7 +342,6 @@ TL_INLINE void follow_points(const tl_segment_points *p, size_t point, side_lane
         to->du_s[0][at + l] = du.x - du_n * n.x;
         to->du_s[1][at + l] = du.y - du_n * n.y;
         to->du_s[2][at + l] = du.z - du_n * n.z;
-        const tl_vec3 turned = tl_turn_into(f, get(turn->g, l), turn->scale[l], turn->turns[l], n);
         sx[l] = turned.x, sy[l] = turned.y, sz[l] = turned.z;
         slid2[l] = aside2 > slid2[l] ? aside2 : slid2[l];
     }
@@ -315,19 +364,42 @@ TL_INLINE bool may_be_apart(const double *restrict closure)
 
 /* Follows a group, by its number in the tile: its points' lanes, and their shear. Notes which segments have slid. true:
  * some segments may be apart in part. */
-TL_VECTORIZED static bool follow_group(struct tl_segments *s, size_t row, size_t number, lanes *to)
+TL_INLINE bool follow_lanes(struct tl_segments *s, size_t row, size_t number, carry_lanes *c, rigid_lanes *more,
+                            lanes *to)
 {
     const size_t at = number * GROUP_POINTS;
-    side_lanes *a = &to->side[number][0], *b = &to->side[number][1];
     turn_lanes turn;
     double slid2[TL_LANES];
     tl_lanes_clear(slid2);
-    turn_normals(&s->table, row, a, b, &turn, to->per_p + number * TL_LANES);
+    turn_normals(&s->table, row, c, &to->side[number][0], &to->side[number][1], &turn, to->per_p + number * TL_LANES);
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
-        follow_points(&s->points, TL_SEGMENT_POINTS * row + k * TL_LANES, a, b, &turn, at + k * TL_LANES, to, slid2);
+        follow_points(s, row, k, c, more, &turn, at + k * TL_LANES, to, slid2);
     for (size_t l = 0; l < TL_LANES; l++)
         s->table.slid[row + l] = slid2[l] > SLID * SLID * s->table.area[row + l];
     return may_be_apart(to->closure + at);
+}
+
+TL_VECTORIZED static bool follow_group(struct tl_segments *s, size_t row, size_t number, carry_lanes *c, lanes *to)
+{
+    return follow_lanes(s, row, number, c, NULL, to);
+}
+
+TL_VECTORIZED static bool follow_rigid_group(struct tl_segments *s, size_t row, size_t number, carry_lanes *c,
+                                             rigid_lanes *more, lanes *to)
+{
+    return follow_lanes(s, row, number, c, more, to);
+}
+
+/* Finds the sides of a group, and follows them. */
+static bool follow_sides(const tl_model *m, size_t row, size_t number, lanes *to)
+{
+    carry_lanes carry;
+    rigid_lanes more;
+    to->rigid[number] = find_sides(m->segments, row, &carry, to->side[number]);
+    if (!to->rigid[number])
+        return follow_group(m->segments, row, number, &carry, to);
+    put_rigid_sides(m, row, &carry, &more, to->side[number], to->rigid_side[number]);
+    return follow_rigid_group(m->segments, row, number, &carry, &more, to);
 }
 
 /* ---------------------------------------------------------------- laws ------------------- */
@@ -475,11 +547,11 @@ static void store_parts(struct tl_segments *s, size_t first, size_t count, const
 
 /* ---------------------------------------------------------------- pushing ---------------- */
 
-/* What a group does to its sides: forces on the corners, on a rigid side likewise on the ends of its axes, with their
- * sizes; and what these come from: forces of the points, and couples. */
+/* What a group does to its sides: forces on the corners, with their sizes. Where sides are rigid, also what these come
+ * from: the forces of the points on B, and the couples. */
 typedef struct push_lanes {
     _Alignas(TL_ALIGN) double corner[2][3][4][TL_LANES]; /* by side, corner, component */
-    double point[3][3][TL_LANES];                        /* of the points on B */
+    double point[3][3][TL_LANES];
     double couple[2][3][TL_LANES];
 } push_lanes;
 
@@ -499,40 +571,41 @@ TL_INLINE tl_vec3 sum_of(tl_vec3 a, tl_vec3 b, tl_vec3 c)
     return tl_v3_add(tl_v3_add(a, b), c);
 }
 
-/* The force on a corner of which the three points have the weights w[0], w[TL_LANES] and w[2 TL_LANES], and `more`. */
-TL_INLINE void push_corner(double (*to)[TL_LANES], size_t l, const double *w, double sign, tl_vec3 f0, tl_vec3 f1,
-                           tl_vec3 f2, tl_vec3 more)
+/* Forces of the three points of a segment, by weights. */
+TL_INLINE tl_vec3 weighed(const double *w, tl_vec3 f0, tl_vec3 f1, tl_vec3 f2)
 {
-    const double w0 = sign * w[0], w1 = sign * w[TL_LANES], w2 = sign * w[2 * TL_LANES];
-    const tl_vec3 f = {w0 * f0.x + w1 * f1.x + w2 * f2.x + more.x, w0 * f0.y + w1 * f1.y + w2 * f2.y + more.y,
-                       w0 * f0.z + w1 * f1.z + w2 * f2.z + more.z};
+    const double w0 = w[0], w1 = w[TL_LANES], w2 = w[2 * TL_LANES];
+    return (tl_vec3){w0 * f0.x + w1 * f1.x + w2 * f2.x, w0 * f0.y + w1 * f1.y + w2 * f2.y,
+                     w0 * f0.z + w1 * f1.z + w2 * f2.z};
+}
+
+TL_INLINE void put_push(double (*to)[TL_LANES], size_t l, tl_vec3 f)
+{
     put_lane(to, l, f.x, f.y, f.z);
     to[3][l] = size_of(f);
 }
 
-/* The forces on the corners of a side: those of points by their weights, from rows of a column on, and a couple's. */
-TL_INLINE void push_corners(push_lanes *restrict of, int number, double *const at[3], size_t first, double sign,
-                            side_lanes *side)
+/* The forces on the corners of a side: `sign` times those of points, by their weights from a row on, and a couple's.
+ * The weights of a triangle add up to 1, so the first corner gets what the others leave of the sum. */
+TL_INLINE void push_corners(push_lanes *restrict of, int number, double *const at[3], size_t row, size_t l, double sign,
+                            tl_vec3 p0, tl_vec3 p1, tl_vec3 p2, tl_vec3 all, tl_vec3 couple, side_lanes *side)
 {
-    const double *restrict w0 = at[0] + first, *restrict w1 = at[1] + first, *restrict w2 = at[2] + first;
-    double(*to)[4][TL_LANES] = of->corner[number], (*couples)[TL_LANES] = of->couple[number];
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_vec3 f0 = get(of->point[0], l), f1 = get(of->point[1], l), f2 = get(of->point[2], l);
-        const tl_vec3 n = get(side->normal, l), a = get(side->edge[0], l), b = get(side->edge[1], l);
-        const tl_vec3 couple = get(couples, l);
-        const double spin = 0.5 * dot_of(couple, n), on_a = dot_of(couple, a), on_b = dot_of(couple, b);
-        const tl_vec3 c1 = {spin * b.x - on_b * n.x, spin * b.y - on_b * n.y, spin * b.z - on_b * n.z};
-        const tl_vec3 c2 = {on_a * n.x - spin * a.x, on_a * n.y - spin * a.y, on_a * n.z - spin * a.z};
-        const tl_vec3 c0 = {-(c1.x + c2.x), -(c1.y + c2.y), -(c1.z + c2.z)};
-        push_corner(to[0], l, w0 + l, sign, f0, f1, f2, c0);
-        push_corner(to[1], l, w1 + l, sign, f0, f1, f2, c1);
-        push_corner(to[2], l, w2 + l, sign, f0, f1, f2, c2);
-    }
+    const tl_vec3 n = get(side->normal, l), a = get(side->edge[0], l), b = get(side->edge[1], l);
+    const double spin = 0.5 * dot_of(couple, n), on_a = dot_of(couple, a), on_b = dot_of(couple, b);
+    const tl_vec3 c1 = {spin * b.x - on_b * n.x, spin * b.y - on_b * n.y, spin * b.z - on_b * n.z};
+    const tl_vec3 c2 = {on_a * n.x - spin * a.x, on_a * n.y - spin * a.y, on_a * n.z - spin * a.z};
+    const tl_vec3 f1 = tl_v3_madd(c1, sign, weighed(at[1] + row, p0, p1, p2)),
+                  f2 = tl_v3_madd(c2, sign, weighed(at[2] + row, p0, p1, p2));
+    const tl_vec3 f0 = tl_v3_sub(tl_v3_scale(sign, all), tl_v3_add(f1, f2));
+    put_push(of->corner[number][0], l, f0);
+    put_push(of->corner[number][1], l, f1);
+    put_push(of->corner[number][2], l, f2);
 }
 
-/* Sums of the points of a group, by its number in the tile, and what it stores and turns into heat. */
-TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *restrict to)
+/* Sums of the points of a group, by its number in the tile: what they do to both sides, store and turn into heat.
+ * `any_rigid`: some sides may be. */
+TL_INLINE void push_points(struct tl_segments *s, size_t row, size_t number, lanes *of, bool any_rigid,
+                           push_lanes *restrict to)
 {
     const tl_segment_points *p = &s->points;
     tl_segment_table *t = &s->table;
@@ -554,7 +627,7 @@ TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t number, lane
         const tl_vec3 moment = sum_of(tl_v3_cross(e0, s0), tl_v3_cross(e1, s1), tl_v3_cross(e2, s2));
         const tl_vec3 pressed = {q0 * e0.x + q1 * e1.x + q2 * e2.x, q0 * e0.y + q1 * e1.y + q2 * e2.y,
                                  q0 * e0.z + q1 * e1.z + q2 * e2.z};
-        const tl_vec3 tilting = tl_v3_madd(pressed, -dot_of(pressed, n), n);
+        const tl_vec3 tilting = tl_v3_madd(pressed, -dot_of(pressed, n), n), all = sum_of(f0, f1, f2);
         const tl_vec3 tilts_a = tl_v3_cross(get(a->normal, l), tilting);
         const tl_vec3 tilts_b = tl_v3_cross(get(b->normal, l), tilting);
         const double tilt_a = share * per_p[l], tilt_b = -rest * per_p[l];
@@ -565,20 +638,20 @@ TL_INLINE void sum_points(struct tl_segments *s, size_t row, size_t number, lane
         bears[l] = size_of(f0) + size_of(f1) + size_of(f2);
         stored[l] = of->stored[j] + of->stored[j1] + of->stored[j2];
         heat[l] = of->dissipated[j] + of->dissipated[j1] + of->dissipated[j2];
-        put_lane(to->point[0], l, f0.x, f0.y, f0.z);
-        put_lane(to->point[1], l, f1.x, f1.y, f1.z);
-        put_lane(to->point[2], l, f2.x, f2.y, f2.z);
-        put_lane(to->couple[0], l, on_a.x, on_a.y, on_a.z);
-        put_lane(to->couple[1], l, on_b.x, on_b.y, on_b.z);
+        push_corners(to, 0, p->at_a, first + l, l, -1, f0, f1, f2, all, on_a, a);
+        push_corners(to, 1, p->at_b, first + l, l, 1, f0, f1, f2, all, on_b, b);
+        if (any_rigid) {
+            put_lane(to->point[0], l, f0.x, f0.y, f0.z);
+            put_lane(to->point[1], l, f1.x, f1.y, f1.z);
+            put_lane(to->point[2], l, f2.x, f2.y, f2.z);
+            put_lane(to->couple[0], l, on_a.x, on_a.y, on_a.z);
+            put_lane(to->couple[1], l, on_b.x, on_b.y, on_b.z);
+        }
     }
 }
 
-TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
+TL_INLINE void store_pushes(struct tl_segments *s, size_t row, push_lanes *by)
 {
-    const size_t first = TL_SEGMENT_POINTS * row;
-    sum_points(s, row, number, of, by);
-    push_corners(by, 0, s->points.at_a, first, -1, &of->side[number][0]);
-    push_corners(by, 1, s->points.at_b, first, 1, &of->side[number][1]);
     for (size_t l = 0; l < TL_LANES; l += 4) {
         tl_segment_push *to = s->table.push + row + l;
         for (int side = 0; side < 2; side++)
@@ -590,14 +663,33 @@ TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t n
     }
 }
 
-/* A rigid side gets the force, and the moment about its centroid: a couple, and that of the forces on the ends of its
- * axes. */
-static void push_rigid(const tl_model *m, uint32_t body, tl_vec3 force, tl_vec3 couple, double (*to)[4])
+TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
 {
-    tl_vec3 moment = couple;
-    for (int k = 0; k < 3; k++)
-        moment =
-            tl_v3_add(moment, tl_v3_cross(axis_of(&m->bodies.pose[body].r, k), tl_v3(to[k][0], to[k][1], to[k][2])));
+    push_points(s, row, number, of, false, by);
+    store_pushes(s, row, by);
+}
+
+TL_VECTORIZED static void push_rigid_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
+{
+    push_points(s, row, number, of, true, by);
+    store_pushes(s, row, by);
+}
+
+/* A rigid side gets the force, and the moment about its centroid: a couple, and that of the forces of the points. */
+static void push_rigid(const tl_model *m, size_t row, int side, push_lanes *by)
+{
+    const tl_segment_points *p = &m->segments->points;
+    const tl_segment *of = &m->segments->table.of[row];
+    const uint32_t body = side ? of->b.at[0] : of->a.at[0];
+    double(*to)[4] = m->segments->table.push[row].of[side];
+    const size_t lane = row % TL_LANES;
+    tl_vec3 force = {0, 0, 0}, moment = get(by->couple[side], lane);
+    for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
+        const tl_vec3 f = tl_v3_scale(side ? 1 : -1, get(by->point[k], lane));
+        const tl_vec3 at = tl_columns_get(side ? p->at_b : p->at_a, tl_segment_point_row(row, k));
+        force = tl_v3_add(force, f);
+        moment = tl_v3_add(moment, tl_v3_cross(tl_m3_mul(&m->bodies.pose[body].r, at), f));
+    }
     const tl_vec3 both[2] = {force, moment};
     for (int k = 0; k < 2; k++) {
         to[k][0] = both[k].x;
@@ -606,21 +698,18 @@ static void push_rigid(const tl_model *m, uint32_t body, tl_vec3 force, tl_vec3 
     }
 }
 
-static void push_sides(tl_model *m, size_t row, size_t number, lanes *of)
+static void push_sides(const tl_model *m, size_t row, size_t number, lanes *of)
 {
-    struct tl_segments *s = m->segments;
     push_lanes by;
-    push_group(s, row, number, of, &by);
-    for (size_t l = 0; l < TL_LANES && of->rigid[number]; l++) {
-        const tl_segment *one = &s->table.of[row + l];
-        if (one->meet == TL_NO_ROW)
-            continue;
-        const tl_vec3 on_b = sum_of(get(by.point[0], l), get(by.point[1], l), get(by.point[2], l));
-        if (tl_side_is_rigid(&one->a))
-            push_rigid(m, one->a.at[0], tl_v3_neg(on_b), get(by.couple[0], l), s->table.push[row + l].of[0]);
-        if (tl_side_is_rigid(&one->b))
-            push_rigid(m, one->b.at[0], on_b, get(by.couple[1], l), s->table.push[row + l].of[1]);
+    if (!of->rigid[number]) {
+        push_group(m->segments, row, number, of, &by);
+        return;
     }
+    push_rigid_group(m->segments, row, number, of, &by);
+    for (size_t l = 0; l < TL_LANES; l++)
+        for (int side = 0; side < 2; side++)
+            if (of->rigid_side[number][side][l])
+                push_rigid(m, row + l, side, &by);
 }
 
 static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -632,16 +721,8 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     bool apart = false;
     lanes l;
     l.parts = false;
-    for (size_t g = 0; g < groups; g++) {
-        const size_t row = first + g * TL_LANES;
-        l.rigid[g] = false;
-        for (int k = 0; k < 2; k++)
-            if (!find_sides(m->segments, row, k, &l.side[g][k])) {
-                put_rigid_sides(m, row, k, &l.side[g][k]);
-                l.rigid[g] = true;
-            }
-        apart |= follow_group(m->segments, row, g, &l);
-    }
+    for (size_t g = 0; g < groups; g++)
+        apart |= follow_sides(m, first + g * TL_LANES, g, &l);
     if (apart)
         close_parts(job, first, count, &l);
     if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))

@@ -2,6 +2,7 @@
  *
  * All bodies are divided before any is changed. Then each gets its mesh, in the order of their first blocks. */
 #include "base/columns.h"
+#include "geometry/measure.h"
 #include "geometry/zoning.h"
 #include "model/deformable.h"
 #include "model/loads.h"
@@ -18,6 +19,12 @@
 
 /* Tolerance: distance over the block's size up to which a loaded point outside counts as one of the surface. */
 #define TOUCHES 1e-6
+/* Limit: zones that a block may be expected to get: half of what Delaunay has numbers for. */
+#define MOST_ZONES 5e8
+/* Tolerance: zones of a call from which a remark tells what they take. Making them takes a minute and more. */
+#define MANY_ZONES 5e6
+/* Constant: bytes that a zone and its share of gridpoints take in a model, without segments. */
+#define BYTES_OF_ZONE 250
 
 /* A body on its way. */
 typedef struct part {
@@ -129,6 +136,33 @@ static tl_status list_bodies(dividing *d, const tl_id *blocks, size_t count)
     return TL_OK;
 }
 
+/* Zones of one size: how many a block gets follows from its volume and surface. */
+static tl_status check_count(const dividing *d)
+{
+    tl_model *m = d->m;
+    const double edge = d->how->edge;
+    double all = 0;
+    for (uint32_t row = 0; !d->how->edge_at && row < m->blocks.table.rows; row++) {
+        const tl_poly *shape = m->blocks.shape[row];
+        double surface = 0;
+        if (!d->chosen[row])
+            continue;
+        for (uint32_t f = 0; f < shape->face_count; f++)
+            surface += tl_poly_face_area(shape, f);
+        const double zones = tl_zoning_expected(m->blocks.volume[row], surface, edge);
+        if (zones > MOST_ZONES)
+            return tl_fail(&m->error, TL_E_ARGUMENT,
+                           "block %u would get some %.2g zones with an edge of %g m, and can have %.2g: give larger "
+                           "ones, or a function that makes them small only where they need be",
+                           m->blocks.id[row], zones, edge, MOST_ZONES);
+        all += zones;
+    }
+    if (all > MANY_ZONES)
+        tl_model_say(m, "an edge of %g m makes some %.2g zones, which take some %.2g GB and long steps", edge, all,
+                     1e-9 * BYTES_OF_ZONE * all);
+    return TL_OK;
+}
+
 static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint32_t *solid)
 {
     tl_model *m = d->m;
@@ -142,9 +176,10 @@ static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint3
                          tl_words(m, "model:solid", "tl_model_solid"));
     *solid = status == TL_OK && m->zones ? tl_solid_find(m, d->how->solid) : TL_NO_ROW;
     if (status == TL_OK && *solid == TL_NO_ROW)
-        status = tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%s': name one with %s first", d->how->solid,
-                         tl_words(m, "model:solid", "tl_model_solid"));
-    return status == TL_OK ? list_bodies(d, blocks, count) : status;
+        status = tl_solid_missing(m, d->how->solid);
+    if (status == TL_OK)
+        status = list_bodies(d, blocks, count);
+    return status == TL_OK ? check_count(d) : status;
 }
 
 /* ---------------------------------------------------------------- zones of a body -------- */
@@ -246,6 +281,7 @@ static tl_status lay_all(dividing *d, uint32_t solid)
         tl_zones_end_at(m, meshes);
     else
         m->structure++;
+    tl_zones_trim(m->zones);
     free(fixed);
     return status;
 }

@@ -267,6 +267,18 @@ bool tl_zones_index(struct tl_zones *z, uint32_t mesh)
     return true;
 }
 
+void tl_zones_trim(struct tl_zones *z)
+{
+    const size_t points = z->points.table.rows + 1;
+    tl_trim(&z->group, &z->group_capacity, z->group_count, sizeof *z->group);
+    tl_trim(&z->listed, &z->listed_capacity, z->listed_count, sizeof *z->listed);
+    tl_trim(&z->slot, &z->slot_capacity, z->listed_count, sizeof *z->slot);
+    tl_trim(&z->use, &z->use_capacity, z->listed_count, sizeof *z->use);
+    tl_trim(&z->use_start, &z->use_start_capacity, points, sizeof *z->use_start);
+    tl_trim(&z->row_of, &z->row_of_capacity, z->row_of_count, sizeof *z->row_of);
+    tl_trim(&z->part, &z->part_capacity, z->part_count, sizeof *z->part);
+}
+
 /* ---------------------------------------------------------------- a mesh comes ----------- */
 
 /* What a mesh adds to the tables. */

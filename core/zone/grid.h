@@ -40,6 +40,8 @@ void tl_zones_end_at(tl_model *m, uint32_t meshes);
 /* Lists the slots of the gridpoints of meshes from a number on, and marks those on surfaces. What was listed of those
  * before stands. false: out of memory. */
 bool tl_zones_index(struct tl_zones *z, uint32_t mesh);
+/* Gives back what the lists of zones have to spare. */
+void tl_zones_trim(struct tl_zones *z);
 /* The number of a body's mesh, or TL_NO_ROW. */
 uint32_t tl_mesh_of(const tl_model *m, tl_id body);
 /* The triangles of a face of a block; NULL: it is rigid. */

@@ -32,18 +32,24 @@
 #include "base/solid_columns.h"
 #include "model/law_time.h"
 
+#include <float.h>
 #include <string.h>
 #include <talus/number.h>
 
 /* Rows of a SIMD group. */
 #define ROWS (TL_CLUSTER_MOST * TL_LANES)
+/* Zones of a row that a loop takes: half of them, so that what it needs stays in registers. */
+#define FOUR ((size_t)4)
+
+/* Constant: the least normal number, m3. A lane without a cluster has no volume: its sums, 0, are divided by this. */
+#define LEAST_VOLUME DBL_MIN
 
 /* What the rows of a group have. */
 typedef struct group_rows {
     _Alignas(TL_ALIGN) double strain[6][ROWS]; /* increment */
-    double before[6][ROWS];                    /* turned stress */
+    double trace[ROWS], met[ROWS];             /* of the turned stress: its trace, and its product with the strain */
     double area[3][3][ROWS];                   /* 6 V g_a at the present places, corners 1 to 3 */
-    double spin[3][ROWS];                      /* turn of the step, rad */
+    double spin[3][ROWS];                      /* half the turn of the step, rad */
     double middle[ROWS], volume[ROWS];         /* V half-way and now, m3; of an inert row 0 */
     double extent[ROWS], dissipated[ROWS];     /* m, and J/m3 */
 } group_rows;
@@ -66,102 +72,93 @@ typedef struct pass_job {
 
 /* ---------------------------------------------------------------- strain ----------------- */
 
-/* A row of zones: places of corners 1 to 3, and their ways in the last step, from corner 0. */
+/* Four zones of a row: places of corners 1 to 3, and half their ways in the last step, from corner 0. */
 typedef struct row_edges {
-    _Alignas(TL_ALIGN) double edge[3][3][TL_LANES];
-    double way[3][3][TL_LANES];
+    _Alignas(TL_ALIGN) double edge[3][3][FOUR];
+    double half[3][3][FOUR];
 } row_edges;
 
 TL_INLINE void load_edges(const tl_gridpoint_now *p, uint16_t *const corner[4], size_t row, row_edges *restrict to)
 {
-    for (size_t l = row; l < row + TL_LANES; l += 4) {
-        double *restrict const edge = &to->edge[0][0][l - row], *restrict const way = &to->way[0][0][l - row];
-        for (size_t a = 1; a < 4; a++) {
-            const size_t at = 3 * (a - 1) * TL_LANES;
-            tl_lanes_apart(p->place, corner[a] + l, corner[0] + l, edge + at);
-            tl_lanes_apart(p->way, corner[a] + l, corner[0] + l, way + at);
-        }
+    const uint16_t *from = corner[0] + row;
+    for (size_t a = 1; a < 4; a++) {
+        double(*edge)[FOUR] = to->edge[a - 1], (*half)[FOUR] = to->half[a - 1];
+        tl_lanes_apart(p->place, corner[a] + row, from, edge[0], edge[1], edge[2]);
+        tl_lanes_apart(p->way, corner[a] + row, from, half[0], half[1], half[2]);
     }
 }
 
-TL_INLINE tl_vec3 lane_of(double (*v)[TL_LANES], size_t l)
+TL_INLINE tl_vec3 lane_of(double (*v)[FOUR], size_t l)
 {
     return (tl_vec3){v[0][l], v[1][l], v[2][l]};
 }
 
-/* Q stress Q^T of one zone. */
-TL_INLINE tl_sym3 turned(tl_sym3 s, tl_vec3 w)
+/* Q stress Q^T of one zone; k: half the turn. The trace stays, and without a turn every bit. */
+TL_INLINE tl_sym3 turned(tl_sym3 s, tl_vec3 k)
 {
-    const double x = 0.5 * w.x, y = 0.5 * w.y, z = 0.5 * w.z, f = 2 / (1 + (x * x + y * y + z * z));
-    const tl_vec3 a = {1 - f * (y * y + z * z), f * (x * y - z), f * (x * z + y)};
-    const tl_vec3 b = {f * (x * y + z), 1 - f * (x * x + z * z), f * (y * z - x)};
-    const tl_vec3 c = {f * (x * z - y), f * (y * z + x), 1 - f * (x * x + y * y)};
+    const double x = k.x, y = k.y, z = k.z, f = 2 / (1 + (x * x + y * y + z * z));
+    const double fx = f * x, fy = f * y, fz = f * z, xx = fx * x, yy = fy * y, zz = fz * z;
+    const double xy = fx * y, yz = fy * z, zx = fz * x;
+    const tl_vec3 a = {1 - (yy + zz), xy - fz, zx + fy};
+    const tl_vec3 b = {xy + fz, 1 - (xx + zz), yz - fx};
+    const tl_vec3 c = {zx - fy, yz + fx, 1 - (xx + yy)};
     const tl_vec3 row_x = {s.xx, s.xy, s.zx}, row_y = {s.xy, s.yy, s.yz}, row_z = {s.zx, s.yz, s.zz};
     const tl_vec3 p = {tl_v3_dot(a, row_x), tl_v3_dot(a, row_y), tl_v3_dot(a, row_z)};
     const tl_vec3 q = {tl_v3_dot(b, row_x), tl_v3_dot(b, row_y), tl_v3_dot(b, row_z)};
-    const tl_vec3 t = {tl_v3_dot(c, row_x), tl_v3_dot(c, row_y), tl_v3_dot(c, row_z)};
-    return (tl_sym3){.xx = tl_v3_dot(p, a),
-                     .yy = tl_v3_dot(q, b),
-                     .zz = tl_v3_dot(t, c),
+    const double first = tl_v3_dot(p, a), second = tl_v3_dot(q, b);
+    return (tl_sym3){.xx = first,
+                     .yy = second,
+                     .zz = s.zz + ((s.xx - first) + (s.yy - second)),
                      .xy = tl_v3_dot(p, b),
                      .yz = tl_v3_dot(q, c),
-                     .zx = tl_v3_dot(t, a)};
+                     .zx = tl_v3_dot(p, c)};
 }
 
-/* The zones of one row of a group: number k of their clusters. All of a zone in one go, so that it stays in
- * registers. */
-TL_INLINE void strain_row(const struct tl_zones *z, const tl_gridpoint_now *p, const tl_zone_group *g, size_t k,
-                          group_rows *restrict r, group_sums *restrict sums)
+/* Four zones of one row of a group, from lane `first` on: number k of their clusters. All of a zone in one go, so that
+ * it stays in registers. */
+TL_INLINE void strain_four(const struct tl_zones *z, const tl_gridpoint_now *p, const tl_zone_group *g, size_t k,
+                           size_t first, group_rows *restrict r, group_sums *restrict all)
 {
-    const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
-    double *const *s = z->zones.stress;
-    double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
-    double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
-    const double number = (double)k;
+    const size_t at = TL_LANES * k + first;
+    double *restrict change = all->change + first, *restrict middles = all->middle + first;
+    double *restrict strain2 = all->strain2 + first, *restrict sound = all->sound + first;
+    const double *restrict zones = all->zones + first, number = (double)k;
     row_edges c;
-    load_edges(p, z->zones.corner, row, &c);
+    load_edges(p, z->zones.corner, g->start + at, &c);
 #pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
+    for (size_t l = 0; l < FOUR; l++) {
         const tl_vec3 e1 = lane_of(c.edge[0], l), e2 = lane_of(c.edge[1], l), e3 = lane_of(c.edge[2], l);
-        const tl_vec3 w1 = lane_of(c.way[0], l), w2 = lane_of(c.way[1], l), w3 = lane_of(c.way[2], l);
+        const tl_vec3 h1 = lane_of(c.half[0], l), h2 = lane_of(c.half[1], l), h3 = lane_of(c.half[2], l);
         const tl_vec3 a1 = tl_v3_cross(e2, e3), a2 = tl_v3_cross(e3, e1), a3 = tl_v3_cross(e1, e2);
         r->area[0][0][at + l] = a1.x, r->area[0][1][at + l] = a1.y, r->area[0][2][at + l] = a1.z;
         r->area[1][0][at + l] = a2.x, r->area[1][1][at + l] = a2.y, r->area[1][2][at + l] = a2.z;
         r->area[2][0][at + l] = a3.x, r->area[2][1][at + l] = a3.y, r->area[2][2][at + l] = a3.z;
         const double six_now = tl_v3_dot(a1, e1);
-        const double factor = number < sums->zones[l] ? 1.0 / 6 : 0;
+        const double factor = number < zones[l] ? 1.0 / 6 : 0;
         r->volume[at + l] = factor * six_now;
-        const tl_vec3 m1 = tl_v3_madd(e1, -0.5, w1), m2 = tl_v3_madd(e2, -0.5, w2), m3 = tl_v3_madd(e3, -0.5, w3);
+        const tl_vec3 m1 = tl_v3_sub(e1, h1), m2 = tl_v3_sub(e2, h2), m3 = tl_v3_sub(e3, h3);
         const tl_vec3 b1 = tl_v3_cross(m2, m3), b2 = tl_v3_cross(m3, m1), b3 = tl_v3_cross(m1, m2);
-        const double six = tl_v3_dot(b1, m1), per = 1 / six, middle = factor * six;
-        const double dxx = per * (w1.x * b1.x + w2.x * b2.x + w3.x * b3.x);
-        const double dyy = per * (w1.y * b1.y + w2.y * b2.y + w3.y * b3.y);
-        const double dzz = per * (w1.z * b1.z + w2.z * b2.z + w3.z * b3.z);
-        const double dxy = per * (w1.x * b1.y + w2.x * b2.y + w3.x * b3.y);
-        const double dyx = per * (w1.y * b1.x + w2.y * b2.x + w3.y * b3.x);
-        const double dyz = per * (w1.y * b1.z + w2.y * b2.z + w3.y * b3.z);
-        const double dzy = per * (w1.z * b1.y + w2.z * b2.y + w3.z * b3.y);
-        const double dzx = per * (w1.z * b1.x + w2.z * b2.x + w3.z * b3.x);
-        const double dxz = per * (w1.x * b1.z + w2.x * b2.z + w3.x * b3.z);
-        const double xy = 0.5 * (dxy + dyx), yz = 0.5 * (dyz + dzy), zx = 0.5 * (dzx + dxz), trace = dxx + dyy + dzz;
-        const double square = dxx * dxx + dyy * dyy + dzz * dzz + 2 * (xy * xy + yz * yz + zx * zx);
+        const double six = tl_v3_dot(b1, m1), per = 1 / six, twice = 2 * per, half = 0.5 * per, middle = factor * six;
+        const double xx = twice * (h1.x * b1.x + h2.x * b2.x + h3.x * b3.x);
+        const double yy = twice * (h1.y * b1.y + h2.y * b2.y + h3.y * b3.y);
+        const double zz = twice * (h1.z * b1.z + h2.z * b2.z + h3.z * b3.z);
+        const double dxy = h1.x * b1.y + h2.x * b2.y + h3.x * b3.y;
+        const double dyx = h1.y * b1.x + h2.y * b2.x + h3.y * b3.x;
+        const double dyz = h1.y * b1.z + h2.y * b2.z + h3.y * b3.z;
+        const double dzy = h1.z * b1.y + h2.z * b2.y + h3.z * b3.y;
+        const double dzx = h1.z * b1.x + h2.z * b2.x + h3.z * b3.x;
+        const double dxz = h1.x * b1.z + h2.x * b2.z + h3.x * b3.z;
+        const double xy = per * (dxy + dyx), yz = per * (dyz + dzy), zx = per * (dzx + dxz);
+        const double square = xx * xx + yy * yy + zz * zz + 2 * (xy * xy + yz * yz + zx * zx);
         r->middle[at + l] = middle;
-        r->strain[0][at + l] = dxx, r->strain[1][at + l] = dyy, r->strain[2][at + l] = dzz;
+        r->strain[0][at + l] = xx, r->strain[1][at + l] = yy, r->strain[2][at + l] = zz;
         r->strain[3][at + l] = xy, r->strain[4][at + l] = yz, r->strain[5][at + l] = zx;
-        sums->change[l] += middle * trace;
-        sums->middle[l] += middle;
-        sums->strain2[l] = square > sums->strain2[l] ? square : sums->strain2[l];
-        sums->sound[l] = ((six > 0) & (six_now > 0)) ? sums->sound[l] : 0;
-        const tl_vec3 spin = {0.5 * (dzy - dyz), 0.5 * (dxz - dzx), 0.5 * (dyx - dxy)};
+        change[l] += middle * (xx + yy + zz);
+        middles[l] += middle;
+        strain2[l] = square > strain2[l] ? square : strain2[l];
+        sound[l] = ((six > 0) & (six_now > 0)) ? sound[l] : 0;
+        const tl_vec3 spin = {half * (dzy - dyz), half * (dxz - dzx), half * (dyx - dxy)};
         r->spin[0][at + l] = spin.x, r->spin[1][at + l] = spin.y, r->spin[2][at + l] = spin.z;
-        const tl_sym3 was = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
-        const tl_sym3 now = turned(was, spin);
-        r->before[0][at + l] = sxx[l] = now.xx;
-        r->before[1][at + l] = syy[l] = now.yy;
-        r->before[2][at + l] = szz[l] = now.zz;
-        r->before[3][at + l] = sxy[l] = now.xy;
-        r->before[4][at + l] = syz[l] = now.yz;
-        r->before[5][at + l] = szx[l] = now.zx;
     }
 }
 
@@ -176,22 +173,38 @@ TL_INLINE bool is_outside_out(const group_sums *sums)
     return all > 0;
 }
 
-/* Each zone gets the mean change of volume of its cluster. */
-TL_INLINE void share_volume(group_rows *restrict r, group_sums *restrict sums, size_t depth)
+/* The mean change of volume of each cluster. */
+TL_INLINE void mean_volume(group_sums *restrict sums)
 {
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++)
-        sums->change[l] /= sums->middle[l] != 0 ? sums->middle[l] : 1;
-    for (size_t k = 0; k < depth; k++)
+        sums->change[l] /= tl_larger(sums->middle[l], LEAST_VOLUME);
+}
+
+/* Zone k of each cluster gets the mean change of volume, and its stress turns. */
+TL_INLINE void turn_row(const struct tl_zones *z, const tl_zone_group *g, size_t k, group_rows *restrict r,
+                        const group_sums *restrict sums)
+{
+    const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
+    double *const *s = z->zones.stress;
+    double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
+    double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
 #pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            const size_t i = TL_LANES * k + l;
-            const double x = r->strain[0][i], y = r->strain[1][i], z = r->strain[2][i];
-            const double more = (sums->change[l] - (x + y + z)) * (1.0 / 3);
-            r->strain[0][i] = x + more;
-            r->strain[1][i] = y + more;
-            r->strain[2][i] = z + more;
-        }
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const size_t i = at + l;
+        double xx = r->strain[0][i], yy = r->strain[1][i], zz = r->strain[2][i];
+        const double more = (sums->change[l] - (xx + yy + zz)) * (1.0 / 3);
+        const tl_sym3 was = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
+        const tl_sym3 now = turned(was, (tl_vec3){r->spin[0][i], r->spin[1][i], r->spin[2][i]});
+        r->strain[0][i] = xx += more;
+        r->strain[1][i] = yy += more;
+        r->strain[2][i] = zz += more;
+        r->trace[i] = now.xx + now.yy + now.zz;
+        r->met[i] = now.xx * xx + now.yy * yy + now.zz * zz +
+                    2 * (now.xy * r->strain[3][i] + now.yz * r->strain[4][i] + now.zx * r->strain[5][i]);
+        sxx[l] = now.xx, syy[l] = now.yy, szz[l] = now.zz;
+        sxy[l] = now.xy, syz[l] = now.yz, szx[l] = now.zx;
+    }
 }
 
 /* What a group gives its parcel: the work of its stresses over the strain, J; heat that the solid made, J; and the sum
@@ -211,27 +224,26 @@ TL_INLINE void mean_change(const group_rows *restrict r, double *const stress[6]
     for (size_t i = 0; i < TL_LANES * depth; i += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
-            const double change = (xx[i + l] - r->before[0][i + l]) + (yy[i + l] - r->before[1][i + l]) +
-                                  (zz[i + l] - r->before[2][i + l]);
+            const double change = (xx[i + l] + yy[i + l] + zz[i + l]) - r->trace[i + l];
             sum[l] += r->volume[i + l] * change;
             all[l] += r->volume[i + l];
         }
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++)
-        mean[l] = sum[l] / (all[l] != 0 ? all[l] : 1);
+        mean[l] = sum[l] / tl_larger(all[l], LEAST_VOLUME);
 }
 
 /* ---------------------------------------------------------------- forces ----------------- */
 
-/* What a row of zones does to a corner: three components and the square of the size. */
+/* What four zones do to a corner: three components and the square of the size. */
 typedef struct push {
-    _Alignas(TL_ALIGN) double of[4][TL_LANES];
+    _Alignas(TL_ALIGN) double of[4][FOUR];
 } push;
 
-/* Minus the stress of a zone times a vector area over 6: a force of a corner. */
-TL_INLINE tl_vec3 force_of(tl_sym3 s, double factor, const double (*area)[ROWS], size_t i)
+/* A stress times a vector area: with the stress over -6 a force of a corner. */
+TL_INLINE tl_vec3 force_of(tl_sym3 s, const double (*area)[ROWS], size_t i)
 {
-    const double x = -factor * area[0][i], y = -factor * area[1][i], z = -factor * area[2][i];
+    const double x = area[0][i], y = area[1][i], z = area[2][i];
     return (tl_vec3){s.xx * x + s.xy * y + s.zx * z, s.xy * x + s.yy * y + s.yz * z, s.zx * x + s.yz * y + s.zz * z};
 }
 
@@ -248,49 +260,50 @@ typedef struct lane_sums {
     _Alignas(TL_ALIGN) double work[TL_LANES], heat[TL_LANES], lost[TL_LANES];
 } lane_sums;
 
-/* Zone k of each cluster: its stress gets the mean change of the cluster. Its work, and its forces on its corners. */
-TL_INLINE void close_row(const struct tl_zones *z, const tl_zone_group *g, size_t k, const double mean[TL_LANES],
-                         const group_rows *restrict r, lane_sums *restrict sums, push by[4])
+/* Adds the forces of four zones to the slots, corner by corner. */
+TL_INLINE void add_pushes(uint16_t *const corner[4], size_t row, const push by[4], tl_slot *slots)
 {
-    const size_t row = g->start + TL_LANES * k, at = TL_LANES * k;
+    for (size_t a = 0; a < 4; a++) {
+        const uint16_t *at = corner[a] + row;
+        double *const to[4] = {slots[at[0]].of, slots[at[1]].of, slots[at[2]].of, slots[at[3]].of};
+        tl_lanes_add_rows(to, by[a].of[0], by[a].of[1], by[a].of[2], by[a].of[3]);
+    }
+}
+
+/* Zone k of four clusters, from lane `first` on: its stress gets the mean change of the cluster. Its work, and its
+ * forces on its corners. */
+TL_INLINE void close_four(const struct tl_zones *z, const tl_zone_group *g, size_t k, size_t first,
+                          const double *restrict mean, const group_rows *restrict r, lane_sums *restrict all,
+                          tl_slot *slots)
+{
+    const size_t at = TL_LANES * k + first, row = g->start + at;
     double *const *s = z->zones.stress;
     double *restrict sxx = s[0] + row, *restrict syy = s[1] + row, *restrict szz = s[2] + row;
     const double *restrict sxy = s[3] + row, *restrict syz = s[4] + row, *restrict szx = s[5] + row;
+    double *restrict work = all->work + first, *restrict heat = all->heat + first, *restrict lost = all->lost + first;
+    push by[4];
 #pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
+    for (size_t l = 0; l < FOUR; l++) {
         const size_t i = at + l;
-        const double factor = r->volume[i] > 0 ? 1.0 / 6 : 0; /* inert rows push nothing */
         tl_sym3 t = {.xx = sxx[l], .yy = syy[l], .zz = szz[l], .xy = sxy[l], .yz = syz[l], .zx = szx[l]};
-        const double x = r->before[0][i], y = r->before[1][i], zz = r->before[2][i];
-        const double more = (mean[l] - ((t.xx - x) + (t.yy - y) + (t.zz - zz))) * (1.0 / 3);
+        const double more = (mean[first + l] - ((t.xx + t.yy + t.zz) - r->trace[i])) * (1.0 / 3);
         sxx[l] = t.xx += more;
         syy[l] = t.yy += more;
         szz[l] = t.zz += more;
-        const double straight =
-            (x + t.xx) * r->strain[0][i] + (y + t.yy) * r->strain[1][i] + (zz + t.zz) * r->strain[2][i];
-        const double shear = (r->before[3][i] + t.xy) * r->strain[3][i] + (r->before[4][i] + t.yz) * r->strain[4][i] +
-                             (r->before[5][i] + t.zx) * r->strain[5][i];
-        sums->work[l] += r->middle[i] * (straight + 2 * shear);
-        sums->heat[l] += r->volume[i] * r->dissipated[i];
-        sums->lost[l] += r->volume[i] * (more * more);
-        const tl_vec3 f1 = force_of(t, factor, r->area[0], i), f2 = force_of(t, factor, r->area[1], i);
-        const tl_vec3 f3 = force_of(t, factor, r->area[2], i);
+        const double straight = t.xx * r->strain[0][i] + t.yy * r->strain[1][i] + t.zz * r->strain[2][i];
+        const double shear = t.xy * r->strain[3][i] + t.yz * r->strain[4][i] + t.zx * r->strain[5][i];
+        work[l] += r->middle[i] * (r->met[i] + (straight + 2 * shear));
+        heat[l] += r->volume[i] * r->dissipated[i];
+        lost[l] += r->volume[i] * (more * more);
+        t = tl_s3_scale(r->volume[i] > 0 ? -1.0 / 6 : 0, t); /* inert rows push nothing */
+        const tl_vec3 f1 = force_of(t, r->area[0], i), f2 = force_of(t, r->area[1], i);
+        const tl_vec3 f3 = force_of(t, r->area[2], i);
         put_push(&by[0], l, tl_v3_neg(tl_v3_add(tl_v3_add(f1, f2), f3)));
         put_push(&by[1], l, f1);
         put_push(&by[2], l, f2);
         put_push(&by[3], l, f3);
     }
-}
-
-/* Adds the forces of one row of zones to the slots: four lanes, corner by corner, then the other four. */
-TL_INLINE void push_row(uint16_t *const corner[4], size_t row, const push by[4], tl_slot *slots)
-{
-    for (size_t l = 0; l < TL_LANES; l += 4)
-        for (size_t a = 0; a < 4; a++) {
-            const uint16_t *at = corner[a] + row + l;
-            double *const to[4] = {slots[at[0]].of, slots[at[1]].of, slots[at[2]].of, slots[at[3]].of};
-            tl_lanes_add_rows(to, by[a].of[0] + l, by[a].of[1] + l, by[a].of[2] + l, by[a].of[3] + l);
-        }
+    add_pushes(z->zones.corner, row, by, slots);
 }
 
 /* ---------------------------------------------------------------- groups and parcels ----- */
@@ -308,8 +321,11 @@ TL_VECTORIZED static bool strain_group(const struct tl_zones *z, const tl_gridpo
         sums.zones[l] = g->count[l];
     }
     for (size_t k = 0; k < g->depth; k++)
-        strain_row(z, p, g, k, r, &sums);
-    share_volume(r, &sums, g->depth);
+        for (size_t first = 0; first < TL_LANES; first += FOUR)
+            strain_four(z, p, g, k, first, r, &sums);
+    mean_volume(&sums);
+    for (size_t k = 0; k < g->depth; k++)
+        turn_row(z, g, k, r, &sums);
     for (size_t i = 0; i < TL_LANES * g->depth; i += TL_LANES)
         tl_lanes_load(r->extent + i, g->extent);
     for (size_t l = 0; l < TL_LANES; l++)
@@ -327,12 +343,10 @@ TL_VECTORIZED static given close_group(const struct tl_zones *z, const tl_zone_g
     tl_lanes_clear(sums.work);
     tl_lanes_clear(sums.heat);
     tl_lanes_clear(sums.lost);
-    push by[4];
     mean_change(r, z->zones.stress, g->start, g->depth, mean);
-    for (size_t k = 0; k < g->depth; k++) {
-        close_row(z, g, k, mean, r, &sums, by);
-        push_row(z->zones.corner, g->start + TL_LANES * k, by, slots);
-    }
+    for (size_t k = 0; k < g->depth; k++)
+        for (size_t first = 0; first < TL_LANES; first += FOUR)
+            close_four(z, g, k, first, mean, r, &sums, slots);
     for (size_t l = 0; l < TL_LANES; l++) {
         out.work += 0.5 * sums.work[l];
         out.heat += sums.heat[l];
@@ -341,10 +355,10 @@ TL_VECTORIZED static given close_group(const struct tl_zones *z, const tl_zone_g
     return out;
 }
 
-/* Q of the turn w. */
-static tl_mat3 turn_of(tl_vec3 w)
+/* Q of half a turn k. */
+static tl_mat3 turn_of(tl_vec3 k)
 {
-    const double x = 0.5 * w.x, y = 0.5 * w.y, z = 0.5 * w.z, s = 2 / (1 + (x * x + y * y + z * z));
+    const double x = k.x, y = k.y, z = k.z, s = 2 / (1 + (x * x + y * y + z * z));
     return (tl_mat3){{{1 - s * (y * y + z * z), s * (x * y - z), s * (x * z + y)},
                       {s * (x * y + z), 1 - s * (x * x + z * z), s * (y * z - x)},
                       {s * (x * z - y), s * (y * z + x), 1 - s * (x * x + y * y)}}};
@@ -414,11 +428,11 @@ static bool call_solid(const pass_job *job, const tl_solid *solid, const tl_zone
     return status == TL_OK;
 }
 
-/* The places of a parcel's gridpoints, and their way in the last step. */
+/* The places of a parcel's gridpoints, and half their ways in the last step. */
 static void list_points(const pass_job *job, const tl_parcel *of, tl_gridpoint_now *p)
 {
     for (uint32_t k = of->point_begin; k < of->point_end; k++) {
-        tl_gridpoint_put(&p[k - of->point_begin], &job->zones->points, job->zones->listed[k], job->dt);
+        tl_gridpoint_put(&p[k - of->point_begin], &job->zones->points, job->zones->listed[k], 0.5 * job->dt);
         job->zones->slot[k] = (tl_slot){{0}};
     }
 }

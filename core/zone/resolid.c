@@ -480,8 +480,7 @@ static tl_status find_solid(tl_model *m, const char *solid, uint32_t *number)
 {
     *number = m->zones ? tl_solid_find(m, solid) : TL_NO_ROW;
     if (*number == TL_NO_ROW)
-        return tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%.80s': name it with %s first", solid,
-                       tl_words(m, "model:solid", "tl_model_solid"));
+        return tl_solid_missing(m, solid);
     return tl_solid_columns(m->zones, &m->zones->solid[*number].of) ? TL_OK : tl_fail_memory(&m->error);
 }
 

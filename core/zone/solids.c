@@ -18,6 +18,20 @@ uint32_t tl_solid_find(const tl_model *m, const char *name)
     return TL_NO_ROW;
 }
 
+tl_status tl_solid_missing(tl_model *m, const char *name)
+{
+    const size_t count = m->zones ? m->zones->solid_count : 0;
+    const char **names = malloc((count + 1) * sizeof *names);
+    for (size_t k = 0; names && k < count; k++)
+        names[k] = m->zones->solid[k].name;
+    const char *nearest = names ? tl_nearest_name(name, names, count) : NULL;
+    free(names);
+    if (nearest)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%.80s'; did you mean '%.80s'?", name, nearest);
+    return tl_fail(&m->error, TL_E_ARGUMENT, "there is no solid '%.80s': name it with %s first", name,
+                   tl_words(m, "model:solid", "tl_model_solid"));
+}
+
 static void clear(tl_named_solid *s)
 {
     tl_solid_clear(&s->of);
@@ -190,7 +204,11 @@ tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const
     const uint32_t known = tl_solid_find(m, name);
     const tl_solid *old = known != TL_NO_ROW ? &m->zones->solid[known].of : NULL;
     if (!kind && !old)
-        return tl_fail(&m->error, TL_E_NOT_FOUND, "there is no solid '%.80s' in this model yet: name its kind", name);
+        return tl_fail(&m->error, TL_E_NOT_FOUND,
+                       "there is no solid '%.80s' in this model yet: name its kind, as in %s(%s\"%.80s\", \"elastic\", "
+                       "%s)",
+                       name, tl_words(m, "model:solid", "tl_model_solid"), tl_words(m, "", "model, "), name,
+                       tl_words(m, "{...}", "properties"));
     const bool same = old && (!kind || kind == old->kind);
     return set(m, name, kind ? kind : old->kind, args, same ? old : NULL);
 }

@@ -9,6 +9,8 @@
 
 /* The number of a solid, or TL_NO_ROW. */
 uint32_t tl_solid_find(const tl_model *m, const char *name);
+/* Fails: there is no solid of that name. Tells the nearest one there is. */
+tl_status tl_solid_missing(tl_model *m, const char *name);
 /* Sets a solid: with `kind` a new one or another in its place, without it only parameters of one that there is. */
 tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args);
 /* Gives a model a solid as another one has it. */

@@ -516,12 +516,12 @@ local Zones = {}
 ---@return number|talus.Vector
 function Zones:sum(field) end
 
---- largest and smallest value of a field of numbers, or of a state
+--- largest and smallest value of a field of numbers, of a component, as "stress.zz" (of "principal" x is the largest, z the least), or of a state
 ---@param field string
 ---@return number
 function Zones:max(field) end
 
---- largest and smallest value of a field of numbers, or of a state
+--- largest and smallest value of a field of numbers, of a component, as "stress.zz" (of "principal" x is the largest, z the least), or of a state
 ---@param field string
 ---@return number
 function Zones:min(field) end
@@ -556,17 +556,17 @@ local Gridpoint = {}
 ---@operator len: integer
 local Gridpoints = {}
 
---- sum, largest and smallest value of a field of numbers
+--- sum, largest and smallest value of a field of numbers, or of a component, as "displacement.z"
 ---@param field string
 ---@return number|talus.Vector
 function Gridpoints:sum(field) end
 
---- sum, largest and smallest value of a field of numbers
+--- sum, largest and smallest value of a field of numbers, or of a component, as "displacement.z"
 ---@param field string
 ---@return number
 function Gridpoints:max(field) end
 
---- sum, largest and smallest value of a field of numbers
+--- sum, largest and smallest value of a field of numbers, or of a component, as "displacement.z"
 ---@param field string
 ---@return number
 function Gridpoints:min(field) end
@@ -659,7 +659,7 @@ function Model:joint(joint, law, options) end
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
 ---@field blocks? talus.Blocks puts the stress in their zones, and on their contacts with any; all without it
 
---- Puts an initial stress on the face contacts that exist now, once.
+--- Puts an initial stress in the zones, and on the face contacts, that exist now, once.
 ---
 ---     model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}
 ---@param options? talus.InsituOptions
@@ -866,12 +866,12 @@ function Model:solid(name, solid, options) end
 ---@field zones integer how many have been made
 ---@field gridpoints integer how many have been made
 ---@field clusters integer how many have been made
----@field smallest_altitude number m smallest altitude of a zone over its largest side
+---@field smallest_altitude number of a zone over its largest side, m
 ---@field altitude_ratio number smallest altitude over the wanted edge
----@field worst_block talus.Block block the block that has it
----@field time_step number s step that the gridpoints would allow if nothing touched them
+---@field worst_block talus.Block the block that has it
+---@field time_step number step that the gridpoints would allow if nothing touched them, s
 ---@field inertia number largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an edge. Blocks that topple or rock in time want 8 zones to an edge, or stay rigid
----@field memory integer bytes memory that the model has grown by
+---@field memory integer that the model has grown by, bytes
 
 --- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share gridpoints, so zones go on over the faces between them. Nothing is done where one block cannot be divided.
 ---
@@ -1240,6 +1240,12 @@ function Model:history(options) end
 ---@field x number[] lists of the components, where each value is a list of three
 ---@field y number[] lists of the components, where each value is a list of three
 ---@field z number[] lists of the components, where each value is a list of three
+---@field xx any the same of a field that is a tensor, as "stress"
+---@field yy any the same of a field that is a tensor, as "stress"
+---@field zz any the same of a field that is a tensor, as "stress"
+---@field xy any the same of a field that is a tensor, as "stress"
+---@field yz any the same of a field that is a tensor, as "stress"
+---@field zx any the same of a field that is a tensor, as "stress"
 
 --- Gives a table with the samples of each history, by name: copies of them.
 ---
@@ -1247,7 +1253,7 @@ function Model:history(options) end
 ---@return table<string, talus.History>
 function Model:histories() end
 
---- Writes the samples of all histories into a CSV file: the columns cycle, time and one for each history, in the order in which they were made, or name.x, name.y and name.z. A cell is empty where a history has no sample of that cycle. Folders are made; the file is written whole or not at all.
+--- Writes the samples of all histories into a CSV file: the columns cycle, time and one for each history, in the order in which they were made, or name.x, name.y and name.z, of a tensor name.xx to name.zx. A cell is empty where a history has no sample of that cycle. Folders are made; the file is written whole or not at all.
 ---
 ---     model:write_histories("out/run.csv")
 ---@param path string

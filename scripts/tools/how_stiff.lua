@@ -142,7 +142,7 @@ local function wall(points, stiffness)
     return finish()
 end
 
--- Goodman and Bray (1976), the smaller of the slopes of tests/verify/goodman_bray.lua, with columns 1 m deep.
+-- Goodman and Bray (1976), the smaller of the slopes of tests/verify/long/goodman_bray.lua, with columns 1 m deep.
 local HEIGHTS = { 3.5, 7, 10.5, 14, 17.5, 21, 24.5, 28, 31.5, 26.5, 21.5, 16.5, 11.5, 6.5 }
 local WIDTH, STEP, DIP = 8, 1, math.rad(28)
 

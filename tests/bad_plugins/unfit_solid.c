@@ -25,7 +25,9 @@ enum {
     HEAT,
     COLD,
     FLAGS,
-    STATES
+    STATES,
+    COUNTS,
+    SIGN
 };
 
 typedef struct params {
@@ -34,9 +36,10 @@ typedef struct params {
 } params;
 
 static const char *const faults[] = {
-    "none",         "runs",       "repeats", "alone",  "split", "energies", "writes_input", "writes_behind",
-    "writes_state", "adds_state", "reads",   "finite", "still", "turned",   "soft_moduli",  "shear_moduli",
-    "cycle",        "stored",     "energy",  "heat",   "cold",  "flags",    "states",       NULL};
+    "none",          "runs",         "repeats",    "alone",  "split",  "energies", "writes_input",
+    "writes_behind", "writes_state", "adds_state", "reads",  "finite", "still",    "turned",
+    "soft_moduli",   "shear_moduli", "cycle",      "stored", "energy", "heat",     "cold",
+    "flags",         "states",       "counts",     "sign",   NULL};
 
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_ENUM, params, solid_fault, "", "what is wrong with the solid", .choices = faults),
@@ -123,12 +126,15 @@ static tl_status update(const void *self, const tl_solid_batch *batch, tl_report
         tl_lanes6 trial, after;
         tl_lanes more, mark;
         tl_solid_trial(batch, begin, &elastic, trial);
+        for (uint32_t k = 0; p->solid_fault == SIGN && k < 6; k++)
+            TL_EACH_LANE(i)
+        trial[k][i] = 2 * batch->stress[k][begin + i] - trial[k][i];
         flow(p, &elastic, (const tl_lanes *)trial, batch->state[0] + begin, after, more, mark);
         uint32_t flags[TL_LANES];
         memcpy(flags, batch->flags + begin, sizeof flags);
         tl_isotropic_put(batch, begin, &elastic, (const tl_lanes *)trial, (const tl_lanes *)after, mark);
         for (uint32_t i = begin; i < begin + TL_LANES; i++) {
-            batch->state[0][i] += more[i - begin];
+            batch->state[0][i] += more[i - begin] + (p->solid_fault == COUNTS ? 1e-9 : 0);
             batch->flags[i] = p->solid_fault == FLAGS ? (uint32_t)mark[i - begin] : batch->flags[i];
             spoil(p, batch, i);
             spoil_energies(p, batch, i);

@@ -1,4 +1,5 @@
 -- An arch near the thickness at which it falls rests on hinges: contacts there go by slopes of their energy, and come to rest.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local voussoirs = require "voussoirs"
 

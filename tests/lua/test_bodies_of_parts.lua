@@ -2,6 +2,7 @@
 -- is ever an overlap. Depth in a convex body is the same however it is cut, and so is all that follows from it. Where a body
 -- turns inward the parts see a little more or less of it, as far as they overlap.
 -- tests/verify/long/parts.lua tries many more.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 local orders = require "orders"

@@ -1,6 +1,7 @@
 -- Blocks that have no common volume do not press on each other: random cut, tunnelled, joined and unjoined rock, fresh
 -- and after it has moved (tests/verify/long/common_volume.lua does the same for many more). Without gravity nothing
 -- moves.
+-- program only: the models are the same ones with a stock Lua.
 package.path = "tests/lua/?.lua;" .. package.path -- run in the source root
 local check = require "check"
 local common = require "common_volume"

@@ -1,5 +1,6 @@
 -- contact_points = "corners": a block tilts on springs at the corners of its face as rigid statics says, up to some degrees, and
 -- goes over to the pressure field without a jump when it falls on.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

@@ -1,5 +1,6 @@
 -- Boxes slide on joints whose walls cannot close by more than some tenths of a millimetre (barton_bandis) and that slip opens: however
 -- steep the curve is where they press, parts of the face open and close, and no energy is made.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local talus = require "talus"
 

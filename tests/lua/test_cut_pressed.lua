@@ -1,5 +1,6 @@
 -- A cut changes nothing that its joint can bear: parts press on the neighbours of the whole with the force that it pressed with, whether
 -- their faces lie flush or tilted.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local cuts = require "cuts"
 local every_law = require "every_law"

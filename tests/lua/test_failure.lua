@@ -1,5 +1,6 @@
 -- Steady failure is told by how far a block has gone, whatever the time step, the damping and the scale; and what settles,
 -- swings or is poured does not fail.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

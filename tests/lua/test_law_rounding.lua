@@ -1,5 +1,6 @@
 -- What a law answers does not hang on roundings: a block that lands on a floor, or is made flush with it, slides and rocks moves the same whether its times are
 -- in s or in ms, here and 1e5 m away, and as it stands and turned, though every number is rounded otherwise.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local every_law = require "every_law"
 local shapes = require "shapes"

@@ -1,5 +1,6 @@
 -- A change of law leaves forces as they are, on faces, edges and corners, and makes no energy; nor does the hand-over of a joint that a
 -- stress or slip has opened otherwise from place to place. tests/verify/long/moved_faces.lua tries many more.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local every_law = require "every_law"
 local moved_faces = require "moved_faces"

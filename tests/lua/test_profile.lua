@@ -166,6 +166,6 @@ refused({ section = slope, from = 2, to = 2 }, "from = 2 m must be < to = 2 m: t
 refused({ section = slope, plane = "xy", from = 3, to = 2 }, "they are along z")
 refused({ section = slope, density = -1 }, "density")
 refused({ section = slope, group = ("g"):rep(80) }, "longer than 63 letters")
-refused({ base = { { 0, 0 }, { 1, 0 }, { 0, 1 } }, axis = { 0, 0, 1 } }, "row 1 has 2 numbers, not 3", "prism")
+refused({ base = { { 0, 0 }, { 1, 0 }, { 0, 1 } }, axis = { 0, 0, 1 } }, "not a list of rows of 2 numbers", "prism")
 refused({ base = { { 0, 0, 0 }, { 2, 0, 0 }, { 1, 0.5, 0 }, { 2, 2, 0 } }, axis = { 1, 1, 0 } },
     "axis lies in the plane of the base", "prism")

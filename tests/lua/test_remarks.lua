@@ -134,6 +134,17 @@ says("local m = stack() m:joint('*', 'coulomb_tensile', { kn = 1e9, ks = 1e9, fr
 is_silent("stack { friction = 0 }:cycle(1)")
 is_silent("stack { friction = 5 }:cycle(1)")
 
+-- Moduli of solids against weight, and their friction.
+local zoned = [[local m = stack()
+m:solid("rock", "mohr_coulomb", { young = %s, poisson = 0.2, cohesion = 1e12, friction = %s })
+m:blocks { group = "cube" }:deformable { zone = 1, solid = "rock" }
+m:cycle(1) m:cycle(1)]]
+says(zoned:format("1e4", "30"), "solid 'rock', of kind 'mohr_coulomb' is soft: block 2 would shorten by 2.38 of its size", "(Pa)")
+says(zoned:format("1e15", "30"), "is improbably stiff: block 2 shortens by 2.4e-11 of its size")
+says(zoned:format("3e10", "0.6"), "solid 'rock', of kind 'mohr_coulomb': friction = 0.6 deg", "0.6 is 31 deg")
+is_silent(zoned:format("3e10", "30"))
+is_silent(zoned:format("1e6", "0"))
+
 -- Gravity.
 says("stack { gravity = { 0, 0, 9.81 } }:cycle(1)", "gravity = {0, 0, 9.81} points upward", "{0, 0, -9.81}")
 says("local m = stack() m.gravity = { 0, 0, 10 } m.gravity = { 0, 0, 10 } m:cycle(1)", "gravity = {0, 0, 10} points upward")

@@ -1,4 +1,5 @@
 -- When a solve calls a model at rest: not while any one block is not.
+-- program only: the models are the same ones with a stock Lua.
 local talus = require "talus"
 local check = require "check"
 

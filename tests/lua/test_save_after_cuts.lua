@@ -1,5 +1,6 @@
 -- Blocks that land, slide and turn on joints of every law and are cut while they do: saved some steps later, they are restored with the
 -- same hash and go on with the same bits. The parts' faces and what they press with come from those of the whole.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local every_law = require "every_law"
 local shapes = require "shapes"

@@ -1,5 +1,6 @@
 -- Contacts that stay near a place go by the slopes of their force there. What vibrates, within or beyond where these are
 -- used, and what creeps goes on as with contacts that are integrated in every step.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local talus = require "talus"
 

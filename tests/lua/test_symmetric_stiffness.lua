@@ -1,6 +1,7 @@
 -- Rock under stress has a potential: where nothing slips, opens or dilates the tangent stiffness matrix of all free bodies is
 -- symmetric, whatever stress acts, wherever the blocks have moved to, and whichever block was made first.
 -- tests/verify/long/stiffness.lua tries many more models, of every law.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local stiffness = require "stiffness"
 local talus = require "talus"

@@ -1,6 +1,7 @@
 -- Where a scene lies, how it is turned, whether it is seen in a mirror and in which units it is given: none of it
 -- changes how blocks tumble. Hulls fall on each other and on a floor, all of it by edges, vertices and faces; as long as
 -- the motion is not chaotic, the places agree. Nothing that falls gains energy.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local shapes = require "shapes"
 local talus = require "talus"

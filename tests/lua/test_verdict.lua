@@ -1,5 +1,6 @@
 -- The verdict: what has but closed its joints is at rest and has not moved, at any stiffness; what slides on has failed, and moves on; a stage
 -- begins to count anew. To ask changes nothing, and copies and files give the same.
+-- program only: the models are the same ones with a stock Lua.
 local check = require "check"
 local talus = require "talus"
 local verdicts = require "verdicts"

@@ -33,6 +33,21 @@ check.equal(low[1].zones, 0)
 check.near(model:zones():sum("volume"), 1, 1e-12)
 check.near(model:gridpoints():sum("mass"), 2500, 1e-9)
 
+-- What is asked for is looked at before zones are made.
+local again = pair_of_cubes()
+check.raises(function() again:blocks():deformable { edge = 0.3, solid = "granite" } end, "deformable: unknown parameter 'edge'")
+check.raises(function() again:blocks():deformable { zone = 1e-3, solid = "granite" } end,
+    "block 1 would get some 8.5e+09 zones with an edge of 0.001 m, and can have 5e+08: give larger ones")
+check.raises(function() again:blocks():deformable { zone = 0.3, solid = "basalt" } end,
+    "there is no solid 'basalt': name it with model:solid first")
+check.raises(function() again:solid("basalt", { young = 1e9 }) end,
+    "there is no solid 'basalt' in this model yet: name its kind, as in model:solid(\"basalt\", \"elastic\", {...})")
+check.raises(function() again:solid("granite", "mohr_coulomb", { young = 1e9, poisson = 0.2, cohesion = { { 0, 1e6 }, { 0.1, 0 } } }) end,
+    "cohesion must be a number, not a list of rows of 2 numbers")
+check.raises(function() again:solid("granite", "elastic", { young = 1e9, bulk = 1e9 }) end, "none of the other pair")
+check.raises(function() again:deformable { zone = 0.3, solid = "granite" } end,
+    "a model has no field 'deformable'; a selection has it: model:blocks{...}:deformable")
+
 -- A function of the place: fine below, coarse above.
 local graded = pair_of_cubes()
 graded:blocks { group = "high" }:deformable { zone = function(p) return 0.15 + 0.4 * (p[3] - 1) end, solid = "granite" }
@@ -125,6 +140,34 @@ model:solid("granite", "ubiquitous", { young = 1e9, poisson = 0.25, cohesion = 1
 check.equal(one.plastic_shear, 0.0)
 model:cycle(10)
 
+-- Components of vectors and tensors are columns of their own, and samples of a tensor have their names.
+local all = model:zones()
+local vertical, stresses = all:values("stress.zz"), all:values("stress")
+for i, tensor in ipairs(stresses) do
+    check.equal(vertical[i], tensor.zz)
+end
+check.equal(all:min("stress.zz"), math.min(table.unpack(vertical)))
+check.equal(all:max("principal.x") >= all:max("principal.z"), true)
+check.near(all:sum("principal.y"), all:sum("principal")[2], 1e-6)
+check.raises(function() all:max("stress") end, "max: the field 'stress' of a zone is not a number: ask for a component, as 'stress.zz'")
+check.raises(function() all:min("principal") end, "only single numbers are compared: ask for a component, as 'principal.z'")
+check.raises(function() model:blocks():min("displacement") end, "only single numbers are compared")
+check.equal(model:gridpoints():values("displacement.z")[3], model:gridpoints()[3].displacement[3])
+check.raises(function() all:values("stress.z") end, "a zone has no field 'stress.z'")
+check.raises(function() all:max("volume.x") end, "a zone has no field of numbers 'volume.x'")
+check.raises(function() model:gridpoints():values("displacement.") end, "a gridpoint has no field 'displacement.'")
+model:history { name = "six", every = 1, value = function() return 1, 2, 3, 4, 5, 6 end }
+local samples = model:histories()
+check.equal(samples.stress.zz[2], samples.stress.value[2][3])
+check.equal(#samples.stress.zx, #samples.stress.value)
+check.equal(samples.six.zz, nil)
+local csv = os.getenv("TALUS_TEST_TMP") .. "/zones.csv"
+model:write_histories(csv)
+local head_line = io.lines(csv)()
+check.holds(head_line:find("stress.xx,stress.yy,stress.zz,stress.xy,stress.yz,stress.zx", 1, true), head_line)
+check.holds(head_line:find("six.1,six.2", 1, true), head_line)
+model:history { name = "six", remove = true }
+
 -- ---------------------------------------------------------------- saves
 
 local path = os.getenv("TALUS_TEST_TMP") .. "/zones.talus"
@@ -144,7 +187,7 @@ for given, sentence in pairs {
     [{ solid = "granite" }] = "deformable: zone must be the wanted edge of zones",
     [{ zone = "small", solid = "granite" }] = "not the string 'small'",
     [{ zone = 1 }] = "solid",
-    [{ zone = 1, solid = "granit" }] = "there is no solid 'granit'",
+    [{ zone = 1, solid = "granit" }] = "there is no solid 'granit'; did you mean 'granite'?",
     [{ zone = 1, solid = "granite", size = 3 }] = "unknown parameter 'size'",
 } do
     local before = fresh:state_hash()

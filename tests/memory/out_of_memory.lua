@@ -3,7 +3,7 @@
 --
 --     LD_PRELOAD=memory_failure.so talus tests/memory/out_of_memory.lua [threads=2] [every=1] [leave=N] [only=NAME]
 --
--- `every`: of allocations beyond the first `leave` of a call only each so many is let fail; 1: each.
+-- `every`: of allocations beyond the first `leave` of a call only each so many is let fail, and of these one in TALUS_TEST_SHARE.
 package.cpath = os.getenv "TALUS_TEST_MEMORY" .. "/?.so;" .. package.cpath
 local talus = require "talus"
 local memory = require "memory_failure"
@@ -15,7 +15,7 @@ for _, text in ipairs(arg) do
     assert(options[key], "unknown option " .. text)
     options[key] = value
 end
-local THREADS, EVERY, LEAVE = tonumber(options.threads), tonumber(options.every), tonumber(options.leave)
+local THREADS, EVERY, LEAVE = tonumber(options.threads), tonumber(options.every) * (os.getenv "TALUS_TEST_SHARE" or 1), tonumber(options.leave)
 local TMP = os.getenv "TALUS_TEST_TMP" .. "/out_of_memory" .. THREADS
 
 local function text_of(name)

@@ -17,7 +17,7 @@ BUILD = pathlib.Path(os.environ["TALUS_MODULE_DIR"])
 HOST = sys.argv[1]
 LOCALES = ("de_DE", "ps_AF")
 # Programs of the tests that read and write texts; what they expect has decimal points.
-UNITS = ("test_check", "test_damping", "test_histories", "test_jointset", "test_lies", "test_loader", "test_options", "test_params",
+UNITS = ("test_damping", "test_histories", "test_jointset", "test_lies", "test_loader", "test_options", "test_params",
          "test_regressions", "test_services", "test_view_command", "test_vtk")
 
 SCRIPT = r"""

@@ -4,7 +4,8 @@
     tests/python/test_wrong_laws.py BUILD_FOLDER
 
 Each is one that comes with Talus, or a template, with a change of one place of its text. What is told must be of the check that
-the table names, and have its word; those without a change, and the laws of tests/plugins, pass."""
+the table names, and have its word; those without a change, and the laws of tests/plugins, pass. Of the mistakes one in TALUS_TEST_SHARE
+is tried."""
 import concurrent.futures
 import os
 import pathlib
@@ -13,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 
+SHARE = int(os.environ.get("TALUS_TEST_SHARE", 1))
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FLAGS = ["-std=c17", "-O1", "-w", "-shared", "-fPIC", "-ffp-contract=off", "-DTL_VECTORIZED="]
 
@@ -239,11 +241,11 @@ def main():
     right += sorted((ROOT / "tests/plugins").glob("*.c"))
     with tempfile.TemporaryDirectory() as name, concurrent.futures.ThreadPoolExecutor(2) as pool:
         folder = pathlib.Path(name)
-        runs = [pool.submit(try_wrong, build, folder, *case) for case in enumerate(WRONG)]
+        runs = [pool.submit(try_wrong, build, folder, *case) for case in enumerate(WRONG) if case[0] % SHARE == 0]
         runs += [pool.submit(try_right, build, folder, *case) for case in enumerate(right)]
         faults.extend(run.result() for run in runs if run.result())
     print("\n".join(faults))
-    print(f"{len(WRONG)} wrong plugins, {len(right)} right ones: {len(faults)} faults")
+    print(f"{len(runs) - len(right)} wrong plugins, {len(right)} right ones: {len(faults)} faults")
     return 1 if faults or len(WRONG) < 40 else 0
 
 

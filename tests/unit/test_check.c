@@ -77,7 +77,9 @@ TEST(each_check_of_solids_finds_what_breaks_it)
                                            {"heat", "balance; "},
                                            {"cold", "balance; heat; "},
                                            {"flags", "flags; "},
-                                           {"states", "states; "}};
+                                           {"states", "states; "},
+                                           {"counts", "no strain; "},
+                                           {"sign", "moduli; balance; "}};
     static const char *const among[][2] = {
         {"repeats", "repeats; "}, {"still", "no strain; "}, {"turned", "turned; "}, {"cycle", "closed cycle; "}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -49,48 +49,35 @@ reference["DF.cantilever"] = {
     expected = { tip = 0.020716000000000002, tip_bernoulli = 0.02048 },
 }
 
-reference["DF.beam_modes_nu0.25"] = {
-    source = "Timoshenko beam, free-free; roots of the exact determinant",
-    inputs = { E = 10000000000.0, nu = 0.25, rho = 2500.0, length = 8.0, side = 1.0, support = "none" },
-    expected = {
-        bending_hz = { 30.506024229117163, 77.51824599542104, 138.16263878607285 },
-        axial_hz = 125.0,
-        rigid_modes = 6,
-    },
-}
+-- The same case for each Poisson's ratio, dilation or number of joints: what differs is in rows.
+local function each(rows, put)
+    for _, row in ipairs(rows) do
+        put(table.unpack(row))
+    end
+end
 
-reference["DF.beam_modes_nu0.49"] = {
-    source = "Timoshenko beam, free-free; roots of the exact determinant",
-    inputs = { E = 10000000000.0, nu = 0.49, rho = 2500.0, length = 8.0, side = 1.0, support = "none" },
-    expected = {
-        bending_hz = { 30.396161198699314, 76.64849700461309, 135.51677080350967 },
-        axial_hz = 125.0,
-        rigid_modes = 6,
-    },
-}
+each({
+    { 0.25, { 30.506024229117163, 77.51824599542104, 138.16263878607285 } },
+    { 0.49, { 30.396161198699314, 76.64849700461309, 135.51677080350967 } },
+}, function(nu, bending)
+    reference["DF.beam_modes_nu" .. nu] = {
+        source = "Timoshenko beam, free-free; roots of the exact determinant",
+        inputs = { E = 10000000000.0, nu = nu, rho = 2500.0, length = 8.0, side = 1.0, support = "none" },
+        expected = { bending_hz = bending, axial_hz = 125.0, rigid_modes = 6 },
+    }
+end)
 
-reference["DF.lame_nu0.3"] = {
-    source = "Lame 1852",
-    inputs = { E = 1000000000.0, nu = 0.3, inner = 1.0, outer = 4.0, pressure = 1000000.0, plane = "strain" },
-    expected = {
-        u_inner = 0.0014213333333333335,
-        mean_stress = 57777.77777777778,
-        sr_r2 = -200000.0,
-        st_r2 = 333333.3333333334,
-    },
-}
-
-reference["DF.lame_nu0.49"] = {
-    source = "Lame 1852",
-    inputs = { E = 1000000000.0, nu = 0.49, inner = 1.0, outer = 4.0, pressure = 1000000.0, plane = "strain" },
-    expected = { u_inner = 0.00159132, mean_stress = 66222.22222222222, sr_r2 = -200000.0, st_r2 = 333333.3333333334 },
-}
-
-reference["DF.lame_nu0.499"] = {
-    source = "Lame 1852",
-    inputs = { E = 1000000000.0, nu = 0.499, inner = 1.0, outer = 4.0, pressure = 1000000.0, plane = "strain" },
-    expected = { u_inner = 0.0015991332, mean_stress = 66622.22222222222, sr_r2 = -200000.0, st_r2 = 333333.3333333334 },
-}
+each({
+    { 0.3, 0.0014213333333333335, 57777.77777777778 },
+    { 0.49, 0.00159132, 66222.22222222222 },
+    { 0.499, 0.0015991332, 66622.22222222222 },
+}, function(nu, wall, mean)
+    reference["DF.lame_nu" .. nu] = {
+        source = "Lame 1852",
+        inputs = { E = 1000000000.0, nu = nu, inner = 1.0, outer = 4.0, pressure = 1000000.0, plane = "strain" },
+        expected = { u_inner = wall, mean_stress = mean, sr_r2 = -200000.0, st_r2 = 333333.3333333334 },
+    }
+end)
 
 reference["DF.kirsch"] = {
     source = "Kirsch 1898; finite square: Kirsch within 2 (a/L)^2",
@@ -123,45 +110,30 @@ reference["DF.kirsch"] = {
     },
 }
 
-reference["DF.salencon_psi30"] = {
-    source = "Salencon 1969; displacement also by an ODE, the two agree to 1e-9",
-    inputs = {
-        K = 3900000000.0,
-        G = 2800000000.0,
-        cohesion = 3450000.0,
-        friction = 30.0,
-        dilation = 30,
-        far = 30000000.0,
-        radius = 1.0,
-        outer = 10.0,
-    },
-    expected = {
-        plastic_radius = 1.7349981445793943,
-        wall = 0.02810346291398272,
-        plastic_radius_outer10 = 1.7484115837652119,
-        wall_outer10 = 0.029552747254938977,
-    },
-}
-
-reference["DF.salencon_psi0"] = {
-    source = "Salencon 1969; displacement also by an ODE, the two agree to 1e-9",
-    inputs = {
-        K = 3900000000.0,
-        G = 2800000000.0,
-        cohesion = 3450000.0,
-        friction = 30.0,
-        dilation = 0,
-        far = 30000000.0,
-        radius = 1.0,
-        outer = 10.0,
-    },
-    expected = {
-        plastic_radius = 1.7349981445793943,
-        wall = 0.012167121237129217,
-        plastic_radius_outer10 = 1.7484115837652119,
-        wall_outer10 = 0.012644858860956776,
-    },
-}
+each({
+    { 30, 0.02810346291398272, 0.029552747254938977 },
+    { 0, 0.012167121237129217, 0.012644858860956776 },
+}, function(dilation, wall, wall_outer10)
+    reference["DF.salencon_psi" .. dilation] = {
+        source = "Salencon 1969; displacement also by an ODE, the two agree to 1e-9",
+        inputs = {
+            K = 3900000000.0,
+            G = 2800000000.0,
+            cohesion = 3450000.0,
+            friction = 30.0,
+            dilation = dilation,
+            far = 30000000.0,
+            radius = 1.0,
+            outer = 10.0,
+        },
+        expected = {
+            plastic_radius = 1.7349981445793943,
+            wall = wall,
+            plastic_radius_outer10 = 1.7484115837652119,
+            wall_outer10 = wall_outer10,
+        },
+    }
+end)
 
 reference["DF.prandtl"] = {
     source = "Prandtl 1920",
@@ -177,23 +149,17 @@ reference["DF.prandtl"] = {
     expected = { q_over_c = 5.141592653589793 },
 }
 
-reference["DF.prandtl_phi10"] = {
-    source = "Prandtl, Reissner 1924",
-    inputs = { friction = 10, dilation = 10, weightless = true },
-    expected = { Nc = 8.344926109310922, Nq = 2.4714356250900327 },
-}
-
-reference["DF.prandtl_phi20"] = {
-    source = "Prandtl, Reissner 1924",
-    inputs = { friction = 20, dilation = 20, weightless = true },
-    expected = { Nc = 14.834711777931204, Nq = 6.399393521085211 },
-}
-
-reference["DF.prandtl_phi30"] = {
-    source = "Prandtl, Reissner 1924",
-    inputs = { friction = 30, dilation = 30, weightless = true },
-    expected = { Nc = 30.139627791519086, Nq = 18.401122218708668 },
-}
+each({
+    { 10, 8.344926109310922, 2.4714356250900327 },
+    { 20, 14.834711777931204, 6.399393521085211 },
+    { 30, 30.139627791519086, 18.401122218708668 },
+}, function(friction, Nc, Nq)
+    reference["DF.prandtl_phi" .. friction] = {
+        source = "Prandtl, Reissner 1924",
+        inputs = { friction = friction, dilation = friction, weightless = true },
+        expected = { Nc = Nc, Nq = Nq },
+    }
+end)
 
 reference["DF.gravity_column"] = {
     source = "Hooke",
@@ -212,47 +178,25 @@ reference["DF.insitu_rest"] = {
     expected = { unbalanced_ratio = 0.0 },
 }
 
-reference["DF.series_column_1"] = {
-    source = "springs in series",
-    inputs = {
-        E = 10000000000.0,
-        nu = 0.25,
-        joints = 1,
-        height = 2.0,
-        kn = 20000000000.0,
-        load = -1000000.0,
-        sides = "rollers",
-    },
-    expected = { shortening = 0.00021666666666666666 },
-}
-
-reference["DF.series_column_3"] = {
-    source = "springs in series",
-    inputs = {
-        E = 10000000000.0,
-        nu = 0.25,
-        joints = 3,
-        height = 2.0,
-        kn = 20000000000.0,
-        load = -1000000.0,
-        sides = "rollers",
-    },
-    expected = { shortening = 0.00031666666666666665 },
-}
-
-reference["DF.series_column_9"] = {
-    source = "springs in series",
-    inputs = {
-        E = 10000000000.0,
-        nu = 0.25,
-        joints = 9,
-        height = 2.0,
-        kn = 20000000000.0,
-        load = -1000000.0,
-        sides = "rollers",
-    },
-    expected = { shortening = 0.0006166666666666666 },
-}
+each({
+    { 1, 0.00021666666666666666 },
+    { 3, 0.00031666666666666665 },
+    { 9, 0.0006166666666666666 },
+}, function(joints, shortening)
+    reference["DF.series_column_" .. joints] = {
+        source = "springs in series",
+        inputs = {
+            E = 10000000000.0,
+            nu = 0.25,
+            joints = joints,
+            height = 2.0,
+            kn = 20000000000.0,
+            load = -1000000.0,
+            sides = "rollers",
+        },
+        expected = { shortening = shortening },
+    }
+end)
 
 reference["DF.goodman"] = {
     source = "Goodman 1989; Singh 1973",

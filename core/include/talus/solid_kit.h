@@ -45,7 +45,7 @@ static inline tl_status tl_isotropic_of(double young, double poisson, double bul
 {
     int first = !isnan(young) + !isnan(poisson), second = !isnan(bulk) + !isnan(shear);
     if (!((first == 2 && second == 0) || (first == 0 && second == 2)))
-        return tl_refuse(report, "give young and poisson, or bulk and shear: two of these four are needed");
+        return tl_refuse(report, "give young and poisson, or bulk and shear, and none of the other pair");
     out->bulk = first ? young / (3 * (1 - 2 * poisson)) : bulk;
     out->shear = first ? young / (2 * (1 + poisson)) : shear;
     out->lame = out->bulk - 2 * out->shear / 3;

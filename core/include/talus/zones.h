@@ -129,8 +129,9 @@ TL_API tl_status tl_zone_field(tl_model *model, tl_zone_name zone, size_t index,
 TL_API tl_status tl_gridpoint_field(tl_model *model, tl_zone_name gridpoint, size_t index, tl_field_value *value);
 
 /* Writes a field, by its name: component k of that of names[i] to out[width * i + k]. `*width` is set; with `out` NULL
- * that is all. Of zones `name` may be a state of their solids, NaN of one that has it not. TL_E_NOT_FOUND for an
- * unknown name, TL_E_ARGUMENT for a field that is a text. */
+ * that is all. A name with a component, "stress.zz" or "displacement.z", is that number alone. Of zones `name` may be a
+ * state of their solids, NaN of one that has it not. TL_E_NOT_FOUND for an unknown name, TL_E_ARGUMENT for a field that
+ * is a text. */
 TL_API tl_status tl_zones_values(tl_model *model, const tl_zone_name *names, size_t count, const char *name,
                                  double *out, size_t *width);
 TL_API tl_status tl_gridpoints_values(tl_model *model, const tl_zone_name *names, size_t count, const char *name,

@@ -27,15 +27,21 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_solid_batch *ba
     (void)report;
     const tl_isotropic *elastic = &((const elastic_solid *)self)->elastic;
     const double lame = elastic->lame, twice = 2 * elastic->shear;
-    const double *xx = batch->strain[0], *yy = batch->strain[1], *zz = batch->strain[2];
+    const double *const *d = batch->strain;
+    const double *dxx = d[0], *dyy = d[1], *dzz = d[2], *dxy = d[3], *dyz = d[4], *dzx = d[5];
+    double *const *s = batch->stress;
+    double *xx = s[0], *yy = s[1], *zz = s[2], *xy = s[3], *yz = s[4], *zx = s[5];
     const uint32_t count = batch->count;
     uint32_t *flags = batch->flags;
-    for (uint32_t k = 0; k < 6; k++) {
-        const double *strain = batch->strain[k], volumetric = k < 3 ? lame : 0;
-        double *stress = batch->stress[k];
-        TL_EACH_ALONE
-        for (uint32_t i = 0; i < count; i++)
-            stress[i] += volumetric * (xx[i] + yy[i] + zz[i]) + twice * strain[i];
+    TL_EACH_ALONE
+    for (uint32_t i = 0; i < count; i++) {
+        const double volumetric = lame * (dxx[i] + dyy[i] + dzz[i]);
+        xx[i] += volumetric + twice * dxx[i];
+        yy[i] += volumetric + twice * dyy[i];
+        zz[i] += volumetric + twice * dzz[i];
+        xy[i] += twice * dxy[i];
+        yz[i] += twice * dyz[i];
+        zx[i] += twice * dzx[i];
     }
     if (batch->stored)
         tl_isotropic_energies(elastic, count, (const double *const *)batch->stress, batch->stored);
