@@ -31,6 +31,7 @@
 #include "base/series.h"
 #include "contact/contacts.h"
 #include "force/joint_laws.h"
+#include "model/law_time.h"
 #include "segment/blend.h"
 #include "segment/closed.h"
 #include "segment/lay.h"
@@ -425,7 +426,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
     memset(l->zero, 0, count * sizeof *l->zero);
     const tl_law_batch batch = {.size = sizeof batch,
                                 .count = (uint32_t)count,
-                                .dt = job->m->dt,
+                                .dt = tl_law_time(job->m, job->m->dt),
                                 .area = p->area + first,
                                 .closure = l->closure,
                                 .f_n0 = p->f_n0 ? p->f_n0 + first : nothing,

@@ -193,7 +193,7 @@ enum {
 typedef struct tl_law_batch {
     uint32_t size;
     uint32_t count;
-    double dt;               /* s, of the motion; 0 in the first step of a run */
+    double dt;               /* s, in which it moves; 0 in the first step of a run, and while model:relax runs */
     const double *area;      /* m2 */
     const double *closure;   /* m */
     const double *f_n0;      /* N, normal force at closure 0 (in situ) */
@@ -507,7 +507,7 @@ enum {
 typedef struct tl_solid_batch {
     uint32_t size;
     uint32_t count;
-    double dt;               /* s, of the motion; 0 in the first step of a run */
+    double dt;               /* s, in which it moves; 0 in the first step of a run, and while model:relax runs */
     const double *volume;    /* m3 */
     const double *extent;    /* m, cube root of the volume of the zones that share their volumetric strain */
     const double *strain[6]; /* increment in this step */
