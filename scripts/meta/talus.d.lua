@@ -1248,12 +1248,12 @@ function Model:history(options) end
 ---@field x number[] lists of the components, where each value is a list of three
 ---@field y number[] lists of the components, where each value is a list of three
 ---@field z number[] lists of the components, where each value is a list of three
----@field xx any the same of a field that is a tensor, as "stress"
----@field yy any the same of a field that is a tensor, as "stress"
----@field zz any the same of a field that is a tensor, as "stress"
----@field xy any the same of a field that is a tensor, as "stress"
----@field yz any the same of a field that is a tensor, as "stress"
----@field zx any the same of a field that is a tensor, as "stress"
+---@field xx number[]? lists of the components of a field that is a tensor, as "stress"
+---@field yy number[]? lists of the components of a field that is a tensor, as "stress"
+---@field zz number[]? lists of the components of a field that is a tensor, as "stress"
+---@field xy number[]? lists of the components of a field that is a tensor, as "stress"
+---@field yz number[]? lists of the components of a field that is a tensor, as "stress"
+---@field zx number[]? lists of the components of a field that is a tensor, as "stress"
 
 --- Gives a table with the samples of each history, by name: copies of them.
 ---
