@@ -65,8 +65,10 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     tl_status status = tl_cycle_prepare(m);
     if (status == TL_OK)
         status = tl_undo_begin(m);
-    if (status == TL_OK)
+    if (status == TL_OK) {
+        tl_segments_forget_asked(m);
         status = tl_detect_update(m);
+    }
     if (status == TL_OK)
         status = tl_segments_find(m);
     if (status == TL_OK && !tl_carriers_begin(m))

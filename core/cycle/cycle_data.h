@@ -203,8 +203,11 @@ struct tl_cycle {
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
     tl_settling settling;
+    double least_scale;       /* of a body's mass in this step of a relaxation: settle.c */
     struct tl_secant *secant; /* of each contact, while there are leaps: secants.c */
     size_t secant_count, secant_capacity;
+    struct tl_conjugate *conjugate; /* of each body, while there are leaps of many: conjugate.c */
+    size_t conjugate_count, conjugate_capacity;
     struct tl_leap_link *link; /* of each contact and each body, in a leap */
     struct tl_leap_body *leap;
     size_t link_count, link_capacity, leap_capacity;

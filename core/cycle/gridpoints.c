@@ -68,12 +68,21 @@ typedef struct free_parts {
     _Alignas(TL_ALIGN) double of[3][CHUNK];
 } free_parts;
 
-/* 1 for each component that a gridpoint may move along, else 0. */
+/* 1 for each component that a gridpoint may move along, else 0. Mostly nothing of a chunk is held. */
 TL_VECTORIZED static void find_free(const uint8_t *fixed, size_t count, free_parts *out)
 {
-    for (int c = 0; c < 3; c++)
-        for (size_t i = 0; i < count; i++)
-            out->of[c][i] = (fixed[i] & TL_FIX_X << c) != 0 ? 0 : 1;
+    unsigned held = 0;
+    for (size_t i = 0; i < count; i++)
+        held |= fixed[i];
+    for (int c = 0; c < 3; c++) {
+        const unsigned bit = (unsigned)TL_FIX_X << c;
+        if ((held & bit) == 0)
+            for (size_t i = 0; i < count; i++)
+                out->of[c][i] = 1;
+        else
+            for (size_t i = 0; i < count; i++)
+                out->of[c][i] = (fixed[i] & bit) != 0 ? 0 : 1;
+    }
 }
 
 /* What a component is where it is free, else 0. */

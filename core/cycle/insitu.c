@@ -302,6 +302,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
     if (status != TL_OK)
         return status;
     /* in the present places, where a step that failed has left the contacts already */
+    tl_segments_forget_asked(m);
     status = tl_detect_update(m);
     if (status == TL_OK)
         status = tl_segments_find(m);

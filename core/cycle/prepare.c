@@ -2,6 +2,7 @@
 #include "cycle/prepare.h"
 
 #include "base/parallel.h"
+#include "cycle/conjugate.h"
 #include "cycle/contributors.h"
 #include "cycle/secants.h"
 #include "cycle/split.h"
@@ -18,6 +19,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
     free(cycle->motion);
     free(cycle->swept);
     free(cycle->secant);
+    free(cycle->conjugate);
     free(cycle->fails);
     free(cycle->link);
     free(cycle->leap);
@@ -123,6 +125,7 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     FLAG(CACHE, fails_strained);
     VALUE(CACHE, fails_at);
     LIST(STATE, secant, &c->secant_count, &c->secant_capacity, step);
+    LIST(STATE, conjugate, &c->conjugate_count, &c->conjugate_capacity, step);
     LIST(SCRATCH, link, &c->link_count, &c->link_capacity, step);
     LIST(SCRATCH, leap, &c->leap_capacity, &c->leap_capacity, step);
     LIST(SCRATCH, gathered, &c->gathered_capacity, &c->gathered_capacity, step);

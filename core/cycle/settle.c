@@ -16,7 +16,8 @@
  * With a ratio near 1 the next one is held less, with a bad one more (Levenberg and Marquardt). Where leaps are too
  * short, since contacts slip, the next one takes along some of the last motion (Polyak). No body is carried
  * farther at once than some of the closures that its contacts have: friction, opening and bonds follow their path.
- * Leaps end when they bring the model no nearer to rest. Then stops have their turn, each time for longer.
+ * Leaps end when they bring the model no nearer to rest. Then stops have their turn, each time for longer. Many bodies
+ * leap along conjugate ways instead (conjugate.c).
  *
  * A leap is put as damping. With alpha = 2 / h (23) takes all of the old velocity and half of the kick. The damping's
  * force makes of it what is wanted. */
@@ -24,6 +25,7 @@
 
 #include "base/columns.h"
 #include "contact/detection.h"
+#include "cycle/conjugate.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 #include "cycle/gridpoints.h"
@@ -40,10 +42,13 @@
 #define STILL_MOST 1e-3
 /* Tolerance: local ratio at which the next part of the loads comes on. */
 #define NEXT_PART 1e-3
-/* Cost only: more bodies than these never leap. */
-#define MOST_LEAPING 6000
+/* Cost only: of more bodies than these the leaps are conjugate ways: what secants ask of all contacts then takes longer
+ * than the steps that they spare. */
+#define MOST_BY_SECANTS 6000
 /* Tolerance: local ratio from which leaps are tried. */
 #define NEAR_REST 0.02
+/* Tolerance: the same of many bodies. */
+#define MANY_NEAR_REST 0.1
 /* Tolerance: average ratio below which the model as a whole is near rest. */
 #define CALM 1e-2
 /* Tolerance: way in a step that a body may fall by its own mass once something has borne it, over that of its landing;
@@ -77,6 +82,8 @@
 #define MOST_IDLE 15
 #define NEARER 0.5
 #define IDLE_RATIO 0.5
+/* Tolerance: leaps of many bodies in a row that may bring nothing: each is one iteration. */
+#define MOST_IDLE_WAYS 60
 /* Tolerance: way over its radius that leaps may carry a body in all. What goes farther may slide or topple: that is for
  * stops to tell. */
 #define MOST_CARRIED 0.02
@@ -123,7 +130,7 @@ void tl_settle_end(tl_model *m)
     struct tl_cycle *c = m->cycle;
     if (!c) /* a file may lack it */
         return;
-    c->secant_count = 0;
+    c->secant_count = c->conjugate_count = 0;
     c->dt = c->mass_scale = 0; /* step, masses and rates are others from now on */
     c->stiffness_rates.version = 0;
 }
@@ -146,12 +153,19 @@ bool tl_settle_bears_all(const tl_model *m)
 
 static bool may_leap(const tl_model *m)
 {
-    return m->bodies.table.rows <= MOST_LEAPING && !tl_model_deforms(m);
+    return !tl_model_deforms(m);
+}
+
+static bool goes_by_secants(const tl_model *m)
+{
+    return m->bodies.table.rows <= MOST_BY_SECANTS;
 }
 
 bool tl_settle_prepare(tl_model *m)
 {
-    return !m->relaxing || !may_leap(m) || tl_secants_prepare(m);
+    if (!m->relaxing || !may_leap(m))
+        return true;
+    return goes_by_secants(m) ? tl_secants_prepare(m) : tl_conjugate_prepare(m);
 }
 
 /* ---------------------------------------------------------------- stops ------------------ */
@@ -346,10 +360,15 @@ static void go_on(tl_model *m, double share)
 static void leap(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
-    tl_leap_find(m, dt, c->settling.hold);
-    go_on(m, c->settling.momentum);
+    if (goes_by_secants(m)) {
+        tl_leap_find(m, dt, c->settling.hold);
+        go_on(m, c->settling.momentum);
+    } else
+        tl_conjugate_find(m, dt);
     const double part = shorten(m, dt);
     expect(m, part);
+    if (!goes_by_secants(m) && part < 1)
+        tl_conjugate_begin(m); /* what was made is no way that is known */
     put_none(c, all_lost(m, dt));
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         const double *x = c->leap[body].motion, by = part / dt;
@@ -358,11 +377,25 @@ static void leap(tl_model *m, double dt)
     }
 }
 
+/* Whether the last leap of many bodies leaves reason for another. */
+static bool go_conjugate(const struct tl_cycle *c, tl_settling *s)
+{
+    if (c->sums.unbalanced < NEARER * s->goal) {
+        s->goal = c->sums.unbalanced;
+        s->gained = 1;
+        s->idle = 0;
+    } else
+        s->idle++;
+    return s->idle <= MOST_IDLE_WAYS && c->sums.worst_ratio < TL_LOOSE && s->carried < MOST_CARRIED && --s->leaps > 0;
+}
+
 /* Whether the last leap leaves reason for another. */
 static bool leap_again(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
     tl_settling *s = &c->settling;
+    if (!goes_by_secants(m))
+        return go_conjugate(c, s);
     const double after = m->dt * c->sums.power; /* work of the forces that are left, were the leap made again */
     if (after < 0)
         s->momentum = 0;
@@ -398,8 +431,11 @@ static bool begin_leaps(tl_model *m)
     tl_settling *s = &c->settling;
     if (s->stops > 0)
         s->stops--;
-    if (s->stops > 0 || !(c->sums.worst_ratio < NEAR_REST) || !may_leap(m) || tl_loads_lag(m) ||
-        s->carried >= MOST_CARRIED)
+    const bool secants = goes_by_secants(m);
+    if (s->stops > 0 || !(c->sums.worst_ratio < (secants ? NEAR_REST : MANY_NEAR_REST)) || !may_leap(m) ||
+        tl_loads_lag(m) || s->carried >= MOST_CARRIED)
+        return false;
+    if (!secants && !(c->sums.power < 0)) /* a stop loses no motion that goes on */
         return false;
     s->leapt = true;
     s->leaps = s->leap_span;
@@ -408,7 +444,10 @@ static bool begin_leaps(tl_model *m)
     s->hold = HOLD_FIRST;
     s->momentum = 0;
     s->goal = c->sums.unbalanced;
-    tl_secants_begin(m);
+    if (secants)
+        tl_secants_begin(m);
+    else
+        tl_conjugate_begin(m);
     return true;
 }
 
@@ -427,17 +466,35 @@ static void note_landings(tl_model *m, double dt)
     }
 }
 
+/* The mean scale of the masses of rigid bodies, by mass. */
+static double mean_scale(const tl_model *m)
+{
+    const tl_bodies *b = &m->bodies;
+    tl_addends masses = {.count = 0}, scaled = {.count = 0};
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        const bool counts = b->fixed[body] != TL_FIX_ALL && !b->mesh[body];
+        tl_addends_put(&masses, counts ? b->mass[body] : 0);
+        tl_addends_put(&scaled, counts ? b->mass[body] * tl_inertia_scale(m->cycle, body) : 0);
+    }
+    const double mass = tl_addends_sum(&masses);
+    return mass > 0 ? tl_addends_sum(&scaled) / mass : 0;
+}
+
 tl_status tl_settle(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
     tl_settling *s = &c->settling;
     const double ratio = tl_model_balance(m).ratio;
     m->still = isfinite(ratio) ? fmin(STILL_PER_RATIO * ratio, STILL_MOST) : 0;
+    c->least_scale = 0;
     if (!(dt > 0))
         return TL_OK;
+    if (!(ratio < CALM))
+        c->least_scale = mean_scale(m);
     note_landings(m, dt);
     if (s->leapt) {
-        tl_secants_follow(m);
+        if (goes_by_secants(m))
+            tl_secants_follow(m);
         if (leap_again(m) && !tl_loads_lag(m)) {
             leap(m, dt);
             return TL_OK;

@@ -18,6 +18,8 @@ typedef struct tl_settling {
     double carried;    /* way of bodies in leaps over their radius, the largest of each */
     double hold;       /* of a leap: inertia over dt^2 times this is added to the stiffness */
     double momentum;   /* share of the motion of the last leap that the next one takes along */
+    double length;     /* of the last leap of many bodies along its way, s2: conjugate.c; 0: there was none, */
+    double made_up;    /* and along the way before */
     double power;      /* unbalanced forces at the beginning of the leap times its motion, J */
     double expected;   /* fall of the energy in it, J */
     double goal;       /* sum of unbalanced forces below which leaps have brought it nearer, N */

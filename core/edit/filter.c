@@ -269,6 +269,21 @@ static tl_status run_automatic(tl_model *m, tl_filter limits, tl_filter_result *
     return status;
 }
 
+/* Says that blocks with zones are joined to none, where slivers have been left for it, or none were chosen. */
+static void say_zoned(tl_model *m, const tl_filter *limits, const tl_filter_result *r)
+{
+    size_t zoned = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        zoned += m->bodies.mesh[body] && tl_body_is_visible(m, body);
+    const bool leaves = r->joined < r->count || (limits->automatic && r->count == 0);
+    if (limits->action == TL_FILTER_JOIN && zoned > 0 && leaves)
+        tl_model_say(
+            m,
+            "filter: joined %zu of %zu slivers: blocks that have zones, %zu of the visible ones, are joined to "
+            "none; filter before blocks are made deformable",
+            r->joined, r->count, zoned);
+}
+
 tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result *wanted)
 {
     tl_filter_result unread, *const result = wanted ? wanted : &unread;
@@ -279,6 +294,8 @@ tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result 
         return status;
     tl_rows_tidy(m);
     status = limits.automatic ? run_automatic(m, limits, result) : run(m, &limits, result);
+    if (status == TL_OK)
+        say_zoned(m, &limits, result);
     if (status != TL_OK || !wanted) {
         free(result->slivers);
         *result = (tl_filter_result){.gain = NAN};

@@ -6,8 +6,11 @@
 
 #include <math.h>
 
-/* Tolerance: share of a triangle that may be left bare, or covered, for roundings. */
-#define UNCOVERED 1e-5
+/* Tolerance: share of a triangle that may be left bare for roundings. */
+#define UNCOVERED 1e-9
+/* Tolerance: share of a face, or of a triangle that is to be held, up to which it lies on others: joints that have
+ * settled leave so little. */
+#define SETTLED 1e-5
 /* Tolerance: component across an axis up to which a direction is that axis. */
 #define AXIAL 1e-9
 
@@ -34,16 +37,34 @@ static void corners_of(const tl_model *m, const tl_surface_part *part, tl_vec3 x
         x[a] = tl_gridpoint_place(&m->zones->points, part->corner[a]);
 }
 
-/* The share of a triangle that lies bare. Covers come by the numbers of the triangles. */
-static double bare_share(const tl_covers *covers, uint32_t part, double area, size_t *at, size_t end)
+/* Takes what covers a triangle of a vector area from it. `x`: its corners. */
+static void take_cover(const tl_cover *cover, const tl_vec3 x[3], tl_vec3 area, tl_bare_triangle *from)
 {
-    double covered = 0;
+    const double per = 1 / tl_v3_norm2(area), share = cover->area * sqrt(per), third = share / 3;
+    from->share -= share;
+    for (int k = 0; k < TL_SEGMENT_POINTS; k++) {
+        double weight[3];
+        for (int a = 0; a < 3; a++) {
+            const tl_vec3 b = tl_v3_sub(x[(a + 1) % 3], cover->at[k]), c = tl_v3_sub(x[(a + 2) % 3], cover->at[k]);
+            weight[a] = 0.5 * per * tl_v3_dot(area, tl_v3_cross(b, c));
+        }
+        for (int a = 0; a < 3; a++) {
+            from->bare.of[a] -= third * weight[a] * weight[a];
+            from->bare.of[3 + a] -= third * weight[a] * weight[(a + 1) % 3];
+        }
+    }
+}
+
+/* What of a triangle lies bare. Covers come by the numbers of the triangles. */
+static tl_bare_triangle bare_part(const tl_covers *covers, uint32_t part, const tl_vec3 x[3], tl_vec3 area, size_t *at,
+                                  size_t end)
+{
+    tl_bare_triangle out = {part, 1, tl_bare_whole()};
     while (*at < end && covers->list[*at].part < part)
         ++*at;
     for (; *at < end && covers->list[*at].part == part; ++*at)
-        covered += covers->list[*at].area;
-    const double share = 1 - covered / area;
-    return share < UNCOVERED ? 0 : share > 1 - UNCOVERED ? 1 : share;
+        take_cover(&covers->list[*at], x, area, &out);
+    return out;
 }
 
 bool tl_bare_find(const tl_model *m, const tl_face_filter *filter, const tl_covers *covers, uint32_t row, uint32_t face,
@@ -53,22 +74,33 @@ bool tl_bare_find(const tl_model *m, const tl_face_filter *filter, const tl_cove
     const tl_surface_part *part = tl_face_parts(m, m->blocks.id[row], face, &count);
     const size_t end = tl_covers_of(covers, row, face, &at);
     tl_vec3 normal = {0, 0, 0};
+    double whole = 0;
     *out = (tl_bare_face){.begin = list->count, .end = list->count};
     for (size_t k = 0; k < count && !m->blocks.shape[row]->covered[face]; k++) {
         tl_vec3 x[3];
         corners_of(m, &part[k], x);
         const tl_vec3 area = tl_v3_scale(0.5, tl_v3_cross(tl_v3_sub(x[1], x[0]), tl_v3_sub(x[2], x[0])));
         const uint32_t number = (uint32_t)(&part[k] - m->zones->part);
-        const double size = tl_v3_norm(area), share = bare_share(covers, number, size, &at, end);
-        out->left_out += tl_triangle_reaches_out(m, filter, row, x) ? share * size : 0;
-        if (share == 0 || !tl_triangle_is_there(m, filter, row, x))
+        const tl_bare_triangle bare = bare_part(covers, number, x, area, &at, end);
+        const double size = tl_v3_norm(area);
+        if (bare.share >= UNCOVERED && tl_triangle_reaches_out(m, filter, row, x))
+            out->left_out += bare.share * size;
+        if (!tl_triangle_is_there(m, filter, row, x))
+            continue;
+        whole += size;
+        if (bare.share < UNCOVERED)
             continue;
         if (!tl_grow(&list->at, &list->capacity, list->count + 1, sizeof *list->at))
             return false;
-        list->at[list->count++] = (tl_bare_triangle){number, share};
-        out->area += share * size;
+        list->at[list->count++] = bare;
+        out->area += bare.share * size;
         normal = tl_v3_add(normal, area);
-        out->centroid = tl_v3_madd(out->centroid, share * size / 3, tl_v3_add(x[0], tl_v3_add(x[1], x[2])));
+        for (int a = 0; a < 3; a++)
+            out->centroid = tl_v3_madd(out->centroid, tl_bare_at(&bare.bare, a) * size, x[a]);
+    }
+    if (out->area < SETTLED * whole) {
+        list->count = out->begin;
+        out->area = 0;
     }
     out->end = list->count;
     out->normal = out->area > 0 ? tl_v3_unit(normal) : normal;
@@ -109,19 +141,23 @@ bool tl_bare_act(const tl_model *m, const tl_boundary_action *a, const tl_face_f
     if (!tl_grow(&to->at, &to->capacity, to->count + (face->end - face->begin), sizeof *to->at))
         return false;
     for (size_t k = face->begin; k < face->end; k++) {
+        const tl_bare_triangle *bare = &list->at[k];
+        const bool holds = bare->share > SETTLED;
+        if (!holds && !a->loads)
+            continue;
         tl_outer_part *of = &to->at[to->count++];
-        *of = (tl_outer_part){.part = list->at[k].part,
-                              .drive = drive,
-                              .fixed = a->fixed ? TL_FIX_X | TL_FIX_Y | TL_FIX_Z : 0,
+        *of = (tl_outer_part){.part = bare->part,
+                              .drive = holds ? drive : 0,
+                              .fixed = holds && a->fixed ? TL_FIX_X | TL_FIX_Y | TL_FIX_Z : 0,
                               .quiet = a->quiet,
                               .loaded = a->loads,
-                              .share = list->at[k].share,
+                              .bare = bare->bare,
                               .density = m->blocks.density[row],
                               .at = a->at.z,
                               .stress = a->stress,
                               .gradient = a->gradient,
                               .traction = a->traction};
-        if (a->roller && !a->fixed)
+        if (holds && a->roller && !a->fixed)
             roll(of, filter->plane ? filter->normal : face->normal);
         if (a->loads)
             add_load(m, of, result);

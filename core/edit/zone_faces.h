@@ -12,10 +12,11 @@ typedef struct tl_covers {
     size_t count;
 } tl_covers;
 
-/* A triangle of a surface, and the share of its area that lies bare. */
+/* A triangle of a surface, the share of its area that lies bare, and integrals over that. */
 typedef struct tl_bare_triangle {
     uint32_t part;
     double share;
+    tl_bare bare;
 } tl_bare_triangle;
 
 /* Those of one face that are meant: [begin, end) of a list. Area, mean normal, and centroid from the origin. */

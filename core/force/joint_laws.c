@@ -5,6 +5,7 @@
 #include "base/params.h"
 #include "contact/contacts.h"
 #include "model/joints.h"
+#include "model/law_time.h"
 #include "plugin/loader.h"
 
 #include <stdio.h>
@@ -92,7 +93,7 @@ tl_law_batch tl_lanes_batch(const tl_model *m, const tl_point_lanes *l, size_t c
 {
     return (tl_law_batch){.size = sizeof(tl_law_batch),
                           .count = (uint32_t)count,
-                          .dt = m->dt,
+                          .dt = tl_law_time(m, m->dt),
                           .closure = l->closure,
                           .normal = {l->normal[0], l->normal[1], l->normal[2]},
                           .du_n = l->du_n,

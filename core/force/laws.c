@@ -15,6 +15,7 @@
 #include "force/follow.h"
 #include "force/joint_laws.h"
 #include "force/partly_open.h"
+#include "model/law_time.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -127,7 +128,7 @@ static bool call(const place *at, trial *t)
     double *state[TL_STATE_COLUMNS];
     tl_law_batch batch = tl_law_batch_of(t->c[0], TL_LANES, t->flags, state, TL_STATE_COLUMNS);
     batch.count = TL_LANES;
-    batch.dt = at->m->dt;
+    batch.dt = tl_law_time(at->m, at->m->dt);
     tl_report report;
     return tl_law_update(at->law, &batch, &report) == TL_OK;
 }
@@ -382,7 +383,7 @@ static bool call_law(const span_job *job, size_t first, size_t count, bool partl
     tl_law_batch batch = {
         .size = sizeof batch,
         .count = (uint32_t)count,
-        .dt = job->m->dt,
+        .dt = tl_law_time(job->m, job->m->dt),
         .area = p->area + first,
         .closure = l->closure,
         .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,

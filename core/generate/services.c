@@ -12,6 +12,7 @@
 #include "generate/staging.h"
 #include "geometry/make.h"
 #include "geometry/measure.h"
+#include "mesh/parts.h"
 #include "model/joints.h"
 #include "model/model.h"
 #include "plugin/loader.h"
@@ -36,6 +37,7 @@ typedef struct service {
     const char *generator;
     size_t entry, entries; /* of a list, from 0 */
     double share;          /* of the entry's work that is done */
+    tl_mesh_parts parts;   /* of the mesh that was read last */
 } service;
 
 static service *service_of(const tl_host *host)
@@ -529,6 +531,22 @@ static tl_status progress(const tl_host *host, double fraction)
     return go_on(host);
 }
 
+static tl_status read_mesh(const tl_host *host, const char *file, const tl_mesh_part **parts, size_t *count)
+{
+    service *s = service_of(host);
+    tl_mesh_parts_free(&s->parts);
+    *parts = NULL;
+    *count = 0;
+    tl_status status = go_on(host);
+    if (status == TL_OK)
+        status = tl_mesh_parts_read(file, &s->parts, &s->model->error);
+    if (status == TL_OK) {
+        *parts = s->parts.list;
+        *count = s->parts.count;
+    }
+    return status;
+}
+
 /* ---------------------------------------------------------------- tl_generate ------------ */
 
 /* The services, for a generator of the model's. */
@@ -557,7 +575,8 @@ static tl_host host_of(service *s)
                      .join = join,
                      .remove = remove_block,
                      .hide = hide,
-                     .show = show};
+                     .show = show,
+                     .read_mesh = read_mesh};
 }
 
 /* The files that are to be read must be such as end; those that are not there are left to the plugin. */
@@ -650,6 +669,7 @@ static tl_status generate(tl_model *m, const char *generator, const tl_args *arg
     service s = {.model = m, .generator = kind->name, .entries = count};
     atomic_store(&m->interrupted, false);
     status = run(&s, kind, args, count, list);
+    tl_mesh_parts_free(&s.parts);
     if (status == TL_OK && summary)
         *summary = s.stage.summary;
     return status;

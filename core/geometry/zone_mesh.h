@@ -37,6 +37,9 @@ static inline double tl_zoning_size(const tl_shape_zoning *z, tl_vec3 place)
     return z->size ? z->size(z->user, place) : z->edge;
 }
 
+/* No face: the triangle is that of a joined block as well. */
+#define TL_ZONE_BETWEEN UINT32_MAX
+
 /* A triangle of the surface, counter-clockwise from outside, and the face of the block that it lies in. */
 typedef struct tl_zone_triangle {
     uint32_t corner[3];

@@ -77,12 +77,15 @@ static double edge_at(void *user, tl_vec3 place)
 static const tl_param deformable_params[] = {
     TL_PARAM(TL_PARAM_STRING, tl_zoning, solid, "", "name of the solid that the zones are made of: model:solid",
              .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_STRING, tl_zoning, file, "",
+             "or a mesh whose tetrahedra fill the blocks: legacy VTK, or gmsh 2.2 as text",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_FILE),
 };
 
 static const tl_lua_key deformable_keys[] = {
-    {"zone", "number or function({x, y, z}), required",
-     "wanted edge of zones, m, > 0, the same everywhere or at a place. Larger than a block: zones between its corners "
-     "and its centroid"},
+    {"zone", "number or function({x, y, z})",
+     "wanted edge of zones, m, > 0, the same everywhere or at a place; required without a file. Larger than a block: "
+     "zones between its corners and its centroid"},
     {NULL, NULL, NULL},
 };
 
@@ -97,11 +100,14 @@ static void read_zoning(lua_State *L, edge_of *of, tl_zoning *how)
                     tl_lua_describe(L, AT_TABLE));
     tl_lua_read(L, AT_TABLE, &deformable_spec, true, how);
     lua_settop(L, AT_TABLE);
+    const bool read = how->file != NULL;
     const int type = lua_getfield(L, AT_TABLE, "zone");
+    if (read && type != LUA_TNIL)
+        tl_lua_fail(L, "deformable: give zone, the edge of zones, or file, a mesh of them, not both");
     if (type == LUA_TFUNCTION) {
         how->edge_at = edge_at;
         how->user = of;
-    } else if (type != LUA_TNUMBER || !(lua_tonumber(L, -1) > 0)) {
+    } else if (!read && (type != LUA_TNUMBER || !(lua_tonumber(L, -1) > 0))) {
         tl_lua_fail(
             L, "deformable: zone must be the wanted edge of zones, a number above 0 m or a function({x, y, z}), not %s",
             tl_lua_describe(L, -1));
@@ -150,7 +156,7 @@ int tl_lua_deformable(lua_State *L, const tl_lua_selection *blocks)
 static const tl_lua_key deformable_results[] = {
     {"blocks, zones, gridpoints, clusters", "", "how many have been made"},
     {"smallest_altitude", "", "of a zone over its largest side, m"},
-    {"altitude_ratio", "", "smallest altitude over the wanted edge"},
+    {"altitude_ratio", "", "smallest altitude over the wanted edge; of a file over the mean edge of the zone (rms)"},
     {"worst_block", "", "the block that has it"},
     {"time_step", "", "step that the gridpoints would allow if nothing touched them, s"},
     {"inertia", "",
@@ -173,10 +179,13 @@ const tl_lua_topic tl_lua_deformable_topics[] = {
      .method = model_solid},
     {.name = "deformable",
      .usage = "report = selection:deformable{zone = 1.0, solid = \"granite\"}",
-     .doc = "Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of "
-            "stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share "
-            "gridpoints, "
-            "so zones go on over the faces between them. Nothing is done where one block cannot be divided.",
+     .doc =
+         "Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of "
+         "stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share "
+         "gridpoints, "
+         "so zones go on over the faces between them. With {file = \"rock.msh\", solid = \"granite\"} the tetrahedra "
+         "of a mesh that was made elsewhere become the zones of the blocks in which they lie. They must fill these "
+         "within 1e-6 of their size. Nothing is done where one block cannot be divided.",
      .spec = &deformable_spec,
      .title = "Fields of the report",
      .verbs = deformable_results},

@@ -698,7 +698,7 @@ static const tl_lua_key histories_fields[] = {
     {"time", "", "list of the times, s"},
     {"value", "", "list of the values, each a number or a list of numbers"},
     {"x, y, z", "", "lists of the components, where each value is a list of three"},
-    {"xx, yy, zz, xy, yz, zx", "", "the same of a field that is a tensor, as \"stress\""},
+    {"xx, yy, zz, xy, yz, zx", "", "lists of the components of a field that is a tensor, as \"stress\""},
     {NULL, NULL, NULL},
 };
 

@@ -12,6 +12,8 @@
 #include "model/options.h"
 #include "model/rows.h"
 #include "query/meeting.h"
+#include "segment/meets.h"
+#include "zone/grid.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -193,17 +195,18 @@ static tl_contact_name name_of(const tl_model *m, uint32_t contact)
     const tl_contacts *c = &m->detect->contacts;
     if (tl_row_is_meeting(m, contact)) {
         const tl_meeting by = tl_meeting_named(m, contact);
-        return (tl_contact_name){by.a, by.b, 0};
+        return (tl_contact_name){by.a, by.b, by.born};
     }
     return (tl_contact_name){m->blocks.id[c->a[contact]], m->blocks.id[c->b[contact]], c->born[contact]};
 }
 
-/* Of blocks that meet by segments: begun when the model was, as it is not kept when they met. */
+/* Of blocks that meet by segments. */
 static tl_contact_facts facts_of_meeting(const tl_model *m, uint32_t row)
 {
     const tl_meeting by = tl_meeting_of(m, row);
-    const tl_contact_name name = {by.a, by.b, 0};
+    const tl_contact_name name = {by.a, by.b, by.born};
     tl_contact_facts out = {.number = tl_contact_number(name),
+                            .born = by.born,
                             .a = by.a,
                             .b = by.b,
                             .tag = by.tag,
@@ -248,10 +251,19 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     return out;
 }
 
-/* A contact without points is kept for those that it may get again, but to whoever asks it has ended. */
-static bool is_listed(const tl_contacts *c, uint32_t contact)
+/* Brings contacts up to date, and segments where no step has found them yet. */
+static tl_status refresh(tl_model *m)
 {
-    return c->point_count[contact] > 0;
+    const tl_status status = tl_detect_refresh(m);
+    return status == TL_OK ? tl_segments_ask(m) : status;
+}
+
+/* A contact without points is kept for those that it may get again, but to whoever asks it has ended. So it is where
+ * segments bear all. */
+static bool is_listed(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    return c->point_count[contact] > 0 && !tl_blocks_meet(m, c->a[contact], c->b[contact]);
 }
 
 /* Fails with the sentence that says why a contact is no more. */
@@ -271,16 +283,15 @@ static tl_status fail_ended(tl_model *m, tl_contact_name contact)
 
 tl_status tl_contact_find(tl_model *m, tl_contact_name contact, uint32_t *row)
 {
-    tl_status status = tl_detect_refresh(m);
+    tl_status status = refresh(m);
     if (status != TL_OK)
         return status;
     *row = tl_meeting_row(m, contact.a, contact.b);
-    if (*row != TL_NO_ROW)
-        return TL_OK;
-    *row = tl_contact_row(m, contact.a, contact.b);
-    if (*row == TL_NO_ROW || !is_listed(&m->detect->contacts, *row))
+    if (*row == TL_NO_ROW)
+        *row = tl_contact_row(m, contact.a, contact.b);
+    if (*row == TL_NO_ROW || !(tl_row_is_meeting(m, *row) || is_listed(m, *row)))
         return fail_ended(m, contact);
-    const int64_t born = m->detect->contacts.born[*row];
+    const int64_t born = name_of(m, *row).born;
     if (born != contact.born)
         return tl_fail(&m->error, TL_E_STALE,
                        "contact of blocks %u and %u no longer exists: its blocks have parted, or were one body, and "
@@ -315,7 +326,7 @@ tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count, size_t
 {
     *rows = NULL;
     *count = *meetings = 0;
-    tl_status status = tl_detect_refresh(m);
+    tl_status status = refresh(m);
     if (status != TL_OK)
         return status;
     const tl_contacts *c = &m->detect->contacts;
@@ -325,7 +336,7 @@ tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count, size_t
         return tl_fail_memory(&m->error);
     for (uint32_t block = 0; block < m->blocks.table.rows; block++)
         for (tl_body_contacts at = tl_contacts_of_block(m, block); tl_next_contact(&at);)
-            if (c->a[at.contact] == block && is_listed(c, at.contact))
+            if (c->a[at.contact] == block && is_listed(m, at.contact))
                 list[(*count)++] = at.contact;
     for (uint32_t row = TL_NO_ROW; (row = tl_meeting_next(m, row)) != TL_NO_ROW; ++*meetings)
         list[(*count)++] = row;
@@ -412,7 +423,7 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
     uint32_t row = tl_block_row(m, block);
     if (row == TL_NO_ROW)
         return m->error.status;
-    tl_status status = tl_detect_refresh(m);
+    tl_status status = refresh(m);
     if (status != TL_OK)
         return status;
     const tl_contacts *c = &m->detect->contacts;
@@ -422,7 +433,7 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
     if (!list)
         return tl_fail_memory(&m->error);
     while (tl_next_contact(&at))
-        if (is_listed(c, at.contact))
+        if (is_listed(m, at.contact))
             list[(*count)++] = m->blocks.id[tl_contact_partner(c, at.contact, row)];
     for (uint32_t meeting = TL_NO_ROW; (meeting = tl_meeting_next(m, meeting)) != TL_NO_ROW;) {
         const tl_meeting by = tl_meeting_named(m, meeting);

@@ -37,7 +37,7 @@ const int64_t *tl_contact_long(const tl_contact_facts *facts, const tl_field *of
 size_t tl_contact_numbers(const tl_contact_facts *facts, const tl_field *of, double out[3]);
 
 /* Points of a contact that are told of: all of a patch, and of a field contact the one at the centre of its pressure.
- * The other one, of torsion, has the same normal force once more. Those of segments are not told of. */
+ * The other one, of torsion, has the same normal force once more. Those of segments are counted by meeting.h. */
 size_t tl_point_count(const tl_model *m, uint32_t contact);
 /* What a law's flags mean: those that some point has, and those that all have. */
 tl_contact_state tl_contact_state_of_flags(uint32_t any, uint32_t all);

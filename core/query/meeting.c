@@ -30,7 +30,7 @@ static size_t end_of(const struct tl_segments *s, size_t first)
     return end;
 }
 
-/* Whether two blocks are told of by these meets: both are there, some area is, and the table has no contact. */
+/* Whether two blocks are told of by these meets: both are there, some area is, and no field contact takes part. */
 static bool is_told(const tl_model *m, size_t first)
 {
     const struct tl_segments *s = m->segments;
@@ -41,7 +41,7 @@ static bool is_told(const tl_model *m, size_t first)
     if (!(area > 0) || tl_block_row_quiet(m, meet->a) == TL_NO_ROW || tl_block_row_quiet(m, meet->b) == TL_NO_ROW)
         return false;
     const uint32_t contact = tl_contact_row(m, meet->a, meet->b);
-    return contact == TL_NO_ROW || m->detect->contacts.point_count[contact] == 0;
+    return contact == TL_NO_ROW || meet->alone || m->detect->contacts.point_count[contact] == 0;
 }
 
 uint32_t tl_meeting_next(const tl_model *m, uint32_t row)
@@ -130,7 +130,12 @@ tl_meeting tl_meeting_named(const tl_model *m, uint32_t row)
 {
     const struct tl_segments *s = m->segments;
     const size_t first = first_of(m, row), end = end_of(s, first);
-    tl_meeting out = {.a = s->meet[first].a, .b = s->meet[first].b, .law = TL_NO_ROW, .gap = INFINITY, .all = ~0u};
+    tl_meeting out = {.a = s->meet[first].a,
+                      .b = s->meet[first].b,
+                      .law = TL_NO_ROW,
+                      .born = s->meet[first].born,
+                      .gap = INFINITY,
+                      .all = ~0u};
     double most = 0;
     for (size_t k = first; k < end; k++)
         if (s->meet[k].area > most) {
@@ -185,6 +190,47 @@ void tl_meeting_state(const tl_model *m, uint32_t row, uint32_t column, size_t w
             }
     for (size_t w = 0; w < width; w++)
         value[w] = adds ? sum[w] : weights > 0 ? sum[w] / weights : 0;
+}
+
+/* ---------------------------------------------------------------- points ----------------- */
+
+size_t tl_meeting_point_count(const tl_model *m, uint32_t row)
+{
+    const struct tl_segments *s = m->segments;
+    const size_t first = first_of(m, row), end = end_of(s, first);
+    size_t count = 0;
+    for (size_t k = first; k < end; k++)
+        for (size_t at = s->meet[k].begin; at < s->meet[k].end; at++)
+            count += s->table.of[at].meet == k ? TL_SEGMENT_POINTS : 0;
+    return count;
+}
+
+/* The segment that has a point, and its number there. */
+static size_t segment_of(const tl_model *m, uint32_t row, size_t *k)
+{
+    const struct tl_segments *s = m->segments;
+    size_t number = first_of(m, row), at = s->meet[number].begin;
+    for (;; at++) {
+        while (at >= s->meet[number].end)
+            at = s->meet[++number].begin;
+        if (s->table.of[at].meet != number)
+            continue;
+        if (*k < TL_SEGMENT_POINTS)
+            return at;
+        *k -= TL_SEGMENT_POINTS;
+    }
+}
+
+size_t tl_meeting_point(const tl_model *m, uint32_t row, size_t k, tl_vec3 *place, double *gap)
+{
+    const struct tl_segments *s = m->segments;
+    const size_t at = segment_of(m, row, &k), point = tl_segment_point_row(at, k);
+    const tl_segment *of = &s->table.of[at];
+    const tl_vec3 a = tl_segment_place(m, &of->a, tl_columns_get(s->points.at_a, point));
+    const tl_vec3 b = tl_segment_place(m, &of->b, tl_columns_get(s->points.at_b, point));
+    *place = tl_v3_scale(0.5, tl_v3_add(a, b));
+    *gap = tl_v3_dot(tl_columns_get(s->table.normal, at), tl_v3_sub(b, a));
+    return point;
 }
 
 /* ---------------------------------------------------------------- outlines --------------- */

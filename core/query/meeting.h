@@ -1,7 +1,8 @@
 /* meeting.h - what two blocks that meet by segments do to each other.
  *
  * Lists of contacts have such two blocks once. Their row lies behind those of the table of contacts: by as much as the
- * number of the first of their meets. They are told as the last step left them. */
+ * number of the first of their meets. They are told as the last step left them, or
+ * before any as the first one finds them. */
 #ifndef TL_QUERY_MEETING_H
 #define TL_QUERY_MEETING_H
 
@@ -13,6 +14,7 @@ typedef struct tl_meeting {
     tl_id a, b;
     tl_tag tag;        /* of the faces with the most area in common */
     uint32_t law;      /* likewise, or TL_NO_ROW */
+    int64_t born;      /* steps made when they met */
     double area;       /* m2 */
     double gap;        /* the smallest, m */
     tl_vec3 normal;    /* unit, from a to b */
@@ -36,6 +38,11 @@ tl_meeting tl_meeting_of(const tl_model *m, uint32_t row);
 tl_meeting tl_meeting_named(const tl_model *m, uint32_t row);
 /* Marks the faces that meet: number first[row of the block] + face. */
 void tl_meeting_mark(const tl_model *m, uint32_t row, const size_t *first, unsigned char *marks);
+/* How many points its segments have. */
+size_t tl_meeting_point_count(const tl_model *m, uint32_t row);
+/* The row of point k among those of segments; its place halfway between both sides, from the model's origin, and the
+ * gap there, m. */
+size_t tl_meeting_point(const tl_model *m, uint32_t row, size_t k, tl_vec3 *place, double *gap);
 /* Adds the outlines of its segments, halfway between both sides. false: out of memory. */
 bool tl_meeting_outlines(const tl_model *m, uint32_t row, tl_surface *surface);
 /* A state of its law from a column on: the mean over its area, or the sum. */

@@ -153,16 +153,6 @@ static double number_at(const tl_points_table *p, uint32_t column, size_t row)
     return column < p->state_columns ? p->state[column][row] : 0;
 }
 
-/* Value of an entry at point k of a contact; NaN where the contact's law has no such state. Changes nothing. */
-static void law_state_at_point(const tl_model *m, const tl_law_states *states, const tl_law_state *of, uint32_t contact,
-                               size_t k, double value[3])
-{
-    uint32_t column = column_of(m, states, of, contact);
-    size_t row = tl_point_row(&m->detect->contacts, contact, k);
-    for (size_t w = 0; w < of->width; w++)
-        value[w] = column == TL_NO_ROW ? NAN : number_at(&m->detect->points, column + (uint32_t)w, row);
-}
-
 void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, const tl_law_state *of, uint32_t contact,
                              double value[3])
 {
@@ -330,6 +320,29 @@ tl_status tl_states_list(tl_model *m, const tl_contact_name *contact, tl_law_sta
 
 /* ---------------------------------------------------------------- points ------------------ */
 
+/* Columns of points, of contacts or of segments. */
+typedef struct columns {
+    const double *area, *f_n, *reference; /* the last may be NULL */
+    double *const *f_s, *const *state;
+    const uint32_t *flags;
+    uint32_t state_columns;
+} columns;
+
+static columns columns_of(const tl_model *m, uint32_t contact)
+{
+    const tl_points_table *p = &m->detect->points;
+    if (!tl_row_is_meeting(m, contact))
+        return (columns){p->area, p->f_n, p->reference, p->f_s, p->state, p->flags, p->state_columns};
+    const tl_segment_points *s = &m->segments->points;
+    return (columns){s->area, s->f_n, s->reference, s->f_s, s->state, s->flags, s->state_columns};
+}
+
+/* Points that are told of: of segments all, with the forces of their law. */
+static size_t count_of(const tl_model *m, uint32_t contact)
+{
+    return tl_row_is_meeting(m, contact) ? tl_meeting_point_count(m, contact) : tl_point_count(m, contact);
+}
+
 /* The fields: name, kind, unit, what they are, and the value of point k of a contact for writer w, in `row` of points
  * p. */
 #define POINT_FIELDS(FIELD)                                                                                            \
@@ -369,7 +382,7 @@ tl_status tl_points_start(tl_model *m, const tl_contact_name *contacts, size_t c
         uint32_t row;
         status = tl_contact_find(m, contacts[i], &row);
         if (status == TL_OK)
-            start[i + 1] = start[i] + tl_point_count(m, row);
+            start[i + 1] = start[i] + count_of(m, row);
     }
     return status;
 }
@@ -400,13 +413,23 @@ static bool reserve(writer *w, size_t count)
     return w->capacity > 0;
 }
 
-static void write_point(writer *w, uint32_t contact, size_t k)
+/* Puts the state of a law at a point: NaN where the contact's law has none of that name. A column that no law needs is
+ * not kept: all of it is 0. */
+static void put_state(const writer *w, uint32_t contact, const columns *p, size_t row)
 {
-    const tl_points_table *p = &w->model->detect->points;
-    size_t row = tl_point_row(&w->model->detect->contacts, contact, k);
+    const uint32_t column = column_of(w->model, w->states, w->of.state, contact);
+    for (uint32_t k = 0; k < w->of.width; k++)
+        w->out[k] = column == TL_NO_ROW ? NAN : column + k < p->state_columns ? p->state[column + k][row] : 0;
+}
+
+static void write_point(writer *w, uint32_t contact, const columns *p, size_t k)
+{
+    const bool meeting = tl_row_is_meeting(w->model, contact);
+    const size_t row = meeting ? tl_meeting_point(w->model, contact, k, &w->place[k], &w->gap[k])
+                               : tl_point_row(&w->model->detect->contacts, contact, k);
     switch (w->of.field) {
         POINT_FIELDS(CASE)
-    default: law_state_at_point(w->model, w->states, w->of.state, contact, k, w->out);
+    default: put_state(w, contact, p, row);
     }
     w->out += w->of.width;
 }
@@ -417,15 +440,17 @@ static tl_status write_contact(tl_model *m, writer *w, tl_contact_name name)
     tl_status status = tl_contact_find(m, name, &row);
     if (status != TL_OK)
         return status;
-    if (tl_point_count(m, row) == 0)
+    const bool meeting = tl_row_is_meeting(m, row);
+    const size_t count = count_of(m, row);
+    const columns from = columns_of(m, row);
+    if (count == 0)
         return TL_OK;
-    if (w->of.field == F_position || w->of.field == F_gap || w->of.field == F_closure) {
-        if (!reserve(w, m->detect->contacts.point_count[row]))
-            return tl_fail_memory(&m->error);
+    if (!reserve(w, meeting ? count : m->detect->contacts.point_count[row]))
+        return tl_fail_memory(&m->error);
+    if (!meeting && (w->of.field == F_position || w->of.field == F_gap || w->of.field == F_closure))
         tl_contact_point_places(m, row, w->place, w->gap);
-    }
-    for (size_t k = 0; k < tl_point_count(m, row); k++)
-        write_point(w, row, k);
+    for (size_t k = 0; k < count; k++)
+        write_point(w, row, &from, k);
     return TL_OK;
 }
 

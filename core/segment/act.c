@@ -31,6 +31,7 @@
 #include "base/series.h"
 #include "contact/contacts.h"
 #include "force/joint_laws.h"
+#include "model/law_time.h"
 #include "segment/blend.h"
 #include "segment/closed.h"
 #include "segment/lay.h"
@@ -46,7 +47,8 @@
 /* Points of a group, and of a tile. */
 #define GROUP_POINTS (TL_SEGMENT_POINTS * TL_LANES)
 #define TILE_POINTS (TILE * GROUP_POINTS)
-/* Tolerance: slide or stretch of a segment over its size, from which on it is laid anew. */
+/* Tolerance: slide or stretch over the size of the smaller triangle, the root of its area, from which on a segment is
+ * laid anew. Areas of all, slivers too, are off by such a share of that of the triangle. */
 #define SLID 1e-3
 
 /* Tolerance: how far corners of a segment may be beyond its points, over the largest difference of these: of a triangle
@@ -66,6 +68,7 @@ typedef struct carry_lanes {
     _Alignas(TL_ALIGN) double x[2][3][3][TL_LANES]; /* by side, number, component */
     double d[2][3][3][TL_LANES];
     double turn[2][3][TL_LANES];
+    double size[2][TL_LANES]; /* twice the area of a triangle, m2; INFINITY of a rigid body */
 } carry_lanes;
 
 /* What a group has more where some sides are rigid: w0 times the first axis of the frame, which of triangles is 0. What
@@ -146,6 +149,7 @@ static void put_rigid(const tl_model *m, uint32_t body, tl_vec3 normal, size_t l
     put(to->x[side][0], lane, tl_body_place(&m->bodies, body));
     put(to->d[side][0], lane, tl_v3_scale(m->dt, pose->v_moved));
     put(to->turn[side], lane, turn);
+    to->size[side][lane] = INFINITY;
     put(now->normal, lane, tl_m3_mul(&pose->r, normal));
     put(now->edge[0], lane, zero);
     put(now->edge[1], lane, zero);
@@ -182,10 +186,11 @@ TL_INLINE bool find_side(const struct tl_segments *s, size_t row, int side, carr
         const tl_vec3 a = tl_v3_sub(get(x[1], l), first), b = tl_v3_sub(get(x[2], l), first);
         const tl_vec3 da = tl_v3_sub(get(d[1], l), moved), db = tl_v3_sub(get(d[2], l), moved);
         const tl_vec3 area = tl_v3_cross(a, b);
-        const double per = 1 / sqrt(dot_of(area, area));
+        const double size = sqrt(dot_of(area, area)), per = 1 / size;
         const tl_vec3 n = {per * area.x, per * area.y, per * area.z}, ea = {per * a.x, per * a.y, per * a.z};
         const tl_vec3 eb = {per * b.x, per * b.y, per * b.z};
         const double spin = 0.5 * (dot_of(eb, da) - dot_of(ea, db)), up_a = dot_of(n, da), up_b = dot_of(n, db);
+        to->size[side][l] = size;
         put_lane(x[1], l, a.x, a.y, a.z);
         put_lane(x[2], l, b.x, b.y, b.z);
         put_lane(d[1], l, da.x, da.y, da.z);
@@ -374,7 +379,7 @@ TL_INLINE bool follow_lanes(struct tl_segments *s, size_t row, size_t number, ca
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
         follow_points(s, row, k, c, more, &turn, at + k * TL_LANES, to, slid2);
     for (size_t l = 0; l < TL_LANES; l++)
-        s->table.slid[row + l] = slid2[l] > SLID * SLID * s->table.area[row + l];
+        s->table.slid[row + l] = slid2[l] > 0.5 * SLID * SLID * tl_smaller(c->size[0][l], c->size[1][l]);
     return may_be_apart(to->closure + at);
 }
 
@@ -421,7 +426,7 @@ static bool call_law(const act_job *job, size_t first, size_t count, lanes *l)
     memset(l->zero, 0, count * sizeof *l->zero);
     const tl_law_batch batch = {.size = sizeof batch,
                                 .count = (uint32_t)count,
-                                .dt = job->m->dt,
+                                .dt = tl_law_time(job->m, job->m->dt),
                                 .area = p->area + first,
                                 .closure = l->closure,
                                 .f_n0 = p->f_n0 ? p->f_n0 + first : nothing,

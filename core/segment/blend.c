@@ -11,11 +11,14 @@
  * G = S' sum E_k f_k
  *
  *     forces of segments, and their heat, count by  l_k + G f_k / U_f,
- *     those of the field contact by                 w - G r / U_f,
+ *     those of the field contact by                 w - G r / U_f.
  *
- * and a couple M = -(E_k S + G U_k / U_f) df_k/d(tilt) turns the segments of the faces. The tilt is that between the
- * means, by area, of the normals of both sides of the segments. Let N_A and N_B be the mean vector areas. With the
- * cosine of the tilt c = -N_A . N_B / (|N_A| |N_B|)
+ * Heat may come at once, as where slip lets go what an area that went has left to the shear springs. So with the heat
+ * q_k and q_f of the step what counts is the whole difference, U(U_k + q_k, U_f + q_f) - U(U_k, U_f).
+ *
+ * The tilt turns the segments of the faces, too: by the couple M = -(E_k S + G U_k / U_f) df_k/d(tilt). It is that
+ * between the means, by area, of the normals of both sides of the segments. Let N_A and N_B be the mean vector areas.
+ * With the cosine of the tilt c = -N_A . N_B / (|N_A| |N_B|)
  *
  *     dc/dN_A = -(n_B + c n_A) / |N_A|,    dc/dN_B = -(n_A + c n_B) / |N_B|
  *
@@ -23,6 +26,7 @@
 #include "segment/blend.h"
 
 #include "contact/detection.h"
+#include "contact/index.h"
 #include "segment/side.h"
 #include "zone/grid.h"
 
@@ -93,6 +97,21 @@ static bool tilt_meets(tl_model *m, uint32_t first, uint32_t end)
     return alone;
 }
 
+/* Notes when the two blocks of some meets have met: when their contact began, if they have one. */
+static void put_born(tl_model *m, uint32_t first, uint32_t end, bool touch)
+{
+    tl_meet *meet = m->segments->meet;
+    int64_t born = -1;
+    for (uint32_t k = first; k < end; k++)
+        born = meet[k].born > born ? meet[k].born : born;
+    if (touch && born < 0) {
+        const uint32_t contact = tl_contact_row(m, meet[first].a, meet[first].b);
+        born = contact == TL_NO_ROW ? m->cycles : m->detect->contacts.born[contact];
+    }
+    for (uint32_t k = first; k < end; k++)
+        meet[k].born = touch ? born : -1;
+}
+
 bool tl_blends_find(tl_model *m)
 {
     struct tl_segments *s = m->segments;
@@ -110,6 +129,7 @@ bool tl_blends_find(tl_model *m)
             s->meet[k].alone = alone;
             area += s->meet[k].area;
         }
+        put_born(m, first, end, area > 0);
         if (area > 0)
             s->blend[s->blend_count++] = (tl_blend){a, b, first, end, TL_NO_ROW};
     }
@@ -135,7 +155,7 @@ static tl_blend *find_blend(const struct tl_segments *s, tl_id a, tl_id b)
 
 void tl_blends_share(tl_model *m)
 {
-    const tl_contacts *c = &m->detect->contacts;
+    tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; m->segments && c->share && i < c->table.rows; i++) {
         c->share[i] = 1;
         c->heat[i] = 0; /* of one without a law or room for points it stays so */
@@ -143,20 +163,24 @@ void tl_blends_share(tl_model *m)
             continue;
         const tl_id a = m->blocks.id[c->a[i]], b = m->blocks.id[c->b[i]];
         tl_blend *blend = find_blend(m->segments, a < b ? a : b, a < b ? b : a);
-        if (blend)
+        if (blend) {
             blend->contact = i;
+            c->born[i] = m->segments->meet[blend->first].born; /* it goes on as the same contact */
+        }
         if (tl_blocks_meet(m, c->a[i], c->b[i]))
             c->share[i] = 0;
     }
 }
 
-/* The energy that the segments of a meet would store if they bore all. */
-static double stored_by(const struct tl_segments *s, const tl_meet *meet)
+/* The energy that the segments of a meet would store if they bore all, and their heat of the step. */
+static void sum_rows(const struct tl_segments *s, const tl_meet *meet, double *stored, double *heat)
 {
-    double sum = 0;
+    *stored = *heat = 0;
     for (uint32_t row = meet->begin; row < meet->end; row++)
-        sum += s->table.of[row].meet != TL_NO_ROW ? s->table.stored[row] : 0;
-    return sum;
+        if (s->table.of[row].meet != TL_NO_ROW) {
+            *stored += s->table.stored[row];
+            *heat += s->table.heat[row];
+        }
 }
 
 /* Lets so much of a segment's forces and energy act. */
@@ -195,30 +219,38 @@ static void turn_segment(tl_model *m, uint32_t row, const tl_meet *meet, double 
 #define LEAST_PART 0.1
 #define MOST_PART 0.5
 
-/* The meets of two blocks: their energies, and how much of them counts. */
+/* The meets of two blocks: their energies, their heat of the step, and how much of them counts. */
 typedef struct parts {
     uint32_t count;
-    double energy[MOST_BLENDED], share[MOST_BLENDED];
+    double energy[MOST_BLENDED], heat[MOST_BLENDED], share[MOST_BLENDED];
     double field, ratio, step, slope; /* U_f, r, S and S' */
 } parts;
 
+/* Finds how much of each counts, by their energies. */
+static void find_shares(const struct tl_segments *s, const tl_blend *blend, parts *of)
+{
+    double sum = 0;
+    of->ratio = of->slope = 0;
+    of->step = 1;
+    for (uint32_t k = 0; k < of->count; k++)
+        sum += s->meet[blend->first + k].flat * of->energy[k];
+    if (of->field > 0) {
+        of->ratio = sum / of->field;
+        const double x = fmin(fmax((of->ratio - LEAST_PART) / (MOST_PART - LEAST_PART), 0), 1);
+        of->step = x * x * (3 - 2 * x);
+        of->slope = 6 * x * (1 - x) / (MOST_PART - LEAST_PART);
+    }
+    for (uint32_t k = 0; k < of->count; k++)
+        of->share[k] = s->meet[blend->first + k].area > 0 ? s->meet[blend->first + k].flat * of->step : 0;
+}
+
 static parts parts_of(const struct tl_segments *s, const tl_blend *blend, double field)
 {
-    parts out = {.count = blend->end - blend->first, .field = field, .step = 1};
-    double sum = 0;
+    parts out = {.count = blend->end - blend->first, .field = field};
     out.count = out.count < MOST_BLENDED ? out.count : MOST_BLENDED;
-    for (uint32_t k = 0; k < out.count; k++) {
-        out.energy[k] = stored_by(s, &s->meet[blend->first + k]);
-        sum += s->meet[blend->first + k].flat * out.energy[k];
-    }
-    if (field > 0) {
-        out.ratio = sum / field;
-        const double x = fmin(fmax((out.ratio - LEAST_PART) / (MOST_PART - LEAST_PART), 0), 1);
-        out.step = x * x * (3 - 2 * x);
-        out.slope = 6 * x * (1 - x) / (MOST_PART - LEAST_PART);
-    }
     for (uint32_t k = 0; k < out.count; k++)
-        out.share[k] = s->meet[blend->first + k].area > 0 ? s->meet[blend->first + k].flat * out.step : 0;
+        sum_rows(s, &s->meet[blend->first + k], &out.energy[k], &out.heat[k]);
+    find_shares(s, blend, &out);
     return out;
 }
 
@@ -231,26 +263,50 @@ static double rest_of(const parts *of, uint32_t without)
     return rest;
 }
 
+/* The energy of all of it. */
+static double whole_of(const parts *of)
+{
+    double sum = of->field * rest_of(of, TL_NO_ROW);
+    for (uint32_t k = 0; k < of->count; k++)
+        sum += of->share[k] * of->energy[k];
+    return sum;
+}
+
+/* The heat of a step in which the field contact has made some. */
+static double heat_of(const struct tl_segments *s, const tl_blend *blend, const parts *now, double by_field)
+{
+    parts before = *now;
+    before.field += by_field;
+    for (uint32_t k = 0; k < now->count; k++)
+        before.energy[k] += before.heat[k];
+    find_shares(s, blend, &before);
+    return whole_of(&before) - whole_of(now);
+}
+
 static void apply_blend(tl_model *m, const tl_blend *blend)
 {
     struct tl_segments *s = m->segments;
     const tl_contacts *c = &m->detect->contacts;
     const uint32_t i = blend->contact;
     const bool alone = s->meet[blend->first].alone;
-    if (alone && i == TL_NO_ROW && blend->end == blend->first + 1)
-        return; /* as most */
+    if (alone && i == TL_NO_ROW && blend->end == blend->first + 1) { /* as most */
+        s->meet[blend->first].counts = 1;
+        return;
+    }
     const bool pressed = i != TL_NO_ROW && !alone && c->point_count[i] > 0 && c->law[i] != TL_NO_ROW;
     const parts of = parts_of(s, blend, pressed ? c->stored[i] : 0);
     const double rest = alone ? 0 : rest_of(&of, TL_NO_ROW), per = of.field > 0 ? 1 / of.field : 0;
-    double more[MOST_BLENDED], grows = 0;
+    double more[MOST_BLENDED], grows = 0, counted = 0;
     for (uint32_t k = 0; k < of.count; k++) {
         more[k] = of.energy[k] - (alone ? 0 : of.field * rest_of(&of, k));
         grows += of.slope * more[k] * s->meet[blend->first + k].flat;
     }
     for (uint32_t k = 0; k < of.count; k++) {
-        const tl_meet *meet = &s->meet[blend->first + k];
+        tl_meet *meet = &s->meet[blend->first + k];
         const double forces = of.share[k] + per * grows * meet->flat;
         const double turns = meet->steep * (more[k] * of.step + per * grows * of.energy[k]);
+        meet->counts = forces;
+        counted += forces * of.heat[k];
         for (uint32_t row = meet->begin; row < meet->end; row++) {
             if (s->table.of[row].meet == TL_NO_ROW)
                 continue;
@@ -267,7 +323,8 @@ static void apply_blend(tl_model *m, const tl_blend *blend)
     c->moment[i] = tl_v3_scale(by_field, c->moment[i]);
     if (c->point_capacity[i] > 0 && c->law[i] != TL_NO_ROW) /* else it is not counted (cycle/contact_forces.c) */
         s->blend_stored += (1 - rest) * c->stored[i];
-    s->blend_heat += (1 - by_field) * c->heat[i];
+    const bool both = of.field > 0 && of.field + c->heat[i] > 0;
+    s->blend_heat += c->heat[i] + (both ? counted - heat_of(s, blend, &of, c->heat[i]) : -by_field * c->heat[i]);
 }
 
 void tl_blends_apply(tl_model *m)

@@ -135,7 +135,7 @@ static double shear_of(const tl_model *m, const struct tl_segments *s, const tl_
     double sum = 0;
     for (uint32_t row = meet->begin; row < meet->end; row++)
         sum += s->table.of[row].meet != TL_NO_ROW ? shear_energy(&s->points, row) : 0;
-    return ks > 0 ? 0.5 * meet->flat * sum / ks : 0;
+    return ks > 0 ? 0.5 * meet->counts * sum / ks : 0;
 }
 
 bool tl_laying_change_meets(const tl_model *m, tl_laying *l, tl_meet *list, size_t count)
@@ -340,7 +340,7 @@ static double keep_energy(const tl_model *m, struct tl_segments *to, const tl_me
         for (size_t k = 0; k < TL_SEGMENT_POINTS; k++)
             for (int c = 0; c < 3; c++)
                 to->points.f_s[c][tl_segment_point_row(row, k)] *= scale;
-    return ks > 0 && before > now ? 0.5 * meet->flat * (before - now) / ks : 0;
+    return ks > 0 && before > now ? 0.5 * meet->counts * (before - now) / ks : 0;
 }
 
 /* And those of all stale meets, which fresh tables have. The old ones are still there. */

@@ -2,7 +2,7 @@
  *
  * Of two blocks that the broad phase lists, one of which is deformable, faces meet that look at each other and are
  * near. All triangles of one that lie over triangles of the other make a segment, closed or open. Segments stand until
- * their sides have slid by a share of their size, or until meets are listed anew. What points carry goes over:
+ * their sides have slid by a share of a triangle's size, or faces that met no longer do. What points carry goes over:
  *
  *   - a segment of the same two triangles takes over from its own three points, by area;
  *   - another one takes the stress of the nearest old point of its meet;
@@ -227,11 +227,13 @@ static bool list_faces(listing *l, const face *a, const face *b)
         .face_a = a->number,
         .face_b = b->number,
         .tag = tl_flush_tag(m->blocks.shape[a->block]->tag[a->number], m->blocks.shape[b->block]->tag[b->number]),
+        .born = -1,
         .stale = true,
         .share = 0.5,
         .tilted = tilt_cosine(a, b) < NOT_TILTED,
         .alone = true,
         .size = fmin(a->size, b->size),
+        .counts = 1,
         .flat = 1};
     return true;
 }
@@ -538,6 +540,9 @@ tl_status tl_segments_find(tl_model *m)
     bool some = anew || others, enough = true;
     tl_laying l;
     tl_laying_begin(&l);
+    for (size_t row = 0; row < s->table.table.rows; row++)
+        if (s->table.slid[row] && s->table.of[row].meet != TL_NO_ROW)
+            s->meet[s->table.of[row].meet].stale = true;
     if (anew) {
         size_t count;
         tl_meet *list = list_meets(m, &count, &enough);
@@ -547,9 +552,6 @@ tl_status tl_segments_find(tl_model *m)
             free(list);
         mark_changed(m);
     }
-    for (size_t row = 0; row < s->table.table.rows && !anew; row++)
-        if (s->table.slid[row] && s->table.of[row].meet != TL_NO_ROW)
-            s->meet[s->table.of[row].meet].stale = true;
     for (size_t k = 0; k < s->meet_count; k++)
         some = some || s->meet[k].stale;
     for (uint32_t k = 0; enough && some && k < s->meet_count; k++)
@@ -568,6 +570,30 @@ tl_status tl_segments_find(tl_model *m)
     s->zones = m->zones->version;
     s->lists = m->detect->lists;
     return TL_OK;
+}
+
+tl_status tl_segments_ask(tl_model *m)
+{
+    const struct tl_segments *s = m->segments;
+    const bool found = s && s->structure == m->structure && s->laws == m->laws && s->zones == m->zones->version &&
+                       s->lists == m->detect->lists;
+    if (!tl_model_deforms(m) || (s && !s->asked) || found)
+        return TL_OK;
+    tl_segments_forget_asked(m);
+    const tl_status status = tl_segments_find(m);
+    if (m->segments)
+        m->segments->asked = true;
+    return status;
+}
+
+void tl_segments_forget_asked(tl_model *m)
+{
+    if (!m->segments || !m->segments->asked)
+        return;
+    tl_segments_free(m->segments);
+    m->segments = NULL;
+    m->segments_follow = NULL;
+    m->zones->meeting_count = 0;
 }
 
 /* ---------------------------------------------------------------- covers ----------------- */
@@ -604,8 +630,11 @@ static bool note_cover(covering *c, const face_parts *p)
     if (!tl_grow(&c->list, &c->capacity, c->count + 2, sizeof *c->list))
         return false;
     const uint32_t x = part_row(m, a, p->at[0]), y = part_row(m, b, p->at[1]);
-    c->list[c->count++] = (tl_cover){a->block, a->number, x, b->block, b->number, y, over.area};
-    c->list[c->count++] = (tl_cover){b->block, b->number, y, a->block, a->number, x, over.area};
+    tl_cover *of_a = &c->list[c->count++], *of_b = &c->list[c->count++];
+    *of_a = (tl_cover){a->block, a->number, x, b->block, b->number, y, over.area, {{0, 0, 0}}};
+    *of_b = (tl_cover){b->block, b->number, y, a->block, a->number, x, over.area, {{0, 0, 0}}};
+    memcpy(of_a->at, over.on_a, sizeof of_a->at);
+    memcpy(of_b->at, over.on_b, sizeof of_b->at);
     return true;
 }
 

@@ -15,8 +15,8 @@ static tl_vec3 origin_of(const tl_model *m, const tl_segment_side *side)
                                   : tl_gridpoint_place(&m->zones->points, side->at[0]);
 }
 
-/* Where a point of a side lies from there. A step finds it by the same differences. So it finds the same distance of
- * the walls, far from the origin of the model as well. */
+/* Where a point of a side lies from there. A step takes the same differences. So it finds the same distance of the
+ * walls, far from the origin of the model as well. */
 static tl_vec3 lies_at(const tl_model *m, const tl_segment_side *side, tl_vec3 at)
 {
     if (tl_side_is_rigid(side))

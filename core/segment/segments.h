@@ -95,6 +95,7 @@ typedef struct tl_meet {
     uint32_t face_a, face_b;
     tl_tag tag;
     uint32_t law;        /* index into the model's joint_laws, or TL_NO_ROW */
+    int64_t born;        /* steps made when its blocks met; -1: they have no area in common */
     bool stale;          /* its segments are to be laid anew: it is new, or its sides have slid or stretched */
     double area;         /* m2 */
     double share;        /* 1: the outline of what the faces have in common is B's; 0: it is A's */
@@ -102,6 +103,7 @@ typedef struct tl_meet {
     bool tilted;         /* its faces may be tilted so far that a field contact has a share (blend.c) */
     bool alone;          /* the two blocks have none */
     double size;         /* of the smaller face, m2 */
+    double counts;       /* what a change of its energy counted for in the last step (blend.c) */
     double flat;         /* what its tilt leaves of its forces and energies, */
     double steep;        /* and the change of that by the cosine of the tilt */
     tl_vec3 by[2];       /* and of that by the mean vector areas of both sides, 1/m2 */
@@ -161,6 +163,7 @@ struct tl_segments {
     /* of the model, the zones and the pairs of the broad phase, when meets were listed */
     uint64_t structure, laws, zones, lists;
     uint64_t followed; /* structure of the model for which sides have their rows */
+    bool asked;        /* found for somebody who asks, before any step: tl_segments_ask */
     tl_overlay_room room;
     tl_point2 *room_memory;
     tl_vec3 *corner; /* scratch: of a rigid face */

@@ -17,7 +17,7 @@ static bool side_is_sound(const tl_model *m, const tl_segment_side *side)
 static bool meet_is_sound(const tl_model *m, const struct tl_segments *s, const tl_meet *meet)
 {
     return tl_is_flag(&meet->tilted) && tl_is_flag(&meet->alone) && meet->begin <= meet->end &&
-           meet->end <= s->table.table.rows && meet->a < meet->b && meet->b < m->next_id &&
+           meet->end <= s->table.table.rows && meet->a < meet->b && meet->b < m->next_id && meet->born >= -1 &&
            meet->tag.joint <= m->joint_count && tl_is_flag(&meet->stale) && meet->share >= 0 && meet->share <= 1 &&
            (meet->law < m->joint_law_count || meet->law == TL_NO_ROW);
 }
@@ -38,6 +38,8 @@ static bool spans_are_sound(const tl_model *m, const struct tl_segments *s)
 
 const char *tl_segments_unsound(const tl_model *m, const struct tl_segments *s)
 {
+    if (!tl_is_flag(&s->asked))
+        return "segments have an impossible value";
     for (size_t k = 0; k < s->meet_count; k++)
         if (!meet_is_sound(m, s, &s->meet[k]))
             return "faces that meet have an impossible value";

@@ -29,6 +29,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     LIST(SCRATCH, box, box_capacity, box_capacity);
     LIST(SCRATCH, blend, blend_capacity, blend_capacity);
     VALUE(STATE, lost);
+    VALUE(STATE, asked);
     VALUE(CACHE, structure);
     VALUE(CACHE, followed);
     VALUE(CACHE, laws);

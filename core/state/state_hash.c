@@ -18,7 +18,7 @@
 #include "detect/detect.h"
 #include "model/loads.h"
 #include "model/walk.h"
-#include "segment/segments.h"
+#include "segment/meets.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -445,6 +445,7 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
 tl_status tl_state_hash(tl_model *m, char text[33])
 {
     tl_hash hash = tl_hash_start();
+    tl_segments_forget_asked(m);
     tl_status status = hash_next_contacts(&hash, m);
     if (status != TL_OK)
         return status;

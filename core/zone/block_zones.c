@@ -60,8 +60,9 @@ static uint32_t apex_of(const tl_zone_mesh *mesh, const free_sides *sides, const
     return UINT32_MAX;
 }
 
-/* Lists the triangles of the surface. `inside`: parts of faces that lie on other blocks, or NULL. */
-static tl_status list_surface(tl_block_zones *of, const tl_shape_zoning *zoning, const uint8_t *inside, tl_error *error)
+/* Lists the triangles of the surface. `parts`: faces are given in parts, or NULL. `inside`: those that lie on other
+ * blocks, or NULL. */
+static tl_status list_surface(tl_block_zones *of, const tl_zone_parts *parts, const uint8_t *inside, tl_error *error)
 {
     const tl_zone_mesh *mesh = &of->mesh;
     free_sides sides;
@@ -71,10 +72,9 @@ static tl_status list_surface(tl_block_zones *of, const tl_shape_zoning *zoning,
     for (uint32_t t = 0; enough && t < mesh->triangle_count; t++) {
         const tl_zone_triangle *from = &mesh->triangle[t];
         tl_surface_part *to = &of->surface[of->surface_count];
-        if (inside && inside[from->face])
+        if (from->face == TL_ZONE_BETWEEN || (inside && inside[from->face]))
             continue;
-        *to = (tl_surface_part){.face = zoning->parts ? zoning->parts->face_of[from->face] : from->face,
-                                .block = of->block};
+        *to = (tl_surface_part){.face = parts ? parts->face_of[from->face] : from->face, .block = of->block};
         memcpy(to->corner, from->corner, sizeof to->corner);
         to->apex = apex_of(mesh, &sides, from->corner);
         whole = whole && to->apex != UINT32_MAX;
@@ -87,17 +87,40 @@ static tl_status list_surface(tl_block_zones *of, const tl_shape_zoning *zoning,
     return enough ? TL_OK : tl_fail_memory(error);
 }
 
+/* Clusters of the zones. */
+static tl_status gather(tl_block_zones *of, tl_error *error)
+{
+    return tl_zone_clusters_make((const uint32_t(*)[4])of->mesh.zone, (const uint32_t(*)[4])of->mesh.beside,
+                                 of->mesh.zone_count, &of->clusters, error);
+}
+
+static tl_status named(tl_status status, const tl_block_zones *of, tl_error *error)
+{
+    return status == TL_OK ? TL_OK : tl_error_prefix(error, "block %u: ", of->block);
+}
+
+tl_status tl_block_zones_take(tl_block_zones *of, tl_id block, tl_zone_mesh *mesh, tl_error *error)
+{
+    *of = (tl_block_zones){.block = block, .mesh = *mesh};
+    *mesh = (tl_zone_mesh){0};
+    return named(gather(of, error), of, error);
+}
+
+tl_status tl_block_zones_surface(tl_block_zones *of, tl_error *error)
+{
+    return named(list_surface(of, NULL, NULL, error), of, error);
+}
+
 tl_status tl_block_zones_make(tl_block_zones *of, tl_id block, const tl_poly *shape, const tl_shape_zoning *zoning,
                               const uint8_t *inside, tl_zone_scratch *scratch, tl_error *error)
 {
     *of = (tl_block_zones){.block = block};
     tl_status status = tl_zoning_make(shape, zoning, scratch, &of->mesh, error);
     if (status == TL_OK)
-        status = tl_zone_clusters_make((const uint32_t(*)[4])of->mesh.zone, (const uint32_t(*)[4])of->mesh.beside,
-                                       of->mesh.zone_count, &of->clusters, error);
+        status = gather(of, error);
     if (status == TL_OK)
-        status = list_surface(of, zoning, inside, error);
-    return status == TL_OK ? TL_OK : tl_error_prefix(error, "block %u: ", block);
+        status = list_surface(of, zoning->parts, inside, error);
+    return named(status, of, error);
 }
 
 void tl_block_zones_free(tl_block_zones *of)

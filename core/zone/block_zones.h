@@ -17,6 +17,9 @@ typedef struct tl_block_zones {
  * begin with the block. Free *zones in any case. */
 tl_status tl_block_zones_make(tl_block_zones *zones, tl_id block, const tl_poly *shape, const tl_shape_zoning *zoning,
                               const uint8_t *inside, tl_zone_scratch *scratch, tl_error *error);
+/* The same of zones that are there already, which go over: without the surface, which tl_block_zones_surface lists. */
+tl_status tl_block_zones_take(tl_block_zones *zones, tl_id block, tl_zone_mesh *mesh, tl_error *error);
+tl_status tl_block_zones_surface(tl_block_zones *zones, tl_error *error);
 void tl_block_zones_free(tl_block_zones *zones);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "geometry/joined_faces.h"
+#include "geometry/measure.h"
 #include "zone/block_zones.h"
 
 #include <math.h>
@@ -16,6 +17,9 @@
 
 /* Limit: how often the blocks of a body are divided for corners that were asked for. Each time halves an edge. */
 #define MOST_ROUNDS 12
+
+/* Tolerance: a triangle nearer than this times its size to a block lies on it. */
+#define ON_ANOTHER 1e-6
 
 #define NONE UINT32_MAX
 
@@ -270,6 +274,14 @@ static between sorted(const uint32_t *number, const uint32_t corner[3], tl_id bl
     return t;
 }
 
+static tl_status refuse_between(tl_model *m, tl_id block)
+{
+    return tl_fail(&m->error, TL_E_GEOMETRY,
+                   "block %u: its zones do not fit those of the blocks that it is joined to: their faces are not flat, "
+                   "or their triangles are not the same",
+                   block);
+}
+
 /* Whether each triangle between two blocks is one of both. */
 static tl_status check_between(const joining *j)
 {
@@ -291,17 +303,75 @@ static tl_status check_between(const joining *j)
         bad += 2;
     const tl_id block = bad < count ? list[bad].block : 0;
     free(list);
-    return bad == count
-               ? TL_OK
-               : tl_fail(&j->m->error, TL_E_GEOMETRY,
-                         "block %u: its zones do not fit those of the blocks that it is joined to: their faces are "
-                         "not flat, or do not lie on each other",
-                         block);
+    return bad == count ? TL_OK : refuse_between(j->m, block);
+}
+
+/* ---------------------------------------------------------------- meshes of files -------- */
+
+static bool is_of_both(const between *list, size_t count, const between *wanted)
+{
+    size_t low = 0, high = count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_triangles(&list[middle], wanted) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const size_t size = sizeof wanted->point;
+    return (low > 0 && memcmp(list[low - 1].point, wanted->point, size) == 0) ||
+           (low + 1 < count && memcmp(list[low + 1].point, wanted->point, size) == 0);
+}
+
+/* Whether the middle of a triangle lies on another block of the body. */
+static bool lies_on_another(const joining *j, size_t block, const tl_zone_triangle *t)
+{
+    const tl_vec3 *x = j->made[block].mesh.point;
+    const tl_vec3 sum = tl_v3_add(tl_v3_add(x[t->corner[0]], x[t->corner[1]]), x[t->corner[2]]);
+    for (size_t b = 0; b < j->count; b++)
+        if (b != block && tl_poly_contains(j->shape[b], tl_v3_scale(1.0 / 3, sum), ON_ANOTHER * j->shape[b]->size))
+            return true;
+    return false;
+}
+
+/* Marks those triangles of a block that are another's as well. */
+static tl_status mark_between(const joining *j, size_t block, const between *list, size_t count)
+{
+    tl_zone_mesh *mesh = &j->made[block].mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const between wanted = sorted(j->number[block], mesh->triangle[t].corner, j->id[block]);
+        if (is_of_both(list, count, &wanted))
+            mesh->triangle[t].face = TL_ZONE_BETWEEN;
+        else if (lies_on_another(j, block, &mesh->triangle[t]))
+            return refuse_between(j->m, j->id[block]);
+    }
+    return TL_OK;
+}
+
+/* Takes the triangles between two blocks out of the surface. */
+static tl_status open_between(const joining *j)
+{
+    size_t most = 0, count = 0;
+    for (size_t b = 0; b < j->count; b++)
+        most += j->made[b].mesh.triangle_count;
+    between *list = malloc((most + 1) * sizeof *list);
+    if (!list)
+        return tl_fail_memory(&j->m->error);
+    for (size_t b = 0; b < j->count; b++)
+        for (uint32_t t = 0; t < j->made[b].mesh.triangle_count; t++)
+            list[count++] = sorted(j->number[b], j->made[b].mesh.triangle[t].corner, j->id[b]);
+    if (count > 0)
+        qsort(list, count, sizeof *list, compare_triangles);
+    tl_status status = TL_OK;
+    for (size_t b = 0; status == TL_OK && b < j->count; b++)
+        status = mark_between(j, b, list, count);
+    free(list);
+    return status;
 }
 
 /* ---------------------------------------------------------------- all -------------------- */
 
-static tl_status join_blocks(joining *j, tl_body_zones *to)
+static tl_status list_blocks(joining *j)
 {
     tl_model *m = j->m;
     j->shape = malloc((j->count + 1) * sizeof *j->shape);
@@ -314,19 +384,27 @@ static tl_status join_blocks(joining *j, tl_body_zones *to)
         j->shape[b] = m->blocks.shape[j->rows[b]];
         j->id[b] = m->blocks.id[j->rows[b]];
     }
-    tl_status status = divide_until_whole(j);
-    if (status == TL_OK && !(number_points(j, to) && make_lists(j, to)))
-        status = tl_fail_memory(&m->error);
+    return TL_OK;
+}
+
+/* The blocks have zones: numbers their points, and puts all together. `given`: surfaces are still to be listed. */
+static tl_status join_blocks(joining *j, bool given, tl_body_zones *to)
+{
+    tl_model *m = j->m;
+    tl_status status = number_points(j, to) ? TL_OK : tl_fail_memory(&m->error);
     if (status == TL_OK)
-        status = check_between(j);
+        status = given ? open_between(j) : check_between(j);
+    for (size_t b = 0; given && status == TL_OK && b < j->count; b++)
+        status = tl_block_zones_surface(&j->made[b], &m->error);
+    if (status == TL_OK && !make_lists(j, to))
+        status = tl_fail_memory(&m->error);
     for (size_t b = 0; status == TL_OK && b < j->count; b++)
         add_block(j, b, to);
     return status;
 }
 
-static tl_status divide_joined(joining *j, tl_body_zones *to)
+static void forget(joining *j)
 {
-    const tl_status status = join_blocks(j, to);
     forget_blocks(j);
     for (size_t b = 0; j->number && b < j->count; b++)
         free(j->number[b]);
@@ -336,6 +414,16 @@ static tl_status divide_joined(joining *j, tl_body_zones *to)
     free(j->shape);
     free(j->place_key);
     free(j->more);
+}
+
+static tl_status divide_joined(joining *j, tl_body_zones *to)
+{
+    tl_status status = list_blocks(j);
+    if (status == TL_OK)
+        status = divide_until_whole(j);
+    if (status == TL_OK)
+        status = join_blocks(j, false, to);
+    forget(j);
     return status;
 }
 
@@ -388,6 +476,19 @@ tl_status tl_body_zones_make(tl_model *m, uint32_t body, const tl_shape_zoning *
                  .scratch = scratch};
     *zones = (tl_body_zones){.least_altitude = INFINITY, .least_share = INFINITY};
     return j.count > 1 ? divide_joined(&j, zones) : divide_alone(&j, zones);
+}
+
+tl_status tl_body_zones_take(tl_model *m, uint32_t body, tl_zone_mesh *mesh, tl_body_zones *to)
+{
+    joining j = {.m = m, .rows = tl_body_blocks(m, body), .count = m->bodies.member_count[body]};
+    *to = (tl_body_zones){.least_altitude = INFINITY, .least_share = INFINITY};
+    tl_status status = list_blocks(&j);
+    for (size_t b = 0; status == TL_OK && b < j.count; b++)
+        status = tl_block_zones_take(&j.made[b], j.id[b], &mesh[j.rows[b]], &m->error);
+    if (status == TL_OK)
+        status = join_blocks(&j, true, to);
+    forget(&j);
+    return status;
 }
 
 void tl_body_zones_free(tl_body_zones *z)

@@ -25,6 +25,9 @@ typedef struct tl_body_zones {
  * wanted edge. Nothing of the model changes. Free *zones in any case. */
 tl_status tl_body_zones_make(tl_model *m, uint32_t body, const tl_shape_zoning *zoning, const tl_corner_keys *keys,
                              tl_zone_scratch *scratch, tl_body_zones *zones);
+/* The same of meshes that its blocks have already, by rows, which go over. Of several blocks the triangles of what they
+ * have in common must be those of both. */
+tl_status tl_body_zones_take(tl_model *m, uint32_t body, tl_zone_mesh *mesh, tl_body_zones *zones);
 void tl_body_zones_free(tl_body_zones *zones);
 
 #endif

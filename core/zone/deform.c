@@ -10,6 +10,7 @@
 #include "zone/body_zones.h"
 #include "zone/columns.h"
 #include "zone/corner_keys.h"
+#include "zone/fit.h"
 #include "zone/solids.h"
 #include "zone/stiffness.h"
 
@@ -43,6 +44,7 @@ typedef struct dividing {
     uint32_t body; /* that is being divided */
     tl_corner_keys keys;
     tl_zone_scratch *scratch;
+    tl_fitted fitted; /* meshes of a file */
 } dividing;
 
 /* ---------------------------------------------------------------- checks ----------------- */
@@ -142,7 +144,7 @@ static tl_status check_count(const dividing *d)
     tl_model *m = d->m;
     const double edge = d->how->edge;
     double all = 0;
-    for (uint32_t row = 0; !d->how->edge_at && row < m->blocks.table.rows; row++) {
+    for (uint32_t row = 0; !d->how->edge_at && !d->how->file && row < m->blocks.table.rows; row++) {
         const tl_poly *shape = m->blocks.shape[row];
         double surface = 0;
         if (!d->chosen[row])
@@ -169,7 +171,9 @@ static tl_status check_all(dividing *d, const tl_id *blocks, size_t count, uint3
     tl_status status = tl_model_may_change(m, "give blocks zones");
     if (status == TL_OK)
         tl_rows_tidy(m);
-    if (status == TL_OK && !d->how->edge_at && !(d->how->edge > 0))
+    if (status == TL_OK && d->how->file && (d->how->edge_at || !isnan(d->how->edge)))
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "give the edge of zones or a file of them, not both");
+    if (status == TL_OK && !d->how->file && !d->how->edge_at && !(d->how->edge > 0))
         status = tl_fail(&m->error, TL_E_ARGUMENT, "the edge of zones must be > 0 m (it is %g)", d->how->edge);
     if (status == TL_OK && !d->how->solid)
         status = tl_fail(&m->error, TL_E_ARGUMENT, "no solid is given for the zones: give one that was named with %s",
@@ -195,7 +199,9 @@ static tl_status divide_body(dividing *d, part *of)
 {
     const tl_shape_zoning zoning = {.edge = d->how->edge, .size = d->how->edge_at ? edge_at : NULL, .user = d};
     d->body = of->body;
-    const tl_status status = tl_body_zones_make(d->m, of->body, &zoning, &d->keys, d->scratch, &of->zones);
+    const tl_status status = d->how->file
+                                 ? tl_body_zones_take(d->m, of->body, d->fitted.mesh, &of->zones)
+                                 : tl_body_zones_make(d->m, of->body, &zoning, &d->keys, d->scratch, &of->zones);
     for (uint32_t p = 0; status == TL_OK && p < of->zones.point_count; p++) /* from the model's origin from now on */
         of->zones.point[p] = tl_body_point(&d->m->bodies, of->body, of->zones.point[p]);
     return status;
@@ -339,6 +345,7 @@ static void end(dividing *d)
     free(d->chosen);
     tl_corner_keys_free(&d->keys);
     tl_zone_scratch_free(d->scratch);
+    tl_fit_free(&d->fitted);
 }
 
 tl_zoning tl_zoning_default(void)
@@ -351,7 +358,9 @@ tl_status tl_blocks_deform(tl_model *m, const tl_id *blocks, size_t count, const
     dividing d = {.m = m, .how = how};
     uint32_t solid = TL_NO_ROW;
     tl_status status = check_all(&d, blocks, count, &solid);
-    if (status == TL_OK) {
+    if (status == TL_OK && how->file) {
+        status = tl_fit_make(m, how->file, d.chosen, &d.fitted);
+    } else if (status == TL_OK) {
         d.scratch = tl_zone_scratch_create();
         if (!d.scratch || !tl_corner_keys_make(m, &d.keys))
             status = tl_fail_memory(&m->error);

@@ -5,18 +5,19 @@
  *
  *     t(x) = (stress + gradient (z - at)) n + traction
  *
- * Corner a gets the integral of N_a t, with N_a linear from 1 there to 0 on the other side. Both are linear, so the
- * middles of the three edges integrate the product exactly:
+ * Corner a gets the integral of N_a t over what lies bare, with N_a linear from 1 there to 0 on the other side. The
+ * traction is linear, t = sum N_b t_b, so with the integrals B_ab of N_a N_b over A (tl_bare)
  *
- *     f_a = A / 6 (t(x_ab) + t(x_ac))
+ *     f_a = A sum B_ab t_b
  *
- * A stress that is linear in space is in equilibrium with these to rounding. A quiet triangle lets waves out (Lysmer
- * and Kuhlemeyer 1969): with the velocity v of a corner, density d and moduli M and G of the solid,
+ * exactly. Segments integrate the same over what other blocks cover. So a stress that is linear in space is in
+ * equilibrium with these to rounding. A quiet triangle lets waves out (Lysmer and Kuhlemeyer 1969): with the velocity v
+ * of a corner, density d and moduli M and G of the solid,
  *
- *     f_a = f_a0 - A / 3 (c_p n (n . v) + c_s (v - n (n . v))),    c_p = sqrt(d M),  c_s = sqrt(d G)
+ *     f_a = f_a0 - A b_a (c_p n (n . v) + c_s (v - n (n . v))),    c_p = sqrt(d M),  c_s = sqrt(d G)
  *
- * f_a0 is what acted there when it was set. The step takes the mean of the velocities before and after the kick for v,
- * so it stays stable (cycle/gridpoints.c). */
+ * b_a is the sum of B_ab over b, and f_a0 what acted there when it was set. The step takes the mean of the velocities
+ * before and after the kick for v, so it stays stable (cycle/gridpoints.c). */
 #include "zone/outer.h"
 
 #include "base/columns.h"
@@ -53,18 +54,22 @@ static tl_vec3 area_of(const tl_vec3 x[3])
 
 void tl_outer_forces(const tl_model *m, const tl_outer_part *of, tl_vec3 force[3])
 {
-    tl_vec3 x[3], middle[3]; /* the traction times the area, in the middle of the edge across from each corner */
+    tl_vec3 x[3], at[3]; /* the traction times the area, at each corner */
     corners_of(m->zones, of, x);
     const tl_vec3 area = area_of(x), even = tl_v3_scale(tl_v3_norm(area), of->traction);
     const double height = m->origin.z - of->at;
     for (int a = 0; a < 3; a++) {
-        const double z = height + 0.5 * (x[(a + 1) % 3].z + x[(a + 2) % 3].z);
-        const tl_sym3 stress = tl_s3_madd(of->stress, z, of->gradient);
-        middle[a] = tl_v3_add(tl_s3_mul(stress, area), even);
+        const tl_sym3 stress = tl_s3_madd(of->stress, height + x[a].z, of->gradient);
+        at[a] = tl_v3_add(tl_s3_mul(stress, area), even);
     }
     for (int a = 0; a < 3; a++) {
-        const tl_vec3 sum = tl_v3_add(middle[(a + 1) % 3], middle[(a + 2) % 3]);
-        force[a] = tl_v3_madd(of->rest[a], of->loaded ? of->share / 6 : 0, sum);
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        force[a] = of->rest[a];
+        if (!of->loaded)
+            continue;
+        force[a] = tl_v3_madd(force[a], of->bare.of[a], at[a]);
+        force[a] = tl_v3_madd(force[a], of->bare.of[3 + a], at[b]);
+        force[a] = tl_v3_madd(force[a], of->bare.of[3 + c], at[c]);
     }
 }
 
@@ -76,15 +81,15 @@ static void add_resistance(const struct tl_zones *z, const tl_outer_part *of)
     tl_vec3 x[3];
     corners_of(z, of, x);
     const tl_vec3 area = area_of(x), n = tl_v3_unit(area);
-    const double third = of->share * tl_v3_norm(area) / 3;
-    const double along = third * sqrt(of->density * solid->constrained),
-                 across = third * sqrt(of->density * solid->shear);
+    const double size = tl_v3_norm(area);
+    const double along = size * sqrt(of->density * solid->constrained),
+                 across = size * sqrt(of->density * solid->shear);
     const double more = along - across;
     const double sum[6] = {across + more * n.x * n.x, across + more * n.y * n.y, across + more * n.z * n.z,
                            more * n.x * n.y,          more * n.y * n.z,          more * n.z * n.x};
     for (int a = 0; a < 3; a++)
         for (int k = 0; k < 6; k++)
-            p->quiet[k][z->part[of->part].corner[a]] += sum[k];
+            p->quiet[k][z->part[of->part].corner[a]] += tl_bare_at(&of->bare, a) * sum[k];
 }
 
 /* Empties what the corners of all conditions have had in the last step. */
@@ -270,7 +275,7 @@ static void rest_on_stress(const struct tl_zones *z, tl_outer_part *of, uint32_t
     tl_vec3 x[3];
     corners_of(z, of, x);
     for (int a = 0; a < 3; a++)
-        of->rest[a] = tl_v3_scale(of->share / 3, tl_s3_mul(stress, area_of(x)));
+        of->rest[a] = tl_v3_scale(tl_bare_at(&of->bare, a), tl_s3_mul(stress, area_of(x)));
 }
 
 /* Takes over from an earlier condition of the triangle, or NULL. `area`: of the quiet triangles about each gridpoint

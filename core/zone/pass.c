@@ -30,6 +30,7 @@
 #include "base/extremes.h"
 #include "base/lanes.h"
 #include "base/solid_columns.h"
+#include "model/law_time.h"
 
 #include <float.h>
 #include <string.h>
@@ -410,7 +411,7 @@ static bool call_solid(const pass_job *job, const tl_solid *solid, const tl_zone
         state[k] = z->zones.state[k] + g->start;
     tl_solid_batch batch = {.size = sizeof batch,
                             .count = (uint32_t)(g->depth * TL_LANES),
-                            .dt = job->dt,
+                            .dt = tl_law_time(job->m, job->dt),
                             .volume = r->volume,
                             .extent = r->extent,
                             .state = state,

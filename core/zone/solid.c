@@ -179,7 +179,9 @@ void tl_solid_energy(const tl_solid *solid, uint32_t count, const double *const 
 tl_status tl_solid_update(const tl_solid *solid, const tl_solid_batch *batch, tl_report *report)
 {
     const tl_solid_ops *ops = solid->kind->ops;
-    *report = (tl_report){.size = sizeof *report};
+    report->size = sizeof *report; /* its text is as long as all else that a call of some zones writes */
+    report->first_bad = 0;
+    report->text[0] = '\0';
     tl_enter(solid->kind, "update");
     tl_status status = ops->update(solid->self, batch, report);
     tl_leave();

@@ -105,7 +105,10 @@ static bool outer_is_sound(const struct tl_zones *z)
     bool sound = true;
     for (size_t k = 0; sound && k < z->outer_count; k++) {
         const tl_outer_part *of = &z->outer[k];
-        const tl_vec3 all = tl_v3(of->share + of->density, of->at, tl_v3_norm2(of->along));
+        double bare = 0;
+        for (int i = 0; i < 6; i++)
+            bare += of->bare.of[i];
+        const tl_vec3 all = tl_v3(bare + of->density, of->at, tl_v3_norm2(of->along));
         sound = of->part < z->part_count && (k == 0 || of->part > z->outer[k - 1].part) && of->solid < z->solid_count &&
                 of->fixed <= (TL_FIX_X | TL_FIX_Y | TL_FIX_Z) && of->density >= 0 && tl_v3_finite(all) &&
                 z->points.pushed[0] && (!of->quiet || z->points.quiet[0]) &&

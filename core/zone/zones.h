@@ -120,6 +120,24 @@ typedef struct tl_surface_part {
     tl_id block;
 } tl_surface_part;
 
+/* The part of a triangle that lies on no other block: integrals of N_a N_b over it, over the area of the triangle, for
+ * ab = 00 11 22 01 12 20. */
+typedef struct tl_bare {
+    double of[6];
+} tl_bare;
+
+/* Of a whole triangle. */
+static inline tl_bare tl_bare_whole(void)
+{
+    return (tl_bare){{1.0 / 6, 1.0 / 6, 1.0 / 6, 1.0 / 12, 1.0 / 12, 1.0 / 12}};
+}
+
+/* The integral of N_a, over the area of the triangle. */
+static inline double tl_bare_at(const tl_bare *b, int a)
+{
+    return b->of[a] + b->of[3 + a] + b->of[3 + (a + 2) % 3];
+}
+
 /* What acts from outside on a triangle of a surface, or holds it: outer.c. */
 typedef struct tl_outer_part {
     uint32_t part;  /* in `part` */
@@ -130,7 +148,7 @@ typedef struct tl_outer_part {
     uint8_t loaded; /* stress, gradient and traction count */
     uint8_t unused;
     tl_vec3 along;            /* unit vector along which its gridpoints are held; zero: none */
-    double share;             /* of its area that lies on no other block */
+    tl_bare bare;             /* what of it lies on no other block */
     double density;           /* of its block, kg/m3 */
     double at;                /* height, in the user's coordinates, at which `stress` holds, m */
     tl_sym3 stress, gradient; /* Pa, and Pa/m of height, tension positive */

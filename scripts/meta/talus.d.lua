@@ -236,6 +236,12 @@ function talus.help(topic) end
 ---@field face2 talus.Vector[] m: corners of the other end, in the order of those of face1 they are connected with
 ---@field group? string default "tunnel": group of what lies inside
 
+--- Creates a block of each convex region of a mesh of tetrahedra.
+---@class (exact) talus.generator.Zones
+---@field file string mesh of tetrahedra, legacy VTK or gmsh 2.2
+---@field density number kg/m3, > 0: density of the blocks
+---@field group? string default "rock": group of blocks whose regions have no name in the file
+
 --- Serves the page to browsers on this machine, at 127.0.0.1.
 ---@class (exact) talus.screen.Browser
 ---@field port? integer in [0, 65535], default 0: port of 127.0.0.1; 0: any that is free, which the address tells
@@ -634,6 +640,7 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "profile", options: talus.generator.Profile|talus.generator.Profile[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tetrahedron", options: talus.generator.Tetrahedron|talus.generator.Tetrahedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tunnel", options: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "zones", options: talus.generator.Zones|talus.generator.Zones[]): talus.GenerateResult
 function Model:generate(generator, options) end
 
 --- Sets the law of a joint set ("J1"), of one of its planes ("J1:3") or of every joint not named otherwise ("*"); without a law's name it changes properties.
@@ -859,7 +866,8 @@ function Model:solid(name, solid, options) end
 
 ---@class (exact) talus.DeformableOptions
 ---@field solid string name of the solid that the zones are made of: model:solid
----@field zone number|fun(place: talus.Vector): number wanted edge of zones, m, > 0, the same everywhere or at a place. Larger than a block: zones between its corners and its centroid
+---@field file? string or a mesh whose tetrahedra fill the blocks: legacy VTK, or gmsh 2.2 as text
+---@field zone? number|fun(place: talus.Vector): number wanted edge of zones, m, > 0, the same everywhere or at a place; required without a file. Larger than a block: zones between its corners and its centroid
 
 ---@class (exact) talus.DeformableResult
 ---@field blocks integer how many have been made
@@ -867,13 +875,13 @@ function Model:solid(name, solid, options) end
 ---@field gridpoints integer how many have been made
 ---@field clusters integer how many have been made
 ---@field smallest_altitude number of a zone over its largest side, m
----@field altitude_ratio number smallest altitude over the wanted edge
+---@field altitude_ratio number smallest altitude over the wanted edge; of a file over the mean edge of the zone (rms)
 ---@field worst_block talus.Block the block that has it
 ---@field time_step number step that the gridpoints would allow if nothing touched them, s
 ---@field inertia number largest ratio of the inertia of a block's gridpoints to that of the block: about 1 + 2/n^2 of n zones to an edge. Blocks that topple or rock in time want 8 zones to an edge, or stay rigid
 ---@field memory integer that the model has grown by, bytes
 
---- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share gridpoints, so zones go on over the faces between them. Nothing is done where one block cannot be divided.
+--- Divides blocks into zones: tetrahedra of constant strain, whose corners are gridpoints. They are free of stress where the blocks are, and move as the blocks did. Joined blocks come all at once: they share gridpoints, so zones go on over the faces between them. With {file = "rock.msh", solid = "granite"} the tetrahedra of a mesh that was made elsewhere become the zones of the blocks in which they lie. They must fill these within 1e-6 of their size. Nothing is done where one block cannot be divided.
 ---
 ---     report = selection:deformable{zone = 1.0, solid = "granite"}
 ---@param options talus.DeformableOptions
@@ -1240,12 +1248,12 @@ function Model:history(options) end
 ---@field x number[] lists of the components, where each value is a list of three
 ---@field y number[] lists of the components, where each value is a list of three
 ---@field z number[] lists of the components, where each value is a list of three
----@field xx any the same of a field that is a tensor, as "stress"
----@field yy any the same of a field that is a tensor, as "stress"
----@field zz any the same of a field that is a tensor, as "stress"
----@field xy any the same of a field that is a tensor, as "stress"
----@field yz any the same of a field that is a tensor, as "stress"
----@field zx any the same of a field that is a tensor, as "stress"
+---@field xx number[]? lists of the components of a field that is a tensor, as "stress"
+---@field yy number[]? lists of the components of a field that is a tensor, as "stress"
+---@field zz number[]? lists of the components of a field that is a tensor, as "stress"
+---@field xy number[]? lists of the components of a field that is a tensor, as "stress"
+---@field yz number[]? lists of the components of a field that is a tensor, as "stress"
+---@field zx number[]? lists of the components of a field that is a tensor, as "stress"
 
 --- Gives a table with the samples of each history, by name: copies of them.
 ---

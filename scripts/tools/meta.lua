@@ -83,7 +83,7 @@ local WORDS = {
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(zone)"] = "fun(zone: talus.Zone): any",
     ["function(gridpoint)"] = "fun(gridpoint: talus.Gridpoint): any",
-    ["number or function({x, y, z}), required"] = "number|fun(place: talus.Vector): number",
+    ["number or function({x, y, z})"] = "number|fun(place: talus.Vector): number",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
     ["function(t)"] = "(fun(t: number): number|talus.Vector, number?, number?)",
@@ -181,7 +181,7 @@ local function field_type(value, meaning, class)
     if not type then
         type = (meaning:match("^the block") or meaning:match("^a block")) and "talus.Block" or
             meaning:match("^the selection of blocks") and "talus.Blocks" or meaning:match("^{x, y, z}") and "talus.Vector" or
-            meaning:match("^the number of the") and "integer" or
+            meaning:match("^the number of the") and "integer" or meaning:match("^lists of the components") and "number[]" or
             (meaning:match("^how many times") or meaning:match("%f[%w]m3%f[%W]")) and "number" or
             meaning:match("^{block =, factor =}") and "{ block: integer, factor: number }" or
             meaning:match("the selection of blocks") and "talus.Blocks" or meaning:match("{x, y, z}") and "talus.Vector" or

@@ -1,9 +1,12 @@
 /* fuzz_file.c - files of blocks with anything in them: the generator FUZZ_GENERATOR reads each, and makes blocks or a sentence.
+ * With FUZZ_ZONES the file is then read once more, for the zones of these blocks, and for those of a cube.
  *
  * The bytes go into a file of the folder that the target runs in. */
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <talus/talus.h>
+#include <talus/zones.h>
 
 int LLVMFuzzerInitialize(int *count, char ***arguments);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -31,6 +34,32 @@ static bool write_bytes(const uint8_t *data, size_t size)
     return fclose(file) == 0 && written;
 }
 
+#ifdef FUZZ_ZONES
+/* Each block by itself, for the others may not fit; then some steps. */
+static void fill_blocks(tl_model *m)
+{
+    const tl_value box[] = {TL_ARG_VECTOR("min", 0, 0, 0), TL_ARG_VECTOR("max", 1, 1, 1),
+                            tl_arg_number("density", 2500)};
+    const tl_value moduli[] = {tl_arg_number("young", 1e9), tl_arg_number("poisson", 0.25)};
+    const tl_args properties = {moduli, 2}, cube = {box, 3};
+    tl_zoning how = tl_zoning_default();
+    tl_solve_result result;
+    tl_zoned made;
+    tl_id *blocks = NULL;
+    size_t count = 0;
+    tl_block_filter all = tl_block_filter_default();
+    how.solid = "rock";
+    how.file = FUZZ_FILE;
+    tl_generate(m, "box", &cube, NULL);
+    if (tl_model_solid(m, "rock", "elastic", &properties) == TL_OK &&
+        tl_blocks_select(m, &all, &blocks, &count) == TL_OK)
+        for (size_t k = 0; k < count; k++)
+            tl_blocks_deform(m, &blocks[k], 1, &how, &made);
+    free(blocks);
+    tl_model_cycle(m, 3, &result);
+}
+#endif
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     tl_error error;
@@ -43,6 +72,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const tl_value values[] = {tl_arg_text("file", FUZZ_FILE), tl_arg_number("density", 2500)};
     const tl_args args = {values, FUZZ_VALUES};
     tl_generate(m, FUZZ_GENERATOR, &args, &summary);
+#ifdef FUZZ_ZONES
+    fill_blocks(m);
+#endif
     tl_model_destroy(m);
     return 0;
 }

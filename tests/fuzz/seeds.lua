@@ -1,4 +1,4 @@
--- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj, stl and command.
+-- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj, stl, mesh and command.
 local talus = require "talus"
 local folder = arg[1]
 
@@ -56,7 +56,7 @@ local function write(name, text)
     file:write(text)
     file:close()
 end
-for _, kind in ipairs { "obj", "stl", "command" } do -- makes the folders
+for _, kind in ipairs { "obj", "stl", "mesh", "command" } do -- makes the folders
     saved[5]:write_blocks(string.format("%s/%s/0", folder, kind))
 end
 write("obj/1", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
@@ -78,3 +78,14 @@ for k, text in ipairs { '{"op":"step","n":100}', '{"op":"delete","blocks":[3,5]}
     '{ "op" : "cut", "joint": "a\\"b", "dip": 60, "dip_direction": 90.5, "origin": [1, -2.5, 1e3] }' } do
     write("command/" .. k, text)
 end
+
+-- Meshes of a cube in all formats.
+package.path = "tests/lua/?.lua;" .. package.path
+local meshes = require "meshes"
+local cube = meshes.box({ 0, 0, 0 }, { 1, 1, 1 }, { 1, 1, 2 }, function(_, _, z) return z < 0.5 and 1 or 2 end)
+for k, how in ipairs { {}, { binary = true, group = "group" }, { offsets = true, text = "material" },
+    { offsets = true, binary = true, text = "group" }, { binary = true, single = true, group = "region", real = true } } do
+    meshes.vtk(string.format("%s/mesh/%d.vtk", folder, k), cube, how)
+end
+meshes.gmsh(folder .. "/mesh/1.msh", cube)
+meshes.gmsh(folder .. "/mesh/2.msh", cube, { "low", "high" }, { "1 15 2 0 1 1", "2 2 2 7 1 1 2 3" })

@@ -9,8 +9,12 @@
 --     about.kind, about.text     "slope" and so on; the model in a line
 --     about.law                  the law of most joints
 --     about.brittle              some law loses strength for good, so that the answer depends on the way in which load comes
---     about.stages               a list of { name =, act = }: `act`, where there is one, changes the model; after each the model is run
+--     about.stages               a list of { name =, act =, group = }: `act`, where there is one, changes the model; after each the model is
+--                                run. `group` is what it excavates
 --     about.apply(model, share)  puts on a share of gravity and loads; nil where there is an initial stress
+--
+-- models.release(model, group) excavates a group, but leaves the forces that its blocks gave as loads on what remains. It gives a function
+-- of a share of them that is to be left.
 local shapes = require "shapes"
 local talus = require "talus"
 
@@ -281,7 +285,7 @@ function kinds.tunnel(random, seed)
     local depth, k = 10 ^ random(-0.2, 1.6) * high, 10 ^ random(-1.5, 0.3)
     local stages = { { name = "in situ" } }
     for _, group in ipairs(openings == "one" and { "first" } or { "first", "second" }) do
-        stages[#stages + 1] = { name = group, act = function(m)
+        stages[#stages + 1] = { name = group, group = group, act = function(m)
             m:blocks { group = group }:delete()
         end }
     end
@@ -661,6 +665,34 @@ function models.build(seed, change)
         end
     end
     error(("seed %d: no model"):format(seed))
+end
+
+local function add_load(loads, block, force, at)
+    local of = loads[block.id] or { force = { 0, 0, 0 }, moment = { 0, 0, 0 } }
+    local arm = shapes.sum(at, -1, block.centroid)
+    loads[block.id] = { force = shapes.sum(of.force, 1, force), moment = shapes.sum(of.moment, 1, shapes.cross(arm, force)) }
+end
+
+function models.release(model, group)
+    local loads = {}
+    for _, contact in ipairs(model:contacts()) do
+        local first, second = contact.blocks[1], contact.blocks[2]
+        local keeps = first.group == group and second or first
+        if (first.group == group) ~= (second.group == group) and not keeps.fixed then
+            local sign = keeps.id == second.id and 1 or -1
+            for _, point in ipairs(contact.points) do
+                local force = shapes.sum(point.shear_force, point.normal_force, contact.normal)
+                add_load(loads, keeps, shapes.sum({ 0, 0, 0 }, sign, force), point.position)
+            end
+        end
+    end
+    model:blocks { group = group }:delete()
+    return function(share)
+        for id, load in pairs(loads) do
+            model:blocks { id = id }:load { force = shapes.sum({ 0, 0, 0 }, share, load.force),
+                moment = shapes.sum({ 0, 0, 0 }, share, load.moment) }
+        end
+    end
 end
 
 return models

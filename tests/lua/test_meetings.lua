@@ -13,6 +13,20 @@ model:blocks { group = "floor" }:fix()
 model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
 model:blocks { group = "column" }:deformable { zone = 0.5, solid = "rock" }
 model:damping "local"
+
+-- Before the first step they are listed as it finds them. Asking changes nothing of what comes.
+local unasked = model:copy()
+check.equal(#model:contacts(), 3)
+check.near(model:contacts { between = { model:blocks { group = "column" }, model:blocks { group = "top" } } }[1].area, 1, 1e-9)
+check.equal(#model:blocks { group = "column" }[1].neighbours, 2)
+check.equal(model:state_hash(), unasked:state_hash())
+check.equal(#model:contacts(), 3)
+model:joint("*", { friction = 30 })
+unasked:joint("*", { friction = 30 })
+model:cycle(3)
+unasked:cycle(3)
+check.equal(model:state_hash(), unasked:state_hash())
+
 model:solve { ratio = 1e-6, max_cycles = 30000 }
 
 local column, top, floor = model:blocks { group = "column" }[1], model:blocks { group = "top" }[1], model:blocks { group = "floor" }[1]
@@ -38,6 +52,32 @@ check.equal(below.blocks[2], column)
 check.near(contacts:sum("normal_force"), 8 * 2000 * 10 + 2 * 2500 * 10 + 0.25 * 2500 * 10, 1)
 check.near(model:contacts { where = function(c) return c.area < 2 and c.area > 0.5 end }:sum("normal_force"), 25000, 1)
 check.equal(#column.neighbours, 2)
+
+-- Their points bear them, three a segment.
+for _, c in ipairs { below, above } do
+    local force, area, shear = 0, 0, 0
+    for _, p in ipairs(c.points) do
+        force, area, shear = force + p.normal_force, area + p.area, shear + p.shear_force[1]
+        check.near(p.position[3], c == below and 0 or 2, 1e-3)
+        check.near(p.closure, p.normal_force / (1e9 * p.area), 1e-11) -- places are those behind the last step
+        check.near(p.gap, -p.closure, 1e-15)
+        check.equal(p.state, "elastic")
+    end
+    check.holds(#c.points > 0 and #c.points % 3 == 0)
+    check.near(force, c.normal_force, 1e-6)
+    check.near(area, c.area, 1e-9)
+    check.near(shear, c.shear_force[1], 1e-6)
+end
+
+-- A contact is known by its blocks and by when they met.
+check.equal(above.born, 0)
+local again = model:copy()
+again:generate("box", { min = { 0.6, 0.6, 2 }, max = { 0.9, 0.9, 2.3 }, density = 2500, group = "late" })
+again:cycle(2)
+local late = again:contacts { between = { again:blocks { group = "column" }, again:blocks { group = "late" } } }[1]
+check.equal(late.born, model.cycles)
+again:cycle(40)
+check.equal(late.born, model.cycles)
 
 -- A push along the contact is borne by shear, or slips.
 model:blocks { group = "top" }:load { force = { 5000, 0, 0 } }

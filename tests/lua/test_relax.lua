@@ -3,6 +3,7 @@
 -- and over a copy or a save in the middle, what is driven is refused.
 local talus = require "talus"
 local check = require "check"
+local models = require "relax_models"
 
 local TMP = os.tmpname()
 
@@ -229,6 +230,34 @@ do
         copy:relax { load_steps = 3 }
         check.equal(copy:state_hash(), whole:state_hash())
     end
+end
+
+-- A small block between two large ones at the open side of a floor slides out as these settle, whatever its friction, and is not clamped by
+-- them: weight moves large blocks no faster than small ones.
+for _, friction in ipairs { 0.9, 1, 1.2, 1.4 } do
+    check.equal(models.build(61, { friction = friction }):relax({}).reason, "failure")
+end
+
+-- No time passes for laws: a surface does not age at rest, and slides from the friction at its reference velocity on, 0.6 or 30.96 degrees.
+-- A state that is older than that of steady slip at it is worn off by slip.
+do
+    local function cube(dip, theta)
+        local angle = math.rad(dip)
+        local m = talus.model { gravity = { 10 * math.sin(angle), 0, -10 * math.cos(angle) } }
+        m:generate("box", { { min = { -5, 0, -1 }, max = { 9, 1, 0 }, density = 2500, group = "plane" }, { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 } })
+        m:blocks { group = "plane" }:fix()
+        m:joint("*", "rate_state", { kn = 1e9, ks = 1e9, mu0 = 0.6, a = 0.01, b = 0.015, distance = 1e-5, velocity = 1e-6, theta = theta })
+        local reason = m:relax({}).reason
+        return reason, m:contacts()[1].points[1].theta
+    end
+    for _, case in ipairs { { 20, 10, "rest", 10 }, { 20, 1e4, "rest", 1e4 }, { 30.9, 10, "rest", 10 }, { 31.02, 10, "failure", 10 }, { 40, 1e4, "failure", 10 } } do
+        local reason, theta = cube(case[1], case[2])
+        check.equal(reason, case[3])
+        check.near(theta, case[4], 1e-9 * case[4])
+    end
+    local reason, theta = cube(33, 1e4)
+    check.equal(reason, "rest")
+    check.holds(theta < 9e3 and theta > 10, "slip has worn off some of the state: " .. theta)
 end
 
 -- One sliver, a thin slice of some block of a rock, does not stop the others. Where it slips, leaps take along what was too short.

@@ -58,6 +58,23 @@ local _, count = remarks("local none = stack():blocks { group = 'cub' }\nnone:fi
 check.equal(count, 3)
 is_silent("stack():blocks { group = 'cub' }:show():unjoin():reset_displacement()")
 
+-- Slivers that are left, for blocks with zones are joined to none.
+do
+    local plates = [[
+local m = talus.model {}
+for k, z in ipairs { 0, 1, 1.01 } do
+    m:generate("box", { min = { 0, 0, z }, max = { 2, 2, k == 2 and 1.01 or z + 1 }, density = 2700, group = k == 2 and "thin" or "thick" })
+end
+m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 35 })
+m:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+]]
+    local zones = "m:blocks { group = 'thick' }:deformable { zone = 1, solid = 'rock' }\n"
+    says(plates .. zones .. "m:filter { auto = true }", "filter: joined 0 of 0 slivers: blocks that have zones, 2 of the visible ones, are joined to none")
+    says(plates .. zones .. "m:filter { aspect = 20, action = 'join' }", "filter: joined 0 of 1 slivers")
+    is_silent(plates .. zones .. "m:filter { aspect = 20, action = 'report' }")
+    is_silent(plates .. "m:filter { auto = true }")
+end
+
 -- A time step that is far too long, given before the run or after some of it; of blocks that meet later, too.
 says("local m = stack() m:timestep { dt = 0.005 } m:cycle(1) m:cycle(1)", "dt = 0.005 s is", "times the longest stable step",
     "which block 2 sets", "leave dt out")

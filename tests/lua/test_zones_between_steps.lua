@@ -48,6 +48,29 @@ check.holds(model.dt >= before)
 check.equal(model:copy():state_hash(), model:state_hash())
 model:cycle(5)
 
+-- A block that goes far away lets faces be listed anew, and nothing else: a sliding block keeps its bits.
+model = talus.model { gravity = { 5, 0, -8 } }
+model:generate("box", { { min = { -1, -1, -0.6 }, max = { 4, 2, 0 }, density = 2500, group = "base" },
+    { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500, group = "top" },
+    { min = { 50, 0, 0 }, max = { 51, 1, 1 }, density = 2500, group = "far" } })
+model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 20 })
+model:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+model:blocks { group = "base" }:fix()
+model:blocks { group = "far" }:fix()
+local top = model:blocks { group = "top" }
+top:deformable { zone = 0.5, solid = "rock" }
+top:set { velocity = { 1, 0.2, 0 } }
+for _ = 1, 40 do
+    local other = model:copy()
+    other:blocks { group = "far" }:delete()
+    model:cycle(2)
+    other:cycle(2)
+    local one, two = top[1].velocity, other:blocks { group = "top" }[1].velocity
+    for i = 1, 3 do
+        check.equal(one[i], two[i])
+    end
+end
+
 -- ---------------------------------------------------------------- another law
 
 -- Before the next step the points of segments have no room for states of the new law.

@@ -18,6 +18,16 @@ end
 local THREADS, EVERY, LEAVE = tonumber(options.threads), tonumber(options.every) * (os.getenv "TALUS_TEST_SHARE" or 1), tonumber(options.leave)
 local TMP = os.getenv "TALUS_TEST_TMP" .. "/out_of_memory" .. THREADS
 
+-- A mesh of two layers.
+package.path = "tests/lua/?.lua;" .. package.path
+local meshes = require "meshes"
+local MESH = TMP .. "_mesh"
+do
+    local layers = meshes.box({ 0, 0, 0 }, { 1, 1, 1 }, { 1, 1, 2 }, function(_, _, z) return z < 0.5 and 1 or 2 end)
+    meshes.vtk(MESH .. ".vtk", layers, { binary = true, text = "group" })
+    meshes.gmsh(MESH .. ".msh", layers, { "low", "high" })
+end
+
 local function text_of(name)
     local file = assert(io.open(name))
     local text = file:read "a"
@@ -177,6 +187,19 @@ local calls = {
     end },
     { "copy", function(m) return m.model:copy():state_hash() end },
     { "save", function(m) m.model:save(TMP .. "/run.talus") end },
+    { "zones", function()
+        local rock = talus.model { threads = THREADS }
+        rock:generate("zones", { file = MESH .. ".vtk", density = 2500 })
+        return rock:blocks()[2].group
+    end },
+    { "deformable", function()
+        local rock = talus.model { threads = THREADS }
+        rock:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 0.5 }, density = 2500 }, { min = { 0, 0, 0.5 }, max = { 1, 1, 1 }, density = 2500 } })
+        rock:solid("rock", "elastic", { young = 1e9, poisson = 0.25 })
+        rock:blocks():join()
+        rock:blocks():deformable { file = MESH .. ".msh", solid = "rock" }
+        return rock:state_hash()
+    end },
     { "restore", function() return talus.restore(TMP .. "/run.talus", { threads = THREADS }):state_hash() end },
     { "throw", function(m) m.model:blocks { group = "cap", hidden = "any" }:set { velocity = { 0, 0, 300 } } end },
     { "fast cycle", function(m) return m.model:cycle(2).ratio end, run = true },

@@ -15,10 +15,11 @@ MODULES = {
     "base": (),
     "geometry": ("base",),
     "plugin": ("base",),
+    "mesh": ("base", "geometry"),
     "narrow": ("base", "geometry"),
     "model": ("base", "geometry"),
-    "generate": ("base", "geometry", "plugin", "model"),
-    "zone": ("base", "geometry", "plugin", "model"),
+    "generate": ("base", "geometry", "plugin", "model", "mesh"),
+    "zone": ("base", "geometry", "plugin", "model", "mesh"),
     "contact": ("base", "geometry", "narrow", "model", "zone"),
     "force": ("base", "plugin", "narrow", "model", "zone", "contact"),
     "segment": ("base", "geometry", "narrow", "model", "zone", "contact", "force"),
@@ -80,7 +81,7 @@ LUA_HEADERS = {"lua.h", "lauxlib.h", "lualib.h", "luaconf.h", "lua.hpp"}
 KIND_FOLDERS = ("laws", "damping", "generators", "solids", "screens")
 # Kinds whose names are also words of the model (a joint is a thing, a field and a generator; a
 # contact's state may be elastic, a ratio local, energy kinetic, a boundary in a box): only a look-up or comparison with them is a fault.
-WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic", "box"}
+WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic", "box", "zones"}
 
 MAX_FILE_LINES = 900
 MAX_FUNCTION_LINES = 70

@@ -45,6 +45,18 @@ static void check_mass(const tl_model *m)
     }
 }
 
+/* Lists of zones have no more room than they need. */
+static void check_spare(const struct tl_zones *z)
+{
+    CHECK_INT(z->group_capacity, z->group_count);
+    CHECK_INT(z->listed_capacity, z->listed_count);
+    CHECK_INT(z->slot_capacity, z->listed_count);
+    CHECK_INT(z->use_capacity, z->listed_count);
+    CHECK_INT(z->use_start_capacity, z->points.table.rows + 1);
+    CHECK_INT(z->row_of_capacity, z->row_of_count);
+    CHECK_INT(z->part_capacity, z->part_count);
+}
+
 TEST(zones_fill_the_blocks_of_cut_rock)
 {
     for (uint64_t seed = 1; seed <= 10; seed++) {
@@ -56,6 +68,7 @@ TEST(zones_fill_the_blocks_of_cut_rock)
         CHECK(made.zones > 12 * blocks && made.gridpoints > 5 * blocks && made.clusters * 10 >= made.zones);
         CHECK(made.least_altitude > 0 && made.least_share > 0);
         check_mass(m);
+        check_spare(m->zones);
         tl_model_destroy(m);
     }
 }

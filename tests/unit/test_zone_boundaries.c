@@ -123,6 +123,30 @@ TEST(a_squeezed_cube_is_at_rest)
     tl_model_destroy(m);
 }
 
+/* Blocks that stand out over each other, by some triangles and parts of others: what lies bare bears the traction, the
+ * segments the rest. So a uniform stress stays as it is, whether the block below has zones or none. */
+TEST(ledges_are_at_rest)
+{
+    const double out[5] = {0.5, 0.37, 0.11, 1e-3, 1e-4};
+    for (int k = 0; k < 10; k++) {
+        const double x = out[k % 5], y = 0.6 * x;
+        tl_model *m = scene_model(1);
+        scene_box(m, tl_v3(0, 0, 0), tl_v3(2, 2, 1));
+        scene_box(m, tl_v3(x, -y, 1), tl_v3(2 + x, 2 - y, 2));
+        scene_solid(m, 1e9, 0.2);
+        scene_law(m, "coulomb", 1e10, 5e9, 60);
+        divide(m, k < 5 ? 0 : 1, 0.7);
+        stress_all(m, squeeze, (tl_sym3){.xx = 1e5, .yy = 2e5, .xy = 3e4}, tl_v3(0, 0, 1));
+        run(m, 1);
+        CHECK(largest_bearing(m) > 1e4);
+        CHECK(largest_force(m) < 1e-10 * largest_bearing(m));
+        run(m, 100);
+        CHECK(largest_way(m) < 1e-12);
+        CHECK(largest_force(m) < 1e-9 * largest_bearing(m));
+        tl_model_destroy(m);
+    }
+}
+
 /* A column of cut rock, turned oddly and 10 km away, under its weight: stress grows with depth, in zones and joints. */
 TEST(a_column_of_cut_rock_bears_its_weight)
 {
@@ -795,9 +819,9 @@ TEST(what_does_not_go_together_is_refused)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(a_squeezed_cube_is_at_rest(), a_column_of_cut_rock_bears_its_weight(), a_block_between_held_ones_is_at_rest(),
-          initial_forces_stay_when_segments_are_laid_anew(), a_pulled_bar_is_stretched(),
-          a_later_boundary_replaces_an_earlier_one(), a_roller_holds_along_any_normal(),
+TEST_MAIN(a_squeezed_cube_is_at_rest(), ledges_are_at_rest(), a_column_of_cut_rock_bears_its_weight(),
+          a_block_between_held_ones_is_at_rest(), initial_forces_stay_when_segments_are_laid_anew(),
+          a_pulled_bar_is_stretched(), a_later_boundary_replaces_an_earlier_one(), a_roller_holds_along_any_normal(),
           two_rollers_leave_their_edge_one_direction(), a_quiet_face_lets_pulses_out(),
           a_quiet_face_bears_what_held_it(), a_face_follows_a_function(), a_driven_block_turns_without_strain(),
           loads_of_blocks_have_their_force_and_moment(), loads_and_drives_go_over_to_zones(),

@@ -307,6 +307,28 @@ TEST(stress_turns_with_its_body)
     }
 }
 
+/* Stress of a body that does not move keeps its bits, zone by zone. */
+TEST(stress_without_motion_stays)
+{
+    const int n[3] = {2, 2, 2};
+    tl_model *m = zoned(n, tl_v3(1, 1, 1), 1e10, 0.25, 2500, 1);
+    tl_gridpoints *p = &m->zones->points;
+    tl_zone_table *t = &m->zones->zones;
+    size_t same = 0;
+    for (size_t row = 0; row < t->table.rows; row++)
+        for (int j = 0; j < 6; j++)
+            t->stress[j][row] = 1e6 / (3.0 + (double)(t->number[row] % 7) + j);
+    for (size_t row = 0; row < p->table.rows; row++)
+        p->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+    m->constraints++;
+    run(m, 20);
+    for (size_t row = 0; row < t->table.rows; row++)
+        for (int j = 0; j < 6 && t->number[row] != TL_NO_ROW; j++)
+            same += t->stress[j][row] == 1e6 / (3.0 + (double)(t->number[row] % 7) + j);
+    CHECK_INT(same, 6 * m->zones->row_of_count);
+    tl_model_destroy(m);
+}
+
 /* A free beam of four zones deep bends at the frequency of Timoshenko's, whatever Poisson's ratio (30.506 and 30.396 Hz):
  * it is not locked. */
 TEST(a_beam_does_not_lock)
@@ -691,7 +713,7 @@ TEST(carried_contacts_count_once)
 
 TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones_that_yield_turn_motion_to_heat(),
           zones_have_the_same_bits_on_any_threads(), a_column_settles_under_its_weight(),
-          columns_on_a_joint_shorten_in_series(), stress_turns_with_its_body(), a_beam_does_not_lock(),
-          a_cube_rests_and_slides_on_zones(), a_stiff_cube_falls_as_a_rigid_one(), a_cube_comes_to_rest_on_a_face(),
-          zones_come_back(), a_zone_turned_inside_out_is_told(), carried_contacts_count_once(),
-          zones_tell_what_they_are())
+          columns_on_a_joint_shorten_in_series(), stress_turns_with_its_body(), stress_without_motion_stays(),
+          a_beam_does_not_lock(), a_cube_rests_and_slides_on_zones(), a_stiff_cube_falls_as_a_rigid_one(),
+          a_cube_comes_to_rest_on_a_face(), zones_come_back(), a_zone_turned_inside_out_is_told(),
+          carried_contacts_count_once(), zones_tell_what_they_are())

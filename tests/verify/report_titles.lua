@@ -64,6 +64,7 @@ local TITLES = {
     { "E2", "paper's roof pyramid, cut and under stress" },
     { "E2.table", "roof pyramids, friction at failure" },
     { "E3", "paper's tunnel under three faults" },
+    { "E3.zones", "paper's tunnel in rock that deforms" },
     { "E4", "paper's slope of 49 blocks" },
     { "GB%.(%w+)", "toppling columns of Goodman and Bray, %1" },
     { "GB%.(%w+)%.corners", "toppling columns of Goodman and Bray, %1, forces at corners" },

@@ -224,16 +224,19 @@ static inline tl_law_dilation tl_law_dilation_of(double angle, double limit)
 }
 
 /* By how much the slip of a step opens a joint of linear springs, m. The slip adds to the pressure and so to the
- * strength: it is (trial - strength) / (ks A + kn A tangent(dilation) tangent(friction)). `total`: normal force, N;
- * none opens under tension. `friction`: its tangent; `opened`: so far, m. */
-TL_IN_LOOP double tl_law_lift_of_slip(tl_law_dilation by, double trial, double strength, double total, double spring_n,
-                                      double spring_s, double friction, double opened)
+ * strength: it is (trial - strength) / (ks A + kn A tangent(dilation) tangent(friction)). `before`: normal force, N, at
+ * the beginning of the step; `total`: at its end without slip, negative where the walls part. Slip keeps walls closed
+ * that part no faster than it lifts them. No other walls that part are lifted. `friction`: its tangent; `opened`: so
+ * far, m. */
+TL_IN_LOOP double tl_law_lift_of_slip(tl_law_dilation by, double trial, double strength, double before, double total,
+                                      double spring_n, double spring_s, double friction, double opened)
 {
     double yield = spring_s + spring_n * by.tangent * friction;
     double grown = by.tangent * (trial - strength) / (yield > 0 ? yield : 1);
     double headroom = by.most > opened ? by.most - opened : 0;
     grown = grown < headroom ? grown : headroom;
-    grown = total < 0 ? 0 : grown;
+    double left = before > 0 ? total + spring_n * grown : total;
+    grown = left < 0 ? 0 : grown;
     return trial > TL_LAW_MOST(strength) ? grown : 0;
 }
 

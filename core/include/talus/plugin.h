@@ -193,7 +193,7 @@ enum {
 typedef struct tl_law_batch {
     uint32_t size;
     uint32_t count;
-    double dt;               /* s, of the motion; 0 in the first step of a run */
+    double dt;               /* s, in which it moves; 0 in the first step of a run, and while model:relax runs */
     const double *area;      /* m2 */
     const double *closure;   /* m */
     const double *f_n0;      /* N, normal force at closure 0 (in situ) */
@@ -361,6 +361,14 @@ typedef struct tl_block_shape {
     uint32_t hidden; /* 1: hidden once the generator has ended */
 } tl_block_shape;
 
+/* Since 1.10: tetrahedra of a file, of one group, that hang together over their sides and fill a convex solid. */
+typedef struct tl_mesh_part {
+    const char *group; /* the name of their group in the file; "": it has none */
+    const tl_vec3 *corners;
+    size_t corner_count;
+    double volume; /* m3 */
+} tl_mesh_part;
+
 struct tl_host {
     uint32_t size;
     void *impl;
@@ -417,6 +425,10 @@ struct tl_host {
     tl_status (*show)(const tl_host *);
     /* Creates a block from its faces. Refused with TL_E_GEOMETRY when they do not close a convex shape. */
     tl_status (*create_block)(const tl_host *, const tl_block_shape *shape);
+    /* since 1.10: reads the tetrahedra of a file, VTK legacy or gmsh 2.2. The parts are in the order of their first
+     * tetrahedra, and valid until the generator ends or reads another. Refused with TL_E_GEOMETRY are a damaged file
+     * and a part that is not convex. */
+    tl_status (*read_mesh)(const tl_host *, const char *file, const tl_mesh_part **parts, size_t *count);
 };
 
 typedef struct tl_generator_ops {
@@ -495,7 +507,7 @@ enum {
 typedef struct tl_solid_batch {
     uint32_t size;
     uint32_t count;
-    double dt;               /* s, of the motion; 0 in the first step of a run */
+    double dt;               /* s, in which it moves; 0 in the first step of a run, and while model:relax runs */
     const double *volume;    /* m3 */
     const double *extent;    /* m, cube root of the volume of the zones that share their volumetric strain */
     const double *strain[6]; /* increment in this step */

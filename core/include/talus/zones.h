@@ -43,16 +43,19 @@ typedef struct tl_zoning {
     double (*edge_at)(void *user, tl_vec3 place); /* or a function of the place; NULL: `edge` everywhere */
     void *user;                                   /* of it */
     const char *solid;                            /* name of the solid that zones are made of */
+    /* or a file of tetrahedra that fill the blocks where they are, within 1e-6 of their size: VTK legacy or gmsh 2.2.
+     * NULL: Talus divides them */
+    const char *file;
 } tl_zoning;
 
-/* Nothing is given: an edge and a solid have to be. */
+/* Nothing is given: an edge or a file, and a solid, have to be. */
 TL_API tl_zoning tl_zoning_default(void);
 
 /* What has been made. */
 typedef struct tl_zoned {
     size_t blocks, zones, gridpoints, clusters;
     double least_altitude; /* of all zones over their largest sides, m */
-    double least_share;    /* of altitudes over the wanted edges */
+    double least_share;    /* of altitudes over the wanted edges; of a file over the zone's edges (rms) */
     tl_id worst;           /* the block that has that */
     double time_step;      /* that its gridpoints would allow if nothing touched them, s */
     double inertia;        /* largest ratio of the inertia of a block's gridpoints to that of the block: 1 + 2/n2 of n
@@ -65,9 +68,11 @@ typedef struct tl_zoned {
  * are. Joined blocks come all at once: where they lie on each other they share gridpoints. Nothing has changed when it
  * fails:
  *
- * TL_E_ARGUMENT: the edge is not positive, or makes too many zones; there is no such solid. TL_E_STALE: no such block.
- * TL_E_STATE: a block has zones, is joined to one that is not given, or is loaded on its faces or at a point outside.
- * TL_E_GEOMETRY: a block cannot be divided, or joined blocks do not lie flat on each other. */
+ * TL_E_ARGUMENT: the edge is not positive, or makes too many zones; edge and file are given, or none; there is no such
+ * solid. TL_E_STALE: no such block. TL_E_STATE: a block has zones, is joined to one that is not given, or is loaded on
+ * its faces or at a point outside. TL_E_GEOMETRY: a block cannot be divided, or joined blocks do not lie flat on each
+ * other. It is also given for a damaged file, and for tetrahedra that do not fill the blocks. TL_E_IO: a file cannot be
+ * read. */
 TL_API tl_status tl_blocks_deform(tl_model *model, const tl_id *blocks, size_t count, const tl_zoning *how,
                                   tl_zoned *made);
 

@@ -10,7 +10,8 @@
  * A total closure: a point that has opened carries again only where its walls meet. State `opening`
  * is how far slip has lifted the walls off each other; it stays, so unloading goes back along the
  * same line. The limit is that of the pressure the slip itself adds, found in one step since all is
- * linear: slip = (|f_t| - limit) / (ks A + kn A tan(dilation) tan(friction)).
+ * linear: slip = (|f_t| - limit) / (ks A + kn A tan(dilation) tan(friction)). Closed walls stay closed while slip lifts
+ * them as fast as they part, though a step may part them by more than they were closed.
  *
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The cohesion stays
  * after slip, and comes back when an opened point closes; see coulomb_tensile for a bond that is lost.
@@ -124,7 +125,8 @@ TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t beg
         double trial = tl_v3_norm(f);
         if (dilates) {
             double strength = cohesion * c.area[i] + total * tangent;
-            lift = tl_law_lift_of_slip(dilation, trial, strength, total, kn * c.area[i], stiffness, tangent, opened);
+            lift = tl_law_lift_of_slip(dilation, trial, strength, c.f_n[i], total, kn * c.area[i], stiffness, tangent,
+                                       opened);
             opened = opened + lift;
             opening[i] = opened;
             total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];

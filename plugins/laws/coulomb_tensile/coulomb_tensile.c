@@ -143,7 +143,8 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         double pulls = holds * grip, total = pressed - pulls;
         if (dilates) {
             double strong = cohesion * c.area[i] + total * tangent;
-            lift = tl_law_lift_of_slip(dilation, trial, strong, total, kn * c.area[i], stiffness, tangent, opened);
+            lift = tl_law_lift_of_slip(dilation, trial, strong, c.f_n[i], total, kn * c.area[i], stiffness, tangent,
+                                       opened);
             opened = opened + lift;
             opening[i] = opened;
             pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];

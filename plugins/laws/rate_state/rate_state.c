@@ -15,6 +15,9 @@
  *
  * by Newton's steps from the rate of the step before, kept between bounds that close in on a root.
  *
+ * In a step without time, as those of a relaxation are, what moves slips at V0: |f_s| / A <= s mu(V0, theta) + eta V0,
+ * and the state goes on for the time that the slip takes at V0. It does not age.
+ *
  * Source: Dieterich, J. Geophys. Res. 84 (1979) 2161-2168; Ruina, J. Geophys. Res. 88 (1983) 10359-10370; the form with
  * arsinh after Rice and Ben-Zion, Proc. Natl. Acad. Sci. 93 (1996) 3811-3818; eta: Rice, J. Geophys. Res. 98 (1993)
  * 9885-9907.
@@ -112,7 +115,7 @@ TL_IN_LOOP double answer(const int evolution, double distance, double theta, dou
 /* What a step comes to before slip; stresses are those of the area. */
 typedef struct trial {
     tl_law_scratch total, x, y, z, shear;
-    tl_law_scratch theta, effect, exponent, rate;
+    tl_law_scratch theta, effect, exponent, rate, time;
     tl_law_scratch root, low, high, found;
 } trial;
 
@@ -205,18 +208,39 @@ TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *re
     return left;
 }
 
-/* The rate of slip of each lane; 0 of open ones and in a step without time. */
+/* The rate of slip of each lane, 0 of open ones, in a step that takes time. */
 TL_IN_LOOP void find_rates(const params *given, double dt, uint32_t lanes, trial *restrict t)
 {
     const double velocity = given->velocity, slows = given->ks * dt + given->damping;
-    const double moves = dt > 0 ? 1 : 0, most = slows > 0 ? 1 / slows : 0;
+    const double most = slows > 0 ? 1 / slows : 0;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double y = t->root[i], e = t->exponent[i], slides = t->shear[i] > 0 ? moves : 0;
+        double y = t->root[i], e = t->exponent[i], slides = t->shear[i] > 0 ? 1 : 0;
         double rate = slides * velocity * (tl_lane_exp(y - e) - tl_lane_exp(-y - e));
         double limit = t->shear[i] * most;
         rate = rate < limit ? rate : limit; /* the stress does not change its sign */
         t->rate[i] = t->effect[i] > 0 ? rate : 0;
+        t->time[i] = dt;
+    }
+}
+
+/* The same in a step without time: what moves slips at V0 until its stress is that of V0, and takes the time for it. */
+TL_IN_LOOP void slip_timelessly(const params *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                                trial *restrict t)
+{
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const params law = *given;
+    const double per_slip = 1 / (law.ks * law.velocity), viscous = law.damping * law.velocity;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double e = t->exponent[i];
+        double arsinh = e + tl_lane_log(0.5 + sqrt(0.25 + tl_lane_exp(-2 * e)));
+        double over = t->shear[i] - t->effect[i] * arsinh - viscous;
+        double moves = tl_v3_norm2(TL_SLIDE_AT(c, i)) > 0 ? 1 : 0;
+        moves = t->effect[i] > 0 ? moves : 0;
+        double slips = over > 0 ? moves : 0;
+        t->rate[i] = slips * law.velocity;
+        t->time[i] = slips * over * per_slip;
     }
 }
 
@@ -228,11 +252,11 @@ TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t 
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict state = batch->state[0] + begin, *restrict rates = batch->state[1] + begin;
     const params law = *given;
-    const double dt = batch->dt, half_n = 0.5 / law.kn, half_s = 0.5 / law.ks;
+    const double half_n = 0.5 / law.kn, half_s = 0.5 / law.ks;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0, total = t->total[i];
-        double shear = t->shear[i], slip = t->rate[i] * dt;
+        double shear = t->shear[i], slip = t->rate[i] * t->time[i];
         double left = total < 0 ? 0 : shear - law.ks * slip;
         double scale = shear > 0 ? left / (shear > 0 ? shear : 1) : 1;
         double whole = shear * c.area[i];
@@ -247,9 +271,9 @@ TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t 
         mark[i] = total < 0 ? TL_POINT_OPEN : slips;
         c.f_n[i] = total < 0 ? 0 : total;
         TL_PUT_SHEAR(c, i, scale, f);
-        state[i] = go_on(evolution, law.distance, t->theta[i], t->rate[i], dt);
+        state[i] = go_on(evolution, law.distance, t->theta[i], t->rate[i], t->time[i]);
     }
-    if (dt > 0)
+    if (batch->dt > 0)
         for (uint32_t i = 0; i < lanes; i++)
             rates[i] = t->rate[i];
 }
@@ -262,7 +286,10 @@ TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint3
     double left = press(law, batch, begin, lanes, &t);
     for (int k = 0; k < PASSES && batch->dt > 0 && left > 0; k++)
         left = pass(law, batch->dt, lanes, &t, evolution);
-    find_rates(law, batch->dt, lanes, &t);
+    if (batch->dt > 0)
+        find_rates(law, batch->dt, lanes, &t);
+    else
+        slip_timelessly(law, batch, begin, lanes, &t);
     settle(law, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
            batch->dissipated ? batch->dissipated + begin : dissipated, evolution);
     tl_law_put_flags(batch, begin, lanes, mark);
