@@ -33,6 +33,7 @@
 #include "cycle/profile.h"
 #include "cycle/remarks.h"
 #include "cycle/settle.h"
+#include "cycle/shape_limit.h"
 #include "cycle/split.h"
 #include "cycle/timestep.h"
 #include "cycle/undo.h"
@@ -75,6 +76,8 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
         status = tl_overlaps_check(m);
+    if (status == TL_OK)
+        status = tl_shapes_check(m);
     tl_phase_ends(m, TL_PHASE_DETECT);
     if (status == TL_OK)
         status = tl_laws_check(m);

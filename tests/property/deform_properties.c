@@ -17,6 +17,7 @@ typedef struct fall {
     tl_vec3 velocity, place;
     double kn, ks, friction, young, edge;
     bool cube, floor; /* deformable */
+    bool tiled;       /* the floor is of 25 blocks */
 } fall;
 
 static fall draw_fall(uint64_t *seed)
@@ -35,7 +36,14 @@ static fall draw_fall(uint64_t *seed)
     return f;
 }
 
-/* A floor of 8 m, held, and the cube just above it. */
+/* Tile k of a floor of 1.5 m by 1.5 m. */
+static void lay_tile(tl_model *m, int k)
+{
+    const double x = 0.3 * (k % 5) - 0.75, y = 0.3 * (k / 5) - 0.75;
+    scene_box(m, tl_v3(x, y, -1), tl_v3(x + 0.3, y + 0.3, 0));
+}
+
+/* A floor, held, and the cube just above it, of row 1. */
 static tl_model *model_of(const fall *f, unsigned threads)
 {
     const tl_id floor = 1;
@@ -44,8 +52,15 @@ static tl_model *model_of(const fall *f, unsigned threads)
     double low = 0;
     for (uint32_t k = 0; k < shape->vertex_count; k++)
         low = fmin(low, tl_q_rotate(f->turn, shape->vertex[k]).z);
-    scene_box(m, tl_v3(-1.5, -1.5, -1), tl_v3(1.5, 1.5, 0));
+    if (f->tiled)
+        lay_tile(m, 0);
+    else
+        scene_box(m, tl_v3(-1.5, -1.5, -1), tl_v3(1.5, 1.5, 0));
     scene_block(m, shape, f->turn, tl_v3(f->place.x, f->place.y, f->place.z - low + 1e-3));
+    for (int k = 1; k < 25 && f->tiled; k++) {
+        lay_tile(m, k);
+        scene_ok(m, tl_blocks_fix(m, &m->blocks.id[m->blocks.table.rows - 1], 1, TL_FIX_ALL));
+    }
     scene_law(m, "coulomb", f->kn, f->ks, f->friction);
     scene_ok(m, tl_model_set_gravity(m, tl_v3(0, 0, -10)));
     m->bodies.v[1] = f->velocity;
@@ -187,8 +202,24 @@ TEST(impacts_keep_momentum)
 
 /* ---------------------------------------------------------------- stiff blocks ----------- */
 
-/* A stiff cube goes as a rigid one, on a face, an edge, a corner, askew. Its moment of inertia is more by 2/9 with three
- * zones an edge, so its turns are less by up to that, and so is that part of where friction on a face takes it. */
+/* How many times as large as that of a cube of 1 m the moment of inertia of its mesh is. */
+static double mesh_inertia(const tl_model *m)
+{
+    const tl_gridpoints *p = &m->zones->points;
+    tl_vec3 first = {0, 0, 0};
+    double mass = 0, second = 0;
+    for (size_t row = 0; row < p->table.rows; row++) {
+        mass += p->mass[row];
+        first = tl_v3_madd(first, p->mass[row], tl_gridpoint_place(p, row));
+    }
+    for (size_t row = 0; row < p->table.rows; row++)
+        second += p->mass[row] * tl_v3_norm2(tl_v3_madd(tl_gridpoint_place(p, row), -1 / mass, first));
+    return second / (mass / 4);
+}
+
+/* A stiff cube goes as a rigid one of its moments of inertia, on a face, an edge, a corner, askew. Where it lands flush
+ * the floor of the rigid one is of tiles, as segments are. Of a face that opens in part, parts stick while others slide.
+ * On one block it goes 6 % another way, whatever zones, stiffness and step. */
 TEST(a_stiff_cube_goes_as_a_rigid_one)
 {
     const double tilts[5] = {0, 0.03, 0.13, 0.4, 0.75};
@@ -198,22 +229,30 @@ TEST(a_stiff_cube_goes_as_a_rigid_one)
                   .kn = 1e8,
                   .ks = 1e8,
                   .friction = 25,
-                  .young = 1e12,
+                  .young = 1e11,
                   .edge = 0.35};
         tl_vec3 u[2];
+        double inertia = 1;
         for (int which = 0; which < 2; which++) {
-            f.cube = which;
+            f.cube = which == 0;
+            f.tiled = which == 1 && k == 0;
             tl_model *m = model_of(&f, 1);
-            if (!which) /* as short as that of zones */
+            if (f.cube) {
+                inertia = mesh_inertia(m);
+            } else {
+                m->bodies.moments[1] = tl_v3_scale(inertia, m->bodies.moments[1]);
+                m->bodies.round[1] *= inertia;
+                /* about as short as that of zones */
                 scene_ok(
-                    m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 5e-6}));
+                    m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-5}));
+            }
             run(m, 0.05);
             u[which] = m->bodies.pose[1].u;
             tl_model_destroy(m);
         }
-        CHECK(scene_apart(u[0], u[1]) < 0.1 * tl_v3_norm(u[0]));
-        if (!(scene_apart(u[0], u[1]) < 0.1 * tl_v3_norm(u[0])))
-            printf("    %d: %g of %g\n", k, scene_apart(u[0], u[1]), tl_v3_norm(u[0]));
+        CHECK(scene_apart(u[0], u[1]) < 0.01 * tl_v3_norm(u[1]));
+        if (!(scene_apart(u[0], u[1]) < 0.01 * tl_v3_norm(u[1])))
+            printf("    %d: %g of %g\n", k, scene_apart(u[0], u[1]), tl_v3_norm(u[1]));
     }
 }
 

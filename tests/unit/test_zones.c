@@ -685,6 +685,61 @@ TEST(a_zone_turned_inside_out_is_told)
     }
 }
 
+/* A slab of 2 m, 1 m and 0.2 m, flush on a plate, whose gridpoints are driven up by `bow` x^2 m/s and apart by `strain` x
+ * m/s. A cube may stand with an edge just over it. */
+static tl_model *bent(double bow, double strain, bool near)
+{
+    tl_model *m = scene_model(2);
+    const tl_id others[2] = {2, 3};
+    scene_box(m, tl_v3(-1, -0.5, -0.2), tl_v3(1, 0.5, 0));
+    scene_box(m, tl_v3(-1, -0.5, -0.4), tl_v3(1, 0.5, -0.2));
+    scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(0, 1, 0), TL_PI / 4),
+                tl_v3(0, 0, sqrt(0.5) + (near ? 1e-4 : 2)));
+    scene_ok(m, tl_blocks_fix(m, others, 2, TL_FIX_ALL));
+    scene_law(m, "coulomb", 1e6, 1e6, 0);
+    scene_solid(m, 1e6, 0.2);
+    scene_divide(m, 0, 1, 0.2);
+    tl_gridpoints *p = &m->zones->points;
+    for (size_t row = 0; row < p->table.rows; row++) {
+        const double x = p->ref[0][row] + m->origin.x;
+        p->fixed[row] = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+        p->v[0][row] = strain * x;
+        p->v[2][row] = bow * x * x;
+    }
+    m->constraints++;
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep), .fraction = NAN, .dt = 1e-4}));
+    return m;
+}
+
+/* A slab that has bent by more than 5 % of its size, where another block may touch it by an edge, ends the run with a
+ * sentence, and nothing has changed. With nothing near but the plate that it lies on, less bent, or strained as a whole
+ * it goes on. */
+TEST(a_slab_that_has_bent_is_told)
+{
+    static const struct {
+        double bow, strain; /* m of each, in 256 steps */
+        bool near, ends;
+    } all[] = {{0.04, 0, true, false}, {0.12, 0, true, true}, {0.12, 0, false, false}, {0, 0.2, true, false}};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        tl_model *m = bent(all[k].bow / 0.0256, all[k].strain / 0.0256, all[k].near);
+        tl_solve_result result;
+        char before[33], after[33];
+        run(m, 256);
+        CHECK(tl_blocks_meet(m, 0, 1));
+        scene_ok(m, tl_state_hash(m, before));
+        for (int again = 0; again < 2; again++) {
+            const tl_status status = tl_model_cycle(m, 1, &result);
+            CHECK_INT(status, all[k].ends ? TL_E_NUMERIC : TL_OK);
+            if (!all[k].ends)
+                continue;
+            CHECK(strstr(m->error.text, "cycle 257: block 1 has bent") && strstr(m->error.text, "and join them"));
+            scene_ok(m, tl_state_hash(m, after));
+            CHECK_TEXT(before, after);
+        }
+        tl_model_destroy(m);
+    }
+}
+
 /* The stiffness of all gridpoints, of their zones alone. */
 static double stiffness_of_zones(const tl_model *m)
 {
@@ -716,4 +771,4 @@ TEST_MAIN(a_uniform_strain_is_uniform(), a_swinging_box_makes_no_energy(), zones
           columns_on_a_joint_shorten_in_series(), stress_turns_with_its_body(), stress_without_motion_stays(),
           a_beam_does_not_lock(), a_cube_rests_and_slides_on_zones(), a_stiff_cube_falls_as_a_rigid_one(),
           a_cube_comes_to_rest_on_a_face(), zones_come_back(), a_zone_turned_inside_out_is_told(),
-          carried_contacts_count_once(), zones_tell_what_they_are())
+          a_slab_that_has_bent_is_told(), carried_contacts_count_once(), zones_tell_what_they_are())
