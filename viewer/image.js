@@ -68,7 +68,7 @@ export async function makeImage(app, factor) {
     const size = legendSize(app.legends, app.note);
     const net = /** @type {HTMLCanvasElement} */ (byId("net").querySelector("canvas"));
     drawLegends(pen, app.legends, app.note, 20, height - 40 - size[1]);
-    drawAxes(pen, app.camera, 60, height - 90 - size[1], height);
+    drawAxes(pen, app.camera, 60, Math.max(height - 90 - size[1], below + 44), height);
     if (!byId("net").hidden && net.width)
         pen.drawImage(
             net, width - 20 - net.clientWidth, Math.max(below + 8, height - 40 - net.clientHeight), net.clientWidth,
