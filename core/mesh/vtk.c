@@ -164,7 +164,7 @@ static tl_status read_types(tl_vtk *v)
         status = tl_vtk_list_begin(v, count, whole, "types of cells");
     for (size_t k = 0; status == TL_OK && k < v->cells; k++) {
         status = tl_vtk_next_whole(v, whole, "the type of a cell", UINT8_MAX, &type);
-        v->kind[k] = status == TL_OK ? (uint8_t)type : 0;
+        v->kind[k] = (uint8_t)(status == TL_OK ? type : 0);
     }
     v->typed = true;
     return status;
