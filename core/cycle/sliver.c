@@ -25,11 +25,11 @@ static double rule_rate(const tl_model *m, uint32_t body, const double *counted)
     return tl_rates_points(m) ? counted[body] : 1 / m->bodies.mass[body];
 }
 
-static tl_row_value fastest(const tl_model *m)
+tl_row_value tl_sliver_fastest(const tl_model *m, const double *counted)
 {
     tl_row_value out = {0, TL_NO_ROW};
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        double rate = rule_rate(m, body, m->cycle->rate);
+        double rate = rule_rate(m, body, counted);
         if (rate > out.value)
             out = (tl_row_value){rate, body};
     }
@@ -107,7 +107,7 @@ void tl_sliver_remark(tl_model *m)
     if (c->sliver_structure == 1 + m->structure || c->all_held)
         return;
     c->sliver_structure = 1 + m->structure;
-    const tl_row_value first = fastest(m);
+    const tl_row_value first = tl_sliver_fastest(m, c->rate);
     if (first.row == TL_NO_ROW || m->bodies.id[first.row] == c->sliver)
         return;
     tl_sliver_limits by;

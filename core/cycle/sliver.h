@@ -5,6 +5,8 @@
 #include "cycle/cycle_data.h"
 #include "model/slivers.h"
 
+/* The highest of the rates by which bodies make the step short, and whose it is. */
+tl_row_value tl_sliver_fastest(const tl_model *m, const double *counted);
 /* Limits for a filter that makes the step longer. `counted`, [bodies], are the rates of the bodies' contacts.
  * TL_E_MEMORY. */
 tl_status tl_sliver_limits_choose(tl_model *m, const double *counted, tl_sliver_limits *out);

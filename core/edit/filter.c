@@ -228,44 +228,65 @@ static tl_status run(tl_model *m, const tl_filter *limits, tl_filter_result *res
     return status;
 }
 
-/* Limits that make the step longer, by the rates that it goes by. As long as there are none, for some contact has no
- * law, by shapes. */
-static tl_status choose_limits(tl_model *m, tl_sliver_limits *out)
+/* The rates that the step goes by, [bodies], to be freed; NULL: there are none, for some contact has no law. */
+static tl_status find_rates(tl_model *m, double **rate)
 {
     tl_timestep_report report;
+    *rate = NULL;
     tl_status status = tl_model_timestep_report(m, &report);
     if (status != TL_OK && status != TL_E_MEMORY) {
         m->error = (tl_error){0};
-        return tl_slivers_by_shape(m, out);
+        return TL_OK;
     }
     const size_t bodies = m->bodies.table.rows;
-    double *rate = malloc((bodies + 1) * sizeof *rate), *turn_rate = malloc((bodies + 1) * sizeof *turn_rate);
-    if (status == TL_OK && (!rate || !turn_rate))
+    double *found = malloc((bodies + 1) * sizeof *found), *turn_rate = malloc((bodies + 1) * sizeof *turn_rate);
+    if (status == TL_OK && (!found || !turn_rate))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK) {
-        tl_rates_try(m, 0, rate, turn_rate);
-        status = tl_sliver_limits_choose(m, rate, out);
+        tl_rates_try(m, 0, found, turn_rate);
+        *rate = found;
+    } else {
+        free(found);
     }
-    free(rate);
     free(turn_rate);
     return status;
+}
+
+/* Limits that make the step longer, by its rates or, as long as there are none, by shapes. */
+static tl_status choose_limits(tl_model *m, tl_sliver_limits *out)
+{
+    double *rate;
+    tl_status status = find_rates(m, &rate);
+    if (status == TL_OK)
+        status = rate ? tl_sliver_limits_choose(m, rate, out) : tl_slivers_by_shape(m, out);
+    free(rate);
+    return status;
+}
+
+/* How many times longer the step has become than it was by the highest rate, or NaN. */
+static double gain_over(tl_model *m, double highest)
+{
+    double *rate, now = 0;
+    if (find_rates(m, &rate) == TL_OK && rate)
+        now = tl_sliver_fastest(m, rate).value;
+    free(rate);
+    return now > 0 ? sqrt(highest / now) : NAN;
 }
 
 /* The same with limits that are chosen for the time step. */
 static tl_status run_automatic(tl_model *m, tl_filter limits, tl_filter_result *result)
 {
-    tl_sliver_limits by, after;
+    tl_sliver_limits by;
     tl_status status = choose_limits(m, &by);
     if (status != TL_OK)
         return status;
     limits.volume = by.volume;
     limits.aspect = by.aspect;
     status = run(m, &limits, result);
-    result->gain = by.gain;
     /* Not all that is beyond the limits can be joined, and what is joined changes its rate. */
-    if (status == TL_OK && limits.action != TL_FILTER_REPORT && !by.by_shape && choose_limits(m, &after) == TL_OK &&
-        !after.by_shape && after.fastest > 0)
-        result->gain = sqrt(by.fastest / after.fastest);
+    const bool changed = status == TL_OK && limits.action != TL_FILTER_REPORT && !by.by_shape;
+    const double gain = changed ? gain_over(m, by.fastest) : NAN;
+    result->gain = gain > 0 ? gain : by.gain;
     return status;
 }
 

@@ -214,7 +214,7 @@ typedef struct run {
     tl_lua_running running;
     tl_lua_model *owner;
     tl_lua_options *options;
-    tl_solve limits; /* what is run */
+    tl_solve limits; /* what ends it */
     progress line;
     tl_relax_result result; /* of other runs only the first part */
 } run;
@@ -497,21 +497,14 @@ static bool push_callback(lua_State *L, const char *what, const char *key)
 /* What a run makes: a number of steps, steps until a limit is met, or a relaxation. */
 typedef enum run_kind { RUN_STEPS, RUN_SOLVE, RUN_RELAX } run_kind;
 
-static tl_relax relax_of(const tl_solve *solve, int64_t load_steps)
+/* The same callbacks. */
+static void call_back_to(tl_relax *relax, const tl_solve *solve)
 {
-    tl_relax relax = tl_relax_default();
-    relax.ratio = solve->ratio;
-    relax.measure = solve->measure;
-    relax.stop_at_failure = solve->stop_at_failure;
-    relax.max_cycles = solve->max_cycles;
-    relax.load_steps = load_steps;
-    relax.every = solve->every;
-    relax.each = solve->each;
-    relax.progress = solve->progress;
-    relax.stop = solve->stop;
-    relax.user = solve->user;
-    relax.between = solve->between;
-    return relax;
+    relax->each = solve->each;
+    relax->progress = solve->progress;
+    relax->stop = solve->stop;
+    relax->user = solve->user;
+    relax->between = solve->between;
 }
 
 /* Room for what a relaxation answers besides: the selection of what fails, and where it goes. */
@@ -557,27 +550,29 @@ static void set_relaxed(lua_State *L, const tl_model *model, const tl_relax_resu
     tl_lua_set_text(L, "message", result->message);
 }
 
-/* Makes a run and pushes its result. The table of arguments is at AT_ARGS. */
-static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, run_kind kind, int64_t load_steps)
+/* Makes a run and pushes its result. The table of arguments is at AT_ARGS. `relax`: what a relaxation is asked for, of
+ * which `solve` has what the line tells; else NULL. */
+static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, run_kind kind, tl_relax *relax)
 {
     run r = {.running = {.L = L}, .owner = lua_touserdata(L, AT_MODEL), .options = tl_lua_options_of(L)};
     lua_settop(L, AT_ANCHOR);
     solve->stop = push_callback(L, what, "stop") ? on_stop : NULL;
     solve->progress = push_callback(L, what, "on_progress") ? on_progress : NULL;
     push_empty_answer(L, kind == RUN_STEPS ? TL_RATIO_LOCAL : solve->measure);
-    tl_lua_selection *failing = kind == RUN_RELAX ? push_room(L, model) : NULL;
+    tl_lua_selection *failing = relax ? push_room(L, model) : NULL;
     solve->each = on_each;
     solve->between = on_between;
     solve->user = &r;
+    if (relax)
+        call_back_to(relax, solve);
     r.limits = *solve;
     r.owner->next_sample = 0; /* the first step finds it */
     progress_begin(L, &r.line, model);
     tl_lua_watch watch = tl_lua_watch_begin(L);
     tl_lua_running *outer = tl_lua_running_set(&r.running);
-    tl_relax relax = relax_of(solve, load_steps);
     tl_status status = kind == RUN_STEPS   ? tl_model_cycle_calling(model, solve->max_cycles, solve, &r.result.run)
                        : kind == RUN_SOLVE ? tl_model_solve(model, solve, &r.result.run)
-                                           : tl_model_relax(model, &relax, &r.result);
+                                           : tl_model_relax(model, relax, &r.result);
     if (r.owner->view && !r.running.failed && !tl_lua_view_step(L, r.result.run.wall))
         tl_lua_run_keep_error();
     tl_lua_running_set(outer);
@@ -603,7 +598,7 @@ static int model_solve(lua_State *L, tl_model *model)
 {
     tl_solve solve = tl_solve_default();
     tl_lua_read_function(L, AT_ARGS, "solve", solve_keys, &solve);
-    return make_run(L, model, "solve", &solve, RUN_SOLVE, 1);
+    return make_run(L, model, "solve", &solve, RUN_SOLVE, NULL);
 }
 
 static int model_relax(lua_State *L, tl_model *model)
@@ -613,10 +608,8 @@ static int model_relax(lua_State *L, tl_model *model)
     tl_solve solve = tl_solve_default();
     solve.ratio = relax.ratio;
     solve.measure = relax.measure;
-    solve.stop_at_failure = relax.stop_at_failure;
     solve.max_cycles = relax.max_cycles;
-    solve.every = relax.every;
-    return make_run(L, model, "relax", &solve, RUN_RELAX, relax.load_steps);
+    return make_run(L, model, "relax", &solve, RUN_RELAX, &relax);
 }
 
 /* cycle(cycles, {every =, on_progress =}) */
@@ -631,7 +624,7 @@ static int model_cycle(lua_State *L, tl_model *model)
     spec.count--;
     tl_lua_read(L, AT_ARGS, &spec, false, &args);
     tl_solve steps = {.every = args.every, .max_cycles = args.cycles};
-    return make_run(L, model, "cycle", &steps, RUN_STEPS, 1);
+    return make_run(L, model, "cycle", &steps, RUN_STEPS, NULL);
 }
 
 /* ---------------------------------------------------------------- a generator ------------ */
