@@ -21,6 +21,9 @@
 /* Cost only: margin of the ball about a body, far above roundings of its radius and of places. */
 #define BALL_MARGIN 1e-9
 
+/* Cost only: pairs up to which they are sorted by insertion. */
+#define FEW_PAIRS 32
+
 /* What a list of pairs is made with: nothing of it is kept. */
 struct tl_broad {
     uint32_t *row; /* of each block that is entered, ascending */
@@ -270,19 +273,39 @@ static int compare_pair(const void *a, const void *b)
     return tl_pair_order(x->a, x->b, y->a, y->b);
 }
 
-/* Lists the candidate pairs, sorted. */
+/* Sorts a few pairs by insertion, as those of one block mostly are. */
+static void sort_pairs(tl_pair *list, size_t count)
+{
+    if (count > FEW_PAIRS) {
+        qsort(list, count, sizeof *list, compare_pair);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        const tl_pair pair = list[i];
+        size_t to = i;
+        for (; to > 0 && compare_pair(&list[to - 1], &pair) > 0; to--)
+            list[to] = list[to - 1];
+        list[to] = pair;
+    }
+}
+
+/* Lists the candidate pairs, sorted: blocks that are entered ascend, and each is the first one of its pairs. */
 static tl_status list_pairs(tl_model *m, struct tl_broad *g, bool whole, size_t *count)
 {
     *count = 0;
     bool enough = tl_grow(&g->next, &g->next_capacity, whole ? m->detect->pair_count : 1, sizeof *g->next);
-    for (uint32_t i = 0; i < g->count && enough; i++)
+    for (uint32_t i = 0; i < g->count && enough; i++) {
+        const size_t first = *count;
         enough = pairs_of(m, g, g->row[i], &g->bounds[i], true, count);
+        if (*count > first)
+            sort_pairs(g->next + first, *count - first);
+    }
     if (enough && !whole)
         enough = pairs_with_others(m, g, count);
     if (!enough)
         return tl_fail_memory(&m->error);
-    if (*count > 1)
-        qsort(g->next, *count, sizeof *g->next, compare_pair);
+    if (!whole)
+        sort_pairs(g->next, *count);
     return TL_OK;
 }
 

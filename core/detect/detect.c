@@ -154,16 +154,32 @@ static double way_to_contact(const tl_pair_view *view, const tl_region *r, bool 
     return r->gap > 0 && !parallel ? r->gap : -1;
 }
 
-/* How far a pair may move that only edges part before it may touch; 0: it may touch already. By coarse tests with
- * reaches twice as long each, up to the longest with which it is known to be near. */
+/* How far a pair may move that only edges part before it may touch; negative: it may touch already. By coarse tests
+ * with reaches twice as long each, where it is within the longest. */
 static double way_to_edges(const tl_pair_view *view, double longest)
 {
     double tolerance = TL_CONTACT_TOLERANCE * view->size, reach = tolerance;
     if (tl_coarse_test(view, reach))
-        return 0;
+        return -1;
+    if (!tl_coarse_test(view, longest))
+        return longest - tolerance;
     while (2 * reach < longest && !tl_coarse_test(view, 2 * reach))
         reach *= 2;
     return fmax(reach - tolerance, tolerance);
+}
+
+/* How far a pair may move before edges and corners that graze carry more than goes unseen; negative: they may do so
+ * now. */
+static double way_to_grazing(const tl_model *m, const tl_pair_view *view, tl_pair *p, const tl_region_lows *lows)
+{
+    if (!tl_grazing_may_be(view))
+        return -1;
+    tl_grazing_choose_faces(view, p, lows);
+    double gap, margin = tl_grazing_margin(view, p, &gap);
+    if (margin >= 0 && !(tl_touch_rule_of(m, view, tl_touching_tag(view, lows->n), 0).min_area > 0))
+        return margin;
+    tl_pair_forget_faces(p);
+    return -1;
 }
 
 /* What is known of a placed pair before its contact is made: that it holds across a gap, if it takes over from one. */
@@ -218,6 +234,23 @@ static void note_birth(tl_births *births, const tl_birth *birth)
 /* Cost only: gap along a face, over the reach of the coarse test, from which on that test is spared. */
 #define FAR_APART 0.25
 
+/* How far a pair that nothing holds may move before it is near enough to become a contact; negative: it may be now.
+ * What is cheap to tell comes first: in a lattice most pairs graze. */
+static double way_to_near(const tl_model *m, const tl_pair_view *view, tl_pair *p, const tl_region_lows *lows)
+{
+    const double reach = m->detect->reach, tolerance = TL_CONTACT_TOLERANCE * view->size;
+    if (lows->gap - tolerance > FAR_APART * reach)
+        return fmin(lows->gap - tolerance, reach);
+    const double margin = lows->gap > tolerance ? -1 : way_to_grazing(m, view, p, lows);
+    if (margin >= 0)
+        return margin;
+    if (!(lows->gap > 0))
+        return way_to_edges(view, tolerance + reach);
+    if (!tl_coarse_test(view, tolerance + reach))
+        return reach;
+    return lows->gap > tolerance ? lows->gap - tolerance : -1;
+}
+
 /* Tolerance: way over the size after which it is seen that segments no longer are all of a contact: a tilt of 0.1
  * degrees (segment/blend.c). */
 #define TILTS 0.002
@@ -240,40 +273,25 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_n
     tl_pair_forget_faces(p);
     if (!tl_pair_place(&view, scratch))
         return NAN;
-    double tolerance = TL_CONTACT_TOLERANCE * view.size;
-    if (!tl_region_gap(&view, scratch, &gap))
+    tl_region_lows lows;
+    if (!tl_region_gap(&view, scratch, &lows))
         return NAN;
-    if (!holds && gap - tolerance > FAR_APART * reach)
-        return fmin(gap - tolerance, reach);
-    if (!holds && !tl_coarse_test(&view, tolerance + reach))
-        return reach;
-    if (!holds && gap > tolerance)
-        return gap - tolerance;
-    const bool edges_only = !holds && !cut && !(gap > 0) && !tl_grazing_may_be(&view);
-    double way = edges_only ? way_to_edges(&view, tolerance + reach) : 0;
-    if (way > 0)
+    double way = holds ? -1 : way_to_near(m, &view, p, &lows);
+    if (way >= 0)
         return way;
     tl_region region;
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region))
         return NAN;
     const tl_manifold_before before = before_contact(m, p, &view, scratch);
     const bool corners = m->config.contact_points == TL_POINTS_CORNERS;
-    holds = before.holds || (shift > 0 && region.gap <= shift);
-    way = holds ? -1 : way_to_contact(&view, &region, corners);
-    if (way > 0)
+    const bool held = before.holds || (shift > 0 && region.gap <= shift);
+    way = held ? -1 : way_to_contact(&view, &region, corners);
+    if (way < 0 && holds && !held) /* it takes over from another, and does not hold by that */
+        way = way_to_near(m, &view, p, &lows);
+    if (way >= 0)
         return way;
     const tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
-    if (!holds && !(rule.min_area > 0)) {
-        tl_grazing_choose_faces(&view, p);
-        margin = tl_grazing_margin(&view, p, &gap);
-        if (margin >= 0)
-            return margin;
-        tl_pair_forget_faces(p);
-    }
-    way = holds || edges_only || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + reach);
-    if (way > 0)
-        return way;
     if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))
         return NAN; /* what was found is not all there is */
     if (scratch->manifold.point_count == 0 && !tl_overlap_is_whole(&view, &region))

@@ -19,6 +19,10 @@
  * flush faces. Test: property/grazing_properties, lua/test_common_volume. */
 #define FEW 400
 
+/* Cost only: depth over the contact tolerance from which on a face is not looked at. A pair that grazes is within one
+ * tolerance, and roundings are far below. */
+#define SURELY_DEEP 2.0
+
 /* Whether two faces face each other with a tilt at which they may still be a patch's. */
 static bool are_flush(tl_vec3 n, tl_vec3 other)
 {
@@ -67,13 +71,17 @@ static bool is_flush(const tl_pair_view *view, uint32_t number)
     return out;
 }
 
-/* The flush face with the largest gap that is across `than`; false: there is none. */
-static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number)
+/* The flush face with the largest gap that is across `than`, of those not too deep; false: there is none. */
+static bool widest(const tl_pair_view *view, const tl_region_lows *lows, tl_vec3 than, uint32_t *number)
 {
+    const double deep = -SURELY_DEEP * TL_CONTACT_TOLERANCE * view->size;
     double best = -INFINITY;
     for (uint32_t of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? view->b : view->a)->face_count;
+        const double *low = !lows ? NULL : of_b ? lows->a_over_b : lows->b_over_a;
         for (uint32_t f = 0; f < count; f++) {
+            if (low && low[f] < deep)
+                continue;
             uint32_t one = 2 * f + of_b; /* tl_pair_faces */
             double gap = is_across(normal_of(view, one), than) ? gap_from(view, one) : -INFINITY;
             if (gap > best && is_flush(view, one)) {
@@ -97,13 +105,13 @@ bool tl_grazing_may_be(const tl_pair_view *view)
     return view->a->face_count * view->b->face_count <= FEW;
 }
 
-void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p)
+void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p, const tl_region_lows *lows)
 {
     uint32_t one, other;
     tl_pair_forget_faces(p);
     if (!tl_grazing_may_be(view))
         return;
-    if (widest(view, tl_v3(0, 0, 0), &one) && widest(view, normal_of(view, one), &other))
+    if (widest(view, lows, tl_v3(0, 0, 0), &one) && widest(view, lows, normal_of(view, one), &other))
         tl_pair_set_faces(p, (tl_pair_faces){one, other});
 }
 

@@ -437,7 +437,7 @@ static bool touches_still(tl_model *m, uint32_t c)
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
     double gap, margin = tl_grazing_margin(&view, p, &gap);
     if (margin < 0) {
-        tl_grazing_choose_faces(&view, p);
+        tl_grazing_choose_faces(&view, p, NULL);
         margin = tl_grazing_margin(&view, p, &gap);
     }
     if (margin < 0 || gap > TL_CONTACT_TOLERANCE * view.size)

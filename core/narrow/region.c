@@ -278,7 +278,7 @@ static bool place_planes(const tl_pair_view *view, tl_narrow_scratch *scratch, b
     return true;
 }
 
-bool tl_region_gap(const tl_pair_view *view, tl_narrow_scratch *scratch, double *gap)
+bool tl_region_gap(const tl_pair_view *view, tl_narrow_scratch *scratch, tl_region_lows *out)
 {
     both of;
     tl_region region = {0};
@@ -289,7 +289,7 @@ bool tl_region_gap(const tl_pair_view *view, tl_narrow_scratch *scratch, double 
     for (size_t g = 0; g < of.a.count; g += TL_LANES)
         vertex_heights(&of.a, g, of.b.vertex, of.b.poly->vertex_count, of.height);
     find_gap(&of.a, &of.b, &region);
-    *gap = region.gap;
+    *out = (tl_region_lows){.b_over_a = of.a.low, .a_over_b = of.b.low, .gap = region.gap, .n = region.n};
     return true;
 }
 

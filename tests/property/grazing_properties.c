@@ -1,5 +1,5 @@
-/* grazing_properties.c - grazing pairs, which touch without area: as long as two faces say that nothing is carried, a look at all
- * faces finds no more than that.
+/* grazing_properties.c - grazing pairs, which touch without area: as long as two faces say that nothing is carried, a
+ * look at all faces finds no more than that.
  *
  * Boxes, some of them sheared, meet in an edge or a corner, or nearly; then B moves as far as it may, in any way. */
 #include "contact_scene.h"
@@ -97,7 +97,7 @@ TEST(what_goes_unseen_is_little)
         scene_pair p = touching_pair(&seed);
         tl_pair pair = {0};
         double gap, unseen = UNSEEN * scene_place(&p)->size;
-        tl_grazing_choose_faces(&p.view, &pair);
+        tl_grazing_choose_faces(&p.view, &pair, NULL);
         double margin = tl_grazing_margin(&p.view, &pair, &gap);
         silent += margin >= 0;
         tl_vec3 shift = p.shift;
@@ -119,6 +119,35 @@ TEST(what_goes_unseen_is_little)
         printf("  %d silent, worst %.3g of the bound\n", silent, worst);
 }
 
+/* Faces that are too deep to show that a pair grazes are passed over, and nothing else comes of it. */
+TEST(deep_faces_are_passed_over)
+{
+    uint64_t seed = 3;
+    int silent = 0, others = 0, passed = 0;
+    for (int i = 0; i < 4000; i++) {
+        scene_pair p = touching_pair(&seed);
+        if (i % 2) /* over the face */
+            p.shift.x -= scene_between(&seed, 0.01, 0.2);
+        const tl_pair_view *view = scene_place(&p);
+        tl_pair all = {0}, some = {0};
+        tl_region_lows lows;
+        double gap, gap_of_some;
+        CHECK(tl_region_gap(view, &p.scratch, &lows));
+        tl_grazing_choose_faces(view, &all, NULL);
+        tl_grazing_choose_faces(view, &some, &lows);
+        double margin = tl_grazing_margin(view, &all, &gap);
+        double margin_of_some = tl_grazing_margin(view, &some, &gap_of_some);
+        silent += margin >= 0;
+        passed += all.faces != some.faces;
+        if (lows.gap <= TL_CONTACT_TOLERANCE * view->size)
+            others += margin >= 0 ? margin != margin_of_some || gap != gap_of_some : margin_of_some >= 0;
+        scene_pair_free(&p);
+    }
+    CHECK(silent > 500);
+    CHECK(passed > 500);
+    CHECK_INT(others, 0);
+}
+
 /* A pair that slides from its edge over the other's face is seen at once. */
 TEST(sliding_over_an_edge_is_seen)
 {
@@ -128,7 +157,7 @@ TEST(sliding_over_an_edge_is_seen)
         scene_pair p = touching_pair(&seed);
         tl_pair pair = {0};
         double gap;
-        tl_grazing_choose_faces(scene_place(&p), &pair);
+        tl_grazing_choose_faces(scene_place(&p), &pair, NULL);
         p.shift.x -= scene_between(&seed, 0.01, 0.2);
         scene_place(&p);
         double carries = carried(&p), u = UNSEEN * p.view.size;
@@ -143,4 +172,4 @@ TEST(sliding_over_an_edge_is_seen)
     CHECK_INT(unseen, 0);
 }
 
-TEST_MAIN(RUN(what_goes_unseen_is_little), RUN(sliding_over_an_edge_is_seen))
+TEST_MAIN(RUN(what_goes_unseen_is_little), RUN(deep_faces_are_passed_over), RUN(sliding_over_an_edge_is_seen))
