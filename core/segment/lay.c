@@ -5,10 +5,12 @@
  * stay in their rows, and nothing else is touched. */
 #include "segment/lay.h"
 
+#include "base/columns.h"
 #include "contact/contacts.h"
 #include "contact/law_states.h"
 #include "model/joints.h"
 #include "segment/follow.h"
+#include "segment/moved.h"
 #include "segment/uses.h"
 
 #include <math.h>
@@ -275,18 +277,46 @@ static size_t nearest_point(const tl_model *m, const tl_meet *meet, tl_vec3 plac
     return found;
 }
 
+/* The row of the segment that has a point. */
+static size_t segment_of(size_t point)
+{
+    return point / (TL_SEGMENT_POINTS * TL_LANES) * TL_LANES + point % TL_LANES;
+}
+
+/* Turns the shear of a point into the plane of its segment from that of the segment that it was of. */
+static void turn_point(tl_segment_points *p, size_t at, const tl_segment_table *of, size_t from, tl_vec3 to)
+{
+    const tl_vec3 was = tl_columns_get(of->normal, segment_of(from)), f = tl_columns_get(p->f_s, at);
+    const double c = 1 + tl_v3_dot(was, to);
+    const double off = tl_v3_dot(f, to) / (c > 0 ? c : 1);
+    tl_columns_put(p->f_s, at, tl_v3_madd(f, -off, tl_v3_add(was, to)));
+}
+
 /* Where a law acts: the kind of that of a row of the model, or NULL. */
 static const tl_kind *kind_of(const tl_model *m, uint32_t law)
 {
     return law != TL_NO_ROW ? m->joint_laws[law].kind : NULL;
 }
 
+/* The shear of the last motion goes by the place half-way: half by the old point, and half by the new one, at a and b,
+ * of which the law is going to be told. By how much the former has moved farther than the latter, over two. */
+static tl_vec3 late_by(const tl_model *m, const tl_new_segment *made, size_t old, tl_vec3 a, tl_vec3 b)
+{
+    const struct tl_segments *s = m->segments;
+    const double share = s->meet[made->meet].share;
+    const tl_segment now = {made->meet, made->a, made->b, {0, 0}, made->normal_a, made->normal_b};
+    const tl_vec3 old_a = tl_columns_get(s->points.at_a, old), old_b = tl_columns_get(s->points.at_b, old);
+    const tl_vec3 was = tl_segment_moved(m, &s->table.of[segment_of(old)], share, made->over.n, old_a, old_b);
+    return tl_v3_scale(0.5, tl_v3_sub(was, tl_segment_moved(m, &now, share, made->over.n, a, b)));
+}
+
 /* Points of a segment that has been found, in row `row` of a table. `same`: the old row of these triangles, or
  * TL_NO_ROW; it may be that very row. */
-static void lay_points(const tl_model *m, tl_segment_points *p, size_t row, const tl_new_segment *made, uint32_t same)
+static void lay_points(const tl_model *m, tl_segment_points *p, size_t row, tl_new_segment *made, uint32_t same)
 {
     const tl_meet *meet = &m->segments->meet[made->meet];
     const tl_segment_points *old = &m->segments->points;
+    made->row = row;
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
         const size_t point = tl_segment_point_row(row, k);
         const size_t from =
@@ -294,16 +324,14 @@ static void lay_points(const tl_model *m, tl_segment_points *p, size_t row, cons
         const double size = from != TL_NO_ROW ? old->area[from] : 0;
         const tl_vec3 a = keep_to(m, &made->a, made->over.on_a[k]), b = keep_to(m, &made->b, made->over.on_b[k]);
         const double gap = tl_v3_dot(tl_v3_sub(made->over.on_b[k], made->over.on_a[k]), made->over.n);
-        p->at_a[0][point] = a.x;
-        p->at_a[1][point] = a.y;
-        p->at_a[2][point] = a.z;
-        p->at_b[0][point] = b.x;
-        p->at_b[1][point] = b.y;
-        p->at_b[2][point] = b.z;
+        made->late[k] = size > 0 ? late_by(m, made, from, a, b) : tl_v3(0, 0, 0);
+        tl_columns_put(p->at_a, point, a);
+        tl_columns_put(p->at_b, point, b);
         p->area[point] = made->over.area / TL_SEGMENT_POINTS;
-        if (size > 0)
+        if (size > 0) {
             copy_point(p, point, old, from, p->area[point] / size);
-        else
+            turn_point(p, point, &m->segments->table, from, made->over.n);
+        } else
             begin_point(p, point, kind_of(m, meet->law), gap > TL_CONTACT_TOLERANCE * sqrt(made->over.area));
     }
 }
@@ -361,6 +389,21 @@ static double keep_energies(const tl_model *m, struct tl_segments *to)
     return lost;
 }
 
+/* The springs of new segments take what their walls had gone farther. It does work, so what they hold may grow. */
+static void add_late(const tl_model *m, struct tl_segments *to, const tl_laying *l)
+{
+    for (size_t i = 0; i < l->count; i++) {
+        const tl_new_segment *made = &l->list[i];
+        const uint32_t law = m->segments->meet[made->meet].law;
+        const double ks = law != TL_NO_ROW ? m->joint_laws[law].ks : 0;
+        for (size_t k = 0; k < TL_SEGMENT_POINTS && ks > 0; k++) {
+            const size_t point = tl_segment_point_row(made->row, k);
+            const tl_vec3 f = tl_columns_get(to->points.f_s, point);
+            tl_columns_put(to->points.f_s, point, tl_v3_madd(f, -ks * to->points.area[point], made->late[k]));
+        }
+    }
+}
+
 /* Whether a stale meet has lost all of its segments: no fresh row tells of it. */
 static bool has_none(const tl_laying *l, size_t first, uint32_t meet)
 {
@@ -416,11 +459,11 @@ static size_t outline_room(const struct tl_segments *s, size_t row)
     return end > s->table.outline[row] ? end - s->table.outline[row] : 0;
 }
 
-static void lay_entry(const tl_model *m, const tl_laying *l, struct tl_segments *to, size_t row, const entry *e)
+static void lay_entry(const tl_model *m, tl_laying *l, struct tl_segments *to, size_t row, const entry *e)
 {
     const struct tl_segments *s = m->segments;
     if (e->old == TL_NO_ROW) {
-        const tl_new_segment *made = &l->list[e->fresh];
+        tl_new_segment *made = &l->list[e->fresh];
         lay_sides(&to->table, row, made);
         put_outline(to, row, l->outline + made->outline, made->over.corners);
         lay_points(m, &to->points, row, made, same_segment(s, &s->meet[made->meet], made->key));
@@ -464,7 +507,7 @@ static uint32_t states_of(const tl_model *m)
     return most;
 }
 
-static void fill_tables(const tl_model *m, const tl_laying *l, struct tl_segments *to, const entry *list, size_t count)
+static void fill_tables(const tl_model *m, tl_laying *l, struct tl_segments *to, const entry *list, size_t count)
 {
     size_t row = 0;
     for (size_t k = 0; k < to->table.table.rows; k++)
@@ -549,7 +592,7 @@ static void take_fresh(struct tl_segments *s, struct tl_segments *fresh)
     s->outline_capacity = fresh->outline_capacity;
 }
 
-bool tl_lay_segments(tl_model *m, const tl_laying *l)
+bool tl_lay_segments(tl_model *m, tl_laying *l)
 {
     struct tl_segments *s = m->segments, fresh = {.span = NULL};
     for (size_t k = 0; k < s->meet_count; k++)
@@ -570,6 +613,7 @@ bool tl_lay_segments(tl_model *m, const tl_laying *l)
         fresh.span = s->span;
         fill_tables(m, l, &fresh, list, count);
         s->lost += lost + keep_energies(m, &fresh);
+        add_late(m, &fresh, l);
         take_fresh(s, &fresh);
         for (size_t k = 0; k < s->meet_count; k++)
             s->meet[k].stale = false;
@@ -616,7 +660,7 @@ bool tl_laying_fits(const tl_model *m, const tl_laying *l)
 }
 
 /* Gives a segment its new polygon and points, in its row. */
-static void renew_segment(tl_model *m, const tl_laying *l, uint32_t row, const tl_new_segment *made)
+static void renew_segment(tl_model *m, const tl_laying *l, uint32_t row, tl_new_segment *made)
 {
     struct tl_segments *s = m->segments;
     tl_point2 *outline = s->outline + s->table.outline[row];
@@ -629,7 +673,7 @@ static void renew_segment(tl_model *m, const tl_laying *l, uint32_t row, const t
         outline[k] = l->outline[made->outline + k];
 }
 
-void tl_renew_segments(tl_model *m, const tl_laying *l)
+void tl_renew_segments(tl_model *m, tl_laying *l)
 {
     struct tl_segments *s = m->segments;
     size_t fresh = 0;
@@ -647,6 +691,7 @@ void tl_renew_segments(tl_model *m, const tl_laying *l)
         lost += keep_energy(m, s, meet, before, meet->begin, meet->end);
         meet->stale = false;
     }
+    add_late(m, s, l);
     s->lost += lost;
     s->version++;
 }

@@ -11,6 +11,9 @@ typedef struct tl_new_segment {
     tl_vec3 normal_a, normal_b;
     tl_overlay over;
     size_t outline; /* where its outline begins in the list of the laying */
+    size_t row;     /* where it has been laid */
+    tl_vec3
+        late[TL_SEGMENT_POINTS]; /* by how much its walls had gone farther in the last motion than they seem to, m */
 } tl_new_segment;
 
 /* Segments on their way into the tables: those of stale meets, in the order of these. */
@@ -31,12 +34,12 @@ bool tl_laying_add(tl_laying *l, const tl_new_segment *segment);
  * heat. false: out of memory, and the list has been freed. */
 bool tl_laying_change_meets(const tl_model *m, tl_laying *l, tl_meet *list, size_t count);
 /* Lays all segments anew. false: out of memory, and nothing has changed. */
-bool tl_lay_segments(tl_model *m, const tl_laying *l);
+bool tl_lay_segments(tl_model *m, tl_laying *l);
 /* Whether stale meets have segments of the same triangles as before, and no meet has come or gone. */
 bool tl_laying_fits(const tl_model *m, const tl_laying *l);
 /* Then gives these their new polygons and points where they are, to the bit as if all were laid anew. Laws, zones and
  * blocks are as they were. */
-void tl_renew_segments(tl_model *m, const tl_laying *l);
+void tl_renew_segments(tl_model *m, tl_laying *l);
 void tl_laying_end(tl_laying *l);
 /* Makes columns of states. false: out of memory. */
 bool tl_segments_hold_states(struct tl_segments *s, uint32_t columns);

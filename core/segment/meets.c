@@ -518,7 +518,7 @@ static void mark_changed(tl_model *m)
 }
 
 /* Lays the segments that have been found: in their rows, where nothing is in the way. false: out of memory. */
-static bool lay_found(tl_model *m, const tl_laying *l, bool others)
+static bool lay_found(tl_model *m, tl_laying *l, bool others)
 {
     const bool in_place = !others && tl_laying_fits(m, l);
     if (in_place)
