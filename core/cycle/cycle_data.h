@@ -203,7 +203,6 @@ struct tl_cycle {
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
     tl_settling settling;
-    double least_scale;       /* of a body's mass in this step of a relaxation: settle.c */
     struct tl_secant *secant; /* of each contact, while there are leaps: secants.c */
     size_t secant_count, secant_capacity;
     struct tl_conjugate *conjugate; /* of each body, while there are leaps of many: conjugate.c */

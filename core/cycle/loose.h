@@ -23,18 +23,14 @@ static inline bool tl_body_falls(const tl_model *m, uint32_t body, double weight
 /* Tolerance: of the thickness of a block, how far it falls in a step by its own mass in a relaxation. */
 #define TL_FALL_STEP 0.1
 
-/* What scaling makes of a body's mass in this step. In a relaxation that is far from rest no body has less than the
- * mean: weight moves large blocks no faster than most, so that they do not clamp small ones on their way. What next to
- * nothing bears has its own mass: it falls as fast as it would, and is gone before what is heavy has settled. But it
- * has more, up to the scaled mass, where a step would be too long: what is thin, or has landed before, lands in steps
- * that contacts can follow. */
+/* What scaling makes of a body's mass in this step. In a relaxation what next to nothing bears has its own mass: it
+ * falls as fast as it would, and is gone before what is heavy has settled. But it has more, up to the scaled mass,
+ * where a step would be too long: what is thin, or has landed before, lands in steps that contacts can follow. */
 static inline double tl_step_scale(const tl_model *m, uint32_t body)
 {
-    const double own = tl_inertia_scale(m->cycle, body);
-    if (!m->relaxing || m->cycle->settling.leapt)
-        return own;
-    const double scale = own > m->cycle->least_scale ? own : m->cycle->least_scale;
-    if (!tl_body_falls(m, body, tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity))))
+    const double scale = tl_inertia_scale(m->cycle, body);
+    if (!m->relaxing || m->cycle->settling.leapt ||
+        !tl_body_falls(m, body, tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity))))
         return scale;
     const double dt = m->cycle->dt, thin = TL_FALL_STEP * tl_body_least_thickness(m, body);
     const double most = thin < m->bodies.fall[body] ? thin : m->bodies.fall[body];

@@ -466,31 +466,14 @@ static void note_landings(tl_model *m, double dt)
     }
 }
 
-/* The mean scale of the masses of rigid bodies, by mass. */
-static double mean_scale(const tl_model *m)
-{
-    const tl_bodies *b = &m->bodies;
-    tl_addends masses = {.count = 0}, scaled = {.count = 0};
-    for (uint32_t body = 0; body < b->table.rows; body++) {
-        const bool counts = b->fixed[body] != TL_FIX_ALL && !b->mesh[body];
-        tl_addends_put(&masses, counts ? b->mass[body] : 0);
-        tl_addends_put(&scaled, counts ? b->mass[body] * tl_inertia_scale(m->cycle, body) : 0);
-    }
-    const double mass = tl_addends_sum(&masses);
-    return mass > 0 ? tl_addends_sum(&scaled) / mass : 0;
-}
-
 tl_status tl_settle(tl_model *m, double dt)
 {
     struct tl_cycle *c = m->cycle;
     tl_settling *s = &c->settling;
     const double ratio = tl_model_balance(m).ratio;
     m->still = isfinite(ratio) ? fmin(STILL_PER_RATIO * ratio, STILL_MOST) : 0;
-    c->least_scale = 0;
     if (!(dt > 0))
         return TL_OK;
-    if (!(ratio < CALM))
-        c->least_scale = mean_scale(m);
     note_landings(m, dt);
     if (s->leapt) {
         if (goes_by_secants(m))
