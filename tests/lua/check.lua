@@ -2,7 +2,7 @@
 -- script ends with exit status 1 and says where.
 local check = {}
 
--- "./bootstrap test" tries one case in ten, with --full one in four (with sanitizers one in twenty), and "./bootstrap soak" all.
+-- "./bootstrap test" tries one case in ten, with --full one in four (with sanitizers one in ten), and "./bootstrap soak" all.
 local SHARE = tonumber(os.getenv "TALUS_TEST_SHARE" or 1)
 
 -- Of a number of cases how many are tried.
