@@ -282,23 +282,33 @@ static tl_status refuse_between(tl_model *m, tl_id block)
                    block);
 }
 
-/* Whether each triangle between two blocks is one of both. */
-static tl_status check_between(const joining *j)
+/* The triangles of all blocks by their corners, or those on faces between blocks only, sorted. They are to be freed.
+ * NULL: out of memory. */
+static between *list_triangles(const joining *j, bool all, size_t *count)
 {
-    size_t most = 0, count = 0, bad = 0;
+    size_t most = 0;
     for (size_t b = 0; b < j->count; b++)
         most += j->made[b].mesh.triangle_count;
     between *list = malloc((most + 1) * sizeof *list);
-    if (!list)
-        return tl_fail_memory(&j->m->error);
-    for (size_t b = 0; b < j->count; b++)
+    *count = 0;
+    for (size_t b = 0; b < j->count && list; b++)
         for (uint32_t t = 0; t < j->made[b].mesh.triangle_count; t++) {
             const tl_zone_triangle *of = &j->made[b].mesh.triangle[t];
-            if (j->splits.block[b].inside[of->face])
-                list[count++] = sorted(j->number[b], of->corner, j->id[b]);
+            if (all || j->splits.block[b].inside[of->face])
+                list[(*count)++] = sorted(j->number[b], of->corner, j->id[b]);
         }
-    if (count > 0)
-        qsort(list, count, sizeof *list, compare_triangles);
+    if (list && *count > 0)
+        qsort(list, *count, sizeof *list, compare_triangles);
+    return list;
+}
+
+/* Whether each triangle between two blocks is one of both. */
+static tl_status check_between(const joining *j)
+{
+    size_t count, bad = 0;
+    between *list = list_triangles(j, false, &count);
+    if (!list)
+        return tl_fail_memory(&j->m->error);
     while (bad < count && bad + 1 < count && memcmp(list[bad].point, list[bad + 1].point, sizeof list->point) == 0)
         bad += 2;
     const tl_id block = bad < count ? list[bad].block : 0;
@@ -351,17 +361,10 @@ static tl_status mark_between(const joining *j, size_t block, const between *lis
 /* Takes the triangles between two blocks out of the surface. */
 static tl_status open_between(const joining *j)
 {
-    size_t most = 0, count = 0;
-    for (size_t b = 0; b < j->count; b++)
-        most += j->made[b].mesh.triangle_count;
-    between *list = malloc((most + 1) * sizeof *list);
+    size_t count;
+    between *list = list_triangles(j, true, &count);
     if (!list)
         return tl_fail_memory(&j->m->error);
-    for (size_t b = 0; b < j->count; b++)
-        for (uint32_t t = 0; t < j->made[b].mesh.triangle_count; t++)
-            list[count++] = sorted(j->number[b], j->made[b].mesh.triangle[t].corner, j->id[b]);
-    if (count > 0)
-        qsort(list, count, sizeof *list, compare_triangles);
     tl_status status = TL_OK;
     for (size_t b = 0; status == TL_OK && b < j->count; b++)
         status = mark_between(j, b, list, count);
