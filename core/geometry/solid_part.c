@@ -1,8 +1,8 @@
 /* solid_part.c - a piece without reflex edges as a convex polyhedron.
  *
- * Faces of one tag that meet at a flat edge become one face; a cut goes on in the plane of the face that it began at.
- * Faces between pieces are such with others of the same plane, and with outer faces without a tag. Vertices where
- * fewer than three faces meet are left out: they lie on straight edges. */
+ * Faces that meet at a flat edge become one face: a cut goes on in the plane of the face that it began at. It has the
+ * tag that most of its outer area has. Vertices where fewer than three faces meet are left out: they lie on straight
+ * edges. */
 #include "geometry/solid_mesh.h"
 
 #include "base/error.h"
@@ -16,24 +16,29 @@
 /* Tolerance: corners and edges of parts miss being convex by less than this times the size, beside what is flat. */
 #define CONVEX 1e-8
 
+/* What a face of the part has of one tag. */
+typedef struct share {
+    tl_tag tag;
+    double area;
+} share;
+
 typedef struct builder {
     tl_solid_mesh *m;
     tl_error *error;
     uint32_t *list, lists, capacity;      /* first half-edges of the loops of faces */
     uint32_t *corner, corners, corner_capacity; /* vertices of all loops */
     uint32_t *start, starts, start_capacity;
+    uint32_t *queue, queued, queue_capacity; /* faces of the mesh that become one */
+    share *share;
+    uint32_t shares, share_capacity;
+    tl_tag *tag; /* of the faces */
+    uint32_t tag_capacity;
 } builder;
-
-static bool is_inner(const tl_solid_mesh *m, uint32_t h)
-{
-    const tl_solid_face *a = &m->face[m->half[h].face], *b = &m->face[m->half[m->half[h].mate].face];
-    return m->half[h].flat && a->tag.joint == b->tag.joint && a->tag.plane == b->tag.plane;
-}
 
 static uint32_t outline_after(const tl_solid_mesh *m, uint32_t h)
 {
     uint32_t next = m->half[h].next;
-    while (is_inner(m, next))
+    while (m->half[next].flat)
         next = m->half[m->half[next].mate].next;
     return next;
 }
@@ -48,7 +53,7 @@ static bool list_outlines(builder *b, uint32_t piece)
         if (m->face[p->face[i]].piece != piece)
             continue;
         TL_EACH_HALF(m, p->face[i], h, first) {
-            if (m->half_mark[h] == stamp || is_inner(m, h))
+            if (m->half_mark[h] == stamp || m->half[h].flat)
                 continue;
             if (!tl_solid_grow(&b->list, &b->capacity, b->lists, sizeof *b->list))
                 return false;
@@ -84,6 +89,72 @@ static bool list_corners(builder *b)
         } while (h != b->list[i]);
     }
     return tl_solid_grow(&b->start, &b->start_capacity, b->starts, sizeof *b->start);
+}
+
+static bool add_share(builder *b, tl_tag tag, double area)
+{
+    for (uint32_t i = 0; i < b->shares; i++)
+        if (b->share[i].tag.joint == tag.joint && b->share[i].tag.plane == tag.plane) {
+            b->share[i].area += area;
+            return true;
+        }
+    if (!tl_solid_grow(&b->share, &b->share_capacity, b->shares, sizeof *b->share))
+        return false;
+    b->share[b->shares++] = (share){tag, area};
+    return true;
+}
+
+/* Lists faces of the mesh over flat edges from one on. */
+static bool list_plane(builder *b, uint32_t face)
+{
+    tl_solid_mesh *m = b->m;
+    b->queued = 0;
+    for (uint32_t i = 0; i == 0 || i < b->queued; i++) {
+        if (i == 0) {
+            if (!tl_solid_grow(&b->queue, &b->queue_capacity, b->queued, sizeof *b->queue))
+                return false;
+            b->queue[b->queued++] = face;
+            m->face[face].mark = m->stamp;
+        }
+        TL_EACH_HALF(m, b->queue[i], h, first) {
+            const uint32_t next = m->half[m->half[h].mate].face;
+            if (!m->half[h].flat || m->face[next].mark == m->stamp)
+                continue;
+            if (!tl_solid_grow(&b->queue, &b->queue_capacity, b->queued, sizeof *b->queue))
+                return false;
+            m->face[next].mark = m->stamp;
+            b->queue[b->queued++] = next;
+        }
+    }
+    return true;
+}
+
+/* Finds the tags of the faces. */
+static bool list_tags(builder *b)
+{
+    tl_solid_mesh *m = b->m;
+    tl_solid_stamp(m);
+    for (uint32_t i = 0; i < b->lists; i++) {
+        b->shares = 0;
+        if (!tl_solid_grow(&b->tag, &b->tag_capacity, i, sizeof *b->tag) ||
+            !list_plane(b, m->half[b->list[i]].face))
+            return false;
+        for (uint32_t k = 0; k < b->queued; k++) {
+            const tl_solid_face *f = &m->face[b->queue[k]];
+            const tl_vec3 n = tl_solid_normal(m, b->queue[k]);
+            double area = 0;
+            for (uint32_t first = f->first; first != TL_SOLID_NONE; first = m->half[first].ring)
+                area += tl_v3_dot(n, tl_solid_loop_area(m, first));
+            if (!f->inside && !add_share(b, f->tag, area))
+                return false;
+        }
+        share most = {{0, 0}, -INFINITY};
+        for (uint32_t k = 0; k < b->shares; k++)
+            if (b->share[k].area > most.area)
+                most = b->share[k];
+        b->tag[i] = most.tag;
+    }
+    return true;
 }
 
 static tl_status refuse(const builder *b, const char *why)
@@ -122,7 +193,7 @@ static uint32_t fill_tables(const builder *b, const tables *t)
         const tl_vec3 n = tl_solid_normal(m, face);
         const double offset = m->plane[m->face[face].plane].offset;
         t->plane[i] = (tl_plane){n, m->face[face].turned ? -offset : offset};
-        t->tag[i] = m->face[face].tag;
+        t->tag[i] = b->tag[i];
     }
     return vertices;
 }
@@ -170,9 +241,12 @@ tl_status tl_solid_part(tl_solid_mesh *m, uint32_t piece, tl_poly **part, tl_err
     builder b = {.m = m, .error = error};
     *part = NULL;
     const tl_status status =
-        list_outlines(&b, piece) && list_corners(&b) ? make_part(&b, part) : tl_fail_memory(error);
+        list_outlines(&b, piece) && list_corners(&b) && list_tags(&b) ? make_part(&b, part) : tl_fail_memory(error);
     free(b.list);
     free(b.corner);
     free(b.start);
+    free(b.queue);
+    free(b.share);
+    free(b.tag);
     return status;
 }
