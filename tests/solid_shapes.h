@@ -57,8 +57,12 @@ static void put_quad(shape *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 
 static tl_solid_surface surface_of(const shape *s)
 {
-    return (tl_solid_surface){.vertices = s->vertex, .vertex_count = s->vertices, .start = s->start, .loops = s->loop,
-                              .face_count = s->faces, .tags = s->tag};
+    return (tl_solid_surface){.vertices = s->vertex,
+                              .vertex_count = s->vertices,
+                              .start = s->start,
+                              .loops = s->loop,
+                              .face_count = s->faces,
+                              .tags = s->tag};
 }
 
 /* ---- cells ---- */

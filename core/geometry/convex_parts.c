@@ -119,10 +119,11 @@ static tl_status no_cut(const divider *d, uint32_t piece, tl_error *error)
     const tl_solid_mesh *m = &d->m;
     const uint32_t h = m->piece[piece].reflex[0];
     const tl_vec3 a = m->vertex[m->half[h].from], b = m->vertex[tl_half_to(m, h)];
-    return tl_fail(error, TL_E_GEOMETRY,
-                   "the solid could not be divided at the edge from {%g, %g, %g} to {%g, %g, %g}, where it bends inward: "
-                   "faces near it may touch each other or differ by less than %g m",
-                   a.x, a.y, a.z, b.x, b.y, b.z, m->on);
+    return tl_fail(
+        error, TL_E_GEOMETRY,
+        "the solid could not be divided at the edge from {%g, %g, %g} to {%g, %g, %g}, where it bends inward: "
+        "faces near it may touch each other or differ by less than %g m",
+        a.x, a.y, a.z, b.x, b.y, b.z, m->on);
 }
 
 static bool add_part(tl_convex_parts *parts, uint32_t *capacity, tl_poly *part)
@@ -173,10 +174,11 @@ static tl_status check_volume(const divider *d, const tl_convex_parts *parts, tl
     const double slack = fmax(FILLED * d->m.volume, d->m.on * area);
     if (fabs(sum - d->m.volume) <= slack)
         return TL_OK;
-    return tl_fail(error, TL_E_GEOMETRY,
-                   "the solid could not be divided into convex parts: they have %g m3 of its %g m3; its faces may lie on "
-                   "each other",
-                   sum, d->m.volume);
+    return tl_fail(
+        error, TL_E_GEOMETRY,
+        "the solid could not be divided into convex parts: they have %g m3 of its %g m3; its faces may lie on "
+        "each other",
+        sum, d->m.volume);
 }
 
 tl_status tl_convex_parts_make(const tl_solid_surface *surface, tl_convex_parts *parts, tl_error *error)

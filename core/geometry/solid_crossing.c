@@ -59,10 +59,10 @@ static bool runs_inside(search *s, uint32_t face)
     const double length = tl_v3_norm(way);
     s->stretches = 0;
     TL_EACH_HALF(m, face, h, first)
-        if (!add_meeting(s, a, way, m->vertex[m->half[h].from], m->vertex[tl_half_to(m, h)], normal)) {
-            s->lost = true;
-            return false;
-        }
+    if (!add_meeting(s, a, way, m->vertex[m->half[h].from], m->vertex[tl_half_to(m, h)], normal)) {
+        s->lost = true;
+        return false;
+    }
     s->stretch[s->stretches++] = 0; /* there is room: a face has three edges or more */
     uint32_t kept = 0;
     for (uint32_t i = 0; i < s->stretches; i++)
@@ -161,8 +161,9 @@ tl_status tl_solid_check_crossing(const tl_solid_mesh *m, tl_error *error)
     if (!s.found)
         return TL_OK;
     const tl_vec3 a = m->vertex[m->half[s.edge].from], b = m->vertex[tl_half_to(m, s.edge)];
-    return tl_fail(error, TL_E_GEOMETRY,
-                   "the surface crosses itself at {%g, %g, %g}: the edge from {%g, %g, %g} to {%g, %g, %g} goes through "
-                   "another face",
-                   s.at.x, s.at.y, s.at.z, a.x, a.y, a.z, b.x, b.y, b.z);
+    return tl_fail(
+        error, TL_E_GEOMETRY,
+        "the surface crosses itself at {%g, %g, %g}: the edge from {%g, %g, %g} to {%g, %g, %g} goes through "
+        "another face",
+        s.at.x, s.at.y, s.at.z, a.x, a.y, a.z, b.x, b.y, b.z);
 }

@@ -12,8 +12,8 @@
 typedef struct cutter {
     tl_section *s;
     tl_solid_mesh *m;
-    uint32_t part;     /* of the section: what is cut */
-    uint32_t old_faces; /* faces before the cut */
+    uint32_t part;                        /* of the section: what is cut */
+    uint32_t old_faces;                   /* faces before the cut */
     uint32_t *open, opens, open_capacity; /* first half-edges of the loops of a face */
     uint32_t *cap, caps, cap_capacity;    /* the new faces */
 } cutter;
@@ -49,7 +49,8 @@ static bool divide_edge(const cutter *c, tl_crossing *x)
     b->next = near;
     a->mate = near;
     b->mate = far;
-    return !a->reflex || tl_piece_add_reflex(&m->piece[c->s->piece], far);
+    /* the older half-edge of each edge is listed: h is, and `far` is younger than its mate */
+    return !a->reflex || tl_piece_add_reflex(&m->piece[c->s->piece], mate);
 }
 
 /* Divides the edges that the cut crosses. Vertices come behind the nodes of crossings, so rims keep the old names. */
@@ -146,8 +147,7 @@ static bool put_around(cutter *c, uint32_t face, uint32_t first, bool *taken)
 {
     tl_solid_mesh *m = c->m;
     uint32_t number = face;
-    if (*taken && (!tl_solid_add_face(m, m->face[face], &number) ||
-                   !tl_piece_add_face(&m->piece[c->s->piece], number)))
+    if (*taken && (!tl_solid_add_face(m, m->face[face], &number) || !tl_piece_add_face(&m->piece[c->s->piece], number)))
         return false;
     *taken = true;
     m->face[number].first = first;
@@ -388,8 +388,8 @@ static bool grow_floods(flood *list, uint32_t count, tl_solid_mesh *m, uint32_t 
                 continue;
             const uint32_t face = list[i].face[list[i].done++];
             TL_EACH_HALF(m, face, h, first)
-                if (!flood_reach(list, i, m, stamp, m->half[m->half[h].mate].face))
-                    return false;
+            if (!flood_reach(list, i, m, stamp, m->half[m->half[h].mate].face))
+                return false;
         }
     }
 }

@@ -28,15 +28,16 @@ typedef struct tl_solid_face {
     tl_tag tag;
     uint32_t piece;
     uint32_t shell;
-    uint32_t slot; /* scratch: its place among the faces near a plane */
-    uint32_t mark; /* scratch: `stamp` when it was met last */
+    uint32_t slot;  /* scratch: its place among the faces near a plane */
+    uint32_t mark;  /* scratch: `stamp` when it was met last */
     tl_vec3 center; /* of a ball that holds it */
     double radius;
 } tl_solid_face;
 
 typedef struct tl_solid_piece {
-    uint32_t *face, faces, face_capacity;       /* and some that have gone to other pieces */
-    uint32_t *reflex, reflexes, reflex_capacity; /* one half-edge of each reflex edge, and some that are none any more */
+    uint32_t *face, faces, face_capacity; /* and some that have gone to other pieces */
+    uint32_t *reflex, reflexes,
+        reflex_capacity; /* the older half-edge of each reflex edge, and of some that are none any more */
 } tl_solid_piece;
 
 typedef struct tl_solid_shell {
@@ -84,10 +85,10 @@ static inline tl_vec3 tl_solid_normal(const tl_solid_mesh *m, uint32_t face)
 }
 
 /* A loop over the half-edges of a face: `h` is each of them, `first` the first one of its loop. */
-#define TL_EACH_HALF(m, face_number, h, first)                                                                            \
+#define TL_EACH_HALF(m, face_number, h, first)                                                                         \
     for (uint32_t first = (m)->face[face_number].first, h = first, round_ = 0; first != TL_SOLID_NONE;                 \
-         h = (m)->half[h].next, round_ = h == first,                                                                   \
-                  first = round_ ? (m)->half[first].ring : first, h = round_ ? first : h)
+         h = (m)->half[h].next, round_ = h == first, first = round_ ? (m)->half[first].ring : first,                   \
+                  h = round_ ? first : h)
 
 /* Makes room for one more; false without memory. */
 bool tl_solid_grow(void *list, uint32_t *capacity, uint32_t count, size_t bytes);

@@ -25,7 +25,7 @@ typedef struct share {
 typedef struct builder {
     tl_solid_mesh *m;
     tl_error *error;
-    uint32_t *list, lists, capacity;      /* first half-edges of the loops of faces */
+    uint32_t *list, lists, capacity;            /* first half-edges of the loops of faces */
     uint32_t *corner, corners, corner_capacity; /* vertices of all loops */
     uint32_t *start, starts, start_capacity;
     uint32_t *queue, queued, queue_capacity; /* faces of the mesh that become one */
@@ -52,7 +52,8 @@ static bool list_outlines(builder *b, uint32_t piece)
     for (uint32_t i = 0; i < p->faces; i++) {
         if (m->face[p->face[i]].piece != piece)
             continue;
-        TL_EACH_HALF(m, p->face[i], h, first) {
+        TL_EACH_HALF(m, p->face[i], h, first)
+        {
             if (m->half_mark[h] == stamp || m->half[h].flat)
                 continue;
             if (!tl_solid_grow(&b->list, &b->capacity, b->lists, sizeof *b->list))
@@ -116,7 +117,8 @@ static bool list_plane(builder *b, uint32_t face)
             b->queue[b->queued++] = face;
             m->face[face].mark = m->stamp;
         }
-        TL_EACH_HALF(m, b->queue[i], h, first) {
+        TL_EACH_HALF(m, b->queue[i], h, first)
+        {
             const uint32_t next = m->half[m->half[h].mate].face;
             if (!m->half[h].flat || m->face[next].mark == m->stamp)
                 continue;
@@ -136,8 +138,7 @@ static bool list_tags(builder *b)
     tl_solid_stamp(m);
     for (uint32_t i = 0; i < b->lists; i++) {
         b->shares = 0;
-        if (!tl_solid_grow(&b->tag, &b->tag_capacity, i, sizeof *b->tag) ||
-            !list_plane(b, m->half[b->list[i]].face))
+        if (!tl_solid_grow(&b->tag, &b->tag_capacity, i, sizeof *b->tag) || !list_plane(b, m->half[b->list[i]].face))
             return false;
         for (uint32_t k = 0; k < b->queued; k++) {
             const tl_solid_face *f = &m->face[b->queue[k]];
@@ -160,10 +161,11 @@ static bool list_tags(builder *b)
 static tl_status refuse(const builder *b, const char *why)
 {
     const tl_vec3 at = b->lists ? b->m->vertex[b->m->half[b->list[0]].from] : tl_v3(0, 0, 0);
-    return tl_fail(b->error, TL_E_GEOMETRY,
-                   "the solid could not be divided into convex parts: one at {%g, %g, %g} %s; its faces may be bent or lie "
-                   "on each other",
-                   at.x, at.y, at.z, why);
+    return tl_fail(
+        b->error, TL_E_GEOMETRY,
+        "the solid could not be divided into convex parts: one at {%g, %g, %g} %s; its faces may be bent or lie "
+        "on each other",
+        at.x, at.y, at.z, why);
 }
 
 /* What tl_poly_make takes. */

@@ -95,10 +95,11 @@ static void find_sides(tl_section *s, tl_solid_mesh *m)
     for (uint32_t i = 0; i < s->faces; i++)
         if (m->face[s->face[i]].plane == s->plane)
             TL_EACH_HALF(m, s->face[i], h, first)
-                put_side(m, m->half[h].from, &plane, true);
+    put_side(m, m->half[h].from, &plane, true);
     for (uint32_t i = 0; i < s->faces; i++) {
         bool lies = true;
-        TL_EACH_HALF(m, s->face[i], h, first) {
+        TL_EACH_HALF(m, s->face[i], h, first)
+        {
             put_side(m, m->half[h].from, &plane, false);
             lies = lies && m->side[m->half[h].from] == 0;
         }
@@ -209,8 +210,7 @@ static bool pair_ends(tl_section *s, uint32_t face, double slack, bool *sound)
     for (uint32_t i = 0; i + 1 < s->ends; i += 2) {
         if (!tl_solid_grow(&s->span, &s->span_capacity, s->spans, sizeof *s->span))
             return false;
-        s->span[s->spans++] =
-            (tl_span){.face = face, .start = s->end[i], .end = s->end[i + 1], .made = TL_SOLID_NONE};
+        s->span[s->spans++] = (tl_span){.face = face, .start = s->end[i], .end = s->end[i + 1], .made = TL_SOLID_NONE};
     }
     return true;
 }
@@ -220,14 +220,16 @@ static bool find_spans(tl_section *s, tl_solid_mesh *m, uint32_t face, bool *sou
     const tl_vec3 normal = tl_solid_normal(m, face);
     const tl_vec3 cross = tl_v3_cross(normal, m->plane[s->plane].normal), line = tl_v3_unit(cross);
     bool below = false, above = false;
-    TL_EACH_HALF(m, face, h, first) {
+    TL_EACH_HALF(m, face, h, first)
+    {
         below = below || m->side[m->half[h].from] < 0;
         above = above || m->side[m->half[h].from] > 0;
     }
     if (!below || !above)
         return true;
     s->ends = 0;
-    TL_EACH_HALF(m, face, h, first) {
+    TL_EACH_HALF(m, face, h, first)
+    {
         const int from = m->side[m->half[h].from], to = m->side[tl_half_to(m, h)];
         if (from == 0) {
             if (!ends_at_vertex(s, m, h, normal, line))
@@ -298,8 +300,8 @@ static bool find_rims(tl_section *s, tl_solid_mesh *m)
     }
     for (uint32_t i = 0; i < s->faces; i++)
         TL_EACH_HALF(m, s->face[i], h, first)
-            if (m->side[m->half[h].from] == 0 && m->side[tl_half_to(m, h)] == 0 && !rim_of_edge(s, m, h))
-                return false;
+    if (m->side[m->half[h].from] == 0 && m->side[tl_half_to(m, h)] == 0 && !rim_of_edge(s, m, h))
+        return false;
     return true;
 }
 
@@ -581,8 +583,7 @@ static void score_edge(const tl_section *s, const tl_solid_mesh *m, const tl_rim
     tl_vec3 inward = tl_v3_cross(along, m->plane[s->plane].normal);
     if (r->above)
         inward = tl_v3_neg(inward);
-    score->thin = score->thin ||
-                  tl_v3_dot(tl_v3_cross(tl_solid_normal(m, m->half[h].face), along), inward) > SHARP;
+    score->thin = score->thin || tl_v3_dot(tl_v3_cross(tl_solid_normal(m, m->half[h].face), along), inward) > SHARP;
 }
 
 static void score_rims(tl_section *s, const tl_solid_mesh *m)
@@ -604,8 +605,8 @@ static void score_rims(tl_section *s, const tl_solid_mesh *m)
             continue;
         const uint32_t h = s->crossing[r->from - m->vertices].half;
         score->split += m->half[h].reflex;
-        score->thin = score->thin || fmin(fabs(m->height[m->half[h].from]), fabs(m->height[tl_half_to(m, h)])) <
-                                         NEAR_VERTEX * m->size;
+        score->thin = score->thin ||
+                      fmin(fabs(m->height[m->half[h].from]), fabs(m->height[tl_half_to(m, h)])) < NEAR_VERTEX * m->size;
     }
 }
 

@@ -13,7 +13,7 @@ typedef struct tl_crossing {
 
 /* Where the line of the plane in a face enters or leaves the face. */
 typedef struct tl_line_end {
-    double along; /* m: on the line */
+    double along;  /* m: on the line */
     uint32_t half; /* crossed, or the one that begins at a vertex on the plane */
     bool crosses;
     bool starts;     /* the face lies after it on the line */
@@ -50,7 +50,7 @@ typedef struct tl_rim_loop {
 struct tl_section {
     uint32_t piece, plane;
     uint32_t *face, faces, face_capacity; /* near the plane */
-    uint8_t *lies; /* [faces] all of the face lies on it */
+    uint8_t *lies;                        /* [faces] all of the face lies on it */
     uint32_t lies_capacity;
     tl_line_end *end;
     uint32_t ends, end_capacity;

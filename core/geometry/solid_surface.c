@@ -141,8 +141,8 @@ static tl_vec3 face_area(const tl_solid_surface *g, uint32_t f)
     const tl_vec3 base = g->vertices[g->loops[g->start[f]]];
     tl_vec3 sum = {0, 0, 0};
     for (uint32_t c = g->start[f] + 1; c + 1 < g->start[f + 1]; c++)
-        sum = tl_v3_add(sum, tl_v3_cross(tl_v3_sub(g->vertices[g->loops[c]], base),
-                                         tl_v3_sub(g->vertices[g->loops[c + 1]], base)));
+        sum = tl_v3_add(
+            sum, tl_v3_cross(tl_v3_sub(g->vertices[g->loops[c]], base), tl_v3_sub(g->vertices[g->loops[c + 1]], base)));
     return sum;
 }
 
@@ -180,10 +180,11 @@ static tl_status measure_all(const reader *r)
     measure(r, &bounds);
     const double least = EMPTY * m->size * m->size * m->size;
     if (m->volume < -least)
-        return tl_fail(r->error, TL_E_GEOMETRY,
-                       "the surface is turned inside out: its volume is %g m3; give every face counter-clockwise as seen "
-                       "from outside",
-                       m->volume);
+        return tl_fail(
+            r->error, TL_E_GEOMETRY,
+            "the surface is turned inside out: its volume is %g m3; give every face counter-clockwise as seen "
+            "from outside",
+            m->volume);
     if (!(m->volume > least))
         return tl_fail(r->error, TL_E_GEOMETRY, "the surface holds no volume: %g m3 in a box with a diagonal of %g m",
                        m->volume, m->size);
@@ -266,8 +267,8 @@ static tl_status check_plane(const reader *r, uint32_t f)
     if (most <= 2 * r->m->on)
         return TL_OK;
     return tl_fail(r->error, TL_E_GEOMETRY,
-                   "face %u at {%g, %g, %g} is bent: a corner lies %g m off its plane, and %g m are flat", f + 1, base.x,
-                   base.y, base.z, most, r->m->on);
+                   "face %u at {%g, %g, %g} is bent: a corner lies %g m off its plane, and %g m are flat", f + 1,
+                   base.x, base.y, base.z, most, r->m->on);
 }
 
 static tl_status find_regions(const reader *r)
@@ -294,10 +295,10 @@ static tl_status find_regions(const reader *r)
             continue;
         r->queue[0] = f;
         if (!tl_solid_add_plane(r->m, grow_region(r, r->m->faces), &plane) ||
-            !tl_solid_add_face(r->m,
-                               (tl_solid_face){.first = TL_SOLID_NONE, .plane = plane, .tag = tag_of(r, f),
-                                               .shell = TL_SOLID_NONE},
-                               &face))
+            !tl_solid_add_face(
+                r->m,
+                (tl_solid_face){.first = TL_SOLID_NONE, .plane = plane, .tag = tag_of(r, f), .shell = TL_SOLID_NONE},
+                &face))
             return tl_fail_memory(r->error);
     }
     return TL_OK;
@@ -332,8 +333,9 @@ static tl_status add_halves(const reader *r)
         r->half[c] = TL_SOLID_NONE;
         if (!is_kept(r, c))
             continue;
-        if (!tl_solid_add_half(
-                m, (tl_half_edge){.from = g->loops[c], .face = r->region[r->of[c]], .ring = TL_SOLID_NONE}, &r->half[c]))
+        if (!tl_solid_add_half(m,
+                               (tl_half_edge){.from = g->loops[c], .face = r->region[r->of[c]], .ring = TL_SOLID_NONE},
+                               &r->half[c]))
             return tl_fail_memory(r->error);
         r->meets[g->loops[c]]++;
     }
@@ -483,8 +485,7 @@ static bool add_bisectors(tl_solid_mesh *m)
         const uint32_t h = p->reflex[i], mate = m->half[h].mate;
         const tl_vec3 a = m->vertex[m->half[h].from], b = m->vertex[tl_half_to(m, h)];
         const tl_vec3 along = tl_v3_unit(tl_v3_sub(b, a));
-        tl_vec3 n = tl_v3_unit(
-            tl_v3_sub(tl_solid_normal(m, m->half[h].face), tl_solid_normal(m, m->half[mate].face)));
+        tl_vec3 n = tl_v3_unit(tl_v3_sub(tl_solid_normal(m, m->half[h].face), tl_solid_normal(m, m->half[mate].face)));
         n = tl_v3_unit(tl_v3_madd(n, -tl_v3_dot(n, along), along));
         const double offset = tl_v3_dot(n, tl_v3_scale(0.5, tl_v3_add(a, b)));
         if (!tl_solid_add_plane(m, (tl_plane){n, offset}, &m->bisector[h]))
@@ -580,10 +581,11 @@ static tl_status check_shells(tl_solid_mesh *m, tl_error *error)
         shell->apart = volume_of(m, queue, count) < 0;
         const tl_vec3 at = m->vertex[m->half[m->face[f].first].from];
         if (!shell->apart && outer != TL_SOLID_NONE)
-            status = tl_fail(error, TL_E_GEOMETRY,
-                             "the surface is of several solids: one with face %u, another at {%g, %g, %g}; give each by "
-                             "itself",
-                             outer + 1, at.x, at.y, at.z);
+            status =
+                tl_fail(error, TL_E_GEOMETRY,
+                        "the surface is of several solids: one with face %u, another at {%g, %g, %g}; give each by "
+                        "itself",
+                        outer + 1, at.x, at.y, at.z);
         if (!shell->apart)
             outer = f;
     }
@@ -596,8 +598,9 @@ static tl_status check_shells(tl_solid_mesh *m, tl_error *error)
                 queue[count++] = f;
         const tl_vec3 at = m->vertex[m->half[m->face[m->shell[i].face].first].from];
         if (tl_solid_winding(m, queue, count, at) != 1)
-            status = tl_fail(error, TL_E_GEOMETRY, "the surface has a part turned inside out that is no cavity at {%g, %g, %g}",
-                             at.x, at.y, at.z);
+            status =
+                tl_fail(error, TL_E_GEOMETRY,
+                        "the surface has a part turned inside out that is no cavity at {%g, %g, %g}", at.x, at.y, at.z);
     }
     free(queue);
     return enough ? status : tl_fail_memory(error);

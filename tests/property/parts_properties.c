@@ -16,8 +16,8 @@ static double volume_of(const shape *of, double *area)
         const tl_vec3 a = of->vertex[of->loop[of->start[f]]];
         tl_vec3 twice = {0, 0, 0};
         for (uint32_t c = of->start[f] + 1; c + 1 < of->start[f + 1]; c++)
-            twice = tl_v3_add(twice, tl_v3_cross(tl_v3_sub(of->vertex[of->loop[c]], a),
-                                                 tl_v3_sub(of->vertex[of->loop[c + 1]], a)));
+            twice = tl_v3_add(
+                twice, tl_v3_cross(tl_v3_sub(of->vertex[of->loop[c]], a), tl_v3_sub(of->vertex[of->loop[c + 1]], a)));
         six += tl_v3_dot(tl_v3_sub(a, of->vertex[0]), twice);
         *area += 0.5 * tl_v3_norm(twice);
     }
@@ -33,8 +33,8 @@ static int is_inside(const shape *of, tl_vec3 at)
             const tl_vec3 x = tl_v3_sub(of->vertex[of->loop[of->start[f]]], at);
             const tl_vec3 y = tl_v3_sub(of->vertex[of->loop[c]], at), z = tl_v3_sub(of->vertex[of->loop[c + 1]], at);
             const double lx = tl_v3_norm(x), ly = tl_v3_norm(y), lz = tl_v3_norm(z);
-            sum += atan2(tl_v3_dot(x, tl_v3_cross(y, z)), lx * ly * lz + tl_v3_dot(x, y) * lz + tl_v3_dot(y, z) * lx +
-                                                              tl_v3_dot(z, x) * ly);
+            sum += atan2(tl_v3_dot(x, tl_v3_cross(y, z)),
+                         lx * ly * lz + tl_v3_dot(x, y) * lz + tl_v3_dot(y, z) * lx + tl_v3_dot(z, x) * ly);
         }
     return sum > TL_PI;
 }
