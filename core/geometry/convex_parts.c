@@ -1,11 +1,11 @@
 /* convex_parts.c - divides a solid into convex parts by cuts along its reflex edges.
  *
  * After B. Chazelle, SIAM J. Comput. 13 (1984) 488-507: a plane through a reflex edge that ends it on both sides cuts
- * the solid there, as far as the section hangs together with that edge. Without reflex edges a piece is convex. Three
- * planes are tried at each edge: those of its faces and the one midway. Planes that hold many reflex edges are looked
- * at first. The cut that ends most of them, less those that it divides, is made. Among equals a cut that leaves no sharp
- * wedge, then the smallest, then the one nearest to the centroid of the solid. None of that depends on the order of
- * faces, on place, attitude or unit.
+ * the solid there. The cut goes as far as the section hangs together with that edge. Without reflex edges a piece is
+ * convex. Three planes are tried at each edge: those of its faces and the one midway. Planes that hold many reflex
+ * edges are looked at first. The cut that ends most of them, less those that it divides, is made. Among equals a cut
+ * that leaves no sharp wedge goes first, then the smallest, then the one nearest to the centroid of the solid. None of
+ * that depends on the order of faces, on place, attitude or unit.
  *
  * Each edge on a plane is cut for good, so their number bounds the cuts. A section takes time in proportion to the
  * faces of its piece, one product each for those that the plane passes by. */
@@ -14,7 +14,10 @@
 #include "base/error.h"
 #include "geometry/make.h"
 #include "geometry/measure.h"
-#include "geometry/solid_mesh.h"
+#include "geometry/solid_crossing.h"
+#include "geometry/solid_cut.h"
+#include "geometry/solid_part.h"
+#include "geometry/solid_surface.h"
 
 #include <math.h>
 #include <stdlib.h>

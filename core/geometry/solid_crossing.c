@@ -2,9 +2,9 @@
  *
  * Where two faces cross, an edge of one goes through the inside of the other, or lies in it. Each edge is tried against
  * the faces whose bounds it meets. It goes through a face when its ends lie on both sides and the point between lies
- * inside. An edge that lies in the plane of a face, and runs inside it for a stretch, crosses it when its own faces lie
- * on both sides or along the face, looking the same way. What only touches is let be. */
-#include "geometry/solid_mesh.h"
+ * inside. An edge may also lie in the plane of a face, and run inside it for a stretch. Then it crosses the face when
+ * its own faces lie on both sides, or one along the face, looking the same way. What only touches is let be. */
+#include "geometry/solid_crossing.h"
 
 #include "base/error.h"
 #include "geometry/box_tree.h"

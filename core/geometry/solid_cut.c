@@ -1,9 +1,9 @@
 /* solid_cut.c - makes a cut of a piece, and finds the pieces that it leaves.
  *
- * Edges that the plane crosses get a vertex. Each span becomes an edge of its face, with the part below at the left of
- * one half-edge and the part above at the left of the other. The rims become two new faces, one for each side. What
+ * Edges that the plane crosses get a vertex. Each span becomes an edge of its face. The part below lies at the left of
+ * one half-edge, and the part above at the left of the other. The rims become two new faces, one for each side. What
  * hangs together over edges is then a piece. */
-#include "geometry/solid_section.h"
+#include "geometry/solid_cut.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,8 @@
 #ifndef TL_GEOMETRY_SOLID_MESH_H
 #define TL_GEOMETRY_SOLID_MESH_H
 
-#include "geometry/convex_parts.h"
+#include <stdbool.h>
+#include <talus/types.h>
 
 #define TL_SOLID_NONE UINT32_MAX
 
@@ -120,33 +121,5 @@ int tl_solid_in_loop(const tl_solid_mesh *m, uint32_t first, tl_vec3 normal, tl_
 int tl_solid_in_face(const tl_solid_mesh *m, uint32_t face, tl_vec3 at);
 /* How often the faces of a list go round a point off them. */
 int tl_solid_winding(const tl_solid_mesh *m, const uint32_t *face, size_t count, tl_vec3 at);
-
-/* Makes the mesh of a closed surface as one piece, with coplanar faces of one tag made one (solid_surface.c). */
-tl_status tl_solid_read(const tl_solid_surface *surface, tl_solid_mesh *m, tl_error *error);
-/* Refuses a surface that crosses itself (solid_crossing.c). */
-tl_status tl_solid_check_crossing(const tl_solid_mesh *m, tl_error *error);
-
-/* Refuses shells turned inside out that are not inside (solid_surface.c). */
-tl_status tl_solid_check_cavities(const tl_solid_mesh *m, tl_error *error);
-
-/* A cut of a piece: by a plane, over the part of it that hangs together with a reflex edge. */
-typedef struct tl_solid_cut {
-    uint32_t plane, edge;
-    int32_t gain;  /* reflex edges that it ends less those that it cuts in two; INT32_MIN: there is no cut */
-    bool thin;     /* makes a sharp wedge or a short edge */
-    double area;   /* m2 */
-    double length; /* m: from the centroid of the solid to that of the cut */
-} tl_solid_cut;
-
-typedef struct tl_section tl_section;
-tl_section *tl_section_new(void);
-void tl_section_free(tl_section *s);
-/* The best cut of a piece by a plane; false without memory (solid_section.c). */
-bool tl_section_best(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, tl_solid_cut *best);
-/* Makes a cut that was found. A piece that it parts keeps one side; others become new pieces (solid_cut.c). */
-bool tl_solid_cut_make(tl_section *s, tl_solid_mesh *m, uint32_t piece, const tl_solid_cut *cut);
-
-/* The convex part that a piece is. TL_E_GEOMETRY: it is none, or too thin (solid_part.c). */
-tl_status tl_solid_part(tl_solid_mesh *m, uint32_t piece, tl_poly **part, tl_error *error);
 
 #endif

@@ -3,7 +3,7 @@
  * Faces that meet at a flat edge become one face: a cut goes on in the plane of the face that it began at. It has the
  * tag that most of its outer area has. Vertices where fewer than three faces meet are left out: they lie on straight
  * edges. */
-#include "geometry/solid_mesh.h"
+#include "geometry/solid_part.h"
 
 #include "base/error.h"
 #include "geometry/make.h"

@@ -1,14 +1,16 @@
 /* solid_section.c - the section of a solid by a plane, in parts that hang together.
  *
  * Each vertex is below, on or above the plane; all else follows from these signs. A face that the plane crosses has
- * spans: the stretches of their common line inside it. A span bounds the new face of either side. So does an edge on
- * the plane, on the side of a face f that it belongs to, when one meets the plane before the other face on the way
- * from f through the solid: when the other face lies on the other side, or when the edge is reflex. A face that lies
- * on the plane counts to the side where the solid is.
+ * spans: the stretches of their common line inside it. A span bounds the new face of either side.
+ * An edge on the plane bounds the new face of the side of one of its faces when the plane comes first on the way from
+ * that face through the solid. So it is when the other face lies on the other side, and for a reflex edge in any case.
+ * A face that lies on the plane counts to the side where the solid is.
  *
  * Rims, the half-edges of the new faces, are chained to loops. Loops that share a span, an edge, or lie one in the hole
  * of the other, are one part of the section. A cut goes along one part only, so it ends where the solid ends. */
 #include "geometry/solid_section.h"
+
+#include "geometry/polyhedron.h"
 
 #include <math.h>
 #include <stdlib.h>

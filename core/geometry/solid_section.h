@@ -47,7 +47,7 @@ typedef struct tl_rim_loop {
     double low[2], high[2];
 } tl_rim_loop;
 
-struct tl_section {
+typedef struct tl_section {
     uint32_t piece, plane;
     uint32_t *face, faces, face_capacity; /* near the plane */
     uint8_t *lies;                        /* [faces] all of the face lies on it */
@@ -67,8 +67,21 @@ struct tl_section {
     struct tl_part_score *score;
     uint32_t score_capacity;
     tl_vec3 t1, t2; /* in the plane */
-};
+} tl_section;
 
+/* A cut of a piece: by a plane, over the part of the section that hangs together with a reflex edge. */
+typedef struct tl_solid_cut {
+    uint32_t plane, edge;
+    int32_t gain;  /* reflex edges that it ends less those that it cuts in two; INT32_MIN: there is no cut */
+    bool thin;     /* makes a sharp wedge or a short edge */
+    double area;   /* m2 */
+    double length; /* m: from the centroid of the solid to that of the cut */
+} tl_solid_cut;
+
+tl_section *tl_section_new(void);
+void tl_section_free(tl_section *s);
+/* Puts the best cut of a piece by a plane into *best if it is better; false without memory. */
+bool tl_section_best(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, tl_solid_cut *best);
 /* Finds the section of a piece; false without memory. *sound: its loops close. */
 bool tl_section_make(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, bool *sound);
 /* The name of the part of the section that a rim belongs to. */

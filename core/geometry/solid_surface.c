@@ -4,7 +4,7 @@
  * become one face, grown from the largest on: a flat side of a mesh is one face, whatever its triangles. Edges inside
  * it go, and so do vertices on straight edges. Planes that are one plane, however far apart their faces lie, get one
  * number: a cut by it is then known to lie along all of them. */
-#include "geometry/solid_mesh.h"
+#include "geometry/solid_surface.h"
 
 #include "base/error.h"
 #include "geometry/make.h"

@@ -450,8 +450,8 @@ struct tl_host {
     tl_status (*read_mesh)(const tl_host *, const char *file, const tl_mesh_part **parts, size_t *count);
     /* since 1.11: creates convex blocks that fill a solid, joined to one body; *parts, which may be NULL, gets their
      * number. They are the last blocks. A convex solid becomes one block, as create_block makes it. A face of several
-     * tags gets the one with most of its area. Refused with TL_E_GEOMETRY and the place is a surface that is open,
-     * crosses itself, has more than two faces at an edge, is turned inside out or holds no volume. */
+     * tags gets the one with most of its area. Refused with TL_E_GEOMETRY and the place is a surface that is open
+     * or crosses itself. So is one that has more than two faces at an edge, is turned inside out or holds no volume. */
     tl_status (*create_solid)(const tl_host *, const tl_solid_shape *shape, size_t *parts);
 };
 
