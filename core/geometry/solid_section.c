@@ -2,8 +2,8 @@
  *
  * Each vertex is below, on or above the plane; all else follows from these signs. A face that the plane crosses has
  * spans: the stretches of their common line inside it. A span bounds the new face of either side.
- * An edge on the plane bounds the new face of the side of one of its faces when the plane comes first on the way from
- * that face through the solid. So it is when the other face lies on the other side, and for a reflex edge in any case.
+ * An edge on the plane may bound the new face of the side of one of its faces. It does when the plane comes first on
+ * the way from that face through the solid. So it is when the other face lies on the other side, and at a reflex edge.
  * A face that lies on the plane counts to the side where the solid is.
  *
  * Rims, the half-edges of the new faces, are chained to loops. Loops that share a span, an edge, or lie one in the hole
