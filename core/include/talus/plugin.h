@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 10u
+#define TL_ABI_MINOR 11u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -429,6 +429,12 @@ struct tl_host {
      * tetrahedra, and valid until the generator ends or reads another. Refused with TL_E_GEOMETRY are a damaged file
      * and a part that is not convex. */
     tl_status (*read_mesh)(const tl_host *, const char *file, const tl_mesh_part **parts, size_t *count);
+    /* since 1.11: notes for the user what was done with an object of a file, or why it was refused. The number counts
+     * where `text` is NULL. `object` is its name, NULL: the whole. Notes of one object follow each other. They are in
+     * the report of the summary, unless the generator fails. */
+    tl_status (*note)(const tl_host *, const char *object, const char *key, double number, const char *text);
+    /* since 1.11: the sentence of the service that failed last, for a generator that goes on without the block. */
+    const char *(*reason)(const tl_host *);
 };
 
 typedef struct tl_generator_ops {
