@@ -9,6 +9,9 @@
 
 /* Tolerance: corners that miss their plane by less than this times the solid's size lie on it. */
 #define ON_PLANE 1e-9
+/* Tolerance: of a solid that shares no side they may stay where they are when they miss it by less than this: a block
+ * takes as much, and blocks of other files that have the same corners still fit. */
+#define AS_GIVEN 8e-5
 /* Tolerance: planes are parallel for a vertex where their normals spread by less than this, as the square of a sine. */
 #define PARALLEL 1e-3
 /* Limit: rounds of fitting and moving. Vertices of three sides need one or two. */
@@ -157,6 +160,12 @@ static double size_of(const solids *s, size_t i)
     return sqrt(size2);
 }
 
+/* How far the corners of a solid may miss their planes. */
+static double on_plane(const solids *s, size_t i)
+{
+    return (s->solid[i].shared ? ON_PLANE : AS_GIVEN) * size_of(s, i);
+}
+
 /* Fits the planes of all sides that bind. */
 static void fit_planes(mover *m)
 {
@@ -241,7 +250,7 @@ static bool move_vertices(mover *m)
     bool moved = false;
     for (size_t i = 0; i < s->solids; i++) {
         const solid *o = &s->solid[i];
-        if (gather(m, i, false) <= ON_PLANE * size_of(s, i))
+        if (gather(m, i, false) <= on_plane(s, i))
             continue;
         moved = true;
         gather(m, i, true);
@@ -267,7 +276,9 @@ static void begin(mover *m)
     fit_planes(m);
     for (size_t i = 0; i < s->solids; i++) {
         solid *o = &s->solid[i];
-        double on = ON_PLANE * size_of(s, i);
+        const double on = ON_PLANE * size_of(s, i);
+        if (gather(m, i, false) <= on_plane(s, i))
+            continue;
         uint32_t last = NONE;
         for (uint32_t f = o->face; f < solid_faces(s, i); f++) {
             const plane *p = &s->plane[o->plane + s->side[f]];

@@ -113,6 +113,12 @@ static uint32_t find_near(const mesh *m, tl_vec3 at, tl_vec3 zero, double size, 
     return best;
 }
 
+static int by_number(const void *left, const void *right)
+{
+    uint32_t a = *(const uint32_t *)left, b = *(const uint32_t *)right;
+    return (a > b) - (a < b);
+}
+
 /* Makes the object's own vertices, and its corners of them. Counts those that are welded. */
 static void weld_vertices(solids *s, const file_object *o, uint32_t last, mesh *m, done *d)
 {
@@ -124,13 +130,14 @@ static void weld_vertices(solids *s, const file_object *o, uint32_t last, mesh *
         mask = 2 * mask + 1;
     memset(m->cell, 0xff, (size_t)(mask + 1) * sizeof *m->cell);
     m->vertices = 0;
-    size_t given = 0;
-    for (uint32_t h = from->start[o->face]; h < from->start[last]; h++) {
-        uint32_t v = from->corner[h];
+    const size_t corners = from->start[last] - from->start[o->face];
+    memcpy(m->root, from->corner + from->start[o->face], corners * sizeof *m->root);
+    qsort(m->root, corners, sizeof *m->root, by_number); /* vertices are numbered as the file has them */
+    for (size_t i = 0; i < corners; i++) {
+        uint32_t v = m->root[i];
         if (m->local[v] == NONE) {
             tl_vec3 at = from->vertex[v];
             uint32_t near = find_near(m, at, zero, size, s->weld, mask);
-            given++;
             if (near == NONE) {
                 near = (uint32_t)m->vertices++;
                 int64_t cell[3] = {(int64_t)floor((at.x - zero.x) / size), (int64_t)floor((at.y - zero.y) / size),
