@@ -430,7 +430,7 @@ static double volume_of(const mesh *m, uint32_t shell, double *size)
 /* Whether a vertex of a shell lies within the others: rays in one direction meet them an odd number of times. */
 static bool lies_inside(const mesh *m, uint32_t shell)
 {
-    const tl_vec3 ray = {0.2672612419, 0.5345224838, 0.8017837257};
+    const tl_vec3 ray = {0.31830988618, 0.57721566490, 0.75204108811}; /* along no likely edge */
     tl_vec3 at = {0, 0, 0};
     size_t crossings = 0;
     for (size_t f = 0; f < m->faces; f++)
