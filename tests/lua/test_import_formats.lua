@@ -306,4 +306,192 @@ for seed = 1, check.cases(MODELS) do
     end
 end
 
-print "formats: all models came back"
+-- ---------------------------------------------------------------- vertices off by up to weld
+
+-- Each triangle of an STL with its own corners, off by up to half of weld; and quads whose faces leave their planes.
+for seed = 1, check.cases(MODELS) do
+    local model = random_model(seed)
+    local weld = 10 ^ -math.random(3, 6)
+    local function moved(p)
+        local q = {}
+        for k = 1, 3 do
+            q[k] = p[k] + weld * (2 * math.random() - 1) / (2 * math.sqrt(3))
+        end
+        return q
+    end
+    local objects = disturbed(objects_of(model), true)
+    local lines = {}
+    for _, o in ipairs(objects) do
+        lines[#lines + 1] = "solid " .. o.name
+        for _, t in ipairs(fans(o)) do
+            lines[#lines + 1] = "facet normal 0 0 0\nouter loop"
+            for _, p in ipairs(t) do
+                lines[#lines + 1] = string.format("vertex %.17g %.17g %.17g", table.unpack(moved(p)))
+            end
+            lines[#lines + 1] = "endloop\nendfacet"
+        end
+        lines[#lines + 1] = "endsolid"
+    end
+    local shortest = model:blocks():min "shortest_edge"
+    if shortest > 20 * weld then
+        local other = talus.model {}
+        local summary = other:generate("import", { file = write(".stl", table.concat(lines, "\n")), weld = weld, flat = 2 * weld, density = 2000 })
+        same(model, other, 40 * weld)
+        check.equal(summary.report.refused, 0)
+        check.equal(summary.report.objects, #objects)
+        check.holds(summary.report[1].welded > 0, "vertices welded")
+    end
+end
+
+-- ---------------------------------------------------------------- a vault
+
+-- A barrel vault of 20 courses with 35 stones, every other one offset by half a stone, rounded to `unit`.
+local COURSES, STONES, RADIUS, THICK, LENGTH = 20, 35, 3, 0.3, 0.4
+local function vault(unit)
+    local objects = {}
+    local function rounded(x) return unit and math.floor(x / unit + 0.5) * unit or x end
+    for c = 0, COURSES - 1 do
+        for k = 0, STONES - 1 do
+            local o = { name = string.format("stone_%d_%d", c, k), group = c % (COURSES - 1) == 0 and "support" or "rock", vertices = {},
+                faces = { { 1, 3, 4, 2 }, { 5, 6, 8, 7 }, { 1, 2, 6, 5 }, { 3, 7, 8, 4 }, { 1, 5, 7, 3 }, { 2, 4, 8, 6 } } }
+            for i = 0, 7 do
+                local angle = math.pi * (0.1 + 0.8 * (c + i % 2) / COURSES)
+                local y = LENGTH * (k + i // 2 % 2 + c % 2 / 2)
+                local r = RADIUS + THICK * (i // 4)
+                o.vertices[i + 1] = { rounded(-r * math.cos(angle)), rounded(y), rounded(r * math.sin(angle)) }
+            end
+            objects[#objects + 1] = o
+        end
+    end
+    return objects
+end
+
+local function import(ending, objects, format, values)
+    local model = talus.model {}
+    local all = { file = write(ending, writers[ending](objects, digits(format))), density = 2000 }
+    for key, value in pairs(values or {}) do
+        all[key] = value
+    end
+    local summary = model:generate("import", all)
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 35 })
+    return model, summary
+end
+
+local exact = import(".obj", vault(), "%.17g")
+local coarse, summary = import(".obj", vault(0.001), "%.3f")
+check.equal(#exact:blocks(), COURSES * STONES)
+check.equal(#coarse:blocks(), COURSES * STONES)
+check.equal(summary.report.refused, 0)
+check.holds(summary.report.made_plane > 0 and summary.report.move < 0.003, "moved by some millimetres at most")
+-- courses share 2 (COURSES - 1) STONES sides, stones of a course 2 (STONES - 1) COURSES
+check.equal(summary.report.shared, 2 * (COURSES - 1) * STONES + 2 * (STONES - 1) * COURSES)
+exact:cycle(1)
+coarse:cycle(1)
+check.equal(#coarse:contacts(), #exact:contacts())
+-- they meet flush: what a face misses is far below the rounding of the file
+check.holds(coarse:contacts():max "overlap" < 1e-7, "no overlaps")
+check.near(coarse:blocks():sum "volume", exact:blocks():sum "volume", 1e-3 * exact:blocks():sum "volume")
+check.equal(#coarse:blocks { group = "support" }, 2 * STONES)
+
+-- With less it is refused, by name, with what would take it, and that does.
+local message = check.refused(talus.model {}, function()
+    talus.model {}:generate("import", { file = stem .. ".obj", density = 2000, flat = 1e-5 })
+end, "objects are refused (skip = true leaves them out): object 'stone_")
+local needs = tonumber(message:match "flat = ([%d.e-]+) would take it")
+check.holds(needs > 1e-5 and needs < 1e-3, "a tolerance is named")
+local part = talus.model {}
+local left = part:generate("import", { file = stem .. ".obj", density = 2000, flat = 1e-5, skip = true })
+check.holds(left.report.refused > 0 and left.report.refused + #part:blocks() == COURSES * STONES, "all others are there")
+local worst = 0
+for _, row in ipairs(left.report) do
+    worst = math.max(worst, row.needs_flat or 0)
+    check.equal(row.refused ~= nil, row.needs_flat ~= nil)
+end
+check.equal(#import(".obj", vault(0.001), "%.3f", { flat = worst }):blocks(), COURSES * STONES)
+
+-- ---------------------------------------------------------------- OBJ by groups, names, transformations
+
+local function cube(first, x, lines, turned)
+    for i = 0, 7 do
+        lines[#lines + 1] = string.format("v %g %g %g", x + i % 2, i // 2 % 2, i // 4)
+    end
+    for _, f in ipairs { { 1, 3, 4, 2 }, { 5, 6, 8, 7 }, { 1, 2, 6, 5 }, { 3, 7, 8, 4 }, { 1, 5, 7, 3 }, { 2, 4, 8, 6 } } do
+        lines[#lines + 1] = string.format("f %d %d %d %d", first + f[1], first + f[2], first + f[3], first + f[4])
+    end
+end
+local lines = { "o all", "g left stones" }
+cube(0, 0, lines)
+lines[#lines + 1] = "g right"
+cube(8, 1.5, lines)
+local named = talus.model {}
+named:generate("import", { file = write(".obj", table.concat(lines, "\n")), density = 1 })
+check.equal(#named:blocks { group = "left stones" }, 1)
+check.equal(#named:blocks { group = "right" }, 1)
+named:generate("import", { file = stem .. ".obj", density = 1, group = "mine", translate = { 0, 5, 0 } })
+check.equal(#named:blocks { group = "mine" }, 2)
+
+local turned = talus.model {}
+turned:generate("import", { density = 1, file = write("_moved.json", [==[
+{"data": {"transformation": {"dtype": "t", "data": {"matrix": [[0, -1, 0, 10], [1, 0, 0, 20], [0, 0, 1, 30], [0, 0, 0, 1]]}},
+ "geometry": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]}}}]==]) })
+check.near(turned:blocks()[1].centroid, { 9.75, 20.25, 30.25 }, 1e-12)
+
+-- ---------------------------------------------------------------- what write_blocks writes
+
+for seed = 1, check.cases(MODELS) do
+    local model = random_model(seed)
+    for _, ending in ipairs { ".obj", ".stl", ".ply", ".vtk" } do
+        local path = stem .. "_out" .. ending
+        model:write_blocks(path)
+        local other = talus.model {}
+        other:generate("import", { file = path, density = 2000 })
+        same(model, other, 1e-9)
+    end
+end
+
+-- ---------------------------------------------------------------- faults
+
+local function refused(ending, content, part)
+    check.refused(talus.model {}, function() talus.model {}:generate("import", { file = write(ending, content), density = 1 }) end, part)
+end
+local PLY = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n" ..
+    "property list uchar int vertex_indices\nend_header\n"
+refused(".ply", "plyy\n", "is no PLY")
+refused(".ply", "ply\nformat ascii 1.0\n", "ends at line 2 within the header: it is truncated")
+refused(".ply", (PLY:gsub("float x", "flot x")), "line 4: the type of a property")
+refused(".ply", (PLY:gsub("vertex_indices", "corners")) .. "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n", "has no vertex_indices")
+refused(".ply", PLY .. "0 0 0\n1 0 0\n0 1 0\n", "ends in vertex 4 of the 4 it announces: it is truncated")
+refused(".ply", PLY .. "0 0 0\n1 0\n", "line 11: vertex 2 ends before all its properties are given")
+refused(".ply", PLY .. "0 0 0\n1 0 0,5\n", "decimal comma")
+refused(".ply", PLY .. "0 0 0\n1 0 nan\n", "vertex 2: the corner {1, 0, nan} is not finite")
+refused(".ply", PLY .. "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 4\n", "face 1 names vertex 4, but there are 4")
+refused(".ply", PLY .. "0 0 0\n1 0 0\n0 1 0\n0 0 1\n2 0 1\n", "has 2 entries; of corners it must be 3 to")
+refused(".ply", (PLY:gsub("ascii", "binary_little_endian"):gsub("vertex 4", "vertex 1000000000")) .. "abcd", "ends in vertex 1 of the 1000000000")
+refused(".ply", (PLY:gsub("vertex 4", "vertex 99999999999")), "'99999999999' is not a whole number from 0 to")
+local VTK = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n"
+refused(".vtk", "solid x", "is no VTK legacy file")
+refused(".vtk", (VTK:gsub("POLYDATA", "UNSTRUCTURED_GRID")), "not POLYDATA")
+refused(".vtk", VTK .. "POINTS 2 float\n0 0 0 1", "ends at line 6")
+refused(".vtk", VTK .. "POINTS 1 flot\n0 0 0", "line 5: a type of numbers is expected, not 'flot'")
+refused(".vtk", (VTK:gsub("ASCII", "BINARY")) .. "POINTS 1000000000 float\n0000", "are announced, but 4 bytes follow")
+refused(".vtk", VTK .. "POINTS 3 float\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 3\n", "face 1 names vertex 3")
+refused(".vtk", VTK .. "POLYGONS 1 3\n2 0 1\n", "a polygon of 2 corners")
+refused(".vtk", VTK .. "TRIANGLE_STRIPS 1 4\n", "strips of triangles are not read")
+refused(".dat", "new\nset grav 0 0 -1\n", "holds no faces")
+refused(".dat", "poly face 0 0 0 1 0 0\n", "line 1: a face of 2 corners")
+refused(".dat", "poly face 0 0 0 1 0 0 0 1\n", "a corner has 2 coordinates, not 3; go on with &")
+refused(".dat", "\npoly face 0 0 0 1 0 0 0 1 x\n", "line 2: 'x' is not a number")
+refused(".json", "[1, 2", "ends at line 1 where ',' or ']' is expected: it is truncated")
+refused(".json", "[1,\n2;]", "line 2: ',' or ']' is expected at ';]'")
+refused(".json", ("["):rep(100), "less than 64 lists within each other")
+refused(".json", '{"a": 1}', "holds no faces")
+refused(".json", '{"format": "talus block model", "version": 1, "blocks": []}', "read it by the generator 'blocks'")
+refused(".json", '{"vertex": {"0": {"x": 0, "y": 0, "z": 0}}, "face": {"0": [0, 1, 2]}}', "the number of one of the vertices")
+refused(".json", '{"vertex": {"0": {"x": "a"}}, "face": {"0": [0, 1, 2]}}', "a vertex of three numbers")
+refused(".json", '{"vertex": {"0": {"x": NaN, "y": 0, "z": 0}}, "face": {"0": [0, 1, 2]}}', "a vertex of")
+for _, file in ipairs { ".obj", ".stl", ".ply", ".vtk", ".dat", ".json", "_moved.json", "_out.obj", "_out.stl", "_out.ply", "_out.vtk" } do
+    os.remove(stem .. file)
+end
+for ending in pairs(writers) do
+    os.remove(stem .. ending)
+end
