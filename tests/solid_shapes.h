@@ -25,12 +25,12 @@ static double between(double low, double high)
     return low + (high - low) * check_random(&shape_seed);
 }
 
-static uint32_t below(uint32_t n)
+static inline uint32_t below(uint32_t n)
 {
     return (uint32_t)(n * check_random(&shape_seed));
 }
 
-static void clear(shape *s)
+static inline void clear(shape *s)
 {
     s->vertices = s->faces = 0;
     s->start[0] = 0;
@@ -55,7 +55,7 @@ static void put_quad(shape *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
     put_face(s, (const uint32_t[4]){a, b, c, d}, 4);
 }
 
-static tl_solid_surface surface_of(const shape *s)
+static inline tl_solid_surface surface_of(const shape *s)
 {
     return (tl_solid_surface){.vertices = s->vertex,
                               .vertex_count = s->vertices,
@@ -144,7 +144,7 @@ static void draw_lines(cells *c, int even)
 }
 
 /* A union of cells that hang together over faces, in n^3 of them; gives their number. */
-static int cell_solid(shape *s, int n, int even)
+static inline int cell_solid(shape *s, int n, int even)
 {
     static cells c;
     int count = 0;
@@ -168,7 +168,7 @@ static int cell_solid(shape *s, int n, int even)
 }
 
 /* Named unions of cells: rows of '#' in layers parted by '/', rows parted by ' '. */
-static void cells_of(shape *s, const char *rows)
+static inline void cells_of(shape *s, const char *rows)
 {
     static cells c;
     memset(&c, 0, sizeof c);
@@ -191,7 +191,7 @@ static void cells_of(shape *s, const char *rows)
 
 /* A section between two circles of n corners, out at radii[0..n) and in at radii[n..2n) or, where `hole` is 0, without a
  * hole; moved along z and tapered. */
-static void extruded(shape *s, uint32_t n, const double *radii, int hole, double height, double taper)
+static inline void extruded(shape *s, uint32_t n, const double *radii, int hole, double height, double taper)
 {
     clear(s);
     for (uint32_t k = 0; k < (hole ? 4 : 2) * n; k++) {
@@ -218,7 +218,7 @@ static void extruded(shape *s, uint32_t n, const double *radii, int hole, double
 }
 
 /* A ball of 8 4^level triangles with radii drawn for each vertex. */
-static void star_solid(shape *s, int level, double rough)
+static inline void star_solid(shape *s, int level, double rough)
 {
     clear(s);
     const int n = 1 << level;
@@ -250,7 +250,7 @@ static void star_solid(shape *s, int level, double rough)
 }
 
 /* A closed or open pipe of `sides` along a plane arc of `turns` of a circle in `segments`, mitred. */
-static void pipe(shape *s, uint32_t sides, uint32_t segments, double turns, double radius)
+static inline void pipe(shape *s, uint32_t sides, uint32_t segments, double turns, double radius)
 {
     clear(s);
     const int closed = turns >= 1;
@@ -281,7 +281,7 @@ static void pipe(shape *s, uint32_t sides, uint32_t segments, double turns, doub
 /* ---- changes ---- */
 
 /* Divides all faces of four corners by a diagonal. */
-static void triangulate(shape *s)
+static inline void triangulate(shape *s)
 {
     static shape t;
     t = *s;
@@ -298,7 +298,7 @@ static void triangulate(shape *s)
     }
 }
 
-static void move(shape *s, double size, tl_vec3 shift)
+static inline void move(shape *s, double size, tl_vec3 shift)
 {
     const tl_quat q = tl_q_unit((tl_quat){between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)});
     const tl_mat3 r = tl_q_matrix(q);
@@ -307,7 +307,7 @@ static void move(shape *s, double size, tl_vec3 shift)
 }
 
 /* Puts faces and vertices into another order, and begins each face at another corner. */
-static void shuffle(shape *s)
+static inline void shuffle(shape *s)
 {
     static shape t;
     static uint32_t order[MOST_F], name[MOST_V];

@@ -114,16 +114,14 @@ static bool find_cut(divider *d, uint32_t piece, tl_solid_cut *best)
     return true;
 }
 
-static tl_status no_cut(const divider *d, uint32_t piece, tl_error *error)
+/* A sentence about the first reflex edge of a piece. */
+static tl_status edge_fault(const tl_solid_mesh *m, uint32_t piece, const char *what, const char *remedy,
+                            tl_error *error)
 {
-    const tl_solid_mesh *m = &d->m;
     const uint32_t h = m->piece[piece].reflex[0];
-    const tl_vec3 a = m->vertex[m->half[h].from], b = m->vertex[tl_half_to(m, h)];
-    return tl_fail(
-        error, TL_E_GEOMETRY,
-        "the solid could not be divided at the edge from {%g, %g, %g} to {%g, %g, %g}, where it bends inward: "
-        "faces near it may touch each other or differ by less than %g m",
-        a.x, a.y, a.z, b.x, b.y, b.z, m->on);
+    const tl_vec3 a = tl_solid_shown(m, m->half[h].from), b = tl_solid_shown(m, tl_half_to(m, h));
+    return tl_fail(error, TL_E_GEOMETRY, "%s at the edge from {%g, %g, %g} to {%g, %g, %g}%s", what, a.x, a.y, a.z, b.x,
+                   b.y, b.z, remedy);
 }
 
 static bool add_part(tl_convex_parts *parts, uint32_t *capacity, tl_poly *part)
@@ -149,7 +147,8 @@ static tl_status finish_piece(divider *d, uint32_t piece, tl_convex_parts *parts
         if (!find_cut(d, piece, &cut))
             return tl_fail_memory(error);
         if (cut.gain == INT32_MIN)
-            return no_cut(d, piece, error);
+            return edge_fault(&d->m, piece, "the solid could not be divided",
+                              ", where it bends inward; faces near it may touch each other, or be bent", error);
         if (d->m.pieces > most || cuts > most)
             return tl_fail(error, TL_E_GEOMETRY, "the solid would become more than %zu convex parts", most);
         if (!tl_solid_cut_make(d->s, &d->m, piece, &cut))
@@ -189,6 +188,10 @@ tl_status tl_convex_parts_make(const tl_solid_surface *surface, tl_convex_parts 
     tl_status status = d.s ? tl_solid_read(surface, &d.m, error) : tl_fail_memory(error);
     if (status == TL_OK)
         status = tl_solid_check_crossing(&d.m, error);
+    if (status == TL_OK)
+        status = tl_solid_check_cavities(&d.m, error);
+    if (status == TL_OK && surface->whole && d.m.piece[0].reflexes > 0)
+        status = edge_fault(&d.m, 0, "the solid is not convex: it bends inward", "", error);
     if (status == TL_OK) {
         parts->reflex_edges = d.m.piece[0].reflexes;
         d.slot = calloc((size_t)d.m.planes + 1, sizeof *d.slot);

@@ -160,10 +160,11 @@ tl_status tl_solid_check_crossing(const tl_solid_mesh *m, tl_error *error)
         return tl_fail_memory(error);
     if (!s.found)
         return TL_OK;
-    const tl_vec3 a = m->vertex[m->half[s.edge].from], b = m->vertex[tl_half_to(m, s.edge)];
+    const tl_vec3 a = tl_solid_shown(m, m->half[s.edge].from), b = tl_solid_shown(m, tl_half_to(m, s.edge));
+    const tl_vec3 at = tl_v3_add(m->place, s.at);
     return tl_fail(
         error, TL_E_GEOMETRY,
         "the surface crosses itself at {%g, %g, %g}: the edge from {%g, %g, %g} to {%g, %g, %g} goes through "
         "another face",
-        s.at.x, s.at.y, s.at.z, a.x, a.y, a.z, b.x, b.y, b.z);
+        at.x, at.y, at.z, a.x, a.y, a.z, b.x, b.y, b.z);
 }

@@ -70,11 +70,19 @@ typedef struct tl_solid_mesh {
     double size; /* m: diagonal of the bounds */
     double volume;
     tl_vec3 center; /* centroid */
+    tl_vec3 place;  /* added to coordinates in messages */
 } tl_solid_mesh;
 
 static inline uint32_t tl_half_to(const tl_solid_mesh *m, uint32_t h)
 {
     return m->half[m->half[h].next].from;
+}
+
+/* A vertex as messages give it. */
+static inline tl_vec3 tl_solid_shown(const tl_solid_mesh *m, uint32_t vertex)
+{
+    const tl_vec3 x = m->vertex[vertex];
+    return (tl_vec3){x.x + m->place.x, x.y + m->place.y, x.z + m->place.z};
 }
 
 /* The outward normal of a face. */
@@ -117,6 +125,9 @@ int tl_solid_winding(const tl_solid_mesh *m, const uint32_t *face, size_t count,
 tl_status tl_solid_read(const tl_solid_surface *surface, tl_solid_mesh *m, tl_error *error);
 /* Refuses a surface that crosses itself (solid_crossing.c). */
 tl_status tl_solid_check_crossing(const tl_solid_mesh *m, tl_error *error);
+
+/* Refuses shells turned inside out that are not inside (solid_surface.c). */
+tl_status tl_solid_check_cavities(const tl_solid_mesh *m, tl_error *error);
 
 /* A cut of a piece: by a plane, over the part of it that hangs together with a reflex edge. */
 typedef struct tl_solid_cut {

@@ -160,7 +160,7 @@ static bool list_tags(builder *b)
 
 static tl_status refuse(const builder *b, const char *why)
 {
-    const tl_vec3 at = b->lists ? b->m->vertex[b->m->half[b->list[0]].from] : tl_v3(0, 0, 0);
+    const tl_vec3 at = b->lists ? tl_solid_shown(b->m, b->m->half[b->list[0]].from) : tl_v3(0, 0, 0);
     return tl_fail(
         b->error, TL_E_GEOMETRY,
         "the solid could not be divided into convex parts: one at {%g, %g, %g} %s; its faces may be bent or lie "

@@ -88,8 +88,9 @@ static int by_edge(const void *left, const void *right)
 
 static tl_status edge_fault(const reader *r, const side *s, const char *what)
 {
-    const tl_vec3 a = r->given->vertices[r->given->loops[s->corner]];
-    const tl_vec3 b = r->given->vertices[s->low == r->given->loops[s->corner] ? s->high : s->low];
+    const uint32_t from = r->given->loops[s->corner], to = s->low == from ? s->high : s->low;
+    const tl_vec3 a = tl_v3_add(r->given->place, r->given->vertices[from]);
+    const tl_vec3 b = tl_v3_add(r->given->place, r->given->vertices[to]);
     return tl_fail(r->error, TL_E_GEOMETRY, "the surface %s at the edge from {%g, %g, %g} to {%g, %g, %g} of face %u",
                    what, a.x, a.y, a.z, b.x, b.y, b.z, r->of[s->corner] + 1);
 }
@@ -266,9 +267,10 @@ static tl_status check_plane(const reader *r, uint32_t f)
         most = fmax(most, fabs(tl_v3_dot(normal, tl_v3_sub(g->vertices[g->loops[c]], base))));
     if (most <= 2 * r->m->on)
         return TL_OK;
+    const tl_vec3 at = tl_v3_add(g->place, base);
     return tl_fail(r->error, TL_E_GEOMETRY,
-                   "face %u at {%g, %g, %g} is bent: a corner lies %g m off its plane, and %g m are flat", f + 1,
-                   base.x, base.y, base.z, most, r->m->on);
+                   "face %u at {%g, %g, %g} is bent: a corner lies %g m off its plane, and %g m are flat", f + 1, at.x,
+                   at.y, at.z, most, r->m->on);
 }
 
 static tl_status find_regions(const reader *r)
@@ -566,7 +568,8 @@ static double volume_of(const tl_solid_mesh *m, const uint32_t *face, uint32_t c
     return six / 6;
 }
 
-static tl_status check_shells(tl_solid_mesh *m, tl_error *error)
+/* Lists the shells: one goes around the solid, the others around cavities. */
+static tl_status find_shells(tl_solid_mesh *m, tl_error *error)
 {
     uint32_t *queue = malloc(((size_t)m->faces + 1) * sizeof *queue), outer = TL_SOLID_NONE;
     bool enough = queue != NULL;
@@ -579,7 +582,7 @@ static tl_status check_shells(tl_solid_mesh *m, tl_error *error)
             break;
         tl_solid_shell *shell = &m->shell[m->shells - 1];
         shell->apart = volume_of(m, queue, count) < 0;
-        const tl_vec3 at = m->vertex[m->half[m->face[f].first].from];
+        const tl_vec3 at = tl_solid_shown(m, m->half[m->face[f].first].from);
         if (!shell->apart && outer != TL_SOLID_NONE)
             status =
                 tl_fail(error, TL_E_GEOMETRY,
@@ -589,21 +592,30 @@ static tl_status check_shells(tl_solid_mesh *m, tl_error *error)
         if (!shell->apart)
             outer = f;
     }
-    for (uint32_t i = 0; enough && i < m->shells && status == TL_OK; i++) {
+    free(queue);
+    return enough ? status : tl_fail_memory(error);
+}
+
+tl_status tl_solid_check_cavities(const tl_solid_mesh *m, tl_error *error)
+{
+    uint32_t *others = malloc(((size_t)m->faces + 1) * sizeof *others);
+    tl_status status = others ? TL_OK : tl_fail_memory(error);
+    for (uint32_t i = 0; i < m->shells && status == TL_OK; i++) {
         if (!m->shell[i].apart)
             continue;
         uint32_t count = 0;
         for (uint32_t f = 0; f < m->faces; f++)
             if (m->face[f].shell != i)
-                queue[count++] = f;
+                others[count++] = f;
         const tl_vec3 at = m->vertex[m->half[m->face[m->shell[i].face].first].from];
-        if (tl_solid_winding(m, queue, count, at) != 1)
-            status =
-                tl_fail(error, TL_E_GEOMETRY,
-                        "the surface has a part turned inside out that is no cavity at {%g, %g, %g}", at.x, at.y, at.z);
+        const tl_vec3 shown = tl_v3_add(m->place, at);
+        if (tl_solid_winding(m, others, count, at) != 1)
+            status = tl_fail(error, TL_E_GEOMETRY,
+                             "the surface has a part turned inside out that is no cavity at {%g, %g, %g}", shown.x,
+                             shown.y, shown.z);
     }
-    free(queue);
-    return enough ? status : tl_fail_memory(error);
+    free(others);
+    return status;
 }
 
 /* ---------------------------------------------------------------- all -------------------- */
@@ -627,7 +639,7 @@ static tl_status make_mesh(const reader *r)
         if (!tl_piece_add_face(&m->piece[0], f))
             return tl_fail_memory(r->error);
     }
-    status = check_shells(m, r->error);
+    status = find_shells(m, r->error);
     if (status != TL_OK)
         return status;
     return find_reflex(m) && add_bisectors(m) && number_planes(m) ? TL_OK : tl_fail_memory(r->error);
@@ -636,7 +648,7 @@ static tl_status make_mesh(const reader *r)
 tl_status tl_solid_read(const tl_solid_surface *surface, tl_solid_mesh *m, tl_error *error)
 {
     reader r = {.given = surface, .m = m, .error = error};
-    *m = (tl_solid_mesh){0};
+    *m = (tl_solid_mesh){.place = surface->place};
     tl_status status = reader_begin(&r);
     if (status == TL_OK)
         status = pair_edges(&r);

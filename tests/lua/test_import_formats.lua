@@ -332,7 +332,15 @@ for seed = 1, check.cases(MODELS) do
         end
         lines[#lines + 1] = "endsolid"
     end
-    local shortest = model:blocks():min "shortest_edge"
+    local shortest = math.huge
+    for _, o in ipairs(objects) do
+        for _, f in ipairs(o.faces) do
+            for i, v in ipairs(f) do
+                local a, b = o.vertices[v], o.vertices[f[i % #f + 1]]
+                shortest = math.min(shortest, math.sqrt((a[1] - b[1]) ^ 2 + (a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2))
+            end
+        end
+    end
     if shortest > 20 * weld then
         local other = talus.model {}
         local summary = other:generate("import", { file = write(".stl", table.concat(lines, "\n")), weld = weld, flat = 2 * weld, density = 2000 })

@@ -43,15 +43,39 @@ static tl_status refuse_reason(solids *s, size_t i)
 /* Makes joined convex blocks of a solid that bends inward. */
 static tl_status create_parts(solids *s, size_t i)
 {
-    const tl_vec3 *p = s->solid[i].reflex_at;
-    s->solid[i].refused = true;
-    return refuse_object(s, s->solid[i].object, 0,
-                         " is not convex: it bends inward at the edge from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}; "
-                         "divide it into convex solids",
-                         p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z);
+    solid *o = &s->solid[i];
+    const uint32_t faces = solid_faces(s, i) - o->face;
+    if (!s->split && o->reflex) {
+        const tl_vec3 *p = o->reflex_at;
+        o->refused = true;
+        return refuse_object(s, o->object, 0,
+                             " is not convex: it bends inward at the edge from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}; "
+                             "divide it into convex solids, or set split = true",
+                             p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z);
+    }
+    uint32_t *start = malloc((faces + 1) * sizeof *start);
+    if (!start)
+        return soup_no_memory(&s->soup);
+    for (uint32_t f = 0; f <= faces; f++)
+        start[f] = s->start[o->face + f] - s->start[o->face];
+    const tl_solid_shape shape = {.size = sizeof shape,
+                                  .vertices = s->vertex + o->vertex,
+                                  .vertex_count = solid_vertices(s, i) - o->vertex,
+                                  .start = start,
+                                  .loops = s->corner + s->start[o->face],
+                                  .face_count = faces,
+                                  .density = s->density,
+                                  .group = group_of(s, i),
+                                  .flat = s->flat,
+                                  .whole = !s->split};
+    size_t parts = 0;
+    tl_status status = s->host->create_solid(s->host, &shape, &parts);
+    free(start);
+    o->parts = (uint32_t)parts;
+    return status == TL_E_GEOMETRY ? refuse_reason(s, i) : status;
 }
 
-/* Makes the hull of a solid that bends inward nowhere, and checks that it holds what the faces hold. */
+/* Makes the hull of a solid that bends inward nowhere. One that does not hold what the faces hold is divided. */
 static tl_status create_hull(solids *s, size_t i)
 {
     const tl_host *host = s->host;
@@ -60,7 +84,7 @@ static tl_status create_hull(solids *s, size_t i)
     tl_status status = host->create_hull(host, s->vertex + o->vertex, solid_vertices(s, i) - o->vertex, s->density,
                                          group_of(s, i));
     if (status == TL_E_GEOMETRY)
-        return refuse_reason(s, i);
+        return create_parts(s, i);
     if (status != TL_OK)
         return status;
     s->solid[i].parts = 1;
@@ -70,12 +94,7 @@ static tl_status create_hull(solids *s, size_t i)
     if (fabs(info.volume - volume) <= VOLUME * volume)
         return TL_OK;
     status = host->remove(host, last);
-    s->solid[i].refused = true;
-    return status != TL_OK ? status
-                           : refuse_object(s, o->object, 0,
-                                           ": the faces hold %.6g m3 and the hull of the corners %.6g m3: it is not convex, "
-                                           "or its faces cross; divide it into convex solids",
-                                           volume, info.volume);
+    return status == TL_OK ? create_parts(s, i) : status;
 }
 
 tl_status blocks_create(solids *s)

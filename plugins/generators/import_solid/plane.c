@@ -163,7 +163,7 @@ static double size_of(const solids *s, size_t i)
 /* How far the corners of a solid may miss their planes. */
 static double on_plane(const solids *s, size_t i)
 {
-    return (s->solid[i].shared ? ON_PLANE : AS_GIVEN) * size_of(s, i);
+    return (s->solid[i].shared || s->solid[i].reflex ? ON_PLANE : AS_GIVEN) * size_of(s, i);
 }
 
 /* Fits the planes of all sides that bind. */
