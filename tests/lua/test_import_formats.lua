@@ -366,7 +366,10 @@ local function vault(unit)
                 local angle = math.pi * (0.1 + 0.8 * (c + i % 2) / COURSES)
                 local y = LENGTH * (k + i // 2 % 2 + c % 2 / 2)
                 local r = RADIUS + THICK * (i // 4)
-                o.vertices[i + 1] = { rounded(-r * math.cos(angle)), rounded(y), rounded(r * math.sin(angle)) }
+                local x, z = -r * math.cos(angle), r * math.sin(angle)
+                x, y = 0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y -- no face along an axis
+                y, z = 0.96 * y - 0.28 * z, 0.28 * y + 0.96 * z
+                o.vertices[i + 1] = { rounded(x), rounded(y), rounded(z) }
             end
             objects[#objects + 1] = o
         end
@@ -397,7 +400,7 @@ exact:cycle(1)
 coarse:cycle(1)
 check.equal(#coarse:contacts(), #exact:contacts())
 -- they meet flush: what a face misses is far below the rounding of the file
-check.holds(coarse:contacts():max "overlap" < 1e-7, "no overlaps")
+check.holds(coarse:contacts():min "gap" > -1e-7, "no overlaps")
 check.near(coarse:blocks():sum "volume", exact:blocks():sum "volume", 1e-3 * exact:blocks():sum "volume")
 check.equal(#coarse:blocks { group = "support" }, 2 * STONES)
 
@@ -408,7 +411,7 @@ end, "objects are refused (skip = true leaves them out): object 'stone_")
 local needs = tonumber(message:match "flat = ([%d.e-]+) would take it")
 check.holds(needs > 1e-5 and needs < 1e-3, "a tolerance is named")
 local part = talus.model {}
-local left = part:generate("import", { file = stem .. ".obj", density = 2000, flat = 1e-5, skip = true })
+local left = part:generate("import", { file = stem .. ".obj", density = 2000, flat = needs, skip = true })
 check.holds(left.report.refused > 0 and left.report.refused + #part:blocks() == COURSES * STONES, "all others are there")
 local worst = 0
 for _, row in ipairs(left.report) do

@@ -108,6 +108,7 @@ static tl_status close_objects(solids *s)
             status = s->host->progress(s->host, 0.5 * (double)(i + 1) / (double)s->soup.objects);
     }
     mesh_free(&m);
+    soup_drop_faces(&s->soup);
     return status;
 }
 

@@ -135,11 +135,18 @@ double soup_resolution(const soup *s)
     return fmax(unit, power);
 }
 
-void soup_free(soup *s)
+void soup_drop_faces(soup *s)
 {
     free(s->vertex);
     free(s->corner);
     free(s->start);
+    s->vertex = NULL;
+    s->corner = s->start = NULL;
+}
+
+void soup_free(soup *s)
+{
+    soup_drop_faces(s);
     free(s->object);
     free(s->names);
 }

@@ -57,6 +57,8 @@ tl_status soup_group(soup *s, const char *group, size_t length);
 tl_status soup_check(const soup *s);
 /* How exact the coordinates are written: a unit of the last digit. */
 double soup_resolution(const soup *s);
+/* Frees vertices and faces, once all objects are closed. */
+void soup_drop_faces(soup *s);
 void soup_free(soup *s);
 
 /* Reads s->file by the ending of its name. */
