@@ -137,10 +137,11 @@ static tl_status write_lists(tl_pieces *pieces, const writer *w)
         corners += m->blocks.shape[row]->start[m->blocks.shape[row]->face_count];
     }
     if (w->format == TL_SURFACES_PLY)
-        fprintf(file,
-                "ply\nformat ascii 1.0\ncomment blocks of Talus\nelement vertex %u\nproperty double x\nproperty double y\n"
-                "property double z\nelement face %u\nproperty list ushort uint vertex_indices\nend_header\n",
-                w->first[rows], faces);
+        fprintf(
+            file,
+            "ply\nformat ascii 1.0\ncomment blocks of Talus\nelement vertex %u\nproperty double x\nproperty double y\n"
+            "property double z\nelement face %u\nproperty list ushort uint vertex_indices\nend_header\n",
+            w->first[rows], faces);
     else
         fprintf(file, "# vtk DataFile Version 3.0\nblocks of Talus\nASCII\nDATASET POLYDATA\nPOINTS %u double\n",
                 w->first[rows]);

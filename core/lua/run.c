@@ -665,8 +665,9 @@ static int set_report(lua_State *L)
     lua_settop(L, 1);
     lua_newtable(L);
     for (size_t i = 0; i < count; i++) {
-        bool same = i > 0 && (note[i].object == note[i - 1].object ||
-                              (note[i].object && note[i - 1].object && strcmp(note[i].object, note[i - 1].object) == 0));
+        bool same =
+            i > 0 && (note[i].object == note[i - 1].object ||
+                      (note[i].object && note[i - 1].object && strcmp(note[i].object, note[i - 1].object) == 0));
         if (!note[i].object) {
             lua_pushvalue(L, 2);
         } else if (same) {

@@ -500,6 +500,38 @@ refused(".json", '{"format": "talus block model", "version": 1, "blocks": []}', 
 refused(".json", '{"vertex": {"0": {"x": 0, "y": 0, "z": 0}}, "face": {"0": [0, 1, 2]}}', "the number of one of the vertices")
 refused(".json", '{"vertex": {"0": {"x": "a"}}, "face": {"0": [0, 1, 2]}}', "a vertex of three numbers")
 refused(".json", '{"vertex": {"0": {"x": NaN, "y": 0, "z": 0}}, "face": {"0": [0, 1, 2]}}', "a vertex of")
+-- ---------------------------------------------------------------- truncated and garbled files
+
+-- Whatever the bytes, there is a sentence and no change, or blocks of some volume.
+local unchanged = talus.model {}
+local before = unchanged:state_hash()
+local function try(ending, content)
+    local good, result = pcall(unchanged.generate, unchanged, "import", { file = write(ending, content), density = 1000, skip = math.random(2) == 1 })
+    if good then
+        check.holds(#unchanged:blocks() > 0 and unchanged:blocks():min "volume" > 0, "blocks of some volume")
+        unchanged = talus.model {}
+        return
+    end
+    check.holds(type(result) == "string" and result:find("generator 'import' of plugin '", 1, true), "a sentence")
+    check.equal(unchanged:state_hash(), before)
+end
+math.randomseed(11)
+for ending, writer in pairs(writers) do
+    local whole = writer(objects_of(random_model(3)), digits("%.6g"))
+    for _ = 1, check.cases(300) do
+        local bytes = { whole:byte(1, -1) }
+        for _ = 1, math.random(0, 6) do
+            bytes[math.random(1, #bytes)] = math.random(3) == 1 and math.random(0, 255) or whole:byte(math.random(#whole))
+        end
+        local last = math.random(4) == 1 and math.random(#bytes) or #bytes
+        local parts = {}
+        for from = 1, last, 4096 do
+            parts[#parts + 1] = string.char(table.unpack(bytes, from, math.min(from + 4095, last)))
+        end
+        try(ending, table.concat(parts))
+    end
+end
+
 for _, file in ipairs { ".obj", ".stl", ".ply", ".vtk", ".dat", ".json", "_moved.json", "_out.obj", "_out.stl", "_out.ply", "_out.vtk" } do
     os.remove(stem .. file)
 end

@@ -21,25 +21,16 @@ static inline double number_at(const char *at, number_type type, bool big_endian
         word |= (uint64_t)(unsigned char)at[big_endian ? bytes - 1 - i : i] << 8 * i;
     uint32_t low = (uint32_t)word;
     switch (type) {
-    case INT8:
-        return (double)(int8_t)(uint8_t)word;
-    case INT16:
-        return (double)(int16_t)(uint16_t)word;
-    case INT32:
-        return (double)(int32_t)low;
-    case INT64:
-        return (double)(int64_t)word;
-    case FLOAT32:
-        memcpy(&single, &low, sizeof single);
-        return (double)single;
-    case FLOAT64:
-        memcpy(&value, &word, sizeof value);
-        return value;
+    case INT8: return (double)(int8_t)(uint8_t)word;
+    case INT16: return (double)(int16_t)(uint16_t)word;
+    case INT32: return (double)(int32_t)low;
+    case INT64: return (double)(int64_t)word;
+    case FLOAT32: memcpy(&single, &low, sizeof single); return (double)single;
+    case FLOAT64: memcpy(&value, &word, sizeof value); return value;
     case UINT8:
     case UINT16:
     case UINT32:
-    case UINT64:
-        break;
+    case UINT64: break;
     }
     return (double)word;
 }

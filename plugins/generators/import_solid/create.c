@@ -33,11 +33,10 @@ static tl_status refuse_reason(solids *s, size_t i)
     char text[NAME_TEXT], reason[300];
     tl_text_print(reason, sizeof reason, "%s", s->host->reason(s->host));
     s->solid[i].refused = true;
-    return refuse_object(s, s->solid[i].object, 0, "%s%s: %s", s->done[s->solid[i].object].shells > 1 ? ", as " : "",
-                         s->done[s->solid[i].object].shells > 1
-                             ? object_name(s, s->solid[i].object, s->solid[i].shell, text)
-                             : "",
-                         reason);
+    return refuse_object(
+        s, s->solid[i].object, 0, "%s%s: %s", s->done[s->solid[i].object].shells > 1 ? ", as " : "",
+        s->done[s->solid[i].object].shells > 1 ? object_name(s, s->solid[i].object, s->solid[i].shell, text) : "",
+        reason);
 }
 
 /* Makes joined convex blocks of a solid that bends inward. */
@@ -48,10 +47,11 @@ static tl_status create_parts(solids *s, size_t i)
     if (!s->split && o->reflex) {
         const tl_vec3 *p = o->reflex_at;
         o->refused = true;
-        return refuse_object(s, o->object, 0,
-                             " is not convex: it bends inward at the edge from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}; "
-                             "divide it into convex solids, or set split = true",
-                             p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z);
+        return refuse_object(
+            s, o->object, 0,
+            " is not convex: it bends inward at the edge from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}; "
+            "divide it into convex solids, or set split = true",
+            p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z);
     }
     uint32_t *start = malloc((faces + 1) * sizeof *start);
     if (!start)
@@ -81,8 +81,8 @@ static tl_status create_hull(solids *s, size_t i)
     const tl_host *host = s->host;
     const solid *o = &s->solid[i];
     double volume = volume_of(s, i);
-    tl_status status = host->create_hull(host, s->vertex + o->vertex, solid_vertices(s, i) - o->vertex, s->density,
-                                         group_of(s, i));
+    tl_status status =
+        host->create_hull(host, s->vertex + o->vertex, solid_vertices(s, i) - o->vertex, s->density, group_of(s, i));
     if (status == TL_E_GEOMETRY)
         return create_parts(s, i);
     if (status != TL_OK)

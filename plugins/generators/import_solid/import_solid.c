@@ -32,18 +32,20 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_VEC3, params, translate, "m", "added to the scaled coordinates", .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, weld, "m",
-             "vertices of an object that are nearer are one; by the digits of the file and the sizes of objects unless given",
+             "vertices of an object that are nearer are one; by the digits of the file and the sizes of objects unless "
+             "given",
              .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, flat, "m",
-             "corners of a face may be so far off its plane; by the digits of the file and the sizes of objects unless given",
+             "corners of a face may be so far off its plane; by the digits of the file and the sizes of objects unless "
+             "given",
              .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_BOOL, params, split, "", "divide solids that are not convex into joined convex blocks, or refuse them",
-             .def = {1}),
+    TL_PARAM(TL_PARAM_BOOL, params, split, "",
+             "divide solids that are not convex into joined convex blocks, or refuse them", .def = {1}),
     TL_PARAM(TL_PARAM_BOOL, params, skip, "", "leave out objects that are refused, and report them, or refuse the file",
              .def = {0}),
     TL_PARAM_POSITIVE(params, density, "kg/m3", "density of the blocks"),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the blocks; \"\": as the file names them, \"rock\" where it does not",
-             .def_text = ""),
+    TL_PARAM(TL_PARAM_STRING, params, group, "",
+             "group of the blocks; \"\": as the file names them, \"rock\" where it does not", .def_text = ""),
 };
 
 static int by_size(const void *left, const void *right)

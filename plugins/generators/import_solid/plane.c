@@ -145,10 +145,10 @@ typedef struct pull {
 
 typedef struct mover {
     solids *s;
-    cloud *sum;       /* [planes] */
-    uint8_t *binds;   /* [planes] it has four corners or more, or is shared */
-    pull *pull;       /* [most vertices of a solid] */
-    tl_vec3 *before;  /* the vertices as they were read */
+    cloud *sum;      /* [planes] */
+    uint8_t *binds;  /* [planes] it has four corners or more, or is shared */
+    pull *pull;      /* [most vertices of a solid] */
+    tl_vec3 *before; /* the vertices as they were read */
 } mover;
 
 /* The size of a solid: twice the largest distance from its first vertex. */
@@ -320,6 +320,8 @@ static tl_status end(mover *m)
 tl_status planes_make(solids *s)
 {
     size_t most = 0;
+    if (s->solids == 0)
+        return TL_OK;
     for (size_t i = 0; i < s->solids; i++)
         most = solid_vertices(s, i) - s->solid[i].vertex > most ? solid_vertices(s, i) - s->solid[i].vertex : most;
     mover m = {.s = s,

@@ -37,8 +37,8 @@ typedef struct reader {
 
 static tl_status wrong(const reader *r, const char *at, const char *wanted)
 {
-    return SOUP_FAULT(r->s, ", line %zu: %s is expected at '%.20s'; the file is damaged", json_line(r->text, at), wanted,
-                      at);
+    return SOUP_FAULT(r->s, ", line %zu: %s is expected at '%.20s'; the file is damaged", json_line(r->text, at),
+                      wanted, at);
 }
 
 /* A number, as it stands or between quotes; NULL is none. */
@@ -127,7 +127,9 @@ static tl_status read_face(reader *r, const char *list)
         return *list == 'n' ? TL_OK : wrong(r, list, "a list of vertices");
     for (const char *item = json_first(list); item; item = json_next(item, false), count++) {
         keyed wanted = {0, 0};
-        const keyed *found = read_key(item, &wanted.key) ? bsearch(&wanted, r->key, r->keys, sizeof wanted, by_key) : NULL;
+        const keyed *found = r->keys > 0 && read_key(item, &wanted.key)
+                                 ? bsearch(&wanted, r->key, r->keys, sizeof wanted, by_key)
+                                 : NULL;
         if (!found || count == MOST_SIDES)
             return wrong(r, item, "the number of one of the vertices of the mesh");
         r->corner[count] = found->vertex;
@@ -142,7 +144,8 @@ static tl_status read_mesh(reader *r, const char *vertices, const char *faces, c
     tl_status status = soup_object(r->s, around->key ? around->key + 1 : "", length, group, group ? strlen(group) : 0);
     if (status == TL_OK)
         status = read_vertices(r, vertices, around);
-    qsort(r->key, r->keys, sizeof *r->key, by_key);
+    if (r->keys > 0)
+        qsort(r->key, r->keys, sizeof *r->key, by_key);
     const bool object = *faces == '{';
     for (const char *item = json_first(faces); item && status == TL_OK; item = json_next(item, object))
         status = read_face(r, object ? json_value(item) : item);
@@ -185,10 +188,11 @@ static bool is_one_of(const char *key, const char *const *words)
 
 static tl_status read_value(reader *r, const char *at, surroundings here)
 {
-    static const char *const aside[] = {"edge", "adjacency", "halfedge", "edgedata", "facedata", "contacts",
-                                        "interfaces", "interactions", NULL};
-    static const char *const wrappers[] = {"data", "value", "geometry", "graph", "node", "block", "blocks", "elements",
-                                           "assembly", "mesh", "meshes", "attributes", "modelgeometry", NULL};
+    static const char *const aside[] = {"edge",     "adjacency",  "halfedge",     "edgedata", "facedata",
+                                        "contacts", "interfaces", "interactions", NULL};
+    static const char *const wrappers[] = {"data",   "value",      "geometry",      "graph",    "node",
+                                           "block",  "blocks",     "elements",      "assembly", "mesh",
+                                           "meshes", "attributes", "modelgeometry", NULL};
     const bool object = *at == '{';
     if (!object && *at != '[')
         return TL_OK;

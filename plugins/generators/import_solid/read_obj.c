@@ -10,14 +10,14 @@
 #include <string.h>
 #include <talus/kit.h>
 
-static const char *const ignored[] = {"vt",     "vn",     "vp",         "s",         "mg",  "usemtl", "mtllib",   "usemap",
-                                      "maplib", "l",      "p",          "shadow_obj", "trace_obj", "lod", "bevel",
-                                      "c_interp", "d_interp"};
+static const char *const ignored[] = {"vt",        "vn",     "vp",     "s",        "mg",      "usemtl",
+                                      "mtllib",    "usemap", "maplib", "l",        "p",       "shadow_obj",
+                                      "trace_obj", "lod",    "bevel",  "c_interp", "d_interp"};
 
 typedef struct reader {
     soup *s;
     text_line l;
-    bool by_group; /* objects are told apart by g */
+    bool by_group;            /* objects are told apart by g */
     const char *name, *group; /* that were given last, or NULL */
     size_t name_length, group_length;
 } reader;

@@ -40,8 +40,8 @@ typedef struct reader {
 static const struct {
     const char *name, *old_name;
     number_type type;
-} types[] = {{"char", "int8", INT8},       {"uchar", "uint8", UINT8},   {"short", "int16", INT16},
-             {"ushort", "uint16", UINT16}, {"int", "int32", INT32},     {"uint", "uint32", UINT32},
+} types[] = {{"char", "int8", INT8},        {"uchar", "uint8", UINT8},     {"short", "int16", INT16},
+             {"ushort", "uint16", UINT16},  {"int", "int32", INT32},       {"uint", "uint32", UINT32},
              {"float", "float32", FLOAT32}, {"double", "float64", FLOAT64}};
 
 static tl_status damaged(const reader *r, const char *wanted)
@@ -232,9 +232,10 @@ static tl_status check_element(reader *r, const element *e)
             r->s->rounding = e->property[k].type == FLOAT64 ? DOUBLE_ROUNDING : SINGLE_ROUNDING;
     }
     if (e->properties == 0 || (e->kind == VERTEX && (roles & 14) != 14) || (e->kind == FACE && !(roles & 16)))
-        return SOUP_FAULT(r->s,
-                          ": the element '%s' has no %s; the file is damaged, or holds no surface", e->name,
-                          e->kind == VERTEX ? "x, y and z" : e->kind == FACE ? "vertex_indices" : "properties");
+        return SOUP_FAULT(r->s, ": the element '%s' has no %s; the file is damaged, or holds no surface", e->name,
+                          e->kind == VERTEX ? "x, y and z"
+                          : e->kind == FACE ? "vertex_indices"
+                                            : "properties");
     return TL_OK;
 }
 

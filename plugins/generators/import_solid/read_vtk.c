@@ -18,9 +18,9 @@ typedef struct reader {
 static const struct {
     const char *name;
     number_type type;
-} types[] = {{"char", INT8},     {"unsigned_char", UINT8}, {"short", INT16}, {"unsigned_short", UINT16},
-             {"int", INT32},     {"unsigned_int", UINT32}, {"long", INT64},  {"unsigned_long", UINT64},
-             {"vtkidtype", INT64}, {"vtktypeint64", INT64}, {"vtktypeint32", INT32}, {"float", FLOAT32},
+} types[] = {{"char", INT8},       {"unsigned_char", UINT8}, {"short", INT16},        {"unsigned_short", UINT16},
+             {"int", INT32},       {"unsigned_int", UINT32}, {"long", INT64},         {"unsigned_long", UINT64},
+             {"vtkidtype", INT64}, {"vtktypeint64", INT64},  {"vtktypeint32", INT32}, {"float", FLOAT32},
              {"double", FLOAT64}};
 
 /* Takes the next word into r->word; false at the end of the file. */
@@ -80,7 +80,8 @@ static tl_status begin_data(reader *r, size_t count, number_type type)
 {
     skip_line(r);
     if (r->binary && (size_t)(r->end - r->at) / number_bytes[type] < count)
-        return SOUP_FAULT(r->s, ", line %zu: %zu numbers of %zu bytes are announced, but %zu bytes follow; it is truncated",
+        return SOUP_FAULT(r->s,
+                          ", line %zu: %zu numbers of %zu bytes are announced, but %zu bytes follow; it is truncated",
                           r->line, count, number_bytes[type], (size_t)(r->end - r->at));
     return TL_OK;
 }
@@ -138,7 +139,8 @@ static tl_status add_lists(reader *r, const size_t *list, size_t count, bool fac
     if (!faces)
         return TL_OK;
     if (count < 3 || count > MOST_SIDES)
-        return SOUP_FAULT(r->s, ", line %zu: a polygon of %zu corners; it must have 3 to %d", r->line, count, MOST_SIDES);
+        return SOUP_FAULT(r->s, ", line %zu: a polygon of %zu corners; it must have 3 to %d", r->line, count,
+                          MOST_SIDES);
     for (size_t i = 0; i < count; i++)
         corner[i] = (uint32_t)list[i];
     return soup_face(r->s, corner, count);
@@ -173,7 +175,8 @@ static tl_status read_offsets(reader *r, size_t offsets, size_t size, bool faces
         if (status == TL_OK)
             status = take_whole(r, type, size, &offset[i]);
         if (status == TL_OK && i > 0 && offset[i] < offset[i - 1])
-            status = SOUP_FAULT(r->s, ", line %zu: the offsets of the polygons do not rise; the file is damaged", r->line);
+            status =
+                SOUP_FAULT(r->s, ", line %zu: the offsets of the polygons do not rise; the file is damaged", r->line);
     }
     if (status == TL_OK && (!next_word(r) || !word_is(r->word, "connectivity")))
         status = wrong(r, "CONNECTIVITY");
@@ -223,8 +226,9 @@ static tl_status read_head(reader *r)
     if (!next_word(r) || !word_is(r->word, "dataset"))
         return wrong(r, "DATASET");
     if (!next_word(r) || !word_is(r->word, "polydata"))
-        return SOUP_FAULT(r->s, ", line %zu: the data set is '%.40s', not POLYDATA; write its surface, or read its "
-                                "tetrahedra by the generator 'zones'",
+        return SOUP_FAULT(r->s,
+                          ", line %zu: the data set is '%.40s', not POLYDATA; write its surface, or read its "
+                          "tetrahedra by the generator 'zones'",
                           r->line, r->word);
     return TL_OK;
 }

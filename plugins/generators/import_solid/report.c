@@ -126,9 +126,15 @@ static tl_status note_whole(const solids *s, size_t blocks, size_t refused)
     const struct {
         const char *key;
         double number;
-    } rows[] = {{"objects", (double)s->soup.objects}, {"solids", (double)s->solids}, {"blocks", (double)blocks},
-                {"refused", (double)refused},         {"weld", s->weld},             {"flat", s->flat},
-                {"made_plane", (double)s->made_plane}, {"shared", (double)s->shared}, {"move", s->largest_move},
+    } rows[] = {{"objects", (double)s->soup.objects},
+                {"solids", (double)s->solids},
+                {"blocks", (double)blocks},
+                {"refused", (double)refused},
+                {"weld", s->weld},
+                {"flat", s->flat},
+                {"made_plane", (double)s->made_plane},
+                {"shared", (double)s->shared},
+                {"move", s->largest_move},
                 {"left_aside", (double)s->soup.unread}};
     tl_status status = TL_OK;
     for (size_t i = 0; i < sizeof rows / sizeof *rows && status == TL_OK; i++)
@@ -146,8 +152,8 @@ static void say(const solids *s, size_t blocks, size_t refused)
     if (refused || s->soup.unread)
         tl_text_print(left, sizeof left, "; %zu objects refused, %zu other commands left aside", refused,
                       s->soup.unread);
-    s->host->log(s->host, "%zu blocks of %zu objects; weld = %.3g m (%s), flat = %.3g m (%s)%s; %zu faces shared%s", blocks,
-                 s->soup.objects, s->weld, s->weld_from, s->flat, s->flat_from, moved, s->shared, left);
+    s->host->log(s->host, "%zu blocks of %zu objects; weld = %.3g m (%s), flat = %.3g m (%s)%s; %zu faces shared%s",
+                 blocks, s->soup.objects, s->weld, s->weld_from, s->flat, s->flat_from, moved, s->shared, left);
 }
 
 tl_status report_write(solids *s, size_t blocks)

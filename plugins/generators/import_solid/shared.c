@@ -66,7 +66,7 @@ static double farthest_off(const finder *f, uint32_t side, const plane *p)
 {
     double off = 0;
     EACH_CORNER(f, side, at)
-        off = fmax(off, fabs(plane_above(p, at)));
+    off = fmax(off, fabs(plane_above(p, at)));
     return off;
 }
 
@@ -109,8 +109,8 @@ static bool parted_by(const finder *f, uint32_t a, uint32_t b)
 static bool at_one_place(const finder *f, uint32_t a, uint32_t b)
 {
     const plane *p = &f->s->plane[a], *q = &f->s->plane[b];
-    return tl_v3_dot(p->normal, q->normal) < -FACING &&
-           fmin(farthest_off(f, a, q), farthest_off(f, b, p)) <= f->near && !parted_by(f, a, b) && !parted_by(f, b, a);
+    return tl_v3_dot(p->normal, q->normal) < -FACING && fmin(farthest_off(f, a, q), farthest_off(f, b, p)) <= f->near &&
+           !parted_by(f, a, b) && !parted_by(f, b, a);
 }
 
 /* ---------------------------------------------------------------- two solids ------------- */
@@ -309,6 +309,8 @@ static bool begin(finder *f)
 
 tl_status shared_find(solids *s)
 {
+    if (s->solids == 0)
+        return TL_OK;
     finder f = {.s = s, .near = s->flat + s->weld};
     tl_status status = begin(&f) ? sweep(&f) : soup_no_memory(&s->soup);
     if (status == TL_OK)

@@ -42,10 +42,9 @@ typedef struct grower {
 static bool begin(grower *g)
 {
     size_t f = g->m->faces + 1, c = g->m->corners + 1;
-    const size_t bytes[] = {f * sizeof *g->root, f * sizeof *g->ring,   f * sizeof *g->size,  f * sizeof *g->sum,
-                            f * sizeof *g->plane, f * sizeof *g->area,  f * sizeof *g->sliver, c * sizeof *g->edge,
-                            c * sizeof *g->number, c * sizeof *g->meets, f * sizeof *g->whole,
-                            f * sizeof *g->tried};
+    const size_t bytes[] = {f * sizeof *g->root,   f * sizeof *g->ring,  f * sizeof *g->size,   f * sizeof *g->sum,
+                            f * sizeof *g->plane,  f * sizeof *g->area,  f * sizeof *g->sliver, c * sizeof *g->edge,
+                            c * sizeof *g->number, c * sizeof *g->meets, f * sizeof *g->whole,  f * sizeof *g->tried};
     bool all = true;
     for (size_t i = 0; i < 12; i++) {
         g->memory[i] = malloc(bytes[i]);
@@ -256,9 +255,8 @@ static bool add_vertices(grower *g, uint32_t shell, size_t *count)
         }
         if (sides < 3 && whole)
             continue;
-        tl_vec3 *list = s->vertices < MOST_CORNERS
-                            ? tl_grown(s->vertex, &s->vertex_capacity, s->vertices + 1, sizeof *list)
-                            : NULL;
+        tl_vec3 *list =
+            s->vertices < MOST_CORNERS ? tl_grown(s->vertex, &s->vertex_capacity, s->vertices + 1, sizeof *list) : NULL;
         if (!list)
             return false;
         s->vertex = list;

@@ -20,9 +20,9 @@ typedef struct plane {
 typedef struct solid {
     uint32_t object, shell; /* shell of the object, from 0 */
     uint32_t vertex, face, plane;
-    bool reflex;          /* it bends inward at an edge, with these ends */
+    bool reflex; /* it bends inward at an edge, with these ends */
     tl_vec3 reflex_at[2];
-    double move;   /* farthest that a vertex was moved to make faces plane */
+    double move;                 /* farthest that a vertex was moved to make faces plane */
     uint32_t made_plane, shared; /* sides */
     uint32_t parts;              /* convex blocks of it */
     bool refused;

@@ -116,7 +116,8 @@ tl_status soup_check(const soup *s)
     for (size_t f = 0; f < s->faces; f++)
         for (uint32_t h = s->start[f]; h < s->start[f + 1]; h++)
             if (s->corner[h] >= s->vertices)
-                return SOUP_FAULT(s, ": face %zu names vertex %u, but there are %zu, counted from 0; the file is damaged",
+                return SOUP_FAULT(s,
+                                  ": face %zu names vertex %u, but there are %zu, counted from 0; the file is damaged",
                                   f + 1, s->corner[h], s->vertices);
     return TL_OK;
 }
@@ -168,9 +169,9 @@ static bool ends_in(const char *file, const char *ending)
 static const struct {
     const char *ending;
     tl_status (*read)(soup *s, char *text, size_t count);
-} readers[] = {{".obj", read_obj},   {".stl", read_stl},    {".ply", read_ply},    {".vtk", read_vtk},
-               {".dat", read_poly},  {".3ddat", read_poly}, {".3dec", read_poly},  {".txt", read_poly},
-               {".json", read_compas}};
+} readers[] = {{".obj", read_obj},   {".stl", read_stl},  {".ply", read_ply},
+               {".vtk", read_vtk},   {".dat", read_poly}, {".3ddat", read_poly},
+               {".3dec", read_poly}, {".txt", read_poly}, {".json", read_compas}};
 
 tl_status soup_read(soup *s)
 {
@@ -183,6 +184,8 @@ tl_status soup_read(soup *s)
         if (status == TL_OK)
             status = readers[i].read(s, text, count);
         free(text);
+        if (s->objects > 0 && s->object[s->objects - 1].face == s->faces)
+            s->objects--; /* a name without faces */
         if (status == TL_OK)
             status = soup_check(s);
         if (status == TL_OK && s->faces == 0)

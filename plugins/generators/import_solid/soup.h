@@ -35,10 +35,10 @@ typedef struct soup {
     size_t objects, object_capacity;
     char *names; /* texts, each with a 0; the first is empty */
     size_t names_length, names_capacity;
-    double reach;           /* largest coordinate */
-    int decimals, digits;   /* most digits after the point, and of a number, in a text */
-    double rounding;        /* of binary numbers, relative; 0: it is a text */
-    size_t unread;          /* commands of the file that are none of solids */
+    double reach;         /* largest coordinate */
+    int decimals, digits; /* most digits after the point, and of a number, in a text */
+    double rounding;      /* of binary numbers, relative; 0: it is a text */
+    size_t unread;        /* commands of the file that are none of solids */
 } soup;
 
 /* Refuses the file, with a sentence that goes on behind its name. */

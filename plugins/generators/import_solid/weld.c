@@ -372,9 +372,9 @@ static tl_status pair_all(solids *s, uint32_t object, mesh *m, bool *taken)
             continue;
         tl_vec3 p = m->vertex[list[first[k]].low], q = m->vertex[list[first[k]].high];
         *taken = false;
-        return refuse_object(s, object, 0, ": %s at %zu edge%s, the first from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}; %s",
-                             faults_text[k][0], count[k], count[k] == 1 ? "" : "s", p.x, p.y, p.z, q.x, q.y, q.z,
-                             faults_text[k][1]);
+        return refuse_object(
+            s, object, 0, ": %s at %zu edge%s, the first from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}; %s",
+            faults_text[k][0], count[k], count[k] == 1 ? "" : "s", p.x, p.y, p.z, q.x, q.y, q.z, faults_text[k][1]);
     }
     return TL_OK;
 }
@@ -465,9 +465,9 @@ static tl_status turn_shells(solids *s, uint32_t object, mesh *m, done *d, bool 
                                    m->shells > 1 ? ": a shell of it" : "");
         } else if (volume[k] < 0 && m->shells > 1 && lies_inside(m, k)) {
             *taken = false;
-            status = refuse_object(s, object, 0,
-                                   ": shell %s lies inside another one and faces inward: the solid is hollow; cut it open",
-                                   object_name(s, object, k, name));
+            status = refuse_object(
+                s, object, 0, ": shell %s lies inside another one and faces inward: the solid is hollow; cut it open",
+                object_name(s, object, k, name));
         }
     }
     for (uint32_t f = 0; f < m->faces && status == TL_OK && *taken; f++)
