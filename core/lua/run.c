@@ -657,7 +657,7 @@ static void set_summary(lua_State *L, const tl_generate_summary *s)
                        {"smallest_face", s->smallest_face}, {"volume_error", s->volume_error});
 }
 
-/* Gives the summary at the top of the stack its field `report`: what is noted of the whole, and a list of the objects. */
+/* Gives the summary its field `report`: what is noted of the whole, and a list of the objects. */
 static int set_report(lua_State *L)
 {
     size_t count;

@@ -1,11 +1,11 @@
 /* read_compas.c - meshes that compas, compas_assembly and compas_dem write in JSON, wherever they stand in the file:
  *
  *     {"vertex": {"0": {"x": 0, "y": 0, "z": 0}, ...}, "face": {"0": [0, 1, 2], ...}}     a mesh
- *     {"vertices": [[0, 0, 0], ...], "faces": [[0, 1, 2], ...]}                         a polyhedron
+ *     {"vertices": [[0, 0, 0], ...], "faces": [[0, 1, 2], ...]}                           a polyhedron
  *
- * The wrappers "data" and "value" with their "dtype", nodes of graphs, elements and lists are gone through. Each mesh is
- * an object. It is named by the last key around it that is no wrapper's, and is in the group "support" where "is_support"
- * is true. A "transformation" beside or around a mesh moves it. What belongs to edges and contacts is left aside. */
+ * The wrappers "data" and "value" with their "dtype", nodes of graphs, elements and lists are gone through. Each mesh
+ * is an object. It is named by the last key around it that is no wrapper's. It is in the group "support" where
+ * "is_support" is true. A "transformation" beside or around a mesh moves it. Edges and contacts are left aside. */
 #include "json.h"
 #include "text.h"
 

@@ -1,6 +1,7 @@
-/* read_ply.c - PLY, as text or binary of either byte order. A header lists elements, each with a count and properties: numbers,
- * or lists with a count of their own. Of `vertex` x, y and z are read, of `face` the list vertex_indices or
- * vertex_index; all else is skipped. */
+/* read_ply.c - PLY, as text or binary of either byte order.
+ *
+ * A header lists elements, each with a count and properties: numbers, or lists with a count of their own. Of `vertex`
+ * x, y and z are read, of `face` the list vertex_indices or vertex_index. All else is skipped. */
 #include "bytes.h"
 #include "text.h"
 

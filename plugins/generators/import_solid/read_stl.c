@@ -1,7 +1,9 @@
-/* read_stl.c - STL, binary: 80 bytes, the number of triangles (32 bits), then for each 12 little-endian floats (normal and
- * three corners) and 2 bytes. Text: "facet normal", "outer loop", three times "vertex x y z", "endloop", "endfacet",
- * each on a line of its own, between "solid NAME" and "endsolid". Each solid is an object. The normals of the file are
- * not used: the order of the corners says which side is outside. */
+/* read_stl.c - STL, as text or binary. Each solid of a text is an object.
+ *
+ * Binary: 80 bytes, the number of triangles (32 bits), then for each 12 little-endian floats (normal and three corners)
+ * and 2 bytes. Text: "facet normal", "outer loop", three times "vertex x y z", "endloop", "endfacet", each on a line of
+ * its own, between "solid NAME" and "endsolid". The normals of the file are not used: the order of the corners tells
+ * them. */
 #include "bytes.h"
 #include "text.h"
 

@@ -1,6 +1,8 @@
-/* read_vtk.c - VTK legacy files of polygons: "# vtk DataFile", a title, ASCII or BINARY, DATASET POLYDATA, then POINTS and
- * POLYGONS. Polygons are lists with their counts, or since version 5 OFFSETS and CONNECTIVITY. Numbers of binary files
- * have their highest byte first. Lines and vertices are skipped, and data of points and cells end the reading. */
+/* read_vtk.c - polygons of VTK legacy files.
+ *
+ * A head "# vtk DataFile", a title, ASCII or BINARY and DATASET POLYDATA are followed by POINTS and POLYGONS. Polygons
+ * are lists with their counts, or since version 5 OFFSETS and CONNECTIVITY. Numbers of binary files have their highest
+ * byte first. Lines and vertices are skipped, and data of points and cells end the reading. */
 #include "bytes.h"
 #include "text.h"
 

@@ -1,9 +1,8 @@
 /* shared.c - sides of two solids at one place get one plane, so that their blocks meet flush.
  *
- * Two sides are at one place when they face each other, their polygons overlap, and the corners of one lie within
- * flat + weld of the plane of the other. Sides that hang together so are a group with one plane, if all their corners lie
- * as near to it; else smaller groups are formed, pair after pair. Solids that may touch are found by sweeping along the
- * longest axis. */
+ * Such sides face each other, and their polygons overlap. The corners of one lie within flat + weld of the plane of the
+ * other. Sides that hang together so are a group with one plane, if all their corners lie as near to it. Else smaller
+ * groups are formed, pair after pair. Solids that may touch are found by sweeping along the longest axis. */
 #include "solids.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* sides.c - from the closed shells of an object to solids: faces in one plane become one side.
  *
- * Sides grow over the edges that turn least, as long as all their corners keep within `flat` of one plane. Slivers know no
- * plane of their own, and join that which they miss least. A side with one loop becomes one face; one with holes keeps its
- * faces. A vertex where fewer than three sides meet lies on an edge and is left out. */
+ * Sides grow over the edges that turn least, as long as all their corners keep within `flat` of one plane. Slivers know
+ * no plane of their own, and join that which they miss least. A side with one loop becomes one face. One with holes
+ * keeps its faces. A vertex where fewer than three sides meet lies on an edge and is left out. */
 #include "solids.h"
 
 #include <stdlib.h>
