@@ -626,7 +626,7 @@ function talus.model(options) end
 ---@field smallest_face number of the model after, m3, m and m2
 ---@field volume_error number relative change of the volume that is not accounted for
 ---@field slivers integer blocks that this call made with an aspect over 50, or with less than 0.001 of the mean volume of a block; model:filter{auto = true} joins those that decide the time step
----@field report any where a file was read: what holds of it all by name, and a list of {name =, ...} of the objects to which something was done, or that were refused
+---@field report table where a file was read: what holds of it all by name, and a list of {name =, ...} of the objects to which something was done, or that were refused
 
 --- Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, {...}}, in the place of one: once for each, in their order and in one go. What an earlier entry makes and a later one cuts gets no ids, so ids are not those of a call for each entry.
 ---
@@ -1512,7 +1512,7 @@ function Model:write_vtk(path, options) end
 ---@param options talus.WriteSectionOptions
 function Model:write_section(path, options) end
 
---- Writes all blocks as they stand into a JSON file, or their surfaces where the name ends in .obj, .stl, .ply or .vtk.
+--- Writes all blocks as they stand into a JSON file. A name that ends in .obj, .stl, .ply or .vtk gets surfaces.
 ---
 ---     model:write_blocks("out/blocks.json")
 ---@param path string name of the file

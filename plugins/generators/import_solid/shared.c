@@ -120,7 +120,7 @@ static bool boxes_meet(const box *a, const box *b, double near)
            b->min.y <= a->max.y + near && a->min.z <= b->max.z + near && b->min.z <= a->max.z + near;
 }
 
-/* Whether a side comes near a box: the box's corner that is farthest along its normal is not below it, nor all above. */
+/* Whether the plane of a side comes near a box. */
 static bool plane_meets(const plane *p, const box *b, double near)
 {
     tl_vec3 middle = tl_v3_scale(0.5, tl_v3_add(b->min, b->max)), half = tl_v3_scale(0.5, tl_v3_sub(b->max, b->min));
