@@ -88,7 +88,7 @@ static double group_of(const tl_model *m, tl_id block)
 #define ZONE_FIELDS(FIELD)                                                                                             \
     FIELD(id, COUNT, "", "of its own among all zones: 4294967296 times the first block of its body, and its number",   \
           id_of(at->mesh->body, z->zones.number[at->row]))                                                             \
-    FIELD(block, COUNT, "", "block that it is of", at->parcel->block)                                                  \
+    FIELD(block, COUNT, "", "block that it is of: as a block in Lua, as its id in values", at->parcel->block)          \
     FIELD(number, COUNT, "", "its number in the block, or in the body of several joined blocks, from 0",               \
           z->zones.number[at->row])                                                                                    \
     FIELD(group, TEXT, "", "group of the block", group_of(at->m, at->parcel->block))                                   \
@@ -108,7 +108,8 @@ static double group_of(const tl_model *m, tl_id block)
     FIELD(id, COUNT, "",                                                                                               \
           "of its own among all gridpoints: 4294967296 times the first block of its body, and its number",             \
           id_of(mesh->body, row - mesh->point_begin))                                                                  \
-    FIELD(block, COUNT, "", "block that it is of: the first one of a body of several", mesh->body)                     \
+    FIELD(block, COUNT, "", "block that it is of, or the first of its body: as a block in Lua, as its id in values",   \
+          mesh->body)                                                                                                  \
     FIELD(number, COUNT, "", "its number in the block, or in the body of several joined blocks, from 0",               \
           row - mesh->point_begin)                                                                                     \
     FIELD(group, TEXT, "", "group of the block", group_of(m, mesh->body))                                              \

@@ -500,7 +500,7 @@ function Contacts:where(keep) end
 
 ---@class (exact) talus.Zone
 ---@field id integer of its own among all zones: 4294967296 times the first block of its body, and its number
----@field block integer block that it is of
+---@field block integer block that it is of: as a block in Lua, as its id in values
 ---@field number integer its number in the block, or in the body of several joined blocks, from 0
 ---@field group string group of the block
 ---@field solid string name of its solid
@@ -548,7 +548,7 @@ function Zones:where(keep) end
 
 ---@class (exact) talus.Gridpoint
 ---@field id integer of its own among all gridpoints: 4294967296 times the first block of its body, and its number
----@field block integer block that it is of: the first one of a body of several
+---@field block integer block that it is of, or the first of its body: as a block in Lua, as its id in values
 ---@field number integer its number in the block, or in the body of several joined blocks, from 0
 ---@field group string group of the block
 ---@field position talus.Vector m: present place
