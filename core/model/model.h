@@ -223,7 +223,7 @@ struct tl_model {
     bool (*interrupt_asked)(void);                                       /* or NULL */
     void (*show_generate)(void *user, const tl_generate_progress *done); /* or NULL */
     void *show_generate_user;
-    struct tl_notes *notes; /* of the last generator; NULL: none */
+    struct tl_notes *notes;        /* of the last generator; NULL: none */
     bool running;                  /* inside a callback: no blocks may be made or deleted */
     bool driving;                  /* inside a drive's function: nothing that a step depends on may be set */
     bool reading;                  /* the same, and no run may begin: tl_model_only_read */
