@@ -15,6 +15,7 @@
 #include "mesh/parts.h"
 #include "model/joints.h"
 #include "model/model.h"
+#include "model/notes.h"
 #include "plugin/loader.h"
 
 #include <stdio.h>
@@ -577,6 +578,21 @@ static tl_status read_mesh(const tl_host *host, const char *file, const tl_mesh_
     return status;
 }
 
+/* ---------------------------------------------------------------- report ----------------- */
+
+static tl_status note(const tl_host *host, const char *object, const char *key, double number, const char *text)
+{
+    tl_model *m = service_of(host)->model;
+    if (!key || !tl_text_is_utf8(key) || (object && !tl_text_is_utf8(object)) || (text && !tl_text_is_utf8(text)))
+        return fail(host, TL_E_ARGUMENT, "a note has no key, or a text that is not in UTF-8");
+    return tl_notes_add(m->notes, object, key, number, text) ? TL_OK : tl_fail_memory(&m->error);
+}
+
+static const char *reason(const tl_host *host)
+{
+    return service_of(host)->model->error.text;
+}
+
 /* ---------------------------------------------------------------- tl_generate ------------ */
 
 /* The services, for a generator of the model's. */
@@ -607,7 +623,9 @@ static tl_host host_of(service *s)
                      .hide = hide,
                      .show = show,
                      .read_mesh = read_mesh,
-                     .create_solid = create_solid};
+                     .create_solid = create_solid,
+                     .note = note,
+                     .reason = reason};
 }
 
 /* The files that are to be read must be such as end; those that are not there are left to the plugin. */
@@ -699,8 +717,14 @@ static tl_status generate(tl_model *m, const char *generator, const tl_args *arg
         return tl_kind_unknown(&m->error, TL_KIND_GENERATOR, generator);
     service s = {.model = m, .generator = kind->name, .entries = count};
     atomic_store(&m->interrupted, false);
-    status = run(&s, kind, args, count, list);
+    tl_notes_free(m->notes);
+    m->notes = tl_notes_new();
+    status = m->notes ? run(&s, kind, args, count, list) : tl_fail_memory(&m->error);
     tl_mesh_parts_free(&s.parts);
+    if (status != TL_OK) {
+        tl_notes_free(m->notes);
+        m->notes = NULL;
+    }
     if (status == TL_OK && summary)
         *summary = s.stage.summary;
     return status;

@@ -453,6 +453,12 @@ struct tl_host {
      * tags gets the one with most of its area. Refused with TL_E_GEOMETRY and the place is a surface that is open
      * or crosses itself. So is one that has more than two faces at an edge, is turned inside out or holds no volume. */
     tl_status (*create_solid)(const tl_host *, const tl_solid_shape *shape, size_t *parts);
+    /* since 1.11: notes for the user what was done with an object of a file, or why it was refused. The number counts
+     * where `text` is NULL. `object` is its name, NULL: the whole. Notes of one object follow each other. They are in
+     * the report of the summary, unless the generator fails. */
+    tl_status (*note)(const tl_host *, const char *object, const char *key, double number, const char *text);
+    /* since 1.11: the sentence of the service that failed last, for a generator that goes on without the block. */
+    const char *(*reason)(const tl_host *);
 };
 
 typedef struct tl_generator_ops {
