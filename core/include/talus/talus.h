@@ -456,6 +456,9 @@ typedef struct tl_block_filter {
     const tl_halfspace *above, *below; /* centroid on that side, boundary included */
     int fixed;                         /* -1 any, 0 no, 1 yes */
     int hidden;                        /* -1 any, 0 visible ones, 1 hidden ones */
+    size_t above_count, below_count;   /* planes at `above` and `below`, 1 by default: all must hold */
+    const tl_vec3 *region;             /* centroid in the convex hull of these points, boundary included; NULL: any */
+    size_t region_count;
 } tl_block_filter;
 
 /* Ids of the blocks that pass, ascending. The list is the caller's, to be freed with free(). */
