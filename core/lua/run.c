@@ -210,6 +210,9 @@ enum {
     AT_DIRECTION
 };
 
+/* How much stiffer the joints of a trial are. */
+#define STIFFER 10.0
+
 typedef struct run {
     tl_lua_running running;
     tl_lua_model *owner;
@@ -478,8 +481,13 @@ static bool on_stop(void *user, tl_model *model)
 
 /* ---------------------------------------------------------------- solve and cycle -------- */
 
-/* Those of cycle are the same but for the first. */
+/* Keys of solve_keys that cycle does not have. */
+#define KEYS_BEFORE_CYCLE 2
+
+/* Those of cycle are the same but for the first two. */
 static const tl_lua_key solve_keys[] = {
+    {"try_stiffer", "true or false",
+     "whether the same is tried on a copy whose joints are ten times as stiff: the result's `stiffer`"},
     {"stop", "function(model)", "called every `every` steps; ends the run when it answers true"},
     {"on_progress", "function(model, result)", "called every `every` steps"},
     {NULL, NULL, NULL},
@@ -550,6 +558,117 @@ static void set_relaxed(lua_State *L, const tl_model *model, const tl_relax_resu
     tl_lua_set_text(L, "message", result->message);
 }
 
+/* ---------------------------------------------------------------- a stiffer trial -------- */
+
+static void hush(void *user, const char *text)
+{
+    (void)user;
+    (void)text;
+}
+
+/* Puts a copy of the model with stiffer joints into the result's `stiffer`, when it is asked for. */
+static void prepare_trial(lua_State *L, const char *what)
+{
+    const int top = lua_gettop(L), type = tl_lua_option(L, AT_ARGS, "try_stiffer");
+    if (type != LUA_TNIL && type != LUA_TBOOLEAN)
+        tl_lua_fail(L, "%s: try_stiffer must be true or false, not %s", what, tl_lua_describe(L, -1));
+    if (lua_toboolean(L, -1)) {
+        lua_getfield(L, AT_MODEL, "copy");
+        lua_pushvalue(L, AT_MODEL);
+        lua_call(L, 1, 1);
+        tl_model *copy = ((tl_lua_model *)lua_touserdata(L, -1))->model;
+        const tl_status status = tl_joints_stiffen(copy, STIFFER);
+        if (status != TL_OK)
+            tl_lua_fail(L, "%s, try_stiffer: %s", what, tl_model_error(copy)->text);
+        tl_model_log(copy, hush, NULL);
+        lua_setfield(L, AT_RESULT, "stiffer");
+    }
+    lua_settop(L, top);
+}
+
+/* Pushes the options of the run for the trial, which calls none of its functions. */
+static void push_trial_args(lua_State *L)
+{
+    lua_newtable(L);
+    if (!lua_istable(L, AT_ARGS))
+        return;
+    for (lua_pushnil(L); lua_next(L, AT_ARGS);) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_settable(L, -4);
+    }
+    for (const tl_lua_key *key = solve_keys; key->name; key++) {
+        lua_pushnil(L);
+        lua_setfield(L, -2, key->name);
+    }
+}
+
+/* Whether a run ended at rest, by a failure, or by neither. */
+static const char *verdict_of(const char *reason)
+{
+    static const char *const rests[] = {"rest", "ratio", "velocity"}, *const fails[] = {"failure", "overlap"};
+    for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++)
+        if (strcmp(reason, rests[i]) == 0)
+            return "rests";
+    for (size_t i = 0; i < sizeof fails / sizeof fails[0]; i++)
+        if (strcmp(reason, fails[i]) == 0)
+            return "fails";
+    return "neither rests nor fails";
+}
+
+/* Says how the verdicts differ, and puts that into the trial's result at the top of the stack. */
+static void compare_verdicts(lua_State *L, const char *what)
+{
+    lua_getfield(L, AT_RESULT, "reason");
+    lua_getfield(L, -2, "reason");
+    const char *one = verdict_of(lua_tostring(L, -2)), *other = verdict_of(lua_tostring(L, -1));
+    lua_pop(L, 2);
+    const bool differs = strcmp(one, other) != 0;
+    lua_pushboolean(L, differs);
+    lua_setfield(L, -2, "differs");
+    if (!differs)
+        return;
+    lua_pushfstring(L,
+                    "%s: the verdict hangs on the stiffness of the joints: with it as given the model %s, with %d times "
+                    "as much it %s; measure the stiffness, or take that which stands for rigid blocks (docs/how_stiff.md)",
+                    what, one, (int)STIFFER, other);
+    tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -1));
+    lua_setfield(L, -2, "message");
+}
+
+/* Runs the trial, from the result's `stiffer`, which becomes the result of that. A run that was stopped has no verdict to
+ * compare. A trial that fails tells why. */
+static void try_stiffer(lua_State *L, const char *what, tl_solve_reason reason)
+{
+    const int top = lua_gettop(L);
+    if (lua_getfield(L, AT_RESULT, "stiffer") != LUA_TUSERDATA) {
+        lua_settop(L, top);
+        return;
+    }
+    lua_pushnil(L);
+    lua_setfield(L, AT_RESULT, "stiffer");
+    if (reason != TL_SOLVE_STOP && reason != TL_SOLVE_INTERRUPT) {
+        lua_getfield(L, -1, what);
+        lua_insert(L, -2);
+        push_trial_args(L);
+        if (lua_pcall(L, 2, 1, 0) == LUA_OK) {
+            compare_verdicts(L, what);
+        } else if (tl_lua_interrupted(lua_tostring(L, -1))) {
+            lua_error(L);
+        } else {
+            lua_newtable(L);
+            lua_pushliteral(L, "error");
+            lua_setfield(L, -2, "reason");
+            lua_insert(L, -2);
+            lua_setfield(L, -2, "message");
+        }
+        lua_setfield(L, AT_RESULT, "stiffer");
+    }
+    lua_settop(L, top);
+}
+
+/* ---------------------------------------------------------------- a run ------------------ */
+
 /* Makes a run and pushes its result. The table of arguments is at AT_ARGS. `relax`: what a relaxation is asked for, of
  * which `solve` has what the line tells; else NULL. */
 static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, run_kind kind, tl_relax *relax)
@@ -559,6 +678,8 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     solve->stop = push_callback(L, what, "stop") ? on_stop : NULL;
     solve->progress = push_callback(L, what, "on_progress") ? on_progress : NULL;
     push_empty_answer(L, kind == RUN_STEPS ? TL_RATIO_LOCAL : solve->measure);
+    if (kind != RUN_STEPS)
+        prepare_trial(L, what);
     tl_lua_selection *failing = relax ? push_room(L, model) : NULL;
     solve->each = on_each;
     solve->between = on_between;
@@ -591,6 +712,8 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     lua_pop(L, 1);
     if (failing)
         set_relaxed(L, model, &r.result, failing);
+    if (kind != RUN_STEPS)
+        try_stiffer(L, what, r.result.run.reason);
     return 1;
 }
 
@@ -616,7 +739,7 @@ static int model_relax(lua_State *L, tl_model *model)
 static int model_cycle(lua_State *L, tl_model *model)
 {
     tl_cycle_args args;
-    tl_lua_spec spec = tl_lua_spec_of("cycle", solve_keys + 1);
+    tl_lua_spec spec = tl_lua_spec_of("cycle", solve_keys + KEYS_BEFORE_CYCLE);
     tl_lua_read_one(L, 2, &spec, "cycles", &args);
     lua_settop(L, 3);
     lua_remove(L, 2); /* as in solve the table of arguments is at index 2 */
@@ -719,6 +842,13 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
     return 1;
 }
 
+#define STIFFER_RESULT                                                                                                 \
+    {                                                                                                                  \
+        "stiffer", "",                                                                                                 \
+            "with try_stiffer: the same of the trial; `differs` tells whether the one rests and the other does not, "  \
+            "`message` says so; reason \"error\" of a trial that failed"                                               \
+    }
+
 static const tl_lua_key run_results[] = {
     {"reason", "",
      "why it ended: \"ratio\", \"velocity\", \"failure\", \"overlap\" (blocks that were made overlapping push it "
@@ -737,6 +867,7 @@ static const tl_lua_key run_results[] = {
     {"time", "", "the model's time at the end, s"},
     {"wall", "", "seconds it took"},
     {"max_velocity", "", "largest speed of a block that forces move, m/s"},
+    STIFFER_RESULT,
     {NULL, NULL, NULL},
 };
 
@@ -757,6 +888,7 @@ static const tl_lua_key relax_results[] = {
     {"time", "", "the model's time, which stands still, s"},
     {"wall", "", "seconds it took"},
     {"max_velocity", "", "largest speed of a block in the last step, by the masses of the relaxation, m/s"},
+    STIFFER_RESULT,
     {NULL, NULL, NULL},
 };
 
@@ -764,7 +896,7 @@ const tl_lua_topic tl_lua_run_topics[] = {
     {.name = "cycle",
      .usage = "result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})",
      .function = "cycle",
-     .keys = solve_keys + 1,
+     .keys = solve_keys + KEYS_BEFORE_CYCLE,
      .title = "Fields of the result",
      .verbs = run_results,
      .arguments = 2,

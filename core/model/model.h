@@ -153,7 +153,8 @@ typedef enum tl_remark {
     TL_REMARK_TENSION,  /* initial stress pulls */
     TL_REMARK_OVERLAP,  /* blocks overlap when they come into contact */
     TL_REMARK_CLOSURE,  /* a contact closes by much of a block's thickness */
-    TL_REMARK_UNDECIDED /* a run for equilibrium has ended before it, without failure */
+    TL_REMARK_UNDECIDED, /* a run for equilibrium has ended before it, without failure */
+    TL_REMARK_MOVED      /* at rest after a movement that is a word on stiffness */
 } tl_remark;
 
 /* For what the contacts in `detect` were found: asked.c. */

@@ -91,7 +91,9 @@ enum {
     TL_PARAM_FLAT = 128,
     /* since 1.3, of a string: a file that is read. The host refuses pipes, devices and folders, whose opening may
      * wait */
-    TL_PARAM_FILE = 16
+    TL_PARAM_FILE = 16,
+    /* since 1.11, of a real of a law: a stiffness of the joint, which a trial with stiffer joints multiplies */
+    TL_PARAM_STIFFNESS = 32
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
