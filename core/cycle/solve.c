@@ -175,11 +175,12 @@ static void say_gone(tl_model *m, const tl_watch *w)
             m, "%s: at rest, but not where it began: block %u has moved by %.3g m in this run, %.2g times its size",
             run_name(m), m->bodies.id[gone.body], gone.way, gone.share);
     else if (moved.body != TL_NO_ROW && tl_model_says(m, TL_REMARK_MOVED))
-        tl_model_say(m,
-                     "%s: at rest, but that may hang on how stiff the joints are: block %u has moved by %.3g m, %.2g %% "
-                     "of its size of %.3g m; see whether it rests with ten times the stiffness, too: %s",
-                     run_name(m), m->bodies.id[moved.body], moved.way, 100 * moved.share, moved.way / moved.share,
-                     tl_words(m, "try_stiffer = true", "tl_joints_stiffen() of a copy"));
+        tl_model_say(
+            m,
+            "%s: at rest, but that may hang on how stiff the joints are: block %u has moved by %.3g m, %.2g %% "
+            "of its size of %.3g m; see whether it rests with ten times the stiffness, too: %s",
+            run_name(m), m->bodies.id[moved.body], moved.way, 100 * moved.share, moved.way / moved.share,
+            tl_words(m, "try_stiffer = true", "tl_joints_stiffen() of a copy"));
 }
 
 /* Neither at rest nor failing: of a run that was to find out which. */

@@ -11,6 +11,7 @@
 #include "lua/interrupt.h"
 #include "lua/item.h"
 #include "lua/living.h"
+#include "lua/try_stiffer.h"
 #include "lua/view.h"
 
 #include <math.h>
@@ -209,9 +210,6 @@ enum {
     AT_FAILING, /* of a relaxation */
     AT_DIRECTION
 };
-
-/* How much stiffer the joints of a trial are. */
-#define STIFFER 10.0
 
 typedef struct run {
     tl_lua_running running;
@@ -558,117 +556,6 @@ static void set_relaxed(lua_State *L, const tl_model *model, const tl_relax_resu
     tl_lua_set_text(L, "message", result->message);
 }
 
-/* ---------------------------------------------------------------- a stiffer trial -------- */
-
-static void hush(void *user, const char *text)
-{
-    (void)user;
-    (void)text;
-}
-
-/* Puts a copy of the model with stiffer joints into the result's `stiffer`, when it is asked for. */
-static void prepare_trial(lua_State *L, const char *what)
-{
-    const int top = lua_gettop(L), type = tl_lua_option(L, AT_ARGS, "try_stiffer");
-    if (type != LUA_TNIL && type != LUA_TBOOLEAN)
-        tl_lua_fail(L, "%s: try_stiffer must be true or false, not %s", what, tl_lua_describe(L, -1));
-    if (lua_toboolean(L, -1)) {
-        lua_getfield(L, AT_MODEL, "copy");
-        lua_pushvalue(L, AT_MODEL);
-        lua_call(L, 1, 1);
-        tl_model *copy = ((tl_lua_model *)lua_touserdata(L, -1))->model;
-        const tl_status status = tl_joints_stiffen(copy, STIFFER);
-        if (status != TL_OK)
-            tl_lua_fail(L, "%s, try_stiffer: %s", what, tl_model_error(copy)->text);
-        tl_model_log(copy, hush, NULL);
-        lua_setfield(L, AT_RESULT, "stiffer");
-    }
-    lua_settop(L, top);
-}
-
-/* Pushes the options of the run for the trial, which calls none of its functions. */
-static void push_trial_args(lua_State *L)
-{
-    lua_newtable(L);
-    if (!lua_istable(L, AT_ARGS))
-        return;
-    for (lua_pushnil(L); lua_next(L, AT_ARGS);) {
-        lua_pushvalue(L, -2);
-        lua_insert(L, -2);
-        lua_settable(L, -4);
-    }
-    for (const tl_lua_key *key = solve_keys; key->name; key++) {
-        lua_pushnil(L);
-        lua_setfield(L, -2, key->name);
-    }
-}
-
-/* Whether a run ended at rest, by a failure, or by neither. */
-static const char *verdict_of(const char *reason)
-{
-    static const char *const rests[] = {"rest", "ratio", "velocity"}, *const fails[] = {"failure", "overlap"};
-    for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++)
-        if (strcmp(reason, rests[i]) == 0)
-            return "rests";
-    for (size_t i = 0; i < sizeof fails / sizeof fails[0]; i++)
-        if (strcmp(reason, fails[i]) == 0)
-            return "fails";
-    return "neither rests nor fails";
-}
-
-/* Says how the verdicts differ, and puts that into the trial's result at the top of the stack. */
-static void compare_verdicts(lua_State *L, const char *what)
-{
-    lua_getfield(L, AT_RESULT, "reason");
-    lua_getfield(L, -2, "reason");
-    const char *one = verdict_of(lua_tostring(L, -2)), *other = verdict_of(lua_tostring(L, -1));
-    lua_pop(L, 2);
-    const bool differs = strcmp(one, other) != 0;
-    lua_pushboolean(L, differs);
-    lua_setfield(L, -2, "differs");
-    if (!differs)
-        return;
-    lua_pushfstring(L,
-                    "%s: the verdict hangs on the stiffness of the joints: with it as given the model %s, with %d times "
-                    "as much it %s; measure the stiffness, or take that which stands for rigid blocks (docs/how_stiff.md)",
-                    what, one, (int)STIFFER, other);
-    tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -1));
-    lua_setfield(L, -2, "message");
-}
-
-/* Runs the trial, from the result's `stiffer`, which becomes the result of that. A run that was stopped has no verdict to
- * compare. A trial that fails tells why. */
-static void try_stiffer(lua_State *L, const char *what, tl_solve_reason reason)
-{
-    const int top = lua_gettop(L);
-    if (lua_getfield(L, AT_RESULT, "stiffer") != LUA_TUSERDATA) {
-        lua_settop(L, top);
-        return;
-    }
-    lua_pushnil(L);
-    lua_setfield(L, AT_RESULT, "stiffer");
-    if (reason != TL_SOLVE_STOP && reason != TL_SOLVE_INTERRUPT) {
-        lua_getfield(L, -1, what);
-        lua_insert(L, -2);
-        push_trial_args(L);
-        if (lua_pcall(L, 2, 1, 0) == LUA_OK) {
-            compare_verdicts(L, what);
-        } else if (tl_lua_interrupted(lua_tostring(L, -1))) {
-            lua_error(L);
-        } else {
-            lua_newtable(L);
-            lua_pushliteral(L, "error");
-            lua_setfield(L, -2, "reason");
-            lua_insert(L, -2);
-            lua_setfield(L, -2, "message");
-        }
-        lua_setfield(L, AT_RESULT, "stiffer");
-    }
-    lua_settop(L, top);
-}
-
-/* ---------------------------------------------------------------- a run ------------------ */
-
 /* Makes a run and pushes its result. The table of arguments is at AT_ARGS. `relax`: what a relaxation is asked for, of
  * which `solve` has what the line tells; else NULL. */
 static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *solve, run_kind kind, tl_relax *relax)
@@ -679,7 +566,7 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     solve->progress = push_callback(L, what, "on_progress") ? on_progress : NULL;
     push_empty_answer(L, kind == RUN_STEPS ? TL_RATIO_LOCAL : solve->measure);
     if (kind != RUN_STEPS)
-        prepare_trial(L, what);
+        tl_lua_trial_prepare(L, AT_ARGS, AT_RESULT, what);
     tl_lua_selection *failing = relax ? push_room(L, model) : NULL;
     solve->each = on_each;
     solve->between = on_between;
@@ -713,7 +600,7 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     if (failing)
         set_relaxed(L, model, &r.result, failing);
     if (kind != RUN_STEPS)
-        try_stiffer(L, what, r.result.run.reason);
+        tl_lua_trial_run(L, AT_ARGS, AT_RESULT, solve_keys, what);
     return 1;
 }
 
