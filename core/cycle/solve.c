@@ -166,7 +166,8 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
 }
 
 /* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for.
- * And what moved by a hundredth of its size may rest only because its joints are that soft, or that stiff. Names the body that has gone the farthest over its size, of those that touched something then. */
+ * What moved by a hundredth of its size may rest only because its joints are that soft, or that stiff. Names the body
+ * that has gone the farthest over its size, of those that touched something then. */
 static void say_gone(tl_model *m, const tl_watch *w)
 {
     const tl_gone gone = tl_watch_gone(w, m), moved = tl_watch_moved(w, m);

@@ -19,8 +19,8 @@ static inline tl_fracture tl_fracture_disc(tl_vec3 normal, tl_vec3 point, double
 
 /* A convex polygon of finite corners, which are not copied. TL_E_GEOMETRY with a sentence for one that is none. */
 tl_status tl_fracture_polygon(const tl_vec3 *corner, size_t count, tl_fracture *made, tl_error *error);
-/* Whether a fracture reaches into a face that lies in its plane, of a shape in the frame of a body, or of the model's
- * origin with `body` TL_NO_ROW. */
+/* Whether a fracture reaches into a face that lies in its plane. The shape is in the frame of a body, or with `body`
+ * TL_NO_ROW relative to the model's origin. */
 bool tl_fracture_reaches(const tl_model *m, const tl_fracture *fracture, uint32_t body, const tl_poly *p,
                          uint32_t face);
 

@@ -732,7 +732,7 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
 #define STIFFER_RESULT                                                                                                 \
     {                                                                                                                  \
         "stiffer", "",                                                                                                 \
-            "with try_stiffer: the same of the trial; `differs` tells whether the one rests and the other does not, "  \
+            "table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, "  \
             "`message` says so; reason \"error\" of a trial that failed"                                               \
     }
 

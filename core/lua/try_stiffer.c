@@ -1,4 +1,4 @@
-/* try_stiffer.c - a run once more on a copy of the model whose joints are stiffer: does its verdict hang on stiffness? */
+/* try_stiffer.c - a run once more on a copy of the model with stiffer joints: does its verdict hang on stiffness? */
 #include "lua/try_stiffer.h"
 
 #include "lua/convert.h"
@@ -9,8 +9,8 @@
 #include <string.h>
 #include <talus/talus.h>
 
-/* Constant: how much stiffer the joints of a trial are. Ten times the stiffness halves what soft joints take off a rigid
- * structure's load (docs/how_stiff.md). */
+/* Constant: how much stiffer the joints of a trial are. Ten times the stiffness halves what soft joints take off the
+ * load of a rigid structure (docs/how_stiff.md). */
 #define STIFFER 10.0
 
 static void hush(void *user, const char *text)

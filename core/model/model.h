@@ -107,8 +107,7 @@ typedef struct tl_bodies {
     uint32_t *drive;        /* index into drives + 1, or 0 */
     double *odometer;       /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
     /* what it asks of the time step on its largest face: cycle/timestep.c. 0: not known */
-    double *face_rate;
-    double *face_turn; /* its rotation's part of that */
+    double *face_rate, *face_turn; /* the latter: its rotation's part of that */
 } tl_bodies;
 
 typedef struct tl_joint_set {

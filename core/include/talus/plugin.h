@@ -431,9 +431,9 @@ struct tl_host {
      * tetrahedra, and valid until the generator ends or reads another. Refused with TL_E_GEOMETRY are a damaged file
      * and a part that is not convex. */
     tl_status (*read_mesh)(const tl_host *, const char *file, const tl_mesh_part **parts, size_t *count);
-    /* since 1.11: as `cut_disc`, by a convex polygon of `count` corners, in order around it. A block is in its path when
-     * it reaches into the polygon in which its plane cuts the block. Refused with TL_E_GEOMETRY are corners that are
-     * not in one plane or not convex. */
+    /* since 1.11: as `cut_disc`, by a convex polygon of `count` corners, in order around it. A block is in its path
+     * when it reaches into the polygon in which its plane cuts the block. Refused with TL_E_GEOMETRY are corners that
+     * are not in one plane or not convex. */
     tl_status (*cut_polygon)(const tl_host *, const tl_vec3 *corners, size_t count, tl_tag tag, double persistence,
                              size_t *met);
 };

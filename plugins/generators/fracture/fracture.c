@@ -1,7 +1,7 @@
 /* fracture.c - generator "fracture": a convex polygon in space that cuts the visible blocks in its path.
  *
- * A block is in its path when the polygon reaches into the polygon in which its plane cuts the block. It is cut through,
- * with the probability `persistence`. The polygon gets the next number of its joint set. */
+ * A block is in its path when the polygon reaches into the polygon in which its plane cuts the block. It is cut
+ * through, with the probability `persistence`. The polygon gets the next number of its joint set. */
 #include <talus/kit.h>
 #include <talus/version.h>
 

@@ -10,7 +10,8 @@
  *
  * u is uniform in [-1, 1), or normal with standard deviation 1 cut off at NORMAL_LIMIT; a normal gap is cut
  * off, on both sides alike, so that it stays positive. By "fisher" the pole of a plane is distributed
- * about the mean pole with the concentration fisher_k. Gaps go by `spacing_distribution`, u uniform in [0, 1), z normal:
+ * about the mean pole with the concentration fisher_k. Gaps go by `spacing_distribution`, with
+ * u uniform in [0, 1) and z normal:
  *
  *     exponential: gap = -spacing ln(1 - u),   standard deviation: spacing
  *     lognormal:   gap = spacing exp(s z - s^2 / 2),   s^2 = ln(1 + (spacing_dev / spacing)^2)

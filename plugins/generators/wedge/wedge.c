@@ -1,8 +1,8 @@
-/* wedge.c - generators "wedge" and "roof_wedge": a tetrahedron that joints and free faces part from the rock, in its rock.
+/* wedge.c - generators "wedge" and "roof_wedge": a tetrahedron that joints and free faces part from the rock.
  *
- * A slope wedge lies above two joints A and B. Their line of intersection begins at the toe O, on the slope face, and
- * rises by u = +-(n_A x n_B) to the upper slope. It daylights when u runs into the rock at the face and out of it at the
- * upper slope: n_F . u < 0 < n_U . u. The crest c = n_F x n_U crosses A and B in the other two corners.
+ * A slope wedge lies above two joints A and B. Their line of intersection begins at the toe O, on the slope face,
+ * and rises by u = +-(n_A x n_B) to the upper slope. It daylights when u runs into the rock at the face and out of
+ * it at the upper slope: n_F . u < 0 < n_U . u. The crest c = n_F x n_U crosses A and B in the other two corners.
  *
  * A roof wedge lies below three joints. Its edges from the apex are the lines of intersection, run downward. They meet
  * a horizontal roof in a triangle whose shape is that of the orientations. Its size is given by its extent across
@@ -143,7 +143,8 @@ static tl_status wedge_corners(const tl_host *host, const wedge *w, const tl_hal
         return host->fail(host, TL_E_GEOMETRY, "joints '%s' and '%s' are parallel: they make no wedge", w->joint_a,
                           w->joint_b);
     const tl_vec3 u = tl_v3_unit(line.z < 0 ? tl_v3_neg(line) : line);
-    const double trend = atan2(-u.x, -u.y) / TL_DEGREE, plunge = asin(fmin(1, u.z)) / TL_DEGREE;
+    const double trend = tl_atan2(-u.x, -u.y) / TL_DEGREE,
+                 plunge = tl_atan2(u.z, sqrt(u.x * u.x + u.y * u.y)) / TL_DEGREE;
     if (!(tl_v3_dot(face, u) < -PARALLEL))
         return host->fail(host, TL_E_GEOMETRY,
                           "no wedge can be removed: the joints' line of intersection plunges %.4g deg toward %.4g deg "
