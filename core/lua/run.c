@@ -732,7 +732,8 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
 #define STIFFER_RESULT                                                                                                 \
     {                                                                                                                  \
         "stiffer", "",                                                                                                 \
-            "table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, "  \
+            "table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other "   \
+            "does not, "                                                                                               \
             "`message` says so; reason \"error\" of a trial that failed"                                               \
     }
 
