@@ -107,8 +107,7 @@ typedef struct tl_bodies {
     uint32_t *drive;        /* index into drives + 1, or 0 */
     double *odometer;       /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
     /* what it asks of the time step on its largest face: cycle/timestep.c. 0: not known */
-    double *face_rate;
-    double *face_turn; /* its rotation's part of that */
+    double *face_rate, *face_turn; /* the latter: its rotation's part of that */
 } tl_bodies;
 
 typedef struct tl_joint_set {
@@ -143,17 +142,18 @@ typedef struct tl_extremes {
 
 /* Remarks that are made once a model. */
 typedef enum tl_remark {
-    TL_REMARK_UNDAMPED, /* solve without damping */
-    TL_REMARK_GRAVITY,  /* points upward */
-    TL_REMARK_STEP,     /* a given one is far too long */
-    TL_REMARK_FRICTION, /* looks like a coefficient */
-    TL_REMARK_SOFT,     /* blocks sink in under their weight */
-    TL_REMARK_STIFF,    /* the closure under weight is lost in rounding */
-    TL_REMARK_DENSITY,  /* is not that of a solid, or does not go with the stiffness */
-    TL_REMARK_TENSION,  /* initial stress pulls */
-    TL_REMARK_OVERLAP,  /* blocks overlap when they come into contact */
-    TL_REMARK_CLOSURE,  /* a contact closes by much of a block's thickness */
-    TL_REMARK_UNDECIDED /* a run for equilibrium has ended before it, without failure */
+    TL_REMARK_UNDAMPED,  /* solve without damping */
+    TL_REMARK_GRAVITY,   /* points upward */
+    TL_REMARK_STEP,      /* a given one is far too long */
+    TL_REMARK_FRICTION,  /* looks like a coefficient */
+    TL_REMARK_SOFT,      /* blocks sink in under their weight */
+    TL_REMARK_STIFF,     /* the closure under weight is lost in rounding */
+    TL_REMARK_DENSITY,   /* is not that of a solid, or does not go with the stiffness */
+    TL_REMARK_TENSION,   /* initial stress pulls */
+    TL_REMARK_OVERLAP,   /* blocks overlap when they come into contact */
+    TL_REMARK_CLOSURE,   /* a contact closes by much of a block's thickness */
+    TL_REMARK_UNDECIDED, /* a run for equilibrium has ended before it, without failure */
+    TL_REMARK_MOVED      /* at rest after a movement that is a word on stiffness */
 } tl_remark;
 
 /* For what the contacts in `detect` were found: asked.c. */

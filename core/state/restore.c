@@ -142,7 +142,7 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
 #define MOST_CYCLES (INT64_MAX / 8)
 
 /* Bits of `said`: one for each remark. */
-#define ALL_REMARKS ((2u << TL_REMARK_UNDECIDED) - 1)
+#define ALL_REMARKS ((2u << TL_REMARK_MOVED) - 1)
 
 /* Whether a member holds what its parameter allows. Whole numbers of 64 bits, and texts, are not looked at. */
 static bool param_is_sound(const tl_param *param, const void *member)

@@ -179,7 +179,8 @@ local function field_type(value, meaning, class)
     local may_be_nil = meaning:match("%f[%w]nil%f[%W]") ~= nil
     local type = seen_type(value)
     if not type then
-        type = (meaning:match("^the block") or meaning:match("^a block")) and "talus.Block" or
+        type = meaning:match("^table of the same") and "table" or
+            (meaning:match("^the block") or meaning:match("^a block")) and "talus.Block" or
             meaning:match("^the selection of blocks") and "talus.Blocks" or meaning:match("^{x, y, z}") and "talus.Vector" or
             meaning:match("^the number of the") and "integer" or meaning:match("^lists of the components") and "number[]" or
             (meaning:match("^how many times") or meaning:match("%f[%w]m3%f[%W]")) and "number" or

@@ -202,6 +202,10 @@ TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter, tl_fi
 /* Sets the law of a joint: "*" every joint not named otherwise, "J1" a set, "J1:3" a plane of it.
  * `law` NULL changes properties of the law the joint has now; forces stay continuous. */
 TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law, const tl_args *args);
+/* Multiplies the stiffnesses of all laws, the parameters with TL_PARAM_STIFFNESS, by `factor`; forces stay as they are.
+ * TL_E_ARGUMENT, and nothing changes, when a law has none or refuses the new values. TL_E_MEMORY may leave some of the
+ * laws stiffer. */
+TL_API tl_status tl_joints_stiffen(tl_model *model, double factor);
 
 typedef struct tl_insitu {
     uint32_t size;            /* sizeof(tl_insitu) */
@@ -468,6 +472,9 @@ typedef struct tl_block_filter {
     const tl_halfspace *above, *below; /* centroid on that side, boundary included */
     int fixed;                         /* -1 any, 0 no, 1 yes */
     int hidden;                        /* -1 any, 0 visible ones, 1 hidden ones */
+    size_t above_count, below_count;   /* planes at `above` and `below`, 1 by default: all must hold */
+    const tl_vec3 *region;             /* centroid in the convex hull of these points, boundary included; NULL: any */
+    size_t region_count;
 } tl_block_filter;
 
 /* Ids of the blocks that pass, ascending. The list is the caller's, to be freed with free(). */
