@@ -5,6 +5,7 @@
 #include "model/loads.h"
 #include "model/model.h"
 #include "model/options.h"
+#include "model/seats.h"
 
 #include <stdlib.h>
 
@@ -127,6 +128,7 @@ void tl_model_destroy(tl_model *m)
     free(m->cut_parts);
     free(m->splits);
     free(m->face_loads);
+    tl_seats_free(&m->seats);
     free(m->groups);
     free(m->joints);
     free(m->joint_laws);

@@ -1,0 +1,405 @@
+/* seat.c - blocks as drawn are taken as fitting: gaps and overlaps up to limits become the state without force.
+ *
+ * Two faces a and b on each other, of areas A_a and A_b, are put into one plane, as of which each pair of blocks sees
+ * itself (model/seats.h):
+ *
+ *     n ~ A_a n_a - A_b n_b,    n . x = c,  c ~ A_a c_a - A_b c_b
+ *
+ * This is the mean of both, by area: a small block takes the plane of the floor on which it stands. Of blocks that
+ * overlap without such faces, by an edge or a vertex, the face along which they overlap the least is drawn back by the
+ * overlap. The blocks of a pair then touch, and have no volume in common, to rounding. */
+#include "base/columns.h"
+#include "contact/across_gap.h"
+#include "contact/contacts.h"
+#include "contact/pair_view.h"
+#include "contact/places.h"
+#include "contact/store.h"
+#include "cycle/cycle_data.h"
+#include "cycle/undo.h"
+#include "detect/detect.h"
+#include "geometry/measure.h"
+#include "model/body_shape.h"
+#include "model/options.h"
+#include "model/seats.h"
+#include "narrow/common_polygon.h"
+#include "narrow/manifold.h"
+#include "narrow/press.h"
+#include "narrow/region.h"
+#include "segment/meets.h"
+
+#include <stdlib.h>
+
+/* Default: limits of gap and overlap over the mean size of the blocks. */
+#define USUAL 0.01
+/* Tolerance: sine of the tilt up to which two faces may be put into one plane. Test: lua/test_seat. */
+#define MOST_TILT 0.1
+/* Limit: overlap over the thickness of the thinner block, up to which a face may be drawn back. */
+#define MOST_THIN 0.25
+/* Tolerance: gaps and overlaps over the size of the smaller block that are the rounding of places. A pair that fits to
+ * that stays as it is. */
+#define FITS 1e-12
+/* Tolerance: the same over the distance between both centroids, from which places are reckoned. */
+#define ROUNDED 1e-14
+/* Tolerance: common area over the smaller face, below which faces that do not overlap are beside each other, as those of
+ * blocks that meet at an edge are. Test: lua/test_seat. */
+#define BESIDE 1e-3
+
+typedef enum fit { FITTING, APART, FACES, EDGES, BEYOND } fit;
+
+/* How the blocks of a pair lie to each other. */
+typedef struct meeting {
+    fit how;
+    uint32_t face[2];                        /* TL_NO_ROW: it stays */
+    tl_plane plane[2];                       /* in which they are to lie, own frames */
+    double gap, overlap, mean_gap, mean_overlap; /* m */
+    double area;                             /* m^2 */
+} meeting;
+
+typedef struct seating {
+    tl_model *m;
+    tl_narrow_scratch *scratch;
+    double gap, overlap; /* limits */
+    tl_seated *made;
+    size_t made_count, made_capacity;
+    tl_seat_result *out;
+    size_t beyond_capacity;
+    double area;
+} seating;
+
+/* ---------------------------------------------------------------- one pair --------------- */
+
+/* The plane between two faces, in A's frame. */
+static tl_plane plane_between(const tl_pair_view *view, uint32_t fa, uint32_t fb)
+{
+    const tl_plane a = tl_view_plane(view, false, fa), b = tl_view_plane(view, true, fb);
+    const double area_a = tl_poly_face_area(view->a, fa), area_b = tl_poly_face_area(view->b, fb);
+    const tl_vec3 n = tl_v3_madd(tl_v3_scale(area_a, a.normal), -area_b, b.normal);
+    const double length = tl_v3_norm(n);
+    return (tl_plane){tl_v3_scale(1 / length, n), (area_a * a.offset - area_b * b.offset) / length};
+}
+
+/* Puts the planes of both faces into one, each in its own frame. */
+static void put_planes(const tl_pair_view *view, uint32_t fa, uint32_t fb, meeting *out)
+{
+    const tl_plane mid = plane_between(view, fa, fb);
+    const tl_vec3 back = tl_m3_tmul(&view->turn, tl_v3_neg(mid.normal));
+    out->face[0] = fa;
+    out->face[1] = fb;
+    out->plane[0] = mid;
+    out->plane[1] = (tl_plane){back, tl_v3_dot(mid.normal, view->shift) - mid.offset};
+}
+
+/* Measures two faces on each other; APART: they have no area in common. false: out of memory. */
+static bool measure_faces(const seating *s, const tl_pair_view *view, const tl_region *r, double tiny, meeting *out)
+{
+    tl_common_polygon common;
+    const uint32_t fa = r->flush_a, fb = r->flush_b;
+    if (!r->flush || tl_region_tilt(view, fa, fb) > MOST_TILT)
+        return true;
+    if (!tl_common_polygon_find(view, fa, fb, s->scratch, &common))
+        return false;
+    if (common.count == 0)
+        return true;
+    const tl_patch_gap of = tl_patch_gap_of(&common.frame, common.b);
+    double least = INFINITY, most = -INFINITY;
+    for (size_t i = 0; i < common.count; i++) {
+        const double gap = tl_gap_at(of, common.corner[i].at);
+        least = fmin(least, gap);
+        most = fmax(most, gap);
+    }
+    const double mean = tl_gap_at(of, common.centroid);
+    const double whole = fmin(tl_poly_face_area(view->a, fa), tl_poly_face_area(view->b, fb));
+    out->area = common.frame.secant * common.area;
+    if (least > s->gap || (least > -tiny && !(out->area > BESIDE * whole)))
+        return true;
+    out->gap = fmax(most, 0);
+    out->overlap = fmax(-least, 0);
+    out->mean_gap = fmax(mean, 0);
+    out->mean_overlap = fmax(-mean, 0);
+    out->how = most <= tiny && least >= -tiny ? FITTING : FACES;
+    put_planes(view, fa, fb, out);
+    return true;
+}
+
+/* The face of a block along which the other one lies highest, of those that no seam covers. */
+static uint32_t highest(const tl_poly *p, const double *low)
+{
+    uint32_t best = TL_NO_ROW;
+    for (uint32_t f = 0; f < p->face_count; f++)
+        if (!p->covered[f] && (best == TL_NO_ROW || low[f] > low[best]))
+            best = f;
+    return best;
+}
+
+/* Draws one face back by the overlap of a pair that presses. false: out of memory. */
+static bool measure_edges(const seating *s, const tl_pair_view *view, const tl_region *r, meeting *out)
+{
+    tl_press press;
+    tl_region_lows lows;
+    const tl_press_query query = {.view = view, .region = r};
+    if (!tl_press_find(&query, 1, s->scratch, &press, NULL))
+        return false;
+    if (!(press.area > 0) || !tl_region_gap(view, s->scratch, &lows))
+        return !s->scratch->failed;
+    const uint32_t fa = highest(view->a, lows.b_over_a), fb = highest(view->b, lows.a_over_b);
+    const bool of_b = fa == TL_NO_ROW || (fb != TL_NO_ROW && lows.a_over_b[fb] > lows.b_over_a[fa]);
+    if (of_b && fb == TL_NO_ROW)
+        return true;
+    const double low = of_b ? lows.a_over_b[fb] : lows.b_over_a[fa];
+    out->how = EDGES;
+    out->overlap = fmax(-low, 0);
+    out->mean_overlap = 0.5 * out->overlap;
+    out->area = press.area;
+    out->face[of_b] = of_b ? fb : fa;
+    out->plane[of_b] = of_b ? view->b->plane[fb] : view->a->plane[fa];
+    out->plane[of_b].offset += fmin(low, 0);
+    return true;
+}
+
+/* How a pair lies with the shapes of a view. false: out of memory. */
+static bool measure(const seating *s, tl_pair_view view, meeting *out)
+{
+    *out = (meeting){.how = APART, .face = {TL_NO_ROW, TL_NO_ROW}};
+    const double tiny = FITS * view.size + ROUNDED * tl_v3_norm(view.shift);
+    tl_region region;
+    if (!tl_pair_place(&view, s->scratch) ||
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size + s->gap, s->scratch, &region))
+        return false;
+    if (region.gap > s->gap)
+        return true;
+    if (!measure_faces(s, &view, &region, tiny, out) ||
+        (out->how == APART && region.gap < -tiny && !measure_edges(s, &view, &region, out)))
+        return false;
+    return true;
+}
+
+/* The largest overlap of a pair that is taken. */
+static double most_overlap(const seating *s, uint32_t a, uint32_t b)
+{
+    return fmin(s->overlap, MOST_THIN * fmin(tl_least_thickness(s->m, a), tl_least_thickness(s->m, b)));
+}
+
+static bool note_beyond(seating *s, uint32_t a, uint32_t b, const meeting *now)
+{
+    tl_seat_result *out = s->out;
+    if (!tl_grow(&out->beyond, &s->beyond_capacity, out->beyond_count + 1, sizeof *out->beyond))
+        return false;
+    out->beyond[out->beyond_count++] =
+        (tl_seat_beyond){s->m->blocks.id[a], s->m->blocks.id[b], now->gap, now->overlap};
+    return true;
+}
+
+/* Adds a pair to those that are to be seated. */
+static bool note_seat(seating *s, uint32_t a, uint32_t b, const meeting *now)
+{
+    const tl_model *m = s->m;
+    tl_seat_result *out = s->out;
+    if (!tl_grow(&s->made, &s->made_capacity, s->made_count + 1, sizeof *s->made))
+        return false;
+    s->made[s->made_count++] = (tl_seated){.block = {m->blocks.id[a], m->blocks.id[b]},
+                                           .face = {now->face[0], now->face[1]},
+                                           .plane = {now->plane[0], now->plane[1]},
+                                           .frame = {tl_block_frame_of(m, a), tl_block_frame_of(m, b)}};
+    out->contacts++;
+    out->largest_gap = fmax(out->largest_gap, now->gap);
+    out->largest_overlap = fmax(out->largest_overlap, now->overlap);
+    out->mean_gap += now->area * now->mean_gap;
+    out->mean_overlap += now->area * now->mean_overlap;
+    s->area += now->area;
+    return true;
+}
+
+/* Seats a pair, unless it fits as it is. What is anew is measured from the blocks as drawn. false: out of memory. */
+static bool seat_pair(seating *s, uint32_t a, uint32_t b)
+{
+    tl_pair_view view = tl_pair_view_of(s->m, a, b);
+    meeting now;
+    if (!measure(s, view, &now))
+        return false;
+    if (now.how == FITTING || now.how == APART)
+        return true;
+    const meeting fits = now;
+    view.a = s->m->blocks.shape[a];
+    view.b = s->m->blocks.shape[b];
+    if (tl_seated_of(s->m, s->m->blocks.id[a], s->m->blocks.id[b]) && !measure(s, view, &now))
+        return false;
+    if (fits.gap > s->gap || fits.overlap > most_overlap(s, a, b))
+        return note_beyond(s, a, b, &fits);
+    return now.how == APART || note_seat(s, a, b, &now);
+}
+
+/* ---------------------------------------------------------------- all of them ------------ */
+
+static int compare_beyond(const void *x, const void *y)
+{
+    const tl_seat_beyond *p = x, *q = y;
+    return p->a != q->a ? (p->a > q->a) - (p->a < q->a) : (p->b > q->b) - (p->b < q->b);
+}
+
+/* Looks at all pairs that the broad phase lists. */
+static bool seat_pairs(seating *s)
+{
+    const tl_detect *d = s->m->detect;
+    for (size_t i = 0; i < d->pair_count; i++)
+        if (!seat_pair(s, d->pairs[i].a, d->pairs[i].b))
+            return false;
+    if (s->out->beyond_count)
+        qsort(s->out->beyond, s->out->beyond_count, sizeof *s->out->beyond, compare_beyond);
+    s->out->mean_gap /= s->area > 0 ? s->area : 1;
+    s->out->mean_overlap /= s->area > 0 ? s->area : 1;
+    return true;
+}
+
+/* Lists the pairs up to the limit of gaps: what presses on the way there is nothing to remark on. */
+static tl_status list_pairs(tl_model *m, double gap)
+{
+    const uint32_t said = m->said;
+    m->said |= 1u << TL_REMARK_OVERLAP;
+    m->seats.asked = gap;
+    if (m->detect)
+        m->detect->listed = false;
+    const tl_status status = tl_detect_update(m);
+    m->seats.asked = 0;
+    m->said = said;
+    return status;
+}
+
+/* Puts the seated pairs into the model, and finds their contacts. */
+static tl_status put_seats(seating *s)
+{
+    tl_model *m = s->m;
+    if (s->made_count == 0)
+        return TL_OK;
+    if (!tl_seats_reserve(m, s->made_count))
+        return tl_fail_memory(&m->error);
+    tl_seats_put(m, s->made, s->made_count);
+    for (size_t i = 0; i < s->made_count; i++)
+        for (int k = 0; k < 2; k++)
+            tl_block_changes(m, tl_block_row_quiet(m, s->made[i].block[k]));
+    m->structure++;
+    return tl_detect_update(m);
+}
+
+/* Takes all force out of a contact; what slip has opened stays opened. */
+static void free_contact(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    tl_press_row *row = tl_press_row_of(m, c);
+    const bool patch = tl_facet_is_patch(&contacts->facet[c]);
+    double opening[TL_LANES];
+    tl_contact_places(m, c, &m->detect->lanes[0]);
+    for (size_t i = 0; i < contacts->point_count[c]; i++) {
+        const size_t point = tl_point_row(contacts, c, i);
+        if (i % TL_LANES == 0)
+            tl_contact_point_openings(m, c, i, opening);
+        p->f_n[point] = 0;
+        tl_columns_put(p->f_s, point, tl_v3(0, 0, 0));
+        if (!p->initial)
+            continue;
+        p->reference[point] = patch ? opening[i % TL_LANES] : 0;
+        p->f_n0[point] = 0;
+    }
+    if (row) {
+        row->shift = row->spare[0] = row->spare[1] = 0;
+        row->leans = false;
+    }
+    contacts->force[c] = contacts->moment[c] = tl_v3(0, 0, 0);
+    contacts->stored[c] = NAN;
+}
+
+static bool some_opened(tl_model *m)
+{
+    bool some = false;
+    for (uint32_t c = 0; c < m->detect->contacts.table.rows; c++)
+        some = some || tl_contact_opens(m, c);
+    return some;
+}
+
+static void say_seated(tl_model *m, const tl_seat_result *r, bool given)
+{
+    tl_model_say(m,
+                 "seat: %zu contact%s made to fit, with gaps up to %.3g m (mean %.3g m) and overlaps up to %.3g m (mean "
+                 "%.3g m); limits: gap = %.3g, overlap = %.3g%s",
+                 r->contacts, r->contacts == 1 ? " was" : "s were", r->largest_gap, r->mean_gap, r->largest_overlap,
+                 r->mean_overlap, r->gap, r->overlap, given ? "" : ", of the blocks' mean size 1 %");
+    if (r->beyond_count)
+        tl_model_say(m,
+                     "seat: %zu pair%s of blocks lie%s beyond the limits (first: blocks %u and %u, with a gap of %.3g m "
+                     "and an overlap of %.3g m) and stay%s as drawn: give larger limits, or draw them otherwise",
+                     r->beyond_count, r->beyond_count == 1 ? "" : "s", r->beyond_count == 1 ? "s" : "", r->beyond[0].a,
+                     r->beyond[0].b, r->beyond[0].gap, r->beyond[0].overlap, r->beyond_count == 1 ? "s" : "");
+}
+
+static double mean_size(const tl_model *m)
+{
+    double sum = 0;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        sum += m->blocks.size[row];
+    return m->blocks.table.rows ? sum / (double)m->blocks.table.rows : 0;
+}
+
+static tl_status check(tl_model *m)
+{
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        if (tl_block_deforms(m, row))
+            return tl_fail(&m->error, TL_E_STATE,
+                           "seat: block %u is deformable, and only rigid blocks are seated: seat a model of rigid "
+                           "blocks, or draw the neighbours of deformable ones so that they fit",
+                           m->blocks.id[row]);
+    return TL_OK;
+}
+
+/* All of it, with the limits known. */
+static tl_status seat_all(tl_model *m, seating *s)
+{
+    tl_segments_forget_asked(m);
+    tl_status status = list_pairs(m, s->gap);
+    if (status != TL_OK)
+        return status;
+    s->scratch = &m->detect->narrow[0];
+    if (!seat_pairs(s))
+        return tl_fail_memory(&m->error);
+    status = put_seats(s);
+    if (status == TL_OK && some_opened(m) && !tl_detect_hold_initial(m->detect))
+        status = tl_fail_memory(&m->error);
+    if (status != TL_OK)
+        return status;
+    for (uint32_t c = 0; c < m->detect->contacts.table.rows; c++)
+        free_contact(m, c);
+    m->split_count = 0; /* what new faces hold the parts of a cut by is gone */
+    m->laws++;          /* contacts hold another energy */
+    tl_undo_by_hand(m);
+    tl_held_wake(m);
+    return TL_OK;
+}
+
+tl_status tl_model_seat(tl_model *m, const tl_seat *given, tl_seat_result *result)
+{
+    tl_seat seat;
+    tl_seat_result found = {.beyond = NULL};
+    tl_status status = TL_OPTIONS_READ(tl_seat, given, &seat, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_change(m, "seat blocks");
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "seat blocks");
+    if (status == TL_OK)
+        status = check(m);
+    if (status != TL_OK)
+        return status;
+    const double usual = USUAL * mean_size(m);
+    found.gap = isnan(seat.gap) ? usual : seat.gap;
+    found.overlap = isnan(seat.overlap) ? usual : seat.overlap;
+    if (!(found.gap >= 0) || !(found.overlap >= 0) || !isfinite(found.gap) || !isfinite(found.overlap))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "seat: gap and overlap must be lengths of at least 0 m");
+    seating s = {.m = m, .gap = found.gap, .overlap = found.overlap, .out = &found};
+    status = seat_all(m, &s);
+    free(s.made);
+    if (status == TL_OK)
+        say_seated(m, &found, !isnan(seat.gap) && !isnan(seat.overlap));
+    if (status == TL_OK && result)
+        *result = found;
+    else
+        free(found.beyond);
+    return status;
+}
