@@ -1,12 +1,14 @@
 /* stage_seats.c - parts of blocks that are cut take over the seats of these.
  *
- * A part has a part of the seated face where one of its faces lies in the plane in which that was drawn. Of two blocks
+ * A part has a part of the seated face where one of its faces lies in the plane in which that was drawn. One without it
+ * is kept behind the plane in which the face is seen. Of two blocks
  * that are both cut each part of the one is seated on each part of the other whose bounds it meets. */
 #include "generate/stage_seats.h"
 
 #include "base/table.h"
 #include "model/seats.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* Tolerance: normals of a face and of its parts are off each other by rounding; so are places, over the size. */
@@ -97,7 +99,21 @@ static uint32_t part_of(const tl_model *m, uint32_t row, tl_plane drawn)
     return TL_NO_ROW;
 }
 
-/* One side of a pair of parts: the block in a row takes the face of the seat. false: it has no part of it. */
+/* The face of a part that has none of the seated one but crosses its plane, which is to take that plane: the one that
+ * is nearest to it in direction. A tip that the cut has left is so. TL_NO_ROW: it lies behind the plane. */
+static uint32_t crossing_face(const tl_poly *shape, tl_plane plane, double *height)
+{
+    uint32_t best = 0;
+    *height = -INFINITY;
+    for (uint32_t v = 0; v < shape->vertex_count; v++)
+        *height = fmax(*height, tl_v3_dot(plane.normal, shape->vertex[v]) - plane.offset);
+    for (uint32_t f = 1; f < shape->face_count; f++)
+        if (tl_v3_dot(shape->plane[f].normal, plane.normal) > tl_v3_dot(shape->plane[best].normal, plane.normal))
+            best = f;
+    return *height > 0 ? best : TL_NO_ROW;
+}
+
+/* One side of a pair of parts: the block in a row takes the face of the seat. false: it lies away from it. */
 static bool take_side(const tl_model *m, const left_seat *left, int side, uint32_t row, int to, tl_seated *out)
 {
     out->block[to] = m->blocks.id[row];
@@ -108,7 +124,11 @@ static bool take_side(const tl_model *m, const left_seat *left, int side, uint32
         return true;
     out->plane[to] = inward(m, row, left->plane[side]);
     out->face[to] = part_of(m, row, left->drawn[side]);
-    return out->face[to] != TL_NO_ROW;
+    if (out->face[to] != TL_NO_ROW)
+        return true;
+    double height;
+    out->face[to] = crossing_face(m->blocks.shape[row], out->plane[to], &height);
+    return height > -2 * m->seats.reach;
 }
 
 static void bounds_of(const tl_model *m, uint32_t row, tl_vec3 *low, tl_vec3 *high)
@@ -139,7 +159,7 @@ static void give_pair(const tl_model *m, const left_seat *left, const uint32_t r
     const int swap = m->blocks.id[row[0]] > m->blocks.id[row[1]];
     tl_seated *out = &seats->parts[seats->capacity];
     if (row[0] != row[1] && may_touch(m, row[0], row[1]) && take_side(m, left, 0, row[0], swap, out) &&
-        take_side(m, left, 1, row[1], 1 - swap, out))
+        take_side(m, left, 1, row[1], 1 - swap, out) && (out->face[0] & out->face[1]) != TL_NO_ROW)
         seats->capacity++;
 }
 
