@@ -26,6 +26,7 @@
 #include "narrow/press.h"
 #include "narrow/region.h"
 #include "segment/meets.h"
+#include "zone/grid.h"
 
 #include <stdlib.h>
 
@@ -63,7 +64,8 @@ typedef struct seating {
     size_t made_count, made_capacity;
     tl_seat_result *out;
     size_t beyond_capacity;
-    double area;
+    double area;                 /* of those to be made */
+    tl_id deformable, neighbour; /* a pair that cannot be seated, or TL_NO_ID */
 } seating;
 
 /* ---------------------------------------------------------------- one pair --------------- */
@@ -209,7 +211,8 @@ static bool note_seat(seating *s, uint32_t a, uint32_t b, const meeting *now)
     return true;
 }
 
-/* Seats a pair, unless it fits as it is. What is anew is measured from the blocks as drawn. false: out of memory. */
+/* Seats a pair, unless it fits as it is. What is new is measured from the blocks as drawn. false: out of memory, or a
+ * block is deformable. */
 static bool seat_pair(seating *s, uint32_t a, uint32_t b)
 {
     tl_pair_view view = tl_pair_view_of(s->m, a, b);
@@ -218,6 +221,12 @@ static bool seat_pair(seating *s, uint32_t a, uint32_t b)
         return false;
     if (now.how == FITTING || now.how == APART)
         return true;
+    if (tl_blocks_deform_either(s->m, a, b)) {
+        const bool first = tl_block_deforms(s->m, a);
+        s->deformable = s->m->blocks.id[first ? a : b];
+        s->neighbour = s->m->blocks.id[first ? b : a];
+        return false;
+    }
     const meeting fits = now;
     view.a = s->m->blocks.shape[a];
     view.b = s->m->blocks.shape[b];
@@ -339,17 +348,6 @@ static double mean_size(const tl_model *m)
     return m->blocks.table.rows ? sum / (double)m->blocks.table.rows : 0;
 }
 
-static tl_status check(tl_model *m)
-{
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
-        if (tl_block_deforms(m, row))
-            return tl_fail(&m->error, TL_E_STATE,
-                           "seat: block %u is deformable, and only rigid blocks are seated: seat a model of rigid "
-                           "blocks, or draw the neighbours of deformable ones so that they fit",
-                           m->blocks.id[row]);
-    return TL_OK;
-}
-
 /* All of it, with the limits known. */
 static tl_status seat_all(tl_model *m, seating *s)
 {
@@ -358,15 +356,23 @@ static tl_status seat_all(tl_model *m, seating *s)
     if (status != TL_OK)
         return status;
     s->scratch = &m->detect->narrow[0];
-    if (!seat_pairs(s))
+    const bool looked = seat_pairs(s);
+    if (s->deformable)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "seat: block %u is deformable and does not fit block %u, and only rigid blocks are seated: draw "
+                       "its neighbours so that they fit, or give smaller limits",
+                       s->deformable, s->neighbour);
+    if (!looked)
         return tl_fail_memory(&m->error);
     status = put_seats(s);
     if (status == TL_OK && some_opened(m) && !tl_detect_hold_initial(m->detect))
         status = tl_fail_memory(&m->error);
     if (status != TL_OK)
         return status;
-    for (uint32_t c = 0; c < m->detect->contacts.table.rows; c++)
-        free_contact(m, c);
+    const tl_contacts *contacts = &m->detect->contacts;
+    for (uint32_t c = 0; c < contacts->table.rows; c++)
+        if (!tl_blocks_deform_either(m, contacts->a[c], contacts->b[c]))
+            free_contact(m, c);
     m->split_count = 0; /* what new faces hold the parts of a cut by is gone */
     m->laws++;          /* contacts hold another energy */
     tl_undo_by_hand(m);
@@ -383,8 +389,6 @@ tl_status tl_model_seat(tl_model *m, const tl_seat *given, tl_seat_result *resul
         status = tl_model_may_change(m, "seat blocks");
     if (status == TL_OK)
         status = tl_model_may_set(m, "seat blocks");
-    if (status == TL_OK)
-        status = check(m);
     if (status != TL_OK)
         return status;
     const double usual = USUAL * mean_size(m);

@@ -293,9 +293,12 @@ do
     check.refused(model, function() model:blocks { id = 3 }:deformable { zone = 0.5, solid = "stone" } end, "seated")
     local soft = talus.model {}
     soft:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = DENSITY })
+    soft:generate("box", { min = { 0, 0, 1.001 }, max = { 1, 1, 2 }, density = DENSITY })
     soft:solid("stone", "elastic", { young = 1e9, poisson = 0.2 })
-    soft:blocks():deformable { zone = 0.5, solid = "stone" }
-    check.refused(soft, function() soft:seat {} end, "block 1 is deformable")
+    soft:joint("*", "coulomb", { kn = KN, ks = KN, friction = 30 })
+    soft:blocks { id = 2 }:deformable { zone = 0.5, solid = "stone" }
+    check.refused(soft, function() soft:seat {} end, "block 2 is deformable and does not fit block 1")
+    check.equal(soft:seat { gap = 1e-4 }.contacts, 0)
     local empty = talus.model {}
     check.equal(empty:seat {}.contacts, 0)
 end

@@ -225,7 +225,8 @@ typedef struct tl_seat_result {
 
 /* Takes blocks as fitting: gaps and overlaps that they have now, up to limits, become the state without force. Of each
  * pair both blocks see the other with a face moved into a plane between. So no force and no energy is made, under any
- * law. All contacts are then free of force. `result` may be NULL. TL_E_STATE with deformable blocks. */
+ * law. All contacts of rigid blocks are then free of force. `result` may be NULL. TL_E_STATE where a deformable block
+ * does not fit: only rigid ones are seated. */
 TL_API tl_status tl_model_seat(tl_model *model, const tl_seat *seat, tl_seat_result *result);
 
 /* Chooses the damping plugin; "none" is no damping. */
