@@ -31,8 +31,8 @@
 /* Tolerance: an outer face has more than this share of it, and of the mean face of its block, on no body, its own
  * included. Less carries no force to speak of. */
 #define BARE 0.01
-/* Tolerance: a contact without a patch on more than this share of the mean face of its blocks should have one. Edges and
- * vertices press on less. */
+/* Tolerance: a contact without a patch on more than this share of the mean face of its blocks should have one. Edges
+ * and vertices press on less. */
 #define MUCH 0.1
 /* Limit: largest component of a stress, Pa, and of its gradient, Pa/m, that is taken: forces and their energies stay
  * finite. Test: lua/test_insitu. */
@@ -145,12 +145,13 @@ static void say_left_out(tl_model *m)
         first = count++ == 0 ? i : first;
     }
     if (count)
-        tl_model_say(m,
-                     "insitu: %zu contact%s (first: between blocks %u and %u, which overlap by %.3g m) got no stress, for "
-                     "faces that overlap or tilt so much have no patch to bear it: %s before insitu takes them as "
-                     "fitting",
-                     count, count == 1 ? "" : "s", m->blocks.id[c->a[first]], m->blocks.id[c->b[first]],
-                     tl_press_row_of(m, first)->press.deepest, tl_words(m, "model:seat{}", "tl_model_seat"));
+        tl_model_say(
+            m,
+            "insitu: %zu contact%s (first: between blocks %u and %u, which overlap by %.3g m) got no stress, for "
+            "faces that overlap or tilt so much have no patch to bear it: %s before insitu takes them as "
+            "fitting",
+            count, count == 1 ? "" : "s", m->blocks.id[c->a[first]], m->blocks.id[c->b[first]],
+            tl_press_row_of(m, first)->press.deepest, tl_words(m, "model:seat{}", "tl_model_seat"));
 }
 
 /* Area of a block's face that is covered by contact patches. */

@@ -1,30 +1,20 @@
 /* seat.c - blocks as drawn are taken as fitting: gaps and overlaps up to limits become the state without force.
  *
- * Two faces a and b on each other, of areas A_a and A_b, are put into one plane, as of which each pair of blocks sees
- * itself (model/seats.h):
- *
- *     n ~ A_a n_a - A_b n_b,    n . x = c,  c ~ A_a c_a - A_b c_b
- *
- * This is the mean of both, by area: a small block takes the plane of the floor on which it stands. Of blocks that
- * overlap without such faces, by an edge or a vertex, the face along which they overlap the least is drawn back by the
- * overlap. The blocks of a pair then touch, and have no volume in common, to rounding. */
+ * Pairs that do not fit get planes for their faces in which they do (detect/fit.c), as of which they see themselves
+ * (model/seats.h). Their blocks then touch, and have no volume in common, to rounding. Contacts begin without force. */
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
-#include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
 #include "cycle/undo.h"
 #include "detect/detect.h"
+#include "detect/fit.h"
 #include "geometry/measure.h"
 #include "model/body_shape.h"
 #include "model/options.h"
 #include "model/seats.h"
-#include "narrow/common_polygon.h"
-#include "narrow/manifold.h"
-#include "narrow/press.h"
-#include "narrow/region.h"
 #include "segment/meets.h"
 #include "zone/grid.h"
 
@@ -32,33 +22,10 @@
 
 /* Default: limits of gap and overlap over the mean size of the blocks. */
 #define USUAL 0.01
-/* Tolerance: sine of the tilt up to which two faces may be put into one plane. Test: lua/test_seat. */
-#define MOST_TILT 0.1
 /* Limit: overlap over the thickness of the thinner block, up to which a face may be drawn back. */
 #define MOST_THIN 0.25
-/* Tolerance: gaps and overlaps over the size of the smaller block that are the rounding of places. A pair that fits to
- * that stays as it is. */
-#define FITS 1e-12
-/* Tolerance: the same over the distance between both centroids, from which places are reckoned. */
-#define ROUNDED 1e-14
-/* Tolerance: common area over the smaller face, below which faces that do not overlap are beside each other, as those of
- * blocks that meet at an edge are. Test: lua/test_seat. */
-#define BESIDE 1e-3
-
-typedef enum fit { FITTING, APART, FACES, EDGES, BEYOND } fit;
-
-/* How the blocks of a pair lie to each other. */
-typedef struct meeting {
-    fit how;
-    uint32_t face[2];                        /* TL_NO_ROW: it stays */
-    tl_plane plane[2];                       /* in which they are to lie, own frames */
-    double gap, overlap, mean_gap, mean_overlap; /* m */
-    double area;                             /* m^2 */
-} meeting;
-
 typedef struct seating {
     tl_model *m;
-    tl_narrow_scratch *scratch;
     double gap, overlap; /* limits */
     tl_seated *made;
     size_t made_count, made_capacity;
@@ -70,129 +37,23 @@ typedef struct seating {
 
 /* ---------------------------------------------------------------- one pair --------------- */
 
-/* The plane between two faces, in A's frame. */
-static tl_plane plane_between(const tl_pair_view *view, uint32_t fa, uint32_t fb)
-{
-    const tl_plane a = tl_view_plane(view, false, fa), b = tl_view_plane(view, true, fb);
-    const double area_a = tl_poly_face_area(view->a, fa), area_b = tl_poly_face_area(view->b, fb);
-    const tl_vec3 n = tl_v3_madd(tl_v3_scale(area_a, a.normal), -area_b, b.normal);
-    const double length = tl_v3_norm(n);
-    return (tl_plane){tl_v3_scale(1 / length, n), (area_a * a.offset - area_b * b.offset) / length};
-}
-
-/* Puts the planes of both faces into one, each in its own frame. */
-static void put_planes(const tl_pair_view *view, uint32_t fa, uint32_t fb, meeting *out)
-{
-    const tl_plane mid = plane_between(view, fa, fb);
-    const tl_vec3 back = tl_m3_tmul(&view->turn, tl_v3_neg(mid.normal));
-    out->face[0] = fa;
-    out->face[1] = fb;
-    out->plane[0] = mid;
-    out->plane[1] = (tl_plane){back, tl_v3_dot(mid.normal, view->shift) - mid.offset};
-}
-
-/* Measures two faces on each other; APART: they have no area in common. false: out of memory. */
-static bool measure_faces(const seating *s, const tl_pair_view *view, const tl_region *r, double tiny, meeting *out)
-{
-    tl_common_polygon common;
-    const uint32_t fa = r->flush_a, fb = r->flush_b;
-    if (!r->flush || tl_region_tilt(view, fa, fb) > MOST_TILT)
-        return true;
-    if (!tl_common_polygon_find(view, fa, fb, s->scratch, &common))
-        return false;
-    if (common.count == 0)
-        return true;
-    const tl_patch_gap of = tl_patch_gap_of(&common.frame, common.b);
-    double least = INFINITY, most = -INFINITY;
-    for (size_t i = 0; i < common.count; i++) {
-        const double gap = tl_gap_at(of, common.corner[i].at);
-        least = fmin(least, gap);
-        most = fmax(most, gap);
-    }
-    const double mean = tl_gap_at(of, common.centroid);
-    const double whole = fmin(tl_poly_face_area(view->a, fa), tl_poly_face_area(view->b, fb));
-    out->area = common.frame.secant * common.area;
-    if (least > s->gap || (least > -tiny && !(out->area > BESIDE * whole)))
-        return true;
-    out->gap = fmax(most, 0);
-    out->overlap = fmax(-least, 0);
-    out->mean_gap = fmax(mean, 0);
-    out->mean_overlap = fmax(-mean, 0);
-    out->how = most <= tiny && least >= -tiny ? FITTING : FACES;
-    put_planes(view, fa, fb, out);
-    return true;
-}
-
-/* The face of a block along which the other one lies highest, of those that no seam covers. */
-static uint32_t highest(const tl_poly *p, const double *low)
-{
-    uint32_t best = TL_NO_ROW;
-    for (uint32_t f = 0; f < p->face_count; f++)
-        if (!p->covered[f] && (best == TL_NO_ROW || low[f] > low[best]))
-            best = f;
-    return best;
-}
-
-/* Draws one face back by the overlap of a pair that presses. false: out of memory. */
-static bool measure_edges(const seating *s, const tl_pair_view *view, const tl_region *r, meeting *out)
-{
-    tl_press press;
-    tl_region_lows lows;
-    const tl_press_query query = {.view = view, .region = r};
-    if (!tl_press_find(&query, 1, s->scratch, &press, NULL))
-        return false;
-    if (!(press.area > 0) || !tl_region_gap(view, s->scratch, &lows))
-        return !s->scratch->failed;
-    const uint32_t fa = highest(view->a, lows.b_over_a), fb = highest(view->b, lows.a_over_b);
-    const bool of_b = fa == TL_NO_ROW || (fb != TL_NO_ROW && lows.a_over_b[fb] > lows.b_over_a[fa]);
-    if (of_b && fb == TL_NO_ROW)
-        return true;
-    const double low = of_b ? lows.a_over_b[fb] : lows.b_over_a[fa];
-    out->how = EDGES;
-    out->overlap = fmax(-low, 0);
-    out->mean_overlap = 0.5 * out->overlap;
-    out->area = press.area;
-    out->face[of_b] = of_b ? fb : fa;
-    out->plane[of_b] = of_b ? view->b->plane[fb] : view->a->plane[fa];
-    out->plane[of_b].offset += fmin(low, 0);
-    return true;
-}
-
-/* How a pair lies with the shapes of a view. false: out of memory. */
-static bool measure(const seating *s, tl_pair_view view, meeting *out)
-{
-    *out = (meeting){.how = APART, .face = {TL_NO_ROW, TL_NO_ROW}};
-    const double tiny = FITS * view.size + ROUNDED * tl_v3_norm(view.shift);
-    tl_region region;
-    if (!tl_pair_place(&view, s->scratch) ||
-        !tl_region_find(&view, TL_LIST_MARGIN * view.size + s->gap, s->scratch, &region))
-        return false;
-    if (region.gap > s->gap)
-        return true;
-    if (!measure_faces(s, &view, &region, tiny, out) ||
-        (out->how == APART && region.gap < -tiny && !measure_edges(s, &view, &region, out)))
-        return false;
-    return true;
-}
-
 /* The largest overlap of a pair that is taken. */
 static double most_overlap(const seating *s, uint32_t a, uint32_t b)
 {
     return fmin(s->overlap, MOST_THIN * fmin(tl_least_thickness(s->m, a), tl_least_thickness(s->m, b)));
 }
 
-static bool note_beyond(seating *s, uint32_t a, uint32_t b, const meeting *now)
+static bool note_beyond(seating *s, uint32_t a, uint32_t b, const tl_pair_fit *now)
 {
     tl_seat_result *out = s->out;
     if (!tl_grow(&out->beyond, &s->beyond_capacity, out->beyond_count + 1, sizeof *out->beyond))
         return false;
-    out->beyond[out->beyond_count++] =
-        (tl_seat_beyond){s->m->blocks.id[a], s->m->blocks.id[b], now->gap, now->overlap};
+    out->beyond[out->beyond_count++] = (tl_seat_beyond){s->m->blocks.id[a], s->m->blocks.id[b], now->gap, now->overlap};
     return true;
 }
 
 /* Adds a pair to those that are to be seated. */
-static bool note_seat(seating *s, uint32_t a, uint32_t b, const meeting *now)
+static bool note_seat(seating *s, uint32_t a, uint32_t b, const tl_pair_fit *now)
 {
     const tl_model *m = s->m;
     tl_seat_result *out = s->out;
@@ -215,11 +76,10 @@ static bool note_seat(seating *s, uint32_t a, uint32_t b, const meeting *now)
  * block is deformable. */
 static bool seat_pair(seating *s, uint32_t a, uint32_t b)
 {
-    tl_pair_view view = tl_pair_view_of(s->m, a, b);
-    meeting now;
-    if (!measure(s, view, &now))
+    tl_pair_fit now;
+    if (!tl_fit_measure(s->m, a, b, false, s->gap, &now))
         return false;
-    if (now.how == FITTING || now.how == APART)
+    if (now.how == TL_FIT_WELL || now.how == TL_FIT_APART)
         return true;
     if (tl_blocks_deform_either(s->m, a, b)) {
         const bool first = tl_block_deforms(s->m, a);
@@ -227,14 +87,13 @@ static bool seat_pair(seating *s, uint32_t a, uint32_t b)
         s->neighbour = s->m->blocks.id[first ? b : a];
         return false;
     }
-    const meeting fits = now;
-    view.a = s->m->blocks.shape[a];
-    view.b = s->m->blocks.shape[b];
-    if (tl_seated_of(s->m, s->m->blocks.id[a], s->m->blocks.id[b]) && !measure(s, view, &now))
+    const tl_pair_fit fits = now;
+    const bool seated = tl_seated_of(s->m, s->m->blocks.id[a], s->m->blocks.id[b]) != NULL;
+    if (seated && !tl_fit_measure(s->m, a, b, true, s->gap, &now))
         return false;
     if (fits.gap > s->gap || fits.overlap > most_overlap(s, a, b))
         return note_beyond(s, a, b, &fits);
-    return now.how == APART || note_seat(s, a, b, &now);
+    return now.how == TL_FIT_APART || note_seat(s, a, b, &now);
 }
 
 /* ---------------------------------------------------------------- all of them ------------ */
@@ -327,17 +186,19 @@ static bool some_opened(tl_model *m)
 
 static void say_seated(tl_model *m, const tl_seat_result *r, bool given)
 {
-    tl_model_say(m,
-                 "seat: %zu contact%s made to fit, with gaps up to %.3g m (mean %.3g m) and overlaps up to %.3g m (mean "
-                 "%.3g m); limits: gap = %.3g, overlap = %.3g%s",
-                 r->contacts, r->contacts == 1 ? " was" : "s were", r->largest_gap, r->mean_gap, r->largest_overlap,
-                 r->mean_overlap, r->gap, r->overlap, given ? "" : ", of the blocks' mean size 1 %");
+    tl_model_say(
+        m,
+        "seat: %zu contact%s made to fit, with gaps up to %.3g m (mean %.3g m) and overlaps up to %.3g m (mean "
+        "%.3g m); limits: gap = %.3g, overlap = %.3g%s",
+        r->contacts, r->contacts == 1 ? " was" : "s were", r->largest_gap, r->mean_gap, r->largest_overlap,
+        r->mean_overlap, r->gap, r->overlap, given ? "" : ", of the blocks' mean size 1 %");
     if (r->beyond_count)
-        tl_model_say(m,
-                     "seat: %zu pair%s of blocks lie%s beyond the limits (first: blocks %u and %u, with a gap of %.3g m "
-                     "and an overlap of %.3g m) and stay%s as drawn: give larger limits, or draw them otherwise",
-                     r->beyond_count, r->beyond_count == 1 ? "" : "s", r->beyond_count == 1 ? "s" : "", r->beyond[0].a,
-                     r->beyond[0].b, r->beyond[0].gap, r->beyond[0].overlap, r->beyond_count == 1 ? "s" : "");
+        tl_model_say(
+            m,
+            "seat: %zu pair%s of blocks lie%s beyond the limits (first: blocks %u and %u, with a gap of %.3g m "
+            "and an overlap of %.3g m) and stay%s as drawn: give larger limits, or draw them otherwise",
+            r->beyond_count, r->beyond_count == 1 ? "" : "s", r->beyond_count == 1 ? "s" : "", r->beyond[0].a,
+            r->beyond[0].b, r->beyond[0].gap, r->beyond[0].overlap, r->beyond_count == 1 ? "s" : "");
 }
 
 static double mean_size(const tl_model *m)
@@ -355,7 +216,6 @@ static tl_status seat_all(tl_model *m, seating *s)
     tl_status status = list_pairs(m, s->gap);
     if (status != TL_OK)
         return status;
-    s->scratch = &m->detect->narrow[0];
     const bool looked = seat_pairs(s);
     if (s->deformable)
         return tl_fail(&m->error, TL_E_STATE,

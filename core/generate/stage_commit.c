@@ -581,7 +581,7 @@ typedef struct commit_scratch {
     size_t split_count;
     cut_loads loads; /* of the bodies that were cut */
     tl_stage_seats seats;
-    tl_poly **gone;  /* [rows before] shapes that other shapes or blocks take the place of */
+    tl_poly **gone; /* [rows before] shapes that other shapes or blocks take the place of */
     size_t gone_count;
     tl_aside aside;  /* where there are bodies of several blocks */
     uint32_t *first; /* [staged bodies] */

@@ -79,8 +79,8 @@ bool tl_stage_seats_take(const tl_stage *stage, const uint8_t *keep, size_t rows
         const left_seat left = left_of(m, &m->seats.list[i], keep);
         if (!left.goes[0] && !left.goes[1])
             continue;
-        seats->capacity += (left.goes[0] ? parts_of(stage, left.row[0]) : 1) *
-                           (left.goes[1] ? parts_of(stage, left.row[1]) : 1);
+        seats->capacity +=
+            (left.goes[0] ? parts_of(stage, left.row[0]) : 1) * (left.goes[1] ? parts_of(stage, left.row[1]) : 1);
         seats->list[seats->count++] = left;
     }
     seats->parts = malloc((seats->capacity + 1) * sizeof *seats->parts);

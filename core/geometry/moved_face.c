@@ -1,12 +1,12 @@
 /* moved_face.c - a polyhedron with one face in another plane.
  *
- * A vertex v of the face goes along the one edge that leaves the face there, so it stays on the planes of the two faces
+ * A vertex v of the face goes along the one edge that leaves the face there. So it stays on the planes of the two faces
  * beside it:
  *
  *     v' = v - (n . v - c) e / (n . e)        e along the edge, n . x = c the new plane
  *
- * Where several edges leave it, or the edge is nearly in the face, it goes along n instead. It is then off the planes of
- * its other faces by what it has moved. */
+ * Where several edges leave it, or the edge is nearly in the face, it goes along n instead. It is then off the planes
+ * of its other faces by what it has moved. */
 #include "geometry/moved_face.h"
 
 #include "base/table.h"

@@ -55,9 +55,10 @@ static const tl_param insitu_params[] = {
 };
 
 static const tl_param seat_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_seat, gap, "m",
-             "gaps up to which faces are taken as being on each other; when left out 1 % of the mean size of the blocks",
-             .min = 0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(
+        TL_PARAM_REAL, tl_seat, gap, "m",
+        "gaps up to which faces are taken as being on each other; when left out 1 % of the mean size of the blocks",
+        .min = 0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_REAL, tl_seat, overlap, "m",
              "overlaps up to which blocks are taken as only touching; when left out 1 % of the mean size of the blocks",
              .min = 0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL),
