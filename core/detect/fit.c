@@ -4,8 +4,8 @@
  *
  *     n ~ A_a n_a - A_b n_b,    n . x = c,  c ~ A_a c_a - A_b c_b
  *
- * This is the mean of both, by area: a small block takes the plane of the floor below it. Blocks may overlap without such
- * faces, by an edge or a vertex. Then the face along which they overlap the least is drawn back. */
+ * This is the mean of both, by area: a small block takes the plane of the floor below it. Blocks may overlap without
+ * such faces, by an edge or a vertex. Then the face along which they overlap the least is drawn back. */
 #include "detect/fit.h"
 
 #include "contact/detection.h"

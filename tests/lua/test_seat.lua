@@ -125,7 +125,8 @@ for case = 1, check.cases(150) do
         return math.abs(free:energy().balance)
     end
     local off = balance(jitter)
-    check.holds(off < 1e-3 or off < 2 * balance(0), what .. ": balance " .. off)
+    -- glue tells no energy, so edges and corners under it make some where areas change (docs/theory.md), as slips of jitter have them
+    check.holds(law.law == "glue" or off < 1e-3 or off < 2 * balance(0), what .. ": balance " .. off)
 end
 
 -- ---- what stood stands, with the same thrust; what fell falls ----
