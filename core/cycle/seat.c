@@ -118,17 +118,24 @@ static bool seat_pairs(seating *s)
     return true;
 }
 
-/* Lists the pairs up to the limit of gaps: what presses on the way there is nothing to remark on. */
-static tl_status list_pairs(tl_model *m, double gap)
+/* Finds the contacts. Overlaps are told by what follows, and not one by one. */
+static tl_status find_contacts(tl_model *m)
 {
     const uint32_t said = m->said;
     m->said |= 1u << TL_REMARK_OVERLAP;
+    const tl_status status = tl_detect_update(m);
+    m->said = said;
+    return status;
+}
+
+/* Lists the pairs up to the limit of gaps. */
+static tl_status list_pairs(tl_model *m, double gap)
+{
     m->seats.asked = gap;
     if (m->detect)
         m->detect->listed = false;
-    const tl_status status = tl_detect_update(m);
+    const tl_status status = find_contacts(m);
     m->seats.asked = 0;
-    m->said = said;
     return status;
 }
 
@@ -145,7 +152,7 @@ static tl_status put_seats(seating *s)
         for (int k = 0; k < 2; k++)
             tl_block_changes(m, tl_block_row_quiet(m, s->made[i].block[k]));
     m->structure++;
-    return tl_detect_update(m);
+    return find_contacts(m);
 }
 
 /* Takes all force out of a contact; what slip has opened stays opened. */

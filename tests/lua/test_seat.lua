@@ -102,7 +102,7 @@ for case = 1, check.cases(150) do
     rests(copy, what .. ", another law", 20)
     -- a cut through everything: parts take over
     local before = #file:blocks()
-    file:generate("joint", { joint = "cut", dip = 70, dip_direction = 10 * case, origin = { 1.5, 0.25, kind.name == "wall" and 1 or 4.5 } })
+    file:generate("joint", { joint = "cut", dip = 70, dip_direction = 10 * case % 360, origin = { 1.5, 0.25, kind.name == "wall" and 1 or 4.5 } })
     file:joint("cut", "coulomb", { kn = KN, ks = KN, friction = 30 })
     check.holds(#file:blocks() > before, what .. ": is cut")
     rests(file, what .. ", cut", 50)
