@@ -121,6 +121,7 @@ for case = 1, check.cases(150) do
             free:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }
         end
         free.gravity = { 0, 0, -10 }
+        free:timestep { fraction = 0.1 }
         free:cycle(300)
         return math.abs(free:energy().balance)
     end
