@@ -10,7 +10,8 @@ local KN, DENSITY = 1e9, 2500
 local SIZE = 0.5                                -- of a stone, m
 local LAWS = every_law(KN, 10 * DENSITY * SIZE) -- of weights
 -- What the rounding of places makes of a weight: places are known to 1e-15 m, and 1e9 Pa/m of 0.5 m2 make 5e-7 N of it.
-local NONE = 1e-8                               -- force over weight
+-- Tips that cuts leave have corners that are off by more.
+local NONE = 1e-6                               -- force over weight
 -- Its energy is some 1e-21 J a contact. An overlap of 1e-7 m would store 1e-6 J: weights here are some 1e5 N.
 local STILL = 1e-14                             -- m, energy of motion over weight
 
