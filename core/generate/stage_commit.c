@@ -6,6 +6,7 @@
 #include "generate/stage.h"
 #include "generate/stage_bodies.h"
 #include "generate/stage_cuts.h"
+#include "generate/stage_seats.h"
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "model/inertia.h"
@@ -579,7 +580,8 @@ typedef struct commit_scratch {
     tl_split *splits; /* [staged blocks] that were there before */
     size_t split_count;
     cut_loads loads; /* of the bodies that were cut */
-    tl_poly **gone;  /* [rows before] shapes that other shapes or blocks take the place of */
+    tl_stage_seats seats;
+    tl_poly **gone; /* [rows before] shapes that other shapes or blocks take the place of */
     size_t gone_count;
     tl_aside aside;  /* where there are bodies of several blocks */
     uint32_t *first; /* [staged bodies] */
@@ -686,6 +688,7 @@ static void list_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first
 
 static void free_scratch(commit_scratch *scratch)
 {
+    tl_stage_seats_free(&scratch->seats);
     free(scratch->loads.of);
     free(scratch->loads.list);
     free(scratch->loads.faces);
@@ -747,7 +750,7 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
     }
     return sort_rows(stage, old, scratch) && scratch->ids && scratch->splits && scratch->gone &&
            (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW && reserve_record(stage) &&
-           take_loads(stage, &scratch->loads) &&
+           take_loads(stage, &scratch->loads) && tl_stage_seats_take(stage, scratch->keep, old, &scratch->seats) &&
            (!has_contacts(stage->model) ||
             tl_grow(&stage->model->cut_parts, &stage->model->cut_part_capacity, stage->model->cut_part_count + made,
                     sizeof *stage->model->cut_parts)) &&
@@ -847,6 +850,7 @@ tl_status tl_stage_commit(tl_stage *stage)
         keep_record(stage, scratch.ids);
         keep_cut_parts(stage, &scratch);
         keep_splits(stage, &scratch);
+        tl_stage_seats_give(stage, scratch.ids, &scratch.seats);
         for (size_t i = 0; i < scratch.gone_count; i++)
             tl_poly_free(scratch.gone[i]);
         stage->committed = true;

@@ -31,6 +31,7 @@ static const struct {
     KNOWN(tl_model_config, "model", NULL),
     KNOWN(tl_filter, "filter", NULL),
     KNOWN(tl_insitu, "insitu", NULL),
+    KNOWN(tl_seat, "seat", NULL),
     KNOWN(tl_timestep, "timestep", NULL),
     KNOWN(tl_mass_scaling, "mass_scaling", NULL),
     KNOWN(tl_contact_area, "contact_area", NULL),

@@ -1624,4 +1624,25 @@ function talus.restore(path, options) end
 ---@return talus.Model?
 function talus.resumed() end
 
+---@class (exact) talus.SeatOptions
+---@field gap? number m, >= 0: gaps up to which faces are taken as being on each other; when left out 1 % of the mean size of the blocks
+---@field overlap? number m, >= 0: overlaps up to which blocks are taken as only touching; when left out 1 % of the mean size of the blocks
+
+---@class (exact) talus.SeatResult
+---@field contacts integer number of pairs that were made to fit; those that fit already are not among them
+---@field largest_gap number of these, as they were before, m; the mean is by area
+---@field mean_gap number of these, as they were before, m; the mean is by area
+---@field largest_overlap number likewise
+---@field mean_overlap number likewise
+---@field beyond table pairs beyond the limits, which stay as drawn: {a = block, b = block, gap =, overlap =}
+---@field gap number the limits, m
+---@field overlap number the limits, m
+
+--- Takes blocks as drawn as fitting: gaps and overlaps up to a limit become the state free of force, under any law. Contacts are free of force after it. Prints and returns what was found.
+---
+---     result = model:seat{gap = 0.002, overlap = 0.002}
+---@param options? talus.SeatOptions
+---@return talus.SeatResult
+function Model:seat(options) end
+
 return talus

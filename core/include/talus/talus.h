@@ -219,6 +219,32 @@ typedef struct tl_insitu {
  * deformable blocks. A stress that is in equilibrium with weight and with tractions on the faces stays as it is. */
 TL_API tl_status tl_model_insitu(tl_model *model, const tl_insitu *insitu);
 
+typedef struct tl_seat {
+    uint32_t size;       /* sizeof(tl_seat) */
+    double gap, overlap; /* up to which a pair is taken as fitting, m; NaN: 1 % of the blocks' mean size */
+} tl_seat;
+
+/* A pair of blocks that touch or nearly do, and lie beyond a limit. */
+typedef struct tl_seat_beyond {
+    tl_id a, b;
+    double gap, overlap; /* the largest between its faces, m */
+} tl_seat_beyond;
+
+typedef struct tl_seat_result {
+    tl_seat_beyond *beyond; /* by ascending blocks; freed with free() */
+    size_t beyond_count;
+    size_t contacts; /* pairs that have been made to fit; those that do already are not among them */
+    /* of these, as they were before, m; means by area, of a pair without a common face by what it presses on */
+    double largest_gap, mean_gap, largest_overlap, mean_overlap;
+    double gap, overlap; /* the limits, m */
+} tl_seat_result;
+
+/* Takes blocks as fitting: gaps and overlaps that they have now, up to limits, become the state without force. Of each
+ * pair both blocks see the other with a face moved into a plane between. So no force and no energy is made, under any
+ * law. All contacts of rigid blocks are then free of force. `result` may be NULL. TL_E_STATE where a deformable block
+ * does not fit: only rigid ones are seated. */
+TL_API tl_status tl_model_seat(tl_model *model, const tl_seat *seat, tl_seat_result *result);
+
 /* Chooses the damping plugin; "none" is no damping. */
 TL_API tl_status tl_model_damping(tl_model *model, const char *damping, const tl_args *args);
 
