@@ -95,7 +95,11 @@ for number = 1, check.cases(60) do
         for _, layer in ipairs(lines) do
             model:joint(which(model, layer), laws[layer].law, laws[layer].params)
         end
-        model:cycle(40)
+        if number % 4 == 0 then -- segments of flush faces obey them, too
+            model:solid("rock", "elastic", { young = 1e10, poisson = 0.2 })
+            model:blocks():deformable { zone = 0.8, solid = "rock" }
+        end
+        model:cycle(number % 4 == 0 and 10 or 40)
         return state(model)
     end
     local expected = run(reference, function(_, layer) return "bed:" .. layer end)
