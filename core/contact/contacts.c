@@ -14,6 +14,7 @@
 #include "contact/places.h"
 #include "contact/store.h"
 #include "model/joints.h"
+#include "model/scope.h"
 #include "zone/grid.h"
 
 #include <stdio.h>

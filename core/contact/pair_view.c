@@ -3,6 +3,7 @@
 #include "contact/pair_view.h"
 
 #include "model/joints.h"
+#include "model/scope.h"
 #include "narrow/flush.h"
 
 #include <float.h>

@@ -1,5 +1,6 @@
-/* joint_law.c - setting the law of a joint or of a part of its contacts, and what becomes of the contacts that come
- * under it, or under another law with the groups of their blocks. */
+/* joint_law.c - setting a law, and what becomes of the contacts that come under it.
+ *
+ * Contacts come under another law with the groups of their blocks, too. */
 #include "cycle/joint_law.h"
 
 #include "base/columns.h"

@@ -12,14 +12,14 @@
 #include <string.h>
 
 const tl_lua_key tl_lua_joint_keys[] = {
-    {"joint", "\"J1\", \"J1:3\" or \"*\"", "in a table: contacts on this joint; any when left out"},
-    {"between", "{\"stone\", \"support\"}",
-     "in a table: contacts between blocks of two groups, either way round; a selection of blocks or a block serves in "
+    {"joint", "text", "contacts on this joint, \"J1\", \"J1:3\" or \"*\"; any when left out"},
+    {"between", "list of two groups",
+     "contacts between blocks of two groups, {\"stone\", \"support\"}, either way round; a selection of blocks or a "
+     "block serves in "
      "the place of a group. The same group twice: contacts inside it"},
-    {"group", "\"GROUP\"", "in a table: contacts with at least one block of the group"},
-    {"blocks", "selection of blocks", "in a table: contacts with at least one of these blocks, or of their parts"},
-    {"contacts", "selection of contacts",
-     "in a table: contacts between the two blocks of one of these, or between their parts"},
+    {"group", "text", "contacts with at least one block of the group"},
+    {"blocks", "selection of blocks", "contacts with at least one of these blocks, or of their parts"},
+    {"contacts", "selection of contacts", "contacts between the two blocks of one of these, or between their parts"},
     {NULL, NULL, NULL},
 };
 

@@ -16,14 +16,16 @@
 static const tl_lua_key joints_results[] = {
     {"name, planes", "", "of the joint set; number of its planes so far"},
     {"law", "", "name of the law of the set as a whole; nil while it has none"},
-    {"scoped", "", "of the list itself: the laws that name groups or selections, as of model:laws(); nil without any"},
+    {"scoped", "",
+     "of the list itself: laws as of model:laws(), those that name groups or selections; nil without any"},
     {NULL, NULL, NULL},
 };
 static const tl_lua_key laws_results[] = {
     {"joint, law", "", "\"*\", \"J1\" or \"J1:3\", and the name of the law that was set for it"},
-    {"between", "", "{group or selection, group or selection} of a law for contacts between both"},
-    {"group, blocks", "", "the group, or the selection, of a law for contacts with at least one block of it"},
-    {"contacts", "", "number of the pairs of blocks of a law for contacts between these"},
+    {"between", "", "two groups or selections of blocks, of a law for contacts between both"},
+    {"group", "", "name of the group, of a law for contacts with at least one block of it"},
+    {"blocks", "", "the selection of blocks, of a law for contacts with at least one of them"},
+    {"contacts", "", "the number of the pairs of blocks, of a law for contacts between these"},
     {"parameters", "", "{NAME = value}, as they are now; one that may be left out and was is nil"},
     {NULL, NULL, NULL},
 };

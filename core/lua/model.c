@@ -404,14 +404,15 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .arguments = 2,
      .method = tl_lua_model_generate},
     {.name = "joint",
-     .usage = "model:joint(WHICH, \"LAW\", {...})  or  model:joint(WHICH, {friction = 30})",
+     .usage = "model:joint(\"J1\", \"LAW\", {...})  or  model:joint(\"J1\", {friction = 30})",
      .doc =
-         "Sets the law of a joint set (WHICH = \"J1\"), of one of its planes (\"J1:3\") or of every joint not named "
-         "otherwise (\"*\"), or of contacts between groups or selections (WHICH a table, or a selection of blocks or "
-         "contacts); without a law's name it changes properties. The law that names more wins: first by how many of "
-         "the two blocks it names, then by how closely it names the joint (plane, set, *), then the one named "
-         "later.",
-     .keys = tl_lua_joint_keys,
+         "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every joint not named otherwise "
+         "(\"*\"). A table, or a selection of blocks or contacts, in the place of the name: of contacts between "
+         "groups or selections. Without a law's name it changes properties. The law that names more wins: first by "
+         "how many of the two blocks it names, then by how closely it names the joint (plane, set, *), then the one "
+         "named later.",
+     .title = "Keys of a table in the place of the name",
+     .verbs = tl_lua_joint_keys,
      .has_type = true,
      .type = TL_KIND_LAW,
      .arguments = 3,

@@ -1,4 +1,5 @@
-/* law.h - a joint's law: which contacts it is for, its plugin, its properties, and what they mean for contacts. */
+/* law.h - a joint's law: which contacts it is for, its plugin, its properties, and what they mean for contacts; and
+ * the minimum areas of a joint. */
 #ifndef TL_MODEL_LAW_H
 #define TL_MODEL_LAW_H
 
@@ -42,6 +43,17 @@ typedef struct tl_law {
     uint32_t energy;   /* column of what shear holds beyond its springs, or TL_NO_ROW */
     uint32_t pulls;    /* TL_PULL_* */
 } tl_law;
+
+/* A rule for the minimum area of field contacts. */
+typedef struct tl_min_area_rule {
+    double fraction;
+    double absolute; /* NaN: by the fraction */
+} tl_min_area_rule;
+
+typedef struct tl_joint_min_area {
+    tl_tag tag;
+    tl_min_area_rule rule;
+} tl_joint_min_area;
 
 /* Whether what presses has the force kn A u, or else whether the law tells of the energy it has. */
 static inline bool tl_law_is_linear(const tl_law *law)

@@ -124,17 +124,6 @@ typedef struct tl_drive_record {
     bool held;                          /* it may be asked for again: tl_rows_set_aside */
 } tl_drive_record;
 
-/* A rule for the minimum area of field contacts. */
-typedef struct tl_min_area_rule {
-    double fraction;
-    double absolute; /* NaN: by the fraction */
-} tl_min_area_rule;
-
-typedef struct tl_joint_min_area {
-    tl_tag tag;
-    tl_min_area_rule rule;
-} tl_joint_min_area;
-
 /* Of all blocks, while known: total volume, m3, and the smallest volume, edge, m, and face, m2. */
 typedef struct tl_extremes {
     bool known;

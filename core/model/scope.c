@@ -1,22 +1,21 @@
 /* scope.c - which contacts a law is for, and which of the laws for a contact rules it.
  *
- * A law is for the contacts of a joint, and of these for all, for those with a block that it names, for those between
- * two blocks that it names, or for those of pairs of blocks. Blocks are named by a group, which is looked up when it is
- * asked for, or by a list of ids. Ids are never used again, so lists need not hear of blocks that are deleted. Parts of
- * a block that is cut have new ids, which are added.
+ * A law is for the contacts of a joint: for all, or for those with one block that it names, or with two. Blocks are
+ * named by a group, which is looked up when it is asked for, or by a list of ids. Ids are never used again, so lists
+ * need not hear of blocks that are deleted. Parts of a block that is cut have new ids, which are added.
  *
  * The law that names more rules a contact: first by how many of the two blocks it names, then by how closely it names
  * the joint (plane, set, "*"), then the later one. */
 #include "model/scope.h"
 
-#include "base/error.h"
-#include "base/number.h"
+#include "base/inside.h"
 #include "model/joints.h"
 #include "model/options.h"
 #include "model/rows.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <talus/fields.h>
 #include <talus/number.h>
 
 /* ---------------------------------------------------------------- sets of ids ------------- */
@@ -186,6 +185,22 @@ bool tl_laws_name_groups(const tl_model *m)
     return false;
 }
 
+const tl_law *tl_law_of(const tl_model *m, tl_tag tag, uint32_t a, uint32_t b)
+{
+    const tl_law *best = NULL;
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *one = &m->joint_laws[i];
+        if ((!best || tl_scope_before(&one->scope, &best->scope)) && tl_scope_covers(m, &one->scope, tag, a, b))
+            best = one;
+    }
+    return best;
+}
+
+const tl_law *tl_law_of_joint(const tl_model *m, tl_tag tag)
+{
+    return tl_law_of(m, tag, TL_NO_ROW, TL_NO_ROW);
+}
+
 /* ---------------------------------------------------------------- lists ------------------- */
 
 static bool copy_ids(const tl_id_set *from, tl_id_set *out)
@@ -224,6 +239,21 @@ void tl_scope_clear(tl_scope *s)
     free(s->side[1].list.word);
     free(s->pairs);
     *s = (tl_scope){.names = 0};
+}
+
+void tl_law_clear(tl_law *law)
+{
+    tl_scope_clear(&law->scope);
+    if (!law->kind)
+        return;
+    const tl_law_ops *ops = law->kind->ops;
+    if (ops->destroy && law->self != law->params) {
+        tl_enter(law->kind, "destroy");
+        ops->destroy(law->self);
+        tl_leave();
+    }
+    free(law->params);
+    *law = (tl_law){0};
 }
 
 /* ---------------------------------------------------------------- reading ----------------- */
@@ -317,6 +347,24 @@ tl_status tl_scope_read(tl_model *m, const tl_law_scope *given, tl_scope *out)
 }
 
 /* ---------------------------------------------------------------- telling ----------------- */
+
+tl_joint_info tl_joint_at(const tl_model *m, size_t index)
+{
+    const tl_law *law = tl_law_of_joint(m, (tl_tag){(uint32_t)index + 1, 0});
+    return (tl_joint_info){
+        .name = m->joints[index].name, .planes = m->joints[index].planes, .law = law ? law->kind : NULL};
+}
+
+size_t tl_law_count(const tl_model *m)
+{
+    return m->joint_law_count;
+}
+
+tl_law_info tl_law_at(const tl_model *m, size_t index)
+{
+    const tl_law *law = &m->joint_laws[index];
+    return (tl_law_info){.joint = law->scope.tag, .law = law->kind, .params = law->params};
+}
 
 static bool list_blocks(const tl_model *m, const tl_id_set *set, const tl_id **ids, size_t *count)
 {

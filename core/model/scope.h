@@ -2,16 +2,10 @@
 #ifndef TL_MODEL_SCOPE_H
 #define TL_MODEL_SCOPE_H
 
-#include "model/model.h"
+#include "model/joints.h"
 
 /* Bytes of the text of a scope, with its terminating zero. */
 #define TL_SCOPE_TEXT (sizeof(((tl_model *)NULL)->name))
-
-/* How closely a pattern that matches names its tag: 2 a plane, 1 a set, 0 "*". */
-static inline int tl_tag_closeness(tl_tag pattern)
-{
-    return pattern.joint == 0 ? 0 : pattern.plane == 0 ? 1 : 2;
-}
 
 /* Whether a scope names the blocks of two rows. It names any while it names none. */
 bool tl_scope_has_blocks(const tl_model *m, const tl_scope *scope, uint32_t a, uint32_t b);
@@ -28,6 +22,12 @@ static inline bool tl_scope_before(const tl_scope *one, const tl_scope *other)
     const int a = tl_tag_closeness(one->tag), b = tl_tag_closeness(other->tag);
     return a != b ? a > b : one->order > other->order;
 }
+
+/* The law that rules a contact of this tag between the blocks of two rows, or NULL. */
+const tl_law *tl_law_of(const tl_model *m, tl_tag tag, uint32_t a, uint32_t b);
+/* The law of a joint, for contacts whose blocks no law names, or NULL. */
+const tl_law *tl_law_of_joint(const tl_model *m, tl_tag tag);
+void tl_law_clear(tl_law *law);
 
 /* Whether two scopes are of the same joint and name the same groups and blocks. */
 bool tl_scope_same(const tl_scope *one, const tl_scope *other);

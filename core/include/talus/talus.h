@@ -191,8 +191,8 @@ TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter, tl_fi
  * `law` NULL changes properties of the law the joint has now; forces stay continuous. */
 TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law, const tl_args *args);
 
-/* Which contacts a law is for: those of a joint, and of these all, those of one or between two groups or lists of
- * blocks, or those of a list of contacts. A group is that of a block now. Parts of a block that is cut follow it into
+/* Which contacts a law is for: those of a joint, of one or between two groups or lists of blocks, or of a list of
+ * contacts. A group is that of a block now. Parts of a block that is cut follow it into
  * lists. The law that names more rules a contact: first by how many of the two blocks it names, then by how closely it
  * names the joint (plane, set, "*"), then the one named later. */
 typedef struct tl_law_scope {
@@ -213,6 +213,7 @@ TL_API bool tl_law_names_blocks(const tl_model *model, size_t index);
 /* Writes which contacts law `index` is for, with the blocks that live. Its lists are freed with
  * tl_law_scope_free, and its texts are valid until the next call. TL_E_MEMORY; then there is nothing to free. */
 TL_API tl_status tl_law_scope_get(tl_model *model, size_t index, tl_law_scope *scope);
+/* Frees the lists of a scope that tl_law_scope_get has written. */
 TL_API void tl_law_scope_free(tl_law_scope *scope);
 
 typedef struct tl_insitu {
