@@ -53,6 +53,7 @@ static tl_status count(void)
     DO(create_box, (const tl_host *h, tl_vec3 min, tl_vec3 max, double density, const char *group), h, min, max,       \
        density, group)                                                                                                 \
     DO(create_block, (const tl_host *h, const tl_block_shape *shape), h, shape)                                        \
+    DO(create_solid, (const tl_host *h, const tl_solid_shape *shape, size_t *parts), h, shape, parts)                  \
     DO(joint, (const tl_host *h, const char *name, uint32_t *number), h, name, number)                                 \
     DO(cut, (const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence), h, normal, point, tag,  \
        persistence)                                                                                                    \

@@ -15,6 +15,7 @@
 #include "mesh/parts.h"
 #include "model/joints.h"
 #include "model/model.h"
+#include "model/notes.h"
 #include "plugin/loader.h"
 
 #include <stdio.h>
@@ -27,6 +28,8 @@
 #define UNIT_TOLERANCE 1e-9
 /* Longest name of a joint set or a group: it goes into messages and files. */
 #define LONGEST_NAME 63
+/* Limit: vertices and faces of one solid. */
+#define MOST_OF_SOLID 0x8000000u
 /* Keeps the draws of generators apart from those of other uses of the seed. */
 #define DRAW_DOMAIN 1
 
@@ -148,13 +151,12 @@ static bool plane_exists(const tl_host *host, tl_tag tag)
            tag.plane <= service_of(host)->model->joints[tag.joint - 1].planes;
 }
 
-/* Counts and indices of a block given by its faces: what the geometry below relies on. */
-static tl_status check_faces(const tl_host *host, const tl_block_shape *s)
+/* Counts and indices of a block or solid given by its faces: what the geometry below relies on. */
+static tl_status check_faces(const tl_host *host, const tl_block_shape *s, size_t most)
 {
-    if (s->vertex_count < 4 || s->vertex_count > TL_POLY_MAX_VERTICES || s->face_count < 4 ||
-        s->face_count > TL_POLY_MAX_FACES)
-        return fail(host, TL_E_GEOMETRY, "a block of %zu vertices and %zu faces: it needs 4 to %d of each",
-                    s->vertex_count, s->face_count, TL_POLY_MAX_VERTICES);
+    if (s->vertex_count < 4 || s->vertex_count > most || s->face_count < 4 || s->face_count > most)
+        return fail(host, TL_E_GEOMETRY, "a block of %zu vertices and %zu faces: it needs 4 to %zu of each",
+                    s->vertex_count, s->face_count, most);
     for (size_t f = 0; f < s->face_count; f++) {
         if (s->start[f + 1] < s->start[f] + 3 || s->start[f + 1] - s->start[f] > s->vertex_count)
             return fail(host, TL_E_GEOMETRY, "face %zu does not have 3 to %zu corners", f + 1, s->vertex_count);
@@ -177,10 +179,39 @@ static tl_status create_block(const tl_host *host, const tl_block_shape *given)
     memcpy(&shape, given, given->size < sizeof shape ? given->size : sizeof shape);
     tl_status status = check_block(host, shape.density, shape.group);
     if (status == TL_OK)
-        status = check_faces(host, &shape);
+        status = check_faces(host, &shape, TL_POLY_MAX_VERTICES);
     for (size_t i = 0; i < shape.vertex_count && status == TL_OK; i++)
         status = check_point(host, "vertex", i + 1, shape.vertices[i]);
     return status == TL_OK ? tl_stage_add_faces(&service_of(host)->stage, &shape) : status;
+}
+
+static tl_status create_solid(const tl_host *host, const tl_solid_shape *given, size_t *parts)
+{
+    tl_solid_shape solid = {0};
+    memcpy(&solid, given, given->size < sizeof solid ? given->size : sizeof solid);
+    const tl_block_shape shape = {.vertices = solid.vertices,
+                                  .vertex_count = solid.vertex_count,
+                                  .start = solid.start,
+                                  .loops = solid.loops,
+                                  .face_count = solid.face_count,
+                                  .tags = solid.tags,
+                                  .density = solid.density,
+                                  .group = solid.group,
+                                  .fixed = solid.fixed,
+                                  .hidden = solid.hidden};
+    size_t made = 0;
+    tl_status status = check_block(host, shape.density, shape.group);
+    if (status == TL_OK)
+        status = check_faces(host, &shape, MOST_OF_SOLID);
+    for (size_t i = 0; i < shape.vertex_count && status == TL_OK; i++)
+        status = check_point(host, "vertex", i + 1, shape.vertices[i]);
+    if (status == TL_OK && !(solid.flat >= 0 && solid.flat <= TL_FARTHEST))
+        return fail(host, TL_E_ARGUMENT, "flat = %g m must be >= 0 and finite", solid.flat);
+    if (status == TL_OK)
+        status = tl_stage_add_solid(&service_of(host)->stage, &shape, solid.flat, solid.whole != 0, &made);
+    if (parts)
+        *parts = made;
+    return status;
 }
 
 static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, double density, const char *group)
@@ -547,6 +578,21 @@ static tl_status read_mesh(const tl_host *host, const char *file, const tl_mesh_
     return status;
 }
 
+/* ---------------------------------------------------------------- report ----------------- */
+
+static tl_status note(const tl_host *host, const char *object, const char *key, double number, const char *text)
+{
+    tl_model *m = service_of(host)->model;
+    if (!key || !tl_text_is_utf8(key) || (object && !tl_text_is_utf8(object)) || (text && !tl_text_is_utf8(text)))
+        return fail(host, TL_E_ARGUMENT, "a note has no key, or a text that is not in UTF-8");
+    return tl_notes_add(m->notes, object, key, number, text) ? TL_OK : tl_fail_memory(&m->error);
+}
+
+static const char *reason(const tl_host *host)
+{
+    return service_of(host)->model->error.text;
+}
+
 /* ---------------------------------------------------------------- tl_generate ------------ */
 
 /* The services, for a generator of the model's. */
@@ -576,7 +622,10 @@ static tl_host host_of(service *s)
                      .remove = remove_block,
                      .hide = hide,
                      .show = show,
-                     .read_mesh = read_mesh};
+                     .read_mesh = read_mesh,
+                     .create_solid = create_solid,
+                     .note = note,
+                     .reason = reason};
 }
 
 /* The files that are to be read must be such as end; those that are not there are left to the plugin. */
@@ -668,8 +717,14 @@ static tl_status generate(tl_model *m, const char *generator, const tl_args *arg
         return tl_kind_unknown(&m->error, TL_KIND_GENERATOR, generator);
     service s = {.model = m, .generator = kind->name, .entries = count};
     atomic_store(&m->interrupted, false);
-    status = run(&s, kind, args, count, list);
+    tl_notes_free(m->notes);
+    m->notes = tl_notes_new();
+    status = m->notes ? run(&s, kind, args, count, list) : tl_fail_memory(&m->error);
     tl_mesh_parts_free(&s.parts);
+    if (status != TL_OK) {
+        tl_notes_free(m->notes);
+        m->notes = NULL;
+    }
     if (status == TL_OK && summary)
         *summary = s.stage.summary;
     return status;

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "base/table.h"
 #include "generate/stage_bodies.h"
+#include "geometry/convex_parts.h"
 #include "geometry/cut.h"
 #include "geometry/flatten.h"
 #include "geometry/hull.h"
@@ -577,4 +578,95 @@ tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given)
     stage->blocks[stage->count - 1].fixed = (uint8_t)given->fixed;
     stage->blocks[stage->count - 1].hide_on_commit = given->hidden != 0;
     return TL_OK;
+}
+
+/* ---------------------------------------------------------------- solids ----------------- */
+
+/* Takes the blocks from the end that were added last. */
+static void pop_blocks(tl_stage *stage, size_t count)
+{
+    while (stage->count > count) {
+        const tl_stage_block *block = &stage->blocks[--stage->count];
+        stage->created_volume -= tl_poly_mass(block->shape).volume;
+        tl_poly_free(block->shape);
+        stage->visible_count--;
+    }
+}
+
+/* Adds the parts of a solid as blocks of one body. All or none; the shapes are the stage's from then on. */
+static tl_status add_parts(tl_stage *stage, const tl_block_shape *given, tl_convex_parts *parts)
+{
+    tl_status status = tl_stage_open(stage);
+    const size_t first = stage->count;
+    for (size_t i = 0; i < parts->count && status == TL_OK; i++) {
+        tl_poly *shape = parts->part[i];
+        parts->part[i] = NULL;
+        status = add_shape(stage, shape, given->density, given->group);
+    }
+    if (status != TL_OK) {
+        pop_blocks(stage, first);
+        return status;
+    }
+    const uint32_t body = stage->blocks[first].body;
+    uint64_t least = UINT64_MAX;
+    for (size_t i = first; i < stage->count; i++)
+        least = stage->blocks[i].lineage < least ? stage->blocks[i].lineage : least;
+    for (size_t i = first; i < stage->count; i++) {
+        tl_stage_block *block = &stage->blocks[i];
+        block->body = body;
+        block->draw = least;
+        block->multi_block = stage->count - first > 1;
+        block->fixed = (uint8_t)given->fixed;
+        block->hide_on_commit = given->hidden != 0;
+    }
+    stage->regroups = stage->regroups || stage->count - first > 1;
+    return TL_OK;
+}
+
+static tl_status divide_solid(tl_stage *stage, const tl_block_shape *given, double flat, bool whole, size_t *count)
+{
+    tl_model *m = stage->model;
+    tl_convex_parts parts;
+    tl_vec3 *local = malloc(given->vertex_count * sizeof *local);
+    if (!local)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < given->vertex_count; i++)
+        local[i] = tl_v3_sub(given->vertices[i], m->origin);
+    const tl_solid_surface surface = {.vertices = local,
+                                      .vertex_count = given->vertex_count,
+                                      .start = given->start,
+                                      .loops = given->loops,
+                                      .face_count = given->face_count,
+                                      .tags = given->tags,
+                                      .flat = flat,
+                                      .whole = whole,
+                                      .place = m->origin};
+    tl_status status = tl_convex_parts_make(&surface, &parts, &m->error);
+    free(local);
+    if (status != TL_OK)
+        return status;
+    *count = parts.count;
+    if (parts.reflex_edges == 0 && given->vertex_count <= TL_POLY_MAX_VERTICES &&
+        given->face_count <= TL_POLY_MAX_FACES)
+        status = tl_stage_add_faces(stage, given);
+    else
+        status = add_parts(stage, given, &parts);
+    tl_convex_parts_free(&parts);
+    return status;
+}
+
+tl_status tl_stage_add_solid(tl_stage *stage, const tl_block_shape *given, double flat, bool whole, size_t *parts)
+{
+    tl_model *m = stage->model;
+    const bool had_origin = m->origin_set;
+    const tl_vec3 origin = m->origin;
+    *parts = 0;
+    set_origin_by(m, given->vertices, given->vertex_count);
+    const tl_status status = divide_solid(stage, given, flat, whole, parts);
+    if (status == TL_OK)
+        return status;
+    *parts = 0;
+    m->origin_set = had_origin;
+    m->origin = origin;
+    return status;
 }

@@ -13,6 +13,8 @@ tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t cou
 tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double density, const char *group);
 /* Adds a block given by its faces; see tl_host.create_block. */
 tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given);
+/* Adds convex blocks that fill a solid given by its faces, joined to one body; see tl_host.create_solid. */
+tl_status tl_stage_add_solid(tl_stage *stage, const tl_block_shape *given, double flat, bool whole, size_t *parts);
 /* Cuts the visible blocks by a disc of `radius` about `point` in user coordinates, INFINITY for a plane. Adds the
  * blocks in its path to *met. See tl_host.cut_disc. */
 tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,

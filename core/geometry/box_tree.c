@@ -1,8 +1,10 @@
-/* box_tree.c - which of many boxes hold a point.
+/* box_tree.c - which of many boxes hold a point, or meet another box.
  *
  * The boxes are sorted by their middles along the longest side of what they span, and halved, again and again. Range k
  * has the halves 2 k + 1 and 2 k + 2. */
 #include "geometry/box_tree.h"
+
+#include "geometry/measure.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -97,19 +99,13 @@ void tl_box_tree_free(tl_box_tree *t)
     *t = (tl_box_tree){0};
 }
 
-static bool holds(const tl_bounds *b, tl_vec3 at)
-{
-    return at.x >= b->min.x && at.x <= b->max.x && at.y >= b->min.y && at.y <= b->max.y && at.z >= b->min.z &&
-           at.z <= b->max.z;
-}
-
-void tl_box_tree_ask(const tl_box_tree *t, tl_vec3 at, void (*fn)(void *user, uint32_t box), void *user)
+void tl_box_tree_meet(const tl_box_tree *t, const tl_bounds *with, void (*fn)(void *user, uint32_t box), void *user)
 {
     range todo[DEEPEST] = {{0, 0, t->count}};
     int left = t->count > 0;
     while (left > 0) {
         const range r = todo[--left];
-        if (!holds(&t->all[r.number], at))
+        if (!tl_bounds_meet(&t->all[r.number], with))
             continue;
         if (r.end - r.begin > FEW) {
             todo[left++] = (range){2 * r.number + 2, half_of(&r), r.end};
@@ -117,7 +113,12 @@ void tl_box_tree_ask(const tl_box_tree *t, tl_vec3 at, void (*fn)(void *user, ui
             continue;
         }
         for (uint32_t k = r.begin; k < r.end; k++)
-            if (holds(&t->box[t->order[k]], at))
+            if (tl_bounds_meet(&t->box[t->order[k]], with))
                 fn(user, t->order[k]);
     }
+}
+
+void tl_box_tree_ask(const tl_box_tree *t, tl_vec3 at, void (*fn)(void *user, uint32_t box), void *user)
+{
+    tl_box_tree_meet(t, &(tl_bounds){at, at}, fn, user);
 }

@@ -1,4 +1,4 @@
-/* box_tree.h - which of many boxes hold a point. */
+/* box_tree.h - which of many boxes hold a point, or meet another box. */
 #ifndef TL_GEOMETRY_BOX_TREE_H
 #define TL_GEOMETRY_BOX_TREE_H
 
@@ -17,5 +17,7 @@ bool tl_box_tree_make(tl_box_tree *tree, const tl_bounds *box, uint32_t count);
 void tl_box_tree_free(tl_box_tree *tree);
 /* Calls `fn` for each box that holds a point, in an order that depends on the boxes alone. */
 void tl_box_tree_ask(const tl_box_tree *tree, tl_vec3 at, void (*fn)(void *user, uint32_t box), void *user);
+/* The same for each box that has a point in common with another box. */
+void tl_box_tree_meet(const tl_box_tree *tree, const tl_bounds *with, void (*fn)(void *user, uint32_t box), void *user);
 
 #endif

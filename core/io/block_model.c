@@ -1,8 +1,9 @@
 /* block_model.c - writes the blocks of a model into a JSON file; docs/block_model.md describes it. Numbers
- * are written with the digits that give back the same double. */
+ * are written with the digits that give back the same double. Names of other endings ask for surfaces (surfaces.c). */
 #include "base/output_file.h"
 #include "io/json.h"
 #include "io/pieces.h"
+#include "io/surfaces.h"
 #include "model/rows.h"
 
 #include <string.h>
@@ -83,11 +84,24 @@ static tl_status write_model(tl_output *output, void *user)
     return status;
 }
 
+typedef struct surfaces_args {
+    tl_model *model;
+    tl_surface_format format;
+} surfaces_args;
+
+static tl_status write_surfaces(tl_output *output, void *user)
+{
+    const surfaces_args *args = user;
+    return tl_surfaces_write(output, args->model, args->format);
+}
+
 tl_status tl_write_blocks(tl_model *m, const char *path)
 {
     tl_rows_tidy(m);
     atomic_store(&m->interrupted, false);
-    tl_status status = tl_output_whole(path, write_model, m, &m->error);
+    surfaces_args args = {m, tl_surface_format_of(path)};
+    tl_status status = args.format == TL_SURFACES_NONE ? tl_output_whole(path, write_model, m, &m->error)
+                                                       : tl_output_whole(path, write_surfaces, &args, &m->error);
     if (status != TL_OK && status != TL_E_MEMORY)
         tl_error_prefix(&m->error, "write_blocks: ");
     return status;

@@ -353,6 +353,10 @@ static const tl_lua_key generate_results[] = {
     {"slivers", "",
      "blocks that this call made with an aspect over 50, or with less than 0.001 of the mean volume of a block; "
      "model:filter{auto = true} joins those that decide the time step"},
+    {"report", "",
+     "where a file was read: what holds of it all by name, and a list of {name =, ...} of the objects to which "
+     "something "
+     "was done, or that were refused"},
     {NULL, NULL, NULL},
 };
 

@@ -657,6 +657,40 @@ static void set_summary(lua_State *L, const tl_generate_summary *s)
                        {"smallest_face", s->smallest_face}, {"volume_error", s->volume_error});
 }
 
+/* Gives the summary its field `report`: what is noted of the whole, and a list of the objects. */
+static int set_report(lua_State *L)
+{
+    size_t count;
+    const tl_generate_note *note = tl_generate_notes(lua_touserdata(L, 2), &count);
+    lua_settop(L, 1);
+    lua_newtable(L);
+    for (size_t i = 0; i < count; i++) {
+        bool same =
+            i > 0 && (note[i].object == note[i - 1].object ||
+                      (note[i].object && note[i - 1].object && strcmp(note[i].object, note[i - 1].object) == 0));
+        if (!note[i].object) {
+            lua_pushvalue(L, 2);
+        } else if (same) {
+            lua_rawgeti(L, 2, (lua_Integer)lua_rawlen(L, 2));
+        } else {
+            lua_newtable(L);
+            lua_pushstring(L, note[i].object);
+            lua_setfield(L, -2, "name");
+            lua_pushvalue(L, -1);
+            lua_rawseti(L, 2, (lua_Integer)lua_rawlen(L, 2) + 1);
+        }
+        if (note[i].text)
+            lua_pushstring(L, note[i].text);
+        else
+            lua_pushnumber(L, note[i].number);
+        lua_setfield(L, -2, note[i].key);
+        lua_pop(L, 1);
+    }
+    if (count)
+        lua_setfield(L, 1, "report");
+    return 0;
+}
+
 /* The number of tables in the list at index 3; 0 when it is none. */
 static size_t entry_count(lua_State *L, const char *generator)
 {
@@ -716,6 +750,11 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
     progress_clear(&p);
     tl_lua_ok(L, model, tl_lua_watch_end(L, &watch, status, what, "the model is as it was"));
     set_summary(L, &summary);
+    lua_pushcfunction(L, set_report);
+    lua_pushvalue(L, -2);
+    lua_pushlightuserdata(L, model);
+    if (lua_pcall(L, 2, 0, 0) != LUA_OK) /* the blocks are made: without memory there is no report */
+        lua_pop(L, 1);
     return 1;
 }
 

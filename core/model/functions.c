@@ -345,7 +345,9 @@ static const model_function functions[] = {
      "Shows the model in a browser while it runs, and takes commands from there. Gives the address to open. The page "
      "shows the model whenever a run makes steps, and while view waits.",
      PARAMS(view_params)},
-    {"write_blocks", "Writes all blocks as they stand into a JSON file.", PARAMS(write_blocks_params)},
+    {"write_blocks",
+     "Writes all blocks as they stand into a JSON file. A name that ends in .obj, .stl, .ply or .vtk gets surfaces.",
+     PARAMS(write_blocks_params)},
     {"filter", "Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to neighbours.",
      PARAMS(filter_params)},
     {"keyblocks",

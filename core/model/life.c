@@ -3,6 +3,7 @@
 #include "geometry/make.h"
 #include "model/loads.h"
 #include "model/model.h"
+#include "model/notes.h"
 #include "model/options.h"
 #include "model/scope.h"
 
@@ -120,6 +121,7 @@ void tl_model_destroy(tl_model *m)
         if (m->drives[i].drive.release)
             m->drives[i].drive.release(m->drives[i].drive.user);
     free(m->drives);
+    tl_notes_free(m->notes);
     while (m->history_count > 0)
         tl_history_end(m, m->history_count - 1);
     free(m->histories);

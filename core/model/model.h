@@ -204,7 +204,6 @@ struct tl_model {
     const tl_kind *damping;
     void *damping_params, *damping_self;
     double *damping_state;
-
     double time;
     double dt;                           /* of the last step; 0 before the first */
     tl_vec3 gravity_before;              /* gravity in the last step, where it has been set since; else zero */
@@ -214,6 +213,7 @@ struct tl_model {
     bool (*interrupt_asked)(void);                                       /* or NULL */
     void (*show_generate)(void *user, const tl_generate_progress *done); /* or NULL */
     void *show_generate_user;
+    struct tl_notes *notes;        /* of the last generator; NULL: none */
     bool running;                  /* inside a callback: no blocks may be made or deleted */
     bool driving;                  /* inside a drive's function: nothing that a step depends on may be set */
     bool reading;                  /* the same, and no run may begin: tl_model_only_read */

@@ -167,13 +167,17 @@ function talus.help(topic) end
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
 
---- Creates a block of each closed convex solid in an STL or OBJ file.
+--- Creates blocks of the closed solids in a file: OBJ, STL, PLY, VTK, JSON of compas, or faces of 3DEC.
 ---@class (exact) talus.generator.Import
----@field file string file of solids, ending in .stl or .obj
+---@field file string file of solids: .obj, .stl, .ply, .vtk, .json or a data file of 3DEC
 ---@field scale? number > 0, default 1: factor on coordinates: 0.001 for millimetres
 ---@field translate? talus.Vector m, default {0, 0, 0}: added to the scaled coordinates
+---@field weld? number m, >= 0: vertices of an object that are nearer are one; by the digits of the file and the sizes of objects unless given
+---@field flat? number m, >= 0: corners of a face may be so far off its plane; by the digits of the file and the sizes of objects unless given
+---@field split? boolean default true: divide solids that are not convex into joined convex blocks, or refuse them
+---@field skip? boolean default false: leave out objects that are refused, and report them, or refuse the file
 ---@field density number kg/m3, > 0: density of the blocks
----@field group? string default "rock": group of the blocks
+---@field group? string default "": group of the blocks; "": as the file names them, "rock" where it does not
 
 --- Cuts the visible blocks by one plane.
 ---@class (exact) talus.generator.Joint
@@ -622,6 +626,7 @@ function talus.model(options) end
 ---@field smallest_face number of the model after, m3, m and m2
 ---@field volume_error number relative change of the volume that is not accounted for
 ---@field slivers integer blocks that this call made with an aspect over 50, or with less than 0.001 of the mean volume of a block; model:filter{auto = true} joins those that decide the time step
+---@field report table where a file was read: what holds of it all by name, and a list of {name =, ...} of the objects to which something was done, or that were refused
 
 --- Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, {...}}, in the place of one: once for each, in their order and in one go. What an earlier entry makes and a later one cuts gets no ids, so ids are not those of a call for each entry.
 ---
@@ -1512,7 +1517,7 @@ function Model:write_vtk(path, options) end
 ---@param options talus.WriteSectionOptions
 function Model:write_section(path, options) end
 
---- Writes all blocks as they stand into a JSON file.
+--- Writes all blocks as they stand into a JSON file. A name that ends in .obj, .stl, .ply or .vtk gets surfaces.
 ---
 ---     model:write_blocks("out/blocks.json")
 ---@param path string name of the file

@@ -187,6 +187,7 @@ local function field_type(value, meaning, class)
             meaning:match("laws as of model:laws%(%)") and "table[]" or
             meaning:match("^the number of the") and "integer" or meaning:match("^lists of the components") and "number[]" or
             (meaning:match("^how many times") or meaning:match("%f[%w]m3%f[%W]")) and "number" or
+            meaning:match("^where a file was read") and "table" or
             meaning:match("^{block =, factor =}") and "{ block: integer, factor: number }" or
             meaning:match("the selection of blocks") and "talus.Blocks" or meaning:match("{x, y, z}") and "talus.Vector" or
             (meaning:match("%f[%w]s%f[%W]") or meaning:match("%f[%w]m3%f[%W]")) and "number" or "any"

@@ -1,4 +1,5 @@
--- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj, stl, mesh and command.
+-- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj,
+-- stl, ply, vtk, poly, compas, mesh and command.
 local talus = require "talus"
 local folder = arg[1]
 
@@ -56,7 +57,7 @@ local function write(name, text)
     file:write(text)
     file:close()
 end
-for _, kind in ipairs { "obj", "stl", "mesh", "command" } do -- makes the folders
+for _, kind in ipairs { "obj", "stl", "ply", "vtk", "poly", "compas", "mesh", "command" } do -- makes the folders
     saved[5]:write_blocks(string.format("%s/%s/0", folder, kind))
 end
 write("obj/1", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
@@ -74,6 +75,43 @@ for _, t in ipairs { { 1, 3, 2 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 1, 4 } } do
     triangles = triangles .. string.pack("<I2", 0)
 end
 write("stl/2", string.rep(" ", 80) .. string.pack("<I4", 4) .. triangles)
+for k = 1, 3 do
+    for _, kind in ipairs { "obj", "stl", "ply", "vtk" } do
+        saved[k]:write_blocks(string.format("%s/%s/%d.%s", folder, kind, 10 + k, kind))
+    end
+end
+local PLY = "ply\nformat %s 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n" ..
+    "property list uchar int vertex_indices\nend_header\n"
+local VTK = "# vtk DataFile Version %s\nt\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n"
+local sides = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 } }
+for format, order in pairs { binary_little_endian = "<", binary_big_endian = ">" } do
+    local data = ""
+    for _, c in ipairs(corners) do
+        data = data .. string.pack(order .. "fff", table.unpack(c))
+    end
+    local points = data
+    for _, t in ipairs(sides) do
+        data = data .. string.pack(order .. "Bi4i4i4", 3, table.unpack(t))
+    end
+    write("ply/" .. format, PLY:format(format) .. data)
+    if order == ">" then
+        local counted, offsets, all = "", string.pack(">i8", 0), ""
+        for k, t in ipairs(sides) do
+            counted = counted .. string.pack(">i4i4i4i4", 3, table.unpack(t))
+            offsets = offsets .. string.pack(">i8", 3 * k)
+            all = all .. string.pack(">i8i8i8", table.unpack(t))
+        end
+        write("vtk/1", VTK:format("3.0") .. points .. "\nPOLYGONS 4 16\n" .. counted .. "\n")
+        write("vtk/2", VTK:format("5.1") .. points .. "\nPOLYGONS 5 12\nOFFSETS vtktypeint64\n" .. offsets ..
+            "\nCONNECTIVITY vtktypeint64\n" .. all .. "\nMETADATA\nINFORMATION 0\n\nCELL_DATA 4\n")
+    end
+end
+write("poly/1", 'block create group "a" poly face 0,0,0 0,1,0 1,0,0 face 0,0,0 1,0,0 0,0,1 face 1,0,0 0,1,0 0,0,1 face 0,1,0 0,0,0 0,0,1 r=1\n')
+write("poly/2", "new ; all\npoly reg 2 face 0 0 0  0 1 0  1 0 0 &\n face (0,0,0) (1,0,0) (0,0,1) ...\n face 1 0 0 0 1 0 0 0 1 face 0 1 0 0 0 0 0 0 1 group 'b'\n")
+write("compas/1", '[{"dtype": "compas.datastructures/Mesh", "data": {"vertex": {"0": {"x": 0, "y": 0, "z": 0}, "1": {"x": 1, "y": 0.0, "z": 0}, ' ..
+    '"2": {"x": 0, "y": 1, "z": 0}, "3": {"x": 0, "y": 0, "z": 1e0}}, "face": {"0": [0, 2, 1], "1": ["0", "1", "3"], "2": [1, 2, 3], "3": [2, 0, 3]}}}]')
+write("compas/2", '{"is_support": true, "transformation": {"data": {"matrix": [[1, 0, 0, 0], [0, 1, 0, 2], [0, 0, 1, 0], [0, 0, 0, 1]]}}, "geometry": ' ..
+    '{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]}}')
 for k, text in ipairs { '{"op":"step","n":100}', '{"op":"delete","blocks":[3,5]}', '{"op":"friction","joint":"J\\u00e91:3","value":-3.5e1}',
     '{ "op" : "cut", "joint": "a\\"b", "dip": 60, "dip_direction": 90.5, "origin": [1, -2.5, 1e3] }' } do
     write("command/" .. k, text)

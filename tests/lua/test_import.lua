@@ -248,38 +248,43 @@ end
 
 refused(without(unit, 5), "the surface is open at 3 edges, the first from {")
 refused(joined(box(4, 4, 4, 5, 5, 5), without(unit, 5)), "close it, so that every edge belongs to two faces")
-refused({ unit[1] }, "the surface is open at 3 edges")
-refused(inside_out(unit), "is turned inside out: all its faces face inward")
-refused(joined(unit, inside_out(box(3, 3, 3, 4, 4, 4))), "solid 2, from face 13")
-refused(exchanged(unit, 7, turned(unit[7])), "faces are turned against each other at 3 edges")
-refused(exchanged(unit, 3, { { 0, 0, 0 }, { 0, 0, 0 }, { 1, 1, 1 } }), "has two neighbouring corners at one place")
-refused(exchanged(unit, 3, { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } }), "has no area")
+refused({ unit[1] }, "has 1 faces: it closes no solid")
+refused(exchanged(unit, 3, { { 0, 0, 0 }, { 0, 0, 0 }, { 1, 1, 1 } }), "the surface is open")
+refused(exchanged(unit, 3, { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } }), "the surface is open")
 refused(joined(unit, unit), "faces lie on each other")
 refused({}, "holds no faces")
+-- Faces turned, one of them or all, are turned back.
+comes_out(inside_out(unit), { 1 }, 6, 1e-14)
+comes_out(joined(unit, inside_out(box(3, 3, 3, 4, 4, 4))), { 1, 1 }, 6, 1e-14)
+comes_out(exchanged(unit, 7, turned(unit[7])), { 1 }, 6, 1e-14)
+refused(joined(unit, inside_out(box(0.25, 0.25, 0.25, 0.75, 0.75, 0.75))), "faces inward: the solid is hollow")
 
--- A corner pushed in; an L; a spike.
+-- A corner pushed in; a spike. (Both are divided, or refused with split = false.)
 local function pushed(p)
     return p[1] + p[2] + p[3] == 3 and { 0.3, 0.3, 0.3 } or p
 end
-refused(mapped(unit, pushed), "solid 1 is not convex: it bends inward at the edge")
 local function spiked(p)
     return p[1] == 0.5 and p[2] == 0.5 and p[3] == 1 and { 0.5, 0.5, 3 } or p
 end
-refused(mapped(refined(unit, 1), spiked), "is not convex")
--- Both sides of one triangle.
-refused({ unit[1], turned(unit[1]) }, "holds no volume")
+for _, writer in ipairs(writers) do
+    refused_file(write(writer[1], writer[2](mapped(unit, pushed))), "is not convex: it bends inward at the edge", { split = false })
+    refused_file(write(writer[1], writer[2](mapped(refined(unit, 1), spiked))), "is not convex", { split = false })
+end
+-- Both sides of two triangles.
+refused({ unit[1], unit[2], turned(unit[1]), turned(unit[2]) }, "holds no volume")
 
 local path = write(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 9\n")
 refused_file(path, "line 6: '9' names none of the 4 vertices")
 refused_file(write(".obj", "v 0 0 0\nf 1 1\n"), "line 2: a face of 2 corners; it must have 3 or more")
 refused_file(write(".obj", "v 0 0\n"), "line 1: three numbers are expected after 'v', the line ends")
-refused_file(write(".obj", "v 0 0 1e\n"), "line 1: three numbers are expected after 'v', not '1e'")
+refused_file(write(".obj", "v 0 0 1e\n"), "line 1: '1e' is not a number")
+refused_file(write(".obj", "v 0 0 1,5\n"), "line 1: '1,5' is not a number; write a point in the place of the decimal comma")
 refused_file(write(".obj", "v 0 0 nan\n"), "is not finite")
 refused_file(write(".obj", "v 0 0 1e300\n"), "beyond 1e+30")
-refused_file(write(".obj", "v 0 0 1\0\n"), "holds a zero byte")
+refused_file(write(".obj", "v 0 0 1\0\n"), "holds a zero byte at byte 8")
 refused_file(write(".obj", "vertex 1 2 3\n"), "line 1: 'vertex' is not a word of OBJ")
 refused_file(write(".obj", ""), "holds no faces")
-refused_file(write(".obj", (quads:gsub("v 2 2 2", "v 2 2 2.1"))), "is not flat; divide it into triangles")
+refused_file(write(".obj", (quads:gsub("v 2 2 2", "v 2 2 2.1"))), "flat = 0.0253 would take it")
 refused_file(write(".stl", ""), "is no STL: it holds 0 bytes")
 refused_file(write(".stl", binary_stl(unit):sub(1, -30)), "truncated")
 refused_file(write(".stl", text_stl(unit):sub(1, 400)), "it is truncated")
@@ -287,7 +292,7 @@ refused_file(write(".stl", "solid x\n"), "ends at line 1 where 'endsolid' is exp
 refused_file(write(".stl", "solid x\nvertex 1 2 3\n"), "line 2: 'facet' is expected, not 'vertex'")
 refused_file(stem .. "_missing.stl", "cannot be opened: No such file")
 refused_file(folder .. "/.obj", "cannot be opened")
-refused_file(stem .. ".ply", "does not end in .stl or .obj")
+refused_file(stem .. ".xyz", "does not end in .obj, .stl, .ply, .vtk, .json,")
 check.refused(model, function() model:generate("import", { file = stem .. ".obj", density = 1, scale = 0 }) end,
     "scale = 0 must be > 0")
 check.refused(model, function() model:generate("import", { file = stem .. ".obj" }) end,

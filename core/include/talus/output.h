@@ -61,8 +61,9 @@ typedef struct tl_html {
  * 200 MB is refused (TL_E_ARGUMENT). */
 TL_API tl_status tl_write_html(struct tl_model *model, const char *prefix, const tl_html *options);
 
-/* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator of
- * that format makes them again. */
+/* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator `blocks` makes them
+ * again. A name that ends in .obj, .stl, .ply or .vtk gets their surfaces in that format, which the generator `import`
+ * and other programs read. */
 TL_API tl_status tl_write_blocks(struct tl_model *model, const char *path);
 
 /* Writes a file of `length` bytes, whole or not at all, making the folders on the way. Only a regular file is

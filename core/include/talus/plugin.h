@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 10u
+#define TL_ABI_MINOR 11u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -361,6 +361,25 @@ typedef struct tl_block_shape {
     uint32_t hidden; /* 1: hidden once the generator has ended */
 } tl_block_shape;
 
+/* Since 1.11: a solid given by its surface, for create_solid. It need not be convex. Faces are flat polygons with any
+ * number of corners, counter-clockwise from outside, and close one solid: one shell around it, and one around each of
+ * its cavities. Holes may go through it. Members are those of tl_block_shape. */
+typedef struct tl_solid_shape {
+    uint32_t size;
+    const tl_vec3 *vertices;
+    size_t vertex_count;
+    const uint32_t *start, *loops;
+    size_t face_count;
+    const tl_tag *tags; /* [face_count] or NULL */
+    double density;     /* kg/m3, > 0 */
+    const char *group;
+    uint32_t fixed, hidden;
+    /* m, >= 0: what stands off a plane, or bends inward, by less is flat. 0 is what rounding asks for: 1e-9 of the
+     * solid's size. */
+    double flat;
+    uint32_t whole; /* 1: a solid that is not convex is refused with the edge at which it bends inward */
+} tl_solid_shape;
+
 /* Since 1.10: tetrahedra of a file, of one group, that hang together over their sides and fill a convex solid. */
 typedef struct tl_mesh_part {
     const char *group; /* the name of their group in the file; "": it has none */
@@ -429,6 +448,17 @@ struct tl_host {
      * tetrahedra, and valid until the generator ends or reads another. Refused with TL_E_GEOMETRY are a damaged file
      * and a part that is not convex. */
     tl_status (*read_mesh)(const tl_host *, const char *file, const tl_mesh_part **parts, size_t *count);
+    /* since 1.11: creates convex blocks that fill a solid, joined to one body; *parts, which may be NULL, gets their
+     * number. They are the last blocks. A convex solid becomes one block, as create_block makes it. A face of several
+     * tags gets the one with most of its area. Refused with TL_E_GEOMETRY and the place is a surface that is open
+     * or crosses itself. So is one that has more than two faces at an edge, is turned inside out or holds no volume. */
+    tl_status (*create_solid)(const tl_host *, const tl_solid_shape *shape, size_t *parts);
+    /* since 1.11: notes for the user what was done with an object of a file, or why it was refused. The number counts
+     * where `text` is NULL. `object` is its name, NULL: the whole. Notes of one object follow each other. They are in
+     * the report of the summary, unless the generator fails. */
+    tl_status (*note)(const tl_host *, const char *object, const char *key, double number, const char *text);
+    /* since 1.11: the sentence of the service that failed last, for a generator that goes on without the block. */
+    const char *(*reason)(const tl_host *);
 };
 
 typedef struct tl_generator_ops {

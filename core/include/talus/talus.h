@@ -122,6 +122,18 @@ TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_ar
 TL_API tl_status tl_generate_list(tl_model *model, const char *generator, const tl_args *args, size_t count,
                                   tl_generate_summary *summary);
 
+/* A note of a generator on an object of a file that it has read. */
+typedef struct tl_generate_note {
+    const char *object; /* its name; NULL: the whole */
+    const char *key;
+    double number;
+    const char *text; /* NULL: the number counts */
+} tl_generate_note;
+
+/* What the last generator of the model has noted, those of one object one after the other; valid until the next one
+ * runs. None after one that failed. */
+TL_API const tl_generate_note *tl_generate_notes(const tl_model *model, size_t *count);
+
 /* The extreme value of a measure over the blocks, and the block that has it; 0 without blocks. */
 typedef struct tl_extreme {
     double value;

@@ -1,0 +1,223 @@
+/* convex_parts.c - divides a solid into convex parts by cuts along its reflex edges.
+ *
+ * After B. Chazelle, SIAM J. Comput. 13 (1984) 488-507: a plane through a reflex edge that ends it on both sides cuts
+ * the solid there. The cut goes as far as the section hangs together with that edge. Without reflex edges a piece is
+ * convex. Three planes are tried at each edge: those of its faces and the one midway. Planes that hold many reflex
+ * edges are looked at first. The cut that ends most of them, less those that it divides, is made. Among equals a cut
+ * that leaves no sharp wedge goes first, then the smallest, then the one nearest to the centroid of the solid. None of
+ * that depends on the order of faces, on place, attitude or unit.
+ *
+ * Each edge on a plane is cut for good, so their number bounds the cuts. A section takes time in proportion to the
+ * faces of its piece, one product each for those that the plane passes by. */
+#include "geometry/convex_parts.h"
+
+#include "base/error.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
+#include "geometry/solid_crossing.h"
+#include "geometry/solid_cut.h"
+#include "geometry/solid_part.h"
+#include "geometry/solid_surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <talus/vmath.h>
+
+/* Cost only: planes of which the section of a piece is looked at before each cut, and the faces looked at in all. */
+#define MOST_TRIED 12
+#define LEAST_TRIED 2
+#define FACES_TRIED 100000
+/* Limit: more parts than this times the reflex edges are refused. */
+#define MOST_PARTS 64
+/* Tolerance: parts fill a solid whose faces are plane when their volume is that of the surface as nearly as this. */
+#define FILLED 1e-9
+
+/* A plane that holds reflex edges of the piece at hand. */
+typedef struct candidate {
+    uint32_t plane, edges;
+    double length; /* m: of these edges */
+    double far;    /* m: from the centroid of the solid */
+} candidate;
+
+typedef struct divider {
+    tl_solid_mesh m;
+    tl_section *s;
+    candidate *list;
+    uint32_t count, capacity;
+    uint32_t *slot; /* [planes] place in the list, valid where the list says so */
+} divider;
+
+static int by_merit(const void *left, const void *right)
+{
+    const candidate *a = left, *b = right;
+    if (a->edges != b->edges)
+        return a->edges > b->edges ? -1 : 1;
+    if (a->length > b->length || a->length < b->length)
+        return a->length > b->length ? -1 : 1;
+    if (a->far > b->far || a->far < b->far)
+        return a->far < b->far ? -1 : 1;
+    return (a->plane > b->plane) - (a->plane < b->plane);
+}
+
+static bool count_edge(divider *d, uint32_t plane, double length)
+{
+    uint32_t at = d->slot[plane];
+    if (at >= d->count || d->list[at].plane != plane) {
+        if (!tl_solid_grow(&d->list, &d->capacity, d->count, sizeof *d->list))
+            return false;
+        const tl_plane p = d->m.plane[plane];
+        at = d->slot[plane] = d->count++;
+        d->list[at] = (candidate){.plane = plane, .far = fabs(tl_v3_dot(p.normal, d->m.center) - p.offset)};
+    }
+    d->list[at].edges++;
+    d->list[at].length += length;
+    return true;
+}
+
+/* Lists the planes at the reflex edges of a piece, the best first, and forgets edges that are none any more. */
+static bool list_candidates(divider *d, uint32_t piece)
+{
+    tl_solid_mesh *m = &d->m;
+    tl_solid_piece *p = &m->piece[piece];
+    uint32_t kept = 0;
+    d->count = 0;
+    for (uint32_t i = 0; i < p->reflexes; i++) {
+        const uint32_t h = p->reflex[i];
+        if (!m->half[h].reflex)
+            continue;
+        p->reflex[kept++] = h;
+        const double length = tl_v3_norm(tl_v3_sub(m->vertex[tl_half_to(m, h)], m->vertex[m->half[h].from]));
+        if (!count_edge(d, m->face[m->half[h].face].plane, length) ||
+            !count_edge(d, m->face[m->half[m->half[h].mate].face].plane, length) ||
+            !count_edge(d, m->bisector[h], length))
+            return false;
+    }
+    p->reflexes = kept;
+    /* lengths that differ by rounding are equal */
+    const double unit = ldexp(m->size, -24);
+    for (uint32_t i = 0; i < d->count; i++) {
+        d->list[i].length = floor(d->list[i].length / unit + 0.5);
+        d->list[i].far = floor(d->list[i].far / unit + 0.5);
+    }
+    if (d->count > 1)
+        qsort(d->list, d->count, sizeof *d->list, by_merit);
+    return true;
+}
+
+/* Finds the best cut of a piece: among the first planes, or the next ones while there is none. */
+static bool find_cut(divider *d, uint32_t piece, tl_solid_cut *best)
+{
+    const uint32_t faces = d->m.piece[piece].faces;
+    uint32_t tried = FACES_TRIED / (faces + 1);
+    tried = tried < LEAST_TRIED ? LEAST_TRIED : tried > MOST_TRIED ? MOST_TRIED : tried;
+    *best = (tl_solid_cut){.gain = INT32_MIN};
+    for (uint32_t i = 0; i < d->count && (i < tried || best->gain == INT32_MIN); i++)
+        if (!tl_section_best(d->s, &d->m, piece, d->list[i].plane, best))
+            return false;
+    return true;
+}
+
+/* A sentence about the first reflex edge of a piece. */
+static tl_status edge_fault(const tl_solid_mesh *m, uint32_t piece, const char *what, const char *remedy,
+                            tl_error *error)
+{
+    const uint32_t h = m->piece[piece].reflex[0];
+    const tl_vec3 a = tl_solid_shown(m, m->half[h].from), b = tl_solid_shown(m, tl_half_to(m, h));
+    return tl_fail(error, TL_E_GEOMETRY, "%s at the edge from {%g, %g, %g} to {%g, %g, %g}%s", what, a.x, a.y, a.z, b.x,
+                   b.y, b.z, remedy);
+}
+
+static bool add_part(tl_convex_parts *parts, uint32_t *capacity, tl_poly *part)
+{
+    if (!tl_solid_grow(&parts->part, capacity, (uint32_t)parts->count, sizeof *parts->part)) {
+        tl_poly_free(part);
+        return false;
+    }
+    parts->part[parts->count++] = part;
+    return true;
+}
+
+/* Divides a piece until it is convex, and takes it; what it is parted from waits for its turn. */
+static tl_status finish_piece(divider *d, uint32_t piece, tl_convex_parts *parts, uint32_t *capacity, tl_error *error)
+{
+    const size_t most = MOST_PARTS * (parts->reflex_edges + 1);
+    for (uint32_t cuts = 0;; cuts++) {
+        if (!list_candidates(d, piece))
+            return tl_fail_memory(error);
+        if (d->m.piece[piece].reflexes == 0)
+            break;
+        tl_solid_cut cut;
+        if (!find_cut(d, piece, &cut))
+            return tl_fail_memory(error);
+        if (cut.gain == INT32_MIN)
+            return edge_fault(&d->m, piece, "the solid could not be divided",
+                              ", where it bends inward; faces near it may touch each other, or be bent", error);
+        if (d->m.pieces > most || cuts > most)
+            return tl_fail(error, TL_E_GEOMETRY, "the solid would become more than %zu convex parts", most);
+        if (!tl_solid_cut_make(d->s, &d->m, piece, &cut))
+            return tl_fail_memory(error);
+    }
+    tl_poly *part;
+    const tl_status status = tl_solid_part(&d->m, piece, &part, error);
+    if (status != TL_OK)
+        return status;
+    return add_part(parts, capacity, part) ? TL_OK : tl_fail_memory(error);
+}
+
+static tl_status check_volume(const divider *d, const tl_convex_parts *parts, tl_error *error)
+{
+    double sum = 0, area = 0;
+    for (size_t i = 0; i < parts->count; i++) {
+        sum += tl_poly_mass(parts->part[i]).volume;
+        for (uint32_t f = 0; f < parts->part[i]->face_count; f++)
+            area += tl_poly_face_area(parts->part[i], f);
+    }
+    /* faces may be off their planes by what is flat */
+    const double slack = fmax(FILLED * d->m.volume, d->m.on * area);
+    if (fabs(sum - d->m.volume) <= slack)
+        return TL_OK;
+    return tl_fail(
+        error, TL_E_GEOMETRY,
+        "the solid could not be divided into convex parts: they have %g m3 of its %g m3; its faces may lie on "
+        "each other",
+        sum, d->m.volume);
+}
+
+tl_status tl_convex_parts_make(const tl_solid_surface *surface, tl_convex_parts *parts, tl_error *error)
+{
+    divider d = {.s = tl_section_new()};
+    uint32_t capacity = 0;
+    *parts = (tl_convex_parts){0};
+    tl_status status = d.s ? tl_solid_read(surface, &d.m, error) : tl_fail_memory(error);
+    if (status == TL_OK)
+        status = tl_solid_check_crossing(&d.m, error);
+    if (status == TL_OK)
+        status = tl_solid_check_cavities(&d.m, error);
+    if (status == TL_OK && surface->whole && d.m.piece[0].reflexes > 0)
+        status = edge_fault(&d.m, 0, "the solid is not convex: it bends inward", "", error);
+    if (status == TL_OK) {
+        parts->reflex_edges = d.m.piece[0].reflexes;
+        d.slot = calloc((size_t)d.m.planes + 1, sizeof *d.slot);
+        if (!d.slot)
+            status = tl_fail_memory(error);
+    }
+    for (uint32_t i = 0; status == TL_OK && i < d.m.pieces; i++)
+        status = finish_piece(&d, i, parts, &capacity, error);
+    if (status == TL_OK)
+        status = check_volume(&d, parts, error);
+    if (status != TL_OK)
+        tl_convex_parts_free(parts);
+    tl_section_free(d.s);
+    tl_solid_free(&d.m);
+    free(d.list);
+    free(d.slot);
+    return status;
+}
+
+void tl_convex_parts_free(tl_convex_parts *parts)
+{
+    for (size_t i = 0; i < parts->count; i++)
+        tl_poly_free(parts->part[i]);
+    free(parts->part);
+    *parts = (tl_convex_parts){0};
+}
