@@ -11,8 +11,8 @@
 #include "base/law_columns.h"
 #include "contact/contacts.h"
 #include "force/joint_laws.h"
-#include "model/joints.h"
 #include "model/model.h"
+#include "model/scope.h"
 #include "plugin/loader.h"
 
 #include <math.h>

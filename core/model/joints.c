@@ -115,47 +115,16 @@ bool tl_tag_matches(tl_tag pattern, tl_tag tag)
     return pattern.joint == 0 || (pattern.joint == tag.joint && (pattern.plane == 0 || pattern.plane == tag.plane));
 }
 
-/* How closely a matching pattern names its tag: plane before set before "*". */
-static int closeness(tl_tag pattern)
-{
-    return pattern.joint == 0 ? 0 : pattern.plane == 0 ? 1 : 2;
-}
-
-const tl_law *tl_law_of(const tl_model *m, tl_tag tag)
-{
-    const tl_law *best = NULL;
-    for (size_t i = 0; i < m->joint_law_count; i++) {
-        const tl_law *one = &m->joint_laws[i];
-        if (tl_tag_matches(one->tag, tag) && (!best || closeness(one->tag) > closeness(best->tag)))
-            best = one;
-    }
-    return best;
-}
-
 tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag)
 {
     tl_min_area_rule rule = m->min_area;
     int best = 0;
     for (size_t i = 0; i < m->joint_min_area_count; i++)
-        if (tl_tag_matches(m->joint_min_areas[i].tag, tag) && closeness(m->joint_min_areas[i].tag) > best) {
-            best = closeness(m->joint_min_areas[i].tag);
+        if (tl_tag_matches(m->joint_min_areas[i].tag, tag) && tl_tag_closeness(m->joint_min_areas[i].tag) > best) {
+            best = tl_tag_closeness(m->joint_min_areas[i].tag);
             rule = m->joint_min_areas[i].rule;
         }
     return rule;
-}
-
-void tl_law_clear(tl_law *law)
-{
-    if (!law->kind)
-        return;
-    const tl_law_ops *ops = law->kind->ops;
-    if (ops->destroy && law->self != law->params) {
-        tl_enter(law->kind, "destroy");
-        ops->destroy(law->self);
-        tl_leave();
-    }
-    free(law->params);
-    *law = (tl_law){0};
 }
 
 const char *tl_pattern_name(tl_model *m, tl_tag tag)
@@ -227,24 +196,6 @@ tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *given)
 size_t tl_joint_count(const tl_model *m)
 {
     return m->joint_count;
-}
-
-tl_joint_info tl_joint_at(const tl_model *m, size_t index)
-{
-    const tl_law *law = tl_law_of(m, (tl_tag){(uint32_t)index + 1, 0});
-    return (tl_joint_info){
-        .name = m->joints[index].name, .planes = m->joints[index].planes, .law = law ? law->kind : NULL};
-}
-
-size_t tl_law_count(const tl_model *m)
-{
-    return m->joint_law_count;
-}
-
-tl_law_info tl_law_at(const tl_model *m, size_t index)
-{
-    const tl_law *law = &m->joint_laws[index];
-    return (tl_law_info){.joint = law->tag, .law = law->kind, .params = law->params};
 }
 
 size_t tl_group_count(const tl_model *m)

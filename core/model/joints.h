@@ -16,9 +16,11 @@ tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag);
 const char *tl_pattern_name(tl_model *m, tl_tag tag);
 /* True when `pattern` ("*": 0,0; set: j,0; plane: j,p) covers `tag`. */
 bool tl_tag_matches(tl_tag pattern, tl_tag tag);
-/* The joint law that rules a contact of this tag, or NULL. */
-const tl_law *tl_law_of(const tl_model *m, tl_tag tag);
+/* How closely a pattern that matches names its tag: 2 a plane, 1 a set, 0 "*". */
+static inline int tl_tag_closeness(tl_tag pattern)
+{
+    return pattern.joint == 0 ? 0 : pattern.plane == 0 ? 1 : 2;
+}
 tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag);
-void tl_law_clear(tl_law *law);
 
 #endif

@@ -1,11 +1,11 @@
 /* life.c - a model is made and destroyed. */
 #include "base/parallel.h"
 #include "geometry/make.h"
-#include "model/joints.h"
 #include "model/loads.h"
 #include "model/model.h"
 #include "model/notes.h"
 #include "model/options.h"
+#include "model/scope.h"
 #include "model/seats.h"
 
 #include <stdlib.h>

@@ -125,17 +125,6 @@ typedef struct tl_drive_record {
     bool held;                          /* it may be asked for again: tl_rows_set_aside */
 } tl_drive_record;
 
-/* A rule for the minimum area of field contacts. */
-typedef struct tl_min_area_rule {
-    double fraction;
-    double absolute; /* NaN: by the fraction */
-} tl_min_area_rule;
-
-typedef struct tl_joint_min_area {
-    tl_tag tag;
-    tl_min_area_rule rule;
-} tl_joint_min_area;
-
 /* Of all blocks, while known: total volume, m3, and the smallest volume, edge, m, and face, m2. */
 typedef struct tl_extremes {
     bool known;
@@ -185,8 +174,9 @@ struct tl_model {
 
     tl_law *joint_laws;
     size_t joint_law_count;
-    uint64_t laws;  /* counts changes of the joint laws */
-    uint64_t rules; /* counts changes of minimum areas and of contact_points */
+    const struct tl_group_verbs *group_verbs; /* who keeps forces when groups change, or NULL: scope.h */
+    uint64_t laws;                            /* counts changes of the joint laws */
+    uint64_t rules;                           /* counts changes of minimum areas and of contact_points */
     tl_min_area_rule min_area;
     tl_joint_min_area *joint_min_areas;
     size_t joint_min_area_count;

@@ -77,6 +77,8 @@ local WORDS = {
     ["block, contact, zone, gridpoint or selection"] = "talus.Block|talus.Contact|talus.Zone|talus.Gridpoint|" ..
         "talus.Blocks|talus.Contacts|talus.Zones|talus.Gridpoints",
     ["selection of blocks"] = "talus.Blocks",
+    ["selection of contacts"] = "talus.Contacts",
+    ["list of two groups"] = "(string|talus.Blocks|talus.Block)[]",
     ["block or its id"] = "talus.Block|integer",
     ["a table of what is to be done"] = "talus.BoundaryOptions",
     ["function(block)"] = "fun(block: talus.Block): any",
@@ -182,6 +184,8 @@ local function field_type(value, meaning, class)
         type = meaning:match("^table of the same") and "table" or
             (meaning:match("^the block") or meaning:match("^a block")) and "talus.Block" or
             meaning:match("^the selection of blocks") and "talus.Blocks" or meaning:match("^{x, y, z}") and "talus.Vector" or
+            meaning:match("^name of the") and "string" or meaning:match("^two groups or") and "(string|talus.Blocks)[]" or
+            meaning:match("laws as of model:laws%(%)") and "table[]" or
             meaning:match("^the number of the") and "integer" or meaning:match("^lists of the components") and "number[]" or
             (meaning:match("^how many times") or meaning:match("%f[%w]m3%f[%W]")) and "number" or
             meaning:match("^where a file was read") and "table" or
@@ -317,7 +321,10 @@ local function argument_of(text, rows, options, plugins)
         local kind, meaning = pages.split_parameter(rows[1] and rows[1].text or { "any" })
         return rows[1] and rows[1].name or "value", to_type(kind), not kind:match("required$"), meaning
     elseif word then
-        return word:match("/") and "path" or word:match("^%u%d*$") and "joint" or "name", "string"
+        if word:match("^%u%d*$") then
+            return "joint", "string|table|talus.Blocks|talus.Contacts"
+        end
+        return word:match("/") and "path" or "name", "string"
     elseif text == "model" then
         return "model", "talus.Model"
     end
