@@ -133,7 +133,7 @@ local RATIOS = { ["unbalanced"] = "ratio", ["unbalanced-maximum"] = "ratio_maxim
     ["ratio-average"] = "ratio", ["ratio-maximum"] = "ratio_maximum", convergence = "ratio_local", mechanical = "ratio" }
 
 local function history_known()
-    local known = { "name", "interval", "position", "gridpoint", "export", "write", "id", "ncycle", "nc", "mechanical", "dynamic",
+    local known = { "name", "interval", "position", "gridpoint", "export", "write", "id", "ncycle", "nc", "n", "mechanical", "dynamic",
         "time", "list", "delete", "purge", "file", "label", "xdisplacement", "ydisplacement", "zdisplacement", "xvelocity",
         "yvelocity", "zvelocity", "stress", "szz", "sxx", "syy", "damp", "acceleration", "type", "add", "create" }
     for word in pairs(FIELDS) do
@@ -166,7 +166,7 @@ local function history(c, a)
             local plain = word:gsub("%-[xyz]$", ""):gsub("^[xyz](%a+)$", "%1")
             if word == "name" or word == "id" or word == "label" then
                 name = a:text "the name"
-            elseif word == "interval" or word == "ncycle" or word == "nc" then
+            elseif word == "interval" or word == "ncycle" or word == "nc" or word == "n" then
                 c.history_interval = a:number(word).lua
             elseif word == "position" then
                 place = a:vector "the place"
