@@ -152,6 +152,8 @@ function lexer.statements(text)
             ok, statement.tokens = pcall(lexer.tokens, statement.code)
             if not ok then
                 statement = statement.tokens
+            elseif #statement.tokens == 0 then
+                statement.kind = "blank"
             end
         end
         if ok then
