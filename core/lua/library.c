@@ -204,8 +204,9 @@ static const tl_lua_key stereonet_keys[] = {
 static const tl_lua_key convert_keys[] = {
     {"file", "text in quotes, required", "name of the data file, of 3DEC 7 to 9 or a classic one"},
     {"to", "text in quotes, may be left out", "name of the script that is written; folders are made"},
-    {"up", "\"z\" or \"y\", default \"z\"",
-     "axis that points up in the file; with \"y\" dip directions count from z, as in left-handed files"},
+    {"up", "\"z\" or \"y\"",
+     "axis that points up in the file, z when left out; with \"y\" dip directions count from z, as in left-handed "
+     "files"},
     {NULL, NULL, NULL},
 };
 
@@ -221,10 +222,10 @@ static const tl_lua_key convert_result[] = {
 
 const tl_lua_topic tl_lua_library_topics[] = {
     {.name = "convert",
-     .usage = "talus convert [--up y] FILE [SCRIPT.lua]  or  result = talus.convert{file = \"arch.3ddat\", to = "
-              "\"arch.lua\"}",
+     .usage = "result = talus.convert{file = \"FILE\", to = \"SCRIPT\"}",
      .doc = "Writes a data file of 3DEC as a script of Talus, one line a command, and tells what is left out. "
-            "talus run FILE.3ddat, or FILE.dat, runs it at once.",
+            "`talus convert [--up y] FILE [SCRIPT.lua]` does the same from a shell, and `talus run FILE.3ddat`, or "
+            "FILE.dat, runs it at once.",
      .keys = convert_keys,
      .title = "Fields of the result",
      .verbs = convert_result},

@@ -105,7 +105,7 @@ end
 -- A name: a word, a text in quotes, a number or the value of a variable.
 function arguments:text(what)
     local token = self:peek()
-    if not token then
+    if not token or #self.spare > 0 then
         lexer.mistake("%s: %s is missing", self.command, what)
     end
     self.at = self.at + 1
@@ -118,8 +118,8 @@ end
 -- The keyword that comes next; a mistake when it is none of these.
 function arguments:keyword(known)
     local token = self:peek()
-    if token.kind ~= "word" and token.kind ~= "text" then
-        lexer.mistake("%s: '%s' is not expected; a word is: %s", self.command, token.text, known[1])
+    if #self.spare > 0 or not token or token.kind ~= "word" and token.kind ~= "text" then
+        lexer.mistake("%s: '%s' is not expected; a word is: %s", self.command, token and token.text or "a vector", known[1])
     end
     self.at = self.at + 1
     return match.need(token.text, known, self.command)

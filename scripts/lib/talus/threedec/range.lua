@@ -178,10 +178,6 @@ function range.read(c, a)
     end
     local list, negate = { }, false
     while a:more() do
-        local token = a:peek()
-        if token.kind == "number" then
-            lexer.mistake("%s: the number %s in the range is not expected", a.command, token.text)
-        end
         local word = a:keyword(KNOWN)
         if word == "not" then
             negate = true
@@ -217,7 +213,7 @@ local kinds = {
 local function between(place, axis, e)
     local at = ("%s[%d]"):format(place, axis)
     if e.about then
-        return ("math.abs(%s - %s) < 1e-6"):format(at, e.from.lua)
+        return ("math.abs(%s%s) < 1e-6"):format(at, e.from.value == 0 and "" or " - " .. (e.from.level < 2 and "(" .. e.from.lua .. ")" or e.from.lua))
     end
     local from, to = e.from, e.to
     if from.value > to.value then
