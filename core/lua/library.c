@@ -222,7 +222,7 @@ static const tl_lua_key convert_result[] = {
 
 const tl_lua_topic tl_lua_library_topics[] = {
     {.name = "convert",
-     .usage = "result = talus.convert{file = \"FILE\", to = \"SCRIPT\"}",
+     .usage = "result = talus.convert{file = \"scripts/examples/fault.3ddat\"}",
      .doc = "Writes a data file of 3DEC as a script of Talus, one line a command, and tells what is left out. "
             "`talus convert [--up y] FILE [SCRIPT.lua]` does the same from a shell, and `talus run FILE.3ddat`, or "
             "FILE.dat, runs it at once.",

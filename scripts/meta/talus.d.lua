@@ -1273,17 +1273,17 @@ function Model:write_histories(path) end
 ---@field up? "z"|"y" axis that points up in the file, z when left out; with "y" dip directions count from z, as in left-handed files
 
 ---@class (exact) talus.ConvertResult
----@field script any the script, a text
----@field report any lines that tell what was converted and what was not
----@field converted any number of commands; of those for which Talus needs nothing
----@field needless any number of commands; of those for which Talus needs nothing
----@field left_out any lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
----@field in_part any lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
----@field mistakes any lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+---@field script string the script, a text
+---@field report string[] lines that tell what was converted and what was not
+---@field converted integer number of commands; of those for which Talus needs nothing
+---@field needless integer number of commands; of those for which Talus needs nothing
+---@field left_out { file: string, line: integer, reason: string, source: string }[] lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+---@field in_part table lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+---@field mistakes table lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
 
 --- Writes a data file of 3DEC as a script of Talus, one line a command, and tells what is left out. `talus convert [--up y] FILE [SCRIPT.lua]` does the same from a shell, and `talus run FILE.3ddat`, or FILE.dat, runs it at once.
 ---
----     result = talus.convert{file = "FILE", to = "SCRIPT"}
+---     result = talus.convert{file = "scripts/examples/fault.3ddat"}
 ---@param options talus.ConvertOptions
 ---@return talus.ConvertResult
 function talus.convert(options) end
