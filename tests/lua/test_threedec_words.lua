@@ -1,5 +1,6 @@
 -- Data files of 3DEC written in other ways mean the same: words abbreviated and in capitals, lines continued, other
 -- separators, keywords in another order, comments. And no text at all makes the converter fail.
+require "talus"
 local check = require "check"
 local lexer = require "talus.threedec.lexer"
 local threedec = require "talus.threedec"
