@@ -441,9 +441,9 @@ static void give_press_back(tl_detect *d, uint32_t row)
 /* Cost only: how many steps laying out takes as long as. All are laid out anew once empty lanes have cost as much. */
 #define LAYOUT_STEPS 8
 
-uint32_t tl_law_row(const tl_model *m, tl_tag tag)
+uint32_t tl_law_row(const tl_model *m, tl_tag tag, uint32_t a, uint32_t b)
 {
-    const tl_law *law = tl_law_of(m, tag);
+    const tl_law *law = tl_law_of(m, tag, a, b);
     return law ? (uint32_t)(law - m->joint_laws) : TL_NO_ROW;
 }
 
@@ -460,7 +460,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, uint32_t kind, double valid, 
     c->b[row] = p->b;
     c->pair[row] = pair;
     c->tag[row] = tag;
-    c->law[row] = tl_law_row(m, tag);
+    c->law[row] = tl_law_row(m, tag, p->a, p->b);
     c->facet[row] = (tl_facet){.kind = kind};
     c->kind[row] = (uint8_t)kind;
     c->press[row] = TL_NO_ROW;

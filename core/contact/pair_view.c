@@ -19,10 +19,11 @@ tl_pair_view tl_pair_view_at(const tl_model *m, uint32_t a, uint32_t b, tl_sides
                           .mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b])};
 }
 
-tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, double over)
+tl_touch_rule tl_touch_rule_of(const tl_model *m, uint32_t a, uint32_t b, const tl_pair_view *view, tl_tag tag,
+                               double over)
 {
     tl_min_area_rule rule = tl_min_area_of(m, tag);
-    const tl_law *law = tl_law_of(m, tag);
+    const tl_law *law = tl_law_of(m, tag, a, b);
     double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     bool absolute = !isnan(rule.absolute);
     return (tl_touch_rule){.min_area = absolute ? rule.absolute : rule.fraction * view->mean_face,

@@ -26,7 +26,8 @@ static inline double tl_contact_size(const tl_model *m, uint32_t contact)
 /* Whether a patch of two faces, of blocks a and b, has its points at its corners. */
 bool tl_pair_at_corners(const tl_model *m, uint32_t a, uint32_t face_a, uint32_t b, uint32_t face_b);
 /* How a pair of a joint is to touch, whose faces may carry a force across a gap of `over`, m. */
-tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, double over);
+tl_touch_rule tl_touch_rule_of(const tl_model *m, uint32_t a, uint32_t b, const tl_pair_view *view, tl_tag tag,
+                               double over);
 /* Where the sides of a contact are against each other. */
 tl_spot tl_spot_of(const tl_model *m, tl_sides sides, double remaining);
 /* How far points within `radius` of the centroid of B have moved since `then`, at the most: what the rounding of the

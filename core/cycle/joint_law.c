@@ -1,4 +1,7 @@
-/* joint_law.c - setting the law of a joint, and what becomes of the contacts that come under it. */
+/* joint_law.c - setting the law of a joint or of a part of its contacts, and what becomes of the contacts that come
+ * under it, or under another law with the groups of their blocks. */
+#include "cycle/joint_law.h"
+
 #include "base/columns.h"
 #include "base/inside.h"
 #include "base/params.h"
@@ -14,6 +17,8 @@
 #include "force/field_press.h"
 #include "force/joint_laws.h"
 #include "model/joints.h"
+#include "model/rows.h"
+#include "model/scope.h"
 #include "plugin/loader.h"
 
 #include <stdlib.h>
@@ -142,7 +147,7 @@ static void keep_field_force(tl_model *m, uint32_t c)
     const size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
     const tl_points_table *p = &m->detect->points;
     const double radius = tl_press_row_of(m, c)->press.radius;
-    trial t = {.m = m, .contact = c, .law = tl_law_of(m, contacts->tag[c])};
+    trial t = {.m = m, .contact = c, .law = tl_law_of(m, contacts->tag[c], contacts->a[c], contacts->b[c])};
     t.wanted = tl_v3_norm(tl_v3_sub(contacts->force[c], tl_columns_get(p->f_s, first)));
     read_state(&t);
     note_openings(&t);
@@ -222,19 +227,18 @@ static bool is_patch(const tl_model *m, uint32_t c)
     return tl_facet_is_patch(&m->detect->contacts.facet[c]);
 }
 
-/* Whether a contact that has forces gets this law in place of another. */
-static bool takes_over(const tl_model *m, const tl_law *law, uint32_t c)
+/* The law that a contact with forces comes under by a new law, or with NULL by groups that blocks have now. NULL: it
+ * stays under its own, or comes under none. */
+static const tl_law *law_to_come(const tl_model *m, const tl_law *fresh, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    if (contacts->law[c] == TL_NO_ROW || !tl_tag_matches(law->tag, contacts->tag[c]))
-        return false;
-    const tl_law *ruling = tl_law_of(m, contacts->tag[c]);
-    /* a law set for a plane of the joint goes before one set for the whole */
-    if (ruling->tag.joint > 0 && law->tag.joint == 0)
-        return false;
-    if (ruling->tag.plane > 0 && law->tag.plane == 0)
-        return false;
-    return has_forces(m->detect, c);
+    const uint32_t a = contacts->a[c], b = contacts->b[c];
+    if (contacts->law[c] == TL_NO_ROW || (fresh && !tl_scope_covers(m, &fresh->scope, contacts->tag[c], a, b)))
+        return NULL;
+    const tl_law *ruling = tl_law_of(m, contacts->tag[c], a, b), *law = fresh ? fresh : ruling;
+    const bool stays =
+        fresh ? tl_scope_before(&ruling->scope, &fresh->scope) : !ruling || ruling == &m->joint_laws[contacts->law[c]];
+    return !stays && has_forces(m->detect, c) ? law : NULL;
 }
 
 /* Energies of points of 1 m2 without history that are pressed in by up to 1 m. */
@@ -282,27 +286,30 @@ static bool presses_alike(const tl_law *before, const tl_law *law)
     return tl_law_is_linear(law) || (tl_law_presses(law) && same_curve(before, law));
 }
 
-/* Whether a contact comes under another stiffness, curve or plugin by a law, and has forces that are to stay. */
-static bool rebases(const tl_model *m, const tl_law *law, uint32_t c)
+/* The same where the law has another stiffness, curve or plugin, so that forces are to be kept. */
+static const tl_law *law_to_rebase(const tl_model *m, const tl_law *fresh, uint32_t c)
 {
-    return takes_over(m, law, c) && !presses_alike(&m->joint_laws[m->detect->contacts.law[c]], law);
+    const tl_law *law = law_to_come(m, fresh, c);
+    return law && !presses_alike(&m->joint_laws[m->detect->contacts.law[c]], law) ? law : NULL;
 }
 
-/* Adds the columns that a law needs of the points of contacts; false: out of memory. */
-static bool reserve(tl_model *m, const tl_law *law)
+/* Adds the columns that laws to come need of the points of contacts; false: out of memory. */
+static bool reserve(tl_model *m, const tl_law *fresh)
 {
     bool rebased = false;
     for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
-        rebased = is_patch(m, c) && rebases(m, law, c);
-    return tl_detect_hold_states(m->detect, law->columns) && (!rebased || tl_detect_hold_initial(m->detect));
+        rebased = is_patch(m, c) && law_to_rebase(m, fresh, c);
+    return (!fresh || tl_detect_hold_states(m->detect, fresh->columns)) &&
+           (!rebased || tl_detect_hold_initial(m->detect));
 }
 
 /* Keeps the forces of patches. What their contacts, and those of fields, have stored is not known any more. */
-static void rebase(tl_model *m, const tl_law *law)
+static void rebase(tl_model *m, const tl_law *fresh)
 {
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        if (!takes_over(m, law, c))
+        const tl_law *law = law_to_come(m, fresh, c);
+        if (!law)
             continue;
         const tl_law *before = &m->joint_laws[d->contacts.law[c]];
         bool alike = presses_alike(before, law);
@@ -340,38 +347,53 @@ typedef struct fields {
 } fields;
 
 /* false: out of memory. */
-static bool find_fields(tl_model *m, const tl_law *law, fields *out)
+static bool find_fields(tl_model *m, const tl_law *fresh, fields *out)
 {
     const size_t rows = m->detect->contacts.table.rows;
     bool enough = true;
     out->contact = malloc((rows + 1) * sizeof *out->contact);
     for (uint32_t c = 0; c < rows && out->contact && enough; c++)
-        if (is_field(m, c) && rebases(m, law, c)) {
+        if (is_field(m, c) && law_to_rebase(m, fresh, c)) {
             enough = may_keep_field_force(m, c);
             out->contact[out->count++] = c;
         }
     return out->contact && enough;
 }
 
-/* Brings contacts up to the present places, where a step that failed has left them already, and holds the columns that
- * a law needs. All that can fail is done before the law takes its place. */
-static tl_status prepare_contacts(tl_model *m, const tl_law *law, fields *out)
+/* Brings contacts up to the present places, where a step that failed has left them already. */
+static tl_status bring_up(tl_model *m)
 {
     tl_asked_end(m);
-    if (!m->detect)
-        return TL_OK;
-    tl_status status = tl_detect_update(m);
-    if (status != TL_OK)
-        return status;
-    return reserve(m, law) && find_fields(m, law, out) ? TL_OK : tl_fail_memory(&m->error);
+    return m->detect ? tl_detect_update(m) : TL_OK;
 }
 
-/* The law of just this joint or plane, or a place for it behind the others; NULL: out of memory. */
-static tl_law *place_of(tl_model *m, tl_tag tag)
+/* Holds what laws to come need. All that can fail is done before they take their places. */
+static tl_status prepare_contacts(tl_model *m, const tl_law *fresh, fields *out)
+{
+    return !m->detect || (reserve(m, fresh) && find_fields(m, fresh, out)) ? TL_OK : tl_fail_memory(&m->error);
+}
+
+static void keep_field_forces(tl_model *m, const fields *kept)
+{
+    for (size_t k = 0; k < kept->count; k++)
+        keep_field_force(m, kept->contact[k]);
+}
+
+/* The law of just this scope, or NULL. */
+static tl_law *law_of_scope(tl_model *m, const tl_scope *scope)
 {
     for (size_t i = 0; i < m->joint_law_count; i++)
-        if (m->joint_laws[i].tag.joint == tag.joint && m->joint_laws[i].tag.plane == tag.plane)
+        if (tl_scope_same(&m->joint_laws[i].scope, scope))
             return &m->joint_laws[i];
+    return NULL;
+}
+
+/* That law, or a place for it behind the others; NULL: out of memory. */
+static tl_law *place_of(tl_model *m, const tl_scope *scope)
+{
+    tl_law *place = law_of_scope(m, scope);
+    if (place)
+        return place;
     tl_law *laws = realloc(m->joint_laws, (m->joint_law_count + 1) * sizeof *laws);
     if (!laws)
         return NULL;
@@ -380,15 +402,17 @@ static tl_law *place_of(tl_model *m, tl_tag tag)
     return &laws[m->joint_law_count];
 }
 
-/* Puts a law in its place, which it owns then; after a failure nothing has changed. */
-static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
+/* Puts a law in its place, which owns it then; after a failure nothing has changed. */
+static tl_status put_law(tl_model *m, const tl_law *law)
 {
     fields kept = {NULL, 0};
-    tl_law *place = place_of(m, law->tag);
-    tl_status status = place ? prepare_contacts(m, law, &kept) : tl_fail_memory(&m->error);
+    tl_law *place = place_of(m, &law->scope);
+    tl_status status = place ? bring_up(m) : tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        status = prepare_contacts(m, law, &kept);
     if (status == TL_OK) {
-        char of[200];
-        tl_text_print(of, sizeof of, "joint '%.80s', law '%.40s'", joint, law->kind->name);
+        char scope[TL_SCOPE_TEXT], of[TL_SCOPE_TEXT + 60];
+        tl_text_print(of, sizeof of, "%s, law '%.40s'", tl_scope_text(m, &law->scope, scope), law->kind->name);
         tl_remark_friction(m, of, law->kind, law->params);
         rebase(m, law);
         const uint32_t row = (uint32_t)(place - m->joint_laws);
@@ -398,39 +422,120 @@ static tl_status put_law(tl_model *m, const char *joint, const tl_law *law)
             reset(m, row, law->kind);
         tl_law_clear(place);
         *place = *law;
-        for (size_t k = 0; k < kept.count; k++)
-            keep_field_force(m, kept.contact[k]);
+        keep_field_forces(m, &kept);
         m->laws++;
     }
     free(kept.contact);
     return status;
 }
 
+/* ---------------------------------------------------------------- groups ------------------ */
+
+/* Gives blocks the groups of a change, and the change those that they had. */
+static void swap_groups(tl_model *m, tl_group_change *change, bool backward)
+{
+    for (size_t i = 0; i < change->count; i++) {
+        const size_t k = backward ? change->count - 1 - i : i; /* some block may be there twice */
+        uint32_t *group = &m->blocks.group[change->row[k]], had = *group;
+        *group = change->group[k];
+        change->group[k] = had;
+    }
+}
+
+static tl_status begin_groups(tl_model *m, tl_group_change *change)
+{
+    fields kept = {NULL, 0};
+    tl_status status = bring_up(m);
+    if (status != TL_OK)
+        return status;
+    swap_groups(m, change, false);
+    status = prepare_contacts(m, NULL, &kept);
+    swap_groups(m, change, true);
+    change->contact = kept.contact;
+    change->contact_count = kept.count;
+    return status;
+}
+
+static void apply_groups(tl_model *m, tl_group_change *change)
+{
+    swap_groups(m, change, false);
+    rebase(m, NULL);
+    keep_field_forces(m, &(fields){change->contact, change->contact_count});
+    m->laws++;
+    if (m->cycle)
+        m->cycle->dt = 0;
+}
+
+void tl_laws_follow_groups(tl_model *m)
+{
+    static const tl_group_verbs verbs = {begin_groups, apply_groups};
+    m->group_verbs = &verbs;
+}
+
+/* ---------------------------------------------------------------- setting a law ----------- */
+
+/* The law whose properties one of this scope begins with: that which goes before all others that are for the whole of
+ * it, or NULL. */
+static const tl_law *law_to_begin_with(const tl_model *m, const tl_scope *scope)
+{
+    const tl_law *best = NULL;
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *one = &m->joint_laws[i];
+        if (tl_scope_contains(&one->scope, scope) && (!best || tl_scope_before(&one->scope, &best->scope)))
+            best = one;
+    }
+    return best;
+}
+
+static tl_status no_law(tl_model *m, const tl_scope *scope)
+{
+    char text[TL_SCOPE_TEXT];
+    const char *joint = tl_pattern_name(m, scope->tag);
+    if (scope->names > 0)
+        return tl_fail(&m->error, TL_E_STATE, "%s: no law is for all of them yet: name one",
+                       tl_scope_text(m, scope, text));
+    return tl_fail(&m->error, TL_E_STATE,
+                   m->speaks_lua ? "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})"
+                                 : "joint '%s' has no law yet: give tl_joint_law() one for \"%s\"",
+                   joint, joint);
+}
+
+tl_status tl_joint_law_for(tl_model *m, const tl_law_scope *given, const char *law, const tl_args *args)
+{
+    tl_scope scope;
+    tl_law fresh = {.kind = NULL};
+    tl_status status = tl_model_may_set(m, "set a law or its properties");
+    if (status != TL_OK)
+        return status;
+    tl_rows_tidy(m);
+    status = tl_scope_read(m, given, &scope);
+    if (status != TL_OK)
+        return status;
+    const tl_law *same = law_of_scope(m, &scope), *from = law ? NULL : law_to_begin_with(m, &scope);
+    const tl_kind *kind = law ? tl_plugin_find(TL_KIND_LAW, law) : from ? from->kind : NULL;
+    if (same && !law) /* it is the same law, and not a later one */
+        scope.order = same->scope.order;
+    if (law && !kind)
+        status = tl_kind_unknown(&m->error, TL_KIND_LAW, law);
+    else if (!kind)
+        status = no_law(m, &scope);
+    else
+        status = tl_law_make_for(m, &scope, kind, args, from, &fresh);
+    if (status == TL_OK)
+        scope = (tl_scope){.names = 0};
+    if (status == TL_OK && (status = put_law(m, &fresh)) != TL_OK)
+        tl_law_clear(&fresh);
+    tl_scope_clear(&scope);
+    if (status == TL_OK && m->cycle)
+        m->cycle->dt = 0;
+    if (status == TL_OK)
+        tl_laws_follow_groups(m);
+    return status;
+}
+
 tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl_args *args)
 {
-    tl_tag tag;
-    tl_status status = tl_model_may_set(m, "set a law or its properties");
-    if (status == TL_OK)
-        status = tl_joint_parse(m, joint, &tag);
-    if (status != TL_OK)
-        return status;
-    const tl_law *ruling = tl_law_of(m, tag);
-    const tl_kind *kind = law ? tl_plugin_find(TL_KIND_LAW, law) : ruling ? ruling->kind : NULL;
-    if (law && !kind)
-        return tl_kind_unknown(&m->error, TL_KIND_LAW, law);
-    if (!kind)
-        return tl_fail(&m->error, TL_E_STATE,
-                       m->speaks_lua ? "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})"
-                                     : "joint '%s' has no law yet: give tl_joint_law() one for \"%s\"",
-                       joint, joint);
-    tl_law fresh;
-    status = tl_law_make_for(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
-    if (status != TL_OK)
-        return status;
-    status = put_law(m, joint, &fresh);
-    if (status != TL_OK)
-        tl_law_clear(&fresh);
-    else if (m->cycle)
-        m->cycle->dt = 0;
-    return status;
+    tl_law_scope scope = tl_law_scope_default();
+    scope.joint = joint;
+    return tl_joint_law_for(m, &scope, law, args);
 }

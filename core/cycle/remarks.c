@@ -12,7 +12,7 @@
 #include "detect/overlap.h"
 #include "model/body_shape.h"
 #include "model/deformable.h"
-#include "model/joints.h"
+#include "model/scope.h"
 #include "zone/zones.h"
 
 #include <string.h>
@@ -93,23 +93,24 @@ static void remark_density(tl_model *m, const densities *d, double g)
 
 static void remark_stiffness(tl_model *m, const densities *d, double g, const tl_law *law)
 {
+    char of[TL_SCOPE_TEXT];
     double sunk = d->most * g / law->kn, least = d->least * g / law->kn;
     bool tonnes = g >= EARTH_LEAST && g <= EARTH_MOST && d->least >= TONNES_LEAST && d->most <= TONNES_MOST;
     if (sunk > SOFT && tl_model_says(m, TL_REMARK_SOFT))
         tl_model_say(m,
-                     "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under its own weight; give "
+                     "%s: kn = %g is soft: block %u sinks in by %.3g %% of its size under its own weight; give "
                      "a larger kn, or look at the units of kn (Pa/m), density and gravity",
-                     tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->densest], 100 * sunk);
+                     tl_scope_text(m, &law->scope, of), law->kn, m->blocks.id[d->densest], 100 * sunk);
     else if (tonnes && sunk * RIGID < 1 && tl_model_says(m, TL_REMARK_DENSITY))
         tl_model_say(m,
-                     "joint '%s': kn = %g goes with density = %g of block %u only if kn is in kPa/m and rock is that "
+                     "%s: kn = %g goes with density = %g of block %u only if kn is in kPa/m and rock is that "
                      "stiff; if kn is in Pa/m, give the density in kg/m3",
-                     tl_pattern_name(m, law->tag), law->kn, d->most, m->blocks.id[d->densest]);
+                     tl_scope_text(m, &law->scope, of), law->kn, d->most, m->blocks.id[d->densest]);
     else if (least < STIFF && tl_model_says(m, TL_REMARK_STIFF))
         tl_model_say(m,
-                     "joint '%s': kn = %g is improbably stiff: block %u closes the joint by %.2g of its size under its "
+                     "%s: kn = %g is improbably stiff: block %u closes the joint by %.2g of its size under its "
                      "own weight, and steps are short for nothing; look at the units of kn (Pa/m), density and gravity",
-                     tl_pattern_name(m, law->tag), law->kn, m->blocks.id[d->lightest], least);
+                     tl_scope_text(m, &law->scope, of), law->kn, m->blocks.id[d->lightest], least);
 }
 
 /* ---------------------------------------------------------------- solids ----------------- */
@@ -193,15 +194,14 @@ void tl_remark_closure(tl_model *m)
         if (!may_have_closed(m, row) || !tl_overlap_measure(m, row, &closed) ||
             !(closed.overlap >= CLOSED * closed.thickness) || !tl_model_says(m, TL_REMARK_CLOSURE))
             continue;
-        char name[320];
+        char name[320], of[TL_SCOPE_TEXT];
         tl_contact_describe(m, row, name, sizeof name);
         const tl_law *law = &m->joint_laws[c->law[row]];
-        tl_model_say(
-            m,
-            "joint '%s': kn = %.3g is soft for what presses: the %s has closed by %.3g m, %.0f %% of the thickness of "
-            "block %u, %.3g m; give a larger kn, or look at the units of kn (Pa/m), densities and loads",
-            tl_pattern_name(m, law->tag), law->kn, name, closed.overlap, 100 * closed.overlap / closed.thickness,
-            m->blocks.id[closed.thinner], closed.thickness);
+        tl_model_say(m,
+                     "%s: kn = %.3g is soft for what presses: the %s has closed by %.3g m, %.0f %% of the thickness of "
+                     "block %u, %.3g m; give a larger kn, or look at the units of kn (Pa/m), densities and loads",
+                     tl_scope_text(m, &law->scope, of), law->kn, name, closed.overlap,
+                     100 * closed.overlap / closed.thickness, m->blocks.id[closed.thinner], closed.thickness);
         return;
     }
 }

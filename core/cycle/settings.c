@@ -2,12 +2,14 @@
 #include "cycle/cycle_data.h"
 #include "cycle/timestep.h"
 #include "model/joints.h"
+#include "model/scope.h"
 
 bool tl_model_law_at(tl_model *m, size_t i, const char **joint, tl_plugin_setting *law)
 {
     if (i >= m->joint_law_count)
         return false;
-    *joint = tl_pattern_name(m, m->joint_laws[i].tag);
+    const tl_scope *scope = &m->joint_laws[i].scope;
+    *joint = scope->names ? tl_scope_text(m, scope, m->name) : tl_pattern_name(m, scope->tag);
     *law = (tl_plugin_setting){m->joint_laws[i].kind, m->joint_laws[i].params};
     return true;
 }
@@ -17,8 +19,8 @@ bool tl_model_joint_at(tl_model *m, size_t i, const char **name, const char **ru
     if (i >= m->joint_count)
         return false;
     *name = m->joints[i].name;
-    const tl_law *law = tl_law_of(m, (tl_tag){(uint32_t)i + 1, 0});
-    *ruled_by = law ? tl_pattern_name(m, law->tag) : NULL;
+    const tl_law *law = tl_law_of_joint(m, (tl_tag){(uint32_t)i + 1, 0});
+    *ruled_by = law ? tl_pattern_name(m, law->scope.tag) : NULL;
     return true;
 }
 

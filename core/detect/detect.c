@@ -176,7 +176,7 @@ static double way_to_grazing(const tl_model *m, const tl_pair_view *view, tl_pai
         return -1;
     tl_grazing_choose_faces(view, p, lows);
     double gap, margin = tl_grazing_margin(view, p, &gap);
-    if (margin >= 0 && !(tl_touch_rule_of(m, view, tl_touching_tag(view, lows->n), 0).min_area > 0))
+    if (margin >= 0 && !(tl_touch_rule_of(m, p->a, p->b, view, tl_touching_tag(view, lows->n), 0).min_area > 0))
         return margin;
     tl_pair_forget_faces(p);
     return -1;
@@ -194,7 +194,7 @@ static tl_manifold_before before_contact(const tl_model *m, const tl_pair *p, co
     out.reach = fmax(0, out.shift);
     if (!cut || !cut->holds_over_gap || !tl_cut_contact_faces(m, p->a, p->b, &faces))
         return out;
-    tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[faces.a], INFINITY);
+    tl_touch_rule rule = tl_touch_rule_of(m, p->a, p->b, view, view->a->tag[faces.a], INFINITY);
     out.over = INFINITY;
     out.holds = tl_patch_lay(view, faces.a, faces.b, &rule, scratch) > 0;
     out.faces = faces;
@@ -291,7 +291,7 @@ static double way_to_test(const tl_model *m, tl_pair *p, tl_births *births, tl_n
     if (way >= 0)
         return way;
     const tl_tag tag = tl_touching_tag(&view, region.n);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
+    tl_touch_rule rule = tl_touch_rule_of(m, p->a, p->b, &view, tag, before.over);
     if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))
         return NAN; /* what was found is not all there is */
     if (scratch->manifold.point_count == 0 && !tl_overlap_is_whole(&view, &region))
@@ -468,7 +468,7 @@ static bool find_birth(const tl_model *m, const tl_pair *p, tl_birth *out, bool 
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + before.shift, scratch, &region))
         return false;
     tl_tag tag = tl_touching_tag(&view, region.n);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
+    tl_touch_rule rule = tl_touch_rule_of(m, p->a, p->b, &view, tag, before.over);
     if (!tl_kind_find(m, p->a, p->b, &view, &region, &rule, &before, scratch))
         return false;
     *out = birth_of(m, p, &view, &region, tag, scratch);
@@ -537,7 +537,7 @@ static tl_status give_births(tl_model *m, size_t *born)
 static void change_law(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
-    uint32_t old = d->contacts.law[c], law = tl_law_row(m, d->contacts.tag[c]);
+    uint32_t old = d->contacts.law[c], law = tl_law_row(m, d->contacts.tag[c], d->contacts.a[c], d->contacts.b[c]);
     d->contacts.law[c] = law;
     const tl_kind *kind = tl_law_kind(m, law);
     if (old != TL_NO_ROW && m->joint_laws[old].kind == kind)
@@ -578,7 +578,7 @@ static bool settle_rows(tl_model *m)
         }
         if (c->pending[row] == TL_PENDING_MOVE)
             d->pairs[pair].want_points = c->point_capacity[row];
-        if (tl_law_row(m, c->tag[row]) != c->law[row])
+        if (tl_law_row(m, c->tag[row], c->a[row], c->b[row]) != c->law[row])
             change_law(m, row);
     }
     return tl_contacts_place(d, m->cycles);

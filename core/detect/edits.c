@@ -382,7 +382,7 @@ static void find_laws(tl_model *m)
     for (uint32_t row = 0; row < c->table.rows; row++) {
         if (c->pending[row] == TL_PENDING_DIE)
             continue;
-        uint32_t law = tl_law_row(m, c->tag[row]);
+        uint32_t law = tl_law_row(m, c->tag[row], c->a[row], c->b[row]);
         if (c->pending[row] == TL_PENDING_NONE && law != c->law[row])
             c->pending[row] = TL_PENDING_MOVE;
         if (lacks_volumes(m, row, law))

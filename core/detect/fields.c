@@ -323,7 +323,8 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     if (row->by_slope) /* its slopes have taken the place of that mesh */
         row->flat = (tl_field_mesh){0};
     row->by_slope = false;
-    tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], 0);
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_touch_rule rule = tl_touch_rule_of(m, contacts->a[c], contacts->b[c], view, contacts->tag[c], 0);
     b->region[k] = kept_region(row);
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
     note_moved_faces(m, c, row, &before);
@@ -338,7 +339,7 @@ bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
     tl_pair_view view = tl_contact_view(m, c);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], 0);
+    tl_touch_rule rule = tl_touch_rule_of(m, contacts->a[c], contacts->b[c], &view, contacts->tag[c], 0);
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
     tl_region region;
     note_moved_faces(m, c, row, &before);

@@ -90,7 +90,7 @@ static void note_tag(tl_model *m, uint32_t c, tl_tag tag)
     if (tag.joint == contacts->tag[c].joint && tag.plane == contacts->tag[c].plane)
         return;
     contacts->tag[c] = tag;
-    if (tl_law_row(m, tag) != contacts->law[c])
+    if (tl_law_row(m, tag, contacts->a[c], contacts->b[c]) != contacts->law[c])
         contacts->pending[c] = TL_PENDING_MOVE;
 }
 
@@ -127,7 +127,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_p
     region.mesh = row ? &mesh : NULL;
     region.flat = row ? &flat : NULL;
     tl_tag tag = tl_touching_tag(&view, region.n);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
+    tl_touch_rule rule = tl_touch_rule_of(m, contacts->a[c], contacts->b[c], &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
     if (!tl_kind_find(m, contacts->a[c], contacts->b[c], &view, &region, &rule, &before, scratch))
         return false;
@@ -405,7 +405,8 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     if (!contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_contact_view(m, c);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c] ? INFINITY : 0);
+    tl_touch_rule rule = tl_touch_rule_of(m, contacts->a[c], contacts->b[c], &view, contacts->tag[c],
+                                          contacts->holds_over_gap[c] ? INFINITY : 0);
     scratch->manifold.failed = !place_face(&view, f->ib, scratch);
     if (scratch->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, scratch) > 0))
         return false;
@@ -432,7 +433,7 @@ static bool touches_still(tl_model *m, uint32_t c)
     if (contacts->point_count[c] || contacts->points_valid_to[c] == TL_OUTDATED)
         return false;
     tl_pair_view view = tl_contact_view(m, c);
-    if (tl_touch_rule_of(m, &view, contacts->tag[c], 0).min_area > 0)
+    if (tl_touch_rule_of(m, contacts->a[c], contacts->b[c], &view, contacts->tag[c], 0).min_area > 0)
         return false;
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
     double gap, margin = tl_grazing_margin(&view, p, &gap);

@@ -6,11 +6,13 @@
 #include "contact/contacts.h"
 #include "model/joints.h"
 #include "model/law_time.h"
+#include "model/scope.h"
 #include "plugin/loader.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 /* Forces over smaller ones would not be finite. */
 static bool is_stiffness(double k)
@@ -76,17 +78,20 @@ tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *cont
     return out->params ? make(out, args, false, context, error) : tl_fail_memory(error);
 }
 
-tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind, const tl_args *args,
+tl_status tl_law_make_for(tl_model *m, const tl_scope *scope, const tl_kind *kind, const tl_args *args,
                           const tl_law *from, tl_law *out)
 {
-    char context[TL_ERROR_TEXT / 2];
-    *out = (tl_law){.tag = tag, .kind = kind, .params = calloc(1, kind->params_size + 1)};
+    char of[TL_SCOPE_TEXT], context[TL_SCOPE_TEXT + 60];
+    *out = (tl_law){.kind = kind, .params = calloc(1, kind->params_size + 1)};
     if (!out->params)
         return tl_fail_memory(&m->error);
     if (from)
         memcpy(out->params, from->params, kind->params_size);
-    snprintf(context, sizeof context, "joint '%.80s', law '%.40s'", joint, kind->name);
-    return make(out, args, from != NULL, context, &m->error);
+    tl_text_print(context, sizeof context, "%s, law '%.40s'", tl_scope_text(m, scope, of), kind->name);
+    tl_status status = make(out, args, from != NULL, context, &m->error);
+    if (status == TL_OK)
+        out->scope = *scope;
+    return status;
 }
 
 tl_law_batch tl_lanes_batch(const tl_model *m, const tl_point_lanes *l, size_t count)

@@ -18,8 +18,9 @@ tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *cont
 tl_law_batch tl_lanes_batch(const tl_model *m, const tl_point_lanes *lanes, size_t count);
 /* Asks a law for the forces of points. */
 tl_status tl_law_update(const tl_law *law, const tl_law_batch *batch, tl_report *report);
-/* Makes the law of a joint from a plugin's law and arguments; with `from`, properties not given are taken from it. */
-tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind, const tl_args *args,
+/* Makes a law from a plugin's law and arguments; with `from`, properties not given are taken from it. What the scope
+ * lists belongs to it then; after a failure still to the caller. */
+tl_status tl_law_make_for(tl_model *m, const tl_scope *scope, const tl_kind *kind, const tl_args *args,
                           const tl_law *from, tl_law *out);
 
 #endif

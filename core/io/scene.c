@@ -155,10 +155,12 @@ static double friction_of(const tl_law *law)
 /* That of all planes of a joint; NaN where they differ. */
 static double friction_of_joint(const tl_model *m, uint32_t joint)
 {
-    double friction = friction_of(tl_law_of(m, (tl_tag){joint, 0}));
+    double friction = friction_of(tl_law_of_joint(m, (tl_tag){joint, 0}));
     for (size_t i = 0; i < m->joint_law_count; i++) {
         const tl_law *law = &m->joint_laws[i];
-        if (law->tag.joint == joint && law->tag.plane != 0 && !(friction_of(law) == friction))
+        const tl_scope *scope = &law->scope;
+        const bool part = scope->names > 0 ? scope->tag.joint == 0 : scope->tag.plane != 0;
+        if ((part || scope->tag.joint == joint) && !(friction_of(law) == friction))
             return NAN;
     }
     return friction;

@@ -3,6 +3,7 @@
 
 #include "lua/convert.h"
 #include "lua/item.h"
+#include "lua/joint.h"
 #include "lua/living.h"
 #include "lua/zones.h"
 
@@ -15,10 +16,14 @@
 static const tl_lua_key joints_results[] = {
     {"name, planes", "", "of the joint set; number of its planes so far"},
     {"law", "", "name of the law of the set as a whole; nil while it has none"},
+    {"scoped", "", "of the list itself: the laws that name groups or selections, as of model:laws(); nil without any"},
     {NULL, NULL, NULL},
 };
 static const tl_lua_key laws_results[] = {
     {"joint, law", "", "\"*\", \"J1\" or \"J1:3\", and the name of the law that was set for it"},
+    {"between", "", "{group or selection, group or selection} of a law for contacts between both"},
+    {"group, blocks", "", "the group, or the selection, of a law for contacts with at least one block of it"},
+    {"contacts", "", "number of the pairs of blocks of a law for contacts between these"},
     {"parameters", "", "{NAME = value}, as they are now; one that may be left out and was is nil"},
     {NULL, NULL, NULL},
 };
@@ -140,6 +145,34 @@ static void set_params(lua_State *L, FILE *page, const tl_kind *kind, const void
 
 /* ---------------------------------------------------------------- of a model ------------- */
 
+/* Pushes law `index` of the model, past the last one nothing. */
+static bool push_law(lua_State *L, tl_model *model, size_t index)
+{
+    const char *joint;
+    tl_plugin_setting law;
+    if (!tl_model_law_at(model, index, &joint, &law))
+        return false;
+    lua_createtable(L, 0, 4);
+    tl_lua_set_scope(L, model, index);
+    tl_lua_set_text(L, "law", law.kind->name);
+    set_params(L, NULL, law.kind, law.params);
+    return true;
+}
+
+/* Sets `scoped` of the table at the top of the stack: the laws that name blocks. Without any it is not set. */
+static void set_scoped(lua_State *L, tl_model *model)
+{
+    lua_Integer count = 0;
+    lua_newtable(L);
+    for (size_t i = 0; i < tl_law_count(model); i++)
+        if (tl_law_names_blocks(model, i) && push_law(L, model, i))
+            lua_rawseti(L, -2, ++count);
+    if (count > 0)
+        lua_setfield(L, -2, "scoped");
+    else
+        lua_pop(L, 1);
+}
+
 static int model_joints(lua_State *L, tl_model *model)
 {
     size_t count = tl_joint_count(model);
@@ -152,21 +185,15 @@ static int model_joints(lua_State *L, tl_model *model)
         tl_lua_set_text(L, "law", joint.law ? joint.law->name : NULL);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
+    set_scoped(L, model);
     return 1;
 }
 
 static int model_laws(lua_State *L, tl_model *model)
 {
-    const char *joint;
-    tl_plugin_setting law;
     lua_newtable(L);
-    for (size_t i = 0; tl_model_law_at(model, i, &joint, &law); i++) {
-        lua_createtable(L, 0, 3);
-        tl_lua_set_text(L, "joint", joint);
-        tl_lua_set_text(L, "law", law.kind->name);
-        set_params(L, NULL, law.kind, law.params);
+    for (size_t i = 0; push_law(L, model, i); i++)
         lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
     return 1;
 }
 
@@ -312,19 +339,30 @@ static void add_joints(lua_State *L, tl_model *model, FILE *page)
     lua_setfield(L, -2, "joints");
 }
 
+static void print_joint(FILE *page, const char *joint, const char *text)
+{
+    char name[100];
+    snprintf(name, sizeof name, "joint %s", joint);
+    print_row(page, name, text);
+}
+
 static void add_laws(lua_State *L, tl_model *model, FILE *page)
 {
     const char *joint;
     tl_plugin_setting law;
     lua_newtable(L);
     for (size_t i = 0; tl_model_law_at(model, i, &joint, &law); i++) {
-        char name[100];
-        snprintf(name, sizeof name, "joint %s", joint);
-        print_row(page, name, law.kind->name);
+        const bool named = tl_law_names_blocks(model, i);
+        const char *key =
+            named ? lua_pushfstring(L, "%s (law %I)", joint, (lua_Integer)i + 1) : lua_pushstring(L, joint);
+        if (named)
+            print_row(page, key, law.kind->name);
+        else
+            print_joint(page, joint, law.kind->name);
         lua_createtable(L, 0, 2);
         tl_lua_set_text(L, "law", law.kind->name);
         set_params(L, page, law.kind, law.params);
-        lua_setfield(L, -2, joint);
+        lua_rawset(L, -3);
     }
     lua_setfield(L, -2, "laws");
     add_joints(L, model, page);
@@ -393,7 +431,9 @@ static const tl_lua_key parameters_fields[] = {
      "will use, s, or message: why it is not known"},
     {"mass_scaling", "", "on; dt and most, where they were given"},
     {"damping", "", "name, nil where none was chosen; parameters: a table of them by name"},
-    {"laws", "", "by joint (\"*\", \"J1\", \"J1:3\"): law, its name; parameters: a table of them by name"},
+    {"laws", "",
+     "by joint (\"*\", \"J1\", \"J1:3\"), or \"contacts of group 'stone' (law 2)\": law, its name; "
+     "parameters: a table of them by name"},
     {"joints", "", "by joint set: the joint whose law it has, \"\" for none"},
     {"contact_area", "", "by joint, \"*\" for all others: fraction, or absolute, m2"},
     {"solids", "", "by name: kind, its name; parameters: a table of them by name"},

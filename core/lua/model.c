@@ -4,6 +4,7 @@
 #include "lua/block.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
+#include "lua/joint.h"
 #include "lua/living.h"
 #include "lua/quality.h"
 #include "lua/run.h"
@@ -52,25 +53,6 @@ static int model_text(lua_State *L)
 }
 
 /* ---------------------------------------------------------------- methods ---------------- */
-
-static int model_joint(lua_State *L, tl_model *model)
-{
-    const char *joint = tl_lua_text(L, 2, "joint", "the joint's name");
-    const char *law = NULL;
-    int table = 3;
-    if (!lua_isnil(L, 4) || lua_type(L, 3) == LUA_TSTRING) {
-        law = tl_lua_text(L, 3, "joint", "the law's name");
-        table = 4;
-    }
-    const char *context = lua_pushfstring(L, "joint '%s'", joint);
-    if (!law && !lua_istable(L, 3))
-        tl_lua_fail(L, "%s: give a law's name, or a table of properties to change, not %s", context,
-                    tl_lua_describe(L, 3));
-    tl_args args;
-    tl_lua_args(L, table, context, NULL, &args);
-    tl_lua_ok(L, model, tl_joint_law(model, joint, law, &args));
-    return 0;
-}
 
 static int model_damping(lua_State *L, tl_model *model)
 {
@@ -422,13 +404,18 @@ const tl_lua_topic tl_lua_model_topics[] = {
      .arguments = 2,
      .method = tl_lua_model_generate},
     {.name = "joint",
-     .usage = "model:joint(\"J1\", \"LAW\", {...})  or  model:joint(\"J1\", {friction = 30})",
-     .doc = "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every "
-            "joint not named otherwise (\"*\"); without a law's name it changes properties.",
+     .usage = "model:joint(WHICH, \"LAW\", {...})  or  model:joint(WHICH, {friction = 30})",
+     .doc =
+         "Sets the law of a joint set (WHICH = \"J1\"), of one of its planes (\"J1:3\") or of every joint not named "
+         "otherwise (\"*\"), or of contacts between groups or selections (WHICH a table, or a selection of blocks or "
+         "contacts); without a law's name it changes properties. The law that names more wins: first by how many of "
+         "the two blocks it names, then by how closely it names the joint (plane, set, *), then the one named "
+         "later.",
+     .keys = tl_lua_joint_keys,
      .has_type = true,
      .type = TL_KIND_LAW,
      .arguments = 3,
-     .method = model_joint},
+     .method = tl_lua_model_joint},
     {.name = "insitu",
      .usage = "model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}",
      .function = "insitu",

@@ -4,6 +4,7 @@
 #include "base/inside.h"
 #include "model/options.h"
 #include "model/rows.h"
+#include "model/scope.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,21 +116,20 @@ bool tl_tag_matches(tl_tag pattern, tl_tag tag)
     return pattern.joint == 0 || (pattern.joint == tag.joint && (pattern.plane == 0 || pattern.plane == tag.plane));
 }
 
-/* How closely a matching pattern names its tag: plane before set before "*". */
-static int closeness(tl_tag pattern)
-{
-    return pattern.joint == 0 ? 0 : pattern.plane == 0 ? 1 : 2;
-}
-
-const tl_law *tl_law_of(const tl_model *m, tl_tag tag)
+const tl_law *tl_law_of(const tl_model *m, tl_tag tag, uint32_t a, uint32_t b)
 {
     const tl_law *best = NULL;
     for (size_t i = 0; i < m->joint_law_count; i++) {
         const tl_law *one = &m->joint_laws[i];
-        if (tl_tag_matches(one->tag, tag) && (!best || closeness(one->tag) > closeness(best->tag)))
+        if ((!best || tl_scope_before(&one->scope, &best->scope)) && tl_scope_covers(m, &one->scope, tag, a, b))
             best = one;
     }
     return best;
+}
+
+const tl_law *tl_law_of_joint(const tl_model *m, tl_tag tag)
+{
+    return tl_law_of(m, tag, TL_NO_ROW, TL_NO_ROW);
 }
 
 tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag)
@@ -137,8 +137,8 @@ tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag)
     tl_min_area_rule rule = m->min_area;
     int best = 0;
     for (size_t i = 0; i < m->joint_min_area_count; i++)
-        if (tl_tag_matches(m->joint_min_areas[i].tag, tag) && closeness(m->joint_min_areas[i].tag) > best) {
-            best = closeness(m->joint_min_areas[i].tag);
+        if (tl_tag_matches(m->joint_min_areas[i].tag, tag) && tl_tag_closeness(m->joint_min_areas[i].tag) > best) {
+            best = tl_tag_closeness(m->joint_min_areas[i].tag);
             rule = m->joint_min_areas[i].rule;
         }
     return rule;
@@ -146,6 +146,7 @@ tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag)
 
 void tl_law_clear(tl_law *law)
 {
+    tl_scope_clear(&law->scope);
     if (!law->kind)
         return;
     const tl_law_ops *ops = law->kind->ops;
@@ -231,7 +232,7 @@ size_t tl_joint_count(const tl_model *m)
 
 tl_joint_info tl_joint_at(const tl_model *m, size_t index)
 {
-    const tl_law *law = tl_law_of(m, (tl_tag){(uint32_t)index + 1, 0});
+    const tl_law *law = tl_law_of_joint(m, (tl_tag){(uint32_t)index + 1, 0});
     return (tl_joint_info){
         .name = m->joints[index].name, .planes = m->joints[index].planes, .law = law ? law->kind : NULL};
 }
@@ -244,7 +245,7 @@ size_t tl_law_count(const tl_model *m)
 tl_law_info tl_law_at(const tl_model *m, size_t index)
 {
     const tl_law *law = &m->joint_laws[index];
-    return (tl_law_info){.joint = law->tag, .law = law->kind, .params = law->params};
+    return (tl_law_info){.joint = law->scope.tag, .law = law->kind, .params = law->params};
 }
 
 size_t tl_group_count(const tl_model *m)

@@ -16,8 +16,10 @@ tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag);
 const char *tl_pattern_name(tl_model *m, tl_tag tag);
 /* True when `pattern` ("*": 0,0; set: j,0; plane: j,p) covers `tag`. */
 bool tl_tag_matches(tl_tag pattern, tl_tag tag);
-/* The joint law that rules a contact of this tag, or NULL. */
-const tl_law *tl_law_of(const tl_model *m, tl_tag tag);
+/* The law that rules a contact of this tag between the blocks of two rows, or NULL (scope.h). */
+const tl_law *tl_law_of(const tl_model *m, tl_tag tag, uint32_t a, uint32_t b);
+/* The law of a joint, for contacts whose blocks no law names, or NULL. */
+const tl_law *tl_law_of_joint(const tl_model *m, tl_tag tag);
 tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag);
 void tl_law_clear(tl_law *law);
 

@@ -1,4 +1,4 @@
-/* law.h - a joint's law: its plugin, its properties, and what they mean for contacts. */
+/* law.h - a joint's law: which contacts it is for, its plugin, its properties, and what they mean for contacts. */
 #ifndef TL_MODEL_LAW_H
 #define TL_MODEL_LAW_H
 
@@ -7,9 +7,31 @@
 
 #include <talus/plugin.h>
 
-/* A law with its properties, for a joint: for "*" (joint 0), for a set (plane 0) or for one plane. */
+/* Ids of blocks: bit id % 64 of word id / 64. */
+typedef struct tl_id_set {
+    uint64_t *word;
+    size_t words;
+} tl_id_set;
+
+/* Blocks that a scope names: those that are in a group now, or those of a list with the parts they are cut into. */
+typedef struct tl_scope_side {
+    uint32_t group; /* index into the model's groups, or TL_NO_ROW */
+    tl_id_set list; /* without a group */
+} tl_scope_side;
+
+/* Which contacts a law is for: those of a joint, between blocks that it names (scope.c). */
+typedef struct tl_scope {
+    tl_tag tag;            /* "*" (joint 0), a set (plane 0) or one plane */
+    uint32_t names;        /* how many of a contact's two blocks it names: 0, 1 or 2 */
+    tl_scope_side side[2]; /* the first `names` of them count; not where there are pairs */
+    uint64_t *pairs;       /* of ids a < b: a 2^32 + b, ascending; NULL: it names none */
+    size_t pair_count;
+    uint64_t order; /* counts the laws that were named for blocks: the later wins */
+} tl_scope;
+
+/* A law with its properties, for a joint or for a part of its contacts. */
 typedef struct tl_law {
-    tl_tag tag;
+    tl_scope scope;
     const tl_kind *kind;
     void *params; /* the plugin's params struct */
     void *self;   /* what its create made, or params */

@@ -198,8 +198,9 @@ struct tl_model {
 
     tl_law *joint_laws;
     size_t joint_law_count;
-    uint64_t laws;  /* counts changes of the joint laws */
-    uint64_t rules; /* counts changes of minimum areas and of contact_points */
+    const struct tl_group_verbs *group_verbs; /* who keeps forces when groups change, or NULL: scope.h */
+    uint64_t laws;                            /* counts changes of the joint laws */
+    uint64_t rules;                           /* counts changes of minimum areas and of contact_points */
     tl_min_area_rule min_area;
     tl_joint_min_area *joint_min_areas;
     size_t joint_min_area_count;

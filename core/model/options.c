@@ -29,6 +29,7 @@ static const struct {
     uint32_t size;
 } known[TL_OPTIONS_COUNT] = {
     KNOWN(tl_model_config, "model", NULL),
+    KNOWN(tl_law_scope, NULL, NULL),
     KNOWN(tl_filter, "filter", NULL),
     KNOWN(tl_insitu, "insitu", NULL),
     KNOWN(tl_timestep, "timestep", NULL),

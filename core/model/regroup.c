@@ -15,6 +15,7 @@
 #include "model/loads.h"
 #include "model/options.h"
 #include "model/rows.h"
+#include "model/scope.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -773,6 +774,29 @@ static tl_status set_solid(tl_model *m, const tl_id *ids, size_t count, const tl
     return m->zone_verbs->resolid(m, ids, count, set->solid);
 }
 
+static void free_change(tl_group_change *change)
+{
+    free(change->row);
+    free(change->group);
+    free(change->contact);
+}
+
+/* Begins the change by which blocks get a group. */
+static tl_status list_change(tl_model *m, const tl_id *ids, size_t count, uint32_t group, tl_group_change *change)
+{
+    tl_rows_tidy(m);
+    change->row = malloc((count + 1) * sizeof *change->row);
+    change->group = malloc((count + 1) * sizeof *change->group);
+    if (!change->row || !change->group)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count; i++) {
+        change->row[i] = tl_block_row_quiet(m, ids[i]);
+        change->group[i] = group;
+    }
+    change->count = count;
+    return tl_group_change_begin(m, change);
+}
+
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
 {
     tl_block_set read;
@@ -791,21 +815,28 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     uint32_t group = 0;
     if (set->group && (group = tl_group_intern(m, set->group)) == UINT32_MAX)
         return tl_fail_memory(&m->error);
+    tl_group_change change = {.count = 0};
+    if (set->group && (status = list_change(m, ids, count, group, &change)) != TL_OK) {
+        free_change(&change);
+        return status;
+    }
     tl_aside aside;
     bool joined = some_joined(m, ids, count), mends = !isnan(set->density) && joined;
     moved_parts *moved = joined ? calloc(m->bodies.table.rows, sizeof *moved) : NULL;
     if ((joined && !moved) || (mends && !tl_rows_set_aside(m, &aside))) {
+        free_change(&change);
         free(moved);
         return tl_fail_memory(&m->error);
     }
     if (set->solid && (status = set_solid(m, ids, count, set)) != TL_OK) {
+        free_change(&change);
         free(moved);
         return status;
     }
+    tl_group_change_apply(m, &change);
+    free_change(&change);
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
-        if (set->group)
-            m->blocks.group[row] = group;
         if (!isnan(set->density)) {
             m->blocks.density[row] = set->density;
             if (m->bodies.member_count[body] == 1)

@@ -9,6 +9,7 @@
 #include "contact/contacts.h"
 #include "contact/law_states.h"
 #include "model/joints.h"
+#include "model/scope.h"
 #include "segment/follow.h"
 #include "segment/moved.h"
 #include "segment/uses.h"
@@ -592,11 +593,22 @@ static void take_fresh(struct tl_segments *s, struct tl_segments *fresh)
     s->outline_capacity = fresh->outline_capacity;
 }
 
+/* Finds the laws of meets. Rows of blocks are searched for where some law names blocks. */
+static void find_laws(tl_model *m)
+{
+    const struct tl_segments *s = m->segments;
+    const bool named = tl_laws_name_blocks(m);
+    for (size_t k = 0; k < s->meet_count; k++) {
+        tl_meet *meet = &s->meet[k];
+        meet->law = tl_law_row(m, meet->tag, named ? tl_block_row_quiet(m, meet->a) : TL_NO_ROW,
+                               named ? tl_block_row_quiet(m, meet->b) : TL_NO_ROW);
+    }
+}
+
 bool tl_lay_segments(tl_model *m, tl_laying *l)
 {
     struct tl_segments *s = m->segments, fresh = {.span = NULL};
-    for (size_t k = 0; k < s->meet_count; k++)
-        s->meet[k].law = tl_law_row(m, s->meet[k].tag);
+    find_laws(m);
     entry *list = malloc((s->table.table.rows + l->count + 1) * sizeof *list);
     double lost = 0;
     const size_t count = list ? list_entries(m, l, list, &lost) : 0;

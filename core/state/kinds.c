@@ -4,6 +4,9 @@
  *     PREFIX.plugin    id and version of its plugin, "talus.coulomb 1.0"
  *     PREFIX.param.X   parameter X: numbers, or the name of its choice
  *     PREFIX.states    names of its states, a line each
+ *     PREFIX.scope     of a law that names blocks: its order, how many of two it names, and their groups or TL_NO_ROW
+ *     PREFIX.blocks.K  the ids of its side K where that is no group, a bit each
+ *     PREFIX.pairs     its pairs of blocks, ids a < b: a 2^32 + b, ascending
  *
  * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules, or "solid.0", ... with
  * PREFIX.name. A parameter that is a table is a list of its rows. Parameters are checked as those of a script are. */
@@ -13,7 +16,9 @@
 #include "contact/contacts.h"
 #include "cycle/cycle_data.h"
 #include "cycle/damping.h"
+#include "cycle/joint_law.h"
 #include "force/joint_laws.h"
+#include "model/scope.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
@@ -77,6 +82,19 @@ static void put_kind(tl_archive_writer *w, const char *prefix, const tl_kind *ki
     }
 }
 
+static void put_scope(tl_archive_writer *w, const char *prefix, const tl_scope *s)
+{
+    char name[TL_CHUNK_NAME];
+    const uint64_t head[] = {s->order, s->names, s->side[0].group, s->side[1].group};
+    tl_archive_put(w, tl_chunk_name(name, "%s.scope", prefix), head, sizeof *head, 4);
+    if (s->pairs)
+        tl_archive_put(w, tl_chunk_name(name, "%s.pairs", prefix), s->pairs, sizeof *s->pairs, s->pair_count);
+    for (uint32_t k = 0; k < 2; k++)
+        if (s->side[k].list.word)
+            tl_archive_put(w, tl_chunk_name(name, "%s.blocks.%u", prefix, k), s->side[k].list.word,
+                           sizeof *s->side[k].list.word, s->side[k].list.words);
+}
+
 static void save_laws(const tl_model *m, tl_archive_writer *w)
 {
     uint64_t count = m->joint_law_count;
@@ -85,7 +103,9 @@ static void save_laws(const tl_model *m, tl_archive_writer *w)
         const tl_law *law = &m->joint_laws[i];
         char prefix[PREFIX], name[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", i);
-        tl_archive_put(w, tl_chunk_name(name, "%s.tag", prefix), &law->tag, sizeof law->tag, 1);
+        tl_archive_put(w, tl_chunk_name(name, "%s.tag", prefix), &law->scope.tag, sizeof law->scope.tag, 1);
+        if (law->scope.names > 0)
+            put_scope(w, prefix, &law->scope);
         put_kind(w, prefix, law->kind, law->params);
     }
 }
@@ -230,9 +250,10 @@ static tl_status tell_path(tl_model *m, const tl_archive *a, tl_status status)
                                                     : tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
 }
 
-/* Makes the law, solid or damping of a prefix: a law into `law`, a solid of that name, or the model's damping. */
-static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix, tl_kind_type type, tl_tag tag,
-                              tl_law *law, const char *solid)
+/* Makes the law, solid or damping of a prefix: a law of that scope into `law`, a solid of that name, or the model's
+ * damping. */
+static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix, tl_kind_type type,
+                              const tl_scope *scope, tl_law *law, const char *solid)
 {
     const tl_kind *kind = NULL;
     tl_status status = find_kind(m, a, prefix, type, &kind);
@@ -243,8 +264,7 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     tl_args args;
     status = storage && values ? read_params(m, a, prefix, kind, storage, values, &args) : tl_fail_memory(&m->error);
     if (status == TL_OK && law) {
-        const char *joint = tag.joint ? tl_tag_name(m, tag) : "*";
-        status = tell_path(m, a, tl_law_make_for(m, tag, joint, kind, &args, NULL, law));
+        status = tell_path(m, a, tl_law_make_for(m, scope, kind, &args, NULL, law));
     } else if (status == TL_OK) {
         status = tell_path(m, a, solid ? tl_solid_set(m, solid, kind, &args) : tl_damping_make(m, kind, &args, NULL));
     }
@@ -252,6 +272,66 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
         free(storage[k].rows);
     free(storage);
     free(values);
+    return status;
+}
+
+/* Reads a list of numbers; TL_E_ARGUMENT when there are none. */
+static tl_status read_words(tl_model *m, const tl_archive *a, const char *name, uint64_t **out, size_t *count)
+{
+    *count = tl_archive_items(a, name);
+    if (*count == 0 || !tl_archive_has(a, name, sizeof **out, *count))
+        return TL_E_ARGUMENT;
+    *out = malloc(*count * sizeof **out);
+    if (!*out)
+        return tl_fail_memory(&m->error);
+    return tl_archive_get(a, name, *out, sizeof **out, *count) ? TL_OK : TL_E_ARGUMENT;
+}
+
+/* The list of a side of a scope, or its group. */
+static tl_status read_side(tl_model *m, const tl_archive *a, const char *prefix, uint32_t k, uint64_t group,
+                           tl_scope_side *side)
+{
+    char name[TL_CHUNK_NAME];
+    if (group < m->group_count) {
+        side->group = (uint32_t)group;
+        return TL_OK;
+    }
+    if (group != TL_NO_ROW)
+        return TL_E_ARGUMENT;
+    tl_chunk_name(name, "%s.blocks.%u", prefix, k);
+    tl_status status = read_words(m, a, name, &side->list.word, &side->list.words);
+    return status == TL_OK && side->list.words > (size_t)m->next_id / 64 + 1 ? TL_E_ARGUMENT : status;
+}
+
+static tl_status read_pairs(tl_model *m, const tl_archive *a, const char *name, tl_scope *s)
+{
+    tl_status status = read_words(m, a, name, &s->pairs, &s->pair_count);
+    for (size_t i = 0; status == TL_OK && i < s->pair_count; i++)
+        if (s->pairs[i] >> 32 >= (uint32_t)s->pairs[i] || (i > 0 && s->pairs[i - 1] >= s->pairs[i]))
+            status = TL_E_ARGUMENT;
+    return status;
+}
+
+/* Reads which blocks a law names; one that names none has no such chunk. */
+static tl_status restore_scope(tl_model *m, const tl_archive *a, const char *prefix, tl_scope *s)
+{
+    uint64_t head[4];
+    char name[TL_CHUNK_NAME], pairs[TL_CHUNK_NAME];
+    if (!tl_archive_find(a, tl_chunk_name(name, "%s.scope", prefix)))
+        return TL_OK;
+    tl_status status =
+        tl_archive_get(a, name, head, sizeof *head, 4) && head[1] >= 1 && head[1] <= 2 ? TL_OK : TL_E_ARGUMENT;
+    const bool of_pairs = tl_archive_find(a, tl_chunk_name(pairs, "%s.pairs", prefix)) != NULL;
+    if (status == TL_OK && of_pairs)
+        status = head[1] == 2 ? read_pairs(m, a, pairs, s) : TL_E_ARGUMENT;
+    for (uint32_t k = 0; status == TL_OK && !of_pairs && k < head[1]; k++)
+        status = read_side(m, a, prefix, k, head[2 + k], &s->side[k]);
+    if (status == TL_E_ARGUMENT)
+        return tl_archive_bad(a, &m->error, "the blocks of '%s' do not fit", prefix);
+    if (status == TL_OK) {
+        s->order = head[0];
+        s->names = (uint32_t)head[1];
+    }
     return status;
 }
 
@@ -266,15 +346,20 @@ static tl_status restore_laws(tl_model *m, const tl_archive *a)
     while (m->joint_law_count < count) {
         char prefix[PREFIX], name[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", m->joint_law_count);
-        tl_tag tag;
-        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &tag, sizeof tag, 1) ||
-            tag.joint > m->joint_count || (tag.joint == 0 && tag.plane > 0))
+        tl_scope scope = {.side = {{.group = TL_NO_ROW}, {.group = TL_NO_ROW}}};
+        if (!tl_archive_get(a, tl_chunk_name(name, "%s.tag", prefix), &scope.tag, sizeof scope.tag, 1) ||
+            scope.tag.joint > m->joint_count || (scope.tag.joint == 0 && scope.tag.plane > 0))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
-        tl_status status = restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count], NULL);
-        if (status != TL_OK)
+        tl_status status = restore_scope(m, a, prefix, &scope);
+        if (status == TL_OK)
+            status = restore_kind(m, a, prefix, TL_KIND_LAW, &scope, &m->joint_laws[m->joint_law_count], NULL);
+        if (status != TL_OK) {
+            tl_scope_clear(&scope);
             return status;
+        }
         m->joint_law_count++;
     }
+    tl_laws_follow_groups(m);
     return TL_OK;
 }
 
@@ -282,7 +367,7 @@ static tl_status restore_damping(tl_model *m, const tl_archive *a)
 {
     if (!tl_archive_find(a, "damping.kind"))
         return TL_OK;
-    tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL, NULL);
+    tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, NULL, NULL, NULL);
     if (status != TL_OK)
         return status;
     if (!tl_archive_get(a, "damping.state", m->damping_state, sizeof *m->damping_state, m->damping->state_count))
@@ -304,7 +389,7 @@ static tl_status restore_solids(tl_model *m, const tl_archive *a)
         if (!tl_archive_text(a, tl_chunk_name(chunk, "%s.name", prefix), name, sizeof name) ||
             tl_solid_find(m, name) != TL_NO_ROW)
             return tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", prefix);
-        status = restore_kind(m, a, prefix, TL_KIND_SOLID, (tl_tag){0, 0}, NULL, name);
+        status = restore_kind(m, a, prefix, TL_KIND_SOLID, NULL, NULL, name);
     }
     return status;
 }
@@ -320,13 +405,18 @@ static tl_status copy_laws(tl_model *to, const tl_model *from)
         return tl_fail_memory(&to->error);
     for (size_t i = 0; i < from->joint_law_count; i++) {
         const tl_law *law = &from->joint_laws[i];
-        const char *joint = law->tag.joint ? tl_tag_name(to, law->tag) : "*";
-        tl_status status = tl_law_make_for(to, law->tag, joint, law->kind, &(tl_args){NULL, 0}, law,
-                                           &to->joint_laws[to->joint_law_count]);
-        if (status != TL_OK)
+        tl_scope scope;
+        if (!tl_scope_copy(&law->scope, &scope))
+            return tl_fail_memory(&to->error);
+        tl_status status =
+            tl_law_make_for(to, &scope, law->kind, &(tl_args){NULL, 0}, law, &to->joint_laws[to->joint_law_count]);
+        if (status != TL_OK) {
+            tl_scope_clear(&scope);
             return status;
+        }
         to->joint_law_count++;
     }
+    tl_laws_follow_groups(to);
     return TL_OK;
 }
 

@@ -17,6 +17,7 @@
 #include "cycle/timestep.h"
 #include "detect/detect.h"
 #include "model/loads.h"
+#include "model/scope.h"
 #include "model/walk.h"
 #include "segment/meets.h"
 
@@ -331,13 +332,36 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
 
 /* ---------------------------------------------------------------- settings --------------- */
 
+/* The blocks that a law names, those that live, and how many such laws were named before it. */
+static void hash_scope(tl_hash *hash, const tl_model *m, const tl_scope *s)
+{
+    uint64_t before = 0;
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        before += m->joint_laws[i].scope.names > 0 && m->joint_laws[i].scope.order < s->order;
+    tl_hash_word(hash, before);
+    tl_hash_word(hash, s->names);
+    for (size_t i = 0; i < s->pair_count; i++)
+        if (tl_block_row_quiet(m, (tl_id)(s->pairs[i] >> 32)) != TL_NO_ROW &&
+            tl_block_row_quiet(m, (tl_id)s->pairs[i]) != TL_NO_ROW)
+            tl_hash_word(hash, s->pairs[i]);
+    for (uint32_t k = 0; k < s->names && !s->pairs; k++) {
+        const tl_scope_side *side = &s->side[k];
+        hash_text(hash, side->group != TL_NO_ROW ? m->groups[side->group] : "");
+        for (size_t row = 0; row < m->blocks.table.rows && side->group == TL_NO_ROW; row++)
+            if (tl_id_set_has(&side->list, m->blocks.id[row]))
+                tl_hash_word(hash, m->blocks.id[row]);
+    }
+}
+
 static void hash_laws(tl_hash *hash, const tl_model *m)
 {
     tl_hash sum = {0, 0};
     for (size_t i = 0; i < m->joint_law_count; i++) {
         const tl_law *law = &m->joint_laws[i];
         tl_hash one = tl_hash_start();
-        hash_tag(&one, law->tag);
+        hash_tag(&one, law->scope.tag);
+        if (law->scope.names > 0)
+            hash_scope(&one, m, &law->scope);
         hash_text(&one, law->kind->name);
         tl_hash_bytes(&one, law->params, law->kind->params_size);
         hash_any_order(&sum, &one);

@@ -15,6 +15,7 @@ extern "C" {
 /* The structs of options. Each has a function of its name with _default, tl_solve_default() and so on. */
 #define TL_OPTIONS(X)                                                                                                  \
     X(tl_model_config)                                                                                                 \
+    X(tl_law_scope)                                                                                                    \
     X(tl_filter)                                                                                                       \
     X(tl_insitu)                                                                                                       \
     X(tl_timestep)                                                                                                     \

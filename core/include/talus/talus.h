@@ -191,6 +191,30 @@ TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter, tl_fi
  * `law` NULL changes properties of the law the joint has now; forces stay continuous. */
 TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law, const tl_args *args);
 
+/* Which contacts a law is for: those of a joint, and of these all, those of one or between two groups or lists of
+ * blocks, or those of a list of contacts. A group is that of a block now. Parts of a block that is cut follow it into
+ * lists. The law that names more rules a contact: first by how many of the two blocks it names, then by how closely it
+ * names the joint (plane, set, "*"), then the one named later. */
+typedef struct tl_law_scope {
+    uint32_t size;          /* sizeof(tl_law_scope) */
+    const char *joint;      /* "*", "J1" or "J1:3"; NULL: any */
+    const char *group[2];   /* of the one and of the other block, either way round; NULL: of any */
+    const tl_id *blocks[2]; /* a list in the place of a group, or NULL */
+    size_t block_count[2];
+    const tl_contact_name *contacts; /* a list in the place of both: pairs of blocks, in contact or not; or NULL */
+    size_t contact_count;
+} tl_law_scope;
+/* Sets the law of those contacts, as tl_joint_law does; it begins with the properties of the law that is for all of
+ * them where `law` is NULL. TL_E_NOT_FOUND for a joint that the model does not have or a group that no block is in.
+ * TL_E_ARGUMENT for an empty list, or for one beside a group. */
+TL_API tl_status tl_joint_law_for(tl_model *model, const tl_law_scope *scope, const char *law, const tl_args *args);
+/* Whether law `index` (of tl_law_at) names blocks, by groups or lists, beside a joint. */
+TL_API bool tl_law_names_blocks(const tl_model *model, size_t index);
+/* Writes which contacts law `index` is for, with the blocks that live. Its lists are freed with
+ * tl_law_scope_free, and its texts are valid until the next call. TL_E_MEMORY; then there is nothing to free. */
+TL_API tl_status tl_law_scope_get(tl_model *model, size_t index, tl_law_scope *scope);
+TL_API void tl_law_scope_free(tl_law_scope *scope);
+
 typedef struct tl_insitu {
     uint32_t size;            /* sizeof(tl_insitu) */
     tl_sym3 stress, gradient; /* tension positive, Pa and Pa/m over z */
