@@ -46,13 +46,6 @@ local function has(text, part)
     assert(text:find(part, 1, true), ("'%s' is not in: %s"):format(part, text))
 end
 
--- model:joint for groups and selections of contacts
-local by_group = pcall(function()
-    local model = talus.model {}
-    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 1000, group = "a" })
-    model:joint({ group = "a" }, "elastic", { kn = 1e9, ks = 1e9 })
-end)
-
 -- ---------------------------------------------------------------- every row --------------
 
 local BEFORE = [[
@@ -238,10 +231,18 @@ _, left = lines "block contact jmodel assign softening-mohr"
 has(left.left_out[1].reason, "softening-mohr")
 _, left = lines "block contact property friction 30\nmodel solve"
 has(left.in_part[1].reason, "no stiffness")
-if by_group then
-    model = run(THREE .. KN .. "friction 30\n" .. KN .. "friction 20 range group-intersection 'a' 'b'\nblock fix\nmodel cycle 1")
-    check.equal(#model:contacts {}, 2)
+-- In the model the laws are those of the ranges: of each contact, also by its place.
+model = run(THREE .. KN .. "friction 30\n" .. KN .. "friction 20 range group-intersection 'a' 'b'\n" ..
+    "block contact jmodel assign elastic range position-x 1.9 2.1\nblock fix\nmodel cycle 1")
+check.equal(#model:contacts {}, 2)
+check.equal(model:contacts { where = function(contact) return contact.point[1] < 1.5 end }[1].law, "coulomb")
+check.equal(model:contacts { where = function(contact) return contact.point[1] > 1.5 end }[1].law, "elastic")
+local frictions = {}
+for _, law in ipairs(model:laws()) do
+    frictions[#frictions + 1] = law.parameters.friction
 end
+table.sort(frictions)
+check.equal(table.concat(frictions, " "), "20.0 30.0")
 
 -- ---------------------------------------------------------------- values and FISH --------
 

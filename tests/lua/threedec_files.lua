@@ -25,7 +25,8 @@ local function stone(inner, outer, i, width, group)
     return ("block create polyhedron group '%s' ...\n%s"):format(group, table.concat(lines, " ...\n"))
 end
 
--- An arch of the sections given by points {x, z} of both of its faces; the first and the last stone are held.
+-- An arch of the sections given by points {x, z} of both of its faces; the first and the last stone are held, and with `rough`
+-- nothing slips on them.
 local function arch(p)
     local lines = { "; " .. p.title, "model new", "model large-strain on" }
     for i = 1, #p.inner - 1 do
@@ -38,11 +39,11 @@ block contact generate-subcontacts
 block property density %g
 block contact jmodel assign mohr
 block contact property %s friction 35
-block contact property %s friction 90 range group 'Supports'
-block contact material-table default property %s friction 35
+%sblock contact material-table default property %s friction 35
 block fix range group 'Supports'
 block mechanical damping global
-]]):format(p.kn, p.density, stiffness, stiffness, stiffness)
+]]):format(p.kn, p.density, stiffness,
+        p.rough and ("block contact property %s friction 90 range group 'Supports'\n"):format(stiffness) or "", stiffness)
     for k = 1, 10 do
         lines[#lines + 1] = ("model gravity 0 0 [-9.81*%d/10.0]\nmodel solve ratio-local 1e-6"):format(k)
     end
@@ -69,7 +70,7 @@ end
 -- 20 stones of 9 degrees, corners rounded to a millimetre.
 function files.arch_20(thickness)
     return arch { title = "semicircular arch", inner = sections(5), outer = sections(5 + thickness), width = 0.5, density = 2400, kn = "6e10",
-        ks = "2.5e10" }
+        ks = "2.5e10", rough = true }
 end
 
 function files.arch_5()
