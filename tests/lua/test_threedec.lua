@@ -194,12 +194,20 @@ check.equal(line("block fix range named-range 'low' group 'x'", "model range cre
     'model:blocks { group = "x", where = function(b) return 0 <= b.centroid[3] and b.centroid[3] <= 1 end }:fix()')
 check.equal(line("fix range name low", "range name low group 'x' not group 'y'"),
     'model:blocks { group = "x", where = function(b) return not (b.group == "y") end }:fix()')
+local _, left
 -- Materials: the last change of a block counts, and its density is that of its material, given before or after.
 model = run(THREE .. "prop mat=2 dens=2000\nchange mat=2 range x 0 1.7\nchange mat=3 range x 1.2 1.7\nprop mat=3 dens 3000\nprop mat=2 dens 2100")
 check.near(model:blocks { id = 1 }[1].density, 2100, 0)
 check.near(model:blocks { id = 2 }[1].density, 3000, 0)
+-- A region is a group, until its blocks get another one.
+model = run "poly reg 2 brick 0 1 0 1 0 1\npoly brick 1 2 0 1 0 1\nmark region 3 range x 1 2\nfix range region 2\ndelete range region 3"
+check.equal(#model:blocks {}, 1)
+check.equal(model:blocks {}[1].group, "region 2")
+check.equal(model:blocks {}[1].fixed, true)
+_, left = lines "poly reg 2 brick 0 1 0 1 0 1\ngroup 'a' range region 2"
+has(left.in_part[1].reason, "one group a block")
 -- What has no counterpart is told.
-local _, left = lines "block fix range dfn 'x'"
+_, left = lines "block fix range dfn 'x'"
 has(left.left_out[1].reason, "dfn")
 _, left = lines "jset dip 0 dd 0\nblock fix range id 3"
 has(left.left_out[1].reason, "numbers of blocks after cuts")

@@ -75,8 +75,6 @@ local function add_writing(c)
         c.item.notes[#c.item.notes + 1] = reason
     end
 
-    c.leave_part = c.note
-
     -- What a reader of the script should know; nothing is lost.
     function c.remark(text)
         c.item.remarks[#c.item.remarks + 1] = text

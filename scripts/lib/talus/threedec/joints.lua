@@ -85,12 +85,11 @@ local function call_of(c, rule)
     return ("model:joint(%s, %q, { %s })"):format(rule.target, law, table.concat(parts, ", "))
 end
 
+-- Nothing is written while kn or ks is not known; c.ready tells when a run begins so.
 local function write(c, rule)
     local call = call_of(c, rule)
     if call then
         c.emit(call)
-    else
-        c.pending = "kn and ks are not known yet"
     end
 end
 
@@ -183,8 +182,6 @@ function joints.assign(c, number, target)
     material.targets[#material.targets + 1] = target
     if next(material.properties) then
         joints.apply(c, target, material.properties)
-    else
-        c.pending = "the joint material " .. number .. " has no properties yet"
     end
 end
 

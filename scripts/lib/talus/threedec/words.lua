@@ -25,7 +25,6 @@ function words.row(commands, row)
 end
 
 for _, part in ipairs { "shapes", "contacts", "motion", "runs", "zones", "others" } do
-    words.part = part
     require("talus.threedec.words_" .. part)(words.row)
 end
 

@@ -127,20 +127,15 @@ local function gridpoint_apply(c, a)
             drive(c, c.blocks(list), own, timed)
             return
         end
-        local held = {}
-        for axis, i in pairs(AXIS) do
-            held[axis] = own[i] == "0" or own[i] == "0.0" or nil
-        end
+        c.zones_needed()
         local points = "model:gridpoints " .. range.filter(list, "gridpoint", c)
         local still = not timed
         for i = 1, 3 do
             still = still and (not own[i] or tonumber(own[i]) == 0)
         end
         if still then
-            c.zones_needed()
             c.emit(points .. ":fix " .. named({ x = own[1] ~= nil, y = own[2] ~= nil, z = own[3] ~= nil, rotation = false }, true))
         else
-            c.zones_needed()
             drive(c, points, own, timed)
         end
         return
@@ -313,7 +308,7 @@ local function reset(c, a)
         elseif word == "velocity" then
             c.emit "model:blocks {}:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }"
         else
-            c.leave_part("reset " .. word)
+            c.note("reset " .. word)
         end
     end
     range.read(c, a)

@@ -63,7 +63,7 @@ local function cycle(c, a)
 end
 
 local MEASURES = { ["ratio"] = "average", ["ratio-average"] = "average", ["ratio-maximum"] = "maximum", ["ratio-local"] = "local",
-    convergence = "local", mechanical = "average" }
+    convergence = "local" }
 
 local function solve(c, a)
     local ratio, measure, cycles, time = nil, "average", nil, nil
@@ -71,9 +71,7 @@ local function solve(c, a)
         "time-total", "elastic", "fos", "mechanical", "clock", "or", "and", "unbalanced-maximum", "force", "maximum", "average", "local" }
     while a:more() do
         local word = a:sees_number() and "ratio" or a:keyword(known)
-        if word == "mechanical" or word == "or" or word == "and" then
-            word = word
-        elseif MEASURES[word] then
+        if MEASURES[word] then
             ratio, measure = a:number(word), MEASURES[word]
         elseif word == "maximum" or word == "average" or word == "local" then
             measure = word
@@ -82,12 +80,11 @@ local function solve(c, a)
         elseif word == "time" or word == "time-total" then
             time = a:number(word)
         elseif word == "elastic" then
-            if a:take "only" or true then
-                c.note "the elastic stage of solve is left out"
-            end
+            a:take "only"
+            c.note "the elastic stage of solve is left out"
         elseif word == "fos" then
             c.leave "a factor of safety by strength reduction"
-        else
+        elseif word ~= "mechanical" and word ~= "or" and word ~= "and" then
             a:number(word)
             c.note("the limit '" .. word .. "' is dropped")
         end
@@ -183,9 +180,7 @@ local function history(c, a)
                 axis = word:match "%-([xyz])$" or word:match "^([xyz])%a"
             elseif RATIOS[word] then
                 what, field = word, nil
-            elseif word == "add" or word == "create" or word == "type" then
-                what = what
-            else
+            elseif word ~= "add" and word ~= "create" and word ~= "type" then
                 c.leave("a history of '" .. word .. "'; model:history{...} samples any function")
             end
         end

@@ -11,7 +11,7 @@ end
 local function make(c, generator, shape, options)
     c.emit(("model:generate(%q, { %s, %s })"):format(generator, shape, common(c, options)))
     if options.material and options.material ~= 1 then
-        c.leave_part("material " .. options.material .. " of the block: give it by `change mat` with a range")
+        c.note("material " .. options.material .. " of the block: give it by `change mat` with a range")
     end
 end
 
@@ -25,6 +25,7 @@ local function option(c, a, options, word)
         c.note("Talus has one group a block: the slot '" .. a:text "the slot" .. "' is dropped")
     elseif word == "region" then
         options.region = a:whole "the region's number"
+        c.regions = true
     elseif word == "material" then
         options.material = a:whole "the material's number"
     elseif word == "constitutive" then
@@ -269,6 +270,9 @@ local function group(c, a)
         c.leave "a group cannot be taken off a block; give it another one"
     end
     local list = range.read(c, a)
+    if c.regions then
+        c.note "Talus has one group a block: those that get this one are no longer found by their region"
+    end
     c.emit(("%s:set { group = %q }"):format(c.blocks(list), name))
 end
 
@@ -325,6 +329,7 @@ return function(row)
     row("mark", { form = "region i [range]", becomes = 'selection:set{group = "region i"}', example = "mark region 3 range x 0 1",
         convert = function(c, a)
             a:keyword { "region" }
+            c.regions = true
             local number = a:whole "the region's number"
             c.emit(("%s:set { group = %q }"):format(c.blocks(range.read(c, a)), "region " .. number))
         end })
