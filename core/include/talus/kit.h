@@ -59,6 +59,9 @@
 /* An angle in [0, 90) deg. `more`: TL_PARAM_REQUIRED or the like, or 0. */
 #define TL_PARAM_ANGLE(owner, member, more, ...)                                                                       \
     TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__, .flags = TL_PARAM_MAX_OPEN | (more), .min = 0, .max = 90)
+/* An angle of friction in [0, 90] deg. That of 90 has the tangent 1.6e16: nothing slips while it is pressed. */
+#define TL_PARAM_FRICTION(owner, member, more, ...)                                                                    \
+    TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__, .flags = (more), .min = 0, .max = 90)
 
 /* ---------------------------------------------------------------- create ----------------- */
 

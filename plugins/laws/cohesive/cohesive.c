@@ -50,7 +50,7 @@ static const tl_param param_table[] = {
                       .alias = "gi"),
     TL_PARAM_POSITIVE(params, energy_shear, "J/m2", "work of fracture in shear, more than cohesion^2 / (2 ks)",
                       .alias = "gii"),
-    TL_PARAM_ANGLE(params, friction, 0, "angle of friction of what is broken"),
+    TL_PARAM_FRICTION(params, friction, 0, "angle of friction of what is broken; 90: no slip while it is pressed"),
 };
 
 static const tl_state state_table[] = {

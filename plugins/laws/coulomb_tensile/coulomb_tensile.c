@@ -37,11 +37,11 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM_ANGLE(params, friction, 0, "angle of friction"),
+    TL_PARAM_FRICTION(params, friction, 0, "angle of friction; 90: no slip while it is pressed"),
     TL_PARAM_NOT_NEGATIVE(params, cohesion, "Pa", "cohesion of the bond"),
     TL_PARAM_NOT_NEGATIVE(params, tension, "Pa", "tensile strength of the bond"),
-    TL_PARAM_ANGLE(params, residual_friction, TL_PARAM_OPTIONAL,
-                   "angle of friction after the bond is lost; not given: friction"),
+    TL_PARAM_FRICTION(params, residual_friction, TL_PARAM_OPTIONAL,
+                      "angle of friction after the bond is lost; not given: friction"),
     TL_PARAM_NOT_NEGATIVE(params, residual_cohesion, "Pa", "cohesion after the bond is lost"),
     TL_PARAM_NOT_NEGATIVE(params, residual_tension, "Pa", "tensile strength after the bond is lost"),
     TL_PARAM_ANGLE(params, dilation, 0,
@@ -64,6 +64,7 @@ typedef struct bonded {
     double kn, ks;
     strength peak, residual;
     tl_law_dilation dilation;
+    double most_pull; /* least normal force that counts for friction: tension takes nothing off that of 90 deg */
 } bonded;
 
 static tl_status create(const void *given, void **self, tl_report *report)
@@ -80,6 +81,7 @@ static tl_status create(const void *given, void **self, tl_report *report)
         .peak = {tl_tan(p->friction * TL_DEGREE), p->cohesion, p->tension},
         .residual = {tl_tan(residual * TL_DEGREE), p->residual_cohesion, p->residual_tension},
         .dilation = tl_law_dilation_of(p->dilation, p->dilation_limit),
+        .most_pull = p->friction < 90 && residual < 90 ? -INFINITY : 0,
     };
     return tl_keep(&law, sizeof law, self, report);
 }
@@ -89,14 +91,20 @@ typedef struct gripping {
     double bond, tangent, cohesion;
 } gripping;
 
+/* The normal force that counts for friction. */
+TL_IN_LOOP double normal_for_friction(double total, double most_pull)
+{
+    return total < most_pull ? most_pull : total;
+}
+
 /* Whether a bond holds a step: under a shear force on trial, what presses or pulls, and the force at the outermost
  * fibre. */
 TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, double before, double area, double trial,
-                            double total, double fibre)
+                            double total, double fibre, double most_pull)
 {
     double rest = 1 - before;
     double bound = (before * peak->cohesion + rest * residual->cohesion) * area +
-                   total * (before * peak->tangent + rest * residual->tangent);
+                   normal_for_friction(total, most_pull) * (before * peak->tangent + rest * residual->tangent);
     double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
     after = fibre < -peak->tension * area ? 0 : after;
     rest = 1 - after;
@@ -118,7 +126,7 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
     const double *restrict apart = batch->closure_apart + begin;
     double *restrict bond = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
-    const double kn = law->kn, ks = law->ks;
+    const double kn = law->kn, ks = law->ks, most_pull = law->most_pull;
     const tl_law_dilation dilation = law->dilation;
     const strength peak = law->peak, residual = law->residual;
     /* without tensile strength nothing pulls */
@@ -135,14 +143,14 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         double trial = tl_v3_norm(f);
 
         double fibre = kn * c.area[i] * (edge[i] + opened) + c.f_n0[i];
-        gripping g =
-            hold_on(&peak, &residual, before, c.area[i], trial, (pressed < 0 ? held * pressed : pressed) - pull, fibre);
+        gripping g = hold_on(&peak, &residual, before, c.area[i], trial,
+                             (pressed < 0 ? held * pressed : pressed) - pull, fibre, most_pull);
         double after = g.bond, tangent = g.tangent, cohesion = g.cohesion;
         double left = fibre < -residual.tension * c.area[i] ? 0 : whole;
         double holds = after * grips + (held - after * grips) * left;
         double pulls = holds * grip, total = pressed - pulls;
         if (dilates) {
-            double strong = cohesion * c.area[i] + total * tangent;
+            double strong = cohesion * c.area[i] + normal_for_friction(total, most_pull) * tangent;
             lift = tl_law_lift_of_slip(dilation, trial, strong, c.f_n[i], total, kn * c.area[i], stiffness, tangent,
                                        opened);
             opened = opened + lift;
@@ -152,7 +160,8 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         }
         double parted = pressed < 0 ? 1 - holds : 0, stretched = pressed < 0 ? -pressed : 0;
         total = pressed < 0 ? -(holds * stretched) - pulls : total;
-        double limit = (cohesion - parted * residual.cohesion) * c.area[i] + total * tangent;
+        double limit =
+            (cohesion - parted * residual.cohesion) * c.area[i] + normal_for_friction(total, most_pull) * tangent;
         limit = ((limit < 0) | !(parted < 1)) ? 0 : limit;
         double scale = tl_law_scale(trial, limit);
         if (heat) {
