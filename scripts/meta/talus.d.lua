@@ -48,7 +48,7 @@ function talus.help(topic) end
 ---@field gi? number J/m2, > 0: work of fracture in tension, more than tension^2 / (2 kn) (another name)
 ---@field energy_shear? number J/m2, > 0: work of fracture in shear, more than cohesion^2 / (2 ks)
 ---@field gii? number J/m2, > 0: work of fracture in shear, more than cohesion^2 / (2 ks) (another name)
----@field friction? number deg, in [0, 90], default 0: angle of friction of what is broken; 90: no slip while it is pressed
+---@field friction? number deg, in [0, 90), default 0: angle of friction of what is broken
 
 --- A joint that yields from the first slip on, and whose friction wears down: for cyclic loading.
 ---@class (exact) talus.law.ContinuouslyYielding
@@ -69,7 +69,7 @@ function talus.help(topic) end
 ---@class (exact) talus.law.Coulomb
 ---@field kn number Pa/m, > 0: normal stiffness of the joint
 ---@field ks number Pa/m, > 0: shear stiffness of the joint
----@field friction? number deg, in [0, 90], default 0: angle of friction; 90: no slip while it is closed
+---@field friction? number deg, in [0, 90), default 0: angle of friction
 ---@field cohesion? number Pa, >= 0, default 0: shear strength at zero normal stress
 ---@field dilation? number deg, in [0, 90), default 0: angle of dilation: slip opens the joint; at most the friction
 ---@field dilation_limit? number m, >= 0: slip after which dilation ends
@@ -78,10 +78,10 @@ function talus.help(topic) end
 ---@class (exact) talus.law.CoulombTensile
 ---@field kn number Pa/m, > 0: normal stiffness of the joint
 ---@field ks number Pa/m, > 0: shear stiffness of the joint
----@field friction? number deg, in [0, 90], default 0: angle of friction; 90: no slip while it is pressed
+---@field friction? number deg, in [0, 90), default 0: angle of friction
 ---@field cohesion? number Pa, >= 0, default 0: cohesion of the bond
 ---@field tension? number Pa, >= 0, default 0: tensile strength of the bond
----@field residual_friction? number deg, in [0, 90]: angle of friction after the bond is lost; not given: friction
+---@field residual_friction? number deg, in [0, 90): angle of friction after the bond is lost; not given: friction
 ---@field residual_cohesion? number Pa, >= 0, default 0: cohesion after the bond is lost
 ---@field residual_tension? number Pa, >= 0, default 0: tensile strength after the bond is lost
 ---@field dilation? number deg, in [0, 90), default 0: angle of dilation: slip opens the joint; at most the friction, whole and residual
@@ -111,9 +111,9 @@ function talus.help(topic) end
 ---@class (exact) talus.law.SlipWeakening
 ---@field kn number Pa/m, > 0: normal stiffness of the joint
 ---@field ks number Pa/m, > 0: shear stiffness of the joint
----@field friction number deg, in [0, 90]: angle of friction before slip; 90: none while it is closed
+---@field friction number deg, in [0, 90): angle of friction before slip
 ---@field cohesion? number Pa, >= 0, default 0: cohesion before slip
----@field residual_friction? number deg, in [0, 90]: angle of friction after slip, at most friction; not given: friction
+---@field residual_friction? number deg, in [0, 90): angle of friction after slip, at most friction; not given: friction
 ---@field residual_cohesion? number Pa, >= 0, default 0: cohesion after slip, at most cohesion
 ---@field distance number m, > 0: slip D_c over which the strength falls: all of it, or in the exponential form all but 1/e
 ---@field form? "linear"|"exponential" default "linear": how the strength falls with slip
@@ -643,29 +643,22 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "zones", options: talus.generator.Zones|talus.generator.Zones[]): talus.GenerateResult
 function Model:generate(generator, options) end
 
----@class (exact) talus.JointOptions
----@field joint? "J1"|"J1:3"|"*" in a table: contacts on this joint; any when left out
----@field between? any in a table: contacts between blocks of two groups, either way round; a selection of blocks or a block serves in the place of a group. The same group twice: contacts inside it
----@field group? "GROUP" in a table: contacts with at least one block of the group
----@field blocks? talus.Blocks in a table: contacts with at least one of these blocks, or of their parts
----@field contacts? any in a table: contacts between the two blocks of one of these, or between their parts
-
---- Sets the law of a joint set (WHICH = "J1"), of one of its planes ("J1:3") or of every joint not named otherwise ("*"), or of contacts between groups or selections (WHICH a table, or a selection of blocks or contacts); without a law's name it changes properties. The law that names more wins: first by how many of the two blocks it names, then by how closely it names the joint (plane, set, *), then the one named later.
+--- Sets the law of a joint set ("J1"), of one of its planes ("J1:3") or of every joint not named otherwise ("*"); without a law's name it changes properties.
 ---
----     model:joint(WHICH, "LAW", {...})  or  model:joint(WHICH, {friction = 30})
----@param WHICH any
+---     model:joint("J1", "LAW", {...})  or  model:joint("J1", {friction = 30})
+---@param joint string
 ---@param law string
----@param options? talus.JointOptions
----@overload fun(self: talus.Model, WHICH: any, law: "barton_bandis", options: talus.law.BartonBandis)
----@overload fun(self: talus.Model, WHICH: any, law: "cohesive", options: talus.law.Cohesive)
----@overload fun(self: talus.Model, WHICH: any, law: "continuously_yielding", options: talus.law.ContinuouslyYielding)
----@overload fun(self: talus.Model, WHICH: any, law: "coulomb", options: talus.law.Coulomb)
----@overload fun(self: talus.Model, WHICH: any, law: "coulomb_tensile", options: talus.law.CoulombTensile)
----@overload fun(self: talus.Model, WHICH: any, law: "elastic", options: talus.law.Elastic)
----@overload fun(self: talus.Model, WHICH: any, law: "rate_state", options: talus.law.RateState)
----@overload fun(self: talus.Model, WHICH: any, law: "slip_weakening", options: talus.law.SlipWeakening)
----@overload fun(self: talus.Model, WHICH: any, options?: talus.JointOptions)
-function Model:joint(WHICH, law, options) end
+---@param options? table
+---@overload fun(self: talus.Model, joint: string, law: "barton_bandis", options: talus.law.BartonBandis)
+---@overload fun(self: talus.Model, joint: string, law: "cohesive", options: talus.law.Cohesive)
+---@overload fun(self: talus.Model, joint: string, law: "continuously_yielding", options: talus.law.ContinuouslyYielding)
+---@overload fun(self: talus.Model, joint: string, law: "coulomb", options: talus.law.Coulomb)
+---@overload fun(self: talus.Model, joint: string, law: "coulomb_tensile", options: talus.law.CoulombTensile)
+---@overload fun(self: talus.Model, joint: string, law: "elastic", options: talus.law.Elastic)
+---@overload fun(self: talus.Model, joint: string, law: "rate_state", options: talus.law.RateState)
+---@overload fun(self: talus.Model, joint: string, law: "slip_weakening", options: talus.law.SlipWeakening)
+---@overload fun(self: talus.Model, joint: string, options?: table)
+function Model:joint(joint, law, options) end
 
 ---@class (exact) talus.InsituOptions
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
@@ -936,7 +929,6 @@ function Model:gridpoints(options) end
 ---@field name string of the joint set; number of its planes so far
 ---@field planes integer of the joint set; number of its planes so far
 ---@field law string? name of the law of the set as a whole; nil while it has none
----@field scoped any of the list itself: the laws that name groups or selections, as of model:laws(); nil without any
 
 --- Lists the joint sets, in the order they were made.
 ---
@@ -947,10 +939,6 @@ function Model:joints() end
 ---@class (exact) talus.Law
 ---@field joint string "*", "J1" or "J1:3", and the name of the law that was set for it
 ---@field law string "*", "J1" or "J1:3", and the name of the law that was set for it
----@field between any {group or selection, group or selection} of a law for contacts between both
----@field group any the group, or the selection, of a law for contacts with at least one block of it
----@field blocks any the group, or the selection, of a law for contacts with at least one block of it
----@field contacts any number of the pairs of blocks of a law for contacts between these
 ---@field parameters { cohesion: number, dilation: number, friction: number, kn: number, ks: number }? {NAME = value}, as they are now; one that may be left out and was is nil
 
 --- Lists the laws that were set by model:joint, with their parameters.
@@ -1026,7 +1014,7 @@ function talus.solids() end
 ---@field timestep { dt: number, fraction: number, rule: string }? rule and fraction; given: the step that was given, s, or nil; dt: the step the next cycle will use, s, or message: why it is not known
 ---@field mass_scaling { on: boolean } on; dt and most, where they were given
 ---@field damping { name: string, parameters: { alpha: number } }? name, nil where none was chosen; parameters: a table of them by name
----@field laws { *: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } }, J1: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } } } by joint ("*", "J1", "J1:3"), or "contacts of group 'stone' (law 2)": law, its name; parameters: a table of them by name
+---@field laws { *: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } }, J1: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } } } by joint ("*", "J1", "J1:3"): law, its name; parameters: a table of them by name
 ---@field joints { J1: string } by joint set: the joint whose law it has, "" for none
 ---@field contact_area { *: { fraction: number } } by joint, "*" for all others: fraction, or absolute, m2
 ---@field solids { granite: { kind: string, parameters: { poisson: number, young: number } } } by name: kind, its name; parameters: a table of them by name
