@@ -129,6 +129,15 @@ for i, volume in ipairs(volumes) do
     check.near(model:blocks { id = i }[1].mass, 2000 * volume, 1e-9)
 end
 
+-- A prism with an end that is not convex is its convex hull, and that is told.
+local dented = "poly prism a 0 0 0 2 0 0 2 2 0 1 %s 0 0 2 0 b 0 0 1 2 0 1 2 2 1 1 %s 1 0 2 1"
+local model_of_dent, told = run(dented:format("2.5", "2.5"))
+check.near(model_of_dent:blocks {}[1].volume, 4.5, 1e-12)
+check.equal(#told.in_part, 0)
+model_of_dent, told = run(dented:format("1.9", "2.5"))
+check.equal(#told.in_part, 1)
+has(told.in_part[1].reason, "convex hull")
+
 -- The first density of a file is that of the blocks before it is given, and there is none without one.
 has(line "block create brick 0 1\nprop mat=1 dens=2345", "model:blocks {}:set { density = 2345 }")
 has((lines "block create brick 0 1\nblock property dens 2345")[1], "density = 2345")
@@ -199,6 +208,10 @@ local _, left
 model = run(THREE .. "prop mat=2 dens=2000\nchange mat=2 range x 0 1.7\nchange mat=3 range x 1.2 1.7\nprop mat=3 dens 3000\nprop mat=2 dens 2100")
 check.near(model:blocks { id = 1 }[1].density, 2100, 0)
 check.near(model:blocks { id = 2 }[1].density, 3000, 0)
+-- Named ranges, several in a classic one: what is in one of them.
+check.equal(#run(THREE .. "range name p group a\nrange name q x 2 3\nrange name both union nrange p q\nfix range nrange both")
+    :blocks { fixed = true }, 2)
+check.equal(#run(THREE .. "range name p group a\nrange name q x 2 3\nfix range nrange p q x 0 1"):blocks { fixed = true }, 1)
 -- A region is a group, until its blocks get another one.
 model = run "poly reg 2 brick 0 1 0 1 0 1\npoly brick 1 2 0 1 0 1\nmark region 3 range x 1 2\nfix range region 2\ndelete range region 3"
 check.equal(#model:blocks {}, 1)

@@ -144,13 +144,20 @@ end)
 element("volume", function(c, a)
     return { kind = "volume", from = a:number "the least volume", to = a:number "the largest volume" }
 end)
-element("name named-range", function(c, a)
-    local name = a:text "the range's name"
-    local inner = c.named_ranges[name:lower()]
-    if not inner then
-        lexer.mistake("%s: there is no range of the name '%s'", a.command, name)
-    end
-    return { kind = "named", range = inner }
+
+-- One name, or several: then what is in one of these ranges.
+element("name named-range nrange", function(c, a)
+    local list = { union = true }
+    repeat
+        local name = a:text "the range's name"
+        local inner = c.named_ranges[name:lower()]
+        if not inner then
+            lexer.mistake("%s: there is no range of the name '%s'", a.command, name)
+        end
+        list[#list + 1] = { kind = "named", range = inner }
+        local token = a:peek()
+    until not token or not c.named_ranges[token.text:lower()]
+    return #list == 1 and list[1] or { kind = "named", range = list }
 end)
 element("jmodel", function(c, a)
     return { kind = "law", law = c.law_of(a:text "the joint model", a.command) }

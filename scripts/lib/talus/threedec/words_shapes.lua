@@ -91,6 +91,37 @@ function shapes.polyhedron(c, a, options)
     return shapes.face(c, a, options)
 end
 
+local function difference(a, b)
+    return { b[1].value - a[1].value, b[2].value - a[2].value, b[3].value - a[3].value }
+end
+
+-- Whether a polygon is flat and convex, as far as its digits tell: what the generator of prisms asks for.
+local function is_convex(list)
+    local n, size, count = { 0, 0, 0 }, 0, #list
+    local function edge(i)
+        return difference(list[(i - 1) % count + 1], list[i % count + 1])
+    end
+    local function cross(u, v)
+        return { u[2] * v[3] - u[3] * v[2], u[3] * v[1] - u[1] * v[3], u[1] * v[2] - u[2] * v[1] }
+    end
+    local function dot(u, v)
+        return u[1] * v[1] + u[2] * v[2] + u[3] * v[3]
+    end
+    for i = 1, count do
+        local area = cross(difference(list[1], list[i]), edge(i))
+        n = { n[1] + area[1], n[2] + area[2], n[3] + area[3] }
+        size = math.max(size, dot(edge(i), edge(i)) ^ 0.5)
+    end
+    local length = dot(n, n) ^ 0.5
+    for i = 1, count do
+        if dot(cross(edge(i), edge(i + 1)), n) < -1e-9 * size ^ 2 * length or
+            math.abs(dot(difference(list[1], list[i]), n)) > 1e-7 * size * length then
+            return false
+        end
+    end
+    return true
+end
+
 function shapes.prism(c, a, options)
     local ends = {}
     while a:sees("face-1", "face-2", "a", "b", "nonplanar", "table-1") do
@@ -106,16 +137,16 @@ function shapes.prism(c, a, options)
     if not ends[1] or not ends[2] or #ends[1] ~= #ends[2] then
         lexer.mistake("%s: a prism needs two ends with as many points", a.command)
     end
+    if not is_convex(ends[1]) or not is_convex(ends[2]) then
+        c.note "an end of the prism is not flat and convex: it is the convex hull of its corners"
+        return "polyhedron", "vertices = " .. points(c, table.move(ends[2], 1, #ends[2], #ends[1] + 1, ends[1]))
+    end
     return "prism", ("base = %s, top = %s"):format(points(c, ends[1]), points(c, ends[2]))
 end
 
 function shapes.tetrahedron(c, a, options)
     local list = a:vectors("a tetrahedron", 4)
     return "tetrahedron", "vertices = " .. points(c, list)
-end
-
-local function difference(a, b)
-    return { b[1].value - a[1].value, b[2].value - a[2].value, b[3].value - a[3].value }
 end
 
 function shapes.drum(c, a, options)
