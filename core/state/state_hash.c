@@ -344,13 +344,18 @@ static void hash_scope(tl_hash *hash, const tl_model *m, const tl_scope *s)
         if (tl_block_row_quiet(m, (tl_id)(s->pairs[i] >> 32)) != TL_NO_ROW &&
             tl_block_row_quiet(m, (tl_id)s->pairs[i]) != TL_NO_ROW)
             tl_hash_word(hash, s->pairs[i]);
+    tl_hash sum = {0, 0}; /* of the two sides in any order */
     for (uint32_t k = 0; k < s->names && !s->pairs; k++) {
         const tl_scope_side *side = &s->side[k];
-        hash_text(hash, side->group != TL_NO_ROW ? m->groups[side->group] : "");
+        tl_hash one = tl_hash_start();
+        hash_text(&one, side->group != TL_NO_ROW ? m->groups[side->group] : "");
         for (size_t row = 0; row < m->blocks.table.rows && side->group == TL_NO_ROW; row++)
             if (tl_id_set_has(&side->list, m->blocks.id[row]))
-                tl_hash_word(hash, m->blocks.id[row]);
+                tl_hash_word(&one, m->blocks.id[row]);
+        hash_any_order(&sum, &one);
     }
+    tl_hash_word(hash, sum.a);
+    tl_hash_word(hash, sum.b);
 }
 
 static void hash_laws(tl_hash *hash, const tl_model *m)
