@@ -321,6 +321,10 @@ check.near(model:blocks { id = 1 }[1].displacement, { 0.5 * model.time, 0, 0.25 
 -- A table of velocities: the way is the area below it.
 model = run("block create brick 0 1\ntable 'v' add 0 0 1 1 2 1\nblock apply velocity-z 2 table 'v'\n" .. KN .. "\nmodel dynamic active on\nmodel solve time 2")
 check.near(model:blocks {}[1].displacement[3], 3 + 2 * (model.time - 2), 1e-3)
+-- A FISH function of the time: the way of a sine.
+model = run("block create brick 0 1\n[w = 2.0]\nfish def wave\n  wave = math.sin(w*mech.time)\nend\nblock apply velocity-x 3 fish wave\n" .. KN ..
+    "\nmodel dynamic active on\nmodel solve time 1")
+check.near(model:blocks {}[1].displacement[1], 1.5 * (1 - math.cos(2 * model.time)), 1e-3)
 -- Forces at the corners of a rigid block add up, with their moment.
 model = run("block create brick 0 1\nblock property density 1\nblock gridpoint apply force-z 2 range position-z 0.9 1.1\n" ..
     KN .. "\nblock mechanical damping none\nmodel dynamic active on\nmodel solve time 0.1")

@@ -35,7 +35,7 @@ local function other_case(word)
 end
 
 local SEPARATORS = { " ", ", ", "  ", "\t", " = ", " ...\n  ", " & ; why not\n", " ( " }
-local NAMES = { base = true, low = true } -- of groups and ranges in the examples
+local NAMES = { base = true, low = true, wave = true } -- of groups, ranges and functions in the examples
 
 -- The tokens of a command as another text; words change by `change`.
 local function write(tokens, change)
@@ -69,7 +69,17 @@ for case = 1, check.cases(3000) do
     local function rewrite(change)
         local commands = {}
         for _, statement in ipairs(lexer.statements(example)) do
-            commands[#commands + 1] = statement.kind == "command" and write(statement.tokens, change) or statement.code
+            local text = statement.code
+            if statement.kind == "command" then
+                text = write(statement.tokens, change)
+            elseif statement.kind == "function" then
+                text = "FISH def " .. statement.name
+                for _, one in ipairs(statement.body) do
+                    text = text .. "\n" .. one.code
+                end
+                text = text .. "\nEnd"
+            end
+            commands[#commands + 1] = text
         end
         return table.concat(commands, "\n")
     end

@@ -1,4 +1,5 @@
 -- words_motion.lua - commands that hold, move and load blocks, and put stress in them.
+local fish = require "talus.threedec.fish"
 local range = require "talus.threedec.range"
 local lexer = require "talus.threedec.lexer"
 
@@ -59,10 +60,21 @@ local function free(c, a)
     c.emit(text)
 end
 
+-- The factor of a FISH function that only assigns its own name, as `wave = math.sin(6.28*mech.time)`: an expression of t.
+local function fish_factor(c, name)
+    local list, own = c.functions[fish.name(name)], fish.name(name)
+    if not list or #list ~= 1 or fish.name(list[1].name) ~= own then
+        c.leave("the FISH function '" .. name .. "' is not converted; drive takes a function of Lua")
+    end
+    local time = { lua = "t", value = 1.0 }
+    local variables = setmetatable({ mech_time = time, time = time, dynamic_time = time, mech_time_total = time }, { __index = c.variables })
+    return "(" .. fish.expression(list[1].text, variables).lua .. ")"
+end
+
 -- `fish f` or `table i` after a value: a factor over time. Gives the text of the factor, or nil.
 local function factor(c, a)
     if a:take "fish" then
-        c.leave("the FISH function '" .. a:text "the function" .. "' is not converted; drive takes a function of Lua")
+        return fish_factor(c, a:text "the function")
     elseif a:take("table", "history") then
         local name = a:text "the table"
         if not c.tables[name] then
@@ -319,9 +331,10 @@ return function(row)
         example = { "block fix range position-z -1 0.6", "fix xvel yvel range x 0 1", "block fix rotation velocity-z" }, convert = fix })
     row("block free|free", { form = "[velocity-x | ... | rotation] [range]", becomes = "selection:free(), and fix of the others",
         example = { "block fix\nblock free velocity-z", "free range z 0 1" }, convert = free })
-    row("block apply", { form = "velocity v | velocity-x f [table s] [range]", becomes = "selection:drive{velocity = ...}",
+    row("block apply", { form = "velocity v | velocity-x f [table s | fish s] [range]", becomes = "selection:drive{velocity = ...}",
         example = { "block apply velocity-x 0.1 range position-z 0 1",
-            "table 'push' add 0 0 1 0.5\nblock apply vel-z 1 table 'push' range group 'rock'" }, convert = apply })
+            "table 'push' add 0 0 1 0.5\nblock apply vel-z 1 table 'push' range group 'rock'",
+            "fish define wave\n  wave = math.sin(6.28*mech.time)\nend\nblock apply vel-x 0.1 fish wave" }, convert = apply })
     row("block gridpoint apply", { form = "force-z f | velocity-x f [range]", becomes = "selection:load{force =, at =}, of zones " ..
         "model:gridpoints{...}:load{...}, :fix{...}, :drive{...}", example = "block gridpoint apply force-z -100 range position-z 0.9 1.1",
         convert = gridpoint_apply })

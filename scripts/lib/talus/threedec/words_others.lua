@@ -20,13 +20,13 @@ return function(row)
             end
         end })
     row("plot|print|program log|program log-file|program list|list|model list|model display|block list|program playback|" ..
-        "program undo|program pause|program system|pause|log|view|movie|fish list|block vtk|export|block export",
+        "program undo|program pause|program system|program load|pause|log|log-file|view|movie|fish list|block vtk|export|block export",
         { lacks = "pictures and lists: model:write_vtk, model:write_html, talus.report, talus.plot" })
     row("structure|sel|cable|beam|liner|shell|block structure", { lacks = "Talus has no support elements yet" })
     row("block water|block fluid|water|fluid|block zone fluid|block thermal|thermal|model fluid|model thermal|block flow|flow",
         { lacks = "Talus has no water and no heat" })
     row("dfn|fracture|geometry|data|block import|block cells|block densify|block fragment|block fill|block makewall|" ..
-        "block joint-plane|ffield|quiet|free-field|model python|python-reset-state|block remove|model undo", { lacks = "no counterpart" })
+        "block joint-plane|zone|python|ffield|quiet|free-field|model python|python-reset-state|block remove|model undo", { lacks = "no counterpart" })
     row("block analyze-stability|block relax|block trace|block merge-start|block to-flac3d|block to-pfc|block to-udec|" ..
         "block dynamic|block contact use-actual|block update|fblock|feblock", { lacks = "no counterpart" })
 end

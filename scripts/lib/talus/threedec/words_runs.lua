@@ -275,6 +275,6 @@ return function(row)
     row("model configure|config|model large-strain|model deterministic|block energy|block mechanical energy|program echo|" ..
         "program threads|set", { needless = "Talus follows large displacements, keeps an energy ledger and gives the same bits always",
         example = { "model large-strain on", "config dynamic" } })
-    row("return|ret|program return|end", { needless = "the end of the file" })
+    row("return|ret|program return|end|quit|exit|stop|program quit|program exit|program stop", { needless = "the end of the file" })
     row("model random", { form = "i", needless = "draws follow from talus.model{seed = ...}; those of 3DEC are others" })
 end
