@@ -1332,6 +1332,27 @@ function Model:histories() end
 ---@param path string
 function Model:write_histories(path) end
 
+---@class (exact) talus.ConvertOptions
+---@field file string name of the data file, of 3DEC 7 to 9 or a classic one
+---@field to? string name of the script that is written; folders are made
+---@field up? "z"|"y" axis that points up in the file, z when left out; with "y" dip directions count from z, as in left-handed files
+
+---@class (exact) talus.ConvertResult
+---@field script string the script, a text
+---@field report string[] lines that tell what was converted and what was not
+---@field converted integer number of commands; of those for which Talus needs nothing
+---@field needless integer number of commands; of those for which Talus needs nothing
+---@field left_out { file: string, line: integer, reason: string, source: string }[] lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+---@field in_part table lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+---@field mistakes table lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+
+--- Writes a data file of 3DEC as a script of Talus, one line a command, and tells what is left out. `talus convert [--up y] FILE [SCRIPT.lua]` does the same from a shell, and `talus run FILE.3ddat`, or FILE.dat, runs it at once.
+---
+---     result = talus.convert{file = "scripts/examples/fault.3ddat"}
+---@param options talus.ConvertOptions
+---@return talus.ConvertResult
+function talus.convert(options) end
+
 ---@class (exact) talus.PlotOptions
 ---@field file string name of the SVG file; folders are made
 ---@field series? { x: number[]?, y: number[]?, name: string?, style: string?, colour: string? }[] lines: lists of numbers x (1, 2, 3, ... when left out) and y; style is "line", "points" or "both", colour "#0072b2". Numbers that are not finite make a gap. Or {history =, component =, against =, name =}: history is one of model:histories(), component "x", "y", "z" or a number (all when left out), against "time" or "cycle"
