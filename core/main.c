@@ -9,6 +9,7 @@
 #include "lua/run.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <lualib.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -244,7 +245,7 @@ static int run_script(lua_State *L, int argc, char **argv, const options *o)
     bool standard_input = strcmp(script, "-") == 0;
     if (!standard_input && access(script, R_OK) != 0)
         return exit_of(tl_command_fail("cannot read the script '%s': %s", script, strerror(errno)));
-    int status = luaL_loadfile(L, standard_input ? NULL : script);
+    int status = tl_lua_script_load(L, standard_input ? NULL : script);
     return run_chunk(L, status, argc, argv, o->next + 1, o);
 }
 
@@ -373,6 +374,9 @@ int main(int argc, char **argv)
         return tl_command_check(argc - o.next - 1, argv + o.next + 1);
     if (strcmp(command, "new") == 0)
         return tl_command_new(argc - o.next - 1, argv + o.next + 1);
+    char script[PATH_MAX]; /* of a command that is written in Lua */
+    if (tl_library_command(command, script, sizeof script) && access(command, F_OK) != 0)
+        argv[o.next] = script;
     bool runs = strcmp(command, "run") == 0;
     o.next += runs;
     if (runs && !read_options(argc, argv, &o, &status))

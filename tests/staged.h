@@ -17,7 +17,8 @@ static inline tl_status stage_begin(tl_model *m, tl_stage *stage)
 static inline tl_status stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence)
 {
     size_t met = 0;
-    return tl_stage_cut_disc(stage, normal, point, (double)INFINITY, tag, persistence, &met);
+    const tl_fracture plane = tl_fracture_disc(normal, point, (double)INFINITY);
+    return tl_stage_cut_fracture(stage, &plane, tag, persistence, &met);
 }
 
 #endif

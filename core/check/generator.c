@@ -60,6 +60,8 @@ static tl_status count(void)
     DO(cut_disc,                                                                                                       \
        (const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag, double persistence, size_t *met),  \
        h, normal, point, radius, tag, persistence, met)                                                                \
+    DO(cut_polygon, (const tl_host *h, const tl_vec3 *corners, size_t n, tl_tag tag, double persistence, size_t *met), \
+       h, corners, n, tag, persistence, met)                                                                           \
     DO(progress, (const tl_host *h, double fraction), h, fraction)                                                     \
     DO(meets, (const tl_host *h, size_t index, const tl_half_space *spaces, size_t n, bool *answer), h, index, spaces, \
        n, answer)                                                                                                      \

@@ -58,10 +58,11 @@ double tl_cut_contact_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b
     return tl_flush_limits_of(corners).field_tilt;
 }
 
-/* The face of a block with an outward normal; TL_NO_ROW: it has none. A convex block has one at the most. */
-static uint32_t face_of(const tl_model *m, uint32_t block, tl_vec3 normal)
+/* The face that a block has for another one with an outward normal; TL_NO_ROW: it has none. A convex block has one at
+ * the most. */
+static uint32_t face_of(const tl_model *m, uint32_t block, uint32_t other, tl_vec3 normal)
 {
-    const tl_poly *shape = m->blocks.shape[block];
+    const tl_poly *shape = tl_pair_shape(m, block, other);
     tl_vec3 n = tl_m3_tmul(tl_side_rotation(m, tl_block_side(m, block)), normal);
     for (uint32_t f = 0; f < shape->face_count; f++)
         if (tl_v3_norm2(tl_v3_sub(shape->plane[f].normal, n)) < SAME_FACE * SAME_FACE)
@@ -69,10 +70,10 @@ static uint32_t face_of(const tl_model *m, uint32_t block, tl_vec3 normal)
     return TL_NO_ROW;
 }
 
-/* How far a face of a block lies beyond a place, along its normal. */
-static double beyond(const tl_model *m, uint32_t block, uint32_t face, tl_vec3 place)
+/* How far a face that a block has for another one lies beyond a place, along its normal. */
+static double beyond(const tl_model *m, uint32_t block, uint32_t other, uint32_t face, tl_vec3 place)
 {
-    const tl_plane *plane = &m->blocks.shape[block]->plane[face];
+    const tl_plane *plane = &tl_pair_shape(m, block, other)->plane[face];
     return plane->offset - tl_v3_dot(plane->normal, tl_side_local(m, tl_block_side(m, block), place));
 }
 
@@ -84,13 +85,13 @@ bool tl_cut_contact_faces(const tl_model *m, uint32_t block_a, uint32_t block_b,
     if (!cut)
         return false;
     bool other_way = root_of(m, block_a) != cut->a;
-    uint32_t face_a = face_of(m, block_a, cut->face[other_way]);
-    uint32_t face_b = face_of(m, block_b, cut->face[!other_way]);
+    uint32_t face_a = face_of(m, block_a, block_b, cut->face[other_way]);
+    uint32_t face_b = face_of(m, block_b, block_a, cut->face[!other_way]);
     if (face_a == TL_NO_ROW || face_b == TL_NO_ROW)
         return false;
     *faces = (tl_face_pair){(uint16_t)face_a, (uint16_t)face_b};
     tl_vec3 first = m->detect->cut_points[cut->first].arm;
-    double overlap = beyond(m, block_a, face_a, first) + beyond(m, block_b, face_b, first);
+    double overlap = beyond(m, block_a, block_b, face_a, first) + beyond(m, block_b, block_a, face_b, first);
     double size = fmin(m->blocks.size[block_a], m->blocks.size[block_b]);
     return fabs(overlap - cut->overlap) < TL_STILL * size;
 }

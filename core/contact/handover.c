@@ -316,8 +316,8 @@ void tl_press_shift_faces(tl_model *m, uint32_t c, tl_face_pair faces)
     const tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
     row->shifted = faces;
-    row->shifted_at[0] = m->blocks.shape[contacts->a[c]]->plane[faces.a];
-    row->shifted_at[1] = m->blocks.shape[contacts->b[c]]->plane[faces.b];
+    row->shifted_at[0] = tl_pair_shape(m, contacts->a[c], contacts->b[c])->plane[faces.a];
+    row->shifted_at[1] = tl_pair_shape(m, contacts->b[c], contacts->a[c])->plane[faces.b];
     row->frame[0] = tl_block_frame_of(m, contacts->a[c]);
     row->frame[1] = tl_block_frame_of(m, contacts->b[c]);
 }

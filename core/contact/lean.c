@@ -302,8 +302,8 @@ tl_lean tl_contact_lean(const tl_model *m, uint32_t c, const tl_point_lanes *lan
     tl_vec3 g = tl_v3_madd(tl_v3_scale(by.slope[0], plane.t1), by.slope[1], plane.t2);
     tl_vec3 x = tl_m3_tmul(turn, by.about);
     g = tl_m3_tmul(turn, g);
-    out.face[0] = leaning(m->blocks.shape[contacts->a[c]]->plane[f->ia], g, x);
-    out.face[1] = leaning(m->blocks.shape[contacts->b[c]]->plane[f->ib], tl_m3_tmul(&b.turn, g),
+    out.face[0] = leaning(tl_pair_shape(m, contacts->a[c], contacts->b[c])->plane[f->ia], g, x);
+    out.face[1] = leaning(tl_pair_shape(m, contacts->b[c], contacts->a[c])->plane[f->ib], tl_m3_tmul(&b.turn, g),
                           tl_m3_tmul(&b.turn, tl_v3_sub(x, b.shift)));
     return out;
 }

@@ -12,8 +12,8 @@ tl_pair_view tl_pair_view_at(const tl_model *m, uint32_t a, uint32_t b, tl_sides
 {
     const tl_blocks *blocks = &m->blocks;
     const tl_mat3 *ra = tl_side_rotation(m, sides.a), *rb = tl_side_rotation(m, sides.b);
-    return (tl_pair_view){.a = blocks->shape[a],
-                          .b = blocks->shape[b],
+    return (tl_pair_view){.a = tl_pair_shape(m, a, b),
+                          .b = tl_pair_shape(m, b, a),
                           .turn = tl_m3_tproduct(ra, rb),
                           .shift = tl_m3_tmul(ra, tl_sides_apart(m, sides)),
                           .size = fmin(blocks->size[a], blocks->size[b]),
@@ -37,7 +37,7 @@ tl_touch_rule tl_touch_rule_of(const tl_model *m, uint32_t a, uint32_t b, const 
 bool tl_pair_at_corners(const tl_model *m, uint32_t a, uint32_t face_a, uint32_t b, uint32_t face_b)
 {
     return m->config.contact_points == TL_POINTS_CORNERS &&
-           tl_at_corners(m->blocks.shape[a], face_a, m->blocks.shape[b], face_b);
+           tl_at_corners(tl_pair_shape(m, a, b), face_a, tl_pair_shape(m, b, a), face_b);
 }
 
 /* ---------------------------------------------------------------- where they were --------

@@ -7,6 +7,7 @@
 
 #include "contact/detection.h"
 #include "model/model.h"
+#include "model/seats.h"
 
 typedef struct tl_sides {
     uint32_t a, b; /* rows of poses */
@@ -91,12 +92,6 @@ static inline tl_vec3 tl_sides_apart(const tl_model *m, tl_sides sides)
         b = tl_side_pose(m, sides.b);
     }
     return tl_apart(a->x_ref, a->u, b->x_ref, b->u);
-}
-
-/* The frame of a block's body as the block sees it. */
-static inline tl_block_frame tl_block_frame_of(const tl_model *m, uint32_t block)
-{
-    return (tl_block_frame){tl_block_local(m, block), tl_block_made(m, block).turn};
 }
 
 /* Velocity of a side at an arm. */

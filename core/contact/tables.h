@@ -4,6 +4,7 @@
 
 #include "base/table.h"
 #include "contact/carrier.h"
+#include "model/seat.h"
 #include "narrow/press.h"
 #include "narrow/press_slope.h"
 
@@ -52,13 +53,6 @@ typedef struct tl_contacts {
 
 /* Faces that a field contact remembers; of one with more the faces are listed in every step. */
 #define TL_PRESS_FACES 48
-
-/* A body's frame as one of its blocks sees it: where the block's centroid lies in it, and how the frame was turned when
- * the block was made. A body that is made anew of other blocks has another frame; its blocks have not moved. */
-typedef struct tl_block_frame {
-    tl_vec3 centroid;
-    tl_quat turn;
-} tl_block_frame;
 
 /* What a field contact keeps beside its points. Lengths and forces of the press in A's frame. */
 typedef struct tl_press_row {

@@ -145,6 +145,8 @@ tl_status tl_step(tl_model *m)
         tl_asked_step_failed(m);
         return status;
     }
+    if (m->cycles == 0)
+        tl_remark_overlaps(m);
     tl_held_followed(m);
     tl_split_turn(m);
     tl_move(m, dt);

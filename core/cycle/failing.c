@@ -42,6 +42,9 @@
 /* Tolerance: the same relative to how far the model may settle: a column under sudden weight settles by about 1.5 of
  * it. */
 #define SETTLED_SHARE 3.0
+/* Tolerance: movement over a body's size from which rest may hang on the stiffness of joints. Angles change by as much,
+ * and docs/how_stiff.md has thrusts near the edge of faces. Test: lua/test_try_stiffer. */
+#define MOVED_SHARE 0.01
 /* Tolerance: a leg counts as no slower than the one before from this share of its speed on. */
 #define NO_SLOWER 0.95
 /* Tolerance: cos of the largest change of direction between legs. */
@@ -484,10 +487,10 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
     return w->failing;
 }
 
-tl_gone tl_watch_gone(const tl_watch *w, const tl_model *m)
+/* The body that has gone the farthest over its size, beyond a share of that and a length. */
+static tl_gone farthest(const tl_watch *w, const tl_model *m, double share, double least)
 {
-    tl_gone out = {TL_NO_ROW, 0, FAILED_SHARE};
-    const double least = SETTLED_SHARE * settlement(w, m);
+    tl_gone out = {TL_NO_ROW, 0, share};
     for (uint32_t body = 0; body < w->bodies && w->structure == m->structure; body++) {
         const leg *l = &w->leg[body];
         double far = tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, l->start));
@@ -496,4 +499,14 @@ tl_gone tl_watch_gone(const tl_watch *w, const tl_model *m)
         out = (tl_gone){body, far, far / l->size};
     }
     return out;
+}
+
+tl_gone tl_watch_gone(const tl_watch *w, const tl_model *m)
+{
+    return farthest(w, m, FAILED_SHARE, SETTLED_SHARE * settlement(w, m));
+}
+
+tl_gone tl_watch_moved(const tl_watch *w, const tl_model *m)
+{
+    return farthest(w, m, MOVED_SHARE, 0);
 }

@@ -19,7 +19,9 @@ void tl_watch_end(tl_watch *w);
 tl_id tl_watch_step(tl_watch *w, const tl_model *m);
 /* Keeps the blocks that fail with the one found, how much rock that is, and where it goes. */
 tl_status tl_watch_list(const tl_watch *w, tl_model *m);
-/* Of the bodies that touched something when the run began, the one that has gone the farthest over its size. */
+/* Of the bodies that touched something when the run began, the one that has gone the farthest over its size.
+ * `gone`: so far that it has failed and come to rest elsewhere. `moved`: by more than a hundredth of its size. */
 tl_gone tl_watch_gone(const tl_watch *w, const tl_model *m);
+tl_gone tl_watch_moved(const tl_watch *w, const tl_model *m);
 
 #endif

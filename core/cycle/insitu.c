@@ -31,6 +31,9 @@
 /* Tolerance: an outer face has more than this share of it, and of the mean face of its block, on no body, its own
  * included. Less carries no force to speak of. */
 #define BARE 0.01
+/* Tolerance: a contact without a patch on more than this share of the mean face of its blocks should have one. Edges
+ * and vertices press on less. */
+#define MUCH 0.1
 /* Limit: largest component of a stress, Pa, and of its gradient, Pa/m, that is taken: forces and their energies stay
  * finite. Test: lua/test_insitu. */
 #define MOST_STRESS 1e50
@@ -126,6 +129,29 @@ static void say_tension(tl_model *m, const tl_insitu *s)
                      "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): it is positive in "
                      "tension; give compression as negative numbers, as in zz = %g",
                      pulled, pulled == 1 ? "" : "s", a, b, s->stress.zz != 0 ? -fabs(s->stress.zz) : -1e6);
+}
+
+/* Says which contacts were left out although much of a face presses there: their blocks overlap too deeply for a patch,
+ * or their faces tilt. */
+static void say_left_out(tl_model *m)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    size_t count = 0;
+    uint32_t first = TL_NO_ROW;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        const double face = fmin(m->blocks.mean_face[c->a[i]], m->blocks.mean_face[c->b[i]]);
+        if (!tl_facet_is_field(&c->facet[i]) || c->point_count[i] == 0 || !(c->area[i] > MUCH * face))
+            continue;
+        first = count++ == 0 ? i : first;
+    }
+    if (count)
+        tl_model_say(
+            m,
+            "insitu: %zu contact%s (first: between blocks %u and %u, which overlap by %.3g m) got no stress, for "
+            "faces that overlap or tilt so much have no patch to bear it: %s before insitu takes them as "
+            "fitting",
+            count, count == 1 ? "" : "s", m->blocks.id[c->a[first]], m->blocks.id[c->b[first]],
+            tl_press_row_of(m, first)->press.deepest, tl_words(m, "model:seat{}", "tl_model_seat"));
 }
 
 /* Area of a block's face that is covered by contact patches. */
@@ -318,6 +344,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
     tl_undo_by_hand(m);
     tl_held_wake(m);
     say_outer(m, &outer);
+    say_left_out(m);
     say_tension(m, &insitu);
     return TL_OK;
 }

@@ -540,3 +540,64 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     scope.joint = joint;
     return tl_joint_law_for(m, &scope, law, args);
 }
+
+/* ---------------------------------------------------------------- stiffer joints --------- */
+
+/* Most parameters of a law that are stiffnesses. */
+#define MOST_STIFF 16
+
+/* The law with its stiffnesses multiplied. */
+static tl_status make_stiffer(tl_model *m, const tl_law *law, double factor, tl_law *out)
+{
+    const tl_kind *kind = law->kind;
+    char text[TL_SCOPE_TEXT];
+    tl_value values[MOST_STIFF];
+    tl_args args = {values, 0};
+    for (uint32_t i = 0; i < kind->param_count && args.count < MOST_STIFF; i++) {
+        const tl_param p = tl_param_row(kind->params, i, kind->param_stride);
+        double value;
+        if (p.type != TL_PARAM_REAL || !(p.flags & TL_PARAM_STIFFNESS))
+            continue;
+        memcpy(&value, (const char *)law->params + p.offset, sizeof value);
+        if (!isnan(value))
+            values[args.count++] = tl_arg_number(p.name, factor * value);
+    }
+    if (args.count == 0)
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "%s: law '%s' says of no parameter that it is a stiffness; its plugin is to mark them with "
+                       "TL_PARAM_STIFFNESS",
+                       tl_scope_text(m, &law->scope, text), kind->name);
+    tl_scope scope;
+    if (!tl_scope_copy(&law->scope, &scope))
+        return tl_fail_memory(&m->error);
+    const tl_status status = tl_law_make_for(m, &scope, kind, &args, law, out);
+    if (status != TL_OK)
+        tl_scope_clear(&scope);
+    return status;
+}
+
+tl_status tl_joints_stiffen(tl_model *m, double factor)
+{
+    tl_status status = tl_model_may_set(m, "make joints stiffer");
+    if (status == TL_OK && !(factor > 0 && isfinite(factor)))
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "a factor of stiffness of %g must be > 0", factor);
+    const size_t count = m->joint_law_count;
+    tl_law *made = status == TL_OK ? calloc(count + 1, sizeof *made) : NULL;
+    if (status == TL_OK && !made)
+        status = tl_fail_memory(&m->error);
+    size_t ready = 0, put = 0;
+    while (status == TL_OK && ready < count) {
+        status = make_stiffer(m, &m->joint_laws[ready], factor, &made[ready]);
+        ready += status == TL_OK;
+    }
+    while (status == TL_OK && put < count) {
+        status = put_law(m, &made[put]);
+        put += status == TL_OK;
+    }
+    for (size_t i = put; i < ready; i++)
+        tl_law_clear(&made[i]);
+    free(made);
+    if (put > 0 && m->cycle)
+        m->cycle->dt = 0;
+    return status;
+}

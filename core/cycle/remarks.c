@@ -205,3 +205,54 @@ void tl_remark_closure(tl_model *m)
         return;
     }
 }
+
+/* ---------------------------------------------------------------- overlaps --------------- */
+
+/* Whether a contact has an initial stress, which presses by itself. */
+static bool is_stressed(const tl_model *m, uint32_t contact)
+{
+    const tl_detect *d = m->detect;
+    bool stressed = false;
+    for (size_t k = 0; d->points.initial && k < d->contacts.point_count[contact]; k++)
+        stressed = stressed || d->points.f_n0[tl_point_row(&d->contacts, contact, k)] != 0;
+    return stressed;
+}
+
+/* Weight of the blocks that can move, N. */
+static double free_weight(const tl_model *m)
+{
+    double mass = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        mass += tl_body_is_held(m, body) ? 0 : m->bodies.mass[body];
+    return mass * tl_v3_norm(m->config.gravity);
+}
+
+void tl_remark_overlaps(tl_model *m)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    const double weight = free_weight(m);
+    double force = 0, most = 0;
+    uint32_t deepest = TL_NO_ROW;
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (tl_blocks_fixed(m, c->a[row], c->b[row]) || c->law[row] == TL_NO_ROW || is_stressed(m, row))
+            continue;
+        const double pressed = tl_v3_norm(c->force[row]);
+        const double overlap = pressed / (m->joint_laws[c->law[row]].kn * c->area[row]);
+        force += pressed;
+        if (overlap > most) {
+            most = overlap;
+            deepest = row;
+        }
+    }
+    if (deepest == TL_NO_ROW || !(weight > 0) || !(force > weight) || !tl_model_says(m, TL_REMARK_SEAT))
+        return;
+    tl_overlap_share of;
+    if (tl_overlap_measure(m, deepest, &of))
+        most = of.overlap;
+    tl_model_say(
+        m,
+        "before the first step overlaps press with %.3g times the weight (largest: %.3g m between blocks %u and "
+        "%u): %s takes blocks as drawn as fitting",
+        force / weight, most, m->blocks.id[c->a[deepest]], m->blocks.id[c->b[deepest]],
+        tl_words(m, "model:seat{}", "tl_model_seat"));
+}

@@ -10,5 +10,7 @@ void tl_remark_units(tl_model *m);
 void tl_remark_friction(tl_model *m, const char *of, const tl_kind *kind, const void *params);
 /* Looks now and then at closures under load. */
 void tl_remark_closure(tl_model *m);
+/* After the forces of the first step, before anything moves: says so when overlaps press with more than the weight. */
+void tl_remark_overlaps(tl_model *m);
 
 #endif

@@ -166,14 +166,22 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
 }
 
 /* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for.
- * Names the body that has gone the farthest over its size, of those that touched something then. */
+ * What moved by a hundredth of its size may rest only because its joints are that soft, or that stiff. Names the body
+ * that has gone the farthest over its size, of those that touched something then. */
 static void say_gone(tl_model *m, const tl_watch *w)
 {
-    const tl_gone gone = tl_watch_gone(w, m);
+    const tl_gone gone = tl_watch_gone(w, m), moved = tl_watch_moved(w, m);
     if (gone.body != TL_NO_ROW)
         tl_model_say(
             m, "%s: at rest, but not where it began: block %u has moved by %.3g m in this run, %.2g times its size",
             run_name(m), m->bodies.id[gone.body], gone.way, gone.share);
+    else if (moved.body != TL_NO_ROW && tl_model_says(m, TL_REMARK_MOVED))
+        tl_model_say(
+            m,
+            "%s: at rest, but that may hang on how stiff the joints are: block %u has moved by %.3g m, %.2g %% "
+            "of its size of %.3g m; see whether it rests with ten times the stiffness, too: %s",
+            run_name(m), m->bodies.id[moved.body], moved.way, 100 * moved.share, moved.way / moved.share,
+            tl_words(m, "try_stiffer = true", "tl_joints_stiffen() of a copy"));
 }
 
 /* Neither at rest nor failing: of a run that was to find out which. */

@@ -117,11 +117,11 @@ static size_t cell_index(const struct tl_broad *g, uint32_t x, uint32_t y, uint3
     return ((size_t)z * g->n[1] + y) * g->n[0] + x;
 }
 
-/* By how much the bounds of a block are grown. */
+/* By how much the bounds of a block are grown: by what faces of seated pairs are moved, too. */
 static double growth_of(const tl_model *m, const struct tl_broad *g, uint32_t row)
 {
     double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * m->blocks.size[row];
-    return g->reach + 0.5 * tolerance;
+    return g->reach + 0.5 * tolerance + m->seats.reach + 0.5 * m->seats.asked;
 }
 
 static tl_bounds grown(tl_bounds b, double growth)

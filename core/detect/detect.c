@@ -28,6 +28,7 @@
 #include "force/cut_parts.h"
 #include "model/body_shape.h"
 #include "model/rows.h"
+#include "model/seats.h"
 #include "narrow/coarse_test.h"
 #include "narrow/manifold.h"
 #include "narrow/narrow.h"
@@ -667,6 +668,8 @@ static tl_status find_contacts(tl_model *m)
     tl_status status = ensure(m);
     if (status != TL_OK)
         return status;
+    if (!tl_seats_follow(m))
+        return tl_fail_memory(&m->error);
     tl_detect *d = m->detect;
     bool rows = d->structure != m->structure || !d->listed;
     if (rows) {

@@ -460,14 +460,6 @@ static void find_rules(tl_model *m)
 
 /* ---------------------------------------------------------------- frames ----------------- */
 
-/* A plane of a block, from one frame of its body into another. */
-static tl_plane reframed(tl_plane plane, const tl_block_frame *from, const tl_block_frame *to)
-{
-    tl_vec3 n = tl_q_rotate(tl_q_conj(to->turn), tl_q_rotate(from->turn, plane.normal));
-    double height = plane.offset - tl_v3_dot(plane.normal, from->centroid);
-    return (tl_plane){n, height + tl_v3_dot(n, to->centroid)};
-}
-
 /* Puts the planes that a field contact keeps into the frames that its blocks' bodies have now. */
 static void reframe_faces(tl_model *m, uint32_t c)
 {
@@ -477,8 +469,8 @@ static void reframe_faces(tl_model *m, uint32_t c)
         tl_block_frame now = tl_block_frame_of(m, of_b ? contacts->b[c] : contacts->a[c]);
         if (memcmp(&now, &row->frame[of_b], sizeof now) == 0)
             continue;
-        row->shifted_at[of_b] = reframed(row->shifted_at[of_b], &row->frame[of_b], &now);
-        row->lean[of_b] = reframed(row->lean[of_b], &row->frame[of_b], &now);
+        row->shifted_at[of_b] = tl_plane_reframed(row->shifted_at[of_b], &row->frame[of_b], &now);
+        row->lean[of_b] = tl_plane_reframed(row->lean[of_b], &row->frame[of_b], &now);
         row->frame[of_b] = now;
     }
 }

@@ -56,8 +56,9 @@ static double reach_of(const tl_model *m, uint32_t c, const tl_manifold_before *
     double size = tl_contact_size(m, c);
     const tl_plane *face = before->leans ? before->lean : NULL;
     tl_vec3 n = {0, 0, 0};
+    const tl_contacts *contacts = &m->detect->contacts;
     if (face)
-        n = m->blocks.shape[m->detect->contacts.a[c]]->plane[before->shifted.a].normal;
+        n = tl_pair_shape(m, contacts->a[c], contacts->b[c])->plane[before->shifted.a].normal;
     return tl_lean_reach(before->shift, face, n, size);
 }
 

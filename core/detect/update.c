@@ -618,11 +618,12 @@ static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, bool corners, t
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[c];
     uint32_t a = contacts->a[c], b = contacts->b[c];
-    if (!contact_is_patch(m, c) || (corners && !tl_at_corners(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib)) ||
-        !tl_batch_takes(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib))
+    const tl_poly *of_a = tl_pair_shape(m, a, b), *of_b = tl_pair_shape(m, b, a);
+    if (!contact_is_patch(m, c) || (corners && !tl_at_corners(of_a, f->ia, of_b, f->ib)) ||
+        !tl_batch_takes(of_a, f->ia, of_b, f->ib))
         return false;
     double size = m->blocks.size[a] < m->blocks.size[b] ? m->blocks.size[a] : m->blocks.size[b];
-    tl_batch_add(batch, lane, m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib, size,
+    tl_batch_add(batch, lane, of_a, f->ia, of_b, f->ib, size,
                  contacts->holds_over_gap[c] ? INFINITY : TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
     const tl_sides s = tl_contact_sides(m, c);
     tl_batch_between(batch, lane, tl_side_rotation(m, s.a), tl_side_rotation(m, s.b), tl_sides_apart(m, s));

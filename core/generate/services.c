@@ -518,27 +518,45 @@ static uint32_t next_plane(const tl_host *host, uint32_t number)
     return joint_exists(host, number) ? ++service_of(host)->model->joints[number - 1].planes : 0;
 }
 
-static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
-                          double persistence, size_t *met)
+static tl_status cut_fracture(const tl_host *host, const tl_fracture *fracture, tl_tag tag, double persistence,
+                              size_t *met)
 {
-    service *s = service_of(host);
     if (!plane_exists(host, tag))
         return fail(host, TL_E_PLUGIN, "it cuts by plane %u of joint %u, which it did not ask for", tag.plane,
                     tag.joint);
-    tl_status status = check_plane(host, normal, point);
+    tl_status status = check_plane(host, fracture->normal, fracture->point);
     if (status == TL_OK)
         status = go_on(host);
     if (status != TL_OK)
         return status;
     if (!(persistence >= 0 && persistence <= 1))
         return fail(host, TL_E_ARGUMENT, "persistence = %g is outside [0, 1]", persistence);
-    if (!(radius > 0))
-        return fail(host, TL_E_ARGUMENT, "radius = %g m must be > 0", radius);
+    if (!(fracture->radius > 0))
+        return fail(host, TL_E_ARGUMENT, "radius = %g m must be > 0", fracture->radius);
     size_t blocks = 0;
-    status = tl_stage_cut_disc(&s->stage, normal, point, radius, tag, persistence, &blocks);
+    status = tl_stage_cut_fracture(&service_of(host)->stage, fracture, tag, persistence, &blocks);
     if (met)
         *met = blocks;
     return status;
+}
+
+static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
+                          double persistence, size_t *met)
+{
+    const tl_fracture disc = tl_fracture_disc(normal, point, radius);
+    return cut_fracture(host, &disc, tag, persistence, met);
+}
+
+static tl_status cut_polygon(const tl_host *host, const tl_vec3 *corners, size_t count, tl_tag tag, double persistence,
+                             size_t *met)
+{
+    tl_fracture polygon;
+    tl_status status = TL_OK;
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        status = check_point(host, "corner", i + 1, corners[i]);
+    if (status == TL_OK)
+        status = tl_fracture_polygon(corners, count, &polygon, &service_of(host)->model->error);
+    return status == TL_OK ? cut_fracture(host, &polygon, tag, persistence, met) : status;
 }
 
 static tl_status cut(const tl_host *host, tl_vec3 normal, tl_vec3 point, tl_tag tag, double persistence)
@@ -625,7 +643,8 @@ static tl_host host_of(service *s)
                      .read_mesh = read_mesh,
                      .create_solid = create_solid,
                      .note = note,
-                     .reason = reason};
+                     .reason = reason,
+                     .cut_polygon = cut_polygon};
 }
 
 /* The files that are to be read must be such as end; those that are not there are left to the plugin. */

@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "base/table.h"
+#include "generate/fracture.h"
 #include "generate/stage_bodies.h"
 #include "geometry/convex_parts.h"
 #include "geometry/cut.h"
@@ -174,63 +175,24 @@ void tl_stage_end(tl_stage *stage)
     stage->refused = NULL;
 }
 
-/* ---------------------------------------------------------------- a point from a face -----
- *
- * How far a point of a face's plane lies from the face. So a joint of finite extent meets a section of a block.
- *
- * A face is a convex polygon given counter-clockwise about its normal n. A point is over it when it lies
- * on the left of every edge, n x edge . (point - a) >= 0; otherwise the nearest point of the face is on one
- * of the edges. Distances are measured in the plane: the part along n is left out. */
-
-/* Square of the distance of a point from the edge a + t along, 0 <= t <= 1, with the part along n left out. */
-static double edge_distance2(tl_vec3 along, tl_vec3 arm, tl_vec3 n)
-{
-    tl_vec3 flat = tl_v3_madd(arm, -tl_v3_dot(arm, n), n);
-    double length2 = tl_v3_norm2(along);
-    double t = length2 > 0 ? tl_v3_dot(flat, along) / length2 : 0;
-    t = fmin(fmax(t, 0), 1);
-    return tl_v3_norm2(tl_v3_madd(flat, -t, along));
-}
-
-/* Distance of a point from a face; 0 for a point over the face. */
-static double face_distance(const tl_poly *p, uint32_t face, tl_vec3 point)
-{
-    const uint16_t *loop = p->loop + p->start[face];
-    uint32_t count = tl_poly_face_size(p, face);
-    tl_vec3 n = p->plane[face].normal;
-    bool over = true;
-    double nearest2 = INFINITY;
-    for (uint32_t i = 0; i < count; i++) {
-        tl_vec3 a = p->vertex[loop[i]], b = p->vertex[loop[(i + 1) % count]];
-        tl_vec3 along = tl_v3_sub(b, a), arm = tl_v3_sub(point, a);
-        over = over && tl_v3_dot(tl_v3_cross(n, along), arm) >= 0;
-        nearest2 = fmin(nearest2, edge_distance2(along, arm, n));
-    }
-    return over ? 0 : sqrt(nearest2);
-}
-
 /* ---------------------------------------------------------------- cutting ---------------- */
 
-/* A plane or disc as it meets one staged block. */
+/* A plane as it meets one staged block. */
 typedef struct plane_in_block {
     tl_plane plane; /* in the block's frame */
-    tl_vec3 center; /* of the disc */
-    double radius;  /* INFINITY: the whole plane */
     double reach;   /* the largest coordinate that it was computed with */
 } plane_in_block;
 
 /* `point` is relative to the model's origin. */
-static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point,
-                                        double radius)
+static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point)
 {
-    plane_in_block x = {{normal, tl_v3_dot(normal, point)}, point, radius, tl_v3_norm(point)};
+    plane_in_block x = {{normal, tl_v3_dot(normal, point)}, tl_v3_norm(point)};
     uint32_t body = tl_stage_frame(m, block);
     if (body == TL_NO_ROW)
         return x;
     const tl_pose *pose = &m->bodies.pose[body];
     tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, pose->x_ref), pose->u);
     x.plane = (tl_plane){tl_m3_tmul(&pose->r, normal), tl_v3_dot(normal, relative)};
-    x.center = tl_m3_tmul(&pose->r, relative);
     x.reach = fmax(x.reach, tl_v3_norm(tl_body_place(&m->bodies, body)));
     return x;
 }
@@ -238,7 +200,7 @@ static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block 
 /* Cuts a staged block by a plane through `point`, relative to the origin. */
 static tl_status cut_by(tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point, tl_cut *cut)
 {
-    plane_in_block x = plane_in_block_of(m, block, normal, point, (double)INFINITY);
+    plane_in_block x = plane_in_block_of(m, block, normal, point);
     return tl_poly_cut(block->shape, x.plane, x.reach, (tl_tag){0, 0}, cut, &m->error);
 }
 
@@ -291,27 +253,27 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
     return TL_OK;
 }
 
-/* False when the ball about a block shows that the plane or disc, relative to the model's origin, passes it by. */
-static bool may_meet(const plane_in_block *x, tl_stage_ball ball)
+/* False when the ball about a block shows that a fracture passes it by. */
+static bool may_meet(const tl_model *m, const tl_fracture *f, tl_stage_ball ball)
 {
-    double rounding = BALL_ROUNDINGS * fabs(x->plane.offset);
-    if (fabs(tl_v3_dot(x->plane.normal, ball.center) - x->plane.offset) > ball.radius + rounding)
+    const tl_vec3 point = tl_v3_sub(f->point, m->origin);
+    const double offset = tl_v3_dot(f->normal, point), rounding = BALL_ROUNDINGS * fabs(offset);
+    if (fabs(tl_v3_dot(f->normal, ball.center) - offset) > ball.radius + rounding)
         return false;
-    return isinf(x->radius) || tl_v3_norm(tl_v3_sub(ball.center, x->center)) <= x->radius + ball.radius + rounding;
+    return isinf(f->radius) || tl_v3_norm(tl_v3_sub(ball.center, point)) <= f->radius + ball.radius + rounding;
 }
 
-/* Whether a block that the plane crosses is in the path of the disc. The disc reaches the section of the
+/* Whether a block that the plane crosses is in the path of the fracture. The fracture reaches the section of the
  * block with the plane, or the face that the plane falls on. */
-static bool in_path(const plane_in_block *x, const tl_stage_block *block, const tl_cut *cut)
+static bool in_path(const tl_model *m, const tl_fracture *fracture, const tl_stage_block *block, const tl_cut *cut)
 {
+    const uint32_t body = tl_stage_frame(m, block);
     if (cut->result == TL_CUT_MISS)
         return false;
-    if (isinf(x->radius))
-        return true;
     if (cut->result == TL_CUT_MADE) /* the cap is the last face */
-        return face_distance(cut->below, cut->below->face_count - 1, x->center) < x->radius;
+        return tl_fracture_reaches(m, fracture, body, cut->below, cut->below->face_count - 1);
     /* a sliver without a face along the plane has no section to speak of: its ball decided */
-    return cut->face == UINT32_MAX || face_distance(block->shape, cut->face, x->center) < x->radius;
+    return cut->face == UINT32_MAX || tl_fracture_reaches(m, fracture, body, block->shape, cut->face);
 }
 
 /* Notes a cut that was refused, for the model's report; only so many are listed. */
@@ -334,8 +296,8 @@ static void note_refused(tl_stage *stage, size_t index, const tl_cut *cut, tl_ta
     stage->refused_listed++;
 }
 
-tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
-                            double persistence, size_t *met)
+tl_status tl_stage_cut_fracture(tl_stage *stage, const tl_fracture *fracture, tl_tag tag, double persistence,
+                                size_t *met)
 {
     tl_model *m = stage->model;
     tl_status settled = tl_stage_open(stage);
@@ -343,23 +305,22 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
         settled = tl_stage_settle(stage);
     if (settled != TL_OK)
         return settled;
-    tl_vec3 local = tl_v3_sub(point, m->origin);
+    tl_vec3 local = tl_v3_sub(fracture->point, m->origin);
     uint64_t key = tl_key(tl_key_text(tl_key(0, (uint64_t)m->config.seed), m->joints[tag.joint - 1].name), tag.plane);
     bool coincident = false;
     size_t count = stage->count; /* children of this cut are not cut by it again */
-    const plane_in_block global = {{normal, tl_v3_dot(normal, local)}, local, radius, 0};
     for (size_t i = 0; i < count; i++) {
-        if (!may_meet(&global, stage->balls[i]))
+        if (!may_meet(m, fracture, stage->balls[i]))
             continue;
         tl_stage_block *block = &stage->blocks[i];
         if (block->hidden || block->hidden_by_generator)
             continue;
-        plane_in_block x = plane_in_block_of(m, block, normal, local, radius);
+        plane_in_block x = plane_in_block_of(m, block, fracture->normal, local);
         tl_cut cut;
         tl_status status = tl_poly_cut(block->shape, x.plane, x.reach, tag, &cut, &m->error);
         if (status != TL_OK)
             return status;
-        bool path = in_path(&x, block, &cut);
+        bool path = in_path(m, fracture, block, &cut);
         *met += path;
         /* the draw belongs to a body that lies in the joint's path */
         if (!path || (persistence < 1 && tl_uniform(tl_key(key, block->draw)) >= persistence)) {
@@ -375,7 +336,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
             return status;
         coincident = coincident || cut.result == TL_CUT_COINCIDENT;
         if (cut.result == TL_CUT_REFUSED)
-            note_refused(stage, i, &cut, tag, normal, point);
+            note_refused(stage, i, &cut, tag, fracture->normal, fracture->point);
     }
     stage->summary.coincident += coincident;
     return TL_OK;
@@ -425,7 +386,7 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
             owned = true;
         } else if (status == TL_OK) {
             /* all but a sliver lies on one side */
-            tl_plane plane = plane_in_block_of(m, &rest, spaces[i].normal, point, 0).plane;
+            tl_plane plane = plane_in_block_of(m, &rest, spaces[i].normal, point).plane;
             tl_vec3 c = tl_poly_mass(rest.shape).centroid;
             *meets = tl_v3_dot(plane.normal, c) < plane.offset;
         }

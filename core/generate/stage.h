@@ -2,6 +2,7 @@
 #ifndef TL_GENERATE_STAGE_H
 #define TL_GENERATE_STAGE_H
 
+#include "generate/fracture.h"
 #include "generate/staging.h"
 
 /* Begins a staging set without the model's blocks, to which new ones may be added. */
@@ -15,10 +16,9 @@ tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double den
 tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given);
 /* Adds convex blocks that fill a solid given by its faces, joined to one body; see tl_host.create_solid. */
 tl_status tl_stage_add_solid(tl_stage *stage, const tl_block_shape *given, double flat, bool whole, size_t *parts);
-/* Cuts the visible blocks by a disc of `radius` about `point` in user coordinates, INFINITY for a plane. Adds the
- * blocks in its path to *met. See tl_host.cut_disc. */
-tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
-                            double persistence, size_t *met);
+/* Cuts the visible blocks by a plane, disc or polygon. Adds the blocks in its path to *met. See tl_host.cut_disc. */
+tl_status tl_stage_cut_fracture(tl_stage *stage, const tl_fracture *fracture, tl_tag tag, double persistence,
+                                size_t *met);
 /* Cuts block `index` (of all staged) without a joint: both sides stay one body. `above` is the new
  * block on the normal's side, or SIZE_MAX when the plane does not divide the block. */
 tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_vec3 point, size_t *above);

@@ -7,6 +7,7 @@
 #include "generate/stage_bodies.h"
 #include "generate/stage_cuts.h"
 #include "generate/stage_loads.h"
+#include "generate/stage_seats.h"
 #include "geometry/make.h"
 #include "geometry/measure.h"
 #include "model/inertia.h"
@@ -156,7 +157,8 @@ typedef struct commit_scratch {
     tl_split *splits; /* [staged blocks] that were there before */
     size_t split_count;
     tl_cut_loads loads; /* of the bodies that were cut */
-    tl_poly **gone;     /* [rows before] shapes that other shapes or blocks take the place of */
+    tl_stage_seats seats;
+    tl_poly **gone; /* [rows before] shapes that other shapes or blocks take the place of */
     size_t gone_count;
     tl_group_change groups; /* of the blocks that stay */
     tl_scope_parts scopes;  /* of laws for blocks that were cut */
@@ -301,6 +303,7 @@ static void free_laws(const tl_model *m, commit_scratch *scratch)
 
 static void free_scratch(commit_scratch *scratch)
 {
+    tl_stage_seats_free(&scratch->seats);
     tl_cut_loads_free(&scratch->loads);
     free(scratch->splits);
     free(scratch->keep);
@@ -361,6 +364,7 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
     return sort_rows(stage, old, scratch) && scratch->ids && scratch->splits && scratch->gone &&
            (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW && reserve_record(stage) &&
            tl_cut_loads_take(stage, &scratch->loads) &&
+           tl_stage_seats_take(stage, scratch->keep, old, &scratch->seats) &&
            (!has_contacts(stage->model) ||
             tl_grow(&stage->model->cut_parts, &stage->model->cut_part_capacity, stage->model->cut_part_count + made,
                     sizeof *stage->model->cut_parts)) &&
@@ -464,6 +468,7 @@ tl_status tl_stage_commit(tl_stage *stage)
         keep_record(stage, scratch.ids);
         keep_cut_parts(stage, &scratch);
         keep_splits(stage, &scratch);
+        tl_stage_seats_give(stage, scratch.ids, &scratch.seats);
         if (tl_laws_name_blocks(m))
             tl_scope_parts_apply(m, &scratch.scopes);
         for (size_t i = 0; i < scratch.gone_count; i++)

@@ -95,12 +95,15 @@ static bool block_extra(lua_State *L, tl_model *model, const tl_lua_item *item, 
 typedef struct block_args {
     const char *group, *joint, *boundary;
     tl_vec3 containing;
+    tl_points region;
     int32_t fixed;
 } block_args;
 
 static const tl_param block_params[] = {
     TL_PARAM(TL_PARAM_STRING, block_args, group, "", "blocks of this group", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "blocks that contain this point", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_POINTS, block_args, region, "m", "blocks whose centroid is in the convex hull of these points",
+             .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_STRING, block_args, joint, "", "blocks with a face on this joint or plane",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_STRING, block_args, boundary, "",
@@ -114,8 +117,10 @@ static const tl_param block_params[] = {
 static const tl_lua_key block_keys[] = {
     {"id", "whole number or list of whole numbers", "the blocks of these ids"},
     {"inside", "{min = {x, y, z}, max = {x, y, z}}", "blocks whose centroid is in this box"},
-    {"above", "{dip =, dip_direction =, origin = {x, y, z}}", "blocks whose centroid is above this plane"},
-    {"below", "{dip =, dip_direction =, origin = {x, y, z}}", "blocks whose centroid is below this plane"},
+    {"above", "{dip =, dip_direction =, origin = {x, y, z}}",
+     "blocks whose centroid is above this plane, or above all planes of a list"},
+    {"below", "{dip =, dip_direction =, origin = {x, y, z}}",
+     "blocks whose centroid is below this plane, or below all planes of a list"},
     {"hidden", "true, false or \"any\"", "hidden blocks, visible ones (the default), or both"},
     {"where", "function(block)", "blocks for which the function answers true"},
     {NULL, NULL, NULL},
@@ -131,19 +136,30 @@ static const tl_param halfspace_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "a point of the plane", .flags = TL_PARAM_REQUIRED),
 };
 
-/* Nested tables of the filter at index 2, read into storage that outlives the call of the kernel. */
-typedef struct block_nested {
-    tl_bounds inside;
-    tl_halfspace above, below;
-} block_nested;
-
-static const tl_halfspace *read_halfspace(lua_State *L, const char *key, tl_halfspace *out)
+/* Reads the filter's planes at `key`, one or a list; pushes what they hang on. */
+static const tl_halfspace *read_halfspaces(lua_State *L, const char *key, size_t *count)
 {
     if (tl_lua_option(L, 2, key) == LUA_TNIL)
         return NULL;
-    tl_lua_spec spec = {lua_pushfstring(L, "blocks, %s", key), halfspace_params, TL_LUA_COUNT(halfspace_params), NULL};
-    tl_lua_read(L, -2, &spec, false, out);
-    return out;
+    const int given = lua_gettop(L);
+    const bool many = lua_istable(L, given) && lua_rawlen(L, given) > 0;
+    *count = many ? lua_rawlen(L, given) : 1;
+    if (many)
+        tl_lua_check_list(L, given, lua_pushfstring(L, "blocks: the list of planes '%s'", key), *count);
+    tl_halfspace *planes = lua_newuserdatauv(L, *count * sizeof *planes, 0);
+    const int top = lua_gettop(L);
+    for (size_t i = 0; i < *count; i++) {
+        tl_lua_spec spec = {NULL, halfspace_params, TL_LUA_COUNT(halfspace_params), NULL};
+        spec.context =
+            many ? lua_pushfstring(L, "blocks, %s, plane %d", key, (int)i + 1) : lua_pushfstring(L, "blocks, %s", key);
+        if (many)
+            lua_rawgeti(L, given, (lua_Integer)i + 1);
+        else
+            lua_pushvalue(L, given);
+        tl_lua_read(L, lua_gettop(L), &spec, false, &planes[i]);
+        lua_settop(L, top);
+    }
+    return planes;
 }
 
 /* Ids that are asked for, ascending; `list` is NULL when any will do. */
@@ -220,8 +236,8 @@ static int read_hidden(lua_State *L)
     return -1;
 }
 
-/* Reads the table at index 2; all it points to is in `args`, `nested` or on the stack. */
-static void read_filter(lua_State *L, block_args *args, block_nested *nested, tl_block_filter *filter)
+/* Reads the table at index 2; all it points to is in `args`, `inside` or on the stack. */
+static void read_filter(lua_State *L, block_args *args, tl_bounds *inside, tl_block_filter *filter)
 {
     tl_lua_read(L, 2, &blocks_spec, true, args);
     *filter = tl_block_filter_default();
@@ -230,10 +246,12 @@ static void read_filter(lua_State *L, block_args *args, block_nested *nested, tl
     filter->fixed = args->fixed;
     if (!isnan(args->containing.x))
         filter->containing = &args->containing;
-    if (tl_lua_read_box(L, 2, "blocks", "inside", &nested->inside))
-        filter->inside = &nested->inside;
-    filter->above = read_halfspace(L, "above", &nested->above);
-    filter->below = read_halfspace(L, "below", &nested->below);
+    if (tl_lua_read_box(L, 2, "blocks", "inside", inside))
+        filter->inside = inside;
+    filter->above = read_halfspaces(L, "above", &filter->above_count);
+    filter->below = read_halfspaces(L, "below", &filter->below_count);
+    filter->region = args->region.count > 0 ? args->region.at : NULL;
+    filter->region_count = args->region.count;
     filter->hidden = read_hidden(L);
 }
 
@@ -266,9 +284,9 @@ void tl_lua_blocks_select(lua_State *L, tl_model *model, const tl_block_filter *
 static int model_blocks(lua_State *L, tl_model *model)
 {
     block_args args = {.containing = {NAN, NAN, NAN}, .fixed = -1};
-    block_nested nested;
+    tl_bounds inside;
     tl_block_filter filter;
-    read_filter(L, &args, &nested, &filter);
+    read_filter(L, &args, &inside, &filter);
     block_ids ids = read_ids(L);
     if (ids.list && ids.count == 1)
         filter.id = ids.list[0];

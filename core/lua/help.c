@@ -236,6 +236,8 @@ static void print_overview(void)
     puts("  talus SCRIPT.lua [ARGUMENT...]   run a script\n"
          "  talus run [--autosave MINUTES] [--resume] SCRIPT.lua [ARGUMENT...]\n"
          "                                   the same, saved as it goes: talus help resumed\n"
+         "  talus convert [--up y] FILE [SCRIPT.lua]\n"
+         "                                   write a data file of 3DEC as a script; talus run FILE.3ddat runs it\n"
          "  talus                            type Lua line by line\n"
          "  talus -e CHUNK                   run a piece of Lua\n"
          "  talus help [TOPIC]               this page, a function, or a plugin\n"

@@ -8,6 +8,7 @@
 #include "lua/convert.h"
 #include "lua/fail.h"
 
+#include <ctype.h>
 #include <limits.h>
 #include <string.h>
 
@@ -54,8 +55,14 @@ static int open_module(lua_State *L, const char *name)
     return 1;
 }
 
+TL_API int luaopen_talus_convert(lua_State *L);
 TL_API int luaopen_talus_plot(lua_State *L);
 TL_API int luaopen_talus_stereonet(lua_State *L);
+
+int luaopen_talus_convert(lua_State *L)
+{
+    return open_module(L, PREFIX "convert");
+}
 
 int luaopen_talus_plot(lua_State *L)
 {
@@ -87,6 +94,57 @@ void tl_lua_library_open(lua_State *L)
         lua_rawsetp(L, LUA_REGISTRYINDEX, &key);
     }
     lua_pop(L, 2);
+}
+
+/* ---------------------------------------------------------------- commands and readers --- */
+
+bool tl_library_command(const char *name, char *path, size_t size)
+{
+    char file[64];
+    tl_error error;
+    if (strspn(name, "abcdefghijklmnopqrstuvwxyz") != strlen(name) || strlen(name) < 2 || strlen(name) > 20)
+        return false;
+    int n = snprintf(file, sizeof file, "talus/commands/%s.lua", name);
+    return n > 0 && tl_library_find(file, path, size, &error) == TL_OK;
+}
+
+/* Whether a module of Talus reads files of this script's ending; path gets the module's place. */
+static bool find_reader(const char *script, char *path, size_t size)
+{
+    char file[64] = "talus/readers/";
+    size_t length = strlen(file);
+    const char *ending = strrchr(script, '.');
+    if (!ending || strlen(ending) < 2 || strlen(ending) > 16)
+        return false;
+    for (const char *c = ending + 1; *c; c++) {
+        if (!isalnum((unsigned char)*c))
+            return false;
+        file[length++] = (char)tolower((unsigned char)*c);
+    }
+    strcpy(file + length, ".lua");
+    tl_error error;
+    return tl_library_find(file, path, size, &error) == TL_OK;
+}
+
+int tl_lua_script_load(lua_State *L, const char *script)
+{
+    char path[PATH_MAX];
+    if (!script || !find_reader(script, path, sizeof path))
+        return luaL_loadfile(L, script);
+    int status = luaL_loadfilex(L, path, "t");
+    if (status != LUA_OK)
+        return status;
+    lua_pushstring(L, script);
+    status = lua_pcall(L, 1, 1, 0);
+    if (status != LUA_OK)
+        return status;
+    size_t length;
+    const char *text = luaL_checklstring(L, -1, &length);
+    lua_pushfstring(L, "@%s", script);
+    status = luaL_loadbufferx(L, text, length, lua_tostring(L, -1), "t");
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+    return status;
 }
 
 static int module_write_file(lua_State *L)
@@ -143,7 +201,34 @@ static const tl_lua_key stereonet_keys[] = {
     {NULL, NULL, NULL},
 };
 
+static const tl_lua_key convert_keys[] = {
+    {"file", "text in quotes, required", "name of the data file, of 3DEC 7 to 9 or a classic one"},
+    {"to", "text in quotes, may be left out", "name of the script that is written; folders are made"},
+    {"up", "\"z\" or \"y\"",
+     "axis that points up in the file, z when left out; with \"y\" dip directions count from z, as in left-handed "
+     "files"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key convert_result[] = {
+    {"script", "", "the script, a text"},
+    {"report", "", "lines that tell what was converted and what was not"},
+    {"converted, needless", "", "number of commands; of those for which Talus needs nothing"},
+    {"left_out, in_part, mistakes", "",
+     "lists of {file =, line =, source =, reason =}: commands without counterpart, "
+     "those of which a part has none, and those that are wrong"},
+    {NULL, NULL, NULL},
+};
+
 const tl_lua_topic tl_lua_library_topics[] = {
+    {.name = "convert",
+     .usage = "result = talus.convert{file = \"scripts/examples/fault.3ddat\"}",
+     .doc = "Writes a data file of 3DEC as a script of Talus, one line a command, and tells what is left out. "
+            "`talus convert [--up y] FILE [SCRIPT.lua]` does the same from a shell, and `talus run FILE.3ddat`, or "
+            "FILE.dat, runs it at once.",
+     .keys = convert_keys,
+     .title = "Fields of the result",
+     .verbs = convert_result},
     {.name = "plot",
      .usage = "talus.plot{file = \"out/run.svg\", model = model, histories = {\"roof\"}, y_axis = "
               "{name = \"subsidence\", unit = \"m\"}}",

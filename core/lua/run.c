@@ -11,6 +11,7 @@
 #include "lua/interrupt.h"
 #include "lua/item.h"
 #include "lua/living.h"
+#include "lua/try_stiffer.h"
 #include "lua/view.h"
 
 #include <math.h>
@@ -478,8 +479,13 @@ static bool on_stop(void *user, tl_model *model)
 
 /* ---------------------------------------------------------------- solve and cycle -------- */
 
-/* Those of cycle are the same but for the first. */
+/* Keys of solve_keys that cycle does not have. */
+#define KEYS_BEFORE_CYCLE 2
+
+/* Those of cycle are the same but for the first two. */
 static const tl_lua_key solve_keys[] = {
+    {"try_stiffer", "true or false",
+     "whether the same is tried on a copy whose joints are ten times as stiff: the result's `stiffer`"},
     {"stop", "function(model)", "called every `every` steps; ends the run when it answers true"},
     {"on_progress", "function(model, result)", "called every `every` steps"},
     {NULL, NULL, NULL},
@@ -559,6 +565,8 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     solve->stop = push_callback(L, what, "stop") ? on_stop : NULL;
     solve->progress = push_callback(L, what, "on_progress") ? on_progress : NULL;
     push_empty_answer(L, kind == RUN_STEPS ? TL_RATIO_LOCAL : solve->measure);
+    if (kind != RUN_STEPS)
+        tl_lua_trial_prepare(L, AT_ARGS, AT_RESULT, what);
     tl_lua_selection *failing = relax ? push_room(L, model) : NULL;
     solve->each = on_each;
     solve->between = on_between;
@@ -591,6 +599,8 @@ static int make_run(lua_State *L, tl_model *model, const char *what, tl_solve *s
     lua_pop(L, 1);
     if (failing)
         set_relaxed(L, model, &r.result, failing);
+    if (kind != RUN_STEPS)
+        tl_lua_trial_run(L, AT_ARGS, AT_RESULT, solve_keys, what);
     return 1;
 }
 
@@ -616,7 +626,7 @@ static int model_relax(lua_State *L, tl_model *model)
 static int model_cycle(lua_State *L, tl_model *model)
 {
     tl_cycle_args args;
-    tl_lua_spec spec = tl_lua_spec_of("cycle", solve_keys + 1);
+    tl_lua_spec spec = tl_lua_spec_of("cycle", solve_keys + KEYS_BEFORE_CYCLE);
     tl_lua_read_one(L, 2, &spec, "cycles", &args);
     lua_settop(L, 3);
     lua_remove(L, 2); /* as in solve the table of arguments is at index 2 */
@@ -758,6 +768,14 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
     return 1;
 }
 
+#define STIFFER_RESULT                                                                                                 \
+    {                                                                                                                  \
+        "stiffer", "",                                                                                                 \
+            "table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other "   \
+            "does not, "                                                                                               \
+            "`message` says so; reason \"error\" of a trial that failed"                                               \
+    }
+
 static const tl_lua_key run_results[] = {
     {"reason", "",
      "why it ended: \"ratio\", \"velocity\", \"failure\", \"overlap\" (blocks that were made overlapping push it "
@@ -776,6 +794,7 @@ static const tl_lua_key run_results[] = {
     {"time", "", "the model's time at the end, s"},
     {"wall", "", "seconds it took"},
     {"max_velocity", "", "largest speed of a block that forces move, m/s"},
+    STIFFER_RESULT,
     {NULL, NULL, NULL},
 };
 
@@ -796,6 +815,7 @@ static const tl_lua_key relax_results[] = {
     {"time", "", "the model's time, which stands still, s"},
     {"wall", "", "seconds it took"},
     {"max_velocity", "", "largest speed of a block in the last step, by the masses of the relaxation, m/s"},
+    STIFFER_RESULT,
     {NULL, NULL, NULL},
 };
 
@@ -803,7 +823,7 @@ const tl_lua_topic tl_lua_run_topics[] = {
     {.name = "cycle",
      .usage = "result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})",
      .function = "cycle",
-     .keys = solve_keys + 1,
+     .keys = solve_keys + KEYS_BEFORE_CYCLE,
      .title = "Fields of the result",
      .verbs = run_results,
      .arguments = 2,

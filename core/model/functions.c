@@ -54,6 +54,16 @@ static const tl_param insitu_params[] = {
              "point at whose height the stress holds; the gradient counts from there", .def = {0.0, 0.0, 0.0}),
 };
 
+static const tl_param seat_params[] = {
+    TL_PARAM(
+        TL_PARAM_REAL, tl_seat, gap, "m",
+        "gaps up to which faces are taken as being on each other; when left out 1 % of the mean size of the blocks",
+        .min = 0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_seat, overlap, "m",
+             "overlaps up to which blocks are taken as only touching; when left out 1 % of the mean size of the blocks",
+             .min = 0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL),
+};
+
 /* The components of insitu's two tensors, as members of a tl_sym3. */
 static const tl_param tensor_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_sym3, xx, "Pa or Pa/m", "normal component, tension positive", .def = {0.0}),
@@ -309,6 +319,10 @@ static const model_function functions[] = {
     {"model", "Makes an empty model.", PARAMS(model_params)},
     {"insitu", "Puts an initial stress in the zones, and on the face contacts, that exist now, once.",
      PARAMS(insitu_params)},
+    {"seat",
+     "Takes blocks as drawn as fitting: gaps and overlaps up to a limit become the state free of force, under any law. "
+     "Contacts are free of force after it. Prints and returns what was found.",
+     PARAMS(seat_params)},
     {"tensor", "A symmetric tensor by its components.", PARAMS(tensor_params)},
     {"timestep", "Chooses how the time step is found.", PARAMS(timestep_params)},
     {"mass_scaling",

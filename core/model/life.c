@@ -6,6 +6,7 @@
 #include "model/notes.h"
 #include "model/options.h"
 #include "model/scope.h"
+#include "model/seats.h"
 
 #include <stdlib.h>
 
@@ -129,6 +130,7 @@ void tl_model_destroy(tl_model *m)
     free(m->cut_parts);
     free(m->splits);
     free(m->face_loads);
+    tl_seats_free(&m->seats);
     free(m->groups);
     free(m->joints);
     free(m->joint_laws);

@@ -22,6 +22,8 @@
 #include "geometry/polyhedron.h"
 #include "model/cuts.h"
 #include "model/law.h"
+#include "model/remark.h"
+#include "model/seat.h"
 
 #include <stdatomic.h>
 #include <talus/talus.h>
@@ -107,8 +109,7 @@ typedef struct tl_bodies {
     uint32_t *drive;        /* index into drives + 1, or 0 */
     double *odometer;       /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
     /* what it asks of the time step on its largest face: cycle/timestep.c. 0: not known */
-    double *face_rate;
-    double *face_turn; /* its rotation's part of that */
+    double *face_rate, *face_turn; /* the latter: its rotation's part of that */
 } tl_bodies;
 
 typedef struct tl_joint_set {
@@ -129,21 +130,6 @@ typedef struct tl_extremes {
     bool known;
     double total, volume, edge, face;
 } tl_extremes;
-
-/* Remarks that are made once a model. */
-typedef enum tl_remark {
-    TL_REMARK_UNDAMPED, /* solve without damping */
-    TL_REMARK_GRAVITY,  /* points upward */
-    TL_REMARK_STEP,     /* a given one is far too long */
-    TL_REMARK_FRICTION, /* looks like a coefficient */
-    TL_REMARK_SOFT,     /* blocks sink in under their weight */
-    TL_REMARK_STIFF,    /* the closure under weight is lost in rounding */
-    TL_REMARK_DENSITY,  /* is not that of a solid, or does not go with the stiffness */
-    TL_REMARK_TENSION,  /* initial stress pulls */
-    TL_REMARK_OVERLAP,  /* blocks overlap when they come into contact */
-    TL_REMARK_CLOSURE,  /* a contact closes by much of a block's thickness */
-    TL_REMARK_UNDECIDED /* a run for equilibrium has ended before it, without failure */
-} tl_remark;
 
 /* For what the contacts in `detect` were found: asked.c. */
 typedef enum tl_found_for {
@@ -184,6 +170,7 @@ struct tl_model {
     tl_face_load *face_loads; /* by ascending block and face; of blocks that there were */
     size_t face_load_count, face_load_capacity;
     tl_extremes extremes;
+    tl_seats seats;
 
     tl_law *joint_laws;
     size_t joint_law_count;

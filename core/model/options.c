@@ -17,7 +17,7 @@
     }
 
 /* Defaults of what no table of parameters has. */
-static const tl_block_filter block_filter = {.fixed = -1};
+static const tl_block_filter block_filter = {.fixed = -1, .above_count = 1, .below_count = 1};
 static const tl_block_set block_set = {.density = NAN, .velocity = UNSET, .angular_velocity = UNSET};
 
 /* A struct: the function whose table has its defaults, or they themselves; all else is zero. */
@@ -32,6 +32,7 @@ static const struct {
     KNOWN(tl_law_scope, NULL, NULL),
     KNOWN(tl_filter, "filter", NULL),
     KNOWN(tl_insitu, "insitu", NULL),
+    KNOWN(tl_seat, "seat", NULL),
     KNOWN(tl_timestep, "timestep", NULL),
     KNOWN(tl_mass_scaling, "mass_scaling", NULL),
     KNOWN(tl_contact_area, "contact_area", NULL),

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "geometry/measure.h"
 #include "model/body_shape.h"
+#include "model/seats.h"
 #include "narrow/flush.h"
 #include "narrow/manifold.h"
 #include "narrow/narrow.h"
@@ -137,8 +138,8 @@ static double moved_of(const tl_model *m, uint32_t a, uint32_t b)
 static tl_pair_view view_of(const tl_model *m, uint32_t a, uint32_t b, bool now)
 {
     const place at = place_of(m, a, now), other = place_of(m, b, now);
-    return (tl_pair_view){.a = m->blocks.shape[a],
-                          .b = m->blocks.shape[b],
+    return (tl_pair_view){.a = tl_pair_shape(m, a, b),
+                          .b = tl_pair_shape(m, b, a),
                           .turn = tl_m3_tproduct(&at.r, &other.r),
                           .shift = tl_m3_tmul(&at.r, tl_v3_sub(other.x, at.x)),
                           .size = fmin(m->blocks.size[a], m->blocks.size[b]),

@@ -6,6 +6,7 @@
 #include "cycle/undo.h"
 #include "model/joints.h"
 #include "model/rows.h"
+#include "model/seats.h"
 #include "model/walk.h"
 #include "segment/lay.h"
 #include "segment/walk.h"
@@ -103,6 +104,8 @@ static tl_status fill(tl_model *to, tl_model *from, const tl_drives_again *again
     for (const tl_state_part *const *part = tl_state_parts; *part && status == TL_OK; part++)
         if ((*part)->copy)
             status = (*part)->copy(to, from);
+    if (status == TL_OK && !tl_seats_follow(to))
+        status = tl_fail_memory(&to->error);
     if (status == TL_OK)
         status = copy_detection(to, from);
     if (status == TL_OK)

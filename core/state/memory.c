@@ -5,6 +5,7 @@
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
 #include "geometry/make.h"
+#include "model/seats.h"
 #include "model/walk.h"
 #include "narrow/field_lanes.h"
 #include "segment/walk.h"
@@ -68,6 +69,7 @@ tl_memory tl_model_memory(const tl_model *m)
         memory.other += history_bytes(m->histories[i]);
     for (size_t row = 0; row < m->blocks.table.rows; row++)
         memory.shapes += m->blocks.stays[row] ? tl_poly_bytes(m->blocks.shape[row]) : 0;
+    memory.shapes += tl_seats_bytes(m);
     if (m->zones)
         tl_zones_walk(m->zones, &walk);
     if (m->segments)

@@ -16,6 +16,7 @@
 #include "model/joints.h"
 #include "model/loads.h"
 #include "model/rows.h"
+#include "model/seats.h"
 #include "model/walk.h"
 #include "segment/carriers.h"
 #include "segment/lay.h"
@@ -142,7 +143,7 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
 #define MOST_CYCLES (INT64_MAX / 8)
 
 /* Bits of `said`: one for each remark. */
-#define ALL_REMARKS ((2u << TL_REMARK_UNDECIDED) - 1)
+#define ALL_REMARKS ((2u << TL_REMARK_MOVED) - 1)
 
 /* Whether a member holds what its parameter allows. Whole numbers of 64 bits, and texts, are not looked at. */
 static bool param_is_sound(const tl_param *param, const void *member)
@@ -642,6 +643,14 @@ static tl_status read_cycle(tl_model *m, const tl_archive *a)
     return unsound(a, m, cycle_unsound(m, m->cycle));
 }
 
+/* The shapes of seated pairs follow from the blocks and the list of pairs, which has been read. */
+static tl_status read_seats(tl_model *m, const tl_archive *a)
+{
+    if (!tl_seats_sound(m))
+        return unsound(a, m, "seated pairs do not fit their blocks");
+    return tl_seats_follow(m) ? TL_OK : tl_fail_memory(&m->error);
+}
+
 static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *again)
 {
     tl_status status = read_rows(m, a);
@@ -649,6 +658,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = (*part)->restore(m, a);
     if (status == TL_OK)
         status = derive_rows(m);
+    if (status == TL_OK)
+        status = read_seats(m, a);
     if (status == TL_OK)
         status = read_detection(m, a);
     if (status == TL_OK)

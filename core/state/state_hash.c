@@ -18,6 +18,7 @@
 #include "detect/detect.h"
 #include "model/loads.h"
 #include "model/scope.h"
+#include "model/seats.h"
 #include "model/walk.h"
 #include "segment/meets.h"
 
@@ -233,12 +234,30 @@ static void hash_bodies(tl_hash *hash, const tl_model *m, uint32_t begin, uint32
     }
 }
 
+/* The faces of a seated pair, and where they are by the blocks' own centroids. */
+static void hash_seated(tl_hash *hash, const tl_model *m, const tl_seated *seated)
+{
+    const uint32_t row[] = {tl_block_row_quiet(m, seated->block[0]), tl_block_row_quiet(m, seated->block[1])};
+    if (row[0] == TL_NO_ROW || row[1] == TL_NO_ROW)
+        return;
+    tl_hash_word(hash, (uint64_t)seated->block[0] << 32 | seated->block[1]);
+    for (int k = 0; k < 2; k++) {
+        const tl_block_frame now = tl_block_frame_of(m, row[k]);
+        const tl_plane plane = tl_plane_reframed(seated->plane[k], &seated->frame[k], &now);
+        const double numbers[] = {plane.normal.x, plane.normal.y, plane.normal.z, plane.offset};
+        tl_hash_word(hash, seated->face[k]);
+        tl_hash_numbers(hash, numbers, seated->face[k] == TL_NO_ROW ? 0 : 4);
+    }
+}
+
 static void hash_rock(tl_hash *hash, const tl_model *m)
 {
     hash_slices(hash, m, m->blocks.id, (uint32_t)m->blocks.table.rows, hash_blocks);
     hash_slices(hash, m, m->bodies.id, (uint32_t)m->bodies.table.rows, hash_bodies);
     for (size_t i = 0; i < m->split_count; i++)
         tl_hash_word(hash, (uint64_t)m->splits[i].block << 32 | m->splits[i].whole);
+    for (size_t i = 0; i < m->seats.count; i++)
+        hash_seated(hash, m, &m->seats.list[i]);
     for (size_t i = 0; i < m->face_load_count; i++)
         if (tl_block_row_quiet(m, m->face_loads[i].block) != TL_NO_ROW)
             tl_hash_bytes(hash, &m->face_loads[i], sizeof m->face_loads[i]);

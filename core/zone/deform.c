@@ -7,6 +7,7 @@
 #include "model/deformable.h"
 #include "model/loads.h"
 #include "model/rows.h"
+#include "model/seats.h"
 #include "zone/body_zones.h"
 #include "zone/columns.h"
 #include "zone/corner_keys.h"
@@ -90,6 +91,8 @@ static tl_status check_block(tl_model *m, uint32_t row)
     const tl_id block = m->blocks.id[row];
     if (b->mesh[body])
         return refuse(m, block, "it has zones already");
+    if (tl_block_is_seated(m, block))
+        return refuse(m, block, "it is seated on a neighbour, and only rigid blocks are; draw it so that it fits");
     return tl_body_loaded(b, body) ? check_load(m, row) : TL_OK;
 }
 

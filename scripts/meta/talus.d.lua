@@ -167,6 +167,12 @@ function talus.help(topic) end
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
 
+--- Cuts the visible blocks in the path of a convex polygon.
+---@class (exact) talus.generator.Fracture
+---@field joint string name of the joint set the fracture belongs to
+---@field vertices talus.Vector[] m: corners of a convex polygon in one plane, in order around it
+---@field persistence? number in [0, 1], default 1: probability that a block in the fracture's path is cut
+
 --- Creates blocks of the closed solids in a file: OBJ, STL, PLY, VTK, JSON of compas, or faces of 3DEC.
 ---@class (exact) talus.generator.Import
 ---@field file string file of solids: .obj, .stl, .ply, .vtk, .json or a data file of 3DEC
@@ -196,13 +202,14 @@ function talus.help(topic) end
 ---@field dip_direction number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
 ---@field dip_direction_dev? number deg, in [0, 180], default 0: deviation of the dip direction
 ---@field spacing number m, > 0: mean distance between planes
----@field spacing_dev? number m, >= 0, default 0: deviation of the spacing; less than the spacing
+---@field spacing_dev? number m, >= 0, default 0: deviation of the spacing; less than the spacing, unless lognormal
 ---@field number? integer in [1, 10000], default 1: number of planes
 ---@field origin? talus.Vector m, default {0, 0, 0}: point the planes lie symmetrically about
 ---@field persistence? number in [0, 1], default 1: probability that a block in a plane's path is cut
 ---@field distribution? "uniform"|"normal"|"fisher" default "uniform": of the deviations: uniform within them, normal with them as standard deviations, or fisher about the mean pole
 ---@field fisher_k? number in (0, 1e+09]: concentration of the poles by fisher
 ---@field radius? number m, > 0: of discs in the place of planes: a block is in a disc's path when the disc meets its section
+---@field spacing_distribution? "same"|"uniform"|"normal"|"exponential"|"lognormal" default "same": of the gaps: uniform within spacing_dev, normal, exponential with the mean spacing, or lognormal; same: as distribution, uniform with fisher
 
 --- Creates one convex block from its vertices.
 ---@class (exact) talus.generator.Polyhedron
@@ -239,6 +246,45 @@ function talus.help(topic) end
 ---@field face1 talus.Vector[] m: corners of one end, in order around it
 ---@field face2 talus.Vector[] m: corners of the other end, in the order of those of face1 they are connected with
 ---@field group? string default "tunnel": group of what lies inside
+
+--- Creates a slope with the wedge that two joints part from it.
+---@class (exact) talus.generator.Wedge
+---@field joint_a? string default "A": name of the joint A
+---@field dip_a number deg, in [0, 90]: its dip below horizontal
+---@field dip_direction_a number deg, in [0, 360]: its dip direction, clockwise from north (+y)
+---@field joint_b? string default "B": name of the joint B
+---@field dip_b number deg, in [0, 90]: its dip below horizontal
+---@field dip_direction_b number deg, in [0, 360]: its dip direction, clockwise from north (+y)
+---@field slope_dip number deg, in [0, 90]: dip of the slope face
+---@field slope_dip_direction number deg, in [0, 360]: dip direction of the slope face
+---@field upper_dip? number deg, in [0, 90], default 0: dip of the upper slope
+---@field upper_dip_direction? number deg, in [0, 360]: dip direction of the upper slope; that of the face
+---@field height number m, > 0: of the crest over the toe of the wedge, up the slope from it
+---@field origin? talus.Vector m, default {0, 0, 0}: the toe: where the joints' line of intersection daylights
+---@field margin? number m, > 0: rock beside, behind and below the wedge; half its height
+---@field density number kg/m3, > 0: density of wedge and rock
+---@field group? string default "wedge": group of the wedge
+---@field rock_group? string default "rock": group of the rock
+
+--- Creates the rock over a tunnel's roof with the wedge that three joints part from it.
+---@class (exact) talus.generator.RoofWedge
+---@field joint_a? string default "A": name of the joint A
+---@field dip_a number deg, in [0, 90]: its dip below horizontal
+---@field dip_direction_a number deg, in [0, 360]: its dip direction, clockwise from north (+y)
+---@field joint_b? string default "B": name of the joint B
+---@field dip_b number deg, in [0, 90]: its dip below horizontal
+---@field dip_direction_b number deg, in [0, 360]: its dip direction, clockwise from north (+y)
+---@field joint_c? string default "C": name of the joint C
+---@field dip_c number deg, in [0, 90]: its dip below horizontal
+---@field dip_direction_c number deg, in [0, 360]: its dip direction, clockwise from north (+y)
+---@field trend? number deg, in [0, 360], default 0: of the tunnel's axis, clockwise from north (+y)
+---@field span number m, > 0: width of the tunnel's flat roof, across its axis
+---@field height? number m, > 0: of the apex over the roof; the largest that fits the span
+---@field origin? talus.Vector m, default {0, 0, 0}: on the roof: the wedge's middle, along and across the tunnel
+---@field margin? number m, > 0: rock beside, behind and below the wedge; half its height
+---@field density number kg/m3, > 0: density of wedge and rock
+---@field group? string default "wedge": group of the wedge
+---@field rock_group? string default "rock": group of the rock
 
 --- Creates a block of each convex region of a mesh of tetrahedra.
 ---@class (exact) talus.generator.Zones
@@ -637,6 +683,7 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "blocks", options: talus.generator.Blocks|talus.generator.Blocks[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "box", options: talus.generator.Box|talus.generator.Box[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "drum", options: talus.generator.Drum|talus.generator.Drum[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "fracture", options: talus.generator.Fracture|talus.generator.Fracture[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "import", options: talus.generator.Import|talus.generator.Import[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "joint", options: talus.generator.Joint|talus.generator.Joint[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "jointset", options: talus.generator.Jointset|talus.generator.Jointset[]): talus.GenerateResult
@@ -645,6 +692,8 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "profile", options: talus.generator.Profile|talus.generator.Profile[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tetrahedron", options: talus.generator.Tetrahedron|talus.generator.Tetrahedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tunnel", options: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "wedge", options: talus.generator.Wedge|talus.generator.Wedge[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "roof_wedge", options: talus.generator.RoofWedge|talus.generator.RoofWedge[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "zones", options: talus.generator.Zones|talus.generator.Zones[]): talus.GenerateResult
 function Model:generate(generator, options) end
 
@@ -774,13 +823,14 @@ function Model:state_hash() end
 ---@class (exact) talus.BlocksOptions
 ---@field group? string blocks of this group
 ---@field containing? talus.Vector m: blocks that contain this point
+---@field region? talus.Vector[] m: blocks whose centroid is in the convex hull of these points
 ---@field joint? string blocks with a face on this joint or plane
 ---@field boundary? string blocks with an outer face on this side of the model: "xmin", "xmax" ... "zmax"
 ---@field fixed? boolean blocks held in every component, of deformable ones all gridpoints, or the others
 ---@field id? integer|integer[] the blocks of these ids
 ---@field inside? { min: talus.Vector, max: talus.Vector } blocks whose centroid is in this box
----@field above? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is above this plane
----@field below? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is below this plane
+---@field above? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is above this plane, or above all planes of a list
+---@field below? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is below this plane, or below all planes of a list
 ---@field hidden? boolean|"any" hidden blocks, visible ones (the default), or both
 ---@field where? fun(block: talus.Block): any blocks for which the function answers true
 
@@ -1160,6 +1210,7 @@ function Model:boundary(options) end
 ---@field time number the model's time at the end, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block that forces move, m/s
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
 
 --- Runs a number of steps.
 ---
@@ -1177,6 +1228,7 @@ function Model:cycle(cycles) end
 ---@field max_cycles? integer >= 0, default 1000000: largest number of steps of this call
 ---@field max_time? number s, > 0: longest simulated time of this call
 ---@field every? integer >= 1, default 500: steps between calls of on_progress and stop
+---@field try_stiffer? boolean whether the same is tried on a copy whose joints are ten times as stiff: the result's `stiffer`
 ---@field stop? fun(model: talus.Model): any called every `every` steps; ends the run when it answers true
 ---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
 
@@ -1192,6 +1244,7 @@ function Model:cycle(cycles) end
 ---@field time number the model's time at the end, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block that forces move, m/s
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
 
 --- Runs until the forces balance or a limit is met.
 ---
@@ -1207,6 +1260,7 @@ function Model:solve(options) end
 ---@field max_cycles? integer >= 0, default 1000000: largest number of steps of this call
 ---@field load_steps? integer in [1, 10000], default 1: gravity and loads come on in so many equal parts, each near rest before the next: put on at once they settle a rock mass some per cent deeper, and zones yield that would not, for both follow their path. For loads that come on for the first time: a model that has borne them before is unloaded first
 ---@field every? integer >= 1, default 500: steps between calls of on_progress and stop
+---@field try_stiffer? boolean whether the same is tried on a copy whose joints are ten times as stiff: the result's `stiffer`
 ---@field stop? fun(model: talus.Model): any called every `every` steps; ends the run when it answers true
 ---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
 
@@ -1225,6 +1279,7 @@ function Model:solve(options) end
 ---@field time number the model's time, which stands still, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block in the last step, by the masses of the relaxation, m/s
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
 
 --- Finds where the model rests, or that it does not, by the cheapest means. Time, damping, time step and masses are afterwards as before, and nothing moves.
 ---
@@ -1276,6 +1331,27 @@ function Model:histories() end
 ---     model:write_histories("out/run.csv")
 ---@param path string
 function Model:write_histories(path) end
+
+---@class (exact) talus.ConvertOptions
+---@field file string name of the data file, of 3DEC 7 to 9 or a classic one
+---@field to? string name of the script that is written; folders are made
+---@field up? "z"|"y" axis that points up in the file, z when left out; with "y" dip directions count from z, as in left-handed files
+
+---@class (exact) talus.ConvertResult
+---@field script string the script, a text
+---@field report string[] lines that tell what was converted and what was not
+---@field converted integer number of commands; of those for which Talus needs nothing
+---@field needless integer number of commands; of those for which Talus needs nothing
+---@field left_out { file: string, line: integer, reason: string, source: string }[] lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+---@field in_part table lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+---@field mistakes table lists of {file =, line =, source =, reason =}: commands without counterpart, those of which a part has none, and those that are wrong
+
+--- Writes a data file of 3DEC as a script of Talus, one line a command, and tells what is left out. `talus convert [--up y] FILE [SCRIPT.lua]` does the same from a shell, and `talus run FILE.3ddat`, or FILE.dat, runs it at once.
+---
+---     result = talus.convert{file = "scripts/examples/fault.3ddat"}
+---@param options talus.ConvertOptions
+---@return talus.ConvertResult
+function talus.convert(options) end
 
 ---@class (exact) talus.PlotOptions
 ---@field file string name of the SVG file; folders are made
@@ -1573,5 +1649,26 @@ function talus.restore(path, options) end
 ---     model = talus.resumed()
 ---@return talus.Model?
 function talus.resumed() end
+
+---@class (exact) talus.SeatOptions
+---@field gap? number m, >= 0: gaps up to which faces are taken as being on each other; when left out 1 % of the mean size of the blocks
+---@field overlap? number m, >= 0: overlaps up to which blocks are taken as only touching; when left out 1 % of the mean size of the blocks
+
+---@class (exact) talus.SeatResult
+---@field contacts integer number of pairs that were made to fit; those that fit already are not among them
+---@field largest_gap number of these, as they were before, m; the mean is by area
+---@field mean_gap number of these, as they were before, m; the mean is by area
+---@field largest_overlap number likewise
+---@field mean_overlap number likewise
+---@field beyond table pairs beyond the limits, which stay as drawn: {a = block, b = block, gap =, overlap =}
+---@field gap number the limits, m
+---@field overlap number the limits, m
+
+--- Takes blocks as drawn as fitting: gaps and overlaps up to a limit become the state free of force, under any law. Contacts are free of force after it. Prints and returns what was found.
+---
+---     result = model:seat{gap = 0.002, overlap = 0.002}
+---@param options? talus.SeatOptions
+---@return talus.SeatResult
+function Model:seat(options) end
 
 return talus

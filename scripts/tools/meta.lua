@@ -181,7 +181,8 @@ local function field_type(value, meaning, class)
     local may_be_nil = meaning:match("%f[%w]nil%f[%W]") ~= nil
     local type = seen_type(value)
     if not type then
-        type = (meaning:match("^the block") or meaning:match("^a block")) and "talus.Block" or
+        type = meaning:match("^table of the same") and "table" or
+            (meaning:match("^the block") or meaning:match("^a block")) and "talus.Block" or
             meaning:match("^the selection of blocks") and "talus.Blocks" or meaning:match("^{x, y, z}") and "talus.Vector" or
             meaning:match("^name of the") and "string" or meaning:match("^two groups or") and "(string|talus.Blocks)[]" or
             meaning:match("laws as of model:laws%(%)") and "table[]" or

@@ -157,6 +157,36 @@ check.equal(status, 0)
 contains(output, "law 'coulomb'")
 contains(output, "coulomb.so")
 
+-- A data file of 3DEC: as a script, and at once. A mistake is told with its place, and ends both with status 1.
+local data = write("program_data.3ddat", "model new\nblock create brick 0 1 ; one\nblock property density 2000\nplot create\n")
+local told
+status, output, told = run("convert " .. data)
+check.equal(status, 0)
+contains(output, 'model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 }) -- one\n')
+contains(told, "program_data.3ddat:4: plot create: pictures and lists")
+local script = folder .. "/program_data.lua"
+status, output = run("convert --up y " .. data .. " " .. script)
+check.equal(status, 0)
+check.equal(output, "")
+check.equal(run(script), 0)
+status, output, told = run("run " .. data)
+check.equal(status, 0)
+contains(told, "program_data.3ddat:4: plot create: pictures and lists")
+status, output, told = run(write("program_wrong.dat", "block create brick 0 1\n\nblok fix\n"))
+check.equal(status, 1)
+contains(told, "\ntalus: " .. folder .. "/program_wrong.dat:3: commands: unknown word 'blok'; did you mean 'block'?\n")
+status = run("convert " .. folder .. "/program_wrong.dat")
+check.equal(status, 1)
+status, output, told = run(write("program_late.DAT", "\nblock create brick 0 1\nblock property density -1\n")) -- in capitals, too
+check.equal(status, 1)
+contains(told, "program_late.DAT:3: ")
+refused("convert", "convert: name the data file")
+refused("convert --down x", "unknown option '--down'")
+refused("convert no_such_file.dat", "convert: cannot read 'no_such_file.dat'")
+refused("convert --up x " .. data, "up = 'x' is none of")
+contains(select(2, run "help"), "talus convert")
+contains(select(2, run "help convert"), "talus.convert{")
+
 -- What is printed to where there is no room for it.
 if io.open("/dev/full") then
     local page = write("program_page.lua", [[

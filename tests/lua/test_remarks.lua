@@ -191,6 +191,19 @@ says([[local m = stack { friction = 20 }
     m.gravity = { 9.81 * math.sin(0.6), 0, -9.81 * math.cos(0.6) }
     m:solve {}]], "solve: at rest, but not where it began: block 2 has moved by 0.6", "times its size")
 
+-- Overlaps that press with more than the weight are told before anything moves, and insitu tells what it leaves out for them;
+-- neither is told of blocks that are seated, nor of stress that was put on.
+local sunk = [[local m = stack()
+    m:generate("box", { min = { 1, 0, -0.00095 }, max = { 2, 1, 1 }, density = 2700, group = "sunk" })
+    ]]
+says(sunk .. "m:cycle(3)", "before the first step overlaps press with ", " times the weight (largest: 0.00095 m between blocks 1 and 3)",
+    "model:seat{}")
+says(sunk .. "m:seat {} m:cycle(3)", "seat: 1 contact was made to fit", "overlaps up to 0.00095 m", "of the blocks' mean size 1 %")
+is_silent(sunk .. "m:blocks():fix() m:insitu { stress = { zz = -1e5 } } m:cycle(3)")
+says("local m = stack() m:blocks():fix() m:generate('box', { min = { 1, 0, -0.006 }, max = { 2, 1, 1 }, density = 2700 }) m:blocks():fix() "
+    .. "m:insitu { stress = { zz = -1e5 } }", "insitu: 1 contact (first: between blocks 1 and 3, which overlap by 0.006 m) got no stress",
+    "model:seat{}")
+
 -- Rock of three dispersed sets is full of slivers: the remark names a filter that makes the step a hundred times longer.
 local rock = [[
 local rock = talus.model { seed = 7 }
@@ -250,8 +263,10 @@ local function sunk(depth, in_parts)
     ]]):format(in_parts, depth)
 end
 for _, in_parts in ipairs { false, true } do
-    is_silent(sunk(0.018, in_parts))
-    says(sunk(0.022, in_parts), "1 pair of blocks", "overlaps by more than 0.01 of their size")
+    local deep = "1 pair of blocks %b() overlaps by more than 0.01 of their size"
+    local less, more = remarks(sunk(0.018, in_parts)), remarks(sunk(0.022, in_parts))
+    check.holds(not less:find(deep) and more:find(deep), "a hundredth counts: " .. less .. more)
+    check.holds(less:find "press with" and more:find "press with", "both press with more than the weight: " .. less .. more)
 end
 
 -- keyblocks tells of a block that has moved against what it lay on, and of one whose wall has gone off while it stayed.

@@ -201,7 +201,8 @@ static void joint_plane(tl_model *m, tl_vec3 normal, tl_vec3 point, double radiu
     scene_ok(m, stage_begin(m, &stage));
     uint32_t number = tl_joint_intern(m, "J");
     tl_tag tag = {number, ++m->joints[number - 1].planes};
-    scene_ok(m, tl_stage_cut_disc(&stage, normal, point, radius, tag, 1, &met));
+    const tl_fracture disc = tl_fracture_disc(normal, point, radius);
+    scene_ok(m, tl_stage_cut_fracture(&stage, &disc, tag, 1, &met));
     scene_ok(m, tl_stage_commit(&stage));
 }
 

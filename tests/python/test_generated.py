@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("TALUS_PROGRAM", ROOT / "build/release/talus")).resolve()
 META = "scripts/meta/talus.d.lua"
 WRITTEN = {"scripts/tools/reference.lua": "docs/lua.md", "scripts/tools/meta.lua": META, "scripts/tools/c_api.lua": "docs/c_api.md",
-           "scripts/tools/tolerances.lua": "docs/tolerances.md"}
+           "scripts/tools/tolerances.lua": "docs/tolerances.md", "scripts/tools/from_3dec.lua": "docs/from_3dec.md"}
 
 # Constants that say what they are for or need not, and others that fail.
 TOLD = """/* Tolerance: a | b, relative to the size. Test: unit/test_hull,
@@ -49,7 +49,7 @@ local talus = require "talus"
 for name in pairs(talus) do
     print("talus", name)
 end
-for _, name in ipairs { "plot", "stereonet" } do -- loaded when they are first used
+for _, name in ipairs { "convert", "plot", "stereonet" } do -- loaded when they are first used
     print("talus", talus[name] and not rawget(_G, name) and name)
 end
 """

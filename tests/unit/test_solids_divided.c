@@ -68,9 +68,8 @@ TEST(a_joint_cuts_all_parts)
     CHECK_INT(tl_stage_open(&stage), TL_OK);
     const uint32_t joint = tl_joint_intern(m, "A");
     m->joints[joint - 1].planes = 1;
-    CHECK_INT(
-        tl_stage_cut_disc(&stage, tl_v3(1, 0, 0), tl_v3(1.4, 0, 0), (double)INFINITY, (tl_tag){joint, 1}, 1, &met),
-        TL_OK);
+    const tl_fracture plane = tl_fracture_disc(tl_v3(1, 0, 0), tl_v3(1.4, 0, 0), (double)INFINITY);
+    CHECK_INT(tl_stage_cut_fracture(&stage, &plane, (tl_tag){joint, 1}, 1, &met), TL_OK);
     CHECK(met >= 2);
     tl_stage_end(&stage);
     tl_model_destroy(m);

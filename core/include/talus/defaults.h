@@ -18,6 +18,7 @@ extern "C" {
     X(tl_law_scope)                                                                                                    \
     X(tl_filter)                                                                                                       \
     X(tl_insitu)                                                                                                       \
+    X(tl_seat)                                                                                                         \
     X(tl_timestep)                                                                                                     \
     X(tl_mass_scaling)                                                                                                 \
     X(tl_contact_area)                                                                                                 \

@@ -103,9 +103,14 @@ static inline void *tl_grown(void *items, size_t *capacity, size_t needed, size_
 
 /* ---------------------------------------------------------------- joint laws ------------- */
 
-/* Rows of the table of parameters of a struct `owner` with the members kn and ks. */
-#define TL_PARAM_KN(owner) TL_PARAM_POSITIVE(owner, kn, "Pa/m", "normal stiffness of the joint")
-#define TL_PARAM_KS(owner) TL_PARAM_POSITIVE(owner, ks, "Pa/m", "shear stiffness of the joint")
+/* A row of the table of parameters of a struct `owner`: a stiffness, > 0. `more`: TL_PARAM_REQUIRED or
+ * TL_PARAM_OPTIONAL. */
+#define TL_PARAM_STIFF(owner, member, unit, more, ...)                                                                 \
+    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__,                                                          \
+             .flags = TL_PARAM_STIFFNESS | TL_PARAM_MIN_OPEN | (more), .min = 0, .max = INFINITY)
+/* Rows for the members kn and ks. */
+#define TL_PARAM_KN(owner) TL_PARAM_STIFF(owner, kn, "Pa/m", TL_PARAM_REQUIRED, "normal stiffness of the joint")
+#define TL_PARAM_KS(owner) TL_PARAM_STIFF(owner, ks, "Pa/m", TL_PARAM_REQUIRED, "shear stiffness of the joint")
 
 /* Defines `stiffness`, for which the members kn_ and ks_ of the struct `type` are the bounds. */
 #define TL_LAW_STIFFNESS(type, kn_, ks_)                                                                               \

@@ -91,7 +91,9 @@ enum {
     TL_PARAM_FLAT = 128,
     /* since 1.3, of a string: a file that is read. The host refuses pipes, devices and folders, whose opening may
      * wait */
-    TL_PARAM_FILE = 16
+    TL_PARAM_FILE = 16,
+    /* since 1.11, of a real of a law: a stiffness of the joint, which a trial with stiffer joints multiplies */
+    TL_PARAM_STIFFNESS = 32
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
@@ -459,6 +461,11 @@ struct tl_host {
     tl_status (*note)(const tl_host *, const char *object, const char *key, double number, const char *text);
     /* since 1.11: the sentence of the service that failed last, for a generator that goes on without the block. */
     const char *(*reason)(const tl_host *);
+    /* since 1.11: as `cut_disc`, by a convex polygon of `count` corners, in order around it. A block is in its path
+     * when it reaches into the polygon in which its plane cuts the block. Refused with TL_E_GEOMETRY are corners that
+     * are not in one plane or not convex. */
+    tl_status (*cut_polygon)(const tl_host *, const tl_vec3 *corners, size_t count, tl_tag tag, double persistence,
+                             size_t *met);
 };
 
 typedef struct tl_generator_ops {

@@ -202,6 +202,10 @@ TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter, tl_fi
 /* Sets the law of a joint: "*" every joint not named otherwise, "J1" a set, "J1:3" a plane of it.
  * `law` NULL changes properties of the law the joint has now; forces stay continuous. */
 TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law, const tl_args *args);
+/* Multiplies the stiffnesses of all laws, the parameters with TL_PARAM_STIFFNESS, by `factor`; forces stay as they are.
+ * TL_E_ARGUMENT, and nothing changes, when a law has none or refuses the new values. TL_E_MEMORY may leave some of the
+ * laws stiffer. */
+TL_API tl_status tl_joints_stiffen(tl_model *model, double factor);
 
 /* Which contacts a law is for: those of a joint, of one or between two groups or lists of blocks, or of a list of
  * contacts. A group is that of a block now. Parts of a block that is cut follow it into
@@ -239,6 +243,32 @@ typedef struct tl_insitu {
 /* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now, and in the zones of
  * deformable blocks. A stress that is in equilibrium with weight and with tractions on the faces stays as it is. */
 TL_API tl_status tl_model_insitu(tl_model *model, const tl_insitu *insitu);
+
+typedef struct tl_seat {
+    uint32_t size;       /* sizeof(tl_seat) */
+    double gap, overlap; /* up to which a pair is taken as fitting, m; NaN: 1 % of the blocks' mean size */
+} tl_seat;
+
+/* A pair of blocks that touch or nearly do, and lie beyond a limit. */
+typedef struct tl_seat_beyond {
+    tl_id a, b;
+    double gap, overlap; /* the largest between its faces, m */
+} tl_seat_beyond;
+
+typedef struct tl_seat_result {
+    tl_seat_beyond *beyond; /* by ascending blocks; freed with free() */
+    size_t beyond_count;
+    size_t contacts; /* pairs that have been made to fit; those that do already are not among them */
+    /* of these, as they were before, m; means by area, of a pair without a common face by what it presses on */
+    double largest_gap, mean_gap, largest_overlap, mean_overlap;
+    double gap, overlap; /* the limits, m */
+} tl_seat_result;
+
+/* Takes blocks as fitting: gaps and overlaps that they have now, up to limits, become the state without force. Of each
+ * pair both blocks see the other with a face moved into a plane between. So no force and no energy is made, under any
+ * law. All contacts of rigid blocks are then free of force. `result` may be NULL. TL_E_STATE where a deformable block
+ * does not fit: only rigid ones are seated. */
+TL_API tl_status tl_model_seat(tl_model *model, const tl_seat *seat, tl_seat_result *result);
 
 /* Chooses the damping plugin; "none" is no damping. */
 TL_API tl_status tl_model_damping(tl_model *model, const char *damping, const tl_args *args);
@@ -493,6 +523,9 @@ typedef struct tl_block_filter {
     const tl_halfspace *above, *below; /* centroid on that side, boundary included */
     int fixed;                         /* -1 any, 0 no, 1 yes */
     int hidden;                        /* -1 any, 0 visible ones, 1 hidden ones */
+    size_t above_count, below_count;   /* planes at `above` and `below`, 1 by default: all must hold */
+    const tl_vec3 *region;             /* centroid in the convex hull of these points, boundary included; NULL: any */
+    size_t region_count;
 } tl_block_filter;
 
 /* Ids of the blocks that pass, ascending. The list is the caller's, to be freed with free(). */

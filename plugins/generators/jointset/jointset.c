@@ -10,7 +10,11 @@
  *
  * u is uniform in [-1, 1), or normal with standard deviation 1 cut off at NORMAL_LIMIT; a normal gap is cut
  * off, on both sides alike, so that it stays positive. By "fisher" the pole of a plane is distributed
- * about the mean pole with the concentration fisher_k, and gaps are uniform.
+ * about the mean pole with the concentration fisher_k. Gaps go by `spacing_distribution`, with
+ * u uniform in [0, 1) and z normal:
+ *
+ *     exponential: gap = -spacing ln(1 - u),   standard deviation: spacing
+ *     lognormal:   gap = spacing exp(s z - s^2 / 2),   s^2 = ln(1 + (spacing_dev / spacing)^2)
  *
  * Normal: Box and Muller's transform of two uniform numbers, drawn again while it falls beyond the limit (at 3 standard
  * deviations that is one in 370). Fisher (Proc. R. Soc. Lond. A 217 (1953) 295-305): with density proportional to
@@ -31,8 +35,18 @@
 /* After so many draws beyond the limit the number is taken as the mean: with limit >= 1 that has a chance of 1e-32. */
 #define MOST_ATTEMPTS 64
 
+/* Lognormal gaps end at so many standard deviations of their logarithm, which leaves mean and deviation within 1e-4 up
+ * to a deviation of the mean. */
+#define LOGNORMAL_LIMIT 6.0
+
+/* The largest deviation of lognormal gaps over their mean. */
+#define MOST_RATIO 10.0
+
 enum { UNIFORM, NORMAL, FISHER };
 static const char *const distributions[] = {"uniform", "normal", "fisher", NULL};
+
+enum { GAPS_SAME, GAPS_UNIFORM, GAPS_NORMAL, GAPS_EXPONENTIAL, GAPS_LOGNORMAL };
+static const char *const spacing_distributions[] = {"same", "uniform", "normal", "exponential", "lognormal", NULL};
 
 typedef struct params {
     const char *joint;
@@ -42,6 +56,7 @@ typedef struct params {
     double persistence;
     int32_t distribution;
     double fisher_k, radius;
+    int32_t spacing_distribution;
 } params;
 
 static const tl_param param_table[] = {
@@ -54,7 +69,8 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 360),
     TL_PARAM(TL_PARAM_REAL, params, dip_direction_dev, "deg", "deviation of the dip direction", .min = 0, .max = 180),
     TL_PARAM_POSITIVE(params, spacing, "m", "mean distance between planes"),
-    TL_PARAM_NOT_NEGATIVE(params, spacing_dev, "m", "deviation of the spacing; less than the spacing"),
+    TL_PARAM_NOT_NEGATIVE(params, spacing_dev, "m",
+                          "deviation of the spacing; less than the spacing, unless lognormal"),
     TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1, .max = 1e4),
     TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about", .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "", "probability that a block in a plane's path is cut", .def = {1},
@@ -68,6 +84,10 @@ static const tl_param param_table[] = {
     TL_PARAM_POSITIVE_OR_NONE(params, radius, "m",
                               "of discs in the place of planes: a block is in a disc's path when the disc meets its "
                               "section"),
+    TL_PARAM(TL_PARAM_ENUM, params, spacing_distribution, "",
+             "of the gaps: uniform within spacing_dev, normal, exponential with the mean spacing, or lognormal; same: "
+             "as distribution, uniform with fisher",
+             .def = {GAPS_SAME}, .choices = spacing_distributions),
 };
 
 /* Where the draws of one call are found: planes of an earlier call of the same set come first. */
@@ -121,12 +141,31 @@ static double deviation(const draws *d, const params *p, int64_t index, uint32_t
     return p->distribution == NORMAL ? draw_normal(d, index, kind, NORMAL_LIMIT) : draw_even(d, index, kind);
 }
 
-/* Deviation of a gap, in units of spacing_dev. */
+static int32_t gaps_of(const params *p)
+{
+    if (p->spacing_distribution != GAPS_SAME)
+        return p->spacing_distribution;
+    return p->distribution == NORMAL ? GAPS_NORMAL : GAPS_UNIFORM;
+}
+
+/* What deviations of gaps are counted in, m. */
+static double gap_unit(const params *p)
+{
+    return gaps_of(p) >= GAPS_EXPONENTIAL ? p->spacing : p->spacing_dev;
+}
+
+/* By how many units a gap is wider than the spacing. */
 static double gap_deviation(const draws *d, const params *p, int64_t index)
 {
-    if (p->distribution != NORMAL)
-        return draw_even(d, index, DRAW_GAP);
-    return draw_normal(d, index, DRAW_GAP, fmin(NORMAL_LIMIT, p->spacing / p->spacing_dev));
+    switch (gaps_of(p)) {
+    case GAPS_NORMAL: return draw_normal(d, index, DRAW_GAP, fmin(NORMAL_LIMIT, p->spacing / p->spacing_dev));
+    case GAPS_EXPONENTIAL: return -tl_log1p(-draw_one(d, index, DRAW_GAP)) - 1;
+    case GAPS_LOGNORMAL: {
+        const double ratio = p->spacing_dev / p->spacing, s2 = tl_log1p(ratio * ratio);
+        return tl_expm1(sqrt(s2) * draw_normal(d, index, DRAW_GAP, LOGNORMAL_LIMIT) - 0.5 * s2);
+    }
+    default: return draw_even(d, index, DRAW_GAP);
+    }
 }
 
 /* Distance of plane `index` from the origin along the mean normal. The mean part is a product, so a set
@@ -135,7 +174,8 @@ static double offset_of(const draws *d, const params *p, int64_t index)
 {
     int64_t n = p->number, middle = n / 2;
     double mean = ((double)index - 0.5 * (double)(n - 1)) * p->spacing;
-    if (!(p->spacing_dev > 0))
+    const double unit = gap_unit(p);
+    if (!(unit > 0))
         return mean;
     double sum = n % 2 == 0 ? 0.5 * gap_deviation(d, p, middle) : 0;
     int64_t low = n % 2 == 0 ? middle - 1 : middle;
@@ -143,7 +183,7 @@ static double offset_of(const draws *d, const params *p, int64_t index)
         sum += gap_deviation(d, p, i);
     for (int64_t i = low - 1; i >= index; i--)
         sum += gap_deviation(d, p, i);
-    return index >= middle ? mean + p->spacing_dev * sum : mean - p->spacing_dev * sum;
+    return index >= middle ? mean + unit * sum : mean - unit * sum;
 }
 
 static tl_vec3 normal_of(const draws *d, const params *p, tl_vec3 mean, int64_t index)
@@ -167,12 +207,32 @@ static tl_status cut_plane(const draws *d, const params *p, tl_vec3 mean, int64_
     return status;
 }
 
+static tl_status check_gaps(const tl_host *host, const params *p)
+{
+    const int32_t gaps = gaps_of(p);
+    if (gaps == GAPS_EXPONENTIAL && p->spacing_dev > 0)
+        return host->fail(
+            host, TL_E_ARGUMENT,
+            "spacing_dev = %g m does not go with spacing_distribution = 'exponential', whose deviation is "
+            "the spacing: leave it out",
+            p->spacing_dev);
+    if (gaps == GAPS_LOGNORMAL && !(p->spacing_dev > 0 && p->spacing_dev <= MOST_RATIO * p->spacing))
+        return host->fail(host, TL_E_ARGUMENT,
+                          "spacing_distribution = 'lognormal' needs spacing_dev, the standard deviation of the gaps, "
+                          "> 0 and <= %g times spacing = %g m: it is %g m",
+                          MOST_RATIO, p->spacing, p->spacing_dev);
+    if (gaps <= GAPS_NORMAL && !(p->spacing_dev < p->spacing))
+        return host->fail(host, TL_E_ARGUMENT, "spacing_dev = %g m must be < spacing = %g m", p->spacing_dev,
+                          p->spacing);
+    return TL_OK;
+}
+
 /* What the ranges of single parameters cannot tell. */
 static tl_status check(const tl_host *host, const params *p)
 {
-    if (!(p->spacing_dev < p->spacing))
-        return host->fail(host, TL_E_ARGUMENT, "spacing_dev = %g m must be < spacing = %g m", p->spacing_dev,
-                          p->spacing);
+    tl_status status = check_gaps(host, p);
+    if (status != TL_OK)
+        return status;
     if (p->distribution == FISHER && !(p->fisher_k > 0))
         return host->fail(host, TL_E_ARGUMENT,
                           "distribution = 'fisher' needs fisher_k, the concentration of the poles "

@@ -57,9 +57,9 @@ static const tl_param param_table[] = {
     TL_PARAM_POSITIVE_OR_NONE(params, length, "m",
                               "length L of the joint between crossings, in metres whatever the other units, for the "
                               "peak's slip is an empirical formula; not given: lab_length"),
-    TL_PARAM_POSITIVE(params, kni, "Pa/m", "normal stiffness of the unloaded joint", .alias = "kn"),
+    TL_PARAM_STIFF(params, kni, "Pa/m", TL_PARAM_REQUIRED, "normal stiffness of the unloaded joint", .alias = "kn"),
     TL_PARAM_POSITIVE(params, vm, "m", "largest closure, from the unloaded joint"),
-    TL_PARAM_POSITIVE(params, ks, "Pa/m", "shear stiffness where nothing slips"),
+    TL_PARAM_STIFF(params, ks, "Pa/m", TL_PARAM_REQUIRED, "shear stiffness where nothing slips"),
     TL_PARAM_POSITIVE_OR_NONE(params, linear_from, "Pa",
                               "normal stress beyond which closure is linear; a smaller one allows a longer time "
                               "step; not given: the wall strength of the joint's length"),

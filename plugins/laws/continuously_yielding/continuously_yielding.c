@@ -49,14 +49,15 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM_POSITIVE(params, an, "Pa^(1-en)/m", "normal stiffness at a normal stress of 1 Pa"),
+    TL_PARAM_STIFF(params, an, "Pa^(1-en)/m", TL_PARAM_REQUIRED, "normal stiffness at a normal stress of 1 Pa"),
     TL_PARAM(TL_PARAM_REAL, params, en, "", "exponent of the normal stress in it", .flags = TL_PARAM_MAX_OPEN, .min = 0,
              .max = 1),
-    TL_PARAM_POSITIVE(params, as, "Pa^(1-es)/m", "shear stiffness at a normal stress of 1 Pa"),
+    TL_PARAM_STIFF(params, as, "Pa^(1-es)/m", TL_PARAM_REQUIRED, "shear stiffness at a normal stress of 1 Pa"),
     TL_PARAM(TL_PARAM_REAL, params, es, "", "exponent of the normal stress in it", .min = 0, .max = 1),
-    TL_PARAM_POSITIVE_OR_NONE(params, kn_max, "Pa/m",
-                              "largest normal stiffness, for the time step; needed with en > 0"),
-    TL_PARAM_POSITIVE_OR_NONE(params, ks_max, "Pa/m", "largest shear stiffness, for the time step; needed with es > 0"),
+    TL_PARAM_STIFF(params, kn_max, "Pa/m", TL_PARAM_OPTIONAL,
+                   "largest normal stiffness, for the time step; needed with en > 0"),
+    TL_PARAM_STIFF(params, ks_max, "Pa/m", TL_PARAM_OPTIONAL,
+                   "largest shear stiffness, for the time step; needed with es > 0"),
     TL_PARAM_ANGLE(params, phi_i, TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, "angle of friction of the fresh joint"),
     TL_PARAM_ANGLE(params, phi, TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN,
                    "angle of friction of the worn joint, at most phi_i", .alias = "friction"),

@@ -20,7 +20,8 @@ local function distance(a, b)
     return row[#b]
 end
 
-local function nearest(word, known)
+-- The known word that a wrong one most likely means, or nil.
+function arguments.nearest(word, known)
     local best, name = #word // 3 + 2, nil
     for _, candidate in ipairs(known) do
         local far = distance(word, candidate)
@@ -30,6 +31,7 @@ local function nearest(word, known)
     end
     return name
 end
+local nearest = arguments.nearest
 
 -- The text of a number, with a decimal point whatever the locale has.
 function arguments.decimal(format, value)

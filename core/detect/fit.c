@@ -1,0 +1,151 @@
+/* fit.c - how the blocks of a pair fit, and planes for their faces in which they do.
+ *
+ * Two faces a and b on each other, of areas A_a and A_b, are put into one plane:
+ *
+ *     n ~ A_a n_a - A_b n_b,    n . x = c,  c ~ A_a c_a - A_b c_b
+ *
+ * This is the mean of both, by area: a small block takes the plane of the floor below it. Blocks may overlap without
+ * such faces, by an edge or a vertex. Then the face along which they overlap the least is drawn back. */
+#include "detect/fit.h"
+
+#include "contact/detection.h"
+#include "contact/pair_view.h"
+#include "geometry/measure.h"
+#include "narrow/common_polygon.h"
+#include "narrow/manifold.h"
+#include "narrow/press.h"
+#include "narrow/region.h"
+
+#include <math.h>
+
+/* Tolerance: sine of the tilt up to which two faces may be put into one plane. Test: lua/test_seat. */
+#define MOST_TILT 0.1
+/* Tolerance: gaps and overlaps over the size of the smaller block that are the rounding of places. A pair that fits to
+ * that stays as it is. */
+#define FITS 1e-12
+/* Tolerance: the same over the distance between both centroids, from which places are reckoned. */
+#define ROUNDED 1e-14
+/* Tolerance: common area over the smaller face, below which faces with a gap are beside each other: those of blocks
+ * that meet at an edge. Test: lua/test_seat. */
+#define BESIDE 1e-3
+
+typedef struct search {
+    tl_narrow_scratch *scratch;
+    double gap; /* up to which faces are on each other, m */
+} search;
+
+/* The plane between two faces, in A's frame. */
+static tl_plane plane_between(const tl_pair_view *view, uint32_t fa, uint32_t fb)
+{
+    const tl_plane a = tl_view_plane(view, false, fa), b = tl_view_plane(view, true, fb);
+    const double area_a = tl_poly_face_area(view->a, fa), area_b = tl_poly_face_area(view->b, fb);
+    const tl_vec3 n = tl_v3_madd(tl_v3_scale(area_a, a.normal), -area_b, b.normal);
+    const double length = tl_v3_norm(n);
+    return (tl_plane){tl_v3_scale(1 / length, n), (area_a * a.offset - area_b * b.offset) / length};
+}
+
+/* Puts the planes of both faces into one, each in its own frame. */
+static void put_planes(const tl_pair_view *view, uint32_t fa, uint32_t fb, tl_pair_fit *out)
+{
+    const tl_plane mid = plane_between(view, fa, fb);
+    const tl_vec3 back = tl_m3_tmul(&view->turn, tl_v3_neg(mid.normal));
+    out->face[0] = fa;
+    out->face[1] = fb;
+    out->plane[0] = mid;
+    out->plane[1] = (tl_plane){back, tl_v3_dot(mid.normal, view->shift) - mid.offset};
+}
+
+/* Measures two faces on each other; TL_FIT_APART: they have no area in common. false: out of memory. */
+static bool measure_faces(const search *s, const tl_pair_view *view, const tl_region *r, double tiny, tl_pair_fit *out)
+{
+    tl_common_polygon common;
+    const uint32_t fa = r->flush_a, fb = r->flush_b;
+    if (!r->flush || tl_region_tilt(view, fa, fb) > MOST_TILT)
+        return true;
+    if (!tl_common_polygon_find(view, fa, fb, s->scratch, &common))
+        return false;
+    if (common.count == 0)
+        return true;
+    const tl_patch_gap of = tl_patch_gap_of(&common.frame, common.b);
+    double least = INFINITY, most = -INFINITY;
+    for (size_t i = 0; i < common.count; i++) {
+        const double gap = tl_gap_at(of, common.corner[i].at);
+        least = fmin(least, gap);
+        most = fmax(most, gap);
+    }
+    const double mean = tl_gap_at(of, common.centroid);
+    const double whole = fmin(tl_poly_face_area(view->a, fa), tl_poly_face_area(view->b, fb));
+    out->area = common.frame.secant * common.area;
+    if (least > s->gap || (least > -tiny && !(out->area > BESIDE * whole)))
+        return true;
+    out->gap = fmax(most, 0);
+    out->overlap = fmax(-least, 0);
+    out->mean_gap = fmax(mean, 0);
+    out->mean_overlap = fmax(-mean, 0);
+    out->how = most <= tiny && least >= -tiny ? TL_FIT_WELL : TL_FIT_FACES;
+    put_planes(view, fa, fb, out);
+    return true;
+}
+
+/* The face of a block along which the other one lies highest, of those that no seam covers. */
+static uint32_t highest(const tl_poly *p, const double *low)
+{
+    uint32_t best = TL_NO_ROW;
+    for (uint32_t f = 0; f < p->face_count; f++)
+        if (!p->covered[f] && (best == TL_NO_ROW || low[f] > low[best]))
+            best = f;
+    return best;
+}
+
+/* Draws one face back by the overlap of a pair that presses. false: out of memory. */
+static bool measure_edges(const search *s, const tl_pair_view *view, const tl_region *r, tl_pair_fit *out)
+{
+    tl_press press;
+    tl_region_lows lows;
+    const tl_press_query query = {.view = view, .region = r};
+    if (!tl_press_find(&query, 1, s->scratch, &press, NULL))
+        return false;
+    if (!(press.area > 0) || !tl_region_gap(view, s->scratch, &lows))
+        return !s->scratch->failed;
+    const uint32_t fa = highest(view->a, lows.b_over_a), fb = highest(view->b, lows.a_over_b);
+    const bool of_b = fa == TL_NO_ROW || (fb != TL_NO_ROW && lows.a_over_b[fb] > lows.b_over_a[fa]);
+    if (of_b && fb == TL_NO_ROW)
+        return true;
+    const double low = of_b ? lows.a_over_b[fb] : lows.b_over_a[fa];
+    out->how = TL_FIT_EDGES;
+    out->overlap = fmax(-low, 0);
+    out->mean_overlap = 0.5 * out->overlap;
+    out->area = press.area;
+    out->face[of_b] = of_b ? fb : fa;
+    out->plane[of_b] = of_b ? view->b->plane[fb] : view->a->plane[fa];
+    out->plane[of_b].offset += fmin(low, 0);
+    return true;
+}
+
+/* How a pair lies with the shapes of a view. false: out of memory. */
+static bool measure(const search *s, tl_pair_view view, tl_pair_fit *out)
+{
+    *out = (tl_pair_fit){.how = TL_FIT_APART, .face = {TL_NO_ROW, TL_NO_ROW}};
+    const double tiny = FITS * view.size + ROUNDED * tl_v3_norm(view.shift);
+    tl_region region;
+    if (!tl_pair_place(&view, s->scratch) ||
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size + s->gap, s->scratch, &region))
+        return false;
+    if (region.gap > s->gap)
+        return true;
+    if (!measure_faces(s, &view, &region, tiny, out) ||
+        (out->how == TL_FIT_APART && region.gap < -tiny && !measure_edges(s, &view, &region, out)))
+        return false;
+    return true;
+}
+
+bool tl_fit_measure(tl_model *m, uint32_t a, uint32_t b, bool drawn, double gap, tl_pair_fit *out)
+{
+    const search s = {&m->detect->narrow[0], gap};
+    tl_pair_view view = tl_pair_view_of(m, a, b);
+    if (drawn) {
+        view.a = m->blocks.shape[a];
+        view.b = m->blocks.shape[b];
+    }
+    return measure(&s, view, out);
+}

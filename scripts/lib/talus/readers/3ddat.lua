@@ -1,0 +1,2 @@
+-- 3ddat.lua - how `talus run FILE.3ddat` reads a data file of 3DEC: gives it as a chunk of Lua, line by line.
+return require("talus.threedec").read(...)
