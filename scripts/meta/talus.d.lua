@@ -243,8 +243,10 @@ function talus.help(topic) end
 
 --- Cuts the visible blocks in the way of a tunnel along its surface.
 ---@class (exact) talus.generator.Tunnel
----@field face1 talus.Vector[] m: corners of one end, in order around it
----@field face2 talus.Vector[] m: corners of the other end, in the order of those of face1 they are connected with
+---@field face1? talus.Vector[] m: corners of one end, in order around it
+---@field face2? talus.Vector[] m: corners of the other end, in the order of those of face1 they are connected with
+---@field profile? number[][] instead of faces, with path: corners of the section in order, {to the right of the way, up}, from the path
+---@field path? talus.Vector[] m: points that straight legs connect; closed where the last is the first
 ---@field group? string default "tunnel": group of what lies inside
 
 --- Creates a slope with the wedge that two joints part from it.
@@ -691,7 +693,7 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "prism", options: talus.generator.Prism|talus.generator.Prism[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "profile", options: talus.generator.Profile|talus.generator.Profile[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tetrahedron", options: talus.generator.Tetrahedron|talus.generator.Tetrahedron[]): talus.GenerateResult
----@overload fun(self: talus.Model, generator: "tunnel", options: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "tunnel", options?: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "wedge", options: talus.generator.Wedge|talus.generator.Wedge[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "roof_wedge", options: talus.generator.RoofWedge|talus.generator.RoofWedge[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "zones", options: talus.generator.Zones|talus.generator.Zones[]): talus.GenerateResult
