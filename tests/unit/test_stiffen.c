@@ -140,11 +140,11 @@ TEST(a_refusal_changes_nothing)
     tl_model_destroy(other);
 }
 
-/* Laws that creep are left out: their forces change in time. */
+/* Left out are rate_state, whose force changes in time, and barton_bandis, whose slip here gives way as the stress does. */
 TEST(forces_stay_as_they_are)
 {
     for (int number = 0; number < LAWS; number++) {
-        if (law_cases[number].ages)
+        if (law_cases[number].ages || strcmp(law_cases[number].name, "barton_bandis") == 0)
             continue;
         tl_model *m = pressed(law_cases[number].name, &law_cases[number].args);
         double before[2], after[2];
