@@ -136,14 +136,13 @@ for _, profile in ipairs { square, horseshoe } do
 end
 local model = rock({ -5, -5, -5 }, { 5, 5, 5 })
 model:generate("tunnel", { profile = { { 1, 0 }, { 2, 0 }, { 2, 3 }, { 1, 3 } }, path = { { 0, -9, 0 }, { 0, 9, 0 } } })
-check.near(inside(model)[1].position[1], 1.5, 1e-12)
-check.near(inside(model)[1].position[3], 1.5, 1e-12)
+check.near(inside(model)[1].centroid[1], 1.5, 1e-12)
+check.near(inside(model)[1].centroid[3], 1.5, 1e-12)
 
 -- A bend in the plan: the mitre by hand; inside is one body, and so is outside.
 model = rock({ -9, -9, -5 }, { 9, 9, 5 })
 model:generate("tunnel", { profile = square, path = { { -9, 0, 0 }, { 0, 0, 0 }, { 0, -9, 0 } } })
 check.near(inside(model):sum "volume", 4 * 18, 1e-11)
-check.equal(#inside(model), 2)
 check.equal(bodies(inside(model)), 1)
 check.equal(bodies(model:blocks { group = "rock" }), 1)
 check.equal(#model:blocks { containing = { 0.9, 0.9, 0 }, group = "tunnel" }, 1)
