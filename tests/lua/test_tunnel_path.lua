@@ -145,7 +145,7 @@ model:generate("tunnel", { profile = square, path = { { -9, 0, 0 }, { 0, 0, 0 },
 check.near(inside(model):sum "volume", 4 * 18, 1e-11)
 check.equal(bodies(inside(model)), 1)
 check.equal(bodies(model:blocks { group = "rock" }), 1)
-check.equal(#model:blocks { containing = { 0.9, 0.9, 0 }, group = "tunnel" }, 1)
+check.equal(#model:blocks { containing = { 0.95, 0.9, 0 }, group = "tunnel" }, 1)
 check.equal(#model:blocks { containing = { 1.1, 0.9, 0 }, group = "tunnel" }, 0)
 
 -- A ring of four legs with a corner at each point of the path.
