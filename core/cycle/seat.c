@@ -199,13 +199,20 @@ static void say_seated(tl_model *m, const tl_seat_result *r, bool given)
         "%.3g m); limits: gap = %.3g, overlap = %.3g%s",
         r->contacts, r->contacts == 1 ? " was" : "s were", r->largest_gap, r->mean_gap, r->largest_overlap,
         r->mean_overlap, r->gap, r->overlap, given ? "" : ", of the blocks' mean size 1 %");
-    if (r->beyond_count)
-        tl_model_say(
-            m,
-            "seat: %zu pair%s of blocks lie%s beyond the limits (first: blocks %u and %u, with a gap of %.3g m "
-            "and an overlap of %.3g m) and stay%s as drawn: give larger limits, or draw them otherwise",
-            r->beyond_count, r->beyond_count == 1 ? "" : "s", r->beyond_count == 1 ? "s" : "", r->beyond[0].a,
-            r->beyond[0].b, r->beyond[0].gap, r->beyond[0].overlap, r->beyond_count == 1 ? "s" : "");
+    if (r->beyond_count == 0)
+        return;
+    double gap = r->gap, overlap = r->overlap; /* limits within which all of them lie */
+    for (size_t i = 0; i < r->beyond_count; i++) {
+        gap = fmax(gap, r->beyond[i].gap);
+        overlap = fmax(overlap, r->beyond[i].overlap);
+    }
+    tl_model_say(m,
+                 "seat: %zu pair%s of blocks lie%s beyond the limits (first: blocks %u and %u, with a gap of %.3g m "
+                 "and an overlap of %.3g m) and stay%s as drawn: draw them otherwise, or give larger limits (gap = "
+                 "%.3g, overlap = %.3g would hold all)",
+                 r->beyond_count, r->beyond_count == 1 ? "" : "s", r->beyond_count == 1 ? "s" : "", r->beyond[0].a,
+                 r->beyond[0].b, r->beyond[0].gap, r->beyond[0].overlap, r->beyond_count == 1 ? "s" : "", 1.01 * gap,
+                 1.01 * overlap);
 }
 
 static double mean_size(const tl_model *m)

@@ -1,6 +1,7 @@
 /* joints.c - names of groups and joint sets, and which rule holds for which joint. */
 #include "model/joints.h"
 
+#include "base/hash.h"
 #include "base/inside.h"
 #include "model/options.h"
 #include "model/rows.h"
@@ -10,11 +11,53 @@
 #include <string.h>
 #include <talus/fields.h>
 
+/* The slot at which the search for a name begins. */
+static size_t group_slot(const tl_group_index *index, const char *name)
+{
+    tl_hash hash = tl_hash_start();
+    tl_hash_bytes(&hash, name, strlen(name));
+    return (size_t)hash.a & (index->slots - 1);
+}
+
+/* Enters a group in the first free slot; there is one. */
+static void enter_group(tl_group_index *index, const char *name, size_t group)
+{
+    size_t at = group_slot(index, name);
+    while (index->slot[at])
+        at = (at + 1) & (index->slots - 1);
+    index->slot[at] = (uint32_t)group + 1;
+    index->used++;
+}
+
+/* Keeps at least half of the slots free, with those of groups that are gone left out. */
+static bool reserve_group_slot(tl_model *m)
+{
+    tl_group_index *index = &m->group_index;
+    if (2 * (index->used + 1) <= index->slots)
+        return true;
+    tl_group_index wider = {.slots = 16};
+    while (wider.slots < 4 * (m->group_count + 1))
+        wider.slots *= 2;
+    wider.slot = calloc(wider.slots, sizeof *wider.slot);
+    if (!wider.slot)
+        return false;
+    for (size_t i = 0; i < m->group_count; i++)
+        enter_group(&wider, m->groups[i], i);
+    free(index->slot);
+    *index = wider;
+    return true;
+}
+
 uint32_t tl_group_intern(tl_model *m, const char *name)
 {
-    for (size_t i = 0; i < m->group_count; i++)
-        if (strcmp(m->groups[i], name) == 0)
-            return (uint32_t)i;
+    if (!reserve_group_slot(m))
+        return UINT32_MAX;
+    const tl_group_index *index = &m->group_index;
+    for (size_t at = group_slot(index, name); index->slot[at]; at = (at + 1) & (index->slots - 1)) {
+        uint32_t group = index->slot[at] - 1;
+        if (group < m->group_count && strcmp(m->groups[group], name) == 0)
+            return group;
+    }
     char *copy = strdup(name);
     char **groups = realloc(m->groups, (m->group_count + 1) * sizeof *groups);
     if (groups)
@@ -24,6 +67,7 @@ uint32_t tl_group_intern(tl_model *m, const char *name)
         return UINT32_MAX;
     }
     m->groups[m->group_count] = copy;
+    enter_group(&m->group_index, name, m->group_count);
     return (uint32_t)m->group_count++;
 }
 

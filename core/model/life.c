@@ -113,6 +113,7 @@ void tl_model_destroy(tl_model *m)
     tl_table_free(&m->bodies.table);
     for (size_t i = 0; i < m->group_count; i++)
         free(m->groups[i]);
+    free(m->group_index.slot);
     for (size_t i = 0; i < m->joint_count; i++)
         free(m->joints[i].name);
     for (size_t i = 0; i < m->joint_law_count; i++)

@@ -138,6 +138,13 @@ typedef enum tl_found_for {
     TL_FOR_QUERIES_IN_COPY /* the next step goes on from `stepped` */
 } tl_found_for;
 
+/* Groups by the hash of their name. A slot holds a group's number plus one, or 0. Slots of groups that a failed
+ * generator has taken back stay: no name is found by them. */
+typedef struct tl_group_index {
+    uint32_t *slot;
+    size_t slots, used; /* slots: a power of two, or 0 */
+} tl_group_index;
+
 struct tl_model {
     tl_model_config config;
     tl_error error;
@@ -160,6 +167,7 @@ struct tl_model {
     char name[256]; /* of the last tl_tag_name */
     char **groups;
     size_t group_count;
+    tl_group_index group_index;
     tl_joint_set *joints; /* joint number j is joints[j - 1] */
     size_t joint_count;
     tl_cut_record record;

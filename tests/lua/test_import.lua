@@ -257,7 +257,6 @@ refused({}, "holds no faces")
 comes_out(inside_out(unit), { 1 }, 6, 1e-14)
 comes_out(joined(unit, inside_out(box(3, 3, 3, 4, 4, 4))), { 1, 1 }, 6, 1e-14)
 comes_out(exchanged(unit, 7, turned(unit[7])), { 1 }, 6, 1e-14)
-refused(joined(unit, inside_out(box(0.25, 0.25, 0.25, 0.75, 0.75, 0.75))), "faces inward: the solid is hollow")
 
 -- A corner pushed in; a spike. (Both are divided, or refused with split = false.)
 local function pushed(p)

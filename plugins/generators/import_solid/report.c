@@ -71,10 +71,14 @@ tl_status refusals_check(const solids *s)
     char more[80] = "";
     if (objects > told && objects > REASONS_TOLD)
         tl_text_print(more, sizeof more, " and more");
+    char all[100] = "";
+    if (needs > 0 && s->refusals > told)
+        tl_text_print(all, sizeof all, "; flat = %.3g would take %s that are off their planes", needs,
+                      s->soup.objects > 1 ? "all" : "all solids");
     if (s->soup.objects > 1)
-        return SOUP_FAULT(&s->soup, ": %zu of %zu objects are refused (skip = true leaves them out): %s%s", objects,
-                          s->soup.objects, text, more);
-    return SOUP_FAULT(&s->soup, ": %s", text);
+        return SOUP_FAULT(&s->soup, ": %zu of %zu objects are refused (skip = true leaves them out): %s%s%s", objects,
+                          s->soup.objects, text, more, all);
+    return SOUP_FAULT(&s->soup, ": %s%s", text, all);
 }
 
 static tl_status note_count(const solids *s, const char *object, const char *key, size_t count)

@@ -427,8 +427,8 @@ static double volume_of(const mesh *m, uint32_t shell, double *size)
     return volume6;
 }
 
-/* Whether a vertex of a shell lies within the others: rays in one direction meet them an odd number of times. */
-static bool lies_inside(const mesh *m, uint32_t shell)
+/* Whether a vertex of a shell lies within another one: a ray crosses that an odd number of times. */
+static bool lies_inside(const mesh *m, uint32_t shell, uint32_t other)
 {
     const tl_vec3 ray = {0.31830988618, 0.57721566490, 0.75204108811}; /* along no likely edge */
     tl_vec3 at = {0, 0, 0};
@@ -438,8 +438,10 @@ static bool lies_inside(const mesh *m, uint32_t shell)
             at = m->vertex[m->corner[m->face[f].first]];
     for (size_t f = 0; f < m->faces; f++) {
         const shell_face *face = &m->face[f];
+        if (face->shell != other)
+            continue;
         tl_vec3 a = tl_v3_sub(m->vertex[m->corner[face->first]], at);
-        for (uint32_t k = 1; k + 1 < face->count && face->shell != shell; k++) {
+        for (uint32_t k = 1; k + 1 < face->count; k++) {
             tl_vec3 b = tl_v3_sub(m->vertex[m->corner[face->first + k]], at);
             tl_vec3 c = tl_v3_sub(m->vertex[m->corner[face->first + k + 1]], at);
             double u = tl_v3_dot(ray, tl_v3_cross(a, b)), v = tl_v3_dot(ray, tl_v3_cross(b, c)),
@@ -451,30 +453,57 @@ static bool lies_inside(const mesh *m, uint32_t shell)
     return crossings % 2 == 1;
 }
 
-/* Turns shells outward, and refuses those that are hollow or hold nothing. */
+/* The smallest shell that faces outward and holds another one; NONE where none does. */
+static uint32_t shell_around(const mesh *m, const double *volume, uint32_t shell)
+{
+    uint32_t around = NONE;
+    for (uint32_t k = 0; k < m->shells; k++)
+        if (volume[k] > -volume[shell] && (around == NONE || volume[k] < volume[around]) && lies_inside(m, shell, k))
+            around = k;
+    return around;
+}
+
+/* Gives cavities, which lie in a shell and face inward, to that shell: they bound one solid. Other shells are turned
+ * outward. shell_of has the new numbers. */
+static void give_cavities(mesh *m, const double *volume, uint32_t *shell_of, done *d)
+{
+    uint32_t left = 0;
+    for (uint32_t k = 0; k < m->shells; k++) {
+        uint32_t around = volume[k] < 0 ? shell_around(m, volume, k) : NONE;
+        shell_of[k] = around == NONE ? k : around;
+    }
+    for (uint32_t f = 0; f < m->faces; f++) {
+        uint32_t shell = m->face[f].shell;
+        if (volume[shell] < 0 && shell_of[shell] == shell) {
+            turn_face(m, f);
+            d->inside_out = true;
+        }
+        m->face[f].shell = shell_of[shell];
+    }
+    for (uint32_t k = 0; k < m->shells; k++)
+        shell_of[k] = shell_of[k] == k ? left++ : NONE;
+    for (uint32_t f = 0; f < m->faces; f++)
+        m->face[f].shell = shell_of[m->face[f].shell];
+    m->shells = d->shells = left;
+}
+
+/* Turns shells outward but for cavities, and refuses those that hold nothing. */
 static tl_status turn_shells(solids *s, uint32_t object, mesh *m, done *d, bool *taken)
 {
     double *volume = malloc((m->shells + 1) * sizeof *volume), size;
-    tl_status status = volume ? TL_OK : soup_no_memory(&s->soup);
-    char name[NAME_TEXT];
+    uint32_t *shell_of = malloc((m->shells + 1) * sizeof *shell_of);
+    tl_status status = volume && shell_of ? TL_OK : soup_no_memory(&s->soup);
     for (uint32_t k = 0; k < m->shells && status == TL_OK && *taken; k++) {
         volume[k] = volume_of(m, k, &size);
         if (!(fabs(volume[k]) > EMPTY * size * size * size)) {
             *taken = false;
             status = refuse_object(s, object, 0, "%s holds no volume; remove it, or give it thickness",
                                    m->shells > 1 ? ": a shell of it" : "");
-        } else if (volume[k] < 0 && m->shells > 1 && lies_inside(m, k)) {
-            *taken = false;
-            status = refuse_object(
-                s, object, 0, ": shell %s lies inside another one and faces inward: the solid is hollow; cut it open",
-                object_name(s, object, k, name));
         }
     }
-    for (uint32_t f = 0; f < m->faces && status == TL_OK && *taken; f++)
-        if (volume[m->face[f].shell] < 0) {
-            turn_face(m, f);
-            d->inside_out = true;
-        }
+    if (status == TL_OK && *taken)
+        give_cavities(m, volume, shell_of, d);
+    free(shell_of);
     free(volume);
     return status;
 }
