@@ -249,7 +249,11 @@ local edits = {
     end },
     { "delete", function(model, _, random) neighbours(model, 0.5 + 0.5 * random()):where(function(b) return not b.fixed end):delete() end },
     { "law", function(model) model:joint("*", "coulomb_tensile", bonded) end },
-    { "seat", function(model) check.equal(model:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }.contacts, 0) end },
+    -- parts may lie on each other by slivers of faces by which their wholes did not: those are new, and then stay
+    { "seat", function(model)
+        model:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }
+        check.equal(model:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }.contacts, 0)
+    end },
 }
 
 local function restored(model)
