@@ -25,9 +25,6 @@
 #define FITS 1e-12
 /* Tolerance: the same over the distance between both centroids, from which places are reckoned. */
 #define ROUNDED 1e-14
-/* Tolerance: common area over the smaller face, below which faces with a gap are beside each other: those of blocks
- * that meet at an edge. Test: lua/test_seat. */
-#define BESIDE 1e-3
 
 typedef struct search {
     tl_narrow_scratch *scratch;
@@ -44,15 +41,24 @@ static tl_plane plane_between(const tl_pair_view *view, uint32_t fa, uint32_t fb
     return (tl_plane){tl_v3_scale(1 / length, n), (area_a * a.offset - area_b * b.offset) / length};
 }
 
+/* The plane of one block of a pair as the other one has it for a face of its own. */
+static tl_plane across(const tl_pair_view *view, bool of_b, tl_plane plane)
+{
+    if (!of_b)
+        return (tl_plane){tl_m3_tmul(&view->turn, tl_v3_neg(plane.normal)),
+                          tl_v3_dot(plane.normal, view->shift) - plane.offset};
+    const tl_vec3 n = tl_m3_mul(&view->turn, plane.normal);
+    return (tl_plane){tl_v3_neg(n), -plane.offset - tl_v3_dot(n, view->shift)};
+}
+
 /* Puts the planes of both faces into one, each in its own frame. */
 static void put_planes(const tl_pair_view *view, uint32_t fa, uint32_t fb, tl_pair_fit *out)
 {
     const tl_plane mid = plane_between(view, fa, fb);
-    const tl_vec3 back = tl_m3_tmul(&view->turn, tl_v3_neg(mid.normal));
     out->face[0] = fa;
     out->face[1] = fb;
     out->plane[0] = mid;
-    out->plane[1] = (tl_plane){back, tl_v3_dot(mid.normal, view->shift) - mid.offset};
+    out->plane[1] = across(view, false, mid);
 }
 
 /* Measures two faces on each other; TL_FIT_APART: they have no area in common. false: out of memory. */
@@ -74,9 +80,8 @@ static bool measure_faces(const search *s, const tl_pair_view *view, const tl_re
         most = fmax(most, gap);
     }
     const double mean = tl_gap_at(of, common.centroid);
-    const double whole = fmin(tl_poly_face_area(view->a, fa), tl_poly_face_area(view->b, fb));
     out->area = common.frame.secant * common.area;
-    if (least > s->gap || (least > -tiny && !(out->area > BESIDE * whole)))
+    if (least > s->gap)
         return true;
     out->gap = fmax(most, 0);
     out->overlap = fmax(-least, 0);
@@ -97,7 +102,25 @@ static uint32_t highest(const tl_poly *p, const double *low)
     return best;
 }
 
-/* Draws one face back by the overlap of a pair that presses. false: out of memory. */
+/* The face of a block that lies along a plane, nowhere deeper behind it than `gap`; TL_NO_ROW: there is none. */
+static uint32_t face_along(const tl_poly *p, tl_plane plane, double gap)
+{
+    uint32_t best = TL_NO_ROW;
+    for (uint32_t f = 0; f < p->face_count; f++)
+        if (!p->covered[f] && (best == TL_NO_ROW || tl_v3_dot(p->plane[f].normal, plane.normal) >
+                                                        tl_v3_dot(p->plane[best].normal, plane.normal)))
+            best = f;
+    if (best == TL_NO_ROW || !(tl_v3_dot(p->plane[best].normal, plane.normal) > 0) ||
+        tl_v3_norm(tl_v3_cross(p->plane[best].normal, plane.normal)) > MOST_TILT)
+        return TL_NO_ROW;
+    for (uint32_t k = p->start[best]; k < p->start[best + 1]; k++)
+        if (plane.offset - tl_v3_dot(plane.normal, p->vertex[p->loop[k]]) > gap)
+            return TL_NO_ROW;
+    return best;
+}
+
+/* Draws one face back by the overlap of a pair that presses. A face of the other block that lies along it is put into
+ * its plane, so that no gap is left between them. false: out of memory. */
 static bool measure_edges(const search *s, const tl_pair_view *view, const tl_region *r, tl_pair_fit *out)
 {
     tl_press press;
@@ -119,6 +142,10 @@ static bool measure_edges(const search *s, const tl_pair_view *view, const tl_re
     out->face[of_b] = of_b ? fb : fa;
     out->plane[of_b] = of_b ? view->b->plane[fb] : view->a->plane[fa];
     out->plane[of_b].offset += fmin(low, 0);
+    const tl_plane other = across(view, of_b, out->plane[of_b]);
+    out->face[!of_b] = face_along(of_b ? view->a : view->b, other, s->gap);
+    if (out->face[!of_b] != TL_NO_ROW)
+        out->plane[!of_b] = other;
     return true;
 }
 

@@ -152,15 +152,15 @@ static double friction_of(const tl_law *law)
     return NAN;
 }
 
-/* That of all planes of a joint; NaN where they differ. */
+/* That of all planes and blocks of a joint; NaN where laws may differ. */
 static double friction_of_joint(const tl_model *m, uint32_t joint)
 {
     double friction = friction_of(tl_law_of_joint(m, (tl_tag){joint, 0}));
     for (size_t i = 0; i < m->joint_law_count; i++) {
         const tl_law *law = &m->joint_laws[i];
         const tl_scope *scope = &law->scope;
-        const bool part = scope->names > 0 ? scope->tag.joint == 0 : scope->tag.plane != 0;
-        if ((part || scope->tag.joint == joint) && !(friction_of(law) == friction))
+        const bool on = scope->tag.joint == joint || (scope->names > 0 && scope->tag.joint == 0);
+        if (on && (scope->names > 0 || scope->tag.plane != 0) && !(friction_of(law) == friction))
             return NAN;
     }
     return friction;

@@ -98,7 +98,7 @@ refused("unknown law 'coulom'; did you mean 'coulomb'?", { law = "coulom" })
 refused("law_test, law 'coulomb': parameter 'kn' is missing, in Pa/m", { params = "none" })
 refused("law_test, law 'coulomb': unknown parameter 'frction'; did you mean 'friction'?",
     { params = { kn = 1, ks = 1, frction = 1 } })
-refused("law_test, law 'coulomb': friction = 95 deg is outside [0, 90)", { params = { kn = 1, ks = 1, friction = 95 } })
+refused("law_test, law 'coulomb': friction = 95 deg is outside [0, 90]", { params = { kn = 1, ks = 1, friction = 95 } })
 refused("law 'coulomb' of plugin 'talus.coulomb': dilation = 10 deg must be <=", { params = { kn = 1, ks = 1, dilation = 10 } })
 refused("law_test: unknown parameter 'pth'; did you mean 'path'?", { pth = {} })
 refused("law_test: normal_stress = inf is not a finite number", { normal_stress = math.huge })

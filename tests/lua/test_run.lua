@@ -165,7 +165,7 @@ refused(function() model:solve { stop = 3 } end, "stop must be a function, not t
 refused(function() model:joint("*", "columb", { kn = 1, ks = 1 }) end, "did you mean 'coulomb'?")
 refused(function() model:joint("J9", "coulomb", { kn = 1, ks = 1 }) end, "J9")
 refused(function() model:joint("*", "coulomb", { kn = 1e7, ks = 1e7, friction = 95 }) end,
-    "joint '*', law 'coulomb': friction = 95 deg is outside [0, 90)")
+    "joint '*', law 'coulomb': friction = 95 deg is outside [0, 90]")
 refused(function() model:joint("*", "coulomb", { kn = 1e7, ks = 0 / 0 }) end, "ks = nan")
 refused(function() model:joint("*", "coulomb", { kn = 1e7, ks = 1e7, frction = 3 }) end,
     "did you mean 'friction'?")

@@ -10,10 +10,11 @@ local KN, DENSITY = 1e9, 2500
 local SIZE = 0.5                                -- of a stone, m
 local LAWS = every_law(KN, 10 * DENSITY * SIZE) -- of weights
 -- What the rounding of places makes of a weight: places are known to 1e-15 m, and 1e9 Pa/m of 0.5 m2 make 5e-7 N of it.
--- Tips that cuts leave have corners that are off by more.
-local NONE = 1e-6                               -- force over weight
--- Its energy is some 1e-21 J a contact. An overlap of 1e-7 m would store 1e-6 J: weights here are some 1e5 N.
-local STILL = 1e-14                             -- m, energy of motion over weight
+local NONE = 1e-8                               -- force over weight
+-- Its energy is some 1e-22 J a contact, and weights are some 1e5 N. An overlap of 1e-7 m would store 1e-6 J. Speed is no measure:
+-- the same force moves a thin part of a cut stone faster.
+local STILL = 1e-20                             -- m, energy of motion over weight
+local BALANCE = 1e-4                            -- of the largest term
 
 local kinds = {
     { name = "wall", make = jittered.wall },
@@ -106,20 +107,13 @@ for case = 1, check.cases(150) do
     local twin = model:copy()
     check.equal(twin:state_hash(), model:state_hash())
     rests(model, what .. ", cut twice", 50)
-    -- weights make and lose no energy, undamped: no more than where stones fit exactly
-    local function balance(amount)
-        local free = model_of(kind, case, amount, law, { points = points })
-        if amount > 0 then
-            free:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }
-        end
-        free.gravity = { 0, 0, -10 }
-        free:timestep { fraction = 0.1 }
-        free:cycle(300)
-        return math.abs(free:energy().balance)
-    end
-    local off = balance(jitter)
-    -- glue tells no energy, so edges and corners under it make some where areas change (docs/theory.md), as slips of jitter have them
-    check.holds(law.law == "glue" or off < 1e-3 or off < 2 * balance(0), what .. ": balance " .. off)
+    -- weights make and lose no energy, undamped
+    local free = model_of(kind, case, jitter, law, { points = points })
+    free:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }
+    free.gravity = { 0, 0, -10 }
+    free:timestep { fraction = 0.1 }
+    free:cycle(300)
+    check.holds(math.abs(free:energy().balance) < BALANCE, what .. ": balance " .. free:energy().balance)
 end
 
 -- ---- what stood stands, with the same thrust; what fell falls ----
@@ -224,23 +218,70 @@ for case = 1, check.cases(12) do
     until model.time > 1
 end
 
--- ---- joined blocks, and blocks that go ----
+-- ---- whatever is done to a seated model, it stays without force ----
 
-for seed = 1, check.cases(6) do
-    local model = model_of(kinds[1], seed, 1e-3, LAWS[1])
-    model:seat { gap = 0.02, overlap = 0.02 }
-    local some = model:blocks { fixed = false }
-    model:blocks { id = some[1].id }:delete()
-    rests(model, "without a block", 20)
-    some = model:blocks { fixed = false }
-    local ids = { some[1].id, some[2].id }
-    local pair = model:blocks():where(function(b) return b.id == ids[1] or b.id == ids[2] end)
-    if pcall(function() pair:join() end) then
-        rests(model, "joined", 20)
-        check.equal(model:copy():state_hash(), model:state_hash())
-        pair:unjoin()
+-- Blocks that touch a block picked at random, and it.
+local function neighbours(model, pick)
+    local contacts = model:contacts()
+    local of = contacts[1 + math.floor(pick * #contacts)].blocks
+    local ids = { of[1].id, of[2].id }
+    return model:blocks():where(function(b) return b.id == ids[1] or b.id == ids[2] end)
+end
+
+local bonded = { kn = KN, ks = KN, friction = 30, tension = 1e6, cohesion = 1e6 }
+local edits = {
+    { "cut", function(model, kind, random)
+        local name = "cut " .. #model:joints()
+        model:generate("joint", { joint = name, dip = 45 + 44 * random(), dip_direction = 180 + 179 * random(),
+            origin = { 1.5 + random(), 0.25, kind.name == "wall" and 1 or 4 } })
+        pcall(model.joint, model, name, "coulomb_tensile", bonded) -- which may have cut nothing
+    end },
+    { "join", function(model, _, random) pcall(function() neighbours(model, 0.5 + 0.5 * random()):join() end) end },
+    { "unjoin", function(model) model:blocks():unjoin() end },
+    { "filter", function(model, _, random)
+        local volume = 0.02 * (1 + random())
+        model:filter { volume = volume, aspect = 30, action = random() > 0 and "join" or "delete" }
+    end },
+    { "group", function(model, _, random)
+        local group = random() > 0 and "one" or "other"
+        neighbours(model, 0.5 + 0.5 * random()):set { group = group }
+        model:joint({ group = group }, random() > 0 and "coulomb" or "elastic", { kn = 2 * KN, ks = KN })
+    end },
+    { "delete", function(model, _, random) neighbours(model, 0.5 + 0.5 * random()):where(function(b) return not b.fixed end):delete() end },
+    { "law", function(model) model:joint("*", "coulomb_tensile", bonded) end },
+    { "seat", function(model) check.equal(model:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }.contacts, 0) end },
+}
+
+local function restored(model)
+    local path = os.tmpname()
+    model:save(path)
+    local file = talus.restore(path)
+    os.remove(path)
+    return file
+end
+
+for case = 1, check.cases(100) do
+    local kind, jitter, random = kinds[case % 3 + 1], jitters[case % 5 + 1], jittered.random(500 + case)
+    local model = model_of(kind, 500 + case, jitter, { law = "coulomb_tensile", params = bonded }, { points = case % 4 == 0 and "corners" or nil })
+    model:seat { gap = 0.05 * SIZE, overlap = 0.05 * SIZE }
+    local done = ("case %d, %s, jitter %g:"):format(case, kind.name, jitter)
+    for _ = 1, 8 do
+        local edit = edits[1 + math.floor((0.5 + 0.5 * random()) * #edits)]
+        done = done .. " " .. edit[1]
+        edit[2](model, kind, random)
+        local others = { model:copy(), restored(model) }
+        for _, other in ipairs(others) do
+            check.equal(other:state_hash(), model:state_hash())
+        end
+        if random() > 0 then
+            rests(model, done, 10)
+            for _, other in ipairs(others) do
+                other:cycle(10)
+                check.equal(other:state_hash(), model:state_hash())
+            end
+        end
     end
-    rests(model, "unjoined", 20)
+    rests(model, done, 20)
 end
 
 -- ---- blocks that overlap by an edge or a vertex ----

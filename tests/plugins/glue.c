@@ -4,10 +4,10 @@
  *     stiff A (edge + ride) + f_n0 < -strength A:  the glue is lost, glue = 0
  *     |f_s| <= glue strength A + f_n tan angle;  slip lifts the walls: ride += slip tan climb
  *
- * with `edge` the closure at the outermost fibre and `apart` how far the part that is not closed is apart. No parameter or
- * state has the name of one of a law that comes with the program, so no test of all laws can know it by a name. Compression is
- * positive. The slip is that at whose end spring and strength agree, as the slip itself presses the walls:
- * slip = (|f_t| - limit) / (soft A + stiff A tan climb tan angle). */
+ * Glue without strength is none. `edge` is the closure at the outermost fibre, and `apart` how far the part that is not
+ * closed is apart. No parameter or state has the name of one of a law that comes with the program, so no test of all
+ * laws can know it by a name. Compression is positive. The slip is that at whose end spring and strength agree, as the
+ * slip itself presses the walls: slip = (|f_t| - limit) / (soft A + stiff A tan climb tan angle). */
 
 #include <talus/kit.h>
 
@@ -48,7 +48,7 @@ static void move(const params *p, const tl_law_batch *batch, uint32_t i)
     const double area = c.area[0], spring = p->stiff * area, along_spring = p->soft * area;
     const double tangent = tl_tan(p->angle * TL_DEGREE), rise = tl_tan(p->climb * TL_DEGREE);
     double *glue = &batch->state[0][i], *ride = &batch->state[1][i];
-    const double had = batch->flags[i] & TL_POINT_APART ? 0 : *glue;
+    const double had = batch->flags[i] & TL_POINT_APART || !(p->strength > 0) ? 0 : *glue;
     const double fibre = spring * (batch->closure_edge[i] + *ride) + c.f_n0[0];
     const double pull = spring * batch->closure_apart[i];
     double press = spring * (c.closure[0] + *ride) + c.f_n0[0], slip = 0, heat = 0;

@@ -1,5 +1,6 @@
 /* tunnel.c - generator "tunnel": straight lines connect the corners of two end polygons; blocks in the way
- * of the prism between them are cut along its surface.
+ * of the prism between them are cut along its surface. A profile that follows a path makes such a prism for each leg
+ * of the path (path.c). The legs are carved one after the other, each from what the legs before have left.
  *
  * A block whose inside meets the prism is cut by the planes of the sides, in the order of face1's edges. Then it is cut
  * by the planes of the ends. Each cut splits the part outside off. The cuts are no joints: parts of one block outside
@@ -14,16 +15,14 @@
  * parts. Work grows with the cube of the number of corners.
  *
  * Limits: faces and sides must be plane, and the planes of the ends must not meet within the tunnel. */
+#include "path.h"
+
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
-
-/* Corners are given with six digits or more: places closer than this times the size of the tunnel are the
- * same, and what is bent by less is flat. */
-#define FIT 1e-6
 
 /* The polygon of one end in its own plane. */
 typedef struct outline {
@@ -44,14 +43,21 @@ typedef struct division {
 
 typedef struct params {
     tl_points face1, face2;
+    tl_points profile, path;
     const char *group;
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_POINTS, params, face1, "m", "corners of one end, in order around it", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_POINTS, params, face1, "m", "corners of one end, in order around it", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_POINTS, params, face2, "m",
              "corners of the other end, in the order of those of face1 they are connected with",
-             .flags = TL_PARAM_REQUIRED),
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_POINTS, params, profile, "m",
+             "instead of faces, with path: corners of the section in order, {to the right of the way, up}, from the "
+             "path",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_FLAT),
+    TL_PARAM(TL_PARAM_POINTS, params, path, "m",
+             "points that straight legs connect; closed where the last is the first", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_STRING, params, group, "", "group of what lies inside", .def_text = "tunnel"),
 };
 
@@ -81,7 +87,7 @@ static bool outline_make(const tl_vec3 *corners, size_t count, outline *made)
     if (!(made->spread > 0))
         return true;
     /* areas of a polygon that crosses itself may cancel; it still has a plane */
-    made->normal = tl_v3_unit(made->area > FIT * made->spread ? sum : widest);
+    made->normal = tl_v3_unit(made->area > TUNNEL_FIT * made->spread ? sum : widest);
     tl_vec3 t1 = tl_v3_perpendicular(made->normal), t2 = tl_v3_cross(made->normal, t1);
     for (size_t i = 0; i < count; i++) {
         tl_vec3 d = tl_v3_sub(corners[i], made->middle);
@@ -215,7 +221,7 @@ static bool outline_divide(const outline *section, double near, division *parts)
 
 /* The prism: for each convex part of the section the half spaces that hold it. */
 typedef struct prism {
-    const params *given;
+    tl_points face1, face2;
     double near;
     outline ends[2];
     division parts;
@@ -241,7 +247,7 @@ static tl_status fail_memory(const tl_host *host)
 /* ---------------------------------------------------------------- checks ----------------- */
 
 /* Diagonal of the bounds of both ends. */
-static double size_of(const params *p)
+static double size_of(const prism *p)
 {
     tl_vec3 min = p->face1.at[0], max = min;
     for (size_t i = 0; i < p->face1.count; i++) {
@@ -283,7 +289,7 @@ static tl_status check_face(const tl_host *host, const tl_points *face, const ch
 /* The plane of the side between corners i and j of both ends. */
 static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_t j, tl_half_space *side)
 {
-    const tl_vec3 *a = p->given->face1.at, *b = p->given->face2.at;
+    const tl_vec3 *a = p->face1.at, *b = p->face2.at;
     tl_vec3 across = tl_v3_cross(tl_v3_sub(b[j], a[i]), tl_v3_sub(b[i], a[j]));
     if (!(tl_v3_norm(across) > p->near * p->near))
         return host->fail(host, TL_E_GEOMETRY, "the side between corners %zu and %zu has no area or crosses itself",
@@ -308,7 +314,7 @@ static void reach(const prism *p, size_t part, const tl_half_space *space, doubl
 {
     *least = INFINITY;
     *most = -INFINITY;
-    const tl_points *faces[2] = {&p->given->face1, &p->given->face2};
+    const tl_points *faces[2] = {&p->face1, &p->face2};
     for (size_t k = p->parts.start[part]; k < p->parts.start[part + 1]; k++)
         for (int f = 0; f < 2; f++) {
             tl_vec3 d = tl_v3_sub(faces[f]->at[p->parts.corner[k]], space->point);
@@ -357,30 +363,34 @@ static tl_status bound_part(const tl_host *host, prism *p, size_t part)
     return TL_OK;
 }
 
-static tl_status make_prism(const tl_host *host, const params *given, prism *p)
+/* Checks the ends and divides the section. */
+static tl_status lay_prism(const tl_host *host, prism *p)
 {
-    p->given = given;
-    size_t n = given->face1.count;
-    if (n < 3 || given->face2.count < 3)
+    size_t n = p->face1.count;
+    if (n < 3 || p->face2.count < 3)
         return host->fail(host, TL_E_ARGUMENT, "%s has %zu corners; at least 3 are needed", n < 3 ? "face1" : "face2",
-                          n < 3 ? n : given->face2.count);
-    if (n != given->face2.count)
+                          n < 3 ? n : p->face2.count);
+    if (n != p->face2.count)
         return host->fail(host, TL_E_ARGUMENT,
                           "face1 has %zu corners and face2 %zu: lines connect them, so there must be as many", n,
-                          given->face2.count);
-    p->near = FIT * size_of(given);
+                          p->face2.count);
+    p->near = TUNNEL_FIT * size_of(p);
     double farthest = 0;
     for (size_t i = 0; i < n; i++)
-        farthest = fmax(farthest, tl_v3_norm(tl_v3_sub(given->face1.at[i], given->face2.at[i])));
+        farthest = fmax(farthest, tl_v3_norm(tl_v3_sub(p->face1.at[i], p->face2.at[i])));
     if (farthest <= p->near)
         return host->fail(host, TL_E_GEOMETRY, "face1 and face2 are the same: the tunnel has no length");
-    tl_status status = check_face(host, &given->face1, "face1", p->near, &p->ends[0]);
+    tl_status status = check_face(host, &p->face1, "face1", p->near, &p->ends[0]);
     if (status == TL_OK)
-        status = check_face(host, &given->face2, "face2", p->near, &p->ends[1]);
-    if (status != TL_OK)
-        return status;
-    if (!outline_divide(&p->ends[0], p->near, &p->parts))
-        return fail_memory(host);
+        status = check_face(host, &p->face2, "face2", p->near, &p->ends[1]);
+    if (status == TL_OK && !outline_divide(&p->ends[0], p->near, &p->parts))
+        status = fail_memory(host);
+    return status;
+}
+
+/* The half spaces of all parts. */
+static tl_status bound_prism(const tl_host *host, prism *p)
+{
     size_t sides = p->parts.start[p->parts.parts];
     p->spaces = malloc((sides + 2 * p->parts.parts) * sizeof *p->spaces);
     p->space = malloc((p->parts.parts + 1) * sizeof *p->space);
@@ -388,8 +398,104 @@ static tl_status make_prism(const tl_host *host, const params *given, prism *p)
         return fail_memory(host);
     for (size_t part = 0; part <= p->parts.parts; part++)
         p->space[part] = p->parts.start[part] + 2 * part;
+    tl_status status = TL_OK;
     for (size_t part = 0; part < p->parts.parts && status == TL_OK; part++)
         status = bound_part(host, p, part);
+    return status;
+}
+
+/* ---------------------------------------------------------------- legs ------------------- */
+
+/* The prisms of the legs in a row: one between two faces. */
+typedef struct tunnel {
+    tunnel_path path;
+    prism *leg; /* [legs] */
+    size_t legs;
+} tunnel;
+
+static void free_tunnel(tunnel *t)
+{
+    for (size_t k = 0; k < t->legs; k++)
+        free_prism(&t->leg[k]);
+    free(t->leg);
+    free(t->path.corners);
+}
+
+/* Exactly one of the two ways of giving a tunnel. */
+static tl_status check_given(const tl_host *host, const params *p)
+{
+    const bool faces = p->face1.count || p->face2.count;
+    const struct {
+        const char *name;
+        const tl_points *points;
+        bool wanted;
+    } lists[] = {{"face1", &p->face1, faces},
+                 {"face2", &p->face2, faces},
+                 {"profile", &p->profile, !faces},
+                 {"path", &p->path, !faces}};
+    for (size_t i = 0; i < 4; i++)
+        if ((lists[i].points->count > 0) != lists[i].wanted)
+            return host->fail(host, TL_E_ARGUMENT, "%s is %s: a tunnel has face1 and face2, or profile and path",
+                              lists[i].name, lists[i].wanted ? "missing" : "one too many");
+    return TL_OK;
+}
+
+/* Size of the profile and the longest leg together. */
+static double extent_of(const params *p)
+{
+    tl_vec3 min = p->profile.at[0], max = min;
+    double longest = 0;
+    for (size_t i = 1; i < p->profile.count; i++) {
+        min = tl_v3_min(min, p->profile.at[i]);
+        max = tl_v3_max(max, p->profile.at[i]);
+    }
+    for (size_t k = 1; k < p->path.count; k++)
+        longest = fmax(longest, tl_v3_norm(tl_v3_sub(p->path.at[k], p->path.at[k - 1])));
+    return tl_v3_norm(tl_v3_sub(max, min)) + longest;
+}
+
+static tl_status follow_path(const tl_host *host, const params *p, tunnel_path *made)
+{
+    if (p->profile.count < 3)
+        return host->fail(host, TL_E_ARGUMENT, "profile has %zu corners; at least 3 are needed", p->profile.count);
+    if (p->path.count < 2)
+        return host->fail(host, TL_E_ARGUMENT, "path has 1 point; at least 2 are needed");
+    const double near = TUNNEL_FIT * extent_of(p);
+    outline section = {.at = NULL};
+    tl_status status = check_face(host, &p->profile, "profile", near, &section);
+    free(section.at);
+    return status == TL_OK ? tunnel_path_lay(host, &p->profile, &p->path, near, made) : status;
+}
+
+/* Gives both sides of a joint the same plane, to the last bit. */
+static void share_plane(const outline *from, outline *to)
+{
+    to->normal = from->normal;
+    to->middle = from->middle;
+}
+
+static tl_status make_tunnel(const tl_host *host, const params *p, tunnel *t)
+{
+    tl_status status = check_given(host, p);
+    if (status == TL_OK && p->path.count)
+        status = follow_path(host, p, &t->path);
+    const size_t legs = t->path.corners ? t->path.legs : 1, n = p->profile.count;
+    if (status == TL_OK && !(t->leg = calloc(legs, sizeof *t->leg)))
+        status = fail_memory(host);
+    t->legs = t->leg ? legs : 0;
+    for (size_t k = 0; k < t->legs && status == TL_OK; k++) {
+        const tl_vec3 *ends = t->path.corners;
+        t->leg[k].face1 = ends ? (tl_points){ends + 2 * n * k, n} : p->face1;
+        t->leg[k].face2 = ends ? (tl_points){ends + 2 * n * k + n, n} : p->face2;
+        status = lay_prism(host, &t->leg[k]);
+    }
+    for (size_t k = 0; k < t->legs && status == TL_OK; k++) {
+        if (k > 0)
+            share_plane(&t->leg[k - 1].ends[1], &t->leg[k].ends[0]);
+        if (k > 0 && k + 1 == t->legs && t->path.closed)
+            share_plane(&t->leg[0].ends[0], &t->leg[k].ends[1]);
+        status = bound_prism(host, &t->leg[k]);
+    }
     return status;
 }
 
@@ -402,6 +508,8 @@ typedef struct inner {
 } inner;
 
 typedef struct carving {
+    uint32_t body; /* of the block in hand before the first cut, once `cut` */
+    bool cut;
     size_t *outer; /* pieces of the block in hand that may meet parts to come */
     size_t outer_count, outer_capacity;
     inner *inside;
@@ -442,40 +550,48 @@ static tl_status peel(const tl_host *host, const prism *p, size_t part, size_t i
     return TL_OK;
 }
 
-/* Carves one block and the pieces it falls into. */
-static tl_status carve(const tl_host *host, const prism *p, size_t block, carving *c)
+/* Carves the pieces in hand of a block: those that meet the part are inside as far as they lie in it. */
+static tl_status carve_part(const tl_host *host, const prism *p, size_t part, size_t block, carving *c)
 {
-    tl_block_info info = {.size = sizeof info};
-    bool looked = false;
-    c->outer_count = 0;
-    if (!add_outer(c, block))
-        return fail_memory(host);
-    for (size_t part = 0; part < p->parts.parts; part++) {
-        size_t pieces = c->outer_count, kept = 0;
-        for (size_t i = 0; i < pieces; i++) {
-            size_t index = c->outer[i];
-            bool meets;
-            tl_status status =
-                host->meets(host, index, p->spaces + p->space[part], p->space[part + 1] - p->space[part], &meets);
-            if (status != TL_OK)
-                return status;
-            if (!meets) {
-                c->outer[kept++] = index;
-                continue;
-            }
-            if (!looked) /* before the first cut */
-                host->block_info(host, block, &info);
-            looked = true;
-            if (!add_inside(c, info.body, index))
-                return fail_memory(host);
-            status = peel(host, p, part, index, c);
-            if (status != TL_OK)
-                return status;
+    size_t pieces = c->outer_count, kept = 0;
+    for (size_t i = 0; i < pieces; i++) {
+        size_t index = c->outer[i];
+        bool meets;
+        tl_status status =
+            host->meets(host, index, p->spaces + p->space[part], p->space[part + 1] - p->space[part], &meets);
+        if (status != TL_OK)
+            return status;
+        if (!meets) {
+            c->outer[kept++] = index;
+            continue;
         }
-        memmove(c->outer + kept, c->outer + pieces, (c->outer_count - pieces) * sizeof *c->outer);
-        c->outer_count -= pieces - kept;
+        if (!c->cut) {
+            tl_block_info info = {.size = sizeof info};
+            host->block_info(host, block, &info);
+            c->body = info.body;
+            c->cut = true;
+        }
+        if (!add_inside(c, c->body, index))
+            return fail_memory(host);
+        status = peel(host, p, part, index, c);
+        if (status != TL_OK)
+            return status;
     }
+    memmove(c->outer + kept, c->outer + pieces, (c->outer_count - pieces) * sizeof *c->outer);
+    c->outer_count -= pieces - kept;
     return TL_OK;
+}
+
+/* Carves one block and the pieces it falls into. */
+static tl_status carve(const tl_host *host, const tunnel *t, size_t block, carving *c)
+{
+    c->outer_count = 0;
+    c->cut = false;
+    tl_status status = add_outer(c, block) ? TL_OK : fail_memory(host);
+    for (size_t k = 0; k < t->legs; k++)
+        for (size_t part = 0; part < t->leg[k].parts.parts && status == TL_OK; part++)
+            status = carve_part(host, &t->leg[k], part, block, c);
+    return status;
 }
 
 static int compare_inner(const void *x, const void *y)
@@ -508,23 +624,25 @@ static tl_status set_free(const tl_host *host, const char *group, carving *c)
 
 static tl_status generate(const tl_host *host, const void *given)
 {
-    prism p = {.near = 0};
+    const params *wanted = given;
+    tunnel t = {.leg = NULL};
     carving c = {.outer = NULL};
-    tl_status status = make_prism(host, given, &p);
+    tl_status status = make_tunnel(host, wanted, &t);
     size_t blocks = host->block_count(host);
     for (size_t i = 0; i < blocks && status == TL_OK; i++) {
-        status = carve(host, &p, i, &c);
+        status = carve(host, &t, i, &c);
         if (status == TL_OK)
             status = host->progress(host, (double)(i + 1) / (double)blocks);
     }
-    if (status == TL_OK && c.inside_count == 0)
+    if (status == TL_OK && c.inside_count == 0) {
+        tl_vec3 from = t.leg[0].ends[0].middle, to = t.leg[t.legs - 1].ends[1].middle;
         status = host->fail(host, TL_E_GEOMETRY,
-                            "the tunnel meets no visible block: it runs from {%g, %g, %g} to {%g, %g, %g}",
-                            p.ends[0].middle.x, p.ends[0].middle.y, p.ends[0].middle.z, p.ends[1].middle.x,
-                            p.ends[1].middle.y, p.ends[1].middle.z);
+                            "the tunnel meets no visible block: it runs from {%g, %g, %g} to {%g, %g, %g}", from.x,
+                            from.y, from.z, to.x, to.y, to.z);
+    }
     if (status == TL_OK)
-        status = set_free(host, p.given->group, &c);
-    free_prism(&p);
+        status = set_free(host, wanted->group, &c);
+    free_tunnel(&t);
     free(c.outer);
     free(c.inside);
     return status;
