@@ -53,7 +53,7 @@ tl_status refusals_check(const solids *s)
         return TL_OK;
     qsort(s->refusal, s->refusals, sizeof *s->refusal, by_object);
     char text[TL_ERROR_TEXT] = "", name[NAME_TEXT];
-    size_t objects = 0, told = 0;
+    size_t objects = 0;
     double needs = 0;
     for (size_t i = 0; i < s->refusals; i++) {
         const refusal *r = &s->refusal[i];
@@ -62,17 +62,17 @@ tl_status refusals_check(const solids *s)
             continue;
         objects++;
         size_t length = strlen(text);
-        if (told++ < REASONS_TOLD)
+        if (objects <= REASONS_TOLD)
             tl_text_print(text + length, sizeof text - length, "%sobject '%s'%.240s", length ? "; " : "",
                           object_name(s, r->object, 0, name), r->reason);
     }
     if (s->skip && objects < s->soup.objects)
         return TL_OK;
     char more[80] = "";
-    if (objects > told && objects > REASONS_TOLD)
-        tl_text_print(more, sizeof more, " and more");
+    if (objects > REASONS_TOLD)
+        tl_text_print(more, sizeof more, "; and more");
     char all[100] = "";
-    if (needs > 0 && s->refusals > told)
+    if (needs > 0 && s->refusals > 1)
         tl_text_print(all, sizeof all, "; flat = %.3g would take %s that are off their planes", needs,
                       s->soup.objects > 1 ? "all" : "all solids");
     if (s->soup.objects > 1)
