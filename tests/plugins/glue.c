@@ -74,7 +74,8 @@ static void move(const params *p, const tl_law_batch *batch, uint32_t i)
         heat += tl_law_snap_work(gone, spring, c.du_n[0]);
     }
     total = open ? 0 : total;
-    batch->flags[i] = (*glue > 0 ? 0u : (uint32_t)TL_POINT_FAILED) | (open ? (uint32_t)TL_POINT_OPEN : 0u) |
+    const bool failed = p->strength > 0 && *glue <= 0;
+    batch->flags[i] = (failed ? (uint32_t)TL_POINT_FAILED : 0u) | (open ? (uint32_t)TL_POINT_OPEN : 0u) |
                       (slip > 0 ? (uint32_t)TL_POINT_SLIPPING : 0u);
     c.f_n[0] = total;
     TL_PUT_SHEAR(c, 0, open ? 0 : trial > 0 ? (trial - along_spring * slip) / trial : 0, f);

@@ -15,8 +15,8 @@
 
 #include <talus/vmath.h>
 
-/* Tolerance: sine of the angle between a leg and the vertical, up to which the leg has no upright profile. Two legs fold
- * back up to the same half of the cosine of half their turn. Test: lua/test_tunnel. */
+/* Tolerance: sine of the angle between a leg and the vertical, up to which the leg has no upright profile. Two legs
+ * fold back up to the same half of the cosine of half their turn. Test: lua/test_tunnel_path. */
 #define UPRIGHT 1e-6
 
 typedef struct leg {
