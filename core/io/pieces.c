@@ -25,7 +25,7 @@ typedef struct batch {
 
 unsigned char *tl_piece_reserve(tl_piece *piece, size_t bytes)
 {
-    if (piece->length + bytes > piece->capacity) {
+    if (!piece->data || piece->length + bytes > piece->capacity) {
         size_t capacity = piece->capacity ? piece->capacity : PIECE_BYTES;
         while (capacity < piece->length + bytes)
             capacity *= 2;
