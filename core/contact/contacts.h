@@ -29,7 +29,7 @@ bool tl_contacts_place(tl_detect *d, int64_t cycles);
 bool tl_contacts_scattered(const tl_detect *d, int64_t cycles);
 /* Takes a contact out; the last one gets its row. */
 void tl_contact_remove(tl_detect *d, uint32_t contact);
-/* Index of the joint law that rules a tag, or TL_NO_ROW. */
+/* Index of the law that rules a contact of this tag between the blocks of two rows, or TL_NO_ROW. */
 uint32_t tl_law_row(const tl_model *m, tl_tag tag, uint32_t a, uint32_t b);
 /* The kind of a joint law; NULL without one. */
 static inline const tl_kind *tl_law_kind(const tl_model *m, uint32_t law)

@@ -43,7 +43,7 @@
  * it. */
 #define SETTLED_SHARE 3.0
 /* Tolerance: movement over a body's size from which rest may hang on the stiffness of joints. Angles change by as much,
- * and docs/how_stiff.md has thrusts near the edge of faces. Test: lua/test_try_stiffer. */
+ * and docs/how_stiff.md has thrusts near the edge of faces. Test: lua/test_remarks. */
 #define MOVED_SHARE 0.01
 /* Tolerance: a leg counts as no slower than the one before from this share of its speed on. */
 #define NO_SLOWER 0.95

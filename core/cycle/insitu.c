@@ -151,7 +151,7 @@ static void say_left_out(tl_model *m)
             "faces that overlap or tilt so much have no patch to bear it: %s before insitu takes them as "
             "fitting",
             count, count == 1 ? "" : "s", m->blocks.id[c->a[first]], m->blocks.id[c->b[first]],
-            tl_press_row_of(m, first)->press.deepest, tl_words(m, "model:seat{}", "tl_model_seat"));
+            tl_press_row_of(m, first)->press.deepest, tl_words(m, "model:seat{}", "tl_model_seat()"));
 }
 
 /* Area of a block's face that is covered by contact patches. */

@@ -254,5 +254,5 @@ void tl_remark_overlaps(tl_model *m)
         "before the first step overlaps press with %.3g times the weight (largest: %.3g m between blocks %u and "
         "%u): %s takes blocks as drawn as fitting",
         force / weight, most, m->blocks.id[c->a[deepest]], m->blocks.id[c->b[deepest]],
-        tl_words(m, "model:seat{}", "tl_model_seat"));
+        tl_words(m, "model:seat{}", "tl_model_seat()"));
 }

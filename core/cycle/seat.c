@@ -24,6 +24,7 @@
 #define USUAL 0.01
 /* Limit: overlap over the thickness of the thinner block, up to which a face may be drawn back. */
 #define MOST_THIN 0.25
+
 typedef struct seating {
     tl_model *m;
     double gap, overlap; /* limits */
@@ -131,11 +132,11 @@ static tl_status find_contacts(tl_model *m)
 /* Lists the pairs up to the limit of gaps. */
 static tl_status list_pairs(tl_model *m, double gap)
 {
-    m->seats.asked = gap;
+    m->seats.search_gap = gap;
     if (m->detect)
         m->detect->listed = false;
     const tl_status status = find_contacts(m);
-    m->seats.asked = 0;
+    m->seats.search_gap = 0;
     return status;
 }
 

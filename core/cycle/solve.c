@@ -152,9 +152,10 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
         tl_model_say(m,
                      "%s: an overlap pushes the model apart: blocks that were made overlapping have given off %.3g "
                      "J, most of it blocks %u and %u, and gravity and loads %.3g J; block %u moves on at %.3g m/s; "
-                     "that is no word on whether it stands: make them apart, or let "
-                     "model:seat{} take them as fitting before the first step",
-                     run_name(m), push.gave, push.a, push.b, push.others, r->failing, speed);
+                     "that is no word on whether it stands: make them apart, or let %s take them as fitting before the "
+                     "first step",
+                     run_name(m), push.gave, push.a, push.b, push.others, r->failing, speed,
+                     tl_words(m, "model:seat{}", "tl_model_seat()"));
         return;
     }
     char at[40] = ""; /* by the masses of a relaxation a speed means nothing */

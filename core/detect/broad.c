@@ -121,7 +121,7 @@ static size_t cell_index(const struct tl_broad *g, uint32_t x, uint32_t y, uint3
 static double growth_of(const tl_model *m, const struct tl_broad *g, uint32_t row)
 {
     double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * m->blocks.size[row];
-    return g->reach + 0.5 * tolerance + m->seats.reach + 0.5 * m->seats.asked;
+    return g->reach + 0.5 * tolerance + m->seats.reach + 0.5 * m->seats.search_gap;
 }
 
 static tl_bounds grown(tl_bounds b, double growth)

@@ -28,11 +28,11 @@ typedef struct tl_seats {
     size_t count, capacity;
     /* what follows from the list and the rows of blocks: made for a count of `structure`, less 1; 0: not yet */
     uint64_t made_for;
-    tl_poly **shape; /* [2 made] of the two blocks of each; NULL: as drawn */
-    uint32_t *first; /* [rows + 1] the first pair whose lower block this row is */
-    size_t made;     /* pairs that have shapes */
-    double reach;    /* no vertex has moved farther, m */
-    double asked;    /* while pairs are sought: the gap up to which they are, m; else 0 */
+    tl_poly **shape;   /* [2 made] of the two blocks of each; NULL: as drawn */
+    uint32_t *first;   /* [rows + 1] the first pair whose lower block this row is */
+    size_t made;       /* pairs that have shapes */
+    double reach;      /* no vertex has moved farther, m */
+    double search_gap; /* while pairs are sought: the gap up to which they are, m; else 0 */
 } tl_seats;
 
 #endif
