@@ -13,6 +13,10 @@
 #include <stdlib.h>
 #include <talus/vmath.h>
 
+/* Tolerance: sine of the angle between two edges in a plane up to which they are parallel: both ends are taken then.
+ * Where they meet would be lost in rounding. */
+#define PARALLEL 1e-12
+
 typedef struct search {
     const tl_solid_mesh *m;
     uint32_t edge, face; /* at hand; found */
@@ -27,7 +31,7 @@ static bool add_meeting(search *s, tl_vec3 a, tl_vec3 way, tl_vec3 b, tl_vec3 c,
 {
     const tl_vec3 other = tl_v3_sub(c, b), from = tl_v3_sub(b, a), across = tl_v3_cross(normal, other);
     const double down = tl_v3_dot(way, across);
-    if (fabs(down) <= 1e-12 * tl_v3_norm(way) * tl_v3_norm(other)) {
+    if (fabs(down) <= PARALLEL * tl_v3_norm(way) * tl_v3_norm(other)) {
         /* parallel edges: both ends */
         const double length2 = tl_v3_dot(way, way);
         const double t[2] = {tl_v3_dot(from, way) / length2, tl_v3_dot(tl_v3_sub(c, a), way) / length2};

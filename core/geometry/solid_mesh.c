@@ -7,6 +7,9 @@
 #include <talus/elementary.h>
 #include <talus/vmath.h>
 
+/* Constant: makes a radius an upper bound in spite of the rounding of its root and sums. */
+#define ROUNDED_UP (1 + 1e-12)
+
 /* ---------------------------------------------------------------- tables ----------------- */
 
 bool tl_solid_grow(void *list, uint32_t *capacity, uint32_t count, size_t bytes)
@@ -155,7 +158,7 @@ void tl_solid_find_ball(tl_solid_mesh *m, uint32_t face)
         most = fmax(most, tl_v3_dot(arm, arm));
         h = m->half[h].next;
     } while (h != f->first);
-    f->radius = sqrt(most) * (1 + 1e-12);
+    f->radius = sqrt(most) * ROUNDED_UP;
 }
 
 tl_vec3 tl_solid_loop_area(const tl_solid_mesh *m, uint32_t first)
