@@ -204,11 +204,7 @@ static tl_status check_part(const builder *b, const tl_poly *part)
 {
     tl_error why;
     const tl_status status = tl_poly_check(part, CONVEX + 4 * b->m->on / part->size, &why);
-    if (status == TL_E_GEOMETRY)
-        return refuse(b, "is not convex");
-    if (status == TL_OK && tl_poly_thickness(part) < TL_POLY_THIN * part->size)
-        return refuse(b, "is a sliver");
-    return status;
+    return status == TL_E_GEOMETRY ? refuse(b, "is not convex") : status;
 }
 
 static tl_status make_part(builder *b, tl_poly **part)
