@@ -127,12 +127,12 @@ static tl_solid_cut *best_cut(const tl_solid_cuts *list)
     return best;
 }
 
-/* Of the refused cuts the one that leaves the thickest pieces, or NULL. */
+/* Of the refused cuts the one that leaves the thickest sound pieces, or NULL. */
 static const tl_solid_cut *thickest_cut(const tl_solid_cuts *list)
 {
     const tl_solid_cut *best = NULL;
     for (uint32_t i = 0; i < list->count; i++)
-        if (!best || list->cut[i].thickness > best->thickness)
+        if (list->cut[i].thickness > (best ? best->thickness : 0))
             best = &list->cut[i];
     return best;
 }
@@ -182,6 +182,34 @@ static bool add_fans(divider *d, uint32_t piece)
     return true;
 }
 
+/* Whether all of a face lies on the plane of another. */
+static bool lies_on(const tl_solid_mesh *m, uint32_t face, uint32_t other)
+{
+    const tl_plane p = m->plane[m->face[other].plane];
+    TL_EACH_HALF(m, face, h, first)
+    {
+        if (fabs(tl_v3_dot(p.normal, m->vertex[m->half[h].from]) - p.offset) > m->on)
+            return false;
+    }
+    return true;
+}
+
+/* Makes edges of a piece flat whose faces have become so small that either lies on the plane of the other. */
+static bool flatten_edges(divider *d, uint32_t piece)
+{
+    tl_solid_mesh *m = &d->m;
+    const tl_solid_piece *p = &m->piece[piece];
+    bool any = false;
+    for (uint32_t i = 0; i < p->reflexes; i++) {
+        tl_half_edge *a = &m->half[p->reflex[i]], *b = &m->half[a->mate];
+        if (!lies_on(m, a->face, b->face) || !lies_on(m, b->face, a->face))
+            continue;
+        a->reflex = b->reflex = false;
+        a->flat = b->flat = any = true;
+    }
+    return any;
+}
+
 /* Makes the best cut of a piece: among the first planes, or the next ones while all leave thin pieces, or more planes
  * at the same edges. In need it makes the one that leaves the thickest pieces. *made: there is a cut. */
 static bool make_cut(divider *d, uint32_t piece, bool *made)
@@ -200,10 +228,10 @@ static bool make_cut(divider *d, uint32_t piece, bool *made)
     if (!add_fans(d, piece) || !try_cuts(d, piece, made))
         return false;
     const tl_solid_cut *thickest = *made ? NULL : thickest_cut(&d->cuts);
+    *made = *made || thickest || flatten_edges(d, piece);
     if (!thickest)
         return true;
     double thickness;
-    *made = true;
     return tl_solid_cut_make(d->s, &d->m, piece, thickest, 0, &thickness);
 }
 
@@ -246,7 +274,8 @@ static tl_status finish_piece(divider *d, uint32_t piece, tl_convex_parts *parts
                               ", where it bends inward; faces near it may touch each other, or be bent", error);
     }
     tl_poly *part;
-    const tl_status status = tl_solid_part(&d->m, piece, &part, error);
+    const tl_solid_piece *p = &d->m.piece[piece];
+    const tl_status status = tl_solid_part(&d->m, p->face, tl_piece_compact(&d->m, piece), &part, error);
     if (status != TL_OK)
         return status;
     return add_part(parts, capacity, part) ? TL_OK : tl_fail_memory(error);

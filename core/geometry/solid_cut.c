@@ -5,6 +5,9 @@
  * hangs together over edges is then a piece. */
 #include "geometry/solid_cut.h"
 
+#include "geometry/make.h"
+#include "geometry/solid_part.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <talus/vmath.h>
@@ -538,6 +541,23 @@ static bool flood_sides(const cutter *c, flood *list)
     return grow_floods(list, c->caps, m, stamp);
 }
 
+/* Whether the faces of a side that bends inward nowhere close a convex part; true for others. */
+static tl_status try_part(tl_solid_mesh *m, const uint32_t *face, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        TL_EACH_HALF(m, face[i], h, first)
+        {
+            if (m->half[h].reflex)
+                return TL_OK;
+        }
+    tl_poly *part;
+    tl_error error;
+    const tl_status status = tl_solid_part(m, face, count, &part, &error);
+    if (status == TL_OK)
+        tl_poly_free(part);
+    return status;
+}
+
 /* The least extent of faces across the plane of one of them, relative to the size of them all. */
 static double thickness_of(tl_solid_mesh *m, const uint32_t *face, uint32_t count, uint32_t *vertex)
 {
@@ -569,14 +589,15 @@ static double thickness_of(tl_solid_mesh *m, const uint32_t *face, uint32_t coun
     return least / tl_v3_norm(tl_v3_sub(all.max, all.min));
 }
 
-/* Finds the least thickness of the small pieces that a cut leaves; INFINITY where it leaves none. */
+/* Finds the least thickness of the small pieces that a cut leaves: INFINITY where it leaves none, 0 where one is not
+ * sound. */
 static bool find_thinnest(const cutter *c, const flood *list, double *thinnest)
 {
     tl_solid_mesh *m = c->m;
     uint32_t *face = malloc(SMALL_PIECE * sizeof *face), *vertex = malloc(m->vertices * sizeof *vertex);
-    const bool enough = face && vertex;
+    bool enough = face && vertex;
     *thinnest = INFINITY;
-    for (uint32_t root = 0; enough && root < c->caps; root++) {
+    for (uint32_t root = 0; enough && *thinnest > 0 && root < c->caps; root++) {
         uint32_t count = 0;
         if (flood_root(list, root) != root || !is_whole(list, c->caps, root))
             continue;
@@ -584,8 +605,11 @@ static bool find_thinnest(const cutter *c, const flood *list, double *thinnest)
             for (uint32_t k = 0; flood_root(list, i) == root && k < list[i].count && count <= SMALL_PIECE; k++, count++)
                 if (count < SMALL_PIECE)
                     face[count] = list[i].face[k];
-        if (count <= SMALL_PIECE)
-            *thinnest = fmin(*thinnest, thickness_of(m, face, count, vertex));
+        if (count > SMALL_PIECE)
+            continue;
+        const tl_status status = try_part(m, face, count);
+        enough = status != TL_E_MEMORY;
+        *thinnest = status == TL_OK ? fmin(*thinnest, thickness_of(m, face, count, vertex)) : 0;
     }
     free(face);
     free(vertex);
