@@ -44,6 +44,11 @@
  * contacts and zones of such parts are poor. */
 #define THIN 1e-3
 
+/* Tolerance: a solid of faces that bend by about what is flat may not divide. It is tried again with more that is flat,
+ * by this factor each time, up to this times its size. */
+#define FLATTER 8
+#define FLATTEST TL_POLY_FLAT
+
 /* A plane that holds reflex edges of the piece at hand. */
 typedef struct candidate {
     uint32_t plane, edges;
@@ -300,40 +305,75 @@ static tl_status check_volume(const divider *d, const tl_convex_parts *parts, tl
         sum, d->m.volume);
 }
 
-tl_status tl_convex_parts_make(const tl_solid_surface *surface, tl_convex_parts *parts, tl_error *error)
+/* What is asked of a surface before it is divided. */
+static tl_status read_solid(divider *d, const tl_solid_surface *surface, tl_error *error)
 {
-    divider d = {.s = tl_section_new()};
+    tl_status status = tl_solid_read(surface, &d->m, error);
+    if (status == TL_OK)
+        status = tl_solid_check_crossing(&d->m, error);
+    if (status == TL_OK)
+        status = tl_solid_check_cavities(&d->m, error);
+    if (status == TL_OK && surface->whole && d->m.piece[0].reflexes > 0)
+        status = edge_fault(&d->m, 0, "the solid is not convex: it bends inward", "", error);
+    return status;
+}
+
+static tl_status divide(divider *d, tl_convex_parts *parts, tl_error *error)
+{
     uint32_t capacity = 0;
-    *parts = (tl_convex_parts){0};
-    tl_status status = d.s ? tl_solid_read(surface, &d.m, error) : tl_fail_memory(error);
+    tl_status status = TL_OK;
+    *parts = (tl_convex_parts){.reflex_edges = d->m.piece[0].reflexes};
+    for (uint32_t i = 0; status == TL_OK && i < d->m.pieces; i++)
+        status = finish_piece(d, i, parts, &capacity, error);
     if (status == TL_OK)
-        status = tl_solid_check_crossing(&d.m, error);
-    if (status == TL_OK)
-        status = tl_solid_check_cavities(&d.m, error);
-    if (status == TL_OK && surface->whole && d.m.piece[0].reflexes > 0)
-        status = edge_fault(&d.m, 0, "the solid is not convex: it bends inward", "", error);
-    if (status == TL_OK) {
-        parts->reflex_edges = d.m.piece[0].reflexes;
-        d.slot = calloc((size_t)d.m.planes + 1, sizeof *d.slot);
-        if (!d.slot)
-            status = tl_fail_memory(error);
-    }
-    for (uint32_t i = 0; status == TL_OK && i < d.m.pieces; i++)
-        status = finish_piece(&d, i, parts, &capacity, error);
-    if (status == TL_OK)
-        status = check_volume(&d, parts, error);
-    if (status == TL_OK && parts->reflex_edges == 0 &&
-        tl_poly_thickness(parts->part[0]) < TL_POLY_THIN * parts->part[0]->size)
-        status = tl_fail(error, TL_E_GEOMETRY,
-                         "the solid is %g m thick for a size of %g m: too thin for a block, which needs %g m",
-                         tl_poly_thickness(parts->part[0]), d.m.size, TL_POLY_THIN * d.m.size);
+        status = check_volume(d, parts, error);
     if (status != TL_OK)
         tl_convex_parts_free(parts);
+    return status;
+}
+
+/* Divides a solid with what is flat to it. *again: it could not be done. */
+static tl_status divide_with(const tl_solid_surface *surface, tl_convex_parts *parts, bool *again, tl_error *error)
+{
+    divider d = {.s = tl_section_new()};
+    tl_status status = d.s ? read_solid(&d, surface, error) : tl_fail_memory(error);
+    if (status == TL_OK) {
+        d.slot = calloc((size_t)d.m.planes + 1, sizeof *d.slot);
+        status = d.slot ? divide(&d, parts, error) : tl_fail_memory(error);
+        *again = status == TL_E_GEOMETRY;
+    }
     tl_section_free(d.s);
     tl_solid_free(&d.m);
     free(d.cuts.cut);
     free(d.list);
     free(d.slot);
+    return status;
+}
+
+tl_status tl_convex_parts_make(const tl_solid_surface *surface, tl_convex_parts *parts, tl_error *error)
+{
+    *parts = (tl_convex_parts){0};
+    bool again = false;
+    tl_status status = divide_with(surface, parts, &again, error);
+    const tl_bounds all = tl_points_bounds(surface->vertices, surface->vertex_count);
+    const double size = tl_v3_norm(tl_v3_sub(all.max, all.min));
+    tl_solid_surface coarser = *surface;
+    for (double flat = FLATTER * TL_POLY_ON; again && flat <= FLATTEST; flat *= FLATTER) {
+        tl_error other;
+        again = false;
+        coarser.flat = fmax(surface->flat, flat * size);
+        if (divide_with(&coarser, parts, &again, &other) == TL_OK)
+            return TL_OK;
+    }
+    if (status == TL_OK && parts->reflex_edges == 0) {
+        const double thickness = tl_poly_thickness(parts->part[0]);
+        if (thickness < TL_POLY_THIN * parts->part[0]->size)
+            status = tl_fail(error, TL_E_GEOMETRY,
+                             "the solid is %g m thick for a size of %g m: too thin for a block, which needs %g m",
+                             thickness, size, TL_POLY_THIN * size);
+    }
+    if (status != TL_OK)
+        tl_convex_parts_free(parts);
     return status;
 }
 
