@@ -35,6 +35,8 @@
  * that of a face. */
 #define MOST_FANS 8
 #define FAN 4
+/* Cost only: convex pieces of fewer faces have no more vertices than TL_POLY_MAX_VERTICES. */
+#define MOST_FACES (TL_POLY_MAX_FACES / 2)
 /* Limit: more parts than this times the reflex edges are refused. */
 #define MOST_PARTS 64
 /* Tolerance: parts fill a solid whose faces are plane when their volume is that of the surface as nearly as this. */
@@ -240,6 +242,39 @@ static bool make_cut(divider *d, uint32_t piece, bool *made)
     return tl_solid_cut_make(d->s, &d->m, piece, thickest, 0, &thickness);
 }
 
+/* Whether a convex piece has more faces or vertices than a polyhedron may have: V = 2 + E - F. */
+static bool is_too_large(tl_solid_mesh *m, uint32_t piece)
+{
+    const uint32_t faces = tl_piece_compact(m, piece);
+    size_t halves = 0;
+    for (uint32_t i = 0; i < faces && faces > MOST_FACES; i++)
+        TL_EACH_HALF(m, m->piece[piece].face[i], h, first)
+    halves++;
+    return faces > MOST_FACES && (faces > TL_POLY_MAX_FACES || 2 + halves / 2 - faces > TL_POLY_MAX_VERTICES);
+}
+
+/* Cuts a convex piece across the way from the middle of its faces to the farthest of them. */
+static bool halve_piece(divider *d, uint32_t piece)
+{
+    tl_solid_mesh *m = &d->m;
+    const tl_solid_piece *p = &m->piece[piece];
+    tl_vec3 middle = {0, 0, 0}, way = {0, 0, 0};
+    uint32_t plane;
+    for (uint32_t i = 0; i < p->faces; i++)
+        middle = tl_v3_madd(middle, 1.0 / p->faces, m->face[p->face[i]].center);
+    for (uint32_t i = 0; i < p->faces; i++) {
+        const tl_vec3 arm = tl_v3_sub(m->face[p->face[i]].center, middle);
+        if (tl_v3_dot(arm, arm) > tl_v3_dot(way, way))
+            way = arm;
+    }
+    way = tl_v3_unit(way);
+    double thickness;
+    if (!tl_solid_add_plane(m, (tl_plane){way, tl_v3_dot(way, middle)}, &plane))
+        return false;
+    const tl_solid_cut cut = {.plane = plane, .edge = TL_SOLID_NONE};
+    return tl_solid_cut_make(d->s, m, piece, &cut, 0, &thickness);
+}
+
 /* A sentence about the first reflex edge of a piece. */
 static tl_status edge_fault(const tl_solid_mesh *m, uint32_t piece, const char *what, const char *remedy,
                             tl_error *error)
@@ -267,12 +302,12 @@ static tl_status finish_piece(divider *d, uint32_t piece, tl_convex_parts *parts
     for (uint32_t cuts = 0;; cuts++) {
         if (!list_candidates(d, piece))
             return tl_fail_memory(error);
-        if (d->m.piece[piece].reflexes == 0)
+        if (d->m.piece[piece].reflexes == 0 && !is_too_large(&d->m, piece))
             break;
         if (d->m.pieces > most || cuts > most)
             return tl_fail(error, TL_E_GEOMETRY, "the solid would become more than %zu convex parts", most);
-        bool made;
-        if (!make_cut(d, piece, &made))
+        bool made = true;
+        if (d->m.piece[piece].reflexes == 0 ? !halve_piece(d, piece) : !make_cut(d, piece, &made))
             return tl_fail_memory(error);
         if (!made)
             return edge_fault(&d->m, piece, "the solid could not be divided",

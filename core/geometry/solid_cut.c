@@ -659,7 +659,7 @@ bool tl_solid_cut_make(tl_section *s, tl_solid_mesh *m, uint32_t piece, const tl
         return false;
     cutter c = {.s = s, .m = m, .part = TL_SOLID_NONE};
     for (uint32_t i = 0; i < s->rims; i++)
-        if (!s->rim[i].of_span && s->rim[i].origin == cut->edge)
+        if (cut->edge == TL_SOLID_NONE || (!s->rim[i].of_span && s->rim[i].origin == cut->edge))
             c.part = tl_section_part(s, i);
     begin(&c);
     const bool done = make(&c, least, thinnest);

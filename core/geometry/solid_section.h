@@ -71,7 +71,8 @@ typedef struct tl_section {
 
 /* A cut of a piece: by a plane, over the part of the section that hangs together with a reflex edge. */
 typedef struct tl_solid_cut {
-    uint32_t plane, edge;
+    uint32_t plane;
+    uint32_t edge; /* none: a cut of a convex piece */
     int32_t gain;  /* reflex edges that it ends less those that it cuts in two */
     bool thin;     /* makes a sharp wedge or a short edge */
     double area;   /* m2 */
