@@ -41,7 +41,13 @@ bool tl_scope_copy(const tl_scope *from, tl_scope *out);
 void tl_scope_clear(tl_scope *scope);
 
 /* "joint 'J1'", "joint 'J1' between group 'stone' and 12 blocks (first: 3)". */
-const char *tl_scope_text(tl_model *m, const tl_scope *scope, char text[TL_SCOPE_TEXT]);
+const char *tl_scope_text(const tl_model *m, const tl_scope *scope, char text[TL_SCOPE_TEXT]);
+
+/* Bytes of the text of a law, with its terminating zero. */
+#define TL_LAW_TEXT (TL_SCOPE_TEXT + 48)
+
+/* "coulomb: contacts of group 'stone'". */
+const char *tl_law_text(const tl_model *m, const tl_law *law, char text[TL_LAW_TEXT]);
 
 /* The set of the ids of a list; false: out of memory. */
 bool tl_id_set_of(const tl_id *ids, size_t count, tl_id_set *out);
