@@ -488,10 +488,23 @@ const char *tl_law_text(const tl_model *m, const tl_law *law, char text[TL_LAW_T
 
 /* ---------------------------------------------------------------- groups ------------------ */
 
+void tl_law_change_free(tl_law_change *change)
+{
+    free(change->coming);
+    free(change->field);
+    *change = (tl_law_change){NULL, NULL, 0};
+}
+
+void tl_group_change_free(tl_group_change *change)
+{
+    free(change->row);
+    free(change->group);
+    tl_law_change_free(&change->laws);
+}
+
 tl_status tl_group_change_begin(tl_model *m, tl_group_change *change)
 {
-    change->contact = NULL;
-    change->contact_count = 0;
+    change->laws = (tl_law_change){NULL, NULL, 0};
     return m->group_verbs && tl_laws_name_groups(m) ? m->group_verbs->begin(m, change) : TL_OK;
 }
 

@@ -62,13 +62,23 @@ size_t tl_id_set_living(const tl_model *m, const tl_id_set *set, tl_id *ids);
 bool tl_laws_name_blocks(const tl_model *m);
 bool tl_laws_name_groups(const tl_model *m);
 
+/* Contacts that come under other laws, of those who keep their forces (cycle/joint_law.c). */
+typedef struct tl_law_change {
+    const tl_law **coming; /* [contacts] the law that a contact comes under with forces, or NULL */
+    uint32_t *field;       /* [field_count] field contacts that get a law that presses otherwise */
+    size_t field_count;
+} tl_law_change;
+
+void tl_law_change_free(tl_law_change *change);
+
 /* Blocks that get other groups. */
 typedef struct tl_group_change {
     uint32_t *row, *group; /* [count] */
     size_t count;
-    uint32_t *contact; /* of those who keep forces of contacts: [contact_count] */
-    size_t contact_count;
+    tl_law_change laws;
 } tl_group_change;
+
+void tl_group_change_free(tl_group_change *change);
 
 /* Who keeps forces of contacts that come under other laws with the groups of their blocks (cycle/joint_law.c). */
 typedef struct tl_group_verbs {
@@ -76,7 +86,7 @@ typedef struct tl_group_verbs {
     void (*apply)(tl_model *m, tl_group_change *change);
 } tl_group_verbs;
 
-/* Does all of a change of groups that can fail, and then the change. Its lists are the caller's, but for contacts. */
+/* Does all of a change of groups that can fail, and then the change. Rows and groups are the caller's to list. */
 tl_status tl_group_change_begin(tl_model *m, tl_group_change *change);
 void tl_group_change_apply(tl_model *m, tl_group_change *change);
 
