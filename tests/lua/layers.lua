@@ -30,25 +30,29 @@ local function layered(number)
     local count, length = whole(random, 2, 4), 3
     local model = talus.model { seed = number, threads = whole(random, 1, 2) }
     model:generate("box", { min = { 0, 0, 0 }, max = { length, 1.2, count }, density = 2500 })
-    for layer = 1, count - 1 do
-        model:generate("joint", { joint = "bed", dip = random(0, 15), dip_direction = 90, origin = { length / 2, 0.6, layer } })
+    local dips = {}
+    for bed = 1, count - 1 do
+        dips[bed] = random(0, 15)
+        model:generate("joint", { joint = "bed", dip = dips[bed], dip_direction = 90, origin = { length / 2, 0.6, bed } })
     end
-    for _ = 1, whole(random, 0, 2) do
+    local crosses = whole(random, 0, 2)
+    for _ = 1, crosses do
         model:generate("joint", { joint = "cross", dip = random(70, 90), dip_direction = random(60, 120),
             origin = { random(0.5, 2.5), 0.6, count / 2 } })
     end
     model:blocks { where = function(block) return block.centroid[3] < 0.5 end }:fix()
     for layer = 1, count do
         local parts = model:blocks { where = function(block)
-            local above = 0
-            for plane = 1, count - 1 do -- beds cross only outside of the rock
-                above = above + (block.centroid[3] > plane and 1 or 0)
+            local below, at = 0, block.centroid
+            for bed = 1, count - 1 do -- beds cross only outside of the rock
+                local dip = math.rad(dips[bed])
+                below = below + ((at[1] - length / 2) * math.sin(dip) + (at[3] - bed) * math.cos(dip) > 0 and 1 or 0)
             end
-            return above == layer - 1
+            return below == layer - 1
         end }
         parts:set { group = "layer " .. layer }
     end
-    return model, count, random
+    return model, count, random, crosses > 0
 end
 
 local function state(model)
@@ -75,7 +79,7 @@ local ways = {
 -- A random model by planes and by each of the ways. Gives the ways by which it is not the same to the bit, and whether the laws of the
 -- beds make a difference. Every fourth model has zones: segments of flush faces obey such laws, too.
 function layers.differing(number)
-    local reference, count, random = layered(number)
+    local reference, count, random, crossed = layered(number)
     local laws, lines = {}, {}
     for layer = 1, count - 1 do
         laws[layer] = LAWS[whole(random, 1, #LAWS)]
@@ -87,6 +91,9 @@ function layers.differing(number)
         model:joint("*", others.law, others.params)
         for _, layer in ipairs(which and lines or {}) do
             model:joint(which(model, layer), laws[layer].law, laws[layer].params)
+        end
+        for layer = 1, crossed and count - 1 or 0 do -- what comes to lie on the other layer across a vertical joint is no bed
+            model:joint({ joint = "cross", between = { "layer " .. layer, "layer " .. layer + 1 } }, others.law, others.params)
         end
         if zoned then
             model:solid("rock", "elastic", { young = 1e10, poisson = 0.2 })

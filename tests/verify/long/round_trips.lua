@@ -7,8 +7,8 @@ local round_trips = require "round_trips"
 local MODELS = 900 -- of which some 350 are clear
 -- Rounding of places over the size of a model, and of volumes, relative.
 local PLACE, VOLUME = 1e-15, 1e-13
--- Corners are off by half of `weld`, and have welded to one that is as much off; of what is read over `weld`.
-local WELDED = 2
+-- Of what is read over `weld`. Corners are off by half of it; one goes to where its planes meet, which is farther where they meet flatly.
+local WELDED = 4
 -- What is taken for none is smaller than `flat`, some 1e-4 of the median size of the blocks, or than 2e-4 of a block.
 local FINE = 1e-3
 
