@@ -38,6 +38,20 @@ for seed = 1, 4 * check.cases(10) do
     check.equal(#result.beyond, 0)
 end
 
+-- Thin plates on each other, whose middles are near: their places have the rounding of their size.
+for seed = 1, 4 * check.cases(10) do
+    local random = shapes.random(seed)
+    local place, model = place_of(random), talus.model {}
+    for level = 0, 2 do
+        local vertices, x, y = {}, random(0, 0.1), random(0, 0.1)
+        for k = 0, 7 do
+            vertices[k + 1] = place { x + k % 2, y + k // 2 % 2, 1e-3 * (level + k // 4) }
+        end
+        model:generate("polyhedron", { vertices = vertices, density = DENSITY })
+    end
+    check.equal(seat(model, { gap = 1e-5, overlap = 1e-5 }).contacts, 0)
+end
+
 -- An overlap or a gap of 1e-10 of a block is none of rounding, and an overlap would press.
 local function pair(along, low, size)
     local random = shapes.random(7)
