@@ -274,7 +274,7 @@ static bool presses_alike(const tl_law *before, const tl_law *law)
     return tl_law_is_linear(law) || (tl_law_presses(law) && same_curve(before, law));
 }
 
-/* The same of the last two laws that were compared. Contacts of a law are neighbours, and a curve is not found twice. */
+/* The same of the last two laws that were compared. Contacts of a law are neighbours, so a curve is not found often. */
 typedef struct compared {
     const tl_law *before, *law;
     bool alike;
@@ -392,7 +392,8 @@ static tl_status bring_up(tl_model *m)
     return m->detect ? tl_detect_update(m) : TL_OK;
 }
 
-/* Finds who comes under which law, and holds what that needs. All that can fail is done before laws take their places. */
+/* Finds who comes under which law, and holds what that needs. All that can fail is done before laws take their
+ * places. */
 static tl_status prepare_contacts(const laws_now *now, size_t laws)
 {
     tl_model *m = now->m;
