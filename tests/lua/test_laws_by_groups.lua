@@ -261,6 +261,58 @@ for number = 1, check.cases(20) do
     check.holds(#ids == 4, "four piers stand")
 end
 
+-- A gallery is cut out of a block that stands, and gets a group and with it a law by the same call: its contacts carry what they carry
+-- where it gets no group.
+for number = 1, check.cases(60) do
+    local random = shapes.random(4000 + number)
+    local model = talus.model { threads = whole(random, 1, 2) }
+    model:generate("box", { { min = { 0, 0, -1 }, max = { 4, 1, 0 }, density = 2500, group = "floor" },
+        { min = { 0, 0, 0 }, max = { 4, 1, random(2, 4) }, density = 2500, group = "rock" },
+        { min = { 9, 0, 0 }, max = { 10, 1, 1 }, density = 2500, group = "gallery" } })
+    model:blocks { where = function(block) return block.group ~= "rock" end }:fix()
+    local first, second = LAWS[whole(random, 1, #LAWS)], LAWS[whole(random, 1, #LAWS)]
+    model:joint("*", first.law, first.params)
+    model:joint({ group = "gallery" }, second.law, second.params)
+    model:damping "local"
+    model:solve { ratio = 1e-8, max_cycles = 20000 }
+    local function cut_out(m, group)
+        m:blocks { group = "floor" }:hide()
+        local a, b, h = random(0.5, 1), random(2, 3), random(0.5, 1.5)
+        m:generate("tunnel", { face1 = { { a, -1, -1 }, { b, -1, -1 }, { b, -1, h }, { a, -1, h } },
+            face2 = { { a, 2, -1 }, { b, 2, -1 }, { b, 2, h }, { a, 2, h } }, group = group })
+        m:blocks { hidden = true }:show()
+        m:timestep { dt = m.dt * 1e-4 }
+        m:cycle(1)
+        local list = {}
+        for _, contact in ipairs(m:contacts { between = { m:blocks { group = "floor" }, m:blocks() } }) do
+            list[#list + 1] = { contact.normal_force, contact.law }
+        end
+        return list
+    end
+    local reference = model:copy()
+    local state = random
+    local values = {}
+    random = function(from, to) -- the same cut for both
+        values[#values + 1] = state(from, to)
+        return values[#values]
+    end
+    local now, at = cut_out(model, "gallery"), 0
+    random = function()
+        at = at + 1
+        return values[at]
+    end
+    local before, weight, changed = cut_out(reference, "rock"), 0, 0
+    check.holds(#now == #before and #now >= 3, "parts stand on the floor")
+    for i = 1, #now do
+        weight = math.max(weight, before[i][1])
+    end
+    for i = 1, #now do
+        check.near(now[i][1], before[i][1], 1e-6 * weight)
+        changed = changed + (now[i][2] == second.law and 1 or 0)
+    end
+    check.holds(changed >= 1, "the gallery has its law")
+end
+
 -- ------------------------------------------------------------------ what is told ---------------------------------------------------------
 
 local model = heap(7)
