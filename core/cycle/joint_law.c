@@ -6,6 +6,7 @@
 #include "base/columns.h"
 #include "base/inside.h"
 #include "base/params.h"
+#include "base/strength.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/places.h"
@@ -541,10 +542,24 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     return tl_joint_law_for(m, &scope, law, args);
 }
 
-/* ---------------------------------------------------------------- stiffer joints --------- */
+/* ---------------------------------------------------------------- other values ------------
+ *
+ * Laws of their scopes with some of their parameters multiplied or divided. */
 
 /* Most parameters of a law that are stiffnesses. */
 #define MOST_STIFF 16
+
+/* A law as `from` is, but for some values. */
+static tl_status make_with(tl_model *m, const tl_law *from, const tl_args *args, tl_law *out)
+{
+    tl_scope scope;
+    if (!tl_scope_copy(&from->scope, &scope))
+        return tl_fail_memory(&m->error);
+    const tl_status status = tl_law_make_for(m, &scope, from->kind, args, from, out);
+    if (status != TL_OK)
+        tl_scope_clear(&scope);
+    return status;
+}
 
 /* The law with its stiffnesses multiplied. */
 static tl_status make_stiffer(tl_model *m, const tl_law *law, double factor, tl_law *out)
@@ -567,12 +582,22 @@ static tl_status make_stiffer(tl_model *m, const tl_law *law, double factor, tl_
                        "%s: law '%s' says of no parameter that it is a stiffness; its plugin is to mark them with "
                        "TL_PARAM_STIFFNESS",
                        tl_scope_text(m, &law->scope, text), kind->name);
-    tl_scope scope;
-    if (!tl_scope_copy(&law->scope, &scope))
-        return tl_fail_memory(&m->error);
-    const tl_status status = tl_law_make_for(m, &scope, kind, &args, law, out);
-    if (status != TL_OK)
-        tl_scope_clear(&scope);
+    return make_with(m, law, &args, out);
+}
+
+/* Puts laws that were made in the places of those of their scopes. */
+static tl_status put_laws(tl_model *m, tl_law *made, size_t count)
+{
+    tl_status status = TL_OK;
+    size_t put = 0;
+    while (status == TL_OK && put < count) {
+        status = put_law(m, &made[put]);
+        put += status == TL_OK;
+    }
+    for (size_t i = put; i < count; i++)
+        tl_law_clear(&made[i]);
+    if (put > 0 && m->cycle)
+        m->cycle->dt = 0;
     return status;
 }
 
@@ -585,19 +610,35 @@ tl_status tl_joints_stiffen(tl_model *m, double factor)
     tl_law *made = status == TL_OK ? calloc(count + 1, sizeof *made) : NULL;
     if (status == TL_OK && !made)
         status = tl_fail_memory(&m->error);
-    size_t ready = 0, put = 0;
+    size_t ready = 0;
     while (status == TL_OK && ready < count) {
         status = make_stiffer(m, &m->joint_laws[ready], factor, &made[ready]);
         ready += status == TL_OK;
     }
-    while (status == TL_OK && put < count) {
-        status = put_law(m, &made[put]);
-        put += status == TL_OK;
-    }
-    for (size_t i = put; i < ready; i++)
-        tl_law_clear(&made[i]);
+    if (status == TL_OK)
+        status = put_laws(m, made, ready);
+    else
+        for (size_t i = 0; i < ready; i++)
+            tl_law_clear(&made[i]);
     free(made);
-    if (put > 0 && m->cycle)
-        m->cycle->dt = 0;
+    return status;
+}
+
+tl_status tl_joints_weaken(tl_model *m, const tl_model *from, const uint8_t *which, double factor)
+{
+    tl_status status = TL_OK;
+    for (size_t i = 0; i < from->joint_law_count && status == TL_OK; i++) {
+        const tl_law *law = &from->joint_laws[i];
+        tl_args args;
+        void *held;
+        tl_law made;
+        if (!which[i])
+            continue;
+        status = tl_strengths_divide(law->kind, law->params, factor, &args, &held) ? make_with(m, law, &args, &made)
+                                                                                   : tl_fail_memory(&m->error);
+        if (status == TL_OK)
+            status = put_laws(m, &made, 1);
+        free(held);
+    }
     return status;
 }
