@@ -243,6 +243,9 @@ static const tl_param filter_params[] = {
 static const tl_param keyblocks_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_keyblock_query, gravity, "m/s2",
              "acceleration that acts on the blocks; that of the model when left out", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_keyblock_query, target, "",
+             "factor of safety that is asked for: each keyblock then tells the support that it takes", .min = 0.0,
+             .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
 };
 
 static const char *const failed_blocks[] = {"delete", "hold", NULL};
