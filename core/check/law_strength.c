@@ -5,8 +5,8 @@
  * below the way on which springs reach the strength to far above it, so the peak is met whatever its way. All ways are
  * 1/F as long, at the same rate.
  *
- * Limits: the normal force is held by one correction a step. A strength that depends on the way slipped as well may
- * differ by some per cent. */
+ * Limits: a strength that depends on the way slipped or on the rate as well may differ by some per cent. Nothing is
+ * compared where a divided parameter has come to the end of its range. */
 #include "check/law_strength.h"
 
 #include "base/strength.h"
@@ -22,11 +22,14 @@
 #define GROWTH 1.035
 /* Constant: the first step over the way on which springs reach the strength. */
 #define FIRST 1e-3
-/* Tolerance: share by which the strength may be off 1/F. An angle that is divided as a stress is off by more. Test:
+/* Tolerance: share by which the strength may be off 1/F: what peaks after some slip, or at some rate, is off by up to
+ * 0.11 in the laws of Talus. An angle of 60 degrees that is divided as a stress is off by 0.3. Test:
  * unit/test_check. */
-#define OFF 0.03
+#define OFF 0.15
 /* Tolerance: share by which the normal force may be off when a shear force counts. */
 #define HELD 0.01
+/* Cost only: corrections of a step that hold the normal force. */
+#define CORRECTIONS 20
 /* Constant: s, in which points slide by the way on which springs reach the strength. */
 #define LASTS 1.0
 
@@ -67,6 +70,27 @@ static void no_motion(tl_check_points *now)
     }
 }
 
+static double excess_of(const tl_check_points *now, size_t i)
+{
+    return now->c[TL_AT_F_N][i] - now->c[TL_AT_F_N0][i];
+}
+
+/* Moves the walls until all points have the normal forces that they began with. */
+static void hold_normal(const tl_check_law *law, tl_check_points *now)
+{
+    bool held = !(law->kn > 0);
+    for (int k = 0; k < CORRECTIONS && !held; k++) {
+        no_motion(now);
+        now->dt = 0;
+        held = true;
+        for (size_t i = 0; i < SLIDING; i++) {
+            held = held && fabs(excess_of(now, i)) <= 0.1 * HELD * now->c[TL_AT_F_N0][i];
+            close_walls(now, i, -excess_of(now, i) / law->kn);
+        }
+        call(law, now);
+    }
+}
+
 /* Slides all points; the largest shear force of each. */
 static void find_shear(const tl_check_law *law, double factor, strengths *s)
 {
@@ -82,19 +106,14 @@ static void find_shear(const tl_check_law *law, double factor, strengths *s)
             tl_check_put(now.c[TL_AT_DU_S], i, tl_v3(size, 0, 0));
         now.dt = LASTS * size / law->slide;
         call(law, &now);
+        hold_normal(law, &now);
         for (size_t i = 0; i < SLIDING; i++) {
-            const double wanted = now.c[TL_AT_F_N0][i], excess = now.c[TL_AT_F_N][i] - wanted;
             const double force = tl_v3_norm(tl_check_vec(now.c[TL_AT_F_S], i));
-            if (fabs(excess) <= HELD * wanted && force > s->shear[i]) {
+            if (fabs(excess_of(&now, i)) <= HELD * now.c[TL_AT_F_N0][i] && force > s->shear[i]) {
                 s->shear[i] = force;
                 at[i] = k;
             }
         }
-        no_motion(&now);
-        for (size_t i = 0; i < SLIDING; i++)
-            close_walls(&now, i, law->kn > 0 ? (now.c[TL_AT_F_N0][i] - now.c[TL_AT_F_N][i]) / law->kn : 0);
-        now.dt = 0;
-        call(law, &now);
     }
     for (size_t i = 0; i < SLIDING; i++)
         if (at[i] >= STEPS - 1) /* still rising */
@@ -151,6 +170,21 @@ static void compare(tl_checker *c, const strengths *before, const strengths *aft
                       factor, after->pull, before->pull / factor);
 }
 
+/* Whether a parameter that was divided has come to the end of its range. */
+static bool is_clamped(const tl_kind *kind, const void *params)
+{
+    bool some = false;
+    for (uint32_t i = 0; i < kind->param_count; i++) {
+        const tl_param p = kind->params[i];
+        double value;
+        if (p.type != TL_PARAM_REAL || !(p.flags & (TL_PARAM_STRENGTH | TL_PARAM_STRENGTH_DIVISOR)))
+            continue;
+        memcpy(&value, (const char *)params + p.offset, sizeof value);
+        some = some || value >= p.max;
+    }
+    return some;
+}
+
 /* Tries one factor. */
 static tl_status try_factor(tl_checker *c, const strengths *before, const void *params, double factor,
                             tl_check_open_fn open, tl_check_close_fn close)
@@ -173,7 +207,8 @@ static tl_status try_factor(tl_checker *c, const strengths *before, const void *
         status = open(c, divided, &law);
         if (status == TL_OK) {
             find(&law, factor, &after);
-            compare(c, before, &after, factor, law.stress);
+            if (!is_clamped(kind, divided))
+                compare(c, before, &after, factor, law.stress);
             close(&law);
         }
     }

@@ -23,7 +23,8 @@ static const tl_lua_key page_keys[] = {
 
 /* ---------------------------------------------------------------- extra fields ------------
  *
- * Numbers that a script adds to the blocks, contacts or zones of a file or page: fields by name, numbers by ids, and functions.
+ * Numbers that a script adds to the blocks, contacts or zones of a file or page: fields by name, numbers by ids, and
+ * functions.
  *
  *     block_fields = {"kinetic_energy", safety = map.factor, above = function(block) return block.centroid[3] end}
  *

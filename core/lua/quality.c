@@ -550,7 +550,8 @@ static const tl_lua_key keyblock_results[] = {
     {"force, mass, volume", "", "weight and load, N; of the body, kg and m3"},
     {"support, support_pressure", "",
      "with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that "
-     "pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed"},
+     "pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where "
+     "outer faces do not look along the motion"},
     {"pyramid", "", "edges of the joint pyramid, unit vectors: it can move in all directions between them"},
     {NULL, NULL, NULL},
 };

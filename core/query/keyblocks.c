@@ -346,17 +346,19 @@ static void find_mode(const work *w, tl_vec3 r, tl_keyblock *block)
 static void find_support(const work *w, tl_keyblock *block)
 {
     const double target = w->query->target;
-    double area = 0;
+    double area = 0, all = 0;
     block->support = block->support_pressure = NAN;
     if (isnan(target))
         return;
     const double held = block->mode == TL_KEYBLOCK_STABLE ? INFINITY : block->safety * block->driving;
     block->support = fmax(0, block->driving - held / target);
-    for (size_t i = 0; i < w->count; i++)
+    for (size_t i = 0; i < w->count; i++) {
         area -= w->faces[i].area * tl_v3_dot(w->faces[i].normal, block->direction);
+        all += w->faces[i].area;
+    }
     if (block->support == 0)
         block->support_pressure = 0;
-    else if (area > 0)
+    else if (area > TL_TOUCH_ALONG * all)
         block->support_pressure = block->support / area;
 }
 

@@ -110,14 +110,26 @@ two:write_vtk(os.getenv "TALUS_TEST_TMP" and os.getenv "TALUS_TEST_TMP" .. "/saf
     { block_fields = { safety = map.factor } })
 check.raises(function()
     two:write_vtk("x", { block_fields = { safety = { [id] = "a" } } })
-end, "'safety' has a string for block " .. id .. ", and not a number")
+end, "'safety' has the string 'a' for block " .. id .. ", and not a number")
 
 -- Keyblocks tell what support a factor takes.
 local key = model:keyblocks { friction = 40, target = 1.5 }[1]
 check.near(key.support / (shear - normal * tangent(40) / 1.5), 1, 1e-9)
-check.near(key.support_pressure / (key.support / (area * 0)), 0, math.huge) -- no face looks along the plane
+check.equal(key.support_pressure, nil) -- its front and its back look along the plane, and cancel
 check.equal(model:keyblocks({ friction = 40, target = 1 })[1].support, 0)
 check.equal(model:keyblocks({ friction = 40 })[1].support, nil)
+
+-- A pyramid that falls takes all of its weight, over the area of its base.
+local roof = talus.model {}
+roof:generate("roof_wedge", { dip_a = 60, dip_direction_a = 0, dip_b = 60, dip_direction_b = 120, dip_c = 60, dip_direction_c = 240,
+    span = 12, height = 3, density = 2600 })
+local hangs = roof:blocks { group = "wedge" }
+roof:blocks():fix()
+hangs:free()
+local pyramid = roof:keyblocks({ friction = 30, target = 2 })[1]
+check.equal(pyramid.mode, "falling")
+check.near(pyramid.support / (hangs[1].mass * 9.81), 1, 1e-9)
+check.near(pyramid.support_pressure * (3 * hangs[1].volume / 3) / pyramid.support, 1, 1e-6)
 
 -- What is refused leaves the model as it was.
 local function refused(part, options, other)
@@ -128,7 +140,7 @@ local function refused(part, options, other)
 end
 refused("from = 3 must be below to = 2", { from = 3, to = 2 })
 refused("from = 2 must be below to = 2", { from = 2, to = 2 })
-refused("from = 0.01 is outside", { from = 0.01 })
+refused("from = 0.01 must be >= 0.05", { from = 0.01 })
 refused("resolution = 0 is outside [0.0001, 0.5]", { resolution = 0 })
 refused("resolution = 0.6 is outside", { resolution = 0.6 })
 refused("max_cycles = 0 must be >= 1", { max_cycles = 0 })

@@ -56,7 +56,7 @@ typedef struct tl_keyblock {
     size_t edge_start, edge_count; /* edges of its joint pyramid in tl_keyblocks.edges */
     double support;                /* least force against the motion that brings the target, N; NaN without one */
     /* on the outer faces, which has that force against the motion; what it adds to normal forces is left out. Pa; NaN
-     * without a target or outer faces */
+     * without a target, or where outer faces do not look along the motion */
     double support_pressure;
 } tl_keyblock;
 
