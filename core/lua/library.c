@@ -5,8 +5,10 @@
  * been loaded yet, Lua's search for C modules loads it for its function luaopen_talus_NAME. */
 #include "lua/library.h"
 
+#include "lua/chance.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
+#include "lua/workers.h"
 
 #include <ctype.h>
 #include <limits.h>
@@ -36,10 +38,19 @@ static int push_loader(lua_State *L, const char *name)
     return 2;
 }
 
+/* Modules in C that those in Lua use. */
+static const luaL_Reg inner[] = {
+    {PREFIX "chance", tl_lua_chance_open}, {PREFIX "workers", tl_lua_workers_open}, {NULL, NULL}};
+
 /* One of package.searchers. */
 static int search(lua_State *L)
 {
     const char *name = luaL_checkstring(L, 1);
+    for (const luaL_Reg *one = inner; one->name; one++)
+        if (strcmp(name, one->name) == 0) {
+            lua_pushcfunction(L, one->func);
+            return 1;
+        }
     return strncmp(name, PREFIX, sizeof PREFIX - 1) == 0 ? push_loader(L, name) : 0;
 }
 
@@ -55,9 +66,17 @@ static int open_module(lua_State *L, const char *name)
     return 1;
 }
 
+TL_API int luaopen_talus_back_analysis(lua_State *L);
 TL_API int luaopen_talus_convert(lua_State *L);
 TL_API int luaopen_talus_plot(lua_State *L);
+TL_API int luaopen_talus_poles(lua_State *L);
+TL_API int luaopen_talus_realisations(lua_State *L);
 TL_API int luaopen_talus_stereonet(lua_State *L);
+
+int luaopen_talus_back_analysis(lua_State *L)
+{
+    return open_module(L, PREFIX "back_analysis");
+}
 
 int luaopen_talus_convert(lua_State *L)
 {
@@ -67,6 +86,16 @@ int luaopen_talus_convert(lua_State *L)
 int luaopen_talus_plot(lua_State *L)
 {
     return open_module(L, PREFIX "plot");
+}
+
+int luaopen_talus_poles(lua_State *L)
+{
+    return open_module(L, PREFIX "poles");
+}
+
+int luaopen_talus_realisations(lua_State *L)
+{
+    return open_module(L, PREFIX "realisations");
 }
 
 int luaopen_talus_stereonet(lua_State *L)
