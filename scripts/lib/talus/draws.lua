@@ -12,14 +12,14 @@ local function finite(where, what, value)
     if type(value) ~= "number" or value ~= value or math.abs(value) == math.huge then
         fail("%s: %s must be a number, not %s", where, what, arguments.describe(value))
     end
-    return value + 0.0
+    return value
 end
 
 local function positive(where, what, value)
     if finite(where, what, value) <= 0 then
         fail("%s: %s = %s must be > 0", where, what, value)
     end
-    return value + 0.0
+    return value
 end
 
 local function check_name(where, name)
@@ -209,7 +209,10 @@ function draws.new(seed, row, latin)
         end
         local sum, ends = 0, {}
         for i = 1, #list do
-            local weight = weights and weights[i] or not weights and 1
+            local weight = 1
+            if weights then
+                weight = weights[i]
+            end
             if type(weight) ~= "number" or not (weight >= 0 and weight < math.huge) then
                 fail("%s: weight %d must be a number >= 0, not %s", where, i, arguments.describe(weight))
             end
