@@ -16,12 +16,19 @@ pit.friction = { 38, 3 }                                    -- degrees, mean and
 local DENSITY, GRAVITY, STIFFNESS = 2600, 10, 1e9
 local SMALLEST = 0.5                                        -- m3: smaller blocks do not count
 
--- The bench without joints, above its toe: x is 0 at the toe and goes into the rock.
+-- The bench without joints, above its toe, and the rock around it, which is held and hidden: x is 0 at the toe and goes into
+-- the rock.
 local function bench(model)
-    local corners, crest = {}, pit.height / math.tan(math.rad(pit.face))
-    for _, y in ipairs { 0, pit.width } do
-        for _, at in ipairs { { 0, 0 }, { pit.depth, 0 }, { pit.depth, pit.height }, { crest, pit.height } } do
-            corners[#corners + 1] = { at[1], y, at[2] }
+    local x, y, z, corners = pit.depth, pit.width, pit.height, {}
+    model:generate("box", { { min = { 0, 0, -1 }, max = { x, y, 0 }, density = DENSITY, group = "around" },
+        { min = { x, 0, 0 }, max = { x + 1, y, z }, density = DENSITY, group = "around" },
+        { min = { 0, -1, 0 }, max = { x, 0, z }, density = DENSITY, group = "around" },
+        { min = { 0, y, 0 }, max = { x, y + 1, z }, density = DENSITY, group = "around" } })
+    model:blocks():fix():hide()
+    local crest = z / math.tan(math.rad(pit.face))
+    for _, side in ipairs { 0, y } do
+        for _, at in ipairs { { 0, 0 }, { x, 0 }, { x, z }, { crest, z } } do
+            corners[#corners + 1] = { at[1], side, at[2] }
         end
     end
     model:generate("polyhedron", { vertices = corners, density = DENSITY, group = "rock" })
@@ -38,7 +45,7 @@ function pit.build(draw, files)
             spacing_dev = 0.5 * spacing, number = math.ceil(0.8 * size / spacing), origin = { 0, pit.width / 2, 0 },
             persistence = 0.7 })
     end
-    model:boundary { xmax = "fixed", ymin = "fixed", ymax = "fixed", zmin = "fixed" }
+    model:blocks { hidden = true }:show()
     return model
 end
 

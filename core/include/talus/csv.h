@@ -146,8 +146,8 @@ static inline bool tl_csv_number(tl_csv *c, const char *cell, size_t length, siz
             tl_text_print(c->why, sizeof c->why, "line %zu, column '%s': %s must be %s %g", c->line, column->name,
                           shown, column->above ? ">" : ">=", column->min);
         else
-            tl_text_print(c->why, sizeof c->why, "line %zu, column '%s': %s is outside [%g, %g]", c->line, column->name,
-                          shown, column->min, column->max);
+            tl_text_print(c->why, sizeof c->why, "line %zu, column '%s': %s is outside %c%g, %g]", c->line,
+                          column->name, shown, column->above ? '(' : '[', column->min, column->max);
         return false;
     }
     return true;

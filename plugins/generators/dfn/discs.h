@@ -27,7 +27,8 @@ double disc_area_in_box(const disc *d, const tl_bounds *box);
 tl_status discs_add(const tl_host *host, discs *all, tl_vec3 center, tl_vec3 normal, double radius);
 /* Reads a file of discs: .fab of FracMan, or a table with x, y, z, dip, dip_direction and radius. */
 tl_status discs_read(const tl_host *host, const char *file, discs *all);
-/* Reads the text of a .fab file, which ends in a zero byte. */
+/* Read the text of a table and of a .fab file, which ends in a zero byte. */
+tl_status table_read(const tl_host *host, const char *file, const char *text, discs *all);
 tl_status fab_read(const tl_host *host, const char *file, const char *text, discs *all);
 
 #endif

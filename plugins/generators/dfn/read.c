@@ -17,7 +17,7 @@ tl_status discs_add(const tl_host *host, discs *all, tl_vec3 center, tl_vec3 nor
     return TL_OK;
 }
 
-static tl_status table_read(const tl_host *host, const char *file, const char *text, discs *all)
+tl_status table_read(const tl_host *host, const char *file, const char *text, discs *all)
 {
     static const tl_csv_column columns[] = {
         {.name = "x", .min = -FARTHEST, .max = FARTHEST}, {.name = "y", .min = -FARTHEST, .max = FARTHEST},
@@ -57,7 +57,7 @@ tl_status discs_read(const tl_host *host, const char *file, discs *all)
     size_t length;
     tl_status status = tl_file_bytes(host, file, TL_SITE_FILE, &text, &length);
     if (status == TL_OK && memchr(text, '\0', length))
-        status = host->fail(host, TL_E_ARGUMENT, "file '%.200s' holds a zero byte: it is no text", file);
+        status = host->fail(host, TL_E_ARGUMENT, "file '%.200s': it holds a zero byte: it is no text", file);
     if (status == TL_OK)
         status = ends_in(file, ".fab") ? fab_read(host, file, text, all) : table_read(host, file, text, all);
     free(text);

@@ -130,11 +130,11 @@ local function trial_of(run, row)
     return (good and "+" or "-") .. (good and result or text_of(result))
 end
 
--- Lua does not see the memory of a model, so models of before are collected. Of the time that takes at most a tenth.
+-- Lua does not see the memory of a model, so models of before are collected. Of the time that takes at most a twentieth.
 local collected, cost = 0, 0
 local function collect()
     local now = os.clock()
-    if now - collected >= 9 * cost then
+    if now - collected >= 19 * cost then
         collectgarbage()
         collected = os.clock()
         cost = collected - now
