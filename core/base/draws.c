@@ -1,8 +1,8 @@
 /* draws.c - random numbers of realisations by keys, and the interval of Clopper and Pearson.
  *
- * The stratum of a row in a Latin hypercube of n rows is a permutation of [0, n) that a key chooses: a Feistel network of
- * ROUNDS rounds on the least even number of bits 2 b with 4^b >= n. Results beyond n are permuted again until they are
- * below, at most 4 times on average (Black and Rogaway, "Ciphers with arbitrary finite domains", 2002).
+ * The stratum of a row in a Latin hypercube of n rows is a permutation of [0, n) that a key chooses: a Feistel network
+ * of ROUNDS rounds on the least even number of bits 2 b with 4^b >= n. Results beyond n are permuted again until they
+ * are below, at most 4 times on average (Black and Rogaway, "Ciphers with arbitrary finite domains", 2002).
  *
  * Ends of the interval are quantiles of the beta distribution. For k hits of n, with the tail a = (1 - level) / 2:
  *

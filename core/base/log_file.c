@@ -1,7 +1,7 @@
 /* log_file.c - a file to which one process at a time adds lines.
  *
- * The lock is that of POSIX (fcntl). It belongs to the process, not to copies of it that fork makes. So it ends with the
- * process, while a copy may still run. */
+ * The lock is that of POSIX (fcntl). It belongs to the process, not to copies of it that fork makes. So it ends with
+ * the process, while a copy may still run. */
 #include "base/error.h"
 #include "base/output_file.h"
 

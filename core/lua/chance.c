@@ -15,7 +15,7 @@
 #include <talus/draws.h>
 #include <talus/poles.h>
 
-/* The level of all intervals. */
+/* Constant: the level of all intervals, 95 %. */
 #define LEVEL 0.95
 
 /* ---------------------------------------------------------------- draws ------------------ */

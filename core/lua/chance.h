@@ -1,4 +1,5 @@
-/* chance.h - what the modules of realisations and of data of the site ask of the kernel: draws, distributions, poles. */
+/* chance.h - what the modules of realisations and of data of the site ask of the kernel: draws, distributions, poles.
+ * */
 #ifndef TL_LUA_CHANCE_H
 #define TL_LUA_CHANCE_H
 

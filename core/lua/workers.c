@@ -20,7 +20,7 @@
 #define WORKERS_TYPE "talus.workers"
 #define LOG_TYPE "talus.log"
 
-/* Seconds after which a Ctrl-C is looked for that came just before a wait. */
+/* Cost only: seconds after which a Ctrl-C is looked for that came just before a wait. */
 #define PATIENCE 0.25
 
 /* ---------------------------------------------------------------- workers ---------------- */

@@ -1,7 +1,7 @@
 /* talus/csv.h - tables of numbers in text: a line of names, then rows, separated by commas, semicolons or tabs.
  *
- * Columns are found by their names, in letters of any case; those that are not asked for are passed over. Empty lines and
- * lines that begin with # are left out. Every fault is a sentence with its line and column. */
+ * Columns are found by their names, in letters of any case; those that are not asked for are passed over. Empty lines
+ * and lines that begin with # are left out. Every fault is a sentence with its line and column. */
 #ifndef TALUS_CSV_H
 #define TALUS_CSV_H
 
@@ -190,8 +190,8 @@ static inline const char *tl_csv_row(tl_csv *c, const char *text)
     return text;
 }
 
-/* Reads a text that ends in a zero byte; `column` and `columns` of *c are given. false with a sentence in `why`. Free `at`
- * in any case. */
+/* Reads a text that ends in a zero byte; `column` and `columns` of *c are given. false with a sentence in `why`. Free
+ * `at` in any case. */
 static inline bool tl_csv_read(tl_csv *c, const char *text)
 {
     if (strncmp(text, "\xef\xbb\xbf", 3) == 0) /* UTF-8's mark */

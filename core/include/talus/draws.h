@@ -20,7 +20,7 @@ typedef struct tl_draw {
     uint64_t latin; /* rows of a Latin hypercube, of which `row` is one; 0: independent draws */
 } tl_draw;
 
-/* Uniform in (0, 1). In a Latin hypercube of n rows exactly one row of each name and part is in each of the intervals
+/* Uniform in (0, 1). In a Latin hypercube of n rows one row of each name and part is in each of the intervals
  * [j / n, (j + 1) / n). Its number j is a keyed permutation of the rows, so no row knows of the others. */
 TL_API double tl_draw_uniform(const tl_draw *draw);
 /* A key of 64 bits for further draws, likewise a pure function. */

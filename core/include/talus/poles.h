@@ -5,8 +5,8 @@
  *
  *     k = (N - 1) / (N - R),   cos(cone) = 1 - (N - R) / R ((1 / 0.05)^(1 / (N - 1)) - 1)
  *
- * k is the concentration, and the cone about the mean holds the true one with 95 %. Poles are sorted when they are read,
- * so nothing hangs on the order of the lines. */
+ * k is the concentration, and the cone about the mean holds the true one with 95 %. Poles are sorted when they are
+ * read, so nothing hangs on the order of the lines. */
 #ifndef TALUS_POLES_H
 #define TALUS_POLES_H
 

@@ -5,9 +5,9 @@
  *     while (open jobs) { tl_workers_take(workers, 0.2, &answer, &error); use(answer); give the worker its next job; }
  *     tl_workers_end(workers);
  *
- * A worker has all that this process had when it was started, and what it changes is its own. So a job is to hang on its
- * number only; then the answers are the same for any number of workers. A worker that has died is started anew when it
- * gets its next job. Workers end with this process, however that ends.
+ * A worker has all that this process had when it was started, and what it changes is its own. So a job is to hang on
+ * its number only; then the answers are the same for any number of workers. A worker that has died is started anew
+ * when it gets its next job. Workers end with this process, however that ends.
  *
  * A copy has one thread only. So start refuses a process with several: what they hold would be held for ever. */
 #ifndef TALUS_WORKERS_H
@@ -38,8 +38,8 @@ typedef struct tl_worker_answer {
     int code;
 } tl_worker_answer;
 
-/* Starts `count` workers in [1, TL_MOST_WORKERS]. Text that waits for its output is written first. TL_E_STATE when other
- * threads run in this process: of a model with several threads, or of a screen. */
+/* Starts `count` workers in [1, TL_MOST_WORKERS]. Text that waits for its output is written first. TL_E_STATE when
+ * other threads run in this process: of a model with several threads, or of a screen. */
 TL_API tl_status tl_workers_start(unsigned count, tl_worker_fn work, void *user, tl_workers **workers, tl_error *error);
 /* Gives an idle worker a job; one that has died is started anew. */
 TL_API tl_status tl_workers_give(tl_workers *workers, unsigned worker, uint64_t job, tl_error *error);

@@ -1,8 +1,8 @@
 /* area.c - the area of the part of a disc that is in a box.
  *
- * The square about the disc, in its plane, is cut by the six faces of the box. What is left is a convex polygon. The area
- * that it has in common with the disc is a sum over its edges: of an edge's part inside the circle the triangle with the
- * centre, (p x q) / 2, and of its parts outside the sector, r^2 / 2 times the angle. */
+ * The square about the disc, in its plane, is cut by the six faces of the box. What is left is a convex polygon. The
+ * area that it has in common with the disc is a sum over its edges. The part of an edge from p to q inside the circle
+ * adds its triangle with the centre, (p x q) / 2. A part outside adds a sector, r^2 / 2 times its angle. */
 #include "discs.h"
 
 /* Corners of a square that is cut six times. */

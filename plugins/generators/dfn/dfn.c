@@ -1,19 +1,21 @@
 /* dfn.c - generator "dfn": a network of discs that cut the visible blocks, drawn or of a file.
  *
- * Discs of Baecher, Lanney and Einstein (1977): centres are uniform in the bounds of the visible blocks grown by the largest
- * radius on every side, orientations after Fisher or of measured poles, radii of a power law, lognormal or all the same. With
- * n discs in the grown volume V' the expected intensity is (Dershowitz and Herda 1992)
+ * Discs are those of Baecher, Lanney and Einstein (1977). Centres are uniform in the bounds of the visible blocks grown
+ * by the largest radius on every side. Orientations are drawn after Fisher, or of measured poles. Radii go by a power
+ * law, are lognormal, or all the same. With n discs in the grown volume V' the expected intensity is (Dershowitz and
+ * Herda 1992)
  *
  *     P32 = n / V' pi <r^2>,   m2 of discs in a m3 of rock
  *
  * With p32 discs are added one after the other until their area in the bounds reaches it, so the last one goes beyond.
  * What a disc draws hangs on the model's seed, the joint's name and the disc's number. They cut from the largest to the
- * smallest. A block is cut through when the disc reaches into its section. The summary tells, of the volume V of the bounds:
+ * smallest. A block is cut through when the disc reaches into its section. The summary tells, of the volume V of the
+ * bounds, with A the area of a disc inside them:
  *
  *     P32 = sum A / V,   P10 = sum A |n . m| / V,   P21 = sum A |n x z| / V
  *
- * A: area inside the bounds. P10 is the mean number of discs on a metre of the lines along the mean pole m, and P21 the mean length
- * of traces on a m2 of horizontal planes. */
+ * P10 is the mean number of discs on a metre of the lines along the mean pole m. P21 is the mean length of traces on a
+ * m2 of horizontal planes. */
 #include "discs.h"
 
 #include <talus/version.h>

@@ -7,7 +7,8 @@
  *     END FORMAT                        0 0.0 0.0 1.0       a normal, which is passed over
  *                                   END FRACTURE
  *
- * Other sections are passed over. A polygon becomes the disc of its area about its centroid, in the plane of its area vector. */
+ * Other sections are passed over. A polygon becomes the disc of its area about its centroid, in the plane of its area
+ * vector. */
 #include "discs.h"
 
 #include <string.h>
