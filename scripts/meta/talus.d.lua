@@ -1354,16 +1354,23 @@ function Model:histories() end
 function Model:write_histories(path) end
 
 ---@class (exact) talus.BackAnalysisOptions
----@field build any gives the model for values {NAME = number} of the unknown
----@field unknown { NAME: any } the interval in which its value is sought
----@field observed { FIELD: number } what was observed: a number, a pair {low, high} of them, true or false
----@field measure? any gives a table with the field; when left out the second value that build gives is that table
+---@field build fun(values: table<string, number>): talus.Model, table? gives the model for values {NAME = number} of the unknown
+---@field unknown table<string, number[]> the interval in which its value is sought
+---@field observed table<string, number|number[]|boolean> what was observed: a number, a pair {low, high} of them, true or false
+---@field measure? fun(model: talus.Model, values: table<string, number>): table gives a table with the field; when left out the second value that build gives is that table
 ---@field tolerance? number default 1e-4: share of the interval that is left when the search ends
+
+---@class (exact) talus.BackAnalysisResult
+---@field value number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field low number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field high number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field trials { friction: integer, safety: number }[] list of {NAME = value, FIELD = measured}
 
 --- Finds the value of an unknown for which a model does what was observed, by halving an interval. Measured must be something that passes the observed value once in it.
 ---
----     found = talus.back_analysis{build = BUILD, unknown = {friction = {20, 60}}, observed = {safety = 1}, measure = MEASURE}
+---     found = talus.back_analysis{build = function(v) return model, {safety = v.friction / 30} end, unknown = {friction = {20, 60}}, observed = {safety = 1}}
 ---@param options talus.BackAnalysisOptions
+---@return talus.BackAnalysisResult
 function talus.back_analysis(options) end
 
 ---@class (exact) talus.ConvertOptions
@@ -1408,27 +1415,29 @@ function talus.plot(options) end
 
 --- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.
 ---
----     poles = talus.poles(FILE)  or  talus.poles{{30, 120}, {32, 118}}
----@param FILE any
----@overload fun(options?: table)
-function talus.poles(FILE) end
+---     poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles("FILE")
+---@param options? table
+---@return table
+---@overload fun(name: string): table
+function talus.poles(options) end
 
 ---@class (exact) talus.RealisationsOptions
 ---@field number integer of realisations
----@field build any gives the model of a realisation, by what it draws
----@field measure any gives a table of what is measured: numbers, true and false, texts; the same names in each realisation
----@field screen? any cheap test before the measure: gives a table likewise, and true when that decides, so that nothing is measured
+---@field build fun(draw: table): talus.Model gives the model of a realisation, by what it draws
+---@field measure fun(model: talus.Model, draw: table): table, boolean? gives a table of what is measured: numbers, true and false, texts; the same names in each realisation
+---@field screen? fun(model: talus.Model, draw: table): table, boolean? cheap test before the measure: gives a table likewise, and true when that decides, so that nothing is measured
 ---@field seed? integer default 1: of all draws
 ---@field latin? boolean default false: a Latin hypercube: of n realisations each n-th part of a distribution has one
----@field workers? any 256], default 1: processes that work at once; the rows are the same for any number
+---@field workers? integer default 1: processes that work at once; the rows are the same for any number
 ---@field file? string file of rows; one that is there is gone on with, and rows that it has are not computed again
----@field stop_when? { field: number, half_width: number, at_least: number } ends when the 95 % interval of the probability of the field has at most this half width, of so many rows or more
----@field on_row? any called after each row that is written, with the number of rows
+---@field stop_when? { field: string, half_width: number, at_least: integer? } ends when the 95 % interval of the probability of the field has at most this half width, of so many rows or more
+---@field on_row? fun(rows: integer) called after each row that is written, with the number of rows
 
 --- Builds and measures many models, each with draws of its own, in worker processes, and gives the set of rows. A draw is a pure function of seed, row and name. A row that errs has its sentence in `error`; more than 5 % of them end the run. `talus run --shard i/n SCRIPT` makes the rows i, i + n, ... in FILE.shard-i-of-n, and `talus merge FILE` one file of the shards.
 ---
----     set = talus.realisations{number = 1000, seed = 1, build = BUILD, measure = MEASURE}
+---     set = talus.realisations{number = 3, build = function(draw) return model end, measure = function(model, draw) return {failed = draw.uniform("u", 0, 1) < 0.1} end}
 ---@param options talus.RealisationsOptions
+---@return table
 function talus.realisations(options) end
 
 ---@class (exact) talus.StereonetOptions
@@ -1436,7 +1445,7 @@ function talus.realisations(options) end
 ---@field model? talus.Model draws the joint sets of this model, from the faces of its blocks as they lie now
 ---@field joints? string[] which of its joint sets ("J1"), in this order; all when left out
 ---@field sets? { name: string?, dip: number, dip_direction: number }[] further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes
----@field poles? any what talus.poles gave, or a list of sets as its method sets gives
+---@field poles? table|table[] what talus.poles gave, or a list of sets as its method sets gives
 ---@field keyblocks? talus.Keyblock[] what model:keyblocks{...} gave: a cross for the direction of each movement
 ---@field projection? "equal_area"|"equal_angle" of Schmidt and Lambert, the default, or of Wulff
 ---@field great_circles? "mean"|"all"|"none" of the mean plane of each set, the default, of every plane, or of none

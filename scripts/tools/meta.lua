@@ -159,6 +159,8 @@ local function seen_type(value)
             word:match("^selection of %d+ gridpoint") and "talus.Gridpoints" or "userdata"
     elseif kind ~= "table" then
         return ({ float = "number", ["nil"] = false })[kind] or (kind ~= "nil" and kind or nil)
+    elseif getmetatable(value) then
+        return "table"
     elseif #value == 3 and type(value[1]) == "number" then
         return "talus.Vector"
     elseif #value > 0 then
