@@ -157,6 +157,23 @@ function talus.help(topic) end
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
 
+--- Cuts the visible blocks by a network of discs, drawn or of a file.
+---@class (exact) talus.generator.Dfn
+---@field joint string name of the joint set
+---@field p32? number 1/m, > 0: intensity: area of discs in a volume, m2/m3; or give number, or file
+---@field number? integer in [0, 1e+06], default 0: number of discs in the bounds grown by the largest radius; 0: by p32
+---@field dip? number deg, in [0, 90]: mean dip below horizontal
+---@field dip_direction? number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
+---@field fisher_k? number in (0, 1e+09]: concentration of the poles about the mean; all parallel without it
+---@field poles? string table of measured planes with the columns dip and dip_direction, in the place of dip and dip_direction
+---@field size? "power_law"|"lognormal"|"fixed" default "fixed": distribution of the radius
+---@field exponent? number > 0: a of power_law: the density of radii is proportional to r^-(1 + a)
+---@field size_mean? number m, > 0: mean radius of lognormal; the radius of fixed
+---@field size_dev? number m, > 0: standard deviation of the radius of lognormal
+---@field size_min? number m, > 0: smallest radius of power_law and lognormal
+---@field size_max? number m, > 0: largest radius of power_law and lognormal
+---@field file? string discs in the place of drawn ones: a table with x, y, z, dip, dip_direction, radius; or .fab of FracMan
+
 --- Creates one block: a cylinder of flat sides.
 ---@class (exact) talus.generator.Drum
 ---@field center? talus.Vector m, default {0, 0, 0}: middle of the drum
@@ -197,9 +214,9 @@ function talus.help(topic) end
 --- Cuts the visible blocks by a set of nearly parallel planes.
 ---@class (exact) talus.generator.Jointset
 ---@field joint string name of the joint set
----@field dip number deg, in [0, 90]: mean dip below horizontal
+---@field dip? number deg, in [0, 90]: mean dip below horizontal
 ---@field dip_dev? number deg, in [0, 90], default 0: deviation of the dip: largest, or standard when normal
----@field dip_direction number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
+---@field dip_direction? number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
 ---@field dip_direction_dev? number deg, in [0, 180], default 0: deviation of the dip direction
 ---@field spacing number m, > 0: mean distance between planes
 ---@field spacing_dev? number m, >= 0, default 0: deviation of the spacing; less than the spacing, unless lognormal
@@ -210,6 +227,7 @@ function talus.help(topic) end
 ---@field fisher_k? number in (0, 1e+09]: concentration of the poles by fisher
 ---@field radius? number m, > 0: of discs in the place of planes: a block is in a disc's path when the disc meets its section
 ---@field spacing_distribution? "same"|"uniform"|"normal"|"exponential"|"lognormal" default "same": of the gaps: uniform within spacing_dev, normal, exponential with the mean spacing, or lognormal; same: as distribution, uniform with fisher
+---@field poles? string table of measured planes with the columns dip and dip_direction, in the place of dip and dip_direction
 
 --- Creates one convex block from its vertices.
 ---@class (exact) talus.generator.Polyhedron
@@ -685,6 +703,7 @@ function talus.model(options) end
 ---@return talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "blocks", options: talus.generator.Blocks|talus.generator.Blocks[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "box", options: talus.generator.Box|talus.generator.Box[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "dfn", options: talus.generator.Dfn|talus.generator.Dfn[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "drum", options: talus.generator.Drum|talus.generator.Drum[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "fracture", options: talus.generator.Fracture|talus.generator.Fracture[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "import", options: talus.generator.Import|talus.generator.Import[]): talus.GenerateResult
@@ -1335,6 +1354,26 @@ function Model:histories() end
 ---@param path string
 function Model:write_histories(path) end
 
+---@class (exact) talus.BackAnalysisOptions
+---@field build fun(values: table<string, number>): talus.Model, table? gives the model for values {NAME = number} of the unknown
+---@field unknown table<string, number[]> the interval in which its value is sought
+---@field observed table<string, number|number[]|boolean> what was observed: a number, a pair {low, high} of them, true or false
+---@field measure? fun(model: talus.Model, values: table<string, number>): table gives a table with the field; when left out the second value that build gives is that table
+---@field tolerance? number default 1e-4: share of the interval that is left when the search ends
+
+---@class (exact) talus.BackAnalysisResult
+---@field value number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field low number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field high number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field trials { friction: integer, safety: number }[] list of {NAME = value, FIELD = measured}
+
+--- Finds the value of an unknown for which a model does what was observed, by halving an interval. Measured must be something that passes the observed value once in it.
+---
+---     found = talus.back_analysis{build = function(v) return model, {safety = v.friction / 30} end, unknown = {friction = {20, 60}}, observed = {safety = 1}}
+---@param options talus.BackAnalysisOptions
+---@return talus.BackAnalysisResult
+function talus.back_analysis(options) end
+
 ---@class (exact) talus.ConvertOptions
 ---@field file string name of the data file, of 3DEC 7 to 9 or a classic one
 ---@field to? string name of the script that is written; folders are made
@@ -1375,11 +1414,39 @@ function talus.convert(options) end
 ---@param options talus.PlotOptions
 function talus.plot(options) end
 
+--- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.
+---
+---     poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles("FILE")
+---@param options? table
+---@return table
+---@overload fun(name: string): table
+function talus.poles(options) end
+
+---@class (exact) talus.RealisationsOptions
+---@field number integer of realisations
+---@field build fun(draw: table): talus.Model gives the model of a realisation, by what it draws
+---@field measure fun(model: talus.Model, draw: table): table, boolean? gives a table of what is measured: numbers, true and false, texts; the same names in each realisation
+---@field screen? fun(model: talus.Model, draw: table): table, boolean? cheap test before the measure: gives a table likewise, and true when that decides, so that nothing is measured
+---@field seed? integer default 1: of all draws
+---@field latin? boolean default false: a Latin hypercube: of n realisations each n-th part of a distribution has one
+---@field workers? integer default 1: processes that work at once; the rows are the same for any number
+---@field file? string file of rows; one that is there is gone on with, and rows that it has are not computed again
+---@field stop_when? { field: string, half_width: number, at_least: integer? } ends when the 95 % interval of the probability of the field has at most this half width, of so many rows or more
+---@field on_row? fun(rows: integer) called after each row that is written, with the number of rows
+
+--- Builds and measures many models, each with draws of its own, in worker processes, and gives the set of rows. A draw is a pure function of seed, row and name. A row that errs has its sentence in `error`; more than 5 % of them end the run. `talus run --shard i/n SCRIPT` makes the rows i, i + n, ... in FILE.shard-i-of-n, and `talus merge FILE` one file of the shards.
+---
+---     set = talus.realisations{number = 3, build = function(draw) return model end, measure = function(model, draw) return {failed = draw.uniform("u", 0, 1) < 0.1} end}
+---@param options talus.RealisationsOptions
+---@return table
+function talus.realisations(options) end
+
 ---@class (exact) talus.StereonetOptions
 ---@field file string name of the SVG file; folders are made
 ---@field model? talus.Model draws the joint sets of this model, from the faces of its blocks as they lie now
 ---@field joints? string[] which of its joint sets ("J1"), in this order; all when left out
 ---@field sets? { name: string?, dip: number, dip_direction: number }[] further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes
+---@field poles? table|table[] what talus.poles gave, or a list of sets as its method sets gives
 ---@field keyblocks? talus.Keyblock[] what model:keyblocks{...} gave: a cross for the direction of each movement
 ---@field projection? "equal_area"|"equal_angle" of Schmidt and Lambert, the default, or of Wulff
 ---@field great_circles? "mean"|"all"|"none" of the mean plane of each set, the default, of every plane, or of none

@@ -88,6 +88,15 @@ local WORDS = {
     ["number or function({x, y, z})"] = "number|fun(place: talus.Vector): number",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
+    ["function(values)"] = "fun(values: table<string, number>): talus.Model, table?",
+    ["function(model, values)"] = "fun(model: talus.Model, values: table<string, number>): table",
+    ["function(draw)"] = "fun(draw: table): talus.Model",
+    ["function(model, draw)"] = "fun(model: talus.Model, draw: table): table, boolean?",
+    ["function(rows)"] = "fun(rows: integer)",
+    ["{NAME = {from, to}}"] = "table<string, number[]>",
+    ["{FIELD = value}"] = "table<string, number|number[]|boolean>",
+    ["{field =, half_width =, at_least =}"] = "{ field: string, half_width: number, at_least: integer? }",
+    ["poles or list of poles"] = "table|table[]",
     ["function(t)"] = "(fun(t: number): number|talus.Vector, number?, number?)",
     ["{JOINT = number}"] = "table<string, number>",
     ["{NAME = value}"] = "table<string, number|string|boolean|talus.Vector>",
@@ -116,6 +125,7 @@ end
 
 -- The type of "number, Pa/m, > 0, required" and the like.
 function to_type(text)
+    text = text:gsub(", required$", "")
     local choices = text:match("^one of (.*)$")
     if choices then
         local words = {}
@@ -149,6 +159,8 @@ local function seen_type(value)
             word:match("^selection of %d+ gridpoint") and "talus.Gridpoints" or "userdata"
     elseif kind ~= "table" then
         return ({ float = "number", ["nil"] = false })[kind] or (kind ~= "nil" and kind or nil)
+    elseif getmetatable(value) then
+        return "table"
     elseif #value == 3 and type(value[1]) == "number" then
         return "talus.Vector"
     elseif #value > 0 then

@@ -51,6 +51,12 @@ PUBLIC = {
     "history.h": {"types.h", "plugin.h"},
     "keyblocks.h": {"types.h"},
     "safety.h": {"types.h"},
+    "workers.h": {"types.h"},
+    "log_file.h": {"types.h"},
+    "draws.h": {"types.h"},
+    "distributions.h": {"elementary.h", "types.h", "vmath.h"},
+    "csv.h": {"number.h"},
+    "poles.h": {"csv.h", "distributions.h", "kit.h"},
     "verdict.h": {"types.h", "plugin.h"},
     "watch.h": {"types.h", "plugin.h"},
     "settings.h": {"types.h", "plugin.h"},
@@ -68,7 +74,8 @@ PUBLIC = {
     "boundary.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h",
-                  "talus/kit.h", "talus/solid_kit.h", "talus/solid_returns.h", "talus/number.h", "talus/text.h"}
+                  "talus/kit.h", "talus/solid_kit.h", "talus/solid_returns.h", "talus/number.h", "talus/text.h",
+                  "talus/distributions.h", "talus/csv.h", "talus/poles.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"
