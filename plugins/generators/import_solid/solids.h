@@ -77,6 +77,7 @@ uint32_t solid_planes(const solids *s, size_t i);
 typedef struct shell_face {
     uint32_t first, count; /* half-edges */
     uint32_t shell, side;
+    uint32_t part; /* faces of one part close a surface by the file's numbers of their vertices; 0: those of none */
     tl_vec3 area; /* twice the vector area */
     double longest;
 } shell_face;
@@ -92,6 +93,7 @@ typedef struct mesh {
     /* scratch, and room */
     uint32_t *local; /* [vertices of the soup] */
     uint32_t *cell, *next, *root;
+    uint32_t *part; /* [faces of the object in the soup] */
     void *sides;
     size_t vertex_room, corner_room, face_room, cell_room;
 } mesh;
