@@ -1,5 +1,5 @@
--- masonry.lua - assemblies of stones as a mason's survey gives them: every corner measured a little off, written as OBJ, PLY
--- or JSON of compas.
+-- masonry.lua - vaults and domes as a mason's survey gives them: every corner is measured a little off, and the stones are
+-- written as OBJ, PLY or JSON of compas.
 local talus = require "talus"
 
 local masonry = {}
@@ -219,23 +219,20 @@ local function lists(list, welded)
         end
         faces[s] = {}
         for f, face in ipairs(stone.faces) do
-            local list = {}
-            for i, v in ipairs(face) do list[i] = mine[v] end
-            faces[s][f] = list
+            faces[s][f] = {}
+            for i, v in ipairs(face) do faces[s][f][i] = mine[v] end
         end
     end
     return vertices, faces
 end
 
 masonry.write = {}
+local write = masonry.write
 
-function masonry.write.obj(path, list, o)
-    o = o or {}
+function write.obj(path, list, o)
     local parts = {}
-    local number = o.digits or "%.5f"
-    local form = "v " .. number .. " " .. number .. " " .. number .. "\n"
-    local vertices, faces = lists(list, o.welded)
-    for _, p in ipairs(vertices) do parts[#parts + 1] = form:format(p[1], p[2], p[3]) end
+    local vertices, faces = lists(list, o and o.welded)
+    for _, p in ipairs(vertices) do parts[#parts + 1] = ("v %.8f %.8f %.8f\n"):format(p[1], p[2], p[3]) end
     for s, stone in ipairs(list) do
         parts[#parts + 1] = "o " .. stone.name .. "\ng " .. stone.group .. "\n"
         for _, f in ipairs(faces[s]) do
@@ -247,37 +244,66 @@ function masonry.write.obj(path, list, o)
     return put(path, parts)
 end
 
-function masonry.write.ply(path, list, o)
-    o = o or {}
-    local vertices, faces = lists(list, o.welded)
+function write.ply(path, list, o)
+    local vertices, faces = lists(list, o and o.welded)
     local count, parts = 0, {}
     for s in ipairs(list) do count = count + #faces[s] end
-    parts[1] = ("ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\nelement face %d\n"
+    parts[1] = ("ply\nformat ascii 1.0\nelement vertex %d\nproperty double x\nproperty double y\nproperty double z\nelement face %d\n"
         .. "property list uchar int vertex_indices\nend_header\n"):format(#vertices, count)
-    for _, p in ipairs(vertices) do parts[#parts + 1] = ("%.5f %.5f %.5f\n"):format(p[1], p[2], p[3]) end
+    for _, p in ipairs(vertices) do parts[#parts + 1] = ("%.8f %.8f %.8f\n"):format(p[1], p[2], p[3]) end
     for s in ipairs(list) do
         for _, f in ipairs(faces[s]) do parts[#parts + 1] = #f .. " " .. table.concat(f, " ") .. "\n" end
     end
     return put(path, parts)
 end
 
-function masonry.write.json(path, list)
+function write.json(path, list)
     local parts = { '{"dtype": "compas_dem.models/BlockModel", "data": {"graph": {"node": {' }
     for s, stone in ipairs(list) do
         parts[#parts + 1] = (s > 1 and ",\n" or "\n") .. ('"%s": {"is_support": %s, "block": {"data": {"vertex": {'):format(stone.name, stone.group == "support")
         for v, p in ipairs(stone.vertices) do
-            parts[#parts + 1] = (v > 1 and "," or "") .. ('"%d": {"x": %.5f, "y": %.5f, "z": %.5f}'):format(v - 1, p[1], p[2], p[3])
+            parts[#parts + 1] = (v > 1 and "," or "") .. ('"%d": {"x": %.8f, "y": %.8f, "z": %.8f}'):format(v - 1, p[1], p[2], p[3])
         end
         parts[#parts + 1] = '}, "face": {'
         for f, face in ipairs(stone.faces) do
-            local list = {}
-            for i, v in ipairs(face) do list[i] = v - 1 end
-            parts[#parts + 1] = (f > 1 and "," or "") .. ('"%d": [%s]'):format(f - 1, table.concat(list, ", "))
+            local corners = {}
+            for i, v in ipairs(face) do corners[i] = v - 1 end
+            parts[#parts + 1] = (f > 1 and "," or "") .. ('"%d": [%s]'):format(f - 1, table.concat(corners, ", "))
         end
         parts[#parts + 1] = "}}}}"
     end
     parts[#parts + 1] = "}}}}\n"
     return put(path, parts)
+end
+
+-- ---- the way of docs/from_a_mesh.md ----
+
+-- The model of a file of stones: imported, its supports held, seated. o: flat, seat (m, limit of gaps and overlaps), kn.
+function masonry.model(path, o)
+    local model = talus.model { gravity = { 0, 0, -9.81 } }
+    model:generate("import", { file = path, density = 2000, flat = o.flat, weld = o.weld })
+    local held = model:blocks { group = "support" }
+    if #held == 0 then -- no file of PLY has groups: supports are the lowest stones
+        local lowest = math.huge
+        for _, b in ipairs(model:blocks()) do
+            lowest = math.min(lowest, b.centroid[3])
+        end
+        held = model:blocks():where(function(b) return b.centroid[3] < lowest + 0.1 end)
+    end
+    held:fix()
+    model:joint("*", "coulomb", { kn = o.kn or 1e10, ks = o.kn or 1e10, friction = 35 })
+    return model, model:seat { gap = o.seat, overlap = o.seat }
+end
+
+-- Horizontal force of the stones on their supports, away from the middle, and the weight on them, N.
+function masonry.thrust(model)
+    local thrust, weight = 0, 0
+    for _, b in ipairs(model:blocks { fixed = true }) do
+        local f, c = model:blocks { id = b.id }:reaction(), b.centroid
+        thrust = thrust - (f[1] * c[1] + f[2] * c[2]) / math.sqrt(c[1] ^ 2 + c[2] ^ 2)
+        weight = weight + f[3]
+    end
+    return thrust, weight
 end
 
 return masonry

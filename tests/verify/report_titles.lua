@@ -69,6 +69,7 @@ local TITLES = {
     { "GB%.(%w+)", "toppling columns of Goodman and Bray, %1" },
     { "GB%.(%w+)%.corners", "toppling columns of Goodman and Bray, %1, forces at corners" },
     { "L.asking", "models that are asked, and run on as if they were not" },
+    { "L.masonry", "vaults and domes from files of rough stones" },
     { "L.parts", "verdicts on bodies whose parts come in another order, or in another number" },
     { "L.slivers", "filters that remarks on slivers propose" },
     { "L.verdict", "verdicts on what stands and on what slides" },
