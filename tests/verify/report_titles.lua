@@ -89,6 +89,7 @@ local TITLES = {
     { "I.written", "models written to files of every format and read again" },
     { "L.asking", "models that are asked, and run on as if they were not" },
     { "L.groups", "laws by groups beside laws by planes" },
+    { "L.masonry", "vaults and domes from files of rough stones" },
     { "L.parts", "verdicts on bodies whose parts come in another order, or in another number" },
     { "L.slivers", "filters that remarks on slivers propose" },
     { "L.verdict", "verdicts on what stands and on what slides" },
