@@ -32,8 +32,9 @@ static double counts_of(const struct tl_segments *s, uint32_t segment)
 void tl_segments_damp_body(const tl_model *m, uint32_t body, tl_vec3 *force, tl_vec3 *moment)
 {
     const struct tl_segments *s = m->segments;
-    for (uint32_t k = body < s->bodies_listed ? s->body_start[body] : 0;
-         body < s->bodies_listed && k < s->body_start[body + 1]; k++) {
+    if (!(s->damping_rate > 0) || body >= s->bodies_listed)
+        return;
+    for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
         const tl_segment_use *use = &s->body_use[k];
         double(*push)[4] = s->damping[use->segment].of[use->side];
         const double counts = counts_of(s, use->segment);
@@ -46,7 +47,7 @@ void tl_segments_damp(tl_model *m)
 {
     const struct tl_segments *s = m->segments;
     tl_gridpoints *p = &m->zones->points;
-    for (size_t row = 0; s && row < p->table.rows; row++) {
+    for (size_t row = 0; s && s->damping_rate > 0 && row < p->table.rows; row++) {
         tl_vec3 sum = tl_columns_get(p->damping, row);
         for (uint32_t k = s->use_start[row]; k < s->use_start[row + 1]; k++) {
             const tl_segment_use *use = &s->use[k];
