@@ -7,7 +7,9 @@
 #include "base/inside.h"
 #include "base/lanes.h"
 #include "base/parallel.h"
+#include "cycle/element_forces.h"
 #include "cycle/settling.h"
+#include "element/elements.h"
 #include "force/laws.h"
 #include "model/contributor.h"
 #include "model/loads.h"
@@ -126,6 +128,7 @@ typedef struct tl_ledger {
     double start_kinetic, start_stored;
     double largest;             /* change of a term so far */
     double by_hand;             /* energy given between steps */
+    double given;               /* by contributors, from outside */
     double error;               /* of the sum, at the last step */
     uint64_t structure, laws;   /* of the model, at the last step */
     double overlaps;            /* stored in the first step by blocks that were made overlapping */
@@ -374,11 +377,22 @@ typedef struct tl_row_value {
     uint32_t row;
 } tl_row_value;
 
-/* Bodies on which what acts stands, a flag each, or NULL: they and their contacts rest. Only contacts are known to
- * rest. */
+/* Bodies on which what contacts do stands, a flag each, or NULL: they and their contacts rest. Only contacts and
+ * elements are known to leave others alone. */
 static inline const uint8_t *tl_idle_bodies(const tl_model *m)
 {
-    return m->detect->any_idle && !m->cycle->contributor[1] ? m->detect->idle : NULL;
+    const tl_contributor *const *of = m->cycle->contributor;
+    const bool known = !of[1] || (of[1] == &tl_elements_act && !of[2]);
+    return m->detect->any_idle && known ? m->detect->idle : NULL;
+}
+
+/* Whether what acts on a body stands: no node of an element is on it. `idle`: those of the model. */
+static inline bool tl_body_idles(const tl_model *m, const uint8_t *idle, uint32_t body)
+{
+    if (!idle || !idle[body])
+        return false;
+    const struct tl_elements *e = m->cycle->contributor[1] ? m->elements : NULL;
+    return !e || e->use_start[body] == e->use_start[body + 1];
 }
 
 /* Whether a body counts for the rules: one that can move or, where none can, any. */

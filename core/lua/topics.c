@@ -5,6 +5,7 @@
 #include "lua/boundary.h"
 #include "lua/contact.h"
 #include "lua/deformable.h"
+#include "lua/element.h"
 #include "lua/history.h"
 #include "lua/law_test.h"
 #include "lua/library.h"
@@ -24,7 +25,7 @@ static const tl_lua_topic *const lists[] = {tl_lua_model_topics,      tl_lua_blo
                                             tl_lua_law_test_topics,   tl_lua_solid_test_topics, tl_lua_boundary_topics,
                                             tl_lua_run_topics,        tl_lua_history_topics,    tl_lua_library_topics,
                                             tl_lua_quality_topics,    tl_lua_page_topics,       tl_lua_view_topics,
-                                            tl_lua_state_topics,      tl_lua_seat_topics};
+                                            tl_lua_state_topics,      tl_lua_seat_topics,       tl_lua_element_topics};
 
 const tl_lua_topic *tl_lua_topic_at(size_t i)
 {
