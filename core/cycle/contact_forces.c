@@ -5,6 +5,7 @@
 #include "contact/contacts.h"
 #include "contact/kind.h"
 #include "cycle/cycle_data.h"
+#include "cycle/idle.h"
 #include "cycle/undo.h"
 #include "force/joint_laws.h"
 #include "force/laws.h"

@@ -7,9 +7,7 @@
 #include "base/inside.h"
 #include "base/lanes.h"
 #include "base/parallel.h"
-#include "cycle/element_forces.h"
 #include "cycle/settling.h"
-#include "element/elements.h"
 #include "force/laws.h"
 #include "model/contributor.h"
 #include "model/loads.h"
@@ -376,24 +374,6 @@ typedef struct tl_row_value {
     double value;
     uint32_t row;
 } tl_row_value;
-
-/* Bodies on which what contacts do stands, a flag each, or NULL: they and their contacts rest. Only contacts and
- * elements are known to leave others alone. */
-static inline const uint8_t *tl_idle_bodies(const tl_model *m)
-{
-    const tl_contributor *const *of = m->cycle->contributor;
-    const bool known = !of[1] || (of[1] == &tl_elements_act && !of[2]);
-    return m->detect->any_idle && known ? m->detect->idle : NULL;
-}
-
-/* Whether what acts on a body stands: no node of an element is on it. `idle`: those of the model. */
-static inline bool tl_body_idles(const tl_model *m, const uint8_t *idle, uint32_t body)
-{
-    if (!idle || !idle[body])
-        return false;
-    const struct tl_elements *e = m->cycle->contributor[1] ? m->elements : NULL;
-    return !e || e->use_start[body] == e->use_start[body + 1];
-}
 
 /* Whether a body counts for the rules: one that can move or, where none can, any. */
 static inline bool tl_body_counts(const tl_model *m, uint32_t body)

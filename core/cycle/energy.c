@@ -24,6 +24,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <talus/elements.h>
 
 /* The term of a contributor; a new one at the end. Only a file can be full of others: the last one is shared then. */
 static tl_energy_term *term_of(tl_ledger *l, const char *name)

@@ -10,6 +10,7 @@
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
 #include "cycle/gridpoints.h"
+#include "cycle/idle.h"
 #include "cycle/loose.h"
 #include "cycle/rest.h"
 #include "model/loads.h"

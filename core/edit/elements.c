@@ -4,6 +4,7 @@
 #include "element/follow.h"
 #include "element/life.h"
 #include "element/place.h"
+#include "element/relay.h"
 #include "element/set.h"
 #include "model/joints.h"
 #include "model/rows.h"
@@ -95,7 +96,7 @@ static tl_status commit(making *k, tl_id **ids, size_t *made)
 {
     tl_model *m = k->m;
     struct tl_elements *e = m->elements;
-    const size_t before = e->table.table.rows, placed = k->placing.placed_count;
+    const size_t before = e->table.table.rows, nodes = e->nodes.table.rows, placed = k->placing.placed_count;
     tl_id *list = malloc((placed + 1) * sizeof *list);
     const bool enough =
         list && tl_grow(&e->set, &e->set_capacity, e->set_count + k->count, sizeof *e->set) &&
@@ -113,9 +114,16 @@ static tl_status commit(making *k, tl_id **ids, size_t *made)
         free(list);
         return status;
     }
-    k->count = 0; /* they are the model's */
     for (size_t i = 0; i < placed; i++)
         list[i] = e->table.id[before + i];
+    if (placed > 0 && tl_element_ops_of(&e->set[first])->lays_again && !tl_elements_give_way(e, before)) {
+        tl_table_resize(&e->table.table, before);
+        tl_table_resize(&e->nodes.table, nodes);
+        e->set_count -= k->count;
+        free(list);
+        return tl_fail_memory(&m->error);
+    }
+    k->count = 0; /* they are the model's */
     changed(m);
     if (made)
         *made = placed;
@@ -264,7 +272,7 @@ tl_status tl_elements_delete(tl_model *m, const tl_id *elements, size_t count)
         memset(keep, 1, e->table.table.rows);
         for (size_t i = 0; i < count; i++)
             keep[row[i]] = 0;
-        tl_elements_keep(e, keep);
+        tl_elements_keep(e, keep, true);
         changed(m);
     }
     free(keep);

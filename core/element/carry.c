@@ -1,8 +1,8 @@
 /* carry.c - what carries a node: a rigid body, or a zone (elements.h has the formulas).
  *
  * A node of a deformable block lies in one of its zones, with the weights N_a of the corners. A node on a face lies on
- * a triangle of the surface, whose corners come first: the present normal is that of the triangle. The pose u, R that
- * the body had when its mesh was made gives the place in the frame of the body at which gridpoints begin:
+ * a triangle of the surface, whose corners come first: the present normal is that of the triangle. A body with a mesh
+ * begins at the pose u, R that it had when the mesh was made:
  *
  *     x_ref + u + R p = sum N_a ref_a */
 #include "element/carry.h"

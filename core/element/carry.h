@@ -7,8 +7,8 @@
 /* Puts a node, whose block is set, on its block where it is now: `place` from the model's origin, the present normal or
  * zero. Its displacement counts from here. */
 void tl_node_install(tl_model *m, size_t row, tl_vec3 place, tl_vec3 normal);
-/* Gives a node, whose block has the row `block`, its place in the body's frame or in a zone as these are now, without
- * moving it. */
+/* Gives a node its place in the frame, or in a zone, of the body that the block in row `block` is in now. It does not
+ * move by that. */
 void tl_node_reframe(tl_model *m, size_t row, uint32_t block);
 /* The displacement of a node at the present pose of what carries it, m. */
 tl_vec3 tl_node_moved(const tl_model *m, size_t row);

@@ -4,9 +4,8 @@
  * rows that follow each other; rows of both tables are in the order of the ids. A node is carried by a rigid body, by
  * the zone of a deformable one that it lies in, or by the ground.
  *
- * The place of a node's material when its block was made is rest - from, with `rest` where it was when installed and
- * `from` how far it had moved by then. Blocks keep where they were made through cuts and joins (tl_block_made), so that
- * gives the place in the frame of any body that the block, or a part of it, is in later:
+ * A node's place when installed is `rest`. Its block had moved by `from` there since it was made. Cuts and joins keep
+ * where blocks were made (tl_block_made). So rest - from gives the place in the frame of any later body:
  *
  *     x_made = x_ref + shift + T p,    p = T^t (rest - from - x_ref - shift)
  *
@@ -15,7 +14,7 @@
  *     u_node = (u + R p) - base
  *
  * base is u + R p when the node was installed, or what keeps u_node as it is when the frame changes. A node in a zone
- * moves by the sum of its shares N_a of the gridpoints' displacements u_a, and gives them N_a f of its force f. */
+ * has shares N_a of its gridpoints. It moves by the sum of N_a u_a and gives them N_a f of its force f. */
 #ifndef TL_ELEMENT_ELEMENTS_H
 #define TL_ELEMENT_ELEMENTS_H
 

@@ -8,6 +8,7 @@
 #include "base/inside.h"
 #include "element/batch.h"
 #include "element/carry.h"
+#include "element/relay.h"
 #include "element/set.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
@@ -198,12 +199,14 @@ tl_status tl_elements_ready(tl_model *m)
     if (!e)
         return TL_OK;
     tl_elements_follow(m);
+    tl_status status = tl_elements_lay_again(m);
+    if (status != TL_OK)
+        return status;
     if (e->listed != e->version) {
         if (!list_chunks(e) || !list_nodes(m))
             return tl_fail_memory(&m->error);
         e->listed = e->version;
     }
-    tl_status status = TL_OK;
     for (size_t k = 0; e->rated != e->version && k < e->chunk_count && status == TL_OK; k++)
         status = rate_chunk(m, &e->chunk[k]);
     if (status == TL_OK)

@@ -109,11 +109,12 @@ static void keep_sets(struct tl_elements *e)
     e->set_count = kept;
 }
 
-void tl_elements_keep(struct tl_elements *e, const unsigned char *keep)
+void tl_elements_keep(struct tl_elements *e, const unsigned char *keep, bool sets)
 {
     tl_element_table *t = &e->table;
     uint32_t kept = 0;
-    number_sets(e, keep);
+    if (sets)
+        number_sets(e, keep);
     for (size_t row = 0; row < t->table.rows; row++) {
         const uint32_t begin = t->node_begin[row];
         t->node_begin[row] = kept;
@@ -123,6 +124,7 @@ void tl_elements_keep(struct tl_elements *e, const unsigned char *keep)
     }
     e->nodes.table.rows = kept;
     tl_table_keep(&t->table, keep);
-    keep_sets(e);
+    if (sets)
+        keep_sets(e);
     e->version++;
 }

@@ -3,8 +3,9 @@
  * The line is cut into ways through blocks: of a rigid one between the first and last of its planes, of a deformable
  * body between the first and last triangle of its surface. Ways through blocks of one body that follow each other are
  * one. A way of length L has n = ceil(L / spacing) equal parts, and nodes at their ends. */
+#include "element/line.h"
+
 #include "base/error.h"
-#include "element/place.h"
 #include "zone/zones.h"
 
 #include <math.h>

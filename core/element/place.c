@@ -6,7 +6,9 @@
 #include "base/inside.h"
 #include "base/kind_states.h"
 #include "element/carry.h"
+#include "element/line.h"
 #include "element/set.h"
+#include "element/walls.h"
 #include "plugin/loader.h"
 
 #include <math.h>
@@ -14,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 /* Tolerance: over the size of a block, by so much a node may lie outside of it. It is what contacts take for
  * touching. */
@@ -151,7 +154,7 @@ static void say(const tl_element_host *host, const char *format, ...)
     char text[TL_ERROR_TEXT];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    tl_text_vprint(text, sizeof text, format, args);
     va_end(args);
     tl_model_say(placing_of(host)->m, "%s: %s", placing_of(host)->kind->name, text);
 }
@@ -161,7 +164,7 @@ static tl_status fail(const tl_element_host *host, tl_status status, const char 
     char text[TL_ERROR_TEXT];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    tl_text_vprint(text, sizeof text, format, args);
     va_end(args);
     return tl_fail(&placing_of(host)->m->error, status == TL_OK ? TL_E_PLUGIN : status, "%s", text);
 }

@@ -1,11 +1,12 @@
 /* walls.c - the polygons in which a face of one block faces one of another, of different bodies.
  *
  * Both faces are seen along their mean normal n, which is unit and points from A to B. Their common outline is a convex
- * polygon. Its corners lie on each wall where a line along n meets that. The opening at a corner is the distance along n
- * from A's wall to B's, and the mean over the area is taken with the fan rule, exact for plane walls. Of a deformable
- * block each triangle of a face is a wall. */
+ * polygon. Its corners lie on each wall where a line along n meets that. The opening at a corner is the distance along
+ * n from A's wall to B's. Its mean over the area is exact for plane walls: the fan rule. Of a deformable block each
+ * triangle of a face is a wall. */
+#include "element/walls.h"
+
 #include "base/error.h"
-#include "element/place.h"
 #include "geometry/measure.h"
 #include "geometry/point2.h"
 #include "model/joints.h"
@@ -293,7 +294,7 @@ static bool try_all(search *s, flats *f)
     return enough;
 }
 
-/* By blocks and faces; of triangles of one face by their corners' places in the list, which the order of a search gives. */
+/* By blocks and faces; triangles of one face in the order of the search, which is that of their corners. */
 static int compare_walls(const void *a, const void *b)
 {
     const tl_element_wall *x = a, *y = b;

@@ -9,7 +9,8 @@
  *     PREFIX.pairs     its pairs of blocks, ids a < b: a 2^32 + b, ascending
  *
  * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules, or "solid.0", ... with
- * PREFIX.name, or "element.0", ... with PREFIX.group and PREFIX.placed, the structure for which it was placed. A parameter that is a table is a list of its rows. Parameters are checked as those of a script are. */
+ * PREFIX.name, or "element.0", ... with PREFIX.group and PREFIX.placed, the structure for which it was placed. A
+ * parameter that is a table is a list of its rows. Parameters are checked as those of a script are. */
 #include "state/kinds.h"
 
 #include "base/params.h"

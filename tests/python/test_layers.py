@@ -63,6 +63,7 @@ PUBLIC = {
     "defaults.h": {"talus.h"},
     "fields.h": {"talus.h"},
     "zones.h": {"talus.h"},
+    "elements.h": {"talus.h"},
     "views.h": {"talus.h"},
     "boundary.h": {"talus.h"},
 }
@@ -79,7 +80,7 @@ STANDARD_HEADERS = {
 SCREEN_HEADERS = {"pthread.h", "unistd.h", "poll.h", "strings.h", "netinet/in.h", "sys/eventfd.h", "sys/random.h", "sys/socket.h",
                   "microhttpd.h"}
 LUA_HEADERS = {"lua.h", "lauxlib.h", "lualib.h", "luaconf.h", "lua.hpp"}
-KIND_FOLDERS = ("laws", "damping", "generators", "solids", "screens")
+KIND_FOLDERS = ("laws", "damping", "generators", "solids", "elements", "screens")
 # Kinds whose names are also words of the model (a joint is a thing, a field and a generator; a
 # contact's state may be elastic, a ratio local, energy kinetic, a boundary in a box): only a look-up or comparison with them is a fault.
 WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic", "box", "zones"}

@@ -62,8 +62,8 @@ TL_API tl_status tl_element_put(tl_model *model, tl_id element, size_t index, co
 TL_API const tl_field *tl_element_fields(size_t *count);
 /* The value of field `index` of an element. TL_E_STALE for one that is no more. */
 TL_API tl_status tl_element_field(tl_model *model, tl_id element, size_t index, tl_field_value *value);
-/* Writes a field that is a number, or a state of the whole, by its name: that of elements[i] to out[i]; NaN of one whose
- * kind has no such state. `*width` becomes 1; with `out` NULL that is all. TL_E_NOT_FOUND for an unknown name. */
+/* Writes a field that is a number, or a state of the whole, by its name: that of elements[i] to out[i]. It is NaN where
+ * the kind has no such state. `*width` becomes 1; with `out` NULL that is all. TL_E_NOT_FOUND for an unknown name. */
 TL_API tl_status tl_elements_values(tl_model *model, const tl_id *elements, size_t count, const char *name, double *out,
                                     size_t *width);
 

@@ -6,8 +6,8 @@
  *
  * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a plugin creates
  * nothing. The descriptor lists *kinds*: laws, dampings, generators, screens, solids and elements, each with its
- * parameters, states and operations. The host checks, defaults and documents parameters from one table. It owns states, carries
- * them over, saves and writes them.
+ * parameters, states and operations. The host checks, defaults and documents parameters from one table. It owns
+ * states, carries them over, saves and writes them.
  *
  * Growth: every struct begins with its `size` and every array carries a stride, so a newer host
  * reads an older plugin. The major version must match; a minor version only appends.
@@ -70,8 +70,8 @@ typedef enum tl_param_type {
     TL_PARAM_BOOL, /* int32_t, 0 or 1 */
     TL_PARAM_ENUM, /* int32_t, index into `choices` */
     TL_PARAM_VEC3, /* tl_vec3; NaN when optional and not given */
-    /* of generators only: they are valid during the call, and the host refuses them in kinds that keep parameters. Since
-     * 1.13 also of elements: the host keeps the text as long as `self`. */
+    /* of generators only: they are valid during the call, and the host refuses them in kinds that keep parameters.
+     * Since 1.13 also of elements: the host keeps the text as long as `self`. */
     TL_PARAM_STRING, /* const char *; NULL when optional and not given */
     /* tl_points: a list of vectors; empty when optional and not given. Since 1.10 also of solids, with TL_PARAM_FLAT: a
      * table of rows {x, y} in which x ascends. The host keeps the rows as long as `self`. */
@@ -154,7 +154,7 @@ typedef enum tl_state_transfer {
 } tl_state_transfer;
 
 /* One state of a law (per contact point), of a damping (per model), of a solid (per zone) or of an element (per node or
- * per element). The host owns it. */
+ * for the whole). The host owns it. */
 typedef struct tl_state {
     uint32_t size;
     uint32_t kind;     /* tl_state_kind; a damping has scalars only */
@@ -600,9 +600,9 @@ enum {
  * of the columns of nodes. Columns need not be aligned. Places count from `origin`, so far from zero they keep their
  * digits. A node without a block is on the ground: it does not move.
  *
- * Energies are those at the present places. `given` is work that comes from outside, as of water. The sum
- * stored - stored before + lost - given is what bodies have done on the element. The host does not check it: the balance
- * of the model shows what is missing. */
+ * Energies are those at the present places. `given` is work that comes from outside, as of water. The bodies do the
+ * work stored - stored before + lost - given on the element; the balance of the model shows what is missing. It books
+ * the work of a step with the mean of the forces before and after it: lost and given should do so, too. */
 typedef struct tl_element_batch {
     uint32_t size, count;
     double dt;   /* s, in which nodes have moved last; 0 in the first step of a run, and while model:relax runs */
@@ -639,8 +639,9 @@ typedef struct tl_new_element {
     size_t count;
     const double *node_state; /* [count][states of a node]; NULL: their initial values */
     const double *state;      /* [states of an element]; NULL: their initial values */
-    /* A name among the elements of one call; 0: none. Where `place` is called again an element keeps its states by it:
-     * nodes have those of the nearest old one on the same block. */
+    /* With `lays_again`, a name among the elements of the kind; 0: none. The element takes the place of that of an
+     * earlier call with the same key. Where `place` is called again it keeps its states: nodes have those of the nearest
+     * old one on the same block. */
     uint64_t key;
 } tl_new_element;
 
@@ -688,7 +689,8 @@ typedef struct tl_element_host tl_element_host;
 struct tl_element_host {
     uint32_t size;
     void *impl;
-    uint64_t seed; /* of the model */
+    uint64_t seed;  /* of the model */
+    uint32_t again; /* 1: the call is repeated: none of what it finds may be there any more */
 
     /* Makes an element. Elements of one call get ascending ids. */
     tl_status (*add)(const tl_element_host *, const tl_new_element *element);
@@ -730,8 +732,9 @@ typedef struct tl_element_ops {
     void (*destroy)(void *self);
     /* not 0: `update` always returns TL_OK, as a law's */
     uint32_t never_fails;
-    /* not 0: `place` is called again when blocks have come, gone or been cut, and when blocks with its elements have
-     * slid by 1e-3 of their size; the elements of the call are then those that it makes */
+    /* not 0: `place` is called again when blocks have come, gone or been cut, and when the first and the last node of
+     * an element have moved apart by 1e-3 of the size of their blocks. The elements of the call are then those that it
+     * makes. */
     uint32_t lays_again;
 } tl_element_ops;
 
