@@ -134,6 +134,35 @@ static tl_status commit(making *k, tl_id **ids, size_t *made)
     return TL_OK;
 }
 
+/* Begins a call, and has the kind place what it is for. */
+static tl_status ask(making *k, const char *kind, const tl_args *args, size_t count, const char *group)
+{
+    tl_model *m = k->m;
+    tl_status status = tl_model_may_set(m, "place elements");
+    if (status != TL_OK)
+        return status;
+    k->kind = tl_plugin_find(TL_KIND_ELEMENT, kind);
+    if (!k->kind)
+        return tl_kind_unknown(&m->error, TL_KIND_ELEMENT, kind);
+    tl_rows_tidy(m);
+    const uint32_t number = tl_group_intern(m, group ? group : "");
+    k->set = calloc(count + 1, sizeof *k->set);
+    if (number == UINT32_MAX || !k->set || !tl_elements_begin(m))
+        return tl_fail_memory(&m->error);
+    tl_elements_follow(m);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        status = make_one(k, &args[i], number, count);
+    return status;
+}
+
+static void end(making *k)
+{
+    for (size_t i = 0; i < k->count; i++)
+        tl_element_set_clear(&k->set[i]);
+    free(k->set);
+    tl_placing_free(&k->placing);
+}
+
 tl_status tl_model_element(tl_model *m, const char *kind, const tl_args *args, size_t count, const char *group,
                            tl_id **ids, size_t *made)
 {
@@ -142,29 +171,30 @@ tl_status tl_model_element(tl_model *m, const char *kind, const tl_args *args, s
         *ids = NULL;
     if (made)
         *made = 0;
-    tl_status status = tl_model_may_set(m, "place elements");
-    if (status != TL_OK)
-        return status;
-    k.kind = tl_plugin_find(TL_KIND_ELEMENT, kind);
-    if (!k.kind)
-        return tl_kind_unknown(&m->error, TL_KIND_ELEMENT, kind);
-    tl_rows_tidy(m);
-    const uint32_t number = tl_group_intern(m, group ? group : "");
-    k.set = calloc(count + 1, sizeof *k.set);
-    if (number == UINT32_MAX || !k.set || !tl_elements_begin(m)) {
-        free(k.set);
-        return tl_fail_memory(&m->error);
-    }
-    tl_elements_follow(m);
     tl_placing_begin(&k.placing, m, find_faces);
-    for (size_t i = 0; i < count && status == TL_OK; i++)
-        status = make_one(&k, &args[i], number, count);
+    tl_status status = ask(&k, kind, args, count, group);
     if (status == TL_OK)
         status = commit(&k, ids, made);
-    for (size_t i = 0; i < k.count; i++)
-        tl_element_set_clear(&k.set[i]);
-    free(k.set);
-    tl_placing_free(&k.placing);
+    end(&k);
+    return status;
+}
+
+tl_status tl_model_element_places(tl_model *m, const char *kind, const tl_args *args, size_t count, tl_vec3 **places,
+                                  size_t *nodes)
+{
+    making k = {.m = m};
+    *places = NULL;
+    *nodes = 0;
+    tl_placing_begin(&k.placing, m, find_faces);
+    tl_status status = ask(&k, kind, args, count, NULL);
+    if (status == TL_OK) {
+        *places = malloc((k.placing.node_count + 1) * sizeof **places);
+        status = *places ? TL_OK : tl_fail_memory(&m->error);
+    }
+    for (size_t i = 0; status == TL_OK && i < k.placing.node_count; i++)
+        (*places)[i] = k.placing.node[i].place;
+    *nodes = status == TL_OK ? k.placing.node_count : 0;
+    end(&k);
     return status;
 }
 

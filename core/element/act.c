@@ -96,6 +96,39 @@ tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
                    e->table.id[row], kind->name, tl_plugin_id(kind), failure->error.text);
 }
 
+/* The tables as they were; empty, when out of memory. */
+typedef struct kept {
+    tl_element_table table;
+    tl_node_table nodes;
+} kept;
+
+tl_status tl_elements_sum(tl_model *m, tl_vec3 *force)
+{
+    struct tl_elements *e = m->elements;
+    tl_failure failure = {.error = {.status = TL_OK}};
+    kept had = {.table = e->table, .nodes = e->nodes};
+    const bool enough = tl_table_copy(&had.table.table, &had.table, &e->table.table) &&
+                        tl_table_copy(&had.nodes.table, &had.nodes, &e->nodes.table);
+    tl_status status = enough ? TL_OK : tl_fail_memory(&m->error);
+    pthread_mutex_init(&failure.lock, NULL);
+    if (status == TL_OK)
+        status = tl_elements_apply(m, &failure);
+    pthread_mutex_destroy(&failure.lock);
+    for (size_t row = 0; status == TL_OK && row < e->nodes.table.rows; row++)
+        if (e->nodes.body[row] != TL_NO_ROW)
+            force[e->nodes.body[row]] =
+                tl_v3_add(force[e->nodes.body[row]], tl_columns_get(e->nodes.force, row));
+    for (size_t k = 0; enough && k < e->table.table.column_count; k++)
+        memcpy(tl_table_data(&e->table.table, k), tl_table_data(&had.table.table, k),
+               e->table.table.rows * e->table.table.columns[k].size);
+    for (size_t k = 0; enough && k < e->nodes.table.column_count; k++)
+        memcpy(tl_table_data(&e->nodes.table, k), tl_table_data(&had.nodes.table, k),
+               e->nodes.table.rows * e->nodes.table.columns[k].size);
+    tl_table_free(&had.table.table);
+    tl_table_free(&had.nodes.table);
+    return status;
+}
+
 static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
 {
     const struct tl_elements *e = m->elements;
