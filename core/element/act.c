@@ -116,8 +116,7 @@ tl_status tl_elements_sum(tl_model *m, tl_vec3 *force)
     pthread_mutex_destroy(&failure.lock);
     for (size_t row = 0; status == TL_OK && row < e->nodes.table.rows; row++)
         if (e->nodes.body[row] != TL_NO_ROW)
-            force[e->nodes.body[row]] =
-                tl_v3_add(force[e->nodes.body[row]], tl_columns_get(e->nodes.force, row));
+            force[e->nodes.body[row]] = tl_v3_add(force[e->nodes.body[row]], tl_columns_get(e->nodes.force, row));
     for (size_t k = 0; enough && k < e->table.table.column_count; k++)
         memcpy(tl_table_data(&e->table.table, k), tl_table_data(&had.table.table, k),
                e->table.table.rows * e->table.table.columns[k].size);

@@ -4,11 +4,13 @@
  * when blocks have come, gone or been cut, and when two blocks of one element have slid by SLID of their size. All calls
  * of such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
  * keeps the states and flags of the one that had its key; its nodes take those of the nearest old node on the same
- * block. Where nothing has moved they are the same to the bit. */
+ * block. Nodes of an element with a new key take those of the nearest old node of their call. Where nothing has moved
+ * all are the same to the bit. */
 #include "element/relay.h"
 
 #include "base/columns.h"
 #include "base/error.h"
+#include "element/carry.h"
 #include "element/life.h"
 #include "element/place.h"
 
@@ -95,8 +97,8 @@ bool tl_elements_give_way(struct tl_elements *e, size_t first)
     if (enough && taken.count > 1)
         qsort(taken.at, taken.count, sizeof *taken.at, compare_keys);
     for (size_t row = 0; row < rows && enough; row++)
-        keep[row] = row >= first || e->set[t->set[row]].kind != e->set[t->set[first]].kind ||
-                    !is_taken(&taken, t->key[row]);
+        keep[row] =
+            row >= first || e->set[t->set[row]].kind != e->set[t->set[first]].kind || !is_taken(&taken, t->key[row]);
     if (enough)
         tl_elements_keep(e, keep, false);
     free(taken.at);
@@ -135,9 +137,11 @@ static uint32_t nearest_node(const tl_node_table *n, uint32_t row, uint32_t begi
     return best;
 }
 
-/* Gives an element what an old one with its key had. */
-static void inherit(struct tl_elements *e, uint32_t row, uint32_t from)
+/* Gives an element what an old one with its key had. Blocks have moved since forces were last asked for: nodes are given
+ * that motion for the step to come. */
+static void inherit(tl_model *m, uint32_t row, uint32_t from)
 {
+    struct tl_elements *e = m->elements;
     tl_element_table *t = &e->table;
     tl_node_table *n = &e->nodes;
     t->flags[row] = t->flags[from] & ~(uint32_t)TL_ELEMENT_DETACHED;
@@ -150,12 +154,36 @@ static void inherit(struct tl_elements *e, uint32_t row, uint32_t from)
             n->state[c][k] = n->state[c][old];
         for (int c = 0; old != TL_NO_ROW && c < 3; c++)
             n->force[c][k] = n->weight[old] > 0 ? n->force[c][old] * (n->weight[k] / n->weight[old]) : 0;
+        if (old != TL_NO_ROW)
+            tl_columns_put(n->u, k, tl_v3_sub(tl_columns_get(n->u, old), tl_node_moved(m, old)));
+    }
+}
+
+/* The nodes of an element that has no older one get states from the nearest node of its set among elements before
+ * `first`, on any block: parts of blocks that were cut have other names. */
+static void inherit_near(struct tl_elements *e, uint32_t row, uint32_t first)
+{
+    const tl_element_table *t = &e->table;
+    tl_node_table *n = &e->nodes;
+    for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
+        uint32_t best = TL_NO_ROW;
+        double least = INFINITY;
+        for (uint32_t old = 0; old < first; old++)
+            for (uint32_t i = t->node_begin[old];
+                 t->set[old] == t->set[row] && i < t->node_begin[old] + t->node_count[old]; i++) {
+                const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(n, i), tl_node_place(n, k)));
+                best = far < least ? i : best;
+                least = fmin(least, far);
+            }
+        for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++)
+            n->state[c][k] = n->state[c][best];
     }
 }
 
 /* Lets new elements, rows from `first` on, inherit from those before. false: out of memory. */
-static bool inherit_all(struct tl_elements *e, uint32_t first)
+static bool inherit_all(tl_model *m, uint32_t first)
 {
+    struct tl_elements *e = m->elements;
     const tl_element_table *t = &e->table;
     old_one *list = malloc((first + (size_t)1) * sizeof *list);
     if (!list)
@@ -166,10 +194,11 @@ static bool inherit_all(struct tl_elements *e, uint32_t first)
         qsort(list, first, sizeof *list, compare_old);
     for (uint32_t row = first; row < t->table.rows; row++) {
         const old_one sought = {t->set[row], row, t->key[row]};
-        const old_one *found =
-            first && t->key[row] ? bsearch(&sought, list, first, sizeof *list, compare_old) : NULL;
+        const old_one *found = first && t->key[row] ? bsearch(&sought, list, first, sizeof *list, compare_old) : NULL;
         if (found)
-            inherit(e, row, found->row);
+            inherit(m, row, found->row);
+        else
+            inherit_near(e, row, first);
     }
     free(list);
     return true;
@@ -204,7 +233,7 @@ static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
     tl_status status = TL_OK;
     for (size_t k = 0; k < e->set_count && status == TL_OK; k++)
         status = tl_placing_commit(&of[k], (uint32_t)k);
-    if (status == TL_OK && !inherit_all(e, before))
+    if (status == TL_OK && !inherit_all(m, before))
         status = tl_fail_memory(&m->error);
     if (status != TL_OK) {
         tl_table_resize(&e->table.table, before);

@@ -155,8 +155,7 @@ static bool extra(lua_State *L, tl_model *model, const tl_lua_item *item, const 
 {
     tl_element_info info;
     double value;
-    if (tl_element_get(model, item->name.block, &info) != TL_OK)
-        return false;
+    tl_lua_ok(L, model, tl_element_get(model, item->name.block, &info));
     if (strcmp(name, "nodes") == 0) {
         lua_createtable(L, (int)info.nodes, 0);
         for (size_t i = 0; i < info.nodes; i++) {

@@ -242,7 +242,7 @@ static void print_overview(void)
          "  talus -e CHUNK                   run a piece of Lua\n"
          "  talus help [TOPIC]               this page, a function, or a plugin\n"
          "  talus plugins                    what is loaded, and what was refused and why\n"
-         "  talus new law|damping|generator|solid NAME [FOLDER]\n"
+         "  talus new law|damping|generator|solid|element NAME [FOLDER]\n"
          "                                   a folder with a plugin to change, that builds and "
          "works\n"
          "  talus check FILE.so [NAME=VALUE...]\n"
