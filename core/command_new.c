@@ -1,4 +1,4 @@
-/* command_new.c - `talus new law|damping|generator|solid|element NAME [FOLDER]`: a folder with a plugin that builds and works.
+/* command_new.c - `talus new law|damping|generator|solid|element NAME [FOLDER]`: a plugin that builds and works.
  *
  * The files are those of share/talus/templates/TYPE of an installation, or of templates/TYPE beside the program of a
  * build. NAME stands in the place of my_TYPE in names and texts. */

@@ -204,9 +204,9 @@ typedef struct step_rates {
     double rate, turn;
 } step_rates;
 
-/* The rate at which a body with dampers beside its springs asks for as short a step. They act by velocities of half a step
- * ago. With w^2 = 2 rate, and C the sum of c (1/M + r^2/I), the step is at most (2 / w) (sqrt(1 + l^2) - l), l = C / w.
- * No motion of a body and its neighbours is slowed by more than 2 C. */
+/* The rate at which a body with dampers beside its springs asks for as short a step. They act by velocities of half a
+ * step ago. With w^2 = 2 rate, and C the sum of c (1/M + r^2/I), the step is at most (2 / w) (sqrt(1 + l^2) - l),
+ * l = C / w. No motion of a body and its neighbours is slowed by more than 2 C. */
 static double damped_rate(double rate, double c)
 {
     const double w = sqrt(2 * rate + c * c) + c;

@@ -5,11 +5,11 @@
 #include "element/elements.h"
 #include "model/contributor.h"
 
-/* Asks all kinds for the forces at the present places. The first failure is noted with the id of its element in
- * `failing`, and the step is then to be undone. */
+/* Asks all kinds for the forces at the present places. The first failure is told with its element; the step is then to
+ * be undone. */
 tl_status tl_elements_apply(tl_model *m, tl_failure *failure);
-/* The force of all nodes on each body, force[rows of bodies], N, at the present places. Nothing changes by it, and lists
- * are ready. TL_E_MEMORY, or a failure of a kind. */
+/* The force of all nodes on each body, force[rows of bodies], N, at the present places. Nothing changes by it.
+ * TL_E_MEMORY, or a failure of a kind. */
 tl_status tl_elements_sum(tl_model *m, tl_vec3 *force);
 /* Adds what nodes do to rigid bodies. */
 void tl_elements_gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on);

@@ -21,13 +21,12 @@
 #include "lua/water.h"
 #include "lua/zones.h"
 
-static const tl_lua_topic *const lists[] = {tl_lua_model_topics,      tl_lua_block_topics,      tl_lua_contact_topics,
-                                            tl_lua_deformable_topics, tl_lua_zone_topics,       tl_lua_lists_topics,
-                                            tl_lua_law_test_topics,   tl_lua_solid_test_topics, tl_lua_boundary_topics,
-                                            tl_lua_run_topics,        tl_lua_history_topics,    tl_lua_library_topics,
-                                            tl_lua_quality_topics,    tl_lua_page_topics,       tl_lua_view_topics,
-                                            tl_lua_state_topics,      tl_lua_seat_topics,       tl_lua_element_topics,
-                                            tl_lua_water_topics};
+static const tl_lua_topic *const lists[] = {
+    tl_lua_model_topics,    tl_lua_block_topics,   tl_lua_contact_topics,  tl_lua_deformable_topics,
+    tl_lua_zone_topics,     tl_lua_lists_topics,   tl_lua_law_test_topics, tl_lua_solid_test_topics,
+    tl_lua_boundary_topics, tl_lua_run_topics,     tl_lua_history_topics,  tl_lua_library_topics,
+    tl_lua_quality_topics,  tl_lua_page_topics,    tl_lua_view_topics,     tl_lua_state_topics,
+    tl_lua_seat_topics,     tl_lua_element_topics, tl_lua_water_topics};
 
 const tl_lua_topic *tl_lua_topic_at(size_t i)
 {

@@ -144,13 +144,15 @@ static const tl_lua_key keys[] = {
 
 const tl_lua_topic tl_lua_water_topics[] = {
     {.name = "water",
-     .usage = "selection = model:water(\"table\", {level = 20})  or  model:water(\"uniform\", {pressure = 65e3, joints = "
-              "{\"A\"}})  or  model:water(\"field\", {pressure = function(x, y, z) ... end})  or  model:water(\"none\")",
-     .doc = "Lets water press on the walls of joints: on the polygons in which a face of one block faces one of "
-            "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "
-            "it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; "
-            "then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements "
-            "have the states area, opening and dry, their nodes pressure.",
+     .usage =
+         "selection = model:water(\"table\", {level = 20})  or  model:water(\"uniform\", {pressure = 65e3, joints = "
+         "{\"A\"}})  or  model:water(\"field\", {pressure = function(x, y, z) ... end})  or  model:water(\"none\")",
+     .doc =
+         "Lets water press on the walls of joints: on the polygons in which a face of one block faces one of "
+         "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "
+         "it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; "
+         "then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements "
+         "have the states area, opening and dry, their nodes pressure.",
      .keys = keys,
      .arguments = 2,
      .method = model_water},

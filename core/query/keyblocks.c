@@ -6,8 +6,8 @@
  * holds more than zero. A block that is convex and finite then has its free faces on the way out. A cone other than
  * {0} holds an edge n_i x n_j or, when all normals are parallel, -n_1; so looking at these decides it.
  *
- * The active force r is the weight and the load of the body, and what elements do on it as it is now. It moves the body along the direction in the cone that
- * gains the most energy. That is the projection s of r on the cone,
+ * The active force r is the weight and the load of the body, and what elements do on it as it is now. It moves the body
+ * along the direction in the cone that gains the most energy. That is the projection s of r on the cone,
  *
  *     r = s + sum N_i n_i,   N_i >= 0,   s . n_i <= 0,   N_i (s . n_i) = 0
  *

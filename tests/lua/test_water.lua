@@ -130,11 +130,12 @@ do
     refuse("uniform", { pressure = 1, drain_gap = 0 }, "drain_gap")
     refuse("tabel", { level = 1 }, "table")
     refuse("field", { pressure = 3 }, "function")
-    refuse("field", { pressure = function() return -1 end }, "at least 0")
-    refuse("field", { pressure = function() error "mine" end }, "mine")
+    check.raises(function() m:water("field", { pressure = function() return -1 end }) end, "at least 0")
+    check.raises(function() m:water("field", { pressure = function() error "mine" end }) end, "mine")
+    check.equal(#m:elements(), 0)
     local lone = talus.model()
     lone:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 1 })
-    check.raises(function() lone:water("uniform", { pressure = 1 }) end, "no joint of '%*' has water")
+    check.raises(function() lone:water("uniform", { pressure = 1 }) end, "no joint of '*' has water")
 end
 
 -- Plane failure with water in the tension crack and on the plane: Hoek and Bray, Rock Slope Engineering (1977), chapter 7.

@@ -18,8 +18,8 @@ extern "C" {
 TL_API tl_status tl_model_element(tl_model *model, const char *kind, const tl_args *args, size_t count,
                                   const char *group, tl_id **ids, size_t *made);
 
-/* Where the nodes would be, one element after the other, m; nothing is placed. Fails as tl_model_element does. `places` is
- * freed with free(). */
+/* Where the nodes would be, one element after the other, m; nothing is placed. Fails as tl_model_element does. `places`
+ * is freed with free(). */
 TL_API tl_status tl_model_element_places(tl_model *model, const char *kind, const tl_args *args, size_t count,
                                          tl_vec3 **places, size_t *nodes);
 

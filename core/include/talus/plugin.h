@@ -153,8 +153,8 @@ typedef enum tl_state_transfer {
     TL_TRANSFER_LIFT /* 1.8, >= 0: what the normal force is linear in; its moments over the area stay, too */
 } tl_state_transfer;
 
-/* One state of a law (per contact point), of a damping (per model), of a solid (per zone) or of an element (per node or
- * for the whole). The host owns it. */
+/* One state: of a law per contact point, of a damping per model, of a solid per zone, of an element per node or for the
+ * whole. The host owns it. */
 typedef struct tl_state {
     uint32_t size;
     uint32_t kind;     /* tl_state_kind; a damping has scalars only */
@@ -640,8 +640,8 @@ typedef struct tl_new_element {
     const double *node_state; /* [count][states of a node]; NULL: their initial values */
     const double *state;      /* [states of an element]; NULL: their initial values */
     /* With `lays_again`, a name among the elements of the kind; 0: none. The element takes the place of that of an
-     * earlier call with the same key. Where `place` is called again it keeps its states: nodes have those of the nearest
-     * old one on the same block. */
+     * earlier call with the same key. Where `place` is called again it keeps its states: nodes have those of the
+     * nearest old one on the same block. */
     uint64_t key;
 } tl_new_element;
 
@@ -732,9 +732,8 @@ typedef struct tl_element_ops {
     void (*destroy)(void *self);
     /* not 0: `update` always returns TL_OK, as a law's */
     uint32_t never_fails;
-    /* not 0: `place` is called again when blocks have come, gone or been cut, and when the first and the last node of
-     * an element have moved apart by 1e-3 of the size of their blocks. The elements of the call are then those that it
-     * makes. */
+    /* not 0: `place` is called again when blocks have come, gone or been cut. So it is when the first and the last node
+     * of an element have moved apart by 1e-3 of the size of their blocks. Its elements are then those that it makes. */
     uint32_t lays_again;
 } tl_element_ops;
 

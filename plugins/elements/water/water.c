@@ -9,9 +9,9 @@
  * Sources: a table gives p = factor unit_weight h, h the vertical depth below it and 0 above; `uniform` the same p
  * everywhere; `field` a number for each node. A polygon that a table crosses is cut there, so p is linear on it.
  *
- * Three points of weight A / 3 integrate p n and its moments exactly: with the centroid c of the polygon and its second
- * moments C per area, x = c + sqrt(2) L y for L L^t = C and three unit vectors y at 120 degrees. Of any convex polygon
- * they lie inside.
+ * Three points of weight A / 3 integrate p n and its moments exactly. Let c be the centroid of the polygon and C its
+ * second moments per area. The points are x = c + sqrt(2) L y for L L^t = C and three unit vectors y at 120 degrees. Of
+ * any convex polygon they lie inside.
  *
  * A joint keeps its water until its mean opening passes `drain_gap`; then it is dry and stays so. What water does on
  * blocks comes from outside. */
