@@ -14,6 +14,7 @@
 #include "lua/page.h"
 #include "lua/quality.h"
 #include "lua/run.h"
+#include "lua/safety.h"
 #include "lua/seat.h"
 #include "lua/solid_test.h"
 #include "lua/state.h"
@@ -26,7 +27,7 @@ static const tl_lua_topic *const lists[] = {
     tl_lua_zone_topics,     tl_lua_lists_topics,   tl_lua_law_test_topics, tl_lua_solid_test_topics,
     tl_lua_boundary_topics, tl_lua_run_topics,     tl_lua_history_topics,  tl_lua_library_topics,
     tl_lua_quality_topics,  tl_lua_page_topics,    tl_lua_view_topics,     tl_lua_state_topics,
-    tl_lua_seat_topics,     tl_lua_element_topics, tl_lua_water_topics};
+    tl_lua_seat_topics,     tl_lua_element_topics, tl_lua_water_topics,    tl_lua_safety_topics};
 
 const tl_lua_topic *tl_lua_topic_at(size_t i)
 {

@@ -244,6 +244,49 @@ static const tl_param filter_params[] = {
 static const tl_param keyblocks_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_keyblock_query, gravity, "m/s2",
              "acceleration that acts on the blocks; that of the model when left out", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_keyblock_query, target, "",
+             "factor of safety that is asked for: each keyblock then tells the support that it takes", .min = 0.0,
+             .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+};
+
+static const char *const failed_blocks[] = {"delete", "hold", NULL};
+
+/* What factor_of_safety and safety_map have in common. */
+#define SAFETY_PARAMS                                                                                                  \
+    TL_PARAM(TL_PARAM_INT, tl_safety, max_cycles, "",                                                                  \
+             "largest number of steps of one trial; one that is undecided then counts as failing", .def = {100000.0},  \
+             .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),                                                 \
+        TL_PARAM(TL_PARAM_BOOL, tl_safety, solids, "",                                                                 \
+                 "whether the strengths of deformable blocks' solids are divided, too", .def = {1.0})
+
+static const tl_param factor_of_safety_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_safety, from, "", "least factor that is tried", .def = {0.1}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, to, "", "largest factor that is tried; above `from`", .def = {10.0}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, resolution, "", "relative width of the bracket that is found", .def = {0.01},
+             .min = 1e-4, .max = 0.5),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, least_volume, "m3",
+             "what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on",
+             .def = {0.0}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    SAFETY_PARAMS,
+};
+
+static const tl_param safety_map_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_safety, from, "", "least factor that is tried", .def = {0.5}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, to, "", "largest factor that is tried; above `from`", .def = {3.0}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, step, "", "from one factor to the next", .def = {0.02}, .min = 1e-3,
+             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    {.size = sizeof(tl_param),
+     .type = TL_PARAM_ENUM,
+     .name = "failed",
+     .unit = "",
+     .doc = "what becomes of blocks that have failed, in the copies: they are deleted, or held where they were",
+     .offset = offsetof(tl_safety, hold),
+     .choices = failed_blocks},
+    SAFETY_PARAMS,
 };
 
 static const tl_param law_test_params[] = {
@@ -369,6 +412,14 @@ static const model_function functions[] = {
      "Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor "
      "of safety in limit equilibrium.",
      PARAMS(keyblocks_params)},
+    {"factor_of_safety",
+     "Finds by how much the strengths of laws and solids may be divided before the model does not come to rest any "
+     "more. Trials are made on copies: the model stays as it is.",
+     PARAMS(factor_of_safety_params)},
+    {"safety_map",
+     "Finds the factor of safety of every block: strengths are divided by more and more, and what has failed goes "
+     "before it goes on. Trials are made on copies: the model stays as it is.",
+     PARAMS(safety_map_params)},
     {"law_test",
      "Tries a joint law on one contact point, without a model: direct shear under a constant normal stress, or in "
      "surroundings of constant normal stiffness, and closure tests.",

@@ -95,8 +95,17 @@ enum {
     TL_PARAM_FILE = 16,
     /* since 1.11, of a real of a law: a stiffness of the joint, which a trial with stiffer joints multiplies */
     TL_PARAM_STIFFNESS = 32,
+    /* since 1.12, of a real of a law or a solid, or of the second numbers of a solid's table: what a factor of safety F
+     * does to it. STRENGTH: a stress, or whatever the strength is proportional to, is divided by F. STRENGTH_ANGLE: the
+     * tangent of an angle in degrees is; 90 stays 90. STRENGTH_DIVISOR: what divides the strength is multiplied by F.
+     * STRENGTH_ENERGY: a work of fracture is divided by F^2, so that the displacements of its curve are divided by F.
+     * All strengths at once are then 1/F of what they were; values stay within the range of their row. */
+    TL_PARAM_STRENGTH = 64,
+    TL_PARAM_STRENGTH_ANGLE = 256,
+    TL_PARAM_STRENGTH_DIVISOR = 512,
+    TL_PARAM_STRENGTH_ENERGY = 1024,
     /* since 1.13, of an element: `place` reads it, so it cannot be set later */
-    TL_PARAM_PLACE = 1024
+    TL_PARAM_PLACE = 2048
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component

@@ -20,6 +20,7 @@
 #include <talus/output.h>
 #include <talus/plugin.h>
 #include <talus/plugins.h>
+#include <talus/safety.h>
 #include <talus/settings.h>
 #include <talus/solid_test.h>
 #include <talus/state.h>
