@@ -61,13 +61,13 @@ static size_t kinds_of(tl_kind_type type)
 }
 
 /* Kinds found by the search, to be compared with those at the end. */
-static size_t found[TL_KIND_SOLID + 1];
+static size_t found[TL_KIND_ELEMENT + 1];
 
 TEST(default_search_finds_every_plugin_once_in_order)
 {
     static const char *const known[] = {"coulomb", "adaptive", "box", NULL,
                                         "mohr_coulomb"}; /* a screen need not be there */
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
+    for (int type = TL_KIND_LAW; type <= TL_KIND_ELEMENT; type++) {
         found[type] = kinds_of((tl_kind_type)type);
         CHECK(found[type] >= 3 || type == TL_KIND_SCREEN);
         CHECK(type == TL_KIND_SCREEN || tl_plugin_find((tl_kind_type)type, known[type]) != NULL);
@@ -75,7 +75,7 @@ TEST(default_search_finds_every_plugin_once_in_order)
     CHECK(tl_plugin_find(TL_KIND_LAW, "box") == NULL);
     size_t files = files_in_folder();
     CHECK_INT(tl_plugin_record_count(), files);
-    size_t kinds = 0, next[TL_KIND_SOLID + 1] = {0};
+    size_t kinds = 0, next[TL_KIND_ELEMENT + 1] = {0};
     for (size_t i = 0; i < tl_plugin_record_count(); i++) {
         tl_plugin_record r = tl_plugin_record_at(i);
         CHECK(r.plugin && !r.reason && !r.note);
@@ -223,7 +223,7 @@ TEST(a_pipe_is_refused_and_not_waited_for)
 
 TEST(refusals_leave_the_kinds_as_they_were)
 {
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++)
+    for (int type = TL_KIND_LAW; type <= TL_KIND_ELEMENT; type++)
         CHECK_INT(kinds_of((tl_kind_type)type), found[type]);
 }
 
