@@ -22,7 +22,7 @@
 
 /* Default: limits of gap and overlap over the mean size of the blocks. */
 #define USUAL 0.01
-/* Limit: share of a block's least thickness by which a face of it may be drawn back. */
+/* Limit: share of a block's least thickness by which a face of it may be drawn back. Test: lua/test_seat_limits. */
 #define MOST_THIN 0.25
 
 /* Pairs that stay as drawn for one reason. */

@@ -18,17 +18,17 @@
 
 #include <math.h>
 
-/* Tolerance: sine of the tilt up to which a face lies along a plane. Faces tilted by more, up to the 15 degrees within
- * which a region has two faces for flush, are a wedge that is meant where a gap alone is beyond its limit. Test:
- * lua/test_masonry. */
+/* Tolerance: sine of the tilt up to which a face lies along a plane. Faces tilted by more are a wedge that is meant where
+ * a gap alone is beyond its limit. Those of a region are tilted by 15 degrees at the most. Test: lua/test_masonry. */
 #define MOST_TILT 0.1
 /* Tolerance: blocks that overlap along their flush faces by more than so many times the least, along another face, are
  * not on each other by them. Test: lua/test_masonry. */
 #define DEEPER 2.0
 /* Tolerance: gaps and overlaps over the size of the smaller block that are the rounding of places. A pair that fits to
- * that stays as it is. */
+ * that stays as it is. Test: lua/test_seat_limits. */
 #define FITS 1e-12
-/* Tolerance: the same over the distance between both centroids, from which places are reckoned. */
+/* Tolerance: the same over the distance between both centroids, from which places are reckoned. Test:
+ * lua/test_seat_limits. */
 #define ROUNDED 1e-14
 
 typedef struct search {

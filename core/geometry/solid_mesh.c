@@ -105,6 +105,16 @@ bool tl_piece_add_face(tl_solid_piece *p, uint32_t face)
     return true;
 }
 
+uint32_t tl_piece_compact(tl_solid_mesh *m, uint32_t piece)
+{
+    tl_solid_piece *p = &m->piece[piece];
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < p->faces; i++)
+        if (m->face[p->face[i]].piece == piece)
+            p->face[kept++] = p->face[i];
+    return p->faces = kept;
+}
+
 bool tl_piece_add_reflex(tl_solid_piece *p, uint32_t half)
 {
     if (!tl_solid_grow(&p->reflex, &p->reflex_capacity, p->reflexes, sizeof *p->reflex))

@@ -94,6 +94,7 @@ static size_t divide(const char *name, int points)
     for (size_t i = 0; i < p.count; i++) {
         sum += tl_poly_mass(p.part[i]).volume;
         CHECK_INT(tl_poly_check(p.part[i], 1e-7, &error), TL_OK);
+        CHECK(tl_poly_thickness(p.part[i]) > 1e-4 * p.part[i]->size);
     }
     if (!CHECK_NEAR(sum, volume, 1e-9 * volume))
         printf("%s\n", name);
