@@ -3,9 +3,9 @@
  * Vertices within `weld` of each other become one, at their mean. Faces that lose their area by it go. Every edge then
  * belongs to two faces. Neighbours that run along it the same way are turned against each other: of faces that hang
  * together the fewer are turned. Where shells touch along an edge, four faces or more meet there. Faces that close a
- * surface by the file's numbers of their vertices are a part, and belong with each other. Among other faces, a half-edge
- * belongs with that of the face which is met first when turning from its own face through the inside. A shell of
- * negative volume is turned inside out. */
+ * surface by the file's numbers of their vertices are a part, and belong with each other. Among other faces, a
+ * half-edge belongs with that of the face which is met first when turning from its own face through the inside. A
+ * shell of negative volume is turned inside out. */
 #include "solids.h"
 
 #include <stdlib.h>
