@@ -89,6 +89,7 @@ export function contactColours(model) {
     return [
         ["", "none"], ["state", "state"], ["normal stress", "normal stress"], ["shear stress", "shear stress"],
         ["slip", "slip"], ["joint", "joint"],
+        .../** @type {[string, string][]} */ ((model.head?.laws.length ?? 0) > 2 ? [["law", "law"]] : []),
         .../** @type {[string, string][]} */ (fields.map((f) => [`contact field:${f.name}`, plain(f.name)]))
     ];
 }
@@ -305,13 +306,15 @@ export function colourBlocks(model, frame, by) {
  */
 export function colourContacts(model, frame, by) {
     const k = frame.data.contacts;
-    if (by === "joint") {
+    if (by === "joint" || by === "law") {
+        const of = by === "joint" ? k?.joint : frame.data.laws;
+        const names = by === "joint" ? frame.head.joints : frame.head.laws;
         return {
-            colour: (i) => (k?.joint[i] ? category(k.joint[i] - 1) : NONE),
+            colour: (i) => (of?.[i] ? category(of[i] - 1) : NONE),
             legend: {
-                title: "Contacts: joint",
+                title: `Contacts: ${by}`,
                 kind: "list",
-                items: frame.head.joints.map((name, i) => ({name: name || "none", colour: i ? category(i - 1) : NONE}))
+                items: names.map((name, i) => ({name: name || "none", colour: i ? category(i - 1) : NONE}))
             }
         };
     }

@@ -5,8 +5,9 @@
 /** @typedef {{name: string, unit: string, of: string}} Field */
 /**
  * @typedef {{format: number, program: string, title: string, origin: number[], gravity: number[], size: number,
- *   groups: string[], joints: string[], friction: number[], limit: number, fields: Field[], histories: string[], live:
- * boolean, commands: boolean, solids: string[], zoneStates: string[], zoneFields: {name: string, unit: string}[]}} Head
+ *   groups: string[], joints: string[], laws: string[], friction: number[], limit: number, fields: Field[], histories:
+ * string[], live: boolean, commands: boolean, solids: string[], zoneStates: string[], zoneFields: {name: string, unit:
+ * string}[]}} Head
  */
 /**
  * @typedef {{n: number, id: Uint32Array, body: Uint32Array, group: Uint32Array, vertices: Uint32Array,
@@ -46,7 +47,7 @@
 /**
  * @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, touches: Touches |
  *   null, surface: Surface | null, points: Points | null, zones: ZoneField[], poses: Poses | null, contacts: Contacts |
- *   null, extras: Extra[], line: Line | null, keys: Keys | null,
+ *   null, laws: Uint32Array | null, extras: Extra[], line: Line | null, keys: Keys | null,
  *   finding: Finding | null, live: Live[], number: number}} FrameData
  */
 /**
@@ -170,6 +171,7 @@ function readHead(c) {
         size: h.size,
         groups: names(h.groups, "groups"),
         joints: names(h.joints, "joints"),
+        laws: names(h.laws ?? [""], "laws"),
         histories:
             names(h.histories?.map?.((/** @type {any} */ x) => x.name + (x.unit && ", " + x.unit)) ?? [], "histories"),
         fields: fields.map(
@@ -274,6 +276,18 @@ function readContacts(c, head) {
     c.below(k.joint, Math.max(1, head.joints.length), "joint");
     c.below(k.state, 4, "state");
     return k;
+}
+
+/**
+ * Which law each contact has.
+ * @param {Columns} c @param {FrameData} frame @param {Head} head @returns {Uint32Array}
+ */
+function readLaws(c, frame, head) {
+    const n = c.u32(1, "count")[0];
+    if (n !== frame.contacts?.n) throw c.bad(`it has ${n} laws for ${frame.contacts?.n ?? "no"} contacts`);
+    const laws = c.u32(n, "law");
+    c.below(laws, Math.max(1, head.laws.length), "law");
+    return laws;
 }
 
 /** @param {Columns} c @param {FrameData} frame @param {Head} head @returns {Extra} */
@@ -411,6 +425,7 @@ export function readFrame(buffer, head, news) {
         zones: [],
         poses: null,
         contacts: null,
+        laws: null,
         extras: [],
         line: null,
         keys: null,
@@ -445,6 +460,7 @@ function readChunks(buffer, head, frame) {
         else if (name === "ZFLD") frame.zones.push(readZoneField(c, head));
         else if (name === "FRAM") frame.poses = readPoses(c);
         else if (name === "CONT") frame.contacts = readContacts(c, head);
+        else if (name === "LAWS") frame.laws = readLaws(c, frame, head);
         else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));
         else if (name === "LINE")
             frame.line = {

@@ -94,9 +94,10 @@ export function contactRows(frame, id) {
         (Number.isFinite(v) ? `${figure(v)} ${unit}` : "–");
     /** @type {[string, string][]} */ const rows = [
         ["blocks", `${k.a[c]} and ${k.b[c]}`], ["joint", frame.head.joints[k.joint[c]] || "none"],
-        ["state", STATES[k.state[c]].name], ["area", out(area, "m²")], ["gap", out(k.gap[c], "m")],
-        ["slip", out(k.slip[c], "m")], ["normal force", out(press, "N")], ["shear force", out(shear, "N")],
-        ["normal stress", out(press / area, "Pa")], ["shear stress", out(shear / area, "Pa")],
+        ["law", frame.head.laws[frame.data.laws?.[c] ?? 0] || "none"], ["state", STATES[k.state[c]].name],
+        ["area", out(area, "m²")], ["gap", out(k.gap[c], "m")], ["slip", out(k.slip[c], "m")],
+        ["normal force", out(press, "N")], ["shear force", out(shear, "N")], ["normal stress", out(press / area, "Pa")],
+        ["shear stress", out(shear / area, "Pa")],
         ["strength used", Number.isFinite(k.used[c]) ? `${figure(100 * k.used[c])} %` : "–"]
     ];
     for (const e of frame.data.extras)

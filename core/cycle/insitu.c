@@ -32,7 +32,7 @@
  * included. Less carries no force to speak of. */
 #define BARE 0.01
 /* Tolerance: a contact without a patch on more than this share of the mean face of its blocks should have one. Edges
- * and vertices press on less. */
+ * and vertices press on less. Test: lua/test_remarks. */
 #define MUCH 0.1
 /* Limit: largest component of a stress, Pa, and of its gradient, Pa/m, that is taken: forces and their energies stay
  * finite. Test: lua/test_insitu. */

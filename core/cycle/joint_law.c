@@ -5,6 +5,7 @@
 
 #include "base/columns.h"
 #include "base/inside.h"
+#include "base/parallel.h"
 #include "base/params.h"
 #include "base/strength.h"
 #include "contact/across_gap.h"
@@ -229,20 +230,6 @@ static bool is_patch(const tl_model *m, uint32_t c)
     return tl_facet_is_patch(&m->detect->contacts.facet[c]);
 }
 
-/* The law that a contact with forces comes under by a new law, or with NULL by groups that blocks have now. NULL: it
- * stays under its own, or comes under none. */
-static const tl_law *law_to_come(const tl_model *m, const tl_law *fresh, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const uint32_t a = contacts->a[c], b = contacts->b[c];
-    if (contacts->law[c] == TL_NO_ROW || (fresh && !tl_scope_covers(m, &fresh->scope, contacts->tag[c], a, b)))
-        return NULL;
-    const tl_law *ruling = tl_law_of(m, contacts->tag[c], a, b), *law = fresh ? fresh : ruling;
-    const bool stays =
-        fresh ? tl_scope_before(&ruling->scope, &fresh->scope) : !ruling || ruling == &m->joint_laws[contacts->law[c]];
-    return !stays && has_forces(m->detect, c) ? law : NULL;
-}
-
 /* Energies of points of 1 m2 without history that are pressed in by up to 1 m. */
 static void find_curve(const tl_law *law, double energy[TL_LANES])
 {
@@ -288,33 +275,96 @@ static bool presses_alike(const tl_law *before, const tl_law *law)
     return tl_law_is_linear(law) || (tl_law_presses(law) && same_curve(before, law));
 }
 
-/* The same where the law has another stiffness, curve or plugin, so that forces are to be kept. */
-static const tl_law *law_to_rebase(const tl_model *m, const tl_law *fresh, uint32_t c)
+/* The same of the last two laws that were compared. Contacts of a law are neighbours, so a curve is not found often. */
+typedef struct compared {
+    const tl_law *before, *law;
+    bool alike;
+} compared;
+
+static bool still_alike(compared *last, const tl_law *before, const tl_law *law)
 {
-    const tl_law *law = law_to_come(m, fresh, c);
-    return law && !presses_alike(&m->joint_laws[m->detect->contacts.law[c]], law) ? law : NULL;
+    if (last->before != before || last->law != law)
+        *last = (compared){before, law, presses_alike(before, law)};
+    return last->alike;
 }
 
-/* Adds the columns that laws to come need of the points of contacts; false: out of memory. */
-static bool reserve(tl_model *m, const tl_law *fresh)
+/* ---------------------------------------------------------------- who comes --------------- */
+
+/* How laws change: by one new law, by new ones that take the places of all, or by groups that blocks have now. */
+typedef struct laws_now {
+    tl_model *m;
+    const tl_law *fresh; /* NULL: groups */
+    bool all;            /* fresh[i] takes the place of law i */
+    tl_law_change *change;
+} laws_now;
+
+/* Cost only: contacts that a thread takes at a time. */
+#define CONTACT_CHUNK 2048
+
+/* The law that a contact with forces comes under, or NULL. The contact is under the law that rules it. */
+static const tl_law *law_to_come(const laws_now *now, uint32_t c)
 {
-    bool rebased = false;
-    for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
-        rebased = is_patch(m, c) && law_to_rebase(m, fresh, c);
-    return (!fresh || tl_detect_hold_states(m->detect, fresh->columns)) &&
-           (!rebased || tl_detect_hold_initial(m->detect));
+    const tl_model *m = now->m;
+    const tl_contacts *contacts = &m->detect->contacts;
+    const uint32_t own = contacts->law[c], a = contacts->a[c], b = contacts->b[c];
+    if (own == TL_NO_ROW || !has_forces(m->detect, c))
+        return NULL;
+    if (now->all)
+        return &now->fresh[own];
+    if (now->fresh)
+        return !tl_scope_before(&m->joint_laws[own].scope, &now->fresh->scope) &&
+                       tl_scope_covers(m, &now->fresh->scope, contacts->tag[c], a, b)
+                   ? now->fresh
+                   : NULL;
+    const tl_law *ruling = tl_law_of(m, contacts->tag[c], a, b);
+    return ruling && ruling != &m->joint_laws[own] ? ruling : NULL;
+}
+
+static void find_coming(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const laws_now *now = user;
+    for (size_t c = begin; c < end; c++)
+        now->change->coming[c] = law_to_come(now, (uint32_t)c);
+}
+
+static bool is_field(const tl_model *m, uint32_t c)
+{
+    return tl_facet_is_field(&m->detect->contacts.facet[c]) && m->detect->contacts.point_count[c] > 0;
+}
+
+/* Lists field contacts that get a law that presses otherwise, and adds the columns that patches need. false: out of
+ * memory. */
+static bool prepare_coming(const laws_now *now)
+{
+    tl_model *m = now->m;
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_law_change *change = now->change;
+    compared last = {NULL, NULL, false};
+    bool rebased = false, enough = true;
+    for (uint32_t c = 0; c < contacts->table.rows && enough; c++) {
+        if (!change->coming[c] || still_alike(&last, &m->joint_laws[contacts->law[c]], change->coming[c]))
+            continue;
+        rebased = rebased || is_patch(m, c);
+        if (is_field(m, c)) {
+            enough = may_keep_field_force(m, c);
+            change->field[change->field_count++] = c;
+        }
+    }
+    return enough && (!rebased || tl_detect_hold_initial(m->detect));
 }
 
 /* Keeps the forces of patches. What their contacts, and those of fields, have stored is not known any more. */
-static void rebase(tl_model *m, const tl_law *fresh)
+static void rebase(tl_model *m, const tl_law_change *change)
 {
     tl_detect *d = m->detect;
+    compared last = {NULL, NULL, false};
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        const tl_law *law = law_to_come(m, fresh, c);
+        const tl_law *law = change->coming[c];
         if (!law)
             continue;
         const tl_law *before = &m->joint_laws[d->contacts.law[c]];
-        bool alike = presses_alike(before, law);
+        const bool alike = still_alike(&last, before, law);
         if (!alike || before->ks != law->ks || !tl_law_is_linear(law))
             d->contacts.stored[c] = NAN; /* its springs store another energy */
         if (!alike && is_patch(m, c))
@@ -336,32 +386,6 @@ static void reset(tl_model *m, uint32_t law, const tl_kind *kind)
 
 /* ---------------------------------------------------------------- laws of joints ---------- */
 
-static bool is_field(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    return tl_facet_is_field(&contacts->facet[c]) && contacts->point_count[c] > 0 && contacts->law[c] != TL_NO_ROW;
-}
-
-/* Field contacts that get a law that presses otherwise. */
-typedef struct fields {
-    uint32_t *contact;
-    size_t count;
-} fields;
-
-/* false: out of memory. */
-static bool find_fields(tl_model *m, const tl_law *fresh, fields *out)
-{
-    const size_t rows = m->detect->contacts.table.rows;
-    bool enough = true;
-    out->contact = malloc((rows + 1) * sizeof *out->contact);
-    for (uint32_t c = 0; c < rows && out->contact && enough; c++)
-        if (is_field(m, c) && law_to_rebase(m, fresh, c)) {
-            enough = may_keep_field_force(m, c);
-            out->contact[out->count++] = c;
-        }
-    return out->contact && enough;
-}
-
 /* Brings contacts up to the present places, where a step that failed has left them already. */
 static tl_status bring_up(tl_model *m)
 {
@@ -369,16 +393,30 @@ static tl_status bring_up(tl_model *m)
     return m->detect ? tl_detect_update(m) : TL_OK;
 }
 
-/* Holds what laws to come need. All that can fail is done before they take their places. */
-static tl_status prepare_contacts(tl_model *m, const tl_law *fresh, fields *out)
+/* Finds who comes under which law, and holds what that needs. All that can fail is done before laws take their
+ * places. */
+static tl_status prepare_contacts(const laws_now *now, size_t laws)
 {
-    return !m->detect || (reserve(m, fresh) && find_fields(m, fresh, out)) ? TL_OK : tl_fail_memory(&m->error);
+    tl_model *m = now->m;
+    tl_detect *d = m->detect;
+    bool enough = true;
+    if (!d)
+        return TL_OK;
+    for (size_t i = 0; i < laws && enough; i++)
+        enough = tl_detect_hold_states(d, now->fresh[i].columns);
+    const size_t rows = d->contacts.table.rows;
+    now->change->coming = malloc((rows + 1) * sizeof *now->change->coming);
+    now->change->field = malloc((rows + 1) * sizeof *now->change->field);
+    if (!enough || !now->change->coming || !now->change->field)
+        return tl_fail_memory(&m->error);
+    tl_parallel_for(m->pool, rows, CONTACT_CHUNK, find_coming, (void *)(uintptr_t)now);
+    return prepare_coming(now) ? TL_OK : tl_fail_memory(&m->error);
 }
 
-static void keep_field_forces(tl_model *m, const fields *kept)
+static void keep_field_forces(tl_model *m, const tl_law_change *change)
 {
-    for (size_t k = 0; k < kept->count; k++)
-        keep_field_force(m, kept->contact[k]);
+    for (size_t k = 0; k < change->field_count; k++)
+        keep_field_force(m, change->field[k]);
 }
 
 /* The law of just this scope, or NULL. */
@@ -407,16 +445,17 @@ static tl_law *place_of(tl_model *m, const tl_scope *scope)
 /* Puts a law in its place, which owns it then; after a failure nothing has changed. */
 static tl_status put_law(tl_model *m, const tl_law *law)
 {
-    fields kept = {NULL, 0};
+    tl_law_change change = {NULL, NULL, 0};
+    const laws_now now = {m, law, false, &change};
     tl_law *place = place_of(m, &law->scope);
     tl_status status = place ? bring_up(m) : tl_fail_memory(&m->error);
     if (status == TL_OK)
-        status = prepare_contacts(m, law, &kept);
+        status = prepare_contacts(&now, 1);
     if (status == TL_OK) {
         char scope[TL_SCOPE_TEXT], of[TL_SCOPE_TEXT + 60];
         tl_text_print(of, sizeof of, "%s, law '%.40s'", tl_scope_text(m, &law->scope, scope), law->kind->name);
         tl_remark_friction(m, of, law->kind, law->params);
-        rebase(m, law);
+        rebase(m, &change);
         const uint32_t row = (uint32_t)(place - m->joint_laws);
         if (row == m->joint_law_count)
             m->joint_law_count++;
@@ -424,10 +463,32 @@ static tl_status put_law(tl_model *m, const tl_law *law)
             reset(m, row, law->kind);
         tl_law_clear(place);
         *place = *law;
-        keep_field_forces(m, &kept);
+        keep_field_forces(m, &change);
         m->laws++;
     }
-    free(kept.contact);
+    tl_law_change_free(&change);
+    return status;
+}
+
+/* Puts laws in the places of all, which own them then; after a failure nothing has changed. Each is of the same kind
+ * and scope as that before. */
+static tl_status put_laws(tl_model *m, const tl_law *laws)
+{
+    tl_law_change change = {NULL, NULL, 0};
+    const laws_now now = {m, laws, true, &change};
+    tl_status status = bring_up(m);
+    if (status == TL_OK)
+        status = prepare_contacts(&now, m->joint_law_count);
+    if (status == TL_OK) {
+        rebase(m, &change);
+        for (size_t i = 0; i < m->joint_law_count; i++) {
+            tl_law_clear(&m->joint_laws[i]);
+            m->joint_laws[i] = laws[i];
+        }
+        keep_field_forces(m, &change);
+        m->laws++;
+    }
+    tl_law_change_free(&change);
     return status;
 }
 
@@ -446,23 +507,21 @@ static void swap_groups(tl_model *m, tl_group_change *change, bool backward)
 
 static tl_status begin_groups(tl_model *m, tl_group_change *change)
 {
-    fields kept = {NULL, 0};
+    const laws_now now = {m, NULL, false, &change->laws};
     tl_status status = bring_up(m);
     if (status != TL_OK)
         return status;
     swap_groups(m, change, false);
-    status = prepare_contacts(m, NULL, &kept);
+    status = prepare_contacts(&now, 0);
     swap_groups(m, change, true);
-    change->contact = kept.contact;
-    change->contact_count = kept.count;
     return status;
 }
 
 static void apply_groups(tl_model *m, tl_group_change *change)
 {
     swap_groups(m, change, false);
-    rebase(m, NULL);
-    keep_field_forces(m, &(fields){change->contact, change->contact_count});
+    rebase(m, &change->laws);
+    keep_field_forces(m, &change->laws);
     m->laws++;
     if (m->cycle)
         m->cycle->dt = 0;
@@ -585,19 +644,16 @@ static tl_status make_stiffer(tl_model *m, const tl_law *law, double factor, tl_
     return make_with(m, law, &args, out);
 }
 
-/* Puts laws that were made in the places of those of their scopes. */
-static tl_status put_laws(tl_model *m, tl_law *made, size_t count)
+/* Puts laws in the places of all if `status` is TL_OK, and frees those of `made` that no place has taken. */
+static tl_status put_made(tl_model *m, tl_law *made, size_t ready, tl_status status)
 {
-    tl_status status = TL_OK;
-    size_t put = 0;
-    while (status == TL_OK && put < count) {
-        status = put_law(m, &made[put]);
-        put += status == TL_OK;
-    }
-    for (size_t i = put; i < count; i++)
-        tl_law_clear(&made[i]);
-    if (put > 0 && m->cycle)
+    if (status == TL_OK)
+        status = put_laws(m, made);
+    if (status == TL_OK && m->cycle)
         m->cycle->dt = 0;
+    for (size_t i = 0; i < ready && status != TL_OK; i++)
+        tl_law_clear(&made[i]);
+    free(made);
     return status;
 }
 
@@ -615,30 +671,32 @@ tl_status tl_joints_stiffen(tl_model *m, double factor)
         status = make_stiffer(m, &m->joint_laws[ready], factor, &made[ready]);
         ready += status == TL_OK;
     }
-    if (status == TL_OK)
-        status = put_laws(m, made, ready);
-    else
-        for (size_t i = 0; i < ready; i++)
-            tl_law_clear(&made[i]);
-    free(made);
+    return put_made(m, made, ready, status);
+}
+
+/* The law with its strengths divided. */
+static tl_status make_weaker(tl_model *m, const tl_law *law, double factor, tl_law *out)
+{
+    tl_args args;
+    void *held;
+    if (!tl_strengths_divide(law->kind, law->params, factor, &args, &held))
+        return tl_fail_memory(&m->error);
+    const tl_status status = make_with(m, law, &args, out);
+    free(held);
     return status;
 }
 
 tl_status tl_joints_weaken(tl_model *m, const tl_model *from, const uint8_t *which, double factor)
 {
-    tl_status status = TL_OK;
-    for (size_t i = 0; i < from->joint_law_count && status == TL_OK; i++) {
-        const tl_law *law = &from->joint_laws[i];
-        tl_args args;
-        void *held;
-        tl_law made;
-        if (!which[i])
-            continue;
-        status = tl_strengths_divide(law->kind, law->params, factor, &args, &held) ? make_with(m, law, &args, &made)
-                                                                                   : tl_fail_memory(&m->error);
-        if (status == TL_OK)
-            status = put_laws(m, &made, 1);
-        free(held);
+    static const tl_args none = {NULL, 0};
+    const size_t count = from->joint_law_count;
+    tl_law *made = calloc(count + 1, sizeof *made);
+    tl_status status = made ? TL_OK : tl_fail_memory(&m->error);
+    size_t ready = 0;
+    while (status == TL_OK && ready < count) {
+        const tl_law *law = &from->joint_laws[ready];
+        status = which[ready] ? make_weaker(m, law, factor, &made[ready]) : make_with(m, law, &none, &made[ready]);
+        ready += status == TL_OK;
     }
-    return status;
+    return put_made(m, made, ready, status);
 }

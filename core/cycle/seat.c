@@ -22,7 +22,8 @@
 
 /* Default: limits of gap and overlap over the mean size of the blocks. */
 #define USUAL 0.01
-/* Limit: overlap over the thickness of the thinner block, up to which a face may be drawn back. */
+/* Limit: overlap over the thickness of the thinner block, up to which a face may be drawn back. Test:
+ * lua/test_seat_limits. */
 #define MOST_THIN 0.25
 
 typedef struct seating {

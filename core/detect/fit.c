@@ -21,9 +21,10 @@
 /* Tolerance: sine of the tilt up to which two faces may be put into one plane. Test: lua/test_seat. */
 #define MOST_TILT 0.1
 /* Tolerance: gaps and overlaps over the size of the smaller block that are the rounding of places. A pair that fits to
- * that stays as it is. */
+ * that stays as it is. Test: lua/test_seat_limits. */
 #define FITS 1e-12
-/* Tolerance: the same over the distance between both centroids, from which places are reckoned. */
+/* Tolerance: the same over the distance between both centroids, from which places are reckoned. Test:
+ * lua/test_seat_limits. */
 #define ROUNDED 1e-14
 
 typedef struct search {

@@ -42,7 +42,7 @@ typedef struct source {
     tl_base base, made;
     tl_vec3 v, w;
     tl_quat q;
-    uint32_t drive;
+    uint32_t group, drive;
     uint8_t fixed;
 } source;
 
@@ -57,6 +57,7 @@ static source source_of(const tl_model *m, uint32_t row)
                     .v = b->v[body],
                     .w = b->w[body],
                     .q = b->q[body],
+                    .group = m->blocks.group[row],
                     .drive = b->drive[body],
                     .fixed = b->fixed[body]};
 }
@@ -73,7 +74,8 @@ static void put_base(tl_base *column, uint32_t row, const tl_base *from, tl_vec3
 }
 
 /* Fills the rows of a new block and of its body. A child moves on as its part of the source did. */
-static void put(tl_model *m, const tl_stage_block *block, const source *from, uint32_t row, uint32_t body)
+static void put(tl_model *m, const tl_stage_block *block, const source *from, uint32_t group, uint32_t row,
+                uint32_t body)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
@@ -84,7 +86,7 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
     blocks->id[row] = bodies->id[body] = m->next_id++;
     blocks->body[row] = body;
     blocks->shape[row] = block->shape;
-    blocks->group[row] = block->group;
+    blocks->group[row] = group;
     blocks->density[row] = block->density;
     blocks->lineage[row] = block->lineage;
     blocks->hidden[row] = block->hidden || block->hide_on_commit;
@@ -161,10 +163,11 @@ typedef struct commit_scratch {
     tl_poly **gone; /* [rows before] shapes that other shapes or blocks take the place of */
     size_t gone_count;
     tl_group_change groups; /* of the blocks that stay */
-    tl_scope_parts scopes;  /* of laws for blocks that were cut */
-    tl_aside aside;         /* where there are bodies of several blocks */
-    uint32_t *first;        /* [staged bodies] */
-    uint32_t *group;        /* [rows] */
+    tl_group_change parts; /* of the parts that get another group than the whole had; rows are staged blocks at first */
+    tl_scope_parts scopes; /* of laws for blocks that were cut */
+    tl_aside aside;        /* where there are bodies of several blocks */
+    uint32_t *first;       /* [staged bodies] */
+    uint32_t *group;       /* [rows] */
 } commit_scratch;
 
 /* Whether contacts are kept of blocks: those of their parts take them over. */
@@ -265,29 +268,75 @@ static void list_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first
         group[tl_block_row_quiet(m, ids[i])] = first[stage->blocks[i].body];
 }
 
-/* Begins what changes for laws: the blocks that stay and get another group, and the parts of blocks that are cut. */
+/* Whether contacts of parts with another group than that of the whole are to keep their forces. */
+static bool parts_keep_forces(const tl_model *m)
+{
+    return m->group_verbs && tl_laws_name_groups(m) && has_contacts(m);
+}
+
+/* Lists the blocks that get another group: those that stay and, where their contacts keep forces, parts. */
+static void list_regrouped(const tl_stage *stage, tl_group_change *groups, tl_group_change *parts)
+{
+    const tl_model *m = stage->model;
+    for (size_t i = 0; i < stage->count; i++) {
+        const tl_stage_block *block = &stage->blocks[i];
+        if (block->source == TL_NO_ROW || m->blocks.group[block->source] == block->group)
+            continue;
+        const bool is_part = tl_stage_made(block);
+        if (is_part && !(tl_stage_cut(block) && parts_keep_forces(m)))
+            continue;
+        tl_group_change *list = is_part ? parts : groups;
+        list->row[list->count] = is_part ? (uint32_t)i : block->source;
+        list->group[list->count++] = block->group;
+    }
+}
+
+static bool reserve_regrouped(tl_group_change *change, size_t count)
+{
+    change->row = malloc((count + 1) * sizeof *change->row);
+    change->group = malloc((count + 1) * sizeof *change->group);
+    return change->row && change->group;
+}
+
+/* Gives parts their groups, with the forces of contacts that come under other laws by that. Until then they have the
+ * group of the whole, and their contacts take over what its contacts carried. */
+static void regroup_parts(tl_stage *stage, commit_scratch *scratch)
+{
+    tl_model *m = stage->model;
+    tl_group_change *parts = &scratch->parts;
+    if (parts->count == 0)
+        return;
+    for (size_t i = 0; i < parts->count; i++)
+        parts->row[i] = tl_block_row_quiet(m, scratch->ids[parts->row[i]]);
+    if (tl_group_change_begin(m, parts) == TL_OK) {
+        tl_group_change_apply(m, parts);
+        return;
+    }
+    for (size_t i = 0; i < parts->count; i++)
+        m->blocks.group[parts->row[i]] = parts->group[i];
+    m->laws++;
+    tl_model_say(m, "there was no memory to keep the forces of parts that come under another law by their group");
+}
+
+/* Begins what changes for laws: the blocks that get another group, and the parts of blocks that are cut. */
 static tl_status begin_laws(const tl_stage *stage, size_t made, commit_scratch *scratch)
 {
     tl_model *m = stage->model;
     tl_group_change *groups = &scratch->groups;
     tl_scope_parts *scopes = &scratch->scopes;
-    groups->row = malloc((stage->count + 1) * sizeof *groups->row);
-    groups->group = malloc((stage->count + 1) * sizeof *groups->group);
     scopes->parts = malloc((made + 1) * sizeof *scopes->parts);
-    if (!groups->row || !groups->group || !scopes->parts)
+    if (!reserve_regrouped(groups, stage->count) || !reserve_regrouped(&scratch->parts, stage->count) || !scopes->parts)
         return tl_fail_memory(&m->error);
     tl_id id = m->next_id; /* as add_made() gives them */
     for (size_t i = 0; i < stage->count; i++) {
         const tl_stage_block *block = &stage->blocks[i];
-        if (tl_stage_made(block)) {
-            if (tl_stage_cut(block))
-                scopes->parts[scopes->count++] = (tl_part){m->blocks.id[block->source], id};
-            id++;
-        } else if (m->blocks.group[block->source] != block->group) {
-            groups->row[groups->count] = block->source;
-            groups->group[groups->count++] = block->group;
-        }
+        if (!tl_stage_made(block))
+            continue;
+        if (tl_stage_cut(block))
+            scopes->parts[scopes->count++] = (tl_part){m->blocks.id[block->source], id};
+        id++;
     }
+    list_regrouped(stage, groups, &scratch->parts);
     if (tl_laws_name_blocks(m) && !tl_scope_parts_begin(m, id, scopes))
         return tl_fail_memory(&m->error);
     return groups->count ? tl_group_change_begin(m, groups) : TL_OK;
@@ -295,9 +344,8 @@ static tl_status begin_laws(const tl_stage *stage, size_t made, commit_scratch *
 
 static void free_laws(const tl_model *m, commit_scratch *scratch)
 {
-    free(scratch->groups.row);
-    free(scratch->groups.group);
-    free(scratch->groups.contact);
+    tl_group_change_free(&scratch->groups);
+    tl_group_change_free(&scratch->parts);
     tl_scope_parts_free(m, &scratch->scopes);
 }
 
@@ -421,7 +469,8 @@ static void add_made(tl_stage *stage, size_t made, commit_scratch *scratch)
             continue;
         scratch->ids[i] = m->next_id;
         const source *from = block->source == TL_NO_ROW ? NULL : &scratch->sources[scratch->slot[block->source]];
-        put(m, block, from, row, body++);
+        const uint32_t group = tl_stage_cut(block) && scratch->parts.count ? from->group : block->group;
+        put(m, block, from, group, row, body++);
         stage->changed_volume += m->blocks.volume[row];
         row++;
     }
@@ -473,6 +522,7 @@ tl_status tl_stage_commit(tl_stage *stage)
             tl_scope_parts_apply(m, &scratch.scopes);
         for (size_t i = 0; i < scratch.gone_count; i++)
             tl_poly_free(scratch.gone[i]);
+        regroup_parts(stage, &scratch);
         stage->committed = true;
     }
     free_laws(m, &scratch);

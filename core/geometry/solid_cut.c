@@ -5,18 +5,96 @@
  * hangs together over edges is then a piece. */
 #include "geometry/solid_cut.h"
 
+#include "geometry/make.h"
+#include "geometry/solid_part.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <talus/vmath.h>
 
+/* Cost only: pieces of more faces are not measured. They are cut again, or thick. */
+#define SMALL_PIECE 64
+
+/* A half-edge or a face as it was before the cut. */
+typedef struct saved_half {
+    uint32_t number;
+    tl_half_edge old;
+} saved_half;
+
+typedef struct saved_face {
+    uint32_t number;
+    tl_solid_face old;
+} saved_face;
+
 typedef struct cutter {
     tl_section *s;
     tl_solid_mesh *m;
-    uint32_t part;                        /* of the section: what is cut */
-    uint32_t old_faces;                   /* faces before the cut */
-    uint32_t *open, opens, open_capacity; /* first half-edges of the loops of a face */
-    uint32_t *cap, caps, cap_capacity;    /* the new faces */
+    uint32_t part;                           /* of the section: what is cut */
+    uint32_t *open, opens, open_capacity;    /* first half-edges of the loops of a face */
+    uint32_t *cap, caps, cap_capacity;       /* the new faces */
+    uint32_t *shell, shells, shell_capacity; /* shells that the cut reaches */
+    saved_half *half;                        /* what the cut changes, in order */
+    uint32_t halves, half_capacity;
+    saved_face *face;
+    uint32_t faces, face_capacity;
+    uint32_t old_vertices, old_halves, old_faces, old_listed, old_reflexes; /* counts before the cut */
 } cutter;
+
+/* ---------------------------------------------------------------- taking back ------------ */
+
+static void begin(cutter *c)
+{
+    const tl_solid_mesh *m = c->m;
+    c->old_vertices = m->vertices;
+    c->old_halves = m->halves;
+    c->old_faces = m->faces;
+    c->old_listed = m->piece[c->s->piece].faces;
+    c->old_reflexes = m->piece[c->s->piece].reflexes;
+}
+
+/* Notes a half-edge that is about to change; false without memory. */
+static bool save_half(cutter *c, uint32_t h)
+{
+    if (h >= c->old_halves)
+        return true;
+    if (!tl_solid_grow(&c->half, &c->half_capacity, c->halves, sizeof *c->half))
+        return false;
+    c->half[c->halves++] = (saved_half){h, c->m->half[h]};
+    return true;
+}
+
+static bool save_face(cutter *c, uint32_t face)
+{
+    if (face >= c->old_faces)
+        return true;
+    if (!tl_solid_grow(&c->face, &c->face_capacity, c->faces, sizeof *c->face))
+        return false;
+    c->face[c->faces++] = (saved_face){face, c->m->face[face]};
+    return true;
+}
+
+/* Puts all back as it was before the cut. */
+static void take_back(const cutter *c)
+{
+    tl_solid_mesh *m = c->m;
+    for (uint32_t i = c->halves; i-- > 0;)
+        m->half[c->half[i].number] = c->half[i].old;
+    for (uint32_t i = c->faces; i-- > 0;)
+        m->face[c->face[i].number] = c->face[i].old;
+    m->vertices = c->old_vertices;
+    m->halves = c->old_halves;
+    m->faces = c->old_faces;
+    m->piece[c->s->piece].faces = c->old_listed;
+    m->piece[c->s->piece].reflexes = c->old_reflexes;
+}
+
+static bool reach_shell(cutter *c, uint32_t shell)
+{
+    if (!tl_solid_grow(&c->shell, &c->shell_capacity, c->shells, sizeof *c->shell))
+        return false;
+    c->shell[c->shells++] = shell;
+    return true;
+}
 
 static bool is_cut(const cutter *c, const tl_span *span)
 {
@@ -26,13 +104,14 @@ static bool is_cut(const cutter *c, const tl_span *span)
 /* ---------------------------------------------------------------- edges ------------------ */
 
 /* Divides the edge of half-edge h at a point. The new half-edges begin there. */
-static bool divide_edge(const cutter *c, tl_crossing *x)
+static bool divide_edge(cutter *c, tl_crossing *x)
 {
     tl_solid_mesh *m = c->m;
     const uint32_t h = x->half, mate = m->half[h].mate;
     uint32_t far, near; /* behind h, behind its mate */
     if (!tl_solid_add_vertex(m, x->at, &x->vertex) || !tl_solid_add_half(m, m->half[h], &far) ||
-        !tl_solid_add_half(m, m->half[mate], &near))
+        !tl_solid_add_half(m, m->half[mate], &near) || !save_half(c, h) || !save_half(c, mate) ||
+        !save_half(c, m->half[h].next) || !save_half(c, m->half[mate].next))
         return false;
     tl_half_edge *a = &m->half[h], *b = &m->half[mate];
     const uint32_t behind[2] = {far, near}, before[2] = {h, mate};
@@ -54,7 +133,7 @@ static bool divide_edge(const cutter *c, tl_crossing *x)
 }
 
 /* Divides the edges that the cut crosses. Vertices come behind the nodes of crossings, so rims keep the old names. */
-static bool divide_edges(const cutter *c, uint32_t vertices)
+static bool divide_edges(cutter *c, uint32_t vertices)
 {
     for (uint32_t i = 0; i < c->s->rims; i++) {
         const tl_rim *r = &c->s->rim[i];
@@ -87,7 +166,7 @@ static uint32_t corner_of(const cutter *c, const tl_line_end *end, const tl_span
     return end->half;
 }
 
-static bool make_span(const cutter *c, tl_span *span, const tl_span *before, uint32_t vertices)
+static bool make_span(cutter *c, tl_span *span, const tl_span *before, uint32_t vertices)
 {
     tl_solid_mesh *m = c->m;
     const uint32_t p = corner_of(c, &span->start, before), q = corner_of(c, &span->end, NULL);
@@ -100,11 +179,15 @@ static bool make_span(const cutter *c, tl_span *span, const tl_span *before, uin
     if (!tl_solid_add_half(m, edge, &above))
         return false;
     const uint32_t into_p = m->half[p].prev;
+    if (!save_half(c, p) || !save_half(c, into_p) || !save_half(c, q))
+        return false;
     m->half[into_p].next = below;
     m->half[below].prev = into_p;
     m->half[above].next = p;
     m->half[p].prev = above;
     const uint32_t into_q = m->half[q].prev;
+    if (!save_half(c, into_q))
+        return false;
     m->half[into_q].next = above;
     m->half[above].prev = into_q;
     m->half[below].next = q;
@@ -150,10 +233,14 @@ static bool put_around(cutter *c, uint32_t face, uint32_t first, bool *taken)
     if (*taken && (!tl_solid_add_face(m, m->face[face], &number) || !tl_piece_add_face(&m->piece[c->s->piece], number)))
         return false;
     *taken = true;
+    if (!save_face(c, number) || !save_half(c, first))
+        return false;
     m->face[number].first = first;
     m->half[first].ring = TL_SOLID_NONE;
     uint32_t h = first;
     do {
+        if (m->half[h].face != number && !save_half(c, h))
+            return false;
         m->half[h].face = number;
         h = m->half[h].next;
     } while (h != first);
@@ -162,7 +249,7 @@ static bool put_around(cutter *c, uint32_t face, uint32_t first, bool *taken)
 }
 
 /* Puts a hole into the smallest of the faces from `added` on, or the face itself, whose loop goes around it. */
-static void put_hole(const cutter *c, uint32_t face, uint32_t added, uint32_t hole)
+static bool put_hole(cutter *c, uint32_t face, uint32_t added, uint32_t hole)
 {
     tl_solid_mesh *m = c->m;
     const tl_vec3 normal = tl_solid_normal(m, face);
@@ -179,13 +266,18 @@ static void put_hole(const cutter *c, uint32_t face, uint32_t added, uint32_t ho
             }
         }
     }
+    if (!save_half(c, hole) || !save_half(c, m->face[best].first))
+        return false;
     m->half[hole].ring = m->half[m->face[best].first].ring;
     m->half[m->face[best].first].ring = hole;
     uint32_t h = hole;
     do {
+        if (m->half[h].face != best && !save_half(c, h))
+            return false;
         m->half[h].face = best;
         h = m->half[h].next;
     } while (h != hole);
+    return true;
 }
 
 /* Makes faces of the loops that begin with the half-edges in `open`; those listed twice count once. */
@@ -219,8 +311,8 @@ static bool make_faces(cutter *c, uint32_t face)
     if (flat && holes > 0 && !put_around(c, face, c->open[largest], &taken))
         return false;
     for (uint32_t i = 0; i < holes; i++)
-        if (!flat || i != largest)
-            put_hole(c, face, added, c->open[i]);
+        if ((!flat || i != largest) && !put_hole(c, face, added, c->open[i]))
+            return false;
     return true;
 }
 
@@ -248,8 +340,7 @@ static bool divide_faces(cutter *c, uint32_t vertices)
                 !put_open(c, span->made))
                 return false;
         }
-        m->shell[m->face[face].shell].apart = false;
-        if (!make_faces(c, face))
+        if (!reach_shell(c, m->face[face].shell) || !make_faces(c, face))
             return false;
     }
     return true;
@@ -266,7 +357,7 @@ static void make_mates(tl_solid_mesh *m, uint32_t a, uint32_t b, bool flat)
 }
 
 /* Makes the half-edges of the rims. */
-static bool make_rims(const cutter *c, uint32_t vertices)
+static bool make_rims(cutter *c, uint32_t vertices)
 {
     tl_section *s = c->s;
     tl_solid_mesh *m = c->m;
@@ -282,7 +373,8 @@ static bool make_rims(const cutter *c, uint32_t vertices)
             make_mates(m, r->made, r->above ? above : above - 1, false);
         } else {
             const tl_solid_face *f = &m->face[m->half[r->origin].face];
-            m->shell[f->shell].apart = false;
+            if (!reach_shell(c, f->shell) || !save_half(c, r->origin))
+                return false;
             make_mates(m, r->made, r->origin, s->lies[f->slot] != 0);
         }
     }
@@ -371,17 +463,21 @@ static bool is_whole(const flood *list, uint32_t count, uint32_t root)
     return true;
 }
 
-/* Lets the floods grow in turn until all have met, or all but one are whole: what is large is not walked. */
+/* Lets the floods grow in turn until all have met, or all but one are whole and that one is large: what is large is not
+ * walked. */
 static bool grow_floods(flood *list, uint32_t count, tl_solid_mesh *m, uint32_t stamp)
 {
     for (;;) {
-        uint32_t roots = 0, growing = 0;
-        for (uint32_t i = 0; i < count; i++)
-            if (flood_root(list, i) == i) {
-                roots++;
-                growing += !is_whole(list, count, i);
-            }
-        if (roots == 1 || growing <= 1)
+        uint32_t roots = 0, growing = 0, reached = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            const uint32_t root = flood_root(list, i);
+            roots += root == i;
+            if (is_whole(list, count, root))
+                continue;
+            growing += root == i;
+            reached += list[i].count;
+        }
+        if (roots == 1 || growing == 0 || (growing == 1 && reached > SMALL_PIECE))
             return true;
         for (uint32_t i = 0; i < count; i++) {
             if (list[i].done == list[i].count)
@@ -432,7 +528,8 @@ static bool move_piece(const flood *list, uint32_t count, uint32_t root, tl_soli
     return true;
 }
 
-static bool part_piece(const cutter *c, flood *list)
+/* Finds what hangs together on each side of the new faces. */
+static bool flood_sides(const cutter *c, flood *list)
 {
     tl_solid_mesh *m = c->m;
     const uint32_t stamp = tl_solid_stamp(m);
@@ -441,9 +538,91 @@ static bool part_piece(const cutter *c, flood *list)
         if (!flood_reach(list, i, m, stamp, c->cap[i]))
             return false;
     }
-    if (!grow_floods(list, c->caps, m, stamp))
-        return false;
+    return grow_floods(list, c->caps, m, stamp);
+}
+
+/* Whether the faces of a side that bends inward nowhere close a convex part; true for others. */
+static tl_status try_part(tl_solid_mesh *m, const uint32_t *face, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        TL_EACH_HALF(m, face[i], h, first)
+        {
+            if (m->half[h].reflex)
+                return TL_OK;
+        }
+    tl_poly *part;
+    tl_error error;
+    const tl_status status = tl_solid_part(m, face, count, &part, &error);
+    if (status == TL_OK)
+        tl_poly_free(part);
+    return status;
+}
+
+/* The least extent of faces across the plane of one of them, relative to the size of them all. */
+static double thickness_of(tl_solid_mesh *m, const uint32_t *face, uint32_t count, uint32_t *vertex)
+{
+    const uint32_t stamp = tl_solid_stamp(m);
+    uint32_t vertices = 0;
+    tl_bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t i = 0; i < count; i++)
+        TL_EACH_HALF(m, face[i], h, first)
+        {
+            const uint32_t v = m->half[h].from;
+            if (m->vertex_mark[v] == stamp)
+                continue;
+            m->vertex_mark[v] = stamp;
+            vertex[vertices++] = v;
+            all.min = tl_v3_min(all.min, m->vertex[v]);
+            all.max = tl_v3_max(all.max, m->vertex[v]);
+        }
+    double least = INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        const tl_vec3 normal = m->plane[m->face[face[i]].plane].normal;
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t k = 0; k < vertices; k++) {
+            const double at = tl_v3_dot(normal, m->vertex[vertex[k]]);
+            low = fmin(low, at);
+            high = fmax(high, at);
+        }
+        least = fmin(least, high - low);
+    }
+    return least / tl_v3_norm(tl_v3_sub(all.max, all.min));
+}
+
+/* Finds the least thickness of the small pieces that a cut leaves: INFINITY where it leaves none, 0 where one is not
+ * sound. */
+static bool find_thinnest(const cutter *c, const flood *list, double *thinnest)
+{
+    tl_solid_mesh *m = c->m;
+    uint32_t *face = malloc(SMALL_PIECE * sizeof *face), *vertex = malloc(m->vertices * sizeof *vertex);
+    bool enough = face && vertex;
+    *thinnest = INFINITY;
+    for (uint32_t root = 0; enough && *thinnest > 0 && root < c->caps; root++) {
+        uint32_t count = 0;
+        if (flood_root(list, root) != root || !is_whole(list, c->caps, root))
+            continue;
+        for (uint32_t i = root; i < c->caps; i++)
+            for (uint32_t k = 0; flood_root(list, i) == root && k < list[i].count && count <= SMALL_PIECE; k++, count++)
+                if (count < SMALL_PIECE)
+                    face[count] = list[i].face[k];
+        if (count > SMALL_PIECE)
+            continue;
+        const tl_status status = try_part(m, face, count);
+        enough = status != TL_E_MEMORY;
+        *thinnest = status == TL_OK ? fmin(*thinnest, thickness_of(m, face, count, vertex)) : 0;
+    }
+    free(face);
+    free(vertex);
+    return enough;
+}
+
+/* Makes pieces of all sides but one. */
+static bool part_piece(const cutter *c, const flood *list)
+{
+    tl_solid_mesh *m = c->m;
     uint32_t stays = TL_SOLID_NONE;
+    for (uint32_t i = 0; i < c->shells; i++)
+        m->shell[c->shell[i]].apart = false;
     for (uint32_t i = 0; i < c->caps; i++)
         if (flood_root(list, i) == i && (stays == TL_SOLID_NONE || !is_whole(list, c->caps, i)))
             stays = i;
@@ -455,30 +634,39 @@ static bool part_piece(const cutter *c, flood *list)
 
 /* ---------------------------------------------------------------- the cut ---------------- */
 
-static bool make(cutter *c)
+static bool make(cutter *c, double least, double *thinnest)
 {
     const uint32_t vertices = c->m->vertices;
     if (!divide_edges(c, vertices) || !divide_faces(c, vertices) || !make_rims(c, vertices) || !make_caps(c))
         return false;
     flood *list = calloc((size_t)c->caps + 1, sizeof *list);
-    const bool done = list && part_piece(c, list);
+    bool done = list && flood_sides(c, list) && find_thinnest(c, list, thinnest);
+    if (done && *thinnest < least)
+        take_back(c);
+    else
+        done = done && part_piece(c, list);
     for (uint32_t i = 0; list && i < c->caps; i++)
         free(list[i].face);
     free(list);
     return done;
 }
 
-bool tl_solid_cut_make(tl_section *s, tl_solid_mesh *m, uint32_t piece, const tl_solid_cut *cut)
+bool tl_solid_cut_make(tl_section *s, tl_solid_mesh *m, uint32_t piece, const tl_solid_cut *cut, double least,
+                       double *thinnest)
 {
     bool sound;
     if (!tl_section_make(s, m, piece, cut->plane, &sound))
         return false;
     cutter c = {.s = s, .m = m, .part = TL_SOLID_NONE};
     for (uint32_t i = 0; i < s->rims; i++)
-        if (!s->rim[i].of_span && s->rim[i].origin == cut->edge)
+        if (cut->edge == TL_SOLID_NONE || (!s->rim[i].of_span && s->rim[i].origin == cut->edge))
             c.part = tl_section_part(s, i);
-    const bool done = make(&c);
+    begin(&c);
+    const bool done = make(&c, least, thinnest);
     free(c.open);
     free(c.cap);
+    free(c.shell);
+    free(c.half);
+    free(c.face);
     return done;
 }

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <talus/elementary.h>
 #include <talus/vmath.h>
 
 /* Constant: makes a radius an upper bound in spite of the rounding of its root and sums. */
@@ -103,6 +102,16 @@ bool tl_piece_add_face(tl_solid_piece *p, uint32_t face)
         return false;
     p->face[p->faces++] = face;
     return true;
+}
+
+uint32_t tl_piece_compact(tl_solid_mesh *m, uint32_t piece)
+{
+    tl_solid_piece *p = &m->piece[piece];
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < p->faces; i++)
+        if (m->face[p->face[i]].piece == piece)
+            p->face[kept++] = p->face[i];
+    return p->faces = kept;
 }
 
 bool tl_piece_add_reflex(tl_solid_piece *p, uint32_t half)
@@ -226,24 +235,35 @@ int tl_solid_in_face(const tl_solid_mesh *m, uint32_t face, tl_vec3 at)
     return turns > 0 ? 1 : -1;
 }
 
-/* The solid angle of a triangle over 2, after A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983). */
-static double half_angle(tl_vec3 a, tl_vec3 b, tl_vec3 c)
+/* How often a loop goes round a point, as seen along x. An edge belongs to one of the two faces that meet there, to the
+ * bit: so each face counts once. */
+static int turns_along_x(const tl_solid_mesh *m, uint32_t first, tl_vec3 at)
 {
-    const double la = tl_v3_norm(a), lb = tl_v3_norm(b), lc = tl_v3_norm(c);
-    const double up = tl_v3_dot(a, tl_v3_cross(b, c));
-    const double down = la * lb * lc + tl_v3_dot(a, b) * lc + tl_v3_dot(b, c) * la + tl_v3_dot(c, a) * lb;
-    return tl_atan2(up, down);
+    int turns = 0;
+    bool near = false;
+    uint32_t h = first;
+    do {
+        const tl_vec3 a = m->vertex[m->half[h].from], b = m->vertex[tl_half_to(m, h)];
+        turns += ray_meets(a.y - at.y, a.z - at.z, b.y - at.y, b.z - at.z, 0, &near);
+        h = m->half[h].next;
+    } while (h != first);
+    return turns;
 }
 
 int tl_solid_winding(const tl_solid_mesh *m, const uint32_t *face, size_t count, tl_vec3 at)
 {
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        for (uint32_t first = m->face[face[i]].first; first != TL_SOLID_NONE; first = m->half[first].ring) {
-            const tl_vec3 base = tl_v3_sub(m->vertex[m->half[first].from], at);
-            for (uint32_t h = m->half[first].next; m->half[h].next != first; h = m->half[h].next)
-                sum += half_angle(base, tl_v3_sub(m->vertex[m->half[h].from], at),
-                                  tl_v3_sub(m->vertex[tl_half_to(m, h)], at));
-        }
-    return (int)floor(sum / (2 * TL_PI) + 0.5);
+    int turns = 0;
+    for (size_t i = 0; i < count; i++) {
+        const tl_solid_face *f = &m->face[face[i]];
+        if (fabs(f->center.y - at.y) > f->radius || fabs(f->center.z - at.z) > f->radius ||
+            f->center.x + f->radius < at.x)
+            continue;
+        const tl_plane p = m->plane[f->plane];
+        /* the face is met at a larger x: its plane passes there */
+        if ((tl_v3_dot(p.normal, at) < p.offset) != (p.normal.x > 0))
+            continue;
+        for (uint32_t first = f->first; first != TL_SOLID_NONE; first = m->half[first].ring)
+            turns += turns_along_x(m, first, at);
+    }
+    return turns;
 }

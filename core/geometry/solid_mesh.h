@@ -107,6 +107,8 @@ bool tl_solid_add_face(tl_solid_mesh *m, tl_solid_face face, uint32_t *added);
 bool tl_solid_add_plane(tl_solid_mesh *m, tl_plane plane, uint32_t *added);
 bool tl_solid_add_piece(tl_solid_mesh *m, uint32_t *added);
 bool tl_piece_add_face(tl_solid_piece *p, uint32_t face);
+/* Forgets faces that have gone to other pieces; gives the number of the others. */
+uint32_t tl_piece_compact(tl_solid_mesh *m, uint32_t piece);
 bool tl_piece_add_reflex(tl_solid_piece *p, uint32_t half);
 void tl_solid_free(tl_solid_mesh *m);
 /* A stamp that no mark has. */

@@ -28,33 +28,71 @@ typedef struct builder {
     uint32_t *list, lists, capacity;            /* first half-edges of the loops of faces */
     uint32_t *corner, corners, corner_capacity; /* vertices of all loops */
     uint32_t *start, starts, start_capacity;
-    uint32_t *queue, queued, queue_capacity; /* faces of the mesh that become one */
+    uint32_t *queue, queued, queue_capacity; /* faces of the mesh, those that become one together */
     share *share;
     uint32_t shares, share_capacity;
-    tl_tag *tag; /* of the faces */
-    uint32_t tag_capacity;
+    tl_tag *tag;    /* of the faces */
+    uint32_t *main; /* the face of the mesh of the largest area: its plane is that of the face */
+    uint32_t tag_capacity, main_capacity;
 } builder;
+
+static bool list_face(builder *b, uint32_t face, uint32_t region)
+{
+    tl_solid_face *f = &b->m->face[face];
+    if (!tl_solid_grow(&b->queue, &b->queue_capacity, b->queued, sizeof *b->queue))
+        return false;
+    b->queue[b->queued++] = face;
+    f->mark = b->m->stamp;
+    f->slot = region;
+    return true;
+}
+
+/* Lists faces that meet at flat edges one after the other; `slot` becomes the place of the first of
+ * them in the list. */
+static bool list_regions(builder *b, const uint32_t *face, uint32_t count)
+{
+    tl_solid_mesh *m = b->m;
+    const uint32_t stamp = tl_solid_stamp(m);
+    for (uint32_t i = 0, done = 0; i < count; i++) {
+        if (m->face[face[i]].mark == stamp)
+            continue;
+        const uint32_t region = done;
+        if (!list_face(b, face[i], region))
+            return false;
+        for (; done < b->queued; done++)
+            TL_EACH_HALF(m, b->queue[done], h, first)
+            {
+                const uint32_t across = m->half[m->half[h].mate].face;
+                if (m->half[h].flat && m->face[across].mark != stamp && !list_face(b, across, region))
+                    return false;
+            }
+    }
+    return true;
+}
+
+/* Whether an edge lies inside a face of the part. */
+static bool is_inner(const tl_solid_mesh *m, uint32_t h)
+{
+    return m->face[m->half[h].face].slot == m->face[m->half[m->half[h].mate].face].slot;
+}
 
 static uint32_t outline_after(const tl_solid_mesh *m, uint32_t h)
 {
     uint32_t next = m->half[h].next;
-    while (m->half[next].flat)
+    while (is_inner(m, next))
         next = m->half[m->half[next].mate].next;
     return next;
 }
 
 /* Lists the outlines of faces, and counts them at each vertex; false without memory. */
-static bool list_outlines(builder *b, uint32_t piece)
+static bool list_outlines(builder *b, const uint32_t *face, uint32_t count)
 {
     tl_solid_mesh *m = b->m;
-    const tl_solid_piece *p = &m->piece[piece];
     const uint32_t stamp = tl_solid_stamp(m);
-    for (uint32_t i = 0; i < p->faces; i++) {
-        if (m->face[p->face[i]].piece != piece)
-            continue;
-        TL_EACH_HALF(m, p->face[i], h, first)
+    for (uint32_t i = 0; i < count; i++) {
+        TL_EACH_HALF(m, face[i], h, first)
         {
-            if (m->half_mark[h] == stamp || m->half[h].flat)
+            if (m->half_mark[h] == stamp || is_inner(m, h))
                 continue;
             if (!tl_solid_grow(&b->list, &b->capacity, b->lists, sizeof *b->list))
                 return false;
@@ -105,56 +143,42 @@ static bool add_share(builder *b, tl_tag tag, double area)
     return true;
 }
 
-/* Lists faces of the mesh over flat edges from one on. */
-static bool list_plane(builder *b, uint32_t face)
+/* Finds tag and plane of a face of the part. */
+static bool find_tag(builder *b, uint32_t number)
 {
-    tl_solid_mesh *m = b->m;
-    b->queued = 0;
-    for (uint32_t i = 0; i == 0 || i < b->queued; i++) {
-        if (i == 0) {
-            if (!tl_solid_grow(&b->queue, &b->queue_capacity, b->queued, sizeof *b->queue))
-                return false;
-            b->queue[b->queued++] = face;
-            m->face[face].mark = m->stamp;
+    const tl_solid_mesh *m = b->m;
+    const uint32_t region = m->face[m->half[b->list[number]].face].slot;
+    double largest = -INFINITY;
+    b->shares = 0;
+    for (uint32_t k = region; k < b->queued && m->face[b->queue[k]].slot == region; k++) {
+        const tl_solid_face *f = &m->face[b->queue[k]];
+        const tl_vec3 n = tl_solid_normal(m, b->queue[k]);
+        double area = 0;
+        for (uint32_t first = f->first; first != TL_SOLID_NONE; first = m->half[first].ring)
+            area += tl_v3_dot(n, tl_solid_loop_area(m, first));
+        if (area > largest) {
+            largest = area;
+            b->main[number] = b->queue[k];
         }
-        TL_EACH_HALF(m, b->queue[i], h, first)
-        {
-            const uint32_t next = m->half[m->half[h].mate].face;
-            if (!m->half[h].flat || m->face[next].mark == m->stamp)
-                continue;
-            if (!tl_solid_grow(&b->queue, &b->queue_capacity, b->queued, sizeof *b->queue))
-                return false;
-            m->face[next].mark = m->stamp;
-            b->queue[b->queued++] = next;
-        }
+        /* a needle lies on any plane through it */
+        if (!f->inside && area > m->on * f->radius && !add_share(b, f->tag, area))
+            return false;
     }
+    share most = {{0, 0}, -INFINITY};
+    for (uint32_t k = 0; k < b->shares; k++)
+        if (b->share[k].area > most.area)
+            most = b->share[k];
+    b->tag[number] = most.tag;
     return true;
 }
 
-/* Finds the tags of the faces. */
+/* Finds tags and planes of the faces. */
 static bool list_tags(builder *b)
 {
-    tl_solid_mesh *m = b->m;
-    tl_solid_stamp(m);
-    for (uint32_t i = 0; i < b->lists; i++) {
-        b->shares = 0;
-        if (!tl_solid_grow(&b->tag, &b->tag_capacity, i, sizeof *b->tag) || !list_plane(b, m->half[b->list[i]].face))
+    for (uint32_t i = 0; i < b->lists; i++)
+        if (!tl_solid_grow(&b->tag, &b->tag_capacity, i, sizeof *b->tag) ||
+            !tl_solid_grow(&b->main, &b->main_capacity, i, sizeof *b->main) || !find_tag(b, i))
             return false;
-        for (uint32_t k = 0; k < b->queued; k++) {
-            const tl_solid_face *f = &m->face[b->queue[k]];
-            const tl_vec3 n = tl_solid_normal(m, b->queue[k]);
-            double area = 0;
-            for (uint32_t first = f->first; first != TL_SOLID_NONE; first = m->half[first].ring)
-                area += tl_v3_dot(n, tl_solid_loop_area(m, first));
-            if (!f->inside && !add_share(b, f->tag, area))
-                return false;
-        }
-        share most = {{0, 0}, -INFINITY};
-        for (uint32_t k = 0; k < b->shares; k++)
-            if (b->share[k].area > most.area)
-                most = b->share[k];
-        b->tag[i] = most.tag;
-    }
     return true;
 }
 
@@ -191,7 +215,7 @@ static uint32_t fill_tables(const builder *b, const tables *t)
         t->loop[i] = (uint16_t)m->height[v];
     }
     for (uint32_t i = 0; i < b->starts; i++) {
-        const uint32_t face = m->half[b->list[i]].face;
+        const uint32_t face = b->main[i];
         const tl_vec3 n = tl_solid_normal(m, face);
         const double offset = m->plane[m->face[face].plane].offset;
         t->plane[i] = (tl_plane){n, m->face[face].turned ? -offset : offset};
@@ -204,11 +228,7 @@ static tl_status check_part(const builder *b, const tl_poly *part)
 {
     tl_error why;
     const tl_status status = tl_poly_check(part, CONVEX + 4 * b->m->on / part->size, &why);
-    if (status == TL_E_GEOMETRY)
-        return refuse(b, "is not convex");
-    if (status == TL_OK && tl_poly_thickness(part) < TL_POLY_THIN * part->size)
-        return refuse(b, "is a sliver");
-    return status;
+    return status == TL_E_GEOMETRY ? refuse(b, "is not convex") : status;
 }
 
 static tl_status make_part(builder *b, tl_poly **part)
@@ -238,17 +258,20 @@ static tl_status make_part(builder *b, tl_poly **part)
     return status;
 }
 
-tl_status tl_solid_part(tl_solid_mesh *m, uint32_t piece, tl_poly **part, tl_error *error)
+tl_status tl_solid_part(tl_solid_mesh *m, const uint32_t *face, uint32_t count, tl_poly **part, tl_error *error)
 {
     builder b = {.m = m, .error = error};
     *part = NULL;
     const tl_status status =
-        list_outlines(&b, piece) && list_corners(&b) && list_tags(&b) ? make_part(&b, part) : tl_fail_memory(error);
+        list_regions(&b, face, count) && list_outlines(&b, face, count) && list_corners(&b) && list_tags(&b)
+            ? make_part(&b, part)
+            : tl_fail_memory(error);
     free(b.list);
     free(b.corner);
     free(b.start);
     free(b.queue);
     free(b.share);
     free(b.tag);
+    free(b.main);
     return status;
 }

@@ -6,7 +6,7 @@
 #include "geometry/polyhedron.h"
 #include "geometry/solid_mesh.h"
 
-/* The convex part that a piece is. TL_E_GEOMETRY: it is none, or too thin. */
-tl_status tl_solid_part(tl_solid_mesh *m, uint32_t piece, tl_poly **part, tl_error *error);
+/* The convex part that the faces of a piece close. TL_E_GEOMETRY: they do not. */
+tl_status tl_solid_part(tl_solid_mesh *m, const uint32_t *face, uint32_t count, tl_poly **part, tl_error *error);
 
 #endif

@@ -516,9 +516,11 @@ static bool lies_in(const tl_section *s, const tl_solid_mesh *m, const tl_rim_lo
 /* Finds the loops around holes. Loops without area are slits, which lie in others like holes. */
 static void nest(tl_section *s, const tl_solid_mesh *m)
 {
-    for (uint32_t i = 0; i < s->loops; i++)
-        if (s->loop[i].area > m->on * m->size)
-            s->loop[i].in = i;
+    for (uint32_t i = 0; i < s->loops; i++) {
+        tl_rim_loop *l = &s->loop[i];
+        if (l->area > m->on * (l->high[0] - l->low[0] + l->high[1] - l->low[1]))
+            l->in = i;
+    }
     for (uint32_t i = 0; i < s->loops; i++) {
         tl_rim_loop *hole = &s->loop[i];
         if (hole->in == i)
@@ -566,6 +568,7 @@ bool tl_section_make(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t p
 typedef struct tl_part_score {
     int32_t ended, split;
     bool bad, thin;
+    double wedge;
     uint32_t edge;
     double area;
     tl_vec3 moment; /* of the new face's boundary: its middle times its length */
@@ -588,6 +591,16 @@ static void score_edge(const tl_section *s, const tl_solid_mesh *m, const tl_rim
     score->thin = score->thin || tl_v3_dot(tl_v3_cross(tl_solid_normal(m, m->half[h].face), along), inward) > SHARP;
 }
 
+/* The sine of the angle between the plane and the face at a rim, where the cut leaves a wedge; else 1. */
+static double wedge_at(const tl_section *s, const tl_solid_mesh *m, const tl_rim *r)
+{
+    const tl_vec3 up = m->plane[s->plane].normal;
+    const uint32_t face = r->of_span ? s->span[r->origin].face : m->half[r->origin].face;
+    const tl_vec3 normal = tl_solid_normal(m, face);
+    const double opposite = tl_v3_dot(normal, up) * (r->above ? 1 : -1);
+    return opposite > 0 && (r->of_span || !s->lies[m->face[face].slot]) ? tl_v3_norm(tl_v3_cross(normal, up)) : 1;
+}
+
 static void score_rims(tl_section *s, const tl_solid_mesh *m)
 {
     for (uint32_t i = 0; i < s->rims; i++) {
@@ -601,6 +614,7 @@ static void score_rims(tl_section *s, const tl_solid_mesh *m)
         const double length = tl_v3_norm(tl_v3_sub(b, a));
         score->length += length;
         score->moment = tl_v3_madd(score->moment, 0.5 * length, tl_v3_add(a, b));
+        score->wedge = fmin(score->wedge, wedge_at(s, m, r));
         if (!r->of_span)
             score_edge(s, m, r, score);
         if (r->from < m->vertices || r->above)
@@ -612,10 +626,9 @@ static void score_rims(tl_section *s, const tl_solid_mesh *m)
     }
 }
 
-/* Whether cut a is better than b. */
-static bool is_better(const tl_solid_cut *a, const tl_solid_cut *b)
+bool tl_solid_cut_better(const tl_solid_cut *a, const tl_solid_cut *b)
 {
-    if (b->gain == INT32_MIN || a->gain != b->gain)
+    if (a->gain != b->gain)
         return a->gain > b->gain;
     if (a->thin != b->thin)
         return b->thin;
@@ -624,7 +637,7 @@ static bool is_better(const tl_solid_cut *a, const tl_solid_cut *b)
     return a->length < b->length * (1 - EQUAL);
 }
 
-bool tl_section_best(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, tl_solid_cut *best)
+bool tl_section_cuts(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, tl_solid_cuts *cuts)
 {
     bool sound;
     if (!tl_section_make(s, m, piece, plane, &sound))
@@ -634,21 +647,22 @@ bool tl_section_best(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t p
     if (!tl_solid_grow(&s->score, &s->score_capacity, s->rims, sizeof *s->score))
         return false;
     for (uint32_t i = 0; i < s->rims; i++)
-        s->score[i] = (tl_part_score){.edge = TL_SOLID_NONE};
+        s->score[i] = (tl_part_score){.edge = TL_SOLID_NONE, .wedge = 1};
     score_rims(s, m);
     for (uint32_t i = 0; i < s->rims; i++) {
         const tl_part_score *score = &s->score[i];
         if (s->rim[i].root != i || score->bad || score->ended == 0)
             continue;
         const tl_vec3 middle = tl_v3_scale(1 / score->length, score->moment);
-        const tl_solid_cut cut = {.plane = plane,
-                                  .edge = score->edge,
-                                  .gain = score->ended - score->split,
-                                  .thin = score->thin,
-                                  .area = score->area,
-                                  .length = tl_v3_norm(tl_v3_sub(middle, m->center))};
-        if (is_better(&cut, best))
-            *best = cut;
+        if (!tl_solid_grow(&cuts->cut, &cuts->capacity, cuts->count, sizeof *cuts->cut))
+            return false;
+        cuts->cut[cuts->count++] = (tl_solid_cut){.plane = plane,
+                                                  .edge = score->edge,
+                                                  .gain = score->ended - score->split,
+                                                  .thin = score->thin,
+                                                  .thickness = score->wedge,
+                                                  .area = score->area,
+                                                  .length = tl_v3_norm(tl_v3_sub(middle, m->center))};
     }
     return true;
 }

@@ -71,17 +71,27 @@ typedef struct tl_section {
 
 /* A cut of a piece: by a plane, over the part of the section that hangs together with a reflex edge. */
 typedef struct tl_solid_cut {
-    uint32_t plane, edge;
-    int32_t gain;  /* reflex edges that it ends less those that it cuts in two; INT32_MIN: there is no cut */
+    uint32_t plane;
+    uint32_t edge; /* none: a cut of a convex piece */
+    int32_t gain;  /* reflex edges that it ends less those that it cuts in two */
     bool thin;     /* makes a sharp wedge or a short edge */
     double area;   /* m2 */
     double length; /* m: from the centroid of the solid to that of the cut */
+    double
+        thickness; /* the least: sine of the angle of a wedge that it leaves; once tried: of pieces, over their sizes */
+    bool refused;  /* it was tried, and left thin pieces */
 } tl_solid_cut;
+
+typedef struct tl_solid_cuts {
+    tl_solid_cut *cut;
+    uint32_t count, capacity;
+} tl_solid_cuts;
 
 tl_section *tl_section_new(void);
 void tl_section_free(tl_section *s);
-/* Puts the best cut of a piece by a plane into *best if it is better; false without memory. */
-bool tl_section_best(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, tl_solid_cut *best);
+/* Adds the cuts of a piece by a plane; false without memory. */
+bool tl_section_cuts(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, tl_solid_cuts *cuts);
+bool tl_solid_cut_better(const tl_solid_cut *a, const tl_solid_cut *b);
 /* Finds the section of a piece; false without memory. *sound: its loops close. */
 bool tl_section_make(tl_section *s, tl_solid_mesh *m, uint32_t piece, uint32_t plane, bool *sound);
 /* The name of the part of the section that a rim belongs to. */

@@ -183,6 +183,11 @@ static void scene_head(const tl_model *m, const tl_html *options, const tl_scene
     tl_json_put(text, "], \"joints\": [\"\"");
     for (size_t i = 0; i < m->joint_count; i++)
         tl_json_print(text, ", %s", m->joints[i].name);
+    tl_json_put(text, "], \"laws\": [\"\"");
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        char law[TL_LAW_TEXT];
+        tl_json_print(text, ", %s", tl_law_text(m, &m->joint_laws[i], law));
+    }
     tl_json_put(text, "], \"friction\": [null");
     for (size_t i = 0; i < m->joint_count; i++) {
         double friction = friction_of_joint(m, (uint32_t)i + 1);
@@ -629,6 +634,18 @@ static tl_status put_columns(contacts *c, const tl_contact_polygons *p, tl_piece
     return TL_OK;
 }
 
+/* Which law each contact of CONT has: its place among "laws" of the head. */
+static tl_status put_laws(const contacts *c, tl_piece *out)
+{
+    unsigned char *to = tl_scene_chunk(out, "LAWS", 4 + 4 * c->count, &c->model->error);
+    if (!to)
+        return c->model->error.status;
+    to = tl_put_u32(to, (uint32_t)c->count);
+    for (size_t i = 0; i < c->count; i++)
+        to = tl_put_u32(to, c->facts[c->picked[i]].law);
+    return TL_OK;
+}
+
 static tl_status put_contacts(contacts *c, tl_piece *out)
 {
     tl_contact_polygons polygons = {0};
@@ -639,6 +656,8 @@ static tl_status put_contacts(contacts *c, tl_piece *out)
         rows ? tl_contact_polygons_find(c->model, rows, c->count, &polygons) : tl_fail_memory(&c->model->error);
     if (status == TL_OK)
         status = put_columns(c, &polygons, out);
+    if (status == TL_OK)
+        status = put_laws(c, out);
     tl_contact_polygons_free(&polygons);
     free(rows);
     return status;

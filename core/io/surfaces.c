@@ -1,13 +1,14 @@
 /* surfaces.c - writes blocks as Wavefront OBJ, as text of STL and PLY, or as polygons of a VTK legacy file.
  *
  * Numbers have the digits that give back the same double. Of OBJ each block is an object block_ID with the group of the
- * block. Of STL it is a solid with the name of the group, its faces divided into fans of triangles. PLY and VTK have
+ * block. Of STL it is a solid with the name of the group, its faces divided into triangles. PLY and VTK have
  * vertices and faces; a block is what hangs together. */
 #include "io/surfaces.h"
 
 #include "io/json.h"
 #include "io/pieces.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,19 +77,59 @@ static void put_faces(const writer *w, uint32_t row, const char *before, uint32_
     }
 }
 
+/* How far the corners of a face that are left reach above the triangle of corner i and its neighbours; INFINITY: it has
+ * no area. */
+static double reach_above(const tl_poly *shape, const uint16_t *left, uint32_t count, uint32_t i)
+{
+    const tl_vec3 a = shape->vertex[left[(i + count - 1) % count]], b = shape->vertex[left[i]];
+    const tl_vec3 normal = tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(shape->vertex[left[(i + 1) % count]], a));
+    const double length = tl_v3_norm(normal);
+    double above = 0;
+    for (uint32_t k = 0; k < count; k++)
+        above = fmax(above, tl_v3_dot(normal, tl_v3_sub(shape->vertex[left[k]], a)));
+    return length > 0 ? above / length : (double)INFINITY;
+}
+
+/* The corner that is cut off a face next: the first whose triangle leaves the others below its plane. The triangles of
+ * a face that is bent then bend outward, as its block does. Those of a plane face are a fan. */
+static uint32_t next_ear(const tl_poly *shape, const uint16_t *left, uint32_t count)
+{
+    uint32_t best = 1;
+    double least = INFINITY;
+    for (uint32_t i = 1; i <= count && least > TL_POLY_ON * shape->size; i++) {
+        const double above = reach_above(shape, left, count, i % count);
+        if (above < least) {
+            least = above;
+            best = i % count;
+        }
+    }
+    return best;
+}
+
+static void put_triangle(const writer *w, uint32_t row, const uint16_t *corner[3], tl_piece *to)
+{
+    put_point(to, "facet normal ", tl_v3(0, 0, 0)); /* readers take it from the corners */
+    tl_json_put(to, "outer loop\n");
+    for (int k = 0; k < 3; k++)
+        put_point(to, "vertex ",
+                  tl_model_point(w->m, w->m->blocks.body[row], w->m->blocks.shape[row]->vertex[*corner[k]]));
+    tl_json_put(to, "endloop\nendfacet\n");
+}
+
 static void put_triangles(const writer *w, uint32_t row, tl_piece *to)
 {
     const tl_poly *shape = w->m->blocks.shape[row];
-    const uint32_t body = w->m->blocks.body[row];
-    for (uint32_t f = 0; f < shape->face_count; f++)
-        for (uint32_t i = shape->start[f] + 1; i + 1 < shape->start[f + 1]; i++) {
-            put_point(to, "facet normal ", tl_v3(0, 0, 0)); /* readers take it from the corners */
-            tl_json_put(to, "outer loop\n");
-            put_point(to, "vertex ", tl_model_point(w->m, body, shape->vertex[shape->loop[shape->start[f]]]));
-            put_point(to, "vertex ", tl_model_point(w->m, body, shape->vertex[shape->loop[i]]));
-            put_point(to, "vertex ", tl_model_point(w->m, body, shape->vertex[shape->loop[i + 1]]));
-            tl_json_put(to, "endloop\nendfacet\n");
+    for (uint32_t f = 0; f < shape->face_count; f++) {
+        uint16_t left[TL_POLY_MAX_VERTICES];
+        uint32_t count = tl_poly_face_size(shape, f);
+        memcpy(left, shape->loop + shape->start[f], count * sizeof *left);
+        for (; count >= 3; count--) {
+            const uint32_t i = next_ear(shape, left, count);
+            const uint16_t *corner[3] = {&left[(i + count - 1) % count], &left[i], &left[(i + 1) % count]};
+            put_triangle(w, row, corner, to);
+            memmove(left + i, left + i + 1, (count - i - 1) * sizeof *left);
         }
+    }
 }
 
 /* Blocks whose vertices and faces stand together. */

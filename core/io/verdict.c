@@ -115,8 +115,8 @@ static void find_bodies(const tl_model *m, const motion_list *list, tl_verdict *
 static double sprung(const tl_model *m, uint32_t contact, const tl_contact_facts *facts)
 {
     const tl_detect *d = m->detect;
-    const double kn = facts->law == TL_NO_ROW ? 0 : m->joint_laws[facts->law].kn;
-    const double ks = facts->law == TL_NO_ROW ? 0 : m->joint_laws[facts->law].ks;
+    const double kn = facts->law == 0 ? 0 : m->joint_laws[facts->law - 1].kn;
+    const double ks = facts->law == 0 ? 0 : m->joint_laws[facts->law - 1].ks;
     double pressed = 0;
     if (tl_row_is_meeting(m, contact) && kn > 0) {
         const tl_meeting by = tl_meeting_of(m, contact);

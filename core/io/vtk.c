@@ -296,7 +296,7 @@ static tl_status put_grid(tl_model *m, const grid *g, size_t stream, const tl_vt
 {
     FILE *file = out->output->file;
     size_t rows = m->blocks.table.rows, points = g->first[rows];
-    tl_vtk_header(file, m, "blocks", "UNSTRUCTURED_GRID");
+    tl_vtk_header(file, m, "blocks", "UNSTRUCTURED_GRID", false);
     fprintf(file, "POINTS %zu double\n", points);
     tl_status status = tl_vtk_list(out, rows, points * TL_VTK_VEC3_BYTES, fill_places, g);
     fprintf(file, "CELLS %zu %zu\n", rows, stream);

@@ -7,6 +7,7 @@
  *             normal_stress  Pa                          shear_stress  Pa
  *             state          0 elastic, 1 slipping, 2 open, 3 failed
  *             joint          index into the field joint_names, plane its number within the set
+ *             law            index into the field law_names
  *             area           m2                          gap           m, overlap negative
  *             normal         unit vector, from the lower block id to the higher
  *             contact_id, block_a, block_b               ids
@@ -21,6 +22,7 @@
  *
  * Cell data  joint     index into the field joint_names; 0 where neither face was made by a joint
  *            plane     number of the plane within its joint set
+ *            law       index into the field law_names; 0: a face without contact
  *            block_id, block_b   the blocks, the older first; block_b 0: a face without contact, of block_id
  *            contact_id          0: a face without contact
  *            state     0 elastic, 1 slipping, 2 open, 3 failed; 4 a face without contact
@@ -71,11 +73,11 @@ typedef struct array_list {
 
 static const char *const contact_arrays[] = {"point", "normal_force", "shear_force", "normal_stress", "shear_stress",
                                              "area",  "normal",       "gap",         "state",         "joint",
-                                             "plane", "contact_id",   "block_a",     "block_b"};
-static const char *const joint_arrays[] = {"joint",        "plane",       "block_id",           "block_b",
-                                           "contact_id",   "state",       "normal_stress",      "shear_stress",
-                                           "normal_force", "shear_force", "shear_displacement", "slip",
-                                           "area"};
+                                             "plane", "law",          "contact_id",  "block_a",       "block_b"};
+static const char *const joint_arrays[] = {"joint",        "plane",        "law",         "block_id",
+                                           "block_b",      "contact_id",   "state",       "normal_stress",
+                                           "shear_stress", "normal_force", "shear_force", "shear_displacement",
+                                           "slip",         "area"};
 
 enum { POINTS, NORMAL_FORCE, SHEAR_FORCE, CONTACT_HEADED };
 enum { JOINT, JOINT_HEADED };
@@ -275,7 +277,7 @@ static void fill_vertices(const void *user, size_t begin, size_t end, tl_piece *
 static tl_status put_contacts(const contacts *c, tl_pieces *out)
 {
     FILE *file = out->output->file;
-    tl_vtk_header(file, c->model, "contacts", "POLYDATA");
+    tl_vtk_header(file, c->model, "contacts", "POLYDATA", true);
     fprintf(file, "POINTS %zu double\n", c->count);
     put_column(&c->columns, POINTS, out->output);
     fprintf(file, "VERTICES %zu %zu\n", c->count, 2 * c->count);
@@ -510,7 +512,7 @@ static tl_status put_joints(const joints *j, tl_pieces *out)
 {
     FILE *file = out->output->file;
     size_t polygons = polygons_of(j), points = corners_of(j);
-    tl_vtk_header(file, j->model, "joints", "POLYDATA");
+    tl_vtk_header(file, j->model, "joints", "POLYDATA", true);
     fprintf(file, "POINTS %zu double\n", points);
     tl_status status = tl_vtk_list(out, polygons, points * TL_VTK_VEC3_BYTES, fill_places, j);
     fprintf(file, "POLYGONS %zu %zu\n", polygons, polygons + points);

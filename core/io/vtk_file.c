@@ -2,6 +2,7 @@
 #include "io/vtk_file.h"
 
 #include "base/error.h"
+#include "model/scope.h"
 #include "zone/zones.h"
 
 #include <string.h>
@@ -47,13 +48,23 @@ tl_status tl_vtk_list(tl_pieces *out, size_t rows, size_t bytes, tl_piece_fn fn,
     return status;
 }
 
-void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset)
+static void put_laws(FILE *file, const tl_model *m)
+{
+    char law[TL_LAW_TEXT];
+    tl_vtk_array(file, "law_names", 1, m->joint_law_count + 1, TL_VTK_STRING);
+    put_string(file, ""); /* law 0 is none */
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        put_string(file, tl_law_text(m, &m->joint_laws[i], law));
+    tl_vtk_line(file);
+}
+
+void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset, bool laws)
 {
     fprintf(file, "# vtk DataFile Version 3.0\nTalus %s: %s, cycle %lld\nBINARY\nDATASET %s\n", TALUS_VERSION, content,
             (long long)m->cycles, dataset);
 
     const bool deforms = tl_model_deforms(m);
-    tl_vtk_field(file, "FieldData", 3 + (size_t)(m->group_count > 0) + (size_t)deforms);
+    tl_vtk_field(file, "FieldData", 3 + (size_t)laws + (size_t)(m->group_count > 0) + (size_t)deforms);
     tl_vtk_array(file, "TIME", 1, 1, TL_VTK_DOUBLE);
     put_double(file, m->time);
     tl_vtk_line(file);
@@ -66,6 +77,8 @@ void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const cha
     for (size_t i = 0; i < m->joint_count; i++)
         put_string(file, m->joints[i].name);
     tl_vtk_line(file);
+    if (laws)
+        put_laws(file, m);
     if (m->group_count > 0) {
         tl_vtk_array(file, "group_names", 1, m->group_count, TL_VTK_STRING);
         for (size_t i = 0; i < m->group_count; i++)

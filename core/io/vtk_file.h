@@ -23,8 +23,8 @@
 
 /* The five lines at the head of a file and the fields every file carries: TIME, CYCLE, and the
  * names of groups and joints, so that the numbers in `group` and `joint` can be looked up; where blocks are deformable
- * those of the solids. */
-void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset);
+ * those of the solids. With `laws` the names of these, too. */
+void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset, bool laws);
 
 /* "FIELD": `arrays` arrays follow, each begun by tl_vtk_array and ended by tl_vtk_line. */
 void tl_vtk_field(FILE *file, const char *name, size_t arrays);

@@ -301,7 +301,7 @@ tl_status tl_vtk_section(tl_model *m, tl_plane plane, tl_pieces *out)
     section s = {.normal = plane.normal};
     tl_status status = find_polygons(m, plane, &s);
     if (status == TL_OK) {
-        tl_vtk_header(file, m, "section", "POLYDATA");
+        tl_vtk_header(file, m, "section", "POLYDATA", false);
         put_polygons(m, &s, file);
         put_section_cells(m, &s, file);
         if (tl_model_deforms(m))

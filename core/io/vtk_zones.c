@@ -256,7 +256,7 @@ static tl_status put_grid(zones *j, const more *m, tl_pieces *out)
 {
     FILE *file = out->output->file;
     const size_t cells = j->list.zones, points = j->list.points;
-    tl_vtk_header(file, j->model, "zones", "UNSTRUCTURED_GRID");
+    tl_vtk_header(file, j->model, "zones", "UNSTRUCTURED_GRID", false);
     fprintf(file, "POINTS %zu double\n", points);
     tl_status status = tl_vtk_list(out, points, points * TL_VTK_VEC3_BYTES, fill_places, j);
     fprintf(file, "CELLS %zu %zu\n", cells, 5 * cells);

@@ -774,13 +774,6 @@ static tl_status set_solid(tl_model *m, const tl_id *ids, size_t count, const tl
     return m->zone_verbs->resolid(m, ids, count, set->solid);
 }
 
-static void free_change(tl_group_change *change)
-{
-    free(change->row);
-    free(change->group);
-    free(change->contact);
-}
-
 /* Begins the change by which blocks get a group. */
 static tl_status list_change(tl_model *m, const tl_id *ids, size_t count, uint32_t group, tl_group_change *change)
 {
@@ -817,24 +810,24 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
         return tl_fail_memory(&m->error);
     tl_group_change change = {.count = 0};
     if (set->group && (status = list_change(m, ids, count, group, &change)) != TL_OK) {
-        free_change(&change);
+        tl_group_change_free(&change);
         return status;
     }
     tl_aside aside;
     bool joined = some_joined(m, ids, count), mends = !isnan(set->density) && joined;
     moved_parts *moved = joined ? calloc(m->bodies.table.rows, sizeof *moved) : NULL;
     if ((joined && !moved) || (mends && !tl_rows_set_aside(m, &aside))) {
-        free_change(&change);
+        tl_group_change_free(&change);
         free(moved);
         return tl_fail_memory(&m->error);
     }
     if (set->solid && (status = set_solid(m, ids, count, set)) != TL_OK) {
-        free_change(&change);
+        tl_group_change_free(&change);
         free(moved);
         return status;
     }
     tl_group_change_apply(m, &change);
-    free_change(&change);
+    tl_group_change_free(&change);
     for (size_t i = 0; i < count; i++) {
         uint32_t row = tl_block_row_quiet(m, ids[i]), body = m->blocks.body[row];
         if (!isnan(set->density)) {

@@ -445,11 +445,21 @@ static void side_text(const tl_model *m, const tl_scope_side *side, char text[SI
         tl_text_print(text, SIDE_TEXT, "blocks that are gone");
 }
 
-const char *tl_scope_text(tl_model *m, const tl_scope *s, char text[TL_SCOPE_TEXT])
+/* "joint 'J1:3'", with what follows it. */
+static void joint_text(const tl_model *m, tl_tag tag, const char *behind, char text[SIDE_TEXT + 40])
 {
-    char joint[100] = "", one[SIDE_TEXT], other[SIDE_TEXT];
+    const char *joint = tag.joint ? m->joints[tag.joint - 1].name : "*";
+    if (tag.plane)
+        tl_text_print(text, SIDE_TEXT + 40, "joint '%.80s:%u'%s", joint, tag.plane, behind);
+    else
+        tl_text_print(text, SIDE_TEXT + 40, "joint '%.80s'%s", joint, behind);
+}
+
+const char *tl_scope_text(const tl_model *m, const tl_scope *s, char text[TL_SCOPE_TEXT])
+{
+    char joint[SIDE_TEXT + 40] = "", one[SIDE_TEXT], other[SIDE_TEXT];
     if (s->names == 0 || s->tag.joint)
-        tl_text_print(joint, sizeof joint, "joint '%.80s'%s", tl_pattern_name(m, s->tag), s->names ? ", " : "");
+        joint_text(m, s->tag, s->names ? ", " : "", joint);
     if (s->names == 0) {
         tl_text_print(text, TL_SCOPE_TEXT, "%s", joint);
         return text;
@@ -469,12 +479,32 @@ const char *tl_scope_text(tl_model *m, const tl_scope *s, char text[TL_SCOPE_TEX
     return text;
 }
 
+const char *tl_law_text(const tl_model *m, const tl_law *law, char text[TL_LAW_TEXT])
+{
+    char scope[TL_SCOPE_TEXT];
+    tl_text_print(text, TL_LAW_TEXT, "%.40s: %s", law->kind->name, tl_scope_text(m, &law->scope, scope));
+    return text;
+}
+
 /* ---------------------------------------------------------------- groups ------------------ */
+
+void tl_law_change_free(tl_law_change *change)
+{
+    free(change->coming);
+    free(change->field);
+    *change = (tl_law_change){NULL, NULL, 0};
+}
+
+void tl_group_change_free(tl_group_change *change)
+{
+    free(change->row);
+    free(change->group);
+    tl_law_change_free(&change->laws);
+}
 
 tl_status tl_group_change_begin(tl_model *m, tl_group_change *change)
 {
-    change->contact = NULL;
-    change->contact_count = 0;
+    change->laws = (tl_law_change){NULL, NULL, 0};
     return m->group_verbs && tl_laws_name_groups(m) ? m->group_verbs->begin(m, change) : TL_OK;
 }
 

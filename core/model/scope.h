@@ -41,7 +41,13 @@ bool tl_scope_copy(const tl_scope *from, tl_scope *out);
 void tl_scope_clear(tl_scope *scope);
 
 /* "joint 'J1'", "joint 'J1' between group 'stone' and 12 blocks (first: 3)". */
-const char *tl_scope_text(tl_model *m, const tl_scope *scope, char text[TL_SCOPE_TEXT]);
+const char *tl_scope_text(const tl_model *m, const tl_scope *scope, char text[TL_SCOPE_TEXT]);
+
+/* Bytes of the text of a law, with its terminating zero. */
+#define TL_LAW_TEXT (TL_SCOPE_TEXT + 48)
+
+/* "coulomb: contacts of group 'stone'". */
+const char *tl_law_text(const tl_model *m, const tl_law *law, char text[TL_LAW_TEXT]);
 
 /* The set of the ids of a list; false: out of memory. */
 bool tl_id_set_of(const tl_id *ids, size_t count, tl_id_set *out);
@@ -56,13 +62,23 @@ size_t tl_id_set_living(const tl_model *m, const tl_id_set *set, tl_id *ids);
 bool tl_laws_name_blocks(const tl_model *m);
 bool tl_laws_name_groups(const tl_model *m);
 
+/* Contacts that come under other laws, of those who keep their forces (cycle/joint_law.c). */
+typedef struct tl_law_change {
+    const tl_law **coming; /* [contacts] the law that a contact comes under with forces, or NULL */
+    uint32_t *field;       /* [field_count] field contacts that get a law that presses otherwise */
+    size_t field_count;
+} tl_law_change;
+
+void tl_law_change_free(tl_law_change *change);
+
 /* Blocks that get other groups. */
 typedef struct tl_group_change {
     uint32_t *row, *group; /* [count] */
     size_t count;
-    uint32_t *contact; /* of those who keep forces of contacts: [contact_count] */
-    size_t contact_count;
+    tl_law_change laws;
 } tl_group_change;
+
+void tl_group_change_free(tl_group_change *change);
 
 /* Who keeps forces of contacts that come under other laws with the groups of their blocks (cycle/joint_law.c). */
 typedef struct tl_group_verbs {
@@ -70,7 +86,7 @@ typedef struct tl_group_verbs {
     void (*apply)(tl_model *m, tl_group_change *change);
 } tl_group_verbs;
 
-/* Does all of a change of groups that can fail, and then the change. Its lists are the caller's, but for contacts. */
+/* Does all of a change of groups that can fail, and then the change. Rows and groups are the caller's to list. */
 tl_status tl_group_change_begin(tl_model *m, tl_group_change *change);
 void tl_group_change_apply(tl_model *m, tl_group_change *change);
 

@@ -39,7 +39,8 @@
           "of the second block against the first at the point, along the contact: difference of "                      \
           "their displacements")                                                                                       \
     FIELD(state, TEXT, "", state, "\"elastic\", \"slipping\", \"open\" or \"failed\"")                                 \
-    FIELD(law, TEXT, "", law, "name of the law of its joint, or empty")
+    FIELD(law, TEXT, "", law, "name of its law, or empty")                                                             \
+    FIELD(law_number, COUNT, "", law, "place of its law in model:laws(), or 0")
 
 /* What else files show. */
 #define CONTACT_ARRAYS(FIELD)                                                                                          \
@@ -210,7 +211,7 @@ static tl_contact_facts facts_of_meeting(const tl_model *m, uint32_t row)
                             .a = by.a,
                             .b = by.b,
                             .tag = by.tag,
-                            .law = by.law,
+                            .law = by.law + 1,
                             .state = tl_contact_state_of_flags(by.any, by.all),
                             .area = by.area,
                             .gap = by.gap,
@@ -236,7 +237,7 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
                             .a = name.a,
                             .b = name.b,
                             .tag = c->tag[contact],
-                            .law = c->law[contact],
+                            .law = c->law[contact] + 1,
                             .area = c->area[contact],
                             .state = state_of(m->detect, contact)};
     tl_vec3 point;
@@ -316,7 +317,7 @@ tl_status tl_contact_field(tl_model *m, tl_contact_name contact, size_t index, t
     else if (index == F_state)
         value->text = tl_state_name(facts.state);
     else
-        value->text = facts.law == TL_NO_ROW ? "" : m->joint_laws[facts.law].kind->name;
+        value->text = facts.law == 0 ? "" : m->joint_laws[facts.law - 1].kind->name;
     return TL_OK;
 }
 

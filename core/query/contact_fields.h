@@ -17,7 +17,7 @@ typedef struct tl_contact_facts {
     int64_t number, born; /* tl_contact_number; steps made when it began */
     tl_id a, b;           /* its older block and its younger */
     tl_tag tag;
-    uint32_t law; /* its number, or TL_NO_ROW */
+    uint32_t law; /* place in the list of laws, from 1; 0: none */
     tl_contact_state state;
     double area, gap;                   /* m2; m, overlap negative */
     double normal_force;                /* N, compression positive */

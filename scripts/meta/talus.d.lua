@@ -510,7 +510,8 @@ function Blocks:reset_displacement() end
 ---@field shear_stress number Pa: length of shear force over area
 ---@field shear_displacement talus.Vector m: of the second block against the first at the point, along the contact: difference of their displacements
 ---@field state string "elastic", "slipping", "open" or "failed"
----@field law string name of the law of its joint, or empty
+---@field law string name of its law, or empty
+---@field law_number integer place of its law in model:laws(), or 0
 ---@field points { position: talus.Vector, area: number, normal_force: number }[] its points as they are now, each a table of the fields of a contact point and of the states of the law by name. The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point
 ---@field states table<string, number|string|boolean|talus.Vector> the states of its law: the mean of the points, weighted by their areas; the sum of a state that goes with the area
 local Contact = {}

@@ -1,6 +1,11 @@
 -- jittered.lua - assemblies of six-sided stones that do not quite fit: every corner is moved at random, and faces are
--- made plane again.
+-- made plane again, here or, where `imported`, by the generator "import", which reads the corners as they are.
+local files = require "import_files"
+
 local jittered = {}
+
+-- Over the jitter: a face of four moved corners is no farther off its plane.
+local FLAT = 4
 
 -- Random numbers of a seed, in [-1, 1): xorshift.
 function jittered.random(seed)
@@ -52,15 +57,21 @@ local function meet(u, v, w)
     return x
 end
 
--- The eight corners of a stone, in the order of `at`, after each has been moved by up to `jitter` along each axis.
+-- The eight corners of a stone, each moved by up to `jitter` along each axis.
+local function moved(corner, jitter, random)
+    local p = {}
+    for c = 1, 8 do
+        p[c] = { corner[c][1] + jitter * random(), corner[c][2] + jitter * random(), corner[c][3] + jitter * random() }
+    end
+    return p
+end
+
+-- The same with plane faces, in the order of `at`.
 function jittered.corners(corner, jitter, random)
     if jitter == 0 then
         return corner
     end
-    local p, out = {}, {}
-    for c = 1, 8 do
-        p[c] = { corner[c][1] + jitter * random(), corner[c][2] + jitter * random(), corner[c][3] + jitter * random() }
-    end
+    local p, out = moved(corner, jitter, random), {}
     local planes = { {}, {}, {} }
     for s = 0, 1 do
         planes[1][s] = plane(p, at(s, 0, 0), at(s, 1, 0), at(s, 1, 1), at(s, 0, 1))
@@ -77,17 +88,41 @@ function jittered.corners(corner, jitter, random)
     return out
 end
 
-local function stone(model, corner, o)
+local function stone(corner, o)
     local place = o.place or function(x) return x end
-    local vertices = {}
-    for c, x in ipairs(jittered.corners(corner, o.jitter * o.size, o.random)) do
+    local vertices, jitter = {}, o.jitter * o.size
+    for c, x in ipairs(o.imported and moved(corner, jitter, o.random) or jittered.corners(corner, jitter, o.random)) do
         vertices[c] = place(x)
     end
     o.parts[#o.parts + 1] = { vertices = vertices, density = o.density or 2500 }
 end
 
+local QUADS = { { at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0) }, { at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1) },
+    { at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1) }, { at(0, 1, 0), at(0, 1, 1), at(1, 1, 1), at(1, 1, 0) },
+    { at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0) }, { at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1) } }
+
+-- Writes the stones into a file, and imports them.
+local function import(model, o)
+    local objects = {}
+    for i, part in ipairs(o.parts) do
+        objects[i] = { name = "stone_" .. i, group = "rock", vertices = part.vertices, faces = QUADS }
+    end
+    local path = os.tmpname()
+    os.remove(path)
+    path = path .. ".obj"
+    local file = assert(io.open(path, "wb"))
+    file:write(files.writers[".obj"](objects, files.digits "%.17g"))
+    file:close()
+    local good, message = pcall(model.generate, model, "import", { file = path, density = o.parts[1].density, flat = math.max(FLAT * o.jitter * o.size, 1e-9 * o.size) })
+    os.remove(path)
+    return good or error(message, 0)
+end
+
 -- Generates the stones, in their order or backward.
 local function generate(model, o)
+    if o.imported then
+        return import(model, o)
+    end
     local from, to, step = 1, #o.parts, 1
     if o.backward then
         from, to, step = #o.parts, 1, -1
@@ -101,12 +136,12 @@ local function polar(r, angle, y)
     return { r * math.cos(angle), y, r * math.sin(angle) }
 end
 
--- An arch of `count` voussoirs between two radii. The first and the last are held.
--- o: jitter (over the size of a stone), random, count, inner, outer, width.
+-- An arch of `count` voussoirs between two radii. The first and the last are held; with `springers` two more, below them.
+-- o: jitter (over the size of a stone), random, count, inner, outer, width, springers.
 function jittered.arch(model, o)
-    local count, width = o.count or 20, o.width or 0.5
+    local count, width, below = o.count or 20, o.width or 0.5, o.springers and 1 or 0
     o.size, o.parts = o.outer - o.inner, {}
-    for n = 0, count - 1 do
+    for n = -below, count - 1 + below do
         local corner = {}
         for k = 0, 1 do
             for j = 0, 1 do
@@ -115,7 +150,7 @@ function jittered.arch(model, o)
                 end
             end
         end
-        stone(model, corner, o)
+        stone(corner, o)
     end
     generate(model, o)
     local ids = {}
@@ -146,7 +181,7 @@ function jittered.wall(model, o)
         local x, last = 0, o.length or 3
         while x < last - 1e-9 do
             local next = math.min(last, x + (x == 0 and course % 2 == 1 and 0.5 or 1))
-            stone(model, brick({ x, 0, 0.5 * course }, { next, 0.5, 0.5 * course + 0.5 }), o)
+            stone(brick({ x, 0, 0.5 * course }, { next, 0.5, 0.5 * course + 0.5 }), o)
             held = course == 0 and held + 1 or held
             x = next
         end
@@ -174,7 +209,7 @@ function jittered.dome(model, o)
                     end
                 end
             end
-            stone(model, corner, o)
+            stone(corner, o)
             held = ring == 0 and held + 1 or held
         end
     end

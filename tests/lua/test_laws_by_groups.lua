@@ -5,6 +5,7 @@
 -- order of lines, after cuts, changes of groups, saving and copying.
 local check = require "check"
 local every_law = require "every_law"
+local layers = require "layers"
 local shapes = require "shapes"
 local talus = require "talus"
 
@@ -24,96 +25,12 @@ local function whole(random, from, to)
     return math.floor(random(from, to + 1))
 end
 
-local function shuffle(random, list)
-    for i = #list, 2, -1 do
-        local k = whole(random, 1, i)
-        list[i], list[k] = list[k], list[i]
-    end
-    return list
-end
-
--- Layers 1 to n between beds, each in a group of its own, with vertical joints through all of them.
-local function layered(number)
-    local random = shapes.random(number)
-    local layers, length = whole(random, 2, 4), 3
-    local model = talus.model { seed = number, threads = whole(random, 1, 2) }
-    model:generate("box", { min = { 0, 0, 0 }, max = { length, 1.2, layers }, density = 2500 })
-    for layer = 1, layers - 1 do
-        model:generate("joint", { joint = "bed", dip = random(0, 15), dip_direction = 90, origin = { length / 2, 0.6, layer } })
-    end
-    for _ = 1, whole(random, 0, 2) do
-        model:generate("joint", { joint = "cross", dip = random(70, 90), dip_direction = random(60, 120),
-            origin = { random(0.5, 2.5), 0.6, layers / 2 } })
-    end
-    model:blocks { where = function(block) return block.centroid[3] < 0.5 end }:fix()
-    for layer = 1, layers do
-        local parts = model:blocks { where = function(block)
-            local above = 0
-            for plane = 1, layers - 1 do -- beds cross only outside of the rock
-                above = above + (block.centroid[3] > plane and 1 or 0)
-            end
-            return above == layer - 1
-        end }
-        parts:set { group = "layer " .. layer }
-    end
-    return model, layers, random
-end
-
-local function state(model)
-    local text = {}
-    for _, block in ipairs(model:blocks()) do
-        local p, u, v = block.centroid, block.displacement, block.velocity
-        text[#text + 1] = string.format("%d %a %a %a %a %a %a %a %a %a", block.id, p[1], p[2], p[3], u[1], u[2], u[3], v[1], v[2], v[3])
-    end
-    return table.concat(text, "\n")
-end
-
--- What names the contacts between two layers, in each of the ways.
-local ways = {
-    groups = function(_, one, other) return { between = { one, other } } end,
-    selections = function(model, one, other)
-        return { between = { model:blocks { group = one }, model:blocks { group = other } } }
-    end,
-    contacts = function(model, one, other)
-        return { contacts = model:contacts { between = { model:blocks { group = one }, model:blocks { group = other } } } }
-    end,
-    joint = function(model, one, other) return { joint = "bed", between = { other, model:blocks { group = one } } } end,
-}
-
 local different = 0
 for number = 1, check.cases(60) do
-    local reference, layers, random = layered(number)
-    local laws, lines = {}, {}
-    for layer = 1, layers - 1 do
-        laws[layer] = LAWS[whole(random, 1, #LAWS)]
-        lines[layer] = layer
-    end
-    local others = LAWS[whole(random, 1, #LAWS)]
-    local function run(model, which)
-        shuffle(random, lines)
-        model:joint("*", others.law, others.params)
-        for _, layer in ipairs(lines) do
-            model:joint(which(model, layer), laws[layer].law, laws[layer].params)
-        end
-        if number % 4 == 0 then -- segments of flush faces obey them, too
-            model:solid("rock", "elastic", { young = 1e10, poisson = 0.2 })
-            model:blocks():deformable { zone = 0.8, solid = "rock" }
-        end
-        model:cycle(number % 4 == 0 and 10 or 40)
-        return state(model)
-    end
-    local expected = run(reference, function(_, layer) return "bed:" .. layer end)
-    local plain = layered(number)
-    plain:joint("*", others.law, others.params)
-    plain:cycle(40)
-    different = different + (state(plain) ~= expected and 1 or 0)
-    for way, which in pairs(ways) do
-        local model = layered(number)
-        local got = run(model, function(m, layer) return which(m, "layer " .. layer, "layer " .. layer + 1) end)
-        check.holds(got == expected, string.format("model %d: by %s as by planes", number, way))
-    end
+    local wrong, differs = layers.differing(number)
+    check.holds(#wrong == 0, string.format("model %d: by %s as by planes", number, wrong[1]))
+    different = different + (differs and 1 or 0)
 end
-
 check.holds(different > 0.5 * check.cases(60), "the laws of beds make a difference")
 
 -- ------------------------------------------------------------------ which law rules ------------------------------------------------------
@@ -342,6 +259,58 @@ for number = 1, check.cases(20) do
         check.near(contact.normal_force, forces[contact.id], 1e-6 * forces[contact.id])
     end
     check.holds(#ids == 4, "four piers stand")
+end
+
+-- A gallery is cut out of a block that stands, and gets a group and with it a law by the same call: its contacts carry what they carry
+-- where it gets no group.
+for number = 1, check.cases(60) do
+    local random = shapes.random(4000 + number)
+    local model = talus.model { threads = whole(random, 1, 2) }
+    model:generate("box", { { min = { 0, 0, -1 }, max = { 4, 1, 0 }, density = 2500, group = "floor" },
+        { min = { 0, 0, 0 }, max = { 4, 1, random(2, 4) }, density = 2500, group = "rock" },
+        { min = { 9, 0, 0 }, max = { 10, 1, 1 }, density = 2500, group = "gallery" } })
+    model:blocks { where = function(block) return block.group ~= "rock" end }:fix()
+    local first, second = LAWS[whole(random, 1, #LAWS)], LAWS[whole(random, 1, #LAWS)]
+    model:joint("*", first.law, first.params)
+    model:joint({ group = "gallery" }, second.law, second.params)
+    model:damping "local"
+    model:solve { ratio = 1e-8, max_cycles = 20000 }
+    local function cut_out(m, group)
+        m:blocks { group = "floor" }:hide()
+        local a, b, h = random(0.5, 1), random(2, 3), random(0.5, 1.5)
+        m:generate("tunnel", { face1 = { { a, -1, -1 }, { b, -1, -1 }, { b, -1, h }, { a, -1, h } },
+            face2 = { { a, 2, -1 }, { b, 2, -1 }, { b, 2, h }, { a, 2, h } }, group = group })
+        m:blocks { hidden = true }:show()
+        m:timestep { dt = m.dt * 1e-4 }
+        m:cycle(1)
+        local list = {}
+        for _, contact in ipairs(m:contacts { between = { m:blocks { group = "floor" }, m:blocks() } }) do
+            list[#list + 1] = { contact.normal_force, contact.law }
+        end
+        return list
+    end
+    local reference = model:copy()
+    local state = random
+    local values = {}
+    random = function(from, to) -- the same cut for both
+        values[#values + 1] = state(from, to)
+        return values[#values]
+    end
+    local now, at = cut_out(model, "gallery"), 0
+    random = function()
+        at = at + 1
+        return values[at]
+    end
+    local before, weight, changed = cut_out(reference, "rock"), 0, 0
+    check.holds(#now == #before and #now >= 3, "parts stand on the floor")
+    for i = 1, #now do
+        weight = math.max(weight, before[i][1])
+    end
+    for i = 1, #now do
+        check.near(now[i][1], before[i][1], 1e-6 * weight)
+        changed = changed + (now[i][2] == second.law and 1 or 0)
+    end
+    check.holds(changed >= 1, "the gallery has its law")
 end
 
 -- ------------------------------------------------------------------ what is told ---------------------------------------------------------

@@ -204,6 +204,22 @@ says("local m = stack() m:blocks():fix() m:generate('box', { min = { 1, 0, -0.00
     .. "m:insitu { stress = { zz = -1e5 } }", "insitu: 1 contact (first: between blocks 1 and 3, which overlap by 0.006 m) got no stress",
     "model:seat{}")
 
+-- That is told of a contact over more than a tenth of a face, and of none that is smaller, as edges' are.
+local function sunk_beside(share, turn)
+    return ([[local m = talus.model {} m:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = 2700 }) local v = {}
+    local c, s = math.cos(%g), math.sin(%g)
+    for k = 0, 7 do
+        local x, z = k %% 2, k // 4
+        v[k + 1] = { %g + c * x - s * z, k // 2 %% 2, s * x + c * z - 0.006 }
+    end
+    m:generate("polyhedron", { vertices = v, density = 2700 })
+    m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    m:blocks():fix() assert(#m:contacts() == 1) m:insitu { stress = { zz = -1e5 } }]]):format(turn, turn, 1 - share)
+end
+says(sunk_beside(0.15, 0), "insitu: 1 contact (first: between blocks 1 and 2, which overlap by 0.006 m) got no stress")
+is_silent(sunk_beside(0.06, 0))
+is_silent(sunk_beside(0.5, math.pi / 4))
+
 -- Rock of three dispersed sets is full of slivers: the remark names a filter that makes the step a hundred times longer.
 local rock = [[
 local rock = talus.model { seed = 7 }

@@ -2,31 +2,18 @@
 -- stands and falls is what does so where blocks fit exactly.
 package.path = "tests/lua/?.lua;" .. package.path -- run in the source root
 local check = require "check"
-local every_law = require "every_law"
 local jittered = require "jittered"
+local seated = require "seated"
 local talus = require "talus"
 
-local KN, DENSITY = 1e9, 2500
-local SIZE = 0.5                                -- of a stone, m
-local LAWS = every_law(KN, 10 * DENSITY * SIZE) -- of weights
+local KN, DENSITY, SIZE = seated.KN, seated.DENSITY, seated.SIZE
+local LAWS, kinds, model_of = seated.laws, seated.kinds, seated.model
 -- What the rounding of places makes of a weight: places are known to 1e-15 m, and 1e9 Pa/m of 0.5 m2 make 5e-7 N of it.
 local NONE = 1e-8                               -- force over weight
 -- Its energy is some 1e-22 J a contact, and weights are some 1e5 N. An overlap of 1e-7 m would store 1e-6 J. Speed is no measure:
 -- the same force moves a thin part of a cut stone faster.
 local STILL = 1e-20                             -- m, energy of motion over weight
 local BALANCE = 1e-4                            -- of the largest term
-
-local kinds = {
-    { name = "wall", make = jittered.wall },
-    { name = "arch", make = function(m, o)
-        o.inner, o.outer, o.count = 5, 5.6, 13
-        jittered.arch(m, o)
-    end },
-    { name = "dome", make = function(m, o)
-        o.inner, o.outer, o.around, o.rings = 4, 4.6, 8, 3
-        jittered.dome(m, o)
-    end },
-}
 
 local function weight_of(model)
     return 10 * model:blocks { fixed = false }:sum "mass"
@@ -46,17 +33,6 @@ local function rests(model, what, cycles)
     model:cycle(cycles or 100)
     check.holds(forces(model) < NONE * weight_of(model), what .. ": presses by " .. forces(model))
     check.holds(model:energy().kinetic < STILL * weight_of(model), what .. ": moves with " .. model:energy().kinetic .. " J")
-end
-
-local function model_of(kind, seed, jitter, law, more)
-    local model = talus.model { gravity = { 0, 0, 0 }, contact_points = more and more.points }
-    local o = { jitter = jitter, random = jittered.random(seed), density = DENSITY }
-    for key, value in pairs(more or {}) do
-        o[key] = value
-    end
-    kind.make(model, o)
-    model:joint("*", law.law, law.params)
-    return model
 end
 
 -- ---- random assemblies under all laws ----
@@ -114,6 +90,12 @@ for case = 1, check.cases(150) do
     free:timestep { fraction = 0.1 }
     free:cycle(300)
     check.holds(math.abs(free:energy().balance) < BALANCE, what .. ": balance " .. free:energy().balance)
+end
+
+for seed = 1, check.cases(50) do
+    local rest = seated.at_rest(seed)
+    check.equal(rest.before, 0)
+    check.holds(rest.first < NONE and rest.later < NONE and rest.unchanged, "seed " .. seed .. ": without force, and as it was when seated again")
 end
 
 -- ---- what stood stands, with the same thrust; what fell falls ----

@@ -243,7 +243,7 @@ local all = lines(KN .. "range group 'a'\n" .. "block contact property friction 
 check.equal(#all, 2)
 all = lines(KN .. "\n" .. KN .. "friction 10 range group 'a'\nblock contact property friction 33")
 check.equal(#all, 4)
-has(all[4], 'model:joint({ group = "a" }, "coulomb", { kn = 1e9, ks = 5e8, friction = 33 })')
+has(all[4], 'joint_again({ group = "a" }, "coulomb", { kn = 1e9, ks = 5e8, friction = 33 })')
 -- The table of new contacts gives what all contacts have not.
 has(line "block contact material-table default property stiffness-normal 1e9 stiffness-shear 1e8", '"*"')
 _, left = line("block contact material-table default property friction 20", KN .. "friction 30")
@@ -289,7 +289,7 @@ all, left = lines "fish define values\n  kn = 2e9 ; stiff\n  ks = kn/2.5\nend\n@
 check.equal(all[1], "local kn = 2e9")
 check.equal(all[2], "local ks = kn / 2.5")
 check.equal(#left.left_out, 0)
-_, left = lines "def walk\n  loop i (1,3)\n    a = 2\n  endloop\nend\n[walk]\nblock property density @a"
+_, left = lines "def walk\n  loop while a < 3\n    a = 2\n  endloop\nend\n[walk]\nblock property density @a"
 check.equal(#left.left_out, 3)
 has(left.left_out[1].reason, "'walk', lines 1 to 5")
 check.equal(left.left_out[2].line, 6)

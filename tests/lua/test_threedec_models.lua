@@ -3,21 +3,14 @@
 require "talus"
 local check = require "check"
 local files = require "threedec_files"
-local threedec = require "talus.threedec"
 
 local said
 local function run(text)
-    local result = threedec.convert("model.3ddat", { text = text })
+    local model, last, result = files.run(text)
+    said = last
     check.equal(#result.mistakes, 0)
     check.equal(#result.left_out, 0)
     check.equal(#result.in_part, 0)
-    local chunk = assert(load(threedec.chunk(result) .. " return model", "@model.3ddat"))
-    local print_before = print
-    print = function(text_said)
-        said = text_said
-    end
-    local model = chunk()
-    print = print_before
     return model
 end
 
@@ -65,22 +58,4 @@ share(closures[#closures], 2.07e-7, 0.01)
 -- Thin arch: falls, by hinges at these sections, where it touches at one edge only: a contact of one point.
 model = run(files.arch_20(0.3))
 assert(said:match "fails", said)
-local hinges = {}
-for section = 1, 19 do
-    local a, b = model:blocks { id = section }[1], model:blocks { id = section + 1 }[1]
-    local contact = model:contacts { between = { a, b } }[1]
-    if #contact.points == 1 then
-        -- Where the hinge was before the stones moved: from the nearest vertex of the stone, moved back.
-        local p, u, best, radius = contact.point, b.displacement, math.huge, nil
-        local inner, outer = 5, 5.3
-        for _, r in ipairs { inner, outer } do
-            local angle = math.rad(9 * section)
-            local far = (p[1] - u[1] - r * math.cos(angle)) ^ 2 + (p[3] - u[3] - r * math.sin(angle)) ^ 2
-            if far < best then
-                best, radius = far, r
-            end
-        end
-        hinges[#hinges + 1] = 9 * section .. (radius == inner and " intrados" or " extrados")
-    end
-end
-check.equal(table.concat(hinges, ", "), "9 extrados, 36 intrados, 90 extrados, 144 intrados, 171 extrados")
+check.equal(files.hinges(model, 0.3), "9 extrados, 36 intrados, 90 extrados, 144 intrados, 171 extrados")

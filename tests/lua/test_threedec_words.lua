@@ -128,7 +128,8 @@ end
 local BITS = { "block", "create", "brick", "range", "group", "'a'", "'", '"', "[", "]", "@x", "[x = 1]", "1", "-2.5", "1e400", "...", "&", ";",
     "\n", "\n", "fish define f", "end", "position-x", "not", "union", "plane", "dip", "jset", "prop", "mat", "jmat", "=", "(", ")", ",",
     "solve", "ratio", "property", "stiffness-normal", "hist", "zdisp", "table", "poly", "face", "prism", "a", "b", "tunnel", "\0", "\255", "--",
-    "]]", "\\", "%s", "change", "zone", "cmodel", "assign", "elastic", "edgelength", "call", "name", "vector(1,2,3)", "[vector(1,2,3)]", "[1/0]" }
+    "]]", "\\", "%s", "change", "zone", "cmodel", "assign", "elastic", "edgelength", "call", "name", "vector(1,2,3)", "[vector(1,2,3)]", "[1/0]",
+    "*", "loop", "local", "i", "(1,3)", "endloop", "if", "then", "else", "endif", "command", "endcommand", "table(1,2) = 3", "f", "[f]", "i = i + 1" }
 for _ = 1, check.cases(3000) do
     local parts = {}
     for i = 1, math.random(30) do
@@ -141,4 +142,55 @@ for _ = 1, check.cases(3000) do
     assert(script, ("%q: %s"):format(text, tostring(why)))
     script, why = load(threedec.chunk(result), "=chunk", "t")
     assert(script, ("%q: %s"):format(text, tostring(why)))
+end
+
+-- Of 20 commands each is converted, needs nothing, is left out or is wrong, and that is counted. So are lines of functions that run.
+local COMMANDS = { "def f\nloop i (1,n)\nif i # 2 then\ncommand\npoly brick 0 1 0 1 0 [i]\nplot block\nendcommand\nelse\nq = q + i\nendif\nendloop\nend",
+    "def g\ntable(1,n) = q\nf\nend", "def h\nloop while n < 3\nendloop\nend", "@f", "g", "[h]", "[n = 3]", "[n = 20]", "[q = 0]", "[q = r]",
+    "* a comment", "; another", "", "blok", "plot create", "block contact property friction [q]", "jset or 0 0 1 dip [10*q]" }
+for _, row in ipairs(words.rows) do
+    for _, example in ipairs(type(row.example) == "string" and { row.example } or row.example or {}) do
+        COMMANDS[#COMMANDS + 1] = not example:match "call" and example or nil
+    end
+end
+for _ = 1, check.cases(500) do
+    local parts = {}
+    for i = 1, 20 do
+        local command = COMMANDS[math.random(#COMMANDS)]
+        if math.random(3) == 1 then -- a word of another command in the place of one
+            local bits = {}
+            for bit in command:gmatch "[^ ]+" do
+                bits[#bits + 1] = math.random(6) == 1 and BITS[math.random(#BITS)]:gsub("[\n;&.*]", "") or bit
+            end
+            command = table.concat(bits, " ")
+        end
+        parts[i] = command
+    end
+    local text = table.concat(parts, "\n")
+    local good, result = pcall(threedec.convert, "test.3ddat", { text = text, read = function() end }) -- `call` finds no file
+    assert(good, ("%q: %s"):format(text, tostring(result)))
+    local script, why = load(threedec.script(result), "=script", "t")
+    assert(script, ("%q: %s"):format(text, tostring(why)))
+    local lines, told, found = {}, {}, 0
+    for _, statement in ipairs(lexer.statements(text)) do
+        lines[statement.line] = statement.kind ~= "blank" or nil
+    end
+    for _, item in ipairs(result.items) do -- of functions, too
+        lines[item.line] = lines[item.line] or item.kind ~= "blank" or nil
+    end
+    for _, list in ipairs { result.mistakes, result.left_out } do
+        for _, one in ipairs(list) do
+            told[one.line] = true
+        end
+    end
+    for line in pairs(lines) do
+        found = found + 1
+    end
+    local count = 0
+    for line in pairs(told) do
+        assert(lines[line], text)
+        count = count + 1
+    end
+    assert(count + result.converted + result.needless == found, ("%d told, %d converted, %d needless of %d:\n%s"):format(count, result.converted,
+        result.needless, found, text))
 end

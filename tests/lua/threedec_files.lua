@@ -98,4 +98,40 @@ model solve ratio-local 1e-7
 ]]
 end
 
+-- Converts a data file and runs it: the model, what the script has said at last, and what the conversion tells.
+function files.run(text)
+    local threedec = require "talus.threedec"
+    local result, said = threedec.convert("model.3ddat", { text = text }), ""
+    local chunk = assert(load(threedec.chunk(result) .. " return model", "@model.3ddat"))
+    local print_before = print
+    print = function(line)
+        said = line
+    end
+    local model = chunk()
+    print = print_before
+    return model, said, result
+end
+
+-- The hinges of an arch of arch_20: sections where the stones touch at one edge only, which is a contact of one point.
+function files.hinges(model, thickness)
+    local hinges = {}
+    for section = 1, 19 do
+        local a, b = model:blocks { id = section }[1], model:blocks { id = section + 1 }[1]
+        local contact = model:contacts { between = { a, b } }[1]
+        if #contact.points == 1 then
+            -- Where the hinge was before the stones moved: from the nearest vertex of the stone, moved back.
+            local p, u, best, radius = contact.point, b.displacement, math.huge, nil
+            for _, r in ipairs { 5, 5 + thickness } do
+                local angle = math.rad(9 * section)
+                local far = (p[1] - u[1] - r * math.cos(angle)) ^ 2 + (p[3] - u[3] - r * math.sin(angle)) ^ 2
+                if far < best then
+                    best, radius = far, r
+                end
+            end
+            hinges[#hinges + 1] = 9 * section .. (radius == 5 and " intrados" or " extrados")
+        end
+    end
+    return table.concat(hinges, ", ")
+end
+
 return files

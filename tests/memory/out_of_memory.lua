@@ -98,6 +98,10 @@ local calls = {
     { "cycles", function(m) return m.model:cycle(20).ratio end, run = true },
     { "contact_area under load", function(m) m.model:contact_area { fraction = 0.015, joint = "J2" } end },
     { "law under load", function(m) m.model:joint("J2", "coulomb", { kn = 3e8, ks = 1e8, friction = 20 }) end },
+    -- a trial that fails leaves the model as it is, and the run with it
+    { "trial", function(m)
+        return m.model:copy():relax { max_cycles = 5, try_stiffer = true }.reason
+    end },
     { "set density", function(m) m.model:blocks():set { density = 2100 } end },
     { "set group", function(m) m.model:blocks { group = "rock" }:set { group = "stone", velocity = { 0, 0, 0.1 } } end },
     { "adaptive", function(m) m.model:damping("adaptive", {}) end },

@@ -19,9 +19,9 @@ BLOCK_ARRAYS = {"displacement_size": 1, "block_id": 1, "group": 1, "body": 1, "v
                 "unbalanced_force": 3}
 BLOCK_POINT_ARRAYS = {"displacement": 3, "explode": 3}
 CONTACT_ARRAYS = {"normal_force": 1, "shear_force": 3, "normal_stress": 1, "shear_stress": 1,
-                  "state": 1, "joint": 1, "plane": 1, "area": 1, "normal": 3, "gap": 1,
+                  "state": 1, "joint": 1, "plane": 1, "law": 1, "area": 1, "normal": 3, "gap": 1,
                   "contact_id": 1, "block_a": 1, "block_b": 1}
-JOINT_ARRAYS = {"joint": 1, "plane": 1, "block_id": 1, "block_b": 1, "contact_id": 1, "state": 1,
+JOINT_ARRAYS = {"joint": 1, "plane": 1, "law": 1, "block_id": 1, "block_b": 1, "contact_id": 1, "state": 1,
                 "normal_stress": 1, "shear_stress": 1, "normal_force": 1, "shear_force": 3,
                 "shear_displacement": 3, "slip": 1, "area": 1}
 SECTION_ARRAYS = {"block_id": 1, "group": 1, "body": 1, "hidden": 1, "displacement": 3,
@@ -157,6 +157,11 @@ def check_explode(name, data):
     check(len(vectors) == data.GetNumberOfCells(), f"{name}: blocks explode together")
 
 
+def law_of(joint, laws):
+    """Place of the law of a joint's contacts, by what the list says that each is for."""
+    return laws.index("coulomb_tensile: joint 'oblique'" if joint == "oblique" else "elastic: joint '*'")
+
+
 def check_contacts(path, expected):
     data = read(path, vtk.vtkPolyDataReader)
     count = int(expected["contacts"])
@@ -167,11 +172,13 @@ def check_contacts(path, expected):
     check_arrays(path.name, points, CONTACT_ARRAYS, count)
     names = names_of(data, "joint_names")
     check(names == ["", "east", "north", "up", "oblique"], f"{path.name}: joint names {names}")
+    laws = names_of(data, "law_names")
     for i in range(count):
         normal = points.GetArray("normal").GetTuple(i)
         check(abs(math.hypot(*normal) - 1) < UNIT_TOLERANCE, f"{path.name}: normal {normal}")
         check(points.GetArray("state").GetValue(i) in (0, 1, 2, 3), f"{path.name}: state")
         check(0 <= points.GetArray("joint").GetValue(i) < len(names), f"{path.name}: joint")
+        check(points.GetArray("law").GetValue(i) == law_of(names[points.GetArray("joint").GetValue(i)], laws), f"{path.name}: law")
         check(points.GetArray("block_a").GetValue(i) < points.GetArray("block_b").GetValue(i),
               f"{path.name}: contact {i} does not order its blocks")
     check_states(path.name, points, names, count)

@@ -277,6 +277,13 @@ class Reader:
                 frame["time"], frame["cycle"], frame["blocks"] = read_blocks(payload)
             elif name == "CONT":
                 frame["contacts"] = read_contacts(payload)
+            elif name == "LAWS":
+                n, = struct.unpack_from("<I", payload)
+                laws = struct.unpack_from(f"<{n}I", payload, 4)
+                expect(n == len(frame["contacts"]), "LAWS: one for each contact")
+                expect(all(0 < law < len(self.head["laws"]) for law in laws), "LAWS: each is in the head")
+                for contact, law in zip(frame["contacts"], laws):
+                    contact["law"] = self.head["laws"][law]
             elif name == "FIEL":
                 of, number, n = struct.unpack_from("<III", payload)
                 frame["fields"].append((of, number, struct.unpack_from(f"<{n}f", payload, 12)))
@@ -373,6 +380,9 @@ def check_contact(head, c, told, size):
     expect((c["id"], c["a"], c["b"]) == (told["id"], told["a"], told["b"]), f"{name}: ids")
     joint = head["joints"][c["joint"]]
     expect((f"{joint}:{c['plane']}" if joint else "") == told["joint"], f"{name}: joint {joint}:{c['plane']}, not {told['joint']}")
+    laws = [text for text, holds in (("coulomb: joint 'L:1'", told["joint"] == "L:1"), ("coulomb: joint 'new'", joint == "new"),
+                                     ("slip_weakening: joint 'K'", joint == "K"), ("coulomb: joint '*'", True)) if holds and text in head["laws"]]
+    expect(c["law"] == laws[0], f"{name}: law {c['law']}, not {laws[0]}")
     expect(near(add(c["point"], head["origin"]), told["point"], EXACT * size), f"{name}: point")
     expect(near(c["normal"], told["normal"], EXACT), f"{name}: normal")
     force = add(told["shear_force"], told["normal"], told["normal_force"])

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <talus/fields.h>
 #include <talus/plugins.h>
+#include <talus/state.h>
 
 #define FACTOR 10.0
 
@@ -140,7 +141,148 @@ TEST(a_refusal_changes_nothing)
     tl_model_destroy(other);
 }
 
-/* Left out are rate_state, whose force changes in time, and barton_bandis, whose slip here gives way as the stress does. */
+/* ---------------------------------------------------------------- without memory ----------
+ *
+ * The program's own allocator fails when it is told to. With sanitizers, which have theirs, none fails. */
+
+#if defined(__has_feature)
+#define SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED 1
+#else
+#define SANITIZED 0
+#endif
+
+static long asked, fails_at; /* allocations since it was told; the one that fails, 0: none */
+
+#if defined(__GLIBC__) && !SANITIZED
+#define MAY_FAIL 1
+
+extern void *__libc_malloc(size_t size);
+extern void *__libc_calloc(size_t count, size_t size);
+extern void *__libc_realloc(void *p, size_t size);
+
+static int fails(void)
+{
+    return fails_at && ++asked == fails_at;
+}
+
+void *malloc(size_t size)
+{
+    return fails() ? NULL : __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size)
+{
+    return fails() ? NULL : __libc_calloc(count, size);
+}
+
+void *realloc(void *p, size_t size)
+{
+    return fails() ? NULL : __libc_realloc(p, size);
+}
+#else
+#define MAY_FAIL 0
+#endif
+
+/* Whichever allocation fails, none of several laws has become stiffer, and forces are those of a model that was never
+ * asked. Asked again, all have. */
+TEST(without_memory_no_law_changes)
+{
+    const tl_id upper = 1;
+    tl_law_scope scope = tl_law_scope_default();
+    scope.blocks[0] = &upper;
+    scope.block_count[0] = 1;
+    tl_model *m = pressed("coulomb", &law_cases[1].args);
+    CHECK_INT(tl_joint_law_for(m, &scope, "elastic", &law_cases[0].args), TL_OK);
+    double force[2], after[2];
+    char before[33], now[33];
+    press(m, &force[0], &force[1]);
+    CHECK_INT(tl_state_hash(m, before), TL_OK);
+    long refused = 0;
+    tl_status status = TL_E_MEMORY;
+    for (long n = 1; MAY_FAIL && status == TL_E_MEMORY; n++) {
+        tl_model *other;
+        CHECK_INT(tl_model_copy(m, NULL, NULL, &other), TL_OK);
+        asked = 0;
+        fails_at = n;
+        status = tl_joints_stiffen(other, FACTOR);
+        fails_at = 0;
+        CHECK(status == TL_OK || status == TL_E_MEMORY);
+        CHECK_INT(tl_state_hash(other, now), TL_OK);
+        CHECK((strcmp(now, before) == 0) == (status != TL_OK));
+        refused += status != TL_OK;
+        tl_model_destroy(other);
+    }
+    CHECK(!MAY_FAIL || refused > 4);
+    CHECK_INT(tl_joints_stiffen(m, FACTOR), TL_OK);
+    for (size_t i = 0; i < 2; i++) {
+        const tl_law_info of = tl_law_at(m, i);
+        double kn;
+        memcpy(&kn, (const char *)of.params + tl_param_row(of.law->params, 0, of.law->param_stride).offset, sizeof kn);
+        CHECK_NEAR(kn, FACTOR * KN, 0);
+    }
+    press(m, &after[0], &after[1]);
+    CHECK(after[0] > 0);
+    tl_model_destroy(m);
+}
+
+/* A value of a contact's field or of a state of its law, and of vectors the length. */
+static double value_of(tl_model *m, const char *name)
+{
+    const tl_contact_filter any = {.size = sizeof any};
+    tl_contact_name *names;
+    size_t count, width;
+    double value[3] = {0, 0, 0};
+    if (!CHECK_INT(tl_contacts_select(m, &any, &names, &count), TL_OK) || !CHECK_INT(count, 1))
+        exit(1);
+    CHECK_INT(tl_contacts_values(m, names, 1, name, value, &width), TL_OK);
+    free(names);
+    return width == 3 ? sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2]) : value[0];
+}
+
+/* What the curves of the head of barton_bandis.c say of the shear stress, Pa, at a displacement u, of the case. */
+static double rough_strength(double stress, double u)
+{
+    const double jrc = 10 * pow(10, -0.2), jcs = 2e7 * pow(10, -0.3), peak = 1 / 500. * pow(jrc, 0.33), x = u / peak;
+    static const double at[] = {0.3, 0.6, 1, 2, 4, 10, 25, 100}, m[] = {0, 0.75, 1, 0.85, 0.7, 0.5, 0.4, 0};
+    double mobilised = 0;
+    for (int k = 1; k < 8; k++)
+        if (x > at[k - 1] && x <= at[k])
+            mobilised = m[k - 1] + (x - at[k - 1]) * (m[k] - m[k - 1]) / (at[k] - at[k - 1]);
+    const double base = x < 0.3 ? x / 0.3 : 1, degree = acos(-1) / 180;
+    return stress * tan((base * FRICTION + mobilised * jrc * log10(jcs / stress)) * degree);
+}
+
+/* The displacement by which the roughness of barton_bandis is mobilised has the stretch of the shear spring, f / (A ks).
+ * A spring ten times as stiff is stretched by a tenth, so a joint that slips is further back on its curve: it carries
+ * what the curve says there. */
+TEST(rough_joints_go_back_on_their_curve)
+{
+    for (int number = 0; number < LAWS; number++) {
+        if (strcmp(law_cases[number].name, "barton_bandis") != 0)
+            continue;
+        tl_model *m = pressed(law_cases[number].name, &law_cases[number].args);
+        double force[2], after[2];
+        tl_drive drive = tl_drive_default();
+        const tl_id moved = 1;
+        for (int k = 0; k < 20; k++)
+            press(m, &force[0], &force[1]);
+        CHECK_INT(tl_blocks_drive(m, &moved, 1, &drive), TL_OK);
+        press(m, &force[0], &force[1]);
+        const double area = value_of(m, "area"), slip = value_of(m, "slip"), stress = force[0] / area;
+        const double u = slip + force[1] / area / KS, back = slip + force[1] / area / (FACTOR * KS);
+        CHECK(slip > 0);
+        CHECK_NEAR(force[1] / area, rough_strength(stress, u), 1e-6 * stress);
+        CHECK_INT(tl_joints_stiffen(m, FACTOR), TL_OK);
+        press(m, &after[0], &after[1]);
+        CHECK_NEAR(after[1] / area, rough_strength(stress, back), 1e-6 * stress);
+        CHECK(after[1] != force[1]);
+        tl_model_destroy(m);
+    }
+}
+
+/* Left out are rate_state, whose force changes in time, and barton_bandis, of which the test above is. */
 TEST(forces_stay_as_they_are)
 {
     for (int number = 0; number < LAWS; number++) {
@@ -168,6 +310,8 @@ int main(void)
     RUN(every_law_has_a_case);
     RUN(stiffer_is_as_if_given_so);
     RUN(a_refusal_changes_nothing);
+    RUN(without_memory_no_law_changes);
+    RUN(rough_joints_go_back_on_their_curve);
     RUN(forces_stay_as_they_are);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
     return check_failed != 0;

@@ -22,7 +22,7 @@ reference.M1 = {
 reference.M1_161 = {
     source = "3DEC 7.00, release 161: compas_3dec (BlockResearchGroup, github)",
     density = 2400, gravity = 9.81, kn = 6e10, ks = 2.5e10, rounding = 1e-3,
-    thrust = 20723.4, vertical = 48366.2, normal_force = 46232.3, shear_force = 13680,
+    thrust = 20723.4, vertical = 48366.2, normal_force = 46232.3, shear_force = 13680, joint_area = 0.25006,
     closures = { { joint = 1, 5.06651e-6 }, { joint = 9, intrados = true, 0.203155e-6 } },
     -- Independent statics of the moved voussoirs on joints of 200 springs each, without tension.
     refined = { thrust = 21075.29 },
@@ -39,6 +39,18 @@ reference.five = {
     -- Independent statics of the moved voussoirs on joints of 200 springs each, without tension, with the slip of each. Where they
     -- were drawn, they have 3812.4 N and -1.5685e-3 m: the arch is flat, and its crown sinks by 1/300 of its rise.
     refined = { thrust = 3831.52, crown = -1.58198e-3 },
+}
+
+-- A cube of 1 m, 0.275 m off the middle of the one that holds it; closures of its corners, m.
+reference.cube = {
+    source = "3DEC 7.00, release 161: compas_3dec (BlockResearchGroup, github)",
+    normal_force = 9806.0, closures = { 0.933e-7, 2.07e-7 },
+}
+
+-- The heavy arch with an extrados of 5.3 m: it collapses by hinges at these angles, degrees, and at those of the other half.
+reference.thin = {
+    source = "3DEC 7.00, release 161: compas_3dec (BlockResearchGroup, github)",
+    hinges = "9 extrados, 36 intrados, 90 extrados, 144 intrados, 171 extrados",
 }
 
 return reference

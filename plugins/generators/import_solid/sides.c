@@ -11,6 +11,9 @@
 
 /* Tolerance: faces that turn by more than asin of this are no one side, however small they are: 30 degrees. */
 #define MOST_TURN 0.5
+/* Tolerance: a face may be off its plane by this times the size of its shell, whatever `flat` is. The faces of a block
+ * of Talus are bent by up to this, and a file of them comes in again. Test: lua/test_round_trips. */
+#define BENT 1e-4
 /* Cost only: a side so many times larger than another keeps its plane when that joins it. */
 #define LARGER 8
 /* Limit: most corners of a block. */
@@ -353,7 +356,19 @@ static void find_reflex(const grower *g, uint32_t shell, solid *made)
     }
 }
 
-/* Refuses a side of which a face of four corners or more is off its plane; `number` is its face in the file's order. */
+/* The size of a shell: the diagonal of its bounds. */
+static double shell_size(const mesh *m, uint32_t shell)
+{
+    tl_vec3 min = {INFINITY, INFINITY, INFINITY}, max = tl_v3_neg(min);
+    for (uint32_t h = 0; h < m->corners; h++)
+        if (m->face[m->face_of[h]].shell == shell) {
+            min = tl_v3_min(min, m->vertex[m->corner[h]]);
+            max = tl_v3_max(max, m->vertex[m->corner[h]]);
+        }
+    return tl_v3_norm(tl_v3_sub(max, min));
+}
+
+/* Refuses a side of which a face of four corners or more is off its plane. */
 static tl_status check_flat(grower *g, uint32_t shell, bool *taken)
 {
     const mesh *m = g->m;
@@ -374,7 +389,7 @@ static tl_status check_flat(grower *g, uint32_t shell, bool *taken)
             at = f;
         }
     }
-    if (at == NONE)
+    if (at == NONE || worst <= BENT * shell_size(m, shell))
         return TL_OK;
     *taken = false;
     tl_vec3 p = m->vertex[m->corner[m->face[at].first]];

@@ -1,6 +1,8 @@
 /* tunnel.c - generator "tunnel": straight lines connect the corners of two end polygons; blocks in the way
  * of the prism between them are cut along its surface. A profile that follows a path makes such a prism for each leg
- * of the path (path.c). The legs are carved one after the other, each from what the legs before have left.
+ * of the path (path.c). The legs are carved one after the other, each from what the legs before have left. What meets
+ * a leg is cut by the planes of its ends first, so the sides of two legs never cut the same rock. Where the path turns
+ * and climbs at once, these sides lie at small angles to each other and would leave chips.
  *
  * A block whose inside meets the prism is cut by the planes of the sides, in the order of face1's edges. Then it is cut
  * by the planes of the ends. Each cut splits the part outside off. The cuts are no joints: parts of one block outside
@@ -509,7 +511,7 @@ typedef struct inner {
 
 typedef struct carving {
     uint32_t body; /* of the block in hand before the first cut, once `cut` */
-    bool cut;
+    bool cut, ends_first;
     size_t *outer; /* pieces of the block in hand that may meet parts to come */
     size_t outer_count, outer_capacity;
     inner *inside;
@@ -536,12 +538,14 @@ static bool add_inside(carving *c, uint32_t body, size_t index)
     return true;
 }
 
-/* Splits off what of a piece lies outside a part. */
+/* Splits off what of a piece lies outside a part: beyond its sides and then its ends, or the ends first. */
 static tl_status peel(const tl_host *host, const prism *p, size_t part, size_t index, carving *c)
 {
-    for (size_t k = p->space[part]; k < p->space[part + 1]; k++) {
+    const size_t from = p->space[part], count = p->space[part + 1] - from;
+    for (size_t k = 0; k < count; k++) {
+        const tl_half_space *space = &p->spaces[from + (c->ends_first ? (k + count - 2) % count : k)];
         size_t above;
-        tl_status status = host->cut_block(host, index, p->spaces[k].normal, p->spaces[k].point, &above);
+        tl_status status = host->cut_block(host, index, space->normal, space->point, &above);
         if (status != TL_OK)
             return status;
         if (above != SIZE_MAX && !add_outer(c, above))
@@ -628,6 +632,7 @@ static tl_status generate(const tl_host *host, const void *given)
     tunnel t = {.leg = NULL};
     carving c = {.outer = NULL};
     tl_status status = make_tunnel(host, wanted, &t);
+    c.ends_first = t.legs > 1;
     size_t blocks = host->block_count(host);
     for (size_t i = 0; i < blocks && status == TL_OK; i++) {
         status = carve(host, &t, i, &c);

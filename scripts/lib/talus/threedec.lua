@@ -13,6 +13,7 @@ local fish = require "talus.threedec.fish"
 local helpers = require "talus.threedec.helpers"
 local lexer = require "talus.threedec.lexer"
 local match = require "talus.threedec.match"
+local program = require "talus.threedec.program"
 local words = require "talus.threedec.words"
 local threedec = {}
 
@@ -20,6 +21,11 @@ local threedec = {}
 local MOST_CALLS = 20
 
 -- ---------------------------------------------------------------- commands ---------------
+
+-- What the first word of a command means: words of one row mean the same.
+local function row_of(word)
+    return words.tree.children[word].row or word
+end
 
 -- The row of the table for the first words of a command, how the file calls it, and the token after these words.
 local function find_row(tokens)
@@ -29,7 +35,7 @@ local function find_row(tokens)
         local place = #path > 0 and table.concat(path, " ") or "commands"
         local word
         if node == words.tree then
-            word = match.need(tokens[at].text, node.names, place)
+            word = match.need(tokens[at].text, node.names, place, row_of)
         elseif #node.names > 0 then
             word = match.find(tokens[at].text, node.names, place)
         end
@@ -55,6 +61,9 @@ local function convert_command(c, statement)
     local tokens = statement.tokens
     if tokens[1].kind ~= "word" then
         lexer.mistake("a command begins with a word, not with '%s'", tokens[1].text)
+    elseif #tokens == 1 and c.functions[fish.name(tokens[1].text)] then -- classic files call functions by their names
+        program.step(c, { kind = "call", name = tokens[1].text, arguments = {} })
+        return
     end
     local row, command, at = find_row(tokens)
     c.item.row = row
@@ -74,27 +83,15 @@ end
 
 -- ---------------------------------------------------------------- FISH -------------------
 
--- The assignments of a function of FISH that does nothing else; nil when it does.
-local function assignments_of(statement)
-    local list = {}
-    for _, line in ipairs(statement.body) do
-        local name, text = fish.assignment(line.code)
-        if name and not line.code:lower():match "^%s*if%s" then
-            list[#list + 1] = { name = name, text = text }
-        elseif line.code:match "%S" then
-            return nil
-        end
-    end
-    return list
-end
-
 local function define(c, statement)
-    local list = assignments_of(statement)
-    c.functions[fish.name(statement.name)] = list
-    if not list then
-        lexer.leave("the FISH function '%s', lines %d to %d: write it in Lua", statement.name, statement.line, statement.last)
+    local tree, why = program.read(statement.body)
+    c.functions[fish.name(statement.name)] = { name = statement.name, tree = tree, parameters = statement.parameters,
+        lines = statement.body }
+    if not tree then
+        lexer.leave("the FISH function '%s', lines %d to %d: write it in Lua, because of %s", statement.name, statement.line,
+            statement.last, why)
     end
-    c.remark("FISH " .. statement.name .. ": its values stand where it is called")
+    c.remark("FISH " .. statement.name .. ": what it does stands where it is called")
     c.nothing = true
 end
 
@@ -104,25 +101,19 @@ local function run_fish(c, statement)
     if not inside then
         lexer.mistake "the bracket [ is not closed"
     end
-    local name, text = fish.assignment(inside)
-    if name then
-        c.assign(name, fish.expression(text, c.variables))
-        return
+    local node = program.simple(inside)
+    if not node then
+        lexer.leave("'%s' is not converted: write it in Lua", inside)
     end
-    local called = inside:match "^%s*([%a_][%w_]*)%s*$"
-    local list = called and c.functions[fish.name(called)]
-    if not list then
-        lexer.leave("the FISH function '%s' is not converted: write it in Lua", called or inside)
-    end
-    for _, one in ipairs(list) do
-        c.assign(one.name, fish.expression(one.text, c.variables))
-    end
-    c.nothing = true
+    program.step(c, node)
 end
 
 -- ---------------------------------------------------------------- files ------------------
 
 local handlers = { command = convert_command, fish = run_fish, ["function"] = define,
+    program = function(c, statement)
+        program.step(c, statement.node, statement.locals)
+    end,
     mistake = function(_, statement)
         lexer.mistake("%s", statement.reason)
     end }
@@ -151,7 +142,7 @@ local function convert_statement(c, statement)
     c.item, c.nothing = item, false
     local ok, failure = pcall(handlers[statement.kind], c, statement)
     if not ok then
-        if type(failure) ~= "table" then
+        if type(failure) ~= "table" or failure.too_long then
             error(failure, 0)
         end
         item.mistake, item.left_out, item.code = failure.mistake, failure.left_out, {}
@@ -216,22 +207,42 @@ local function add_calls(c, first)
     end
 end
 
--- Collects what was lost and what was wrong, in order: {file =, line =, source =, reason =}.
+-- How a line fared, worst first. A line of a loop has an item for each round.
+local FATES = { "mistakes", "left_out", "converted", "needless" }
+
+local function fate_of(item)
+    return item.mistake and 1 or item.left_out and 2 or item.needless and 4 or item.kind ~= "blank" and 3 or nil
+end
+
+-- The worst fate of the items of each line, by "file:line".
+local function fates_of(items)
+    local worst = {}
+    for _, item in ipairs(items) do
+        local at, fate = item.file .. ":" .. item.line, fate_of(item)
+        worst[at] = fate and math.min(fate, worst[at] or fate) or worst[at]
+    end
+    return worst
+end
+
+-- Collects what was lost and what was wrong, in order: {file =, line =, source =, reason =}, and counts lines.
 local function gather(c)
     local result = { items = c.items, helpers = c.helpers, new_model = c.new_model, left_out = {}, mistakes = {}, in_part = {}, converted = 0,
         needless = 0, damped = false }
+    local worst, told = fates_of(c.items), {}
     local function add(list, item, reason)
-        list[#list + 1] = { file = item.file, line = item.line, source = item.source, reason = reason }
+        local key = table.concat({ item.file, item.line, reason }, ":")
+        if not told[key] then
+            list[#list + 1] = { file = item.file, line = item.line, source = item.source, reason = reason }
+        end
+        told[key] = true
     end
     for _, item in ipairs(c.items) do
-        if item.mistake then
-            add(result.mistakes, item, item.mistake)
-        elseif item.left_out then
-            add(result.left_out, item, item.left_out)
-        elseif item.needless then
-            result.needless = result.needless + 1
-        elseif item.kind ~= "blank" then
-            result.converted = result.converted + 1
+        local at, fate = item.file .. ":" .. item.line, fate_of(item)
+        if fate and fate <= 2 then
+            add(result[FATES[fate]], item, item.mistake or item.left_out)
+        elseif fate and fate == worst[at] then
+            result[FATES[fate]] = result[FATES[fate]] + 1
+            worst[at] = nil
         end
         for _, note in ipairs(item.left_out and {} or item.notes) do
             add(result.in_part, item, note)
@@ -252,6 +263,9 @@ function threedec.convert(path, options)
     end
     if not text then
         error(("cannot read '%s': %s"):format(path, tostring(why):gsub("^.-: ", "")), 0)
+    end
+    function c.convert(statement)
+        convert_statement(c, statement)
     end
     add_calls(c, path)
     convert_text(c, text, path)

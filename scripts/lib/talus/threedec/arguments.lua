@@ -46,7 +46,9 @@ function arguments:number(what)
         return table.remove(self.spare, 1)
     end
     local token = self:peek()
-    if not token or token.kind ~= "number" and token.kind ~= "expression" then
+    -- classic files write a variable's bare name
+    local bare = token and token.kind == "word" and self.variables[fish.name(token.text)] ~= nil
+    if not token or token.kind ~= "number" and token.kind ~= "expression" and not bare then
         lexer.mistake("%s: %s must be a number%s", self.command, what, token and ", not '" .. token.text .. "'" or "")
     end
     self.at = self.at + 1

@@ -145,6 +145,39 @@ local function add_values(c)
         c.variables[lua] = { lua = lua, value = item.value, level = 9 }
     end
 
+    -- Adds rows {time, value} to a table, sorted by time; a row takes the place of one of its time.
+    function c.table_rows(name, rows)
+        local known = c.tables[name]
+        if not known and c.locals >= MOST_LOCALS then
+            lexer.leave("more than %d variables and tables", MOST_LOCALS)
+        end
+        local all = known and known.rows or {}
+        for _, row in ipairs(rows) do
+            local at = 1
+            while all[at] and all[at][1].value < row[1].value do
+                at = at + 1
+            end
+            if all[at] and all[at][1].value == row[1].value then
+                all[at] = row
+            else
+                table.insert(all, at, row)
+            end
+        end
+        local texts = {}
+        for i, row in ipairs(all) do
+            texts[i] = list(row)
+        end
+        if not known then
+            c.locals = c.locals + 1
+            known = { rows = all, lua = "table_" .. name:lower():gsub("[^%w_]", "_") }
+            for _, other in pairs(c.tables) do -- names that differ in signs only
+                known.lua = other.lua == known.lua and known.lua .. "_" .. c.locals or known.lua
+            end
+        end
+        c.emit(("%s%s = { %s }"):format(c.tables[name] and "" or "local ", known.lua, table.concat(texts, ", ")))
+        c.tables[name] = known
+    end
+
     -- Name of a new joint set: that of its number in 3DEC, or the next one.
     function c.new_joint(id)
         if not id then

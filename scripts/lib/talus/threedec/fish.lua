@@ -1,4 +1,4 @@
--- fish.lua - turns arithmetic of FISH into Lua: numbers, variables, + - * / ^ and functions of math.
+-- fish.lua - turns arithmetic of FISH into Lua: numbers, variables, + - * / ^, functions of math; finds if conditions hold.
 --
 -- Each expression is evaluated as well, for what a command means may depend on a value. As in FISH the quotient of two
 -- whole numbers is a whole number, and angles of sin and cos are in radians.
@@ -34,7 +34,8 @@ local function split(text)
             return tokens
         end
         local token = text:match("^%d+%.?%d*[eEdD][+-]?%d+", i) or text:match("^%.?%d+%.?%d*", i) or
-            text:match("^@?[%a_][%w_.]*", i) or text:match("^'[^']*'", i) or text:match('^"[^"]*"', i) or text:sub(i, i)
+            text:match("^@?[%a_][%w_.]*", i) or text:match("^'[^']*'", i) or text:match('^"[^"]*"', i) or
+            text:match("^[<>!=]=", i) or text:sub(i, i)
         tokens[#tokens + 1] = token
         i = i + #token
     end
@@ -174,6 +175,84 @@ function reader:sum()
     return item
 end
 
+-- ---------------------------------------------------------------- conditions -------------
+
+local compare = {
+    ["="] = function(a, b) return a == b end, ["#"] = function(a, b) return a ~= b end,
+    ["<"] = function(a, b) return a < b end, ["<="] = function(a, b) return a <= b end,
+    [">"] = function(a, b) return a > b end, [">="] = function(a, b) return a >= b end,
+}
+compare["=="], compare["!="] = compare["="], compare["#"]
+
+-- Whether two values compare so, as in `i < 3`; a condition in parentheses is one, too.
+function reader:comparison()
+    local from = self.at
+    local ok, a = pcall(self.sum, self)
+    local test = ok and compare[self[self.at]]
+    if test then
+        self.at = self.at + 1
+        local b = self:sum()
+        if type(a.value) ~= type(b.value) or type(a.value) ~= "number" and test ~= compare["="] and test ~= compare["#"] then
+            lexer.leave "FISH: a comparison needs two numbers, or two texts for equality"
+        end
+        return test(a.value, b.value)
+    end
+    self.at = from
+    if not self:next "(" then
+        lexer.leave "FISH: a comparison is missing"
+    end
+    local holds = self:alternative()
+    if not self:next ")" then
+        lexer.leave "FISH: a parenthesis is not closed"
+    end
+    return holds
+end
+
+function reader:next_word(word)
+    local token = self[self.at]
+    if token and token:lower() == word then
+        self.at = self.at + 1
+        return true
+    end
+    return false
+end
+
+function reader:negation()
+    if self:next_word "not" then
+        return not self:negation()
+    end
+    return self:comparison()
+end
+
+function reader:conjunction()
+    local holds = self:negation()
+    while self:next_word "and" do
+        local other = self:negation()
+        holds = holds and other
+    end
+    return holds
+end
+
+function reader:alternative()
+    local holds = self:conjunction()
+    while self:next_word "or" do
+        local other = self:conjunction()
+        holds = holds or other
+    end
+    return holds
+end
+
+-- Whether a condition of values that are known here holds.
+function fish.condition(text, variables)
+    local r = setmetatable(split(text), reader)
+    r.at, r.variables = 1, variables
+    local holds = r:alternative()
+    if r[r.at] then
+        lexer.leave("FISH: '%s' is not expected", r[r.at])
+    end
+    return holds
+end
+
 -- {lua = text, value = number or text, level =} of an expression, or {vector = three of these}.
 -- `variables`: by name in Lua {lua =, value =}.
 function fish.expression(text, variables)
@@ -186,11 +265,12 @@ function fish.expression(text, variables)
     return item
 end
 
--- Name and expression of an assignment such as `global kn = 2 * ks`; nil when the text is none.
+-- Name and expression of an assignment such as `global kn = 2 * ks`, and whether it is local; nil when the text is none.
 function fish.assignment(text)
-    local plain = text:gsub("^%s*[gG][lL][oO][bB][aA][lL]%s+", ""):gsub("^%s*[lL][oO][cC][aA][lL]%s+", "")
-    local name, value = plain:match "^%s*@?([%a_][%w_]*)%s*=%s*([^=].-)%s*$"
-    return name, value
+    local plain = text:gsub("^%s*[gG][lL][oO][bB][aA][lL]%s+", "")
+    local rest = plain:gsub("^%s*[lL][oO][cC][aA][lL]%s+", "")
+    local name, value = rest:match "^%s*@?([%a_][%w_]*)%s*=%s*([^=].-)%s*$"
+    return name, value, rest ~= plain
 end
 
 return fish

@@ -67,7 +67,24 @@ local function interpolate(rows, t)
     end
     return rows[#rows][2]
 end]],
+    joint_again = [[
+-- A law of contacts that may all be gone.
+local function joint_again(target, law, params)
+    local named = target.between or { target.group }
+    local living = {}
+    for _, b in ipairs(model:blocks { hidden = "any" }) do
+        living[b.group] = true
+    end
+    for _, group in ipairs(named) do
+        if not living[group] then
+            return
+        end
+    end
+    if not target.contacts or #target.contacts > 0 then
+        model:joint(target, law, params)
+    end
+end]],
     -- Those that another calls come before it.
-    order = { "normal_of", "height", "angle", "distance", "off_axis", "nearest", "load_corners", "interpolate" },
+    order = { "normal_of", "height", "angle", "distance", "off_axis", "nearest", "load_corners", "interpolate", "joint_again" },
     calls = { height = { "normal_of" }, off_axis = { "distance" }, nearest = { "distance" } },
 }

@@ -1,6 +1,7 @@
 -- lexer.lua - reads the text of a data file of 3DEC into statements: commands, FISH lines and FISH functions.
 --
--- A command ends with its line unless the line ends with `...` or `&`. A comment begins with `;`. Commas, `=` and
+-- A command ends with its line unless the line ends with `...` or `&`. A comment begins with `;`, or is a line
+-- that begins with `*`. Commas, `=` and
 -- parentheses only separate. A value in `[...]` or after `@` is an expression of FISH (fish.lua).
 local lexer = {}
 
@@ -14,9 +15,13 @@ function lexer.leave(format, ...)
     error({ left_out = string.format(format, ...) }, 0)
 end
 
--- Code of a line before its comment, and the comment without `;`; what is in quotes has no comment.
+-- Code of a line before its comment, and the comment without `;`; what is in quotes has no comment. A line that begins
+-- with `*` is a comment of classic files.
 local function split_comment(line)
-    local quote
+    local quote, starred = nil, line:match "^%s*%*+%s?(.*)$"
+    if starred then
+        return "", (starred:gsub("%s+$", ""))
+    end
     for i = 1, #line do
         local c = line:sub(i, i)
         if quote then
@@ -92,24 +97,28 @@ function lexer.tokens(code)
     end
 end
 
--- Name of the FISH function that begins on this line, or nil.
+-- Name of the FISH function that begins on this line, and its parameters; nil when none does.
 local function function_name(code)
     local lower = code:lower()
     local rest = lower:match "^%s*fish%s+(.*)$" or lower
-    local word, name = rest:match "^%s*(%a+)%s+([%w_%-]+)"
+    local word, name, parameters = rest:match "^%s*(%a+)%s+([%w_%-]+)%s*(.*)$"
     if word and #word >= 3 and (("define"):sub(1, #word) == word or ("operator"):sub(1, #word) == word) then
-        return name
+        local list = {}
+        for parameter in parameters:gmatch "[%a_][%w_]*" do
+            list[#list + 1] = parameter
+        end
+        return name, list
     end
     return nil
 end
 
 -- Lines from, from + 1 ... are a FISH function, up to the line `end`; gives it and the line after it.
-local function read_function(lines, from, name)
+local function read_function(lines, from, name, parameters)
     local body = {}
     for i = from + 1, #lines do
         local code, comment = split_comment(lines[i])
         if code:lower():match "^%s*end%s*$" then
-            return { kind = "function", name = name, line = from, last = i, body = body }, i + 1
+            return { kind = "function", name = name, parameters = parameters, line = from, last = i, body = body }, i + 1
         end
         body[#body + 1] = { line = i, code = code, comment = comment }
     end
@@ -146,8 +155,8 @@ function lexer.statements(text)
         lines[#lines + 1] = line
     end
     while i <= #lines do
-        local name = function_name((split_comment(lines[i])))
-        local ok, statement, after = pcall(name and read_function or read_command, lines, i, name)
+        local name, parameters = function_name((split_comment(lines[i])))
+        local ok, statement, after = pcall(name and read_function or read_command, lines, i, name, parameters)
         if ok and statement.kind == "command" then
             ok, statement.tokens = pcall(lexer.tokens, statement.code)
             if not ok then

@@ -27,8 +27,25 @@ local function fits(short, word)
     return true
 end
 
--- The word of the list `known` that `short` stands for; nil when there is none. `place` is told when it fits several.
-function match.find(short, known, place)
+-- Words that mean the same as another one.
+local SAME = { org = "origin", dd = "dip-direction", ["edge-length"] = "edgelength", edge = "edgelength" }
+
+local function one_meaning(found, meaning)
+    for _, word in ipairs(found) do
+        if meaning(word) ~= meaning(found[1]) then
+            return false
+        end
+    end
+    return true
+end
+
+local function usual_meaning(word)
+    return SAME[word] or word
+end
+
+-- The word of the list `known` that `short` stands for; nil when there is none. `place` is told when it fits several
+-- that do not mean the same; `meaning` gives what a word means, where that is not its own matter.
+function match.find(short, known, place, meaning)
     local lower, found = short:lower(), {}
     for _, word in ipairs(known) do
         if word == lower then
@@ -47,15 +64,15 @@ function match.find(short, known, place)
         end
         found = #fewest == 1 and fewest or found
     end
-    if #found > 1 then
+    if #found > 1 and not one_meaning(found, meaning or usual_meaning) then
         lexer.mistake("%s: '%s' may be %s", place, short, table.concat(found, " or "))
     end
     return found[1]
 end
 
 -- The same, and a mistake when there is none.
-function match.need(short, known, place)
-    local word = match.find(short, known, place)
+function match.need(short, known, place, meaning)
+    local word = match.find(short, known, place, meaning)
     if word then
         return word
     end

@@ -62,8 +62,9 @@ end
 
 -- The factor of a FISH function that only assigns its own name, as `wave = math.sin(6.28*mech.time)`: an expression of t.
 local function fish_factor(c, name)
-    local list, own = c.functions[fish.name(name)], fish.name(name)
-    if not list or #list ~= 1 or fish.name(list[1].name) ~= own then
+    local called, own = c.functions[fish.name(name)], fish.name(name)
+    local list = called and called.tree
+    if not list or #list ~= 1 or list[1].kind ~= "assign" or fish.name(list[1].name) ~= own then
         c.leave("the FISH function '" .. name .. "' is not converted; drive takes a function of Lua")
     end
     local time = { lua = "t", value = 1.0 }
@@ -81,7 +82,7 @@ local function factor(c, a)
             lexer.mistake("%s: there is no table '%s'", a.command, name)
         end
         c.use "interpolate"
-        return ("interpolate(table_%s, t)"):format(name:gsub("[^%w_]", "_"))
+        return ("interpolate(%s, t)"):format(c.tables[name].lua)
     end
     return nil
 end
@@ -362,14 +363,12 @@ return function(row)
     row("block apply-remove|block gridpoint apply-remove|block face apply-remove", { lacks = "loads are taken off by load{}, drives by free()" })
     row("table", { form = "s add t v t v ... (i t v t v ...)", becomes = "a table of the script, which drives take",
         example = "table 1 0 0 1 2", convert = function(c, a)
-            local name = a:text("the table"):gsub("[^%w_]", "_")
+            local name = a:text "the table"
             a:take("add", "create")
             local rows = {}
             while a:more() do
-                local pair = a:numbers(2, "a pair of time and value")
-                rows[#rows + 1] = ("{ %s, %s }"):format(pair[1].lua, pair[2].lua)
+                rows[#rows + 1] = a:numbers(2, "a pair of time and value")
             end
-            c.tables[name] = true
-            c.emit(("local table_%s = { %s }"):format(name, table.concat(rows, ", ")))
+            c.table_rows(name, rows)
         end })
 end
