@@ -5,8 +5,9 @@
  * below the way on which springs reach the strength to far above it, so the peak is met whatever its way. All ways are
  * 1/F as long, at the same rate.
  *
- * A strength that depends on the way slipped, or on the rate, need not be 1/F of what it was. So most sets of parameters
- * must bear what they should. Nothing is compared where a divided parameter has come to the end of its range. */
+ * A strength that depends on the way slipped, or on the rate, need not be 1/F of what it was. So most sets of
+ * parameters must bear what they should. Nothing is compared where a divided parameter has come to the end of its
+ * range. */
 #include "check/law_strength.h"
 
 #include "base/strength.h"
