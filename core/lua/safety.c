@@ -254,7 +254,7 @@ static const tl_lua_key map_results[] = {
 
 const tl_lua_topic tl_lua_safety_topics[] = {
     {.name = "factor_of_safety",
-     .usage = "model:relax{}; result = model:factor_of_safety{resolution = 0.01}",
+     .usage = "result = model:factor_of_safety{resolution = 0.01}",
      .function = "factor_of_safety",
      .keys = safety_keys,
      .title = "Fields of the result",
@@ -262,7 +262,7 @@ const tl_lua_topic tl_lua_safety_topics[] = {
      .arguments = 1,
      .method = model_factor_of_safety},
     {.name = "safety_map",
-     .usage = "model:relax{}; map = model:safety_map{from = 0.5, to = 3, step = 0.5}",
+     .usage = "map = model:safety_map{from = 0.5, to = 3, step = 0.5}",
      .function = "safety_map",
      .keys = safety_keys,
      .title = "Fields of the map",

@@ -1684,13 +1684,30 @@ function Model:seat(options) end
 ---@field least_volume? number m3, >= 0, default 0: what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
----@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
----@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+---@class (exact) talus.FactorOfSafetyResult
+---@field factor number sqrt(lower * upper); 0 where it fails whatever the strengths, math.huge where it holds at `to`, `from` where it fails there
+---@field lower number the largest factor that holds, 0: none; and the least that fails, math.huge: none
+---@field upper number the largest factor that holds, 0: none; and the least that fails, math.huge: none
+---@field failing talus.Blocks selection of the blocks that go together at `upper`: those within 0.3 of the fastest
+---@field volume number? of these, m3, and where they go, a unit vector; without any direction is nil
+---@field direction talus.Vector? of these, m3, and where they go, a unit vector; without any direction is nil
+---@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "holds" without any
+---@field keyblock { block: talus.Block, factor: number }? {factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is none, or laws have no friction and cohesion or name blocks
+---@field trials { F: number, cycles: integer, holds: boolean, undecided: boolean, why: string }[] each a table: F, holds, undecided, cycles, why; in the order in which they were made
+---@field small talus.Blocks selection of the blocks below least_volume that failed before, and were deleted in the copies
+---@field undecided integer number of trials that neither came to rest nor failed: they count as failing
+---@field cycles integer steps of all trials, and s
+---@field wall number steps of all trials, and s
+---@field message string all of this in a sentence
 
 --- Finds by how much the strengths of laws and solids may be divided before the model does not come to rest any more. Trials are made on copies: the model stays as it is.
 ---
 ---     result = model:factor_of_safety{resolution = 0.01}
 ---@param options? talus.FactorOfSafetyOptions
+---@return talus.FactorOfSafetyResult
 function Model:factor_of_safety(options) end
 
 ---@class (exact) talus.SafetyMapOptions
@@ -1700,13 +1717,21 @@ function Model:factor_of_safety(options) end
 ---@field failed? "delete"|"hold" default "delete": what becomes of blocks that have failed, in the copies: they are deleted, or held where they were
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
----@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
----@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+---@class (exact) talus.SafetyMapResult
+---@field factor table by the id of each block that can move: the factor at which it fails once those before it have gone; math.huge: it holds at `to`; 0: nothing holds it. Files and screens take it as block_fields = {safety = map.factor}
+---@field curve { blocks: integer, factor: number, volume: number }[] by ascending factors, each {factor =, volume =, blocks =}: what has failed by then, in all
+---@field undecided integer number of trials that neither came to rest nor failed: they count as failing
+---@field cycles integer steps of all trials, and s
+---@field wall number steps of all trials, and s
 
 --- Finds the factor of safety of every block: strengths are divided by more and more, and what has failed goes before it goes on. Trials are made on copies: the model stays as it is.
 ---
 ---     map = model:safety_map{from = 0.5, to = 3, step = 0.5}
 ---@param options? talus.SafetyMapOptions
+---@return talus.SafetyMapResult
 function Model:safety_map(options) end
 
 return talus
