@@ -1474,13 +1474,13 @@ function Model:filter(options) end
 ---@field force talus.Vector weight and load, N; of the body, kg and m3
 ---@field mass number weight and load, N; of the body, kg and m3
 ---@field volume number weight and load, N; of the body, kg and m3
----@field support any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
----@field support_pressure any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
+---@field support number? with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
+---@field support_pressure number? with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
 ---@field pyramid talus.Vector[] edges of the joint pyramid, unit vectors: it can move in all directions between them
 
 --- Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor of safety in limit equilibrium.
 ---
----     list = model:keyblocks{friction = 35}
+---     list = model:keyblocks{friction = 35, target = 1.5}
 ---@param options? talus.KeyblocksOptions
 ---@return talus.Keyblock[]
 function Model:keyblocks(options) end
@@ -1559,7 +1559,7 @@ function Model:memory() end
 ---@class (exact) talus.WriteHtmlOptions
 ---@field title? string title of the page; the name at the end of its path when left out
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1576,7 +1576,7 @@ function Model:write_html(path, options) end
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
 ---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
----@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field zone_fields? { NAME: number } numbers of each zone, likewise: fields of zones, states of their solids, functions
 
@@ -1610,7 +1610,7 @@ function Model:write_blocks(path) end
 ---@field commands? boolean default true: whether commands are taken; without, the page only shows
 ---@field share? number in (0, 1], default 0.02: most of the run's time that goes into frames
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it

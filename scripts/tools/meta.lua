@@ -94,7 +94,8 @@ local WORDS = {
     ["{NAME = value}"] = "table<string, number|string|boolean|talus.Vector>",
     ["{friction =, cohesion =, gravity =}"] = "talus.KeyblocksOptions",
     ['true, false or "slipping"'] = 'boolean|"slipping"',
-    ['{"FIELD", NAME = "FIELD" or function(block)}'] = "string[]|table<string, string|fun(block: talus.Block): number?>",
+    ['{"FIELD", NAME = "FIELD", {[id] = number} or function(block)}'] = "string[]|table<string, string|table<integer, number>|" ..
+        "fun(block: talus.Block): number?>",
     ['{"FIELD", NAME = "FIELD" or function(contact)}'] = "string[]|table<string, string|fun(contact: talus.Contact): number?>",
     ["{BLOCK = function(t)}"] = "table<integer, function|{ velocity: function?, angular_velocity: function? }>",
 }
