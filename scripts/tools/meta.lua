@@ -81,6 +81,7 @@ local WORDS = {
     ["list of two groups"] = "(string|talus.Blocks|talus.Block)[]",
     ["block or its id"] = "talus.Block|integer",
     ["a table of what is to be done"] = "talus.BoundaryOptions",
+    ["function(trial)"] = "fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string })",
     ["function(block)"] = "fun(block: talus.Block): any",
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(zone)"] = "fun(zone: talus.Zone): any",
@@ -102,7 +103,8 @@ local WORDS = {
     ["{NAME = value}"] = "table<string, number|string|boolean|talus.Vector>",
     ["{friction =, cohesion =, gravity =}"] = "talus.KeyblocksOptions",
     ['true, false or "slipping"'] = 'boolean|"slipping"',
-    ['{"FIELD", NAME = "FIELD" or function(block)}'] = "string[]|table<string, string|fun(block: talus.Block): number?>",
+    ['{"FIELD", NAME = "FIELD", {[id] = number} or function(block)}'] = "string[]|table<string, string|table<integer, number>|" ..
+        "fun(block: talus.Block): number?>",
     ['{"FIELD", NAME = "FIELD" or function(contact)}'] = "string[]|table<string, string|fun(contact: talus.Contact): number?>",
     ["{BLOCK = function(t)}"] = "table<integer, function|{ velocity: function?, angular_velocity: function? }>",
 }
