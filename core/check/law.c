@@ -6,11 +6,12 @@
  * another value, that of another point, and a parameter another one of its range: the result must be another one to the
  * bit, with some set of parameters, at some point of some step. The normal force is looked at in law_normal.c, work and
  * energies on longer paths in law_paths.c. Forces are compared relative to those that the point has, or had on
- * average. */
+ * average. Strengths that are marked are divided in law_strength.c. */
 #include "check/law.h"
 
 #include "check/law_normal.h"
 #include "check/law_paths.h"
+#include "check/law_strength.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -687,6 +688,8 @@ static tl_status try_set(tl_checker *c, void *params, void *user)
         return status;
     if (!tl_check_failed(c, TL_LAW_STIFFNESS) || isfinite(t->law.kn + t->law.ks))
         status = try_varied(t);
+    if (status == TL_OK && !tl_check_failed(c, TL_LAW_RUNS) && !tl_check_failed(c, TL_LAW_STIFFNESS))
+        status = tl_law_check_strengths(c, &t->law, params, open_law, close_law);
     close_law(&t->law);
     return status;
 }

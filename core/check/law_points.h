@@ -31,7 +31,8 @@
     RULE(TL_LAW_PARAMETERS, "parameters", "each parameter has an effect")                                              \
     RULE(TL_LAW_FLAGS, "flags", "points that are open carry nothing, those that have failed stay so")                  \
     RULE(TL_LAW_PULLS, "pulls", "no normal force across a gap where pulls() and across_gap() say so")                  \
-    RULE(TL_LAW_PRESSES, "presses", "the normal force and what it stores are those that linear or pressed() tells")
+    RULE(TL_LAW_PRESSES, "presses", "the normal force and what it stores are those that linear or pressed() tells")    \
+    RULE(TL_LAW_STRENGTHS, "strengths", "with marked strengths divided by 0.5 and 2 points bear 1/F of what they bore")
 #define TL_LAW_NUMBER(number, name, doc) number,
 enum { TL_LAW_RULES(TL_LAW_NUMBER) };
 

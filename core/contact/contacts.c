@@ -9,6 +9,7 @@
 
 #include "base/columns.h"
 #include "base/inline.h"
+#include "base/parallel.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
@@ -615,17 +616,44 @@ void tl_contacts_free_spare(tl_detect *d, int64_t cycles)
         free_spare(d);
 }
 
-/* Points of the contacts in their new order, in the spare table; nothing can fail any more. */
-static void move_points(tl_detect *d, const place *list)
+/* Cost only: contacts that a thread copies at a time. */
+#define COPY_CHUNK 1024
+
+/* Contacts in their new order. Each is copied to rows of its own. */
+typedef struct new_order {
+    tl_detect *d;
+    const place *list;
+} new_order;
+
+static void copy_contacts(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    for (uint32_t i = 0; i < d->spare.table.rows; i++) {
-        uint32_t row = list[i].row;
+    (void)chunk, (void)thread;
+    const new_order *order = user;
+    for (size_t i = begin; i < end; i++)
+        copy_contact(order->d, order->list[i].row, (uint32_t)i);
+}
+
+static void copy_points_of_contacts(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const new_order *order = user;
+    tl_detect *d = order->d;
+    for (size_t i = begin; i < end; i++) {
+        const uint32_t row = order->list[i].row;
         copy_points(&d->points, d->contacts.point_start[row], &d->spare_points, d->spare.point_start[i],
                     d->contacts.point_count[row]);
-        d->pairs[d->spare.pair[i]].contact = i;
+        d->pairs[d->spare.pair[i]].contact = (uint32_t)i;
+    }
+}
+
+/* Points of the contacts in their new order, in the spare table; nothing can fail any more. */
+static void move_points(tl_model *m, const new_order *order)
+{
+    tl_detect *d = m->detect;
+    tl_parallel_for(m->pool, d->spare.table.rows, COPY_CHUNK, copy_points_of_contacts, (void *)(uintptr_t)order);
+    for (uint32_t i = 0; i < d->spare.table.rows; i++)
         if (d->spare.point_capacity[i] == 0)
             leave_lane(d, &d->spare, i);
-    }
 }
 
 bool tl_contacts_scattered(const tl_detect *d, int64_t cycles)
@@ -649,13 +677,14 @@ tl_status tl_contacts_repack(tl_model *m)
     d->spare_points.table.rows = 0;
     bool there = tl_table_reserve(&fresh->table, with_spare(count, d->spare_share, SPARE_ROWS)) &&
                  tl_table_resize(&fresh->table, count);
-    for (uint32_t i = 0; i < count && there; i++)
-        copy_contact(d, list[i].row, i);
+    new_order order = {d, list};
+    if (there)
+        tl_parallel_for(m->pool, count, COPY_CHUNK, copy_contacts, &order);
     tl_layout layout = {0};
     there = there && make_layout(&layout, fresh, d->spare_share) && tl_detect_make_lanes(d, &layout) &&
             layout.laid_rows <= UINT32_MAX && tl_table_resize(&d->spare_points.table, layout.laid_rows);
     if (there)
-        move_points(d, list);
+        move_points(m, &order);
     free(list);
     if (!there) {
         tl_layout_free(&layout);

@@ -162,6 +162,8 @@ struct tl_cycle {
     double *turn_rate;
     double *inertia;                                      /* over its own, where `adds` */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
+    tl_wrench *contact_damping; /* of each contact, where these are damped: on B, about A's centroid */
+    size_t contact_damping_capacity;
     /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
     uint32_t *reaction_of;
     tl_reaction *reaction;
@@ -203,6 +205,7 @@ struct tl_cycle {
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
     tl_settling settling;
+    bool only_stops;          /* a relaxation makes no leaps; not saved */
     struct tl_secant *secant; /* of each contact, while there are leaps: secants.c */
     size_t secant_count, secant_capacity;
     struct tl_conjugate *conjugate; /* of each body, while there are leaps of many: conjugate.c */

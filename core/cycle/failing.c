@@ -331,8 +331,13 @@ static double settlement_of_zones(const tl_model *m)
     return stored > 0 && stiff > 0 ? sqrt(2 * stored / stiff) * tl_v3_norm(tl_v3_sub(high, low)) : 0;
 }
 
+double tl_watch_on_end(const tl_watch *w)
+{
+    return w->on_end;
+}
+
 /* How far the model may settle, m: see the head of the file. */
-static double settlement(const tl_watch *w, const tl_model *m)
+double tl_watch_settlement(const tl_watch *w, const tl_model *m)
 {
     const tl_contacts *c = &m->detect->contacts;
     tl_addends forces = {.count = 0}, closures = {.count = 0};
@@ -479,7 +484,7 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
     sample_job job = {.w = w, .m = m};
     tl_parallel_for(m->pool, w->bodies, TL_READ_CHUNK, sample_range, &job);
     if (job.reached)
-        w->least = SETTLED_SHARE / LEGS * settlement(w, m);
+        w->least = SETTLED_SHARE / LEGS * tl_watch_settlement(w, m);
     for (uint32_t body = 0; body < w->bodies && job.reached; body++)
         if (w->free[body])
             end_legs(w, m, body);
@@ -503,7 +508,7 @@ static tl_gone farthest(const tl_watch *w, const tl_model *m, double share, doub
 
 tl_gone tl_watch_gone(const tl_watch *w, const tl_model *m)
 {
-    return farthest(w, m, FAILED_SHARE, SETTLED_SHARE * settlement(w, m));
+    return farthest(w, m, FAILED_SHARE, SETTLED_SHARE * tl_watch_settlement(w, m));
 }
 
 tl_gone tl_watch_moved(const tl_watch *w, const tl_model *m)

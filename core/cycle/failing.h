@@ -23,5 +23,8 @@ tl_status tl_watch_list(const tl_watch *w, tl_model *m);
  * `gone`: so far that it has failed and come to rest elsewhere. `moved`: by more than a hundredth of its size. */
 tl_gone tl_watch_gone(const tl_watch *w, const tl_model *m);
 tl_gone tl_watch_moved(const tl_watch *w, const tl_model *m);
+/* Free blocks on end across the model, and how far it may settle as its contacts and zones are loaded now, m. */
+double tl_watch_on_end(const tl_watch *w);
+double tl_watch_settlement(const tl_watch *w, const tl_model *m);
 
 #endif

@@ -16,6 +16,7 @@
 #include "cycle/meshes.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
+#include "segment/gather.h"
 #include "zone/outer.h"
 #include "zone/stiffness.h"
 

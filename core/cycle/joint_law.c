@@ -7,6 +7,7 @@
 #include "base/inside.h"
 #include "base/parallel.h"
 #include "base/params.h"
+#include "base/strength.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/places.h"
@@ -274,7 +275,7 @@ static bool presses_alike(const tl_law *before, const tl_law *law)
     return tl_law_is_linear(law) || (tl_law_presses(law) && same_curve(before, law));
 }
 
-/* The same of the last two laws that were compared. Contacts of a law are neighbours, and a curve is not found twice. */
+/* The same of the last two laws that were compared. Contacts of a law are neighbours, so a curve is not found often. */
 typedef struct compared {
     const tl_law *before, *law;
     bool alike;
@@ -392,7 +393,8 @@ static tl_status bring_up(tl_model *m)
     return m->detect ? tl_detect_update(m) : TL_OK;
 }
 
-/* Finds who comes under which law, and holds what that needs. All that can fail is done before laws take their places. */
+/* Finds who comes under which law, and holds what that needs. All that can fail is done before laws take their
+ * places. */
 static tl_status prepare_contacts(const laws_now *now, size_t laws)
 {
     tl_model *m = now->m;
@@ -599,10 +601,24 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     return tl_joint_law_for(m, &scope, law, args);
 }
 
-/* ---------------------------------------------------------------- stiffer joints --------- */
+/* ---------------------------------------------------------------- other values ------------
+ *
+ * Laws of their scopes with some of their parameters multiplied or divided. */
 
 /* Most parameters of a law that are stiffnesses. */
 #define MOST_STIFF 16
+
+/* A law as `from` is, but for some values. */
+static tl_status make_with(tl_model *m, const tl_law *from, const tl_args *args, tl_law *out)
+{
+    tl_scope scope;
+    if (!tl_scope_copy(&from->scope, &scope))
+        return tl_fail_memory(&m->error);
+    const tl_status status = tl_law_make_for(m, &scope, from->kind, args, from, out);
+    if (status != TL_OK)
+        tl_scope_clear(&scope);
+    return status;
+}
 
 /* The law with its stiffnesses multiplied. */
 static tl_status make_stiffer(tl_model *m, const tl_law *law, double factor, tl_law *out)
@@ -625,12 +641,19 @@ static tl_status make_stiffer(tl_model *m, const tl_law *law, double factor, tl_
                        "%s: law '%s' says of no parameter that it is a stiffness; its plugin is to mark them with "
                        "TL_PARAM_STIFFNESS",
                        tl_scope_text(m, &law->scope, text), kind->name);
-    tl_scope scope;
-    if (!tl_scope_copy(&law->scope, &scope))
-        return tl_fail_memory(&m->error);
-    const tl_status status = tl_law_make_for(m, &scope, kind, &args, law, out);
-    if (status != TL_OK)
-        tl_scope_clear(&scope);
+    return make_with(m, law, &args, out);
+}
+
+/* Puts laws in the places of all if `status` is TL_OK, and frees those of `made` that no place has taken. */
+static tl_status put_made(tl_model *m, tl_law *made, size_t ready, tl_status status)
+{
+    if (status == TL_OK)
+        status = put_laws(m, made);
+    if (status == TL_OK && m->cycle)
+        m->cycle->dt = 0;
+    for (size_t i = 0; i < ready && status != TL_OK; i++)
+        tl_law_clear(&made[i]);
+    free(made);
     return status;
 }
 
@@ -648,12 +671,32 @@ tl_status tl_joints_stiffen(tl_model *m, double factor)
         status = make_stiffer(m, &m->joint_laws[ready], factor, &made[ready]);
         ready += status == TL_OK;
     }
-    if (status == TL_OK)
-        status = put_laws(m, made);
-    if (status == TL_OK && m->cycle)
-        m->cycle->dt = 0;
-    for (size_t i = 0; i < ready && status != TL_OK; i++)
-        tl_law_clear(&made[i]);
-    free(made);
+    return put_made(m, made, ready, status);
+}
+
+/* The law with its strengths divided. */
+static tl_status make_weaker(tl_model *m, const tl_law *law, double factor, tl_law *out)
+{
+    tl_args args;
+    void *held;
+    if (!tl_strengths_divide(law->kind, law->params, factor, &args, &held))
+        return tl_fail_memory(&m->error);
+    const tl_status status = make_with(m, law, &args, out);
+    free(held);
     return status;
+}
+
+tl_status tl_joints_weaken(tl_model *m, const tl_model *from, const uint8_t *which, double factor)
+{
+    static const tl_args none = {NULL, 0};
+    const size_t count = from->joint_law_count;
+    tl_law *made = calloc(count + 1, sizeof *made);
+    tl_status status = made ? TL_OK : tl_fail_memory(&m->error);
+    size_t ready = 0;
+    while (status == TL_OK && ready < count) {
+        const tl_law *law = &from->joint_laws[ready];
+        status = which[ready] ? make_weaker(m, law, factor, &made[ready]) : make_with(m, law, &none, &made[ready]);
+        ready += status == TL_OK;
+    }
+    return put_made(m, made, ready, status);
 }

@@ -9,6 +9,7 @@
  *
  * A cut that would leave a thin piece is taken back, and the next one is tried. Where all three planes do at all edges,
  * more planes between those of the faces are tried. What is thin by itself gets thin parts: a solid always divides.
+ * Where faces bend by about what is flat, the whole solid is divided again with another measure of flat.
  *
  * Each edge on a plane is cut for good, so their number bounds the cuts. A section takes time in proportion to the
  * faces of its piece, one product each for those that the plane passes by. */
@@ -47,7 +48,7 @@
 #define THIN 1e-3
 
 /* Tolerance: a solid of faces that bend by about what is flat may not divide. It is tried again with more that is flat,
- * by this factor each time, up to this times its size. */
+ * and with less, by this factor each time, up to this times its size. */
 #define FLATTER 8
 #define FLATTEST TL_POLY_FLAT
 
@@ -160,8 +161,8 @@ static bool try_cuts(divider *d, uint32_t piece, bool *made)
     return true;
 }
 
-/* Lists cuts by more planes through the reflex edges of a piece: n = cos(k a) u + sin(k a) v, with the normal u of the
- * plane midway, the direction v across it and the edge, and the angle a from u to the planes of the faces. */
+/* Lists cuts by more planes through the reflex edges of a piece: n = cos(k a) u + sin(k a) v. u is the normal of the
+ * plane midway, and v lies across it and the edge. a is the angle between u and the normal of a face. */
 static bool add_fans(divider *d, uint32_t piece)
 {
     tl_solid_mesh *m = &d->m;
@@ -392,14 +393,18 @@ tl_status tl_convex_parts_make(const tl_solid_surface *surface, tl_convex_parts 
     tl_status status = divide_with(surface, parts, &again, error);
     const tl_bounds all = tl_points_bounds(surface->vertices, surface->vertex_count);
     const double size = tl_v3_norm(tl_v3_sub(all.max, all.min));
-    tl_solid_surface coarser = *surface;
-    for (double flat = FLATTER * TL_POLY_ON; again && flat <= FLATTEST; flat *= FLATTER) {
-        tl_error other;
-        again = false;
-        coarser.flat = fmax(surface->flat, flat * size);
-        if (divide_with(&coarser, parts, &again, &other) == TL_OK)
-            return TL_OK;
-    }
+    for (double by = FLATTER; again && by * TL_POLY_ON <= FLATTEST; by *= FLATTER)
+        for (int fine = 0; again && fine < 2; fine++) {
+            tl_solid_surface other = *surface;
+            tl_error ignored;
+            again = false;
+            if (fine)
+                other.finer = by;
+            else
+                other.flat = fmax(surface->flat, by * TL_POLY_ON * size);
+            if (divide_with(&other, parts, &again, &ignored) == TL_OK)
+                return TL_OK;
+        }
     if (status == TL_OK && parts->reflex_edges == 0) {
         const double thickness = tl_poly_thickness(parts->part[0]);
         if (thickness < TL_POLY_THIN * parts->part[0]->size)

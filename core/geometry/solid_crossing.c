@@ -13,10 +13,6 @@
 #include <stdlib.h>
 #include <talus/vmath.h>
 
-/* Tolerance: sine of the angle between two edges in a plane up to which they are parallel: both ends are taken then.
- * Where they meet would be lost in rounding. */
-#define PARALLEL 1e-12
-
 typedef struct search {
     const tl_solid_mesh *m;
     uint32_t edge, face; /* at hand; found */
@@ -26,26 +22,23 @@ typedef struct search {
     bool found, lost; /* lost: out of memory */
 } search;
 
-/* Adds where the edge, from a along `way`, meets an edge from b to c in a plane across `normal`. */
-static bool add_meeting(search *s, tl_vec3 a, tl_vec3 way, tl_vec3 b, tl_vec3 c, tl_vec3 normal)
+static bool add_place(search *s, double at)
 {
-    const tl_vec3 other = tl_v3_sub(c, b), from = tl_v3_sub(b, a), across = tl_v3_cross(normal, other);
-    const double down = tl_v3_dot(way, across);
-    if (fabs(down) <= PARALLEL * tl_v3_norm(way) * tl_v3_norm(other)) {
-        /* parallel edges: both ends */
-        const double length2 = tl_v3_dot(way, way);
-        const double t[2] = {tl_v3_dot(from, way) / length2, tl_v3_dot(tl_v3_sub(c, a), way) / length2};
-        for (int k = 0; k < 2; k++) {
-            if (!tl_solid_grow(&s->stretch, &s->capacity, s->stretches, sizeof *s->stretch))
-                return false;
-            s->stretch[s->stretches++] = t[k];
-        }
-        return true;
-    }
     if (!tl_solid_grow(&s->stretch, &s->capacity, s->stretches, sizeof *s->stretch))
         return false;
-    s->stretch[s->stretches++] = tl_v3_dot(from, across) / down;
+    s->stretch[s->stretches++] = at;
     return true;
+}
+
+/* Adds where the edge, from a along `way`, meets an edge from b to c in a plane across `normal`. Where that is lost in
+ * rounding, as the edges are nearly parallel, it is near one of the ends of the other edge: these are added as well. A
+ * place too many only divides a stretch. */
+static bool add_meeting(search *s, tl_vec3 a, tl_vec3 way, tl_vec3 b, tl_vec3 c, tl_vec3 normal)
+{
+    const tl_vec3 from = tl_v3_sub(b, a), across = tl_v3_cross(normal, tl_v3_sub(c, b));
+    const double down = tl_v3_dot(way, across), length2 = tl_v3_dot(way, way);
+    return add_place(s, tl_v3_dot(from, way) / length2) && add_place(s, tl_v3_dot(tl_v3_sub(c, a), way) / length2) &&
+           (fabs(down) == 0 || add_place(s, tl_v3_dot(from, across) / down));
 }
 
 static int by_value(const void *left, const void *right)
@@ -62,12 +55,11 @@ static bool runs_inside(search *s, uint32_t face)
     const tl_vec3 normal = tl_solid_normal(m, face);
     const double length = tl_v3_norm(way);
     s->stretches = 0;
+    s->lost = !add_place(s, 0);
     TL_EACH_HALF(m, face, h, first)
-    if (!add_meeting(s, a, way, m->vertex[m->half[h].from], m->vertex[tl_half_to(m, h)], normal)) {
-        s->lost = true;
+    s->lost = s->lost || !add_meeting(s, a, way, m->vertex[m->half[h].from], m->vertex[tl_half_to(m, h)], normal);
+    if (s->lost)
         return false;
-    }
-    s->stretch[s->stretches++] = 0; /* there is room: a face has three edges or more */
     uint32_t kept = 0;
     for (uint32_t i = 0; i < s->stretches; i++)
         if (s->stretch[i] >= 0 && s->stretch[i] <= 1)

@@ -177,7 +177,7 @@ static tl_status measure_all(const reader *r)
     const tl_vec3 far = tl_v3_max(bounds.max, tl_v3_neg(bounds.min));
     m->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
     const double reach = fmax(far.x, fmax(far.y, far.z));
-    m->on = fmax(g->flat, fmax(TL_POLY_ON * m->size, TL_POLY_ROUNDINGS * reach));
+    m->on = fmax(g->flat, fmax(TL_POLY_ON / fmax(g->finer, 1) * m->size, TL_POLY_ROUNDINGS * reach));
     measure(r, &bounds);
     const double least = EMPTY * m->size * m->size * m->size;
     if (m->volume < -least)

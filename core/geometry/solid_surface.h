@@ -16,6 +16,7 @@ typedef struct tl_solid_surface {
     /* m, >= 0: what bends by less, or stands off a plane by less, is plane. At least TL_POLY_ON times the diagonal of
      * the bounds, and the rounding of the coordinates. */
     double flat;
+    double finer;  /* 0, or what TL_POLY_ON is divided by */
     bool whole;    /* refuse a solid that is not convex, with the edge at which it bends inward */
     tl_vec3 place; /* added to coordinates in messages */
 } tl_solid_surface;

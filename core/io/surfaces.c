@@ -77,8 +77,8 @@ static void put_faces(const writer *w, uint32_t row, const char *before, uint32_
     }
 }
 
-/* How far the corners of a face that are left reach above the triangle of corner i and its neighbours; INFINITY: it has no
- * area. */
+/* How far the corners of a face that are left reach above the triangle of corner i and its neighbours; INFINITY: it has
+ * no area. */
 static double reach_above(const tl_poly *shape, const uint16_t *left, uint32_t count, uint32_t i)
 {
     const tl_vec3 a = shape->vertex[left[(i + count - 1) % count]], b = shape->vertex[left[i]];

@@ -157,9 +157,9 @@ enum { TL_LUA_VELOCITY = 1, TL_LUA_ANGULAR_VELOCITY, TL_LUA_MOTIONS = 2 };
 
 /* Keys of a table with fields that a script adds. */
 #define TL_LUA_FIELD_KEYS                                                                                              \
-    {"block_fields", "{\"FIELD\", NAME = \"FIELD\" or function(block)}",                                               \
-     "numbers of each block to colour by: fields of blocks, and functions that give a number, or "                     \
-     "nil for none"},                                                                                                  \
+    {"block_fields", "{\"FIELD\", NAME = \"FIELD\", {[id] = number} or function(block)}",                              \
+     "numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a "      \
+     "number, or nil for none"},                                                                                       \
     {                                                                                                                  \
         "contact_fields", "{\"FIELD\", NAME = \"FIELD\" or function(contact)}",                                        \
             "numbers of each contact, likewise: fields of contacts, states of their laws, "                            \

@@ -23,9 +23,10 @@ static const tl_lua_key page_keys[] = {
 
 /* ---------------------------------------------------------------- extra fields ------------
  *
- * Numbers that a script adds to the blocks, contacts or zones of a file or page: fields by name, and functions.
+ * Numbers that a script adds to the blocks, contacts or zones of a file or page: fields by name, numbers by ids, and
+ * functions.
  *
- *     block_fields = {"kinetic_energy", safety = function(block) return factor[block.id] end}
+ *     block_fields = {"kinetic_energy", safety = map.factor, above = function(block) return block.centroid[3] end}
  *
  * All are found before anything is written, in an order that does not depend on the table's: those of the list first,
  * then the others by their names. While a function runs the model may only be read. */
@@ -151,6 +152,23 @@ static void ask_function(lua_State *L, request *r, tl_extra_field *field)
         tl_lua_fail(L, "%s: %s: '%s': %s", r->context, r->key, field->name, luaL_tolstring(L, -1, NULL));
 }
 
+/* The values that the table at the top of the stack has under the numbers of the items. It pops the table. */
+static void look_up(lua_State *L, const request *r, tl_extra_field *field, double *values)
+{
+    for (size_t i = 0; i < r->items->count; i++) {
+        const tl_lua_item item = tl_lua_item_push(L, 1, r->items, i);
+        const lua_Integer number = r->kind->number(&item.name);
+        lua_pop(L, 1);
+        const int type = lua_rawgeti(L, -1, number);
+        if (type != LUA_TNUMBER && type != LUA_TNIL)
+            tl_lua_fail(L, "%s: %s: '%s' has %s for %s %I, and not a number", r->context, r->key, field->name,
+                        tl_lua_describe(L, -1), r->kind->item, number);
+        values[i] = type == LUA_TNIL || isinf(lua_tonumber(L, -1)) ? NAN : lua_tonumber(L, -1);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
 /* Finds the values of field `i`. */
 static void take_values(lua_State *L, request *r, size_t i, size_t listed)
 {
@@ -169,9 +187,13 @@ static void take_values(lua_State *L, request *r, size_t i, size_t listed)
         ask_function(L, r, field);
         return;
     }
+    if (type == LUA_TTABLE) {
+        look_up(L, r, field, values);
+        return;
+    }
     if (type != LUA_TSTRING)
-        tl_lua_fail(L, "%s: %s: '%s' must be the name of a field or a function(%s), not %s", r->context, r->key,
-                    field->name, r->kind->item, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "%s: %s: '%s' must be the name of a field, a table by ids or a function(%s), not %s", r->context,
+                    r->key, field->name, r->kind->item, tl_lua_describe(L, -1));
     ask_field(L, r, field, lua_tostring(L, -1), values);
     lua_pop(L, 1);
 }

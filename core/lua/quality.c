@@ -334,7 +334,7 @@ static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *al
     lua_createtable(L, (int)all->count, 0);
     for (size_t i = 0; i < all->count; i++) {
         const tl_keyblock *block = &all->blocks[i];
-        lua_createtable(L, 0, 10);
+        lua_createtable(L, 0, 12);
         tl_lua_set_block(L, "block", block->block);
         tl_lua_set_text(L, "mode", modes[block->mode]);
         TL_LUA_SET_NUMBERS(L, {"safety", block->safety}, {"volume", block->volume}, {"mass", block->mass},
@@ -342,6 +342,10 @@ static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *al
         tl_lua_set_vec3(L, "force", block->force);
         if (block->mode != TL_KEYBLOCK_STABLE)
             tl_lua_set_vec3(L, "direction", block->direction);
+        if (!isnan(block->support))
+            tl_lua_set_number(L, "support", block->support);
+        if (!isnan(block->support_pressure))
+            tl_lua_set_number(L, "support_pressure", block->support_pressure);
         set_faces(L, model, block);
         const double *edges = (const double *)(all->edges + block->edge_start);
         tl_lua_push_rows(L, edges, block->edge_count, 3, 3);
@@ -544,6 +548,10 @@ static const tl_lua_key keyblock_results[] = {
     {"faces", "", "the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}"},
     {"direction, driving_force", "", "of the motion, and the force along it, N; a stable one has no direction"},
     {"force, mass, volume", "", "weight and load, N; of the body, kg and m3"},
+    {"support, support_pressure", "",
+     "with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that "
+     "pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where "
+     "outer faces do not look along the motion"},
     {"pyramid", "", "edges of the joint pyramid, unit vectors: it can move in all directions between them"},
     {NULL, NULL, NULL},
 };

@@ -54,6 +54,15 @@ static const tl_param insitu_params[] = {
              "point at whose height the stress holds; the gradient counts from there", .def = {0.0, 0.0, 0.0}),
 };
 
+typedef struct modes_args {
+    int64_t count;
+} modes_args;
+
+static const tl_param modes_params[] = {
+    TL_PARAM(TL_PARAM_INT, modes_args, count, "", "how many vibrations, the slowest first", .def = {6.0}, .min = 1.0,
+             .max = 1000.0),
+};
+
 static const tl_param seat_params[] = {
     TL_PARAM(
         TL_PARAM_REAL, tl_seat, gap, "m",
@@ -243,6 +252,75 @@ static const tl_param filter_params[] = {
 static const tl_param keyblocks_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_keyblock_query, gravity, "m/s2",
              "acceleration that acts on the blocks; that of the model when left out", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_keyblock_query, target, "",
+             "factor of safety that is asked for: each keyblock then tells the support that it takes", .min = 0.0,
+             .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+};
+
+static const char *const failed_blocks[] = {"delete", "hold", NULL};
+
+/* What factor_of_safety and safety_map have in common. */
+#define SAFETY_PARAMS                                                                                                  \
+    TL_PARAM(TL_PARAM_INT, tl_safety, max_cycles, "",                                                                  \
+             "largest number of steps of one trial; one that is undecided then counts as failing", .def = {100000.0},  \
+             .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),                                                 \
+        TL_PARAM(TL_PARAM_BOOL, tl_safety, solids, "",                                                                 \
+                 "whether the strengths of deformable blocks' solids are divided, too", .def = {1.0})
+
+static const tl_param factor_of_safety_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_safety, from, "", "least factor that is tried", .def = {0.1}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, to, "", "largest factor that is tried; above `from`", .def = {10.0}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, resolution, "", "relative width of the bracket that is found", .def = {0.01},
+             .min = 1e-4, .max = 0.5),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, least_volume, "m3",
+             "what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on",
+             .def = {0.0}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    SAFETY_PARAMS,
+};
+
+static const tl_param safety_map_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_safety, from, "", "least factor that is tried", .def = {0.5}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, to, "", "largest factor that is tried; above `from`", .def = {3.0}, .min = 0.05,
+             .max = INFINITY, .flags = TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_safety, step, "", "from one factor to the next", .def = {0.02}, .min = 1e-3,
+             .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+    {.size = sizeof(tl_param),
+     .type = TL_PARAM_ENUM,
+     .name = "failed",
+     .unit = "",
+     .doc = "what becomes of blocks that have failed, in the copies: they are deleted, or held where they were",
+     .offset = offsetof(tl_safety, hold),
+     .choices = failed_blocks},
+    SAFETY_PARAMS,
+};
+
+static const char *const record_quantities[] = {"acceleration", "velocity", NULL};
+static const char *const record_units[] = {"own", "m/s2", "g", "cm/s2", "m/s", "cm/s", NULL};
+static const char *const record_baselines[] = {"as_is", "mean", "parabola", NULL};
+
+static const tl_param record_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_record_options, file, "",
+             "lines of numbers, or PEER's AT2 or VT2; or give samples in `at`",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_FILE),
+    TL_PARAM(TL_PARAM_INT, tl_record_options, column, "",
+             "which number of each line it is; 0: the last of two, all of a file that tells NPTS", .def = {0.0},
+             .min = 0.0, .max = 64.0),
+    TL_PARAM(TL_PARAM_REAL, tl_record_options, dt, "s", "from one sample to the next; 0: as the file says",
+             .def = {0.0}, .min = 0.0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_ENUM, tl_record_options, quantity, "", "what the samples are", .def = {TL_RECORD_ACCELERATION},
+             .choices = record_quantities),
+    TL_PARAM(TL_PARAM_ENUM, tl_record_options, unit, "",
+             "of the samples; own: as the file says, or m/s2 and m/s; g is 9.80665 m/s2", .def = {TL_RECORD_UNIT_OWN},
+             .choices = record_units),
+    TL_PARAM(TL_PARAM_REAL, tl_record_options, scale, "", "by which the samples are multiplied", .def = {1.0},
+             .min = -INFINITY, .max = INFINITY),
+    TL_PARAM(TL_PARAM_ENUM, tl_record_options, baseline, "",
+             "what is taken off a motion that drifts: nothing, the mean acceleration, or the parabola that fits the "
+             "velocity best",
+             .def = {TL_BASELINE_NONE}, .choices = record_baselines),
 };
 
 static const tl_param law_test_params[] = {
@@ -319,6 +397,8 @@ static const model_function functions[] = {
     {"model", "Makes an empty model.", PARAMS(model_params)},
     {"insitu", "Puts an initial stress in the zones, and on the face contacts, that exist now, once.",
      PARAMS(insitu_params)},
+    {"modes", "Finds the slowest vibrations of small size about the present place of a model at rest.",
+     PARAMS(modes_params)},
     {"seat",
      "Takes blocks as drawn as fitting: gaps and overlaps up to a limit become the state free of force, under any law. "
      "Contacts are free of force after it. Prints and returns what was found.",
@@ -368,10 +448,20 @@ static const model_function functions[] = {
      "Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor "
      "of safety in limit equilibrium.",
      PARAMS(keyblocks_params)},
+    {"factor_of_safety",
+     "Finds by how much the strengths of laws and solids may be divided before the model does not come to rest any "
+     "more. Trials are made on copies: the model stays as it is.",
+     PARAMS(factor_of_safety_params)},
+    {"safety_map",
+     "Finds the factor of safety of every block: strengths are divided by more and more, and what has failed goes "
+     "before it goes on. Trials are made on copies: the model stays as it is.",
+     PARAMS(safety_map_params)},
     {"law_test",
      "Tries a joint law on one contact point, without a model: direct shear under a constant normal stress, or in "
      "surroundings of constant normal stiffness, and closure tests.",
      PARAMS(law_test_params)},
+    {"record", "A record of ground motion, which blocks follow as selection:drive{velocity = {rec, 0, 0}}.",
+     PARAMS(record_params)},
     {"law_leg", "One leg of the path of a law_test.", PARAMS(law_leg_params)},
     {"solid_test",
      "Tries a solid on one zone, without a model: any path of strains that are driven and stresses that are held.",

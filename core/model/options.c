@@ -18,6 +18,7 @@
 
 /* Defaults of what no table of parameters has. */
 static const tl_block_filter block_filter = {.fixed = -1, .above_count = 1, .below_count = 1};
+static const tl_safety safety = {.step = 0.02};
 static const tl_block_set block_set = {.density = NAN, .velocity = UNSET, .angular_velocity = UNSET};
 
 /* A struct: the function whose table has its defaults, or they themselves; all else is zero. */
@@ -44,6 +45,7 @@ static const struct {
     KNOWN(tl_drive, NULL, NULL),
     KNOWN(tl_contact_filter, NULL, NULL),
     KNOWN(tl_keyblock_query, "keyblocks", NULL),
+    KNOWN(tl_safety, "factor_of_safety", &safety),
     KNOWN(tl_vtk_parts, "write_vtk", NULL),
     KNOWN(tl_html, NULL, NULL),
     KNOWN(tl_view_options, "view", NULL),

@@ -19,6 +19,10 @@
  * A body on rollers moves in what is left of space, P. Its cone lies in P, and r and the normals are projected on it.
  * With n' = P n, N_i is then that over |n'_i|; rollers take the rest, without friction.
  *
+ * The support S against the motion leaves N_i as they are. A factor F takes S = |s| - sum (...) / F, and all of |s| of
+ * what falls. Outer faces have the area vector -sum A_i n_i, since that of a closed surface is zero. A pressure p on
+ * them pushes against the motion, of direction d, with p (-sum A_i n_i) . d.
+ *
  * The faces are those on which the body lay when it was made, for settling tilts it and parts walls (touching.c). A
  * body may have moved by more than TL_TOUCH_KEPT of its size against what it touches. Its faces are those on which it
  * lies now.
@@ -338,6 +342,26 @@ static void find_mode(const work *w, tl_vec3 r, tl_keyblock *block)
 
 /* ---------------------------------------------------------------- all -------------------- */
 
+/* What support brings the factor that is asked for. */
+static void find_support(const work *w, tl_keyblock *block)
+{
+    const double target = w->query->target;
+    double area = 0, all = 0;
+    block->support = block->support_pressure = NAN;
+    if (isnan(target))
+        return;
+    const double held = block->mode == TL_KEYBLOCK_STABLE ? INFINITY : block->safety * block->driving;
+    block->support = fmax(0, block->driving - held / target);
+    for (size_t i = 0; i < w->count; i++) {
+        area -= w->faces[i].area * tl_v3_dot(w->faces[i].normal, block->direction);
+        all += w->faces[i].area;
+    }
+    if (block->support == 0)
+        block->support_pressure = 0;
+    else if (area > TL_TOUCH_ALONG * all)
+        block->support_pressure = block->support / area;
+}
+
 static tl_status test_body(work *w, uint32_t body)
 {
     tl_model *m = w->model;
@@ -360,6 +384,7 @@ static tl_status test_body(work *w, uint32_t body)
         block.volume += m->blocks.volume[m->members[m->bodies.member_start[body] + k]];
     block.force = tl_v3_madd(tl_load_of(&m->bodies, body).force, block.mass, w->gravity);
     find_mode(w, part_along(w, block.force), &block);
+    find_support(w, &block);
     result->blocks[result->count++] = block;
     return TL_OK;
 }
@@ -398,6 +423,9 @@ tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_key
     tl_rows_tidy(m);
     if (status == TL_OK)
         status = find_gravity(&w);
+    if (status == TL_OK && !isnan(query.target) && !(query.target > 0 && isfinite(query.target)))
+        status =
+            tl_fail(&m->error, TL_E_ARGUMENT, "keyblocks: target = %g must be a finite number above 0", query.target);
     if (status == TL_OK)
         status = parse_strength(&w);
     if (status == TL_OK)

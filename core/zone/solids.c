@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/solid_columns.h"
+#include "base/strength.h"
 #include "geometry/measure.h"
 
 #include <stdio.h>
@@ -216,4 +217,21 @@ tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const
 tl_status tl_solid_copy(tl_model *to, const tl_named_solid *from)
 {
     return set(to, from->name, from->of.kind, &(tl_args){NULL, 0}, &from->of);
+}
+
+tl_status tl_solids_weaken(tl_model *m, const tl_model *from, double factor)
+{
+    tl_status status = TL_OK;
+    for (size_t k = 0; from->zones && k < from->zones->solid_count && status == TL_OK; k++) {
+        const tl_named_solid *solid = &from->zones->solid[k];
+        tl_args args;
+        void *held;
+        if (!tl_kind_has_strength(solid->of.kind))
+            continue;
+        status = tl_strengths_divide(solid->of.kind, solid->of.params, factor, &args, &held)
+                     ? set(m, solid->name, solid->of.kind, &args, &solid->of)
+                     : tl_fail_memory(&m->error);
+        free(held);
+    }
+    return status;
 }

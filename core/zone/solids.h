@@ -15,6 +15,8 @@ tl_status tl_solid_missing(tl_model *m, const char *name);
 tl_status tl_solid_set(tl_model *m, const char *name, const tl_kind *kind, const tl_args *args);
 /* Gives a model a solid as another one has it. */
 tl_status tl_solid_copy(tl_model *to, const tl_named_solid *from);
+/* Gives a copy of the model `from` the solids that `from` has, with their strengths divided by `factor`. */
+tl_status tl_solids_weaken(tl_model *m, const tl_model *from, double factor);
 /* Gives the zones the columns of states that a solid needs. false: out of memory. */
 bool tl_solid_columns(struct tl_zones *z, const tl_solid *solid);
 /* Gives the zones of a parcel, whose kind of solid changes, the states of the new kind: those that have the same names

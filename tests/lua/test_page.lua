@@ -80,7 +80,7 @@ check.refused(model, function() model:write_html(prefix, { block_fields = { a = 
 check.refused(model, function() model:write_html(prefix, { block_fields = { "group" } }) end, "group")
 check.refused(model, function() model:write_html(prefix, { block_fields = { "speed", speed = "volume" } }) end, "'speed' is there twice")
 check.refused(model, function() model:write_html(prefix, { block_fields = { a = 3 } }) end,
-    "'a' must be the name of a field or a function(block), not")
+    "'a' must be the name of a field, a table by ids or a function(block), not")
 check.refused(model, function() model:write_html(prefix, { block_fields = { 3 } }) end, "item 1 must be the name of a field")
 check.refused(model, function() model:write_html(prefix, { block_fields = { [true] = "speed" } }) end, "a field is named by a text")
 for _, name in ipairs { "a b", "1a", "_a", "", "a\0b", ("a"):rep(64), "<b>" } do

@@ -273,6 +273,15 @@ TEST(points_are_parameters_too)
     CHECK_INT(faults, 0);
 }
 
+TEST(a_wrong_mark_of_a_strength_is_found)
+{
+    findings h = {0};
+    size_t faults;
+    tl_error error;
+    CHECK_INT(tl_plugin_check(TALUS_BAD_PLUGIN_DIR "/half_marked.so", NULL, hear, &h, &faults, &error), TL_OK);
+    CHECK_CONTAINS(h.list, "strengths; ");
+}
+
 TEST(what_cannot_be_tried_is_told)
 {
     size_t faults;
@@ -293,4 +302,4 @@ TEST(what_cannot_be_tried_is_told)
 TEST_MAIN(RUN(each_check_of_solids_finds_what_breaks_it), RUN(each_check_finds_what_breaks_it),
           RUN(others_are_found_among_the_rest), RUN(a_fault_tells_its_parameters), RUN(the_plugins_of_talus_pass),
           RUN(generators_of_several_ways_pass_with_one), RUN(a_screen_that_is_there_passes),
-          RUN(points_are_parameters_too), RUN(what_cannot_be_tried_is_told))
+          RUN(points_are_parameters_too), RUN(a_wrong_mark_of_a_strength_is_found), RUN(what_cannot_be_tried_is_told))

@@ -30,6 +30,7 @@ extern "C" {
     X(tl_drive)                                                                                                        \
     X(tl_contact_filter)                                                                                               \
     X(tl_keyblock_query)                                                                                               \
+    X(tl_safety)                                                                                                       \
     X(tl_vtk_parts)                                                                                                    \
     X(tl_html)                                                                                                         \
     X(tl_view_options)

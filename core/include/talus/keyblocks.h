@@ -25,6 +25,7 @@ typedef struct tl_keyblock_query {
     tl_vec3 gravity; /* NaN: the model's */
     const tl_joint_strength *strength;
     size_t count;
+    double target; /* factor of safety that support is to bring, > 0; NaN: none */
 } tl_keyblock_query;
 
 typedef enum tl_keyblock_mode {
@@ -53,6 +54,10 @@ typedef struct tl_keyblock {
     tl_keyblock_face faces[2];
     size_t face_count;
     size_t edge_start, edge_count; /* edges of its joint pyramid in tl_keyblocks.edges */
+    double support;                /* least force against the motion that brings the target, N; NaN without one */
+    /* on the outer faces, which has that force against the motion; what it adds to normal forces is left out. Pa; NaN
+     * without a target, or where outer faces do not look along the motion */
+    double support_pressure;
 } tl_keyblock;
 
 typedef struct tl_keyblocks {

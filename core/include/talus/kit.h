@@ -59,9 +59,14 @@
 /* An angle in [0, 90) deg. `more`: TL_PARAM_REQUIRED or the like, or 0. */
 #define TL_PARAM_ANGLE(owner, member, more, ...)                                                                       \
     TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__, .flags = TL_PARAM_MAX_OPEN | (more), .min = 0, .max = 90)
-/* An angle of friction in [0, 90] deg. That of 90 has the tangent 1.6e16: nothing slips while it is pressed. */
+/* An angle of friction in [0, 90] deg, a strength. That of 90 has the tangent 1.6e16: nothing slips while it is
+ * pressed. */
 #define TL_PARAM_FRICTION(owner, member, more, ...)                                                                    \
-    TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__, .flags = (more), .min = 0, .max = 90)
+    TL_PARAM(TL_PARAM_REAL, owner, member, "deg", __VA_ARGS__, .flags = TL_PARAM_STRENGTH_ANGLE | (more), .min = 0,    \
+             .max = 90)
+/* A strength, >= 0, and 0 where it is not given. */
+#define TL_PARAM_STRONG(owner, member, unit, ...)                                                                      \
+    TL_PARAM(TL_PARAM_REAL, owner, member, unit, __VA_ARGS__, .flags = TL_PARAM_STRENGTH, .min = 0, .max = INFINITY)
 
 /* ---------------------------------------------------------------- create ----------------- */
 

@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 11u
+#define TL_ABI_MINOR 14u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -93,7 +93,16 @@ enum {
      * wait */
     TL_PARAM_FILE = 16,
     /* since 1.11, of a real of a law: a stiffness of the joint, which a trial with stiffer joints multiplies */
-    TL_PARAM_STIFFNESS = 32
+    TL_PARAM_STIFFNESS = 32,
+    /* since 1.12, of a real of a law or a solid, or of the second numbers of a solid's table: what a factor of safety F
+     * does to it. STRENGTH: a stress, or whatever the strength is proportional to, is divided by F. STRENGTH_ANGLE: the
+     * tangent of an angle in degrees is; 90 stays 90. STRENGTH_DIVISOR: what divides the strength is multiplied by F.
+     * STRENGTH_ENERGY: a work of fracture is divided by F^2, so that the displacements of its curve are divided by F.
+     * All strengths at once are then 1/F of what they were; values stay within the range of their row. */
+    TL_PARAM_STRENGTH = 64,
+    TL_PARAM_STRENGTH_ANGLE = 256,
+    TL_PARAM_STRENGTH_DIVISOR = 512,
+    TL_PARAM_STRENGTH_ENERGY = 1024
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
@@ -323,6 +332,10 @@ typedef struct tl_damping_ops {
     uint32_t before;
     /* since minor 3; not 0: `begin` and `update` always return TL_OK, as a law's */
     uint32_t never_fails;
+    /* [main] since minor 14; may be NULL. Damping of contacts in proportion to their stiffness: *beta, s, >= 0. The
+     * host adds the force beta k A du/dt, normal and along the face, at closed points that do not slip. The stable step
+     * is then shorter by sqrt(1 + l^2) - l, l = beta / step. What cannot pull gets no tension by it. */
+    void (*contact)(const void *self, double *beta);
 } tl_damping_ops;
 
 /* ---------------------------------------------------------------- generators ------------- */

@@ -138,24 +138,29 @@ typedef struct tl_mohr_coulomb_params {
     double table_extent;
 } tl_mohr_coulomb_params;
 
-#define TL_PARAM_TABLE(owner, member, unit, ...)                                                                       \
-    TL_PARAM(TL_PARAM_POINTS, owner, member, unit, __VA_ARGS__, .flags = TL_PARAM_OPTIONAL | TL_PARAM_FLAT)
+/* `strength`: what a factor of safety does to the second numbers of its rows. */
+#define TL_PARAM_TABLE(owner, member, unit, strength, ...)                                                             \
+    TL_PARAM(TL_PARAM_POINTS, owner, member, unit, __VA_ARGS__, .flags = TL_PARAM_OPTIONAL | TL_PARAM_FLAT | (strength))
 
 #define TL_PARAMS_MOHR_COULOMB                                                                                         \
     TL_PARAMS_ELASTIC(tl_mohr_coulomb_params),                                                                         \
         TL_PARAM(TL_PARAM_REAL, tl_mohr_coulomb_params, cohesion, "Pa", "cohesion, where no table gives it",           \
-                 .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),                                               \
-        TL_PARAM_ANGLE(tl_mohr_coulomb_params, friction, TL_PARAM_OPTIONAL,                                            \
+                 .flags = TL_PARAM_OPTIONAL | TL_PARAM_STRENGTH, .min = 0, .max = INFINITY),                           \
+        TL_PARAM_ANGLE(tl_mohr_coulomb_params, friction, TL_PARAM_OPTIONAL | TL_PARAM_STRENGTH_ANGLE,                  \
                        "angle of friction, where no table gives it"),                                                  \
-        TL_PARAM_ANGLE(tl_mohr_coulomb_params, dilation, 0, "angle of dilation, at most that of friction"),            \
+        TL_PARAM_ANGLE(tl_mohr_coulomb_params, dilation, TL_PARAM_STRENGTH_ANGLE,                                      \
+                       "angle of dilation, at most that of friction"),                                                 \
         TL_PARAM(TL_PARAM_REAL, tl_mohr_coulomb_params, tension, "Pa",                                                 \
                  "tensile strength; no more than cohesion / tan(friction), which it is when left out",                 \
-                 .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),                                               \
-        TL_PARAM_TABLE(tl_mohr_coulomb_params, cohesion_table, "Pa",                                                   \
+                 .flags = TL_PARAM_OPTIONAL | TL_PARAM_STRENGTH, .min = 0, .max = INFINITY),                           \
+        TL_PARAM_TABLE(tl_mohr_coulomb_params, cohesion_table, "Pa", TL_PARAM_STRENGTH,                                \
                        "cohesion over plastic shear: rows {plastic shear, cohesion}, straight between them"),          \
-        TL_PARAM_TABLE(tl_mohr_coulomb_params, friction_table, "deg", "friction over plastic shear"),                  \
-        TL_PARAM_TABLE(tl_mohr_coulomb_params, dilation_table, "deg", "dilation over plastic shear"),                  \
-        TL_PARAM_TABLE(tl_mohr_coulomb_params, tension_table, "Pa", "tensile strength over plastic tension"),          \
+        TL_PARAM_TABLE(tl_mohr_coulomb_params, friction_table, "deg", TL_PARAM_STRENGTH_ANGLE,                         \
+                       "friction over plastic shear"),                                                                 \
+        TL_PARAM_TABLE(tl_mohr_coulomb_params, dilation_table, "deg", TL_PARAM_STRENGTH_ANGLE,                         \
+                       "dilation over plastic shear"),                                                                 \
+        TL_PARAM_TABLE(tl_mohr_coulomb_params, tension_table, "Pa", TL_PARAM_STRENGTH,                                 \
+                       "tensile strength over plastic tension"),                                                       \
         TL_PARAM_POSITIVE_OR_NONE(tl_mohr_coulomb_params, table_extent, "m",                                           \
                                   "extent of zones that the tables are for: in zones twice as large plastic strain "   \
                                   "counts twice, so that a crack takes the same energy; left out: tables hold for "    \

@@ -11,8 +11,8 @@
 
 /* Tolerance: faces that turn by more than asin of this are no one side, however small they are: 30 degrees. */
 #define MOST_TURN 0.5
-/* Tolerance: a face may be off its plane by this times the size of its shell, whatever `flat` is. The faces of a block of
- * Talus are bent by up to this, and a file of them comes in again. Test: lua/test_round_trips. */
+/* Tolerance: a face may be off its plane by this times the size of its shell, whatever `flat` is. The faces of a block
+ * of Talus are bent by up to this, and a file of them comes in again. Test: lua/test_round_trips. */
 #define BENT 1e-4
 /* Cost only: a side so many times larger than another keeps its plane when that joins it. */
 #define LARGER 8

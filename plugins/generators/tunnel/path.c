@@ -10,9 +10,9 @@
  * an open path n = w. The corner lies in that plane at t = n . (q - p - y r - z u) / n . w, with the point q.
  *
  * The ends of two legs coincide where the path turns in a horizontal or a vertical plane. Elsewhere the one profile is
- * rolled against the other, and their outlines in the plane differ by a step. Plane sides that stand upright on both legs
- * have no common outline: floors of two legs of one slope meet along the way, not across it. A profile that did not roll
- * would lean more with each turn of a ramp. Each leg is on its own side of the plane, and the step is part of that. */
+ * rolled against the other, and their outlines in the plane differ by a step. Plane sides that stand upright on both
+ * legs have no common outline: floors of two legs of one slope meet along the way, not across it. A profile that did
+ * not roll would lean more with each turn of a ramp. Each leg is on its own side of the plane. */
 #include "path.h"
 
 #include <talus/vmath.h>

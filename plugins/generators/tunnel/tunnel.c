@@ -1,8 +1,8 @@
 /* tunnel.c - generator "tunnel": straight lines connect the corners of two end polygons; blocks in the way
  * of the prism between them are cut along its surface. A profile that follows a path makes such a prism for each leg
- * of the path (path.c). The legs are carved one after the other, each from what the legs before have left. What meets a
- * leg is cut by the planes of its ends first. So no side of a leg cuts rock beside its neighbour, whose sides lie at small
- * angles to its own where the path turns and climbs at once: between such planes there would be chips.
+ * of the path (path.c). The legs are carved one after the other, each from what the legs before have left. What meets
+ * a leg is cut by the planes of its ends first, so the sides of two legs never cut the same rock. Where the path turns
+ * and climbs at once, these sides lie at small angles to each other and would leave chips.
  *
  * A block whose inside meets the prism is cut by the planes of the sides, in the order of face1's edges. Then it is cut
  * by the planes of the ends. Each cut splits the part outside off. The cuts are no joints: parts of one block outside

@@ -64,7 +64,7 @@ static const tl_param param_table[] = {
                               "normal stress beyond which closure is linear; a smaller one allows a longer time "
                               "step; not given: the wall strength of the joint's length"),
     TL_PARAM(TL_PARAM_REAL, params, reduction, "", "the shear strength is divided by it", .def = {1},
-             .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+             .flags = TL_PARAM_MIN_OPEN | TL_PARAM_STRENGTH_DIVISOR, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_BOOL, params, dilation, "", "whether slip opens the joint", .def = {1}),
 };
 

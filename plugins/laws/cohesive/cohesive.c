@@ -41,15 +41,20 @@ typedef struct params {
     double kn, ks, tension, cohesion, energy_tension, energy_shear, friction;
 } params;
 
+/* What the bond has: > 0, and must be given. */
+#define BOND(member, unit, strength, ...)                                                                              \
+    TL_PARAM(TL_PARAM_REAL, params, member, unit, __VA_ARGS__,                                                         \
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN | (strength), .min = 0, .max = INFINITY)
+
 static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
-    TL_PARAM_POSITIVE(params, tension, "Pa", "tensile strength of the bond"),
-    TL_PARAM_POSITIVE(params, cohesion, "Pa", "shear strength of the bond"),
-    TL_PARAM_POSITIVE(params, energy_tension, "J/m2", "work of fracture in tension, more than tension^2 / (2 kn)",
-                      .alias = "gi"),
-    TL_PARAM_POSITIVE(params, energy_shear, "J/m2", "work of fracture in shear, more than cohesion^2 / (2 ks)",
-                      .alias = "gii"),
+    BOND(tension, "Pa", TL_PARAM_STRENGTH, "tensile strength of the bond"),
+    BOND(cohesion, "Pa", TL_PARAM_STRENGTH, "shear strength of the bond"),
+    BOND(energy_tension, "J/m2", TL_PARAM_STRENGTH_ENERGY, "work of fracture in tension, more than tension^2 / (2 kn)",
+         .alias = "gi"),
+    BOND(energy_shear, "J/m2", TL_PARAM_STRENGTH_ENERGY, "work of fracture in shear, more than cohesion^2 / (2 ks)",
+         .alias = "gii"),
     TL_PARAM_FRICTION(params, friction, 0, "angle of friction of what is broken; 90: no slip while it is pressed"),
 };
 

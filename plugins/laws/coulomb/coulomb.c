@@ -36,8 +36,9 @@ static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
     TL_PARAM_FRICTION(params, friction, 0, "angle of friction; 90: no slip while it is closed"),
-    TL_PARAM_NOT_NEGATIVE(params, cohesion, "Pa", "shear strength at zero normal stress"),
-    TL_PARAM_ANGLE(params, dilation, 0, "angle of dilation: slip opens the joint; at most the friction"),
+    TL_PARAM_STRONG(params, cohesion, "Pa", "shear strength at zero normal stress"),
+    TL_PARAM_ANGLE(params, dilation, TL_PARAM_STRENGTH_ANGLE,
+                   "angle of dilation: slip opens the joint; at most the friction"),
     TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends", .flags = TL_PARAM_OPTIONAL,
              .min = 0, .max = INFINITY),
 };

@@ -21,12 +21,13 @@ static const char *const meridians[] = {"outer", "inner", NULL};
 
 static const tl_param param_table[] = {
     TL_PARAMS_ELASTIC(params),
-    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion", .flags = TL_PARAM_REQUIRED, .min = 0, .max = INFINITY),
-    TL_PARAM_ANGLE(params, friction, TL_PARAM_REQUIRED, "angle of friction"),
-    TL_PARAM_ANGLE(params, dilation, 0, "angle of dilation, at most that of friction"),
+    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion", .flags = TL_PARAM_REQUIRED | TL_PARAM_STRENGTH,
+             .min = 0, .max = INFINITY),
+    TL_PARAM_ANGLE(params, friction, TL_PARAM_REQUIRED | TL_PARAM_STRENGTH_ANGLE, "angle of friction"),
+    TL_PARAM_ANGLE(params, dilation, TL_PARAM_STRENGTH_ANGLE, "angle of dilation, at most that of friction"),
     TL_PARAM(TL_PARAM_REAL, params, tension, "Pa",
              "largest mean stress; no more than that of the apex, which it is when left out",
-             .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_STRENGTH, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_ENUM, params, meridian, "",
              "where cone and Mohr-Coulomb meet: in compression (outer) or extension (inner)", .choices = meridians),
 };

@@ -23,22 +23,28 @@ typedef struct params {
     double sigma_ci, mb, s, a, gsi, mi, disturbance, dilation, tension;
 } params;
 
+/* A strength, > 0. With sigma_ci and mb divided by F, s and a as they are, s3 - s1 at any s1 is 1/F of what it was. */
+#define CRITERION(member, unit, more, ...)                                                                             \
+    TL_PARAM(TL_PARAM_REAL, params, member, unit, __VA_ARGS__,                                                         \
+             .flags = TL_PARAM_STRENGTH | TL_PARAM_MIN_OPEN | (more), .min = 0, .max = INFINITY)
+
 static const tl_param param_table[] = {
     TL_PARAMS_ELASTIC(params),
-    TL_PARAM_POSITIVE(params, sigma_ci, "Pa", "uniaxial strength of the intact rock"),
-    TL_PARAM_POSITIVE_OR_NONE(params, mb, "", "constant of the rock mass; with s, or gsi and mi in their place"),
+    CRITERION(sigma_ci, "Pa", TL_PARAM_REQUIRED, "uniaxial strength of the intact rock"),
+    CRITERION(mb, "", TL_PARAM_OPTIONAL, "constant of the rock mass; with s, or gsi and mi in their place"),
     TL_PARAM(TL_PARAM_REAL, params, s, "", "constant of the rock mass, 1 of intact rock", .flags = TL_PARAM_OPTIONAL,
              .min = 0, .max = 1),
     TL_PARAM(TL_PARAM_REAL, params, a, "", "exponent; with mb and s", .flags = TL_PARAM_OPTIONAL, .min = 0.5, .max = 1),
     TL_PARAM(TL_PARAM_REAL, params, gsi, "", "geological strength index; with mi", .flags = TL_PARAM_OPTIONAL, .min = 0,
              .max = 100),
-    TL_PARAM_POSITIVE_OR_NONE(params, mi, "", "constant of the intact rock; with gsi"),
+    CRITERION(mi, "", TL_PARAM_OPTIONAL, "constant of the intact rock; with gsi"),
     TL_PARAM(TL_PARAM_REAL, params, disturbance, "", "factor D of blasting and relief; with gsi",
              .flags = TL_PARAM_OPTIONAL, .min = 0, .max = 1),
-    TL_PARAM_ANGLE(params, dilation, 0, "angle of dilation, at most that of friction at the stress"),
+    TL_PARAM_ANGLE(params, dilation, TL_PARAM_STRENGTH_ANGLE,
+                   "angle of dilation, at most that of friction at the stress"),
     TL_PARAM(TL_PARAM_REAL, params, tension, "Pa",
-             "tensile strength; no more than s sigma_ci / mb, which it is when left out", .flags = TL_PARAM_OPTIONAL,
-             .min = 0, .max = INFINITY),
+             "tensile strength; no more than s sigma_ci / mb, which it is when left out",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_STRENGTH, .min = 0, .max = INFINITY),
 };
 
 typedef struct mass {

@@ -21,12 +21,14 @@ typedef struct params {
 
 static const tl_param param_table[] = {
     TL_PARAMS_MOHR_COULOMB,
-    TL_PARAM_NOT_NEGATIVE(params, joint_cohesion, "Pa", "cohesion of the weak plane"),
-    TL_PARAM_ANGLE(params, joint_friction, TL_PARAM_REQUIRED, "angle of friction of the weak plane"),
-    TL_PARAM_ANGLE(params, joint_dilation, 0, "angle of dilation of the weak plane, at most that of its friction"),
+    TL_PARAM_STRONG(params, joint_cohesion, "Pa", "cohesion of the weak plane"),
+    TL_PARAM_ANGLE(params, joint_friction, TL_PARAM_REQUIRED | TL_PARAM_STRENGTH_ANGLE,
+                   "angle of friction of the weak plane"),
+    TL_PARAM_ANGLE(params, joint_dilation, TL_PARAM_STRENGTH_ANGLE,
+                   "angle of dilation of the weak plane, at most that of its friction"),
     TL_PARAM(TL_PARAM_REAL, params, joint_tension, "Pa",
              "tensile strength of the weak plane; no more than its cohesion / tan(friction), which it is when left out",
-             .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_STRENGTH, .min = 0, .max = INFINITY),
     TL_PARAMS_DIP(params, "the weak plane"),
 };
 

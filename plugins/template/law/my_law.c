@@ -19,9 +19,9 @@ static const tl_param param_table[] = {
     TL_PARAM_KN(params),
     TL_PARAM_KS(params),
     TL_PARAM(TL_PARAM_REAL, params, peak, "deg", "angle of friction before slip", .alias = "friction",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN | TL_PARAM_STRENGTH_ANGLE, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, residual, "deg", "angle of friction after the whole distance",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN | TL_PARAM_STRENGTH_ANGLE, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, distance, "m", "slip over which the friction falls", .flags = TL_PARAM_MIN_OPEN,
              .def = {0.01}, .min = 0, .max = INFINITY),
 };

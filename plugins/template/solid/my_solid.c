@@ -14,8 +14,10 @@ typedef struct params {
 
 static const tl_param param_table[] = {
     TL_PARAMS_ELASTIC(params),
-    TL_PARAM_POSITIVE(params, peak, "Pa", "largest root of J2 before flow"),
-    TL_PARAM_POSITIVE(params, residual, "Pa", "largest root of J2 after the whole distance"),
+    TL_PARAM(TL_PARAM_REAL, params, peak, "Pa", "largest root of J2 before flow",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN | TL_PARAM_STRENGTH, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, residual, "Pa", "largest root of J2 after the whole distance",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN | TL_PARAM_STRENGTH, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, distance, "", "plastic strain over which the strength falls",
              .flags = TL_PARAM_MIN_OPEN, .def = {0.01}, .min = 0, .max = INFINITY),
 };

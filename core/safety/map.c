@@ -1,0 +1,166 @@
+/* map.c - a factor of safety for every block: the factor goes up, and what fails goes before it goes on.
+ *
+ * From one failure to the next the largest factor of the grid that holds is looked for by steps that double, and then
+ * halve: a trial that holds holds at any lower factor. What fails at the least factor that does gets that factor, and
+ * is deleted, or held where it was. The rest comes to rest again with high strengths, and the same factor is tried once
+ * more: what then fails was held by what has gone. */
+#include "base/clock.h"
+#include "base/error.h"
+#include "cycle/meshes.h"
+#include "safety/trial.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/talus.h>
+
+/* Limit: factors of a grid. */
+#define MOST_FACTORS 100000
+
+typedef struct mapping {
+    tl_trials trials;
+    tl_safety_map *map;
+    size_t last, point_capacity, gone;
+    double volume; /* of what has gone */
+} mapping;
+
+static double factor_at(const mapping *p, size_t at)
+{
+    const tl_safety *o = &p->trials.options;
+    return at < p->last ? o->from + (double)at * o->step : o->to;
+}
+
+/* Lists the blocks that can move. */
+static tl_status list_blocks(mapping *p, const tl_model *m)
+{
+    tl_safety_map *map = p->map;
+    const size_t rows = m->blocks.table.rows;
+    map->ids = malloc((rows + 1) * sizeof *map->ids);
+    map->factor = malloc((rows + 1) * sizeof *map->factor);
+    if (!map->ids || !map->factor)
+        return tl_fail_memory(&p->trials.asked->error);
+    for (uint32_t row = 0; row < rows; row++)
+        if (tl_body_is_free(m, m->blocks.body[row])) {
+            map->ids[map->count] = m->blocks.id[row];
+            map->factor[map->count++] = INFINITY;
+        }
+    return TL_OK;
+}
+
+/* Notes what fails at a factor. */
+static tl_status note(mapping *p, double factor, const tl_fall *fall)
+{
+    tl_safety_map *map = p->map;
+    for (size_t i = 0; i < fall->count; i++)
+        for (size_t k = 0; k < map->count; k++)
+            if (map->ids[k] == fall->ids[i])
+                map->factor[k] = factor;
+    p->gone += fall->count;
+    p->volume += fall->volume;
+    tl_safety_point *last = map->point_count ? &map->curve[map->point_count - 1] : NULL;
+    if (!last || last->factor != factor) {
+        if (!tl_grow(&map->curve, &p->point_capacity, map->point_count + 1, sizeof *map->curve))
+            return tl_fail_memory(&p->trials.asked->error);
+        last = &map->curve[map->point_count++];
+    }
+    *last = (tl_safety_point){factor, p->volume, p->gone};
+    return TL_OK;
+}
+
+/* Takes what fails out of the copy, and brings the rest to rest; as long as something falls then, it goes as well.
+ * false: nothing is free any more. */
+static tl_status take_out(mapping *p, double factor, tl_fall *fall, bool *left)
+{
+    tl_model *base = p->trials.base;
+    tl_status status = TL_OK;
+    *left = true;
+    while (status == TL_OK && fall->count > 0 && *left) {
+        status = note(p, factor, fall);
+        if (status == TL_OK) {
+            status = p->trials.options.hold ? tl_blocks_fix(base, fall->ids, fall->count, TL_FIX_ALL)
+                                            : tl_blocks_delete(base, fall->ids, fall->count);
+            if (status != TL_OK)
+                status = tl_fail(&p->trials.asked->error, status, "%s: %s", p->trials.what, tl_model_error(base)->text);
+        }
+        tl_fall_free(fall);
+        *left = p->gone < p->map->count;
+        if (status == TL_OK && *left)
+            status = tl_trials_rest(&p->trials, fall);
+    }
+    tl_fall_free(fall);
+    return status;
+}
+
+/* Finds the least factor from `at` on that fails; `*at` is beyond the last when all hold. */
+static tl_status next_failure(mapping *p, size_t *at, tl_fall *fall)
+{
+    tl_safety_trial trial;
+    size_t width = 1, low = *at, high = p->last + 1; /* all below `low` hold, and `high` fails */
+    tl_status status = TL_OK;
+    *fall = (tl_fall){.ids = NULL};
+    for (size_t next = low; status == TL_OK && low < high; width *= 2) {
+        tl_fall here;
+        status = tl_trials_try(&p->trials, factor_at(p, next), &trial, &here);
+        if (status != TL_OK)
+            break;
+        if (trial.holds) {
+            low = next + 1;
+        } else {
+            tl_fall_free(fall);
+            *fall = here;
+            high = next;
+        }
+        next = high <= p->last ? low + (high - low) / 2 : next + width;
+        next = next > p->last ? p->last : next;
+    }
+    *at = high;
+    return status;
+}
+
+void tl_safety_map_free(tl_safety_map *map)
+{
+    free(map->ids);
+    free(map->factor);
+    free(map->curve);
+    *map = (tl_safety_map){.ids = NULL};
+}
+
+static tl_status go_up(mapping *p, tl_fall *fall)
+{
+    const tl_safety *o = &p->trials.options;
+    bool left = true;
+    tl_status status = TL_OK;
+    p->last = (size_t)ceil((o->to - o->from) / o->step * (1 - 1e-12)); /* Constant: rounding of the quotient */
+    if (fall->count > 0)
+        status = take_out(p, 0, fall, &left);
+    for (size_t at = 0; status == TL_OK && left && at <= p->last;) {
+        status = next_failure(p, &at, fall);
+        if (status == TL_OK && at <= p->last)
+            status = take_out(p, factor_at(p, at), fall, &left);
+    }
+    return status;
+}
+
+tl_status tl_model_safety_map(tl_model *m, const tl_safety *given, tl_safety_map *map)
+{
+    mapping p = {.map = map};
+    tl_fall fall;
+    *map = (tl_safety_map){.ids = NULL};
+    tl_status status = tl_trials_begin(&p.trials, "safety_map", m, given, &fall);
+    const tl_safety *o = &p.trials.options;
+    if (status == TL_OK && (o->to - o->from) / o->step > MOST_FACTORS)
+        status = tl_fail(&m->error, TL_E_ARGUMENT, "safety_map: step = %g makes more than %d factors from %g to %g",
+                         o->step, MOST_FACTORS, o->from, o->to);
+    if (status == TL_OK)
+        status = list_blocks(&p, m);
+    if (status == TL_OK)
+        status = go_up(&p, &fall);
+    map->undecided = (int32_t)p.trials.undecided;
+    map->cycles = p.trials.cycles;
+    map->wall = tl_clock() - p.trials.began;
+    if (status != TL_OK)
+        tl_safety_map_free(map);
+    tl_fall_free(&fall);
+    tl_trials_end(&p.trials);
+    return status;
+}

@@ -1,0 +1,306 @@
+/* search.c - the factor of safety of a model: the largest factor by which its strengths may be divided.
+ *
+ * Factors are those of a grid, from (1 + resolution)^k with the last one `to`. So trials do not depend on the order in
+ * which they are made. The search begins about the least factor of the keyblocks, or about 1, with a bracket of a few
+ * per cent. It is widened twice as far each time until one end holds and the other fails, and then halved. */
+#include "base/clock.h"
+#include "base/error.h"
+#include "model/scope.h"
+#include "safety/trial.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/number.h>
+#include <talus/talus.h>
+
+/* Cost only: half the width of the first bracket, over its middle. */
+#define BRACKET 0.03
+
+typedef struct search {
+    tl_trials trials;
+    tl_safety_result *result;
+    double *grid; /* [last + 1] */
+    size_t last, listed, capacity, small_capacity;
+    int64_t holds, fails; /* on the grid: the largest that holds, -1; the least that fails, last + 1 */
+    tl_fall fall;         /* at `fails` */
+} search;
+
+static const char *const mode_names[] = {[TL_SAFETY_HOLDS] = "holds",
+                                         [TL_SAFETY_SLIDES] = "slides",
+                                         [TL_SAFETY_TURNS] = "turns",
+                                         [TL_SAFETY_FALLS] = "falls"};
+
+const char *tl_safety_mode_name(tl_safety_mode mode)
+{
+    return (unsigned)mode <= TL_SAFETY_FALLS ? mode_names[mode] : "?";
+}
+
+/* ---------------------------------------------------------------- keyblocks -------------- */
+
+/* The parameter of a law of that name, or `none`. */
+static double value_of(const tl_law *law, const char *name, double none)
+{
+    for (uint32_t i = 0; i < law->kind->param_count; i++) {
+        const tl_param *p = &law->kind->params[i];
+        double value;
+        if (p->type != TL_PARAM_REAL || strcmp(p->name, name) != 0)
+            continue;
+        memcpy(&value, (const char *)law->params + p->offset, sizeof value);
+        return value;
+    }
+    return none;
+}
+
+/* The strengths that keyblocks have by the laws of a model, with what their names are in. 0: laws do not say. */
+static size_t read_strengths(tl_model *m, tl_joint_strength *list, char (*names)[TL_SCOPE_TEXT])
+{
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *law = &m->joint_laws[i];
+        const double friction = value_of(law, "friction", NAN);
+        if (law->scope.names > 0 || law->scope.pairs || !(friction < 90))
+            return 0;
+        tl_text_print(names[i], sizeof names[i], "%s", tl_pattern_name(m, law->scope.tag));
+        list[i] = (tl_joint_strength){names[i], friction, value_of(law, "cohesion", 0)};
+    }
+    return m->joint_law_count;
+}
+
+/* The least factor of the keyblocks, where the laws say what they need. */
+static tl_status ask_keyblocks(search *s)
+{
+    tl_model *copy = s->trials.base;
+    const size_t laws = s->trials.asked->joint_law_count;
+    tl_joint_strength *list = calloc(laws + 1, sizeof *list);
+    char(*names)[TL_SCOPE_TEXT] = calloc(laws + 1, sizeof *names);
+    tl_keyblock_query query = tl_keyblock_query_default();
+    tl_keyblocks found;
+    if (!list || !names) {
+        free(list);
+        free(names);
+        return tl_fail_memory(&s->trials.asked->error);
+    }
+    query.strength = list;
+    query.count = read_strengths(s->trials.asked, list, names);
+    if (query.count > 0 && tl_model_keyblocks(copy, &query, &found) == TL_OK) {
+        for (size_t i = 0; i < found.count; i++)
+            if (!(found.blocks[i].safety >= s->result->keyblock_factor)) {
+                s->result->keyblock_factor = found.blocks[i].safety;
+                s->result->keyblock = found.blocks[i].block;
+            }
+        tl_keyblocks_free(&found);
+    }
+    free(list);
+    free(names);
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- small blocks ----------- */
+
+/* Deletes what falls in the copy that trials begin with, and lists it. */
+static tl_status drop(search *s, tl_fall *fall)
+{
+    tl_safety_blocks *small = &s->result->small;
+    tl_model *m = s->trials.asked;
+    if (!tl_grow(&small->ids, &s->small_capacity, small->count + fall->count, sizeof *small->ids))
+        return tl_fail_memory(&m->error);
+    memcpy(small->ids + small->count, fall->ids, fall->count * sizeof *fall->ids);
+    small->count += fall->count;
+    tl_status status = tl_blocks_delete(s->trials.base, fall->ids, fall->count);
+    if (status != TL_OK)
+        status = tl_fail(&m->error, status, "%s: %s", s->trials.what, tl_model_error(s->trials.base)->text);
+    tl_fall_free(fall);
+    return status;
+}
+
+static bool is_small(const search *s, const tl_fall *fall)
+{
+    return fall->count > 0 && fall->volume < s->trials.options.least_volume;
+}
+
+/* Takes away what falls even with high strengths, as long as it is small. */
+static tl_status drop_loose(search *s, tl_fall *fall)
+{
+    tl_status status = TL_OK;
+    while (status == TL_OK && is_small(s, fall)) {
+        status = drop(s, fall);
+        if (status == TL_OK)
+            status = tl_trials_rest(&s->trials, fall);
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------- search ----------------- */
+
+static tl_status list_trial(search *s, const tl_safety_trial *trial)
+{
+    tl_safety_result *r = s->result;
+    if (!tl_grow(&r->trials, &s->capacity, r->trial_count + 1, sizeof *r->trials))
+        return tl_fail_memory(&s->trials.asked->error);
+    r->trials[r->trial_count++] = *trial;
+    return TL_OK;
+}
+
+/* Tries one factor of the grid. Small blocks that fail go first, and it is tried again. */
+static tl_status try_at(search *s, int64_t at)
+{
+    tl_safety_trial trial;
+    tl_fall fall;
+    tl_status status = TL_OK;
+    for (;;) {
+        status = tl_trials_try(&s->trials, s->grid[at], &trial, &fall);
+        if (status == TL_OK)
+            status = list_trial(s, &trial);
+        if (status != TL_OK || !is_small(s, &fall))
+            break;
+        status = drop(s, &fall);
+        if (status == TL_OK)
+            status = tl_trials_rest(&s->trials, &fall);
+        if (status == TL_OK)
+            status = drop_loose(s, &fall);
+        tl_fall_free(&fall);
+        if (status != TL_OK)
+            break;
+    }
+    if (status != TL_OK)
+        return status;
+    if (trial.holds) {
+        s->holds = at;
+        return TL_OK;
+    }
+    s->fails = at;
+    tl_fall_free(&s->fall);
+    s->fall = fall;
+    return TL_OK;
+}
+
+static int64_t clamped(const search *s, int64_t at)
+{
+    return at < 0 ? 0 : at > (int64_t)s->last ? (int64_t)s->last : at;
+}
+
+static bool make_grid(search *s)
+{
+    const tl_safety *o = &s->trials.options;
+    size_t count = 2;
+    for (double f = o->from; f < o->to; f *= 1 + o->resolution)
+        count++;
+    s->grid = malloc(count * sizeof *s->grid);
+    if (!s->grid)
+        return false;
+    for (double f = o->from; f < o->to; f *= 1 + o->resolution)
+        s->grid[s->last++] = f;
+    s->grid[s->last] = o->to;
+    s->holds = -1;
+    s->fails = (int64_t)s->last + 1;
+    return true;
+}
+
+/* The place on the grid nearest to a factor. */
+static int64_t place_of(const search *s, double factor)
+{
+    int64_t at = 0;
+    while (at < (int64_t)s->last && s->grid[at] < factor)
+        at++;
+    return at;
+}
+
+/* Makes trials until neighbours on the grid hold and fail. */
+static tl_status narrow(search *s)
+{
+    const double key = s->result->keyblock_factor;
+    const int64_t middle = place_of(s, key > 0 && isfinite(key) ? key : 1);
+    int64_t width = 1 + (int64_t)(BRACKET / s->trials.options.resolution);
+    const int64_t last = (int64_t)s->last;
+    tl_status status = try_at(s, clamped(s, middle - width));
+    if (status == TL_OK && s->holds >= 0 && s->holds < last)
+        status = try_at(s, clamped(s, middle + width));
+    while (status == TL_OK && s->fails > last && s->holds < last)
+        status = try_at(s, clamped(s, s->holds + (width *= 2)));
+    while (status == TL_OK && s->holds < 0 && s->fails > 0)
+        status = try_at(s, clamped(s, s->fails - (width *= 2)));
+    while (status == TL_OK && s->fails - s->holds > 1 && s->holds >= 0 && s->fails <= last)
+        status = try_at(s, s->holds + (s->fails - s->holds) / 2);
+    return status;
+}
+
+/* ---------------------------------------------------------------- result ----------------- */
+
+static void take_fall(tl_safety_result *r, tl_fall *fall)
+{
+    r->failing = (tl_safety_blocks){fall->ids, fall->count};
+    r->volume = fall->volume;
+    r->direction[0] = fall->way.x;
+    r->direction[1] = fall->way.y;
+    r->direction[2] = fall->way.z;
+    r->mode = (int32_t)fall->mode;
+    *fall = (tl_fall){.ids = NULL};
+}
+
+static void tell(const search *s)
+{
+    static const char *const goes[] = {"", "slide", "turn", "fall"};
+    tl_safety_result *r = s->result;
+    char what[160] = "";
+    if (r->failing.count > 0)
+        tl_text_print(what, sizeof what, "%zu block%s of %.3g m3 %s%s towards (%.2g, %.2g, %.2g)", r->failing.count,
+                      r->failing.count == 1 ? "" : "s", r->volume, goes[r->mode], r->failing.count == 1 ? "s" : "",
+                      r->direction[0], r->direction[1], r->direction[2]);
+    if (isinf(r->factor))
+        tl_text_print(r->message, sizeof r->message, "it holds at %.4g, the largest factor asked for", r->lower);
+    else if (r->factor == 0)
+        tl_text_print(r->message, sizeof r->message, "no strength holds it: %s", what);
+    else if (r->lower == 0)
+        tl_text_print(r->message, sizeof r->message, "it fails at %.4g, the least factor asked for: %s", r->upper,
+                      what);
+    else
+        tl_text_print(r->message, sizeof r->message, "factor of safety %.4g (holds at %.4g, fails at %.4g): %s",
+                      r->factor, r->lower, r->upper, what);
+}
+
+static void finish(search *s, bool never)
+{
+    tl_safety_result *r = s->result;
+    const int64_t last = (int64_t)s->last;
+    r->lower = !never && s->holds >= 0 ? s->grid[s->holds] : 0;
+    r->upper = never ? s->trials.options.from : s->fails <= last ? s->grid[s->fails] : INFINITY;
+    r->factor = never ? 0 : isinf(r->upper) ? INFINITY : r->lower > 0 ? sqrt(r->lower * r->upper) : r->upper;
+    if (never || s->fails <= last)
+        take_fall(r, &s->fall);
+    r->undecided = (int32_t)s->trials.undecided;
+    r->cycles = s->trials.cycles;
+    r->wall = tl_clock() - s->trials.began;
+    tell(s);
+}
+
+void tl_safety_free(tl_safety_result *result)
+{
+    free(result->failing.ids);
+    free(result->small.ids);
+    free(result->trials);
+    *result = (tl_safety_result){.factor = NAN};
+}
+
+tl_status tl_model_factor_of_safety(tl_model *m, const tl_safety *given, tl_safety_result *result)
+{
+    search s = {.result = result, .fall = {.ids = NULL}};
+    *result = (tl_safety_result){.keyblock_factor = NAN};
+    tl_status status = tl_trials_begin(&s.trials, "factor_of_safety", m, given, &s.fall);
+    if (status == TL_OK)
+        status = ask_keyblocks(&s);
+    if (status == TL_OK)
+        status = drop_loose(&s, &s.fall);
+    if (status == TL_OK && !make_grid(&s))
+        status = tl_fail_memory(&m->error);
+    const bool never = s.fall.count > 0;
+    if (status == TL_OK && !never)
+        status = narrow(&s);
+    if (status == TL_OK)
+        finish(&s, never);
+    else
+        tl_safety_free(result);
+    tl_fall_free(&s.fall);
+    tl_trials_end(&s.trials);
+    free(s.grid);
+    return status;
+}

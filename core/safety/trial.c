@@ -1,0 +1,463 @@
+/* trial.c - whether a model comes to rest with its strengths divided by a factor.
+ *
+ * A copy of the model comes to rest with its strengths raised by 1 / RAISED. Elastic joints settle then, and nothing
+ * slips. Each trial is a copy of that copy, with the strengths of the model divided by the factor. It comes to rest
+ * (cycle/relax.c) or something moves on.
+ *
+ * Two scales come from the model itself: u, how far its joints settle under what they bear, and N, the steps in which
+ * the first copy settled. Once a body has moved by SUSPECT u its springs would hold many times its weight, so what
+ * moves then slips. What is held by friction slips for a while and is slower from look to look. What is not held
+ * becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter, or that
+ * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
+ *
+ * Limit: a body that is turned about its centre alone is not seen before it moves. */
+#include "safety/trial.h"
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "base/strength.h"
+#include "cycle/cycle_data.h"
+#include "cycle/failing.h"
+#include "cycle/joint_law.h"
+#include "cycle/meshes.h"
+#include "cycle/rest.h"
+#include "model/joints.h"
+#include "model/options.h"
+#include "model/rows.h"
+#include "model/scope.h"
+#include "zone/solids.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/number.h>
+#include <talus/talus.h>
+
+/* Tolerance: what strengths are divided by while joints settle: nothing that holds at all slips then. */
+#define RAISED 0.05
+/* Tolerance: local unbalanced force ratio that is rest. */
+#define RESTS 1e-4
+/* Tolerance: local unbalanced force ratio above which a model that moves is not at rest. */
+#define MOVES 1e-2
+/* Tolerance: way over u from which on a body is watched, and from which on it fails anyway. */
+#define SUSPECT 10.0
+#define FAR 300.0
+/* Tolerance: looks in a row in which a body that fails has not become slower. */
+#define GROWS 4
+/* Tolerance: way between two looks over u below which nothing is told of a body. */
+#define STANDS 0.02
+/* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
+#define STEPS_A_BLOCK 16
+/* Tolerance: speed over that of the fastest body that fails, from which on another goes with it. */
+#define ALONG 0.3
+/* Tolerance: sum of contact forces over the weight below which nothing bears a body. */
+#define BARE 0.01
+
+void tl_fall_free(tl_fall *fall)
+{
+    free(fall->ids);
+    *fall = (tl_fall){.ids = NULL};
+}
+
+static void hush(void *user, const char *text)
+{
+    (void)user, (void)text;
+}
+
+/* The error of a copy becomes that of the model. */
+static tl_status told(const tl_trials *t, const tl_model *copy, tl_status status)
+{
+    return status == TL_OK ? TL_OK : tl_fail(&t->asked->error, status, "%s: %s", t->what, copy->error.text);
+}
+
+static tl_status copy_of(const tl_trials *t, tl_model *from, tl_model **copy)
+{
+    const tl_status status = tl_model_copy(from, NULL, NULL, copy);
+    if (status == TL_OK)
+        tl_model_log(*copy, hush, NULL);
+    return from == t->asked ? status : told(t, from, status);
+}
+
+static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
+{
+    tl_status status = tl_joints_weaken(copy, t->asked, t->which, factor);
+    if (status == TL_OK && t->options.solids)
+        status = tl_solids_weaken(copy, t->asked, factor);
+    return told(t, copy, status);
+}
+
+/* ---------------------------------------------------------------- what is asked ---------- */
+
+static tl_status check_number(const tl_trials *t, const char *name, double value, bool good, const char *allowed)
+{
+    char text[TL_NUMBER_TEXT];
+    tl_number_text(value, text);
+    return good ? TL_OK
+                : tl_fail(&t->asked->error, TL_E_ARGUMENT, "%s: %s = %s must be %s", t->what, name, text, allowed);
+}
+
+static tl_status check_options(const tl_trials *t)
+{
+    const tl_safety *o = &t->options;
+    char from[TL_NUMBER_TEXT], to[TL_NUMBER_TEXT];
+    tl_number_text(o->from, from);
+    tl_number_text(o->to, to);
+    tl_status status = check_number(t, "from", o->from, o->from >= RAISED && isfinite(o->from), "at least 0.05");
+    if (status == TL_OK)
+        status = check_number(t, "to", o->to, isfinite(o->to), "a finite number");
+    if (status == TL_OK && !(o->from < o->to))
+        status = tl_fail(&t->asked->error, TL_E_ARGUMENT, "%s: from = %s must be below to = %s", t->what, from, to);
+    if (status == TL_OK)
+        status = check_number(t, "resolution", o->resolution, o->resolution >= 1e-4 && o->resolution <= 0.5,
+                              "in [1e-4, 0.5]");
+    if (status == TL_OK)
+        status = check_number(t, "step", o->step, o->step >= 1e-3 && isfinite(o->step), "at least 0.001");
+    if (status == TL_OK)
+        status = check_number(t, "least_volume", o->least_volume, o->least_volume >= 0 && isfinite(o->least_volume),
+                              "a finite number >= 0");
+    if (status == TL_OK)
+        status = check_number(t, "max_cycles", (double)o->max_cycles, o->max_cycles >= 1, "at least 1");
+    return status;
+}
+
+/* Marks the laws of one name. */
+static tl_status mark_laws(tl_trials *t, const char *name)
+{
+    tl_model *m = t->asked;
+    tl_tag tag;
+    char error[TL_ERROR_TEXT];
+    bool some = false;
+    if (tl_joint_parse(m, name, &tag) != TL_OK) {
+        tl_text_print(error, sizeof error, "%s", m->error.text);
+        return tl_fail(&m->error, TL_E_ARGUMENT, "%s: joints: %s", t->what, error);
+    }
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        if (tl_tag_matches(tag, m->joint_laws[i].scope.tag)) {
+            t->which[i] = 1;
+            some = true;
+        }
+    return some ? TL_OK
+                : tl_fail(&m->error, TL_E_ARGUMENT,
+                          "%s: joint '%s' has no law of its own whose strengths could be divided; give it one", t->what,
+                          name);
+}
+
+/* Names the laws that have no strengths, when none has. */
+static tl_status say_unmarked(const tl_trials *t)
+{
+    tl_model *m = t->asked;
+    char names[200] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const char *name = m->joint_laws[i].kind->name;
+        if (t->which[i] && !strstr(names, name) && used + strlen(name) + 8 < sizeof names) {
+            tl_text_print(names + used, sizeof names - used, "%s'%s'", used ? ", " : "", name);
+            used = strlen(names);
+        }
+    }
+    if (!used)
+        return tl_fail(&m->error, TL_E_STATE, "%s: the model has no law whose strengths could be divided", t->what);
+    return tl_fail(&m->error, TL_E_ARGUMENT,
+                   "%s: no parameter of the laws %s is marked as a strength, so there is nothing to divide; a plugin "
+                   "marks them with TL_PARAM_STRENGTH",
+                   t->what, names);
+}
+
+static tl_status choose_laws(tl_trials *t)
+{
+    const tl_model *m = t->asked;
+    const tl_safety *o = &t->options;
+    tl_status status = TL_OK;
+    bool some = false;
+    t->which = calloc(m->joint_law_count + 1, 1);
+    if (!t->which)
+        return tl_fail_memory(&t->asked->error);
+    if (o->joints)
+        for (size_t k = 0; k < o->joint_count && status == TL_OK; k++)
+            status = mark_laws(t, o->joints[k]);
+    else
+        memset(t->which, 1, m->joint_law_count);
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const bool has = tl_kind_has_strength(m->joint_laws[i].kind);
+        some = some || (t->which[i] && has);
+    }
+    for (size_t k = 0; o->solids && m->zones && k < m->zones->solid_count; k++)
+        some = some || tl_kind_has_strength(m->zones->solid[k].of.kind);
+    if (status == TL_OK && !some)
+        return say_unmarked(t);
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        t->which[i] = t->which[i] && tl_kind_has_strength(m->joint_laws[i].kind);
+    return status;
+}
+
+/* Refuses what has no factor: nothing that is free, or something that is driven. */
+static tl_status check_bodies(const tl_trials *t)
+{
+    const tl_model *m = t->asked;
+    size_t free = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        free += tl_body_is_free(m, body);
+        if (m->bodies.drive[body])
+            return tl_fail(&t->asked->error, TL_E_STATE, "%s: block %u is driven: take the drive off first", t->what,
+                           m->bodies.id[body]);
+    }
+    return free > 0 ? TL_OK : tl_fail(&t->asked->error, TL_E_STATE, "%s: nothing can move: no block is free", t->what);
+}
+
+/* Refuses a model that is under way: what would be asked is where it rests. `copy` is one of it. */
+static tl_status check_rest(const tl_trials *t, tl_model *copy)
+{
+    const tl_bodies *b = &copy->bodies;
+    uint32_t mover = TL_NO_ROW;
+    for (uint32_t body = 0; body < b->table.rows && mover == TL_NO_ROW; body++)
+        if (tl_body_is_free(copy, body) && (tl_v3_norm2(b->v[body]) > 0 || tl_v3_norm2(b->w[body]) > 0))
+            mover = body;
+    if (mover == TL_NO_ROW || (copy->cycle && copy->cycles > 0 && tl_at_rest(copy, TL_RATIO_LOCAL, MOVES)))
+        return TL_OK;
+    return tl_fail(&t->asked->error, TL_E_STATE,
+                   "%s: the model moves (block %u at %.3g m/s): bring it to rest first, %s", t->what, b->id[mover],
+                   tl_v3_norm(b->v[mover]), tl_words(t->asked, "with model:relax{}", "with tl_model_relax()"));
+}
+
+/* ---------------------------------------------------------------- a trial ---------------- */
+
+/* A body from look to look. */
+typedef struct look {
+    tl_vec3 start, last; /* displacements */
+    tl_quat turned;      /* when it began */
+    double way;          /* between the last two looks, m */
+    int32_t grows;       /* looks in a row in which it did not become slower */
+} look;
+
+typedef struct watch {
+    const tl_trials *t;
+    look *look;     /* [bodies] */
+    int64_t looked; /* cycle of the last look */
+    bool fails;
+    const char *why;
+} watch;
+
+static tl_status on_step(void *user, tl_model *copy)
+{
+    const watch *w = user;
+    (void)copy;
+    return tl_model_interrupted(w->t->asked) ? TL_E_CANCELLED : TL_OK;
+}
+
+/* Looks at all bodies; true when some one fails. */
+static bool looks(void *user, tl_model *copy)
+{
+    watch *w = user;
+    const double settles = w->t->settles;
+    w->looked = copy->cycles;
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++) {
+        look *l = &w->look[body];
+        const tl_vec3 u = copy->bodies.pose[body].u;
+        const double way = tl_v3_norm(tl_v3_sub(u, l->last)), far = tl_v3_norm(tl_v3_sub(u, l->start));
+        if (!tl_body_is_free(copy, body))
+            continue;
+        const bool grows = far > SUSPECT * settles && way >= l->way && way > STANDS * settles;
+        l->grows = grows ? l->grows + 1 : 0;
+        l->last = u;
+        l->way = way;
+        if (l->grows < GROWS && far <= FAR * settles)
+            continue;
+        if (!w->fails)
+            w->why = l->grows >= GROWS ? "goes on" : "far";
+        w->fails = true;
+    }
+    return w->fails;
+}
+
+static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
+{
+    *w = (watch){.t = t, .looked = copy->cycles, .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look)};
+    for (uint32_t body = 0; w->look && body < copy->bodies.table.rows; body++)
+        w->look[body] = (look){
+            .start = copy->bodies.pose[body].u, .last = copy->bodies.pose[body].u, .turned = copy->bodies.q[body]};
+    return w->look != NULL;
+}
+
+/* How far the corners of a body have gone by rotation, m. */
+static double turned_of(const tl_model *m, const look *l, uint32_t body)
+{
+    const tl_quat by = tl_q_mul(m->bodies.q[body], tl_q_conj(l->turned));
+    return 2 * m->bodies.radius[body] * sqrt(by.x * by.x + by.y * by.y + by.z * by.z);
+}
+
+/* Lists what goes together, with its volume, direction and mode. */
+static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
+{
+    double fastest = 0;
+    tl_addends volume = {.count = 0}, sum[3] = {{.count = 0}, {.count = 0}, {.count = 0}};
+    tl_addends ways = {.count = 0}, turns = {.count = 0}, bears = {.count = 0}, weighs = {.count = 0};
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        if (tl_body_is_free(m, body))
+            fastest = fmax(fastest, w->look[body].way);
+    fall->ids = malloc((m->blocks.table.rows + 1) * sizeof *fall->ids);
+    if (!fall->ids)
+        return tl_fail_memory(&w->t->asked->error);
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        const uint32_t body = m->blocks.body[row];
+        const look *l = &w->look[body];
+        if (!tl_body_is_free(m, body) || !(l->way >= ALONG * fastest))
+            continue;
+        const tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->start);
+        const double own = m->blocks.volume[row], share = own / m->bodies.mass[body];
+        fall->ids[fall->count++] = m->blocks.id[row];
+        tl_addends_put(&volume, own);
+        tl_addends_put(&sum[0], own * gone.x);
+        tl_addends_put(&sum[1], own * gone.y);
+        tl_addends_put(&sum[2], own * gone.z);
+        tl_addends_put(&ways, own * tl_v3_norm(gone));
+        tl_addends_put(&turns, own * turned_of(m, l, body));
+        tl_addends_put(&bears, share * m->cycle->contact_force[body]);
+        tl_addends_put(&weighs, own * tl_v3_norm(m->config.gravity));
+    }
+    fall->volume = tl_addends_sum(&volume);
+    fall->way = tl_v3_unit(tl_v3(tl_addends_sum(&sum[0]), tl_addends_sum(&sum[1]), tl_addends_sum(&sum[2])));
+    fall->mode = tl_addends_sum(&bears) < BARE * tl_addends_sum(&weighs) ? TL_SAFETY_FALLS
+                 : tl_addends_sum(&turns) > tl_addends_sum(&ways)        ? TL_SAFETY_TURNS
+                                                                         : TL_SAFETY_SLIDES;
+    return TL_OK;
+}
+
+/* Brings a copy to rest, or finds what fails. */
+static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_trial *trial, tl_fall *fall)
+{
+    watch w;
+    tl_relax relax = tl_relax_default();
+    tl_relax_result r;
+    if (!watch_begin(&w, t, copy))
+        return tl_fail_memory(&t->asked->error);
+    relax.ratio = RESTS;
+    relax.max_cycles = t->options.max_cycles;
+    relax.every = t->window;
+    relax.each = on_step;
+    relax.stop = looks;
+    relax.user = &w;
+    if (copy->cycle)
+        copy->cycle->only_stops = !leaps;
+    tl_status status = tl_model_relax(copy, &relax, &r);
+    t->cycles += r.run.cycles;
+    if (r.run.reason == TL_SOLVE_INTERRUPT || tl_model_interrupted(t->asked))
+        status = tl_fail(&t->asked->error, TL_E_CANCELLED, "%s: stopped; the model is as it was", t->what);
+    else
+        status = told(t, copy, status);
+    const bool holds = r.run.reason == TL_SOLVE_REST, undecided = r.run.reason == TL_SOLVE_CYCLES;
+    *trial = (tl_safety_trial){.holds = holds,
+                               .undecided = undecided,
+                               .cycles = r.run.cycles,
+                               .why = holds       ? "at rest"
+                                      : w.fails   ? w.why
+                                      : undecided ? "undecided"
+                                                  : "fails"};
+    if (status == TL_OK && r.run.reason == TL_SOLVE_OVERLAP)
+        status = tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r.message,
+                         tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
+    if (status == TL_OK && !holds) {
+        if (copy->cycles > w.looked)
+            looks(&w, copy); /* the ways since the last look */
+        status = list_fall(&w, copy, fall);
+    }
+    free(w.look);
+    return status;
+}
+
+/* How far joints settle, and the steps that this takes. */
+static tl_status measure(tl_trials *t, int64_t settled)
+{
+    tl_watch *w = tl_watch_begin(t->base);
+    if (!w)
+        return tl_fail_memory(&t->asked->error);
+    const double on_end = tl_watch_on_end(w);
+    const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
+    t->settles = tl_watch_settlement(w, t->base);
+    t->window = 1 + (int64_t)(0.5 * steps);
+    tl_watch_end(w);
+    return TL_OK;
+}
+
+tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
+{
+    tl_safety_trial trial;
+    tl_status status = settle(t, t->base, true, &trial, fall);
+    if (status == TL_OK && trial.holds)
+        status = measure(t, trial.cycles > 2 * t->window ? trial.cycles : 2 * t->window);
+    return status;
+}
+
+/* Before the first rest only the size of bodies says what is far. */
+static double first_scale(const tl_model *m)
+{
+    double largest = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        largest = fmax(largest, tl_body_is_free(m, body) ? m->bodies.radius[body] : 0);
+    return largest / SUSPECT;
+}
+
+tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall)
+{
+    *t = (tl_trials){.what = what, .asked = m, .began = tl_clock()};
+    *fall = (tl_fall){.ids = NULL};
+    tl_status status = TL_OPTIONS_READ(tl_safety, given, &t->options, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "find a factor of safety");
+    if (status == TL_OK)
+        status = check_options(t);
+    if (status == TL_OK)
+        status = choose_laws(t);
+    if (status == TL_OK)
+        status = check_bodies(t);
+    atomic_store(&m->interrupted, false);
+    if (status == TL_OK)
+        status = copy_of(t, m, &t->base);
+    if (status == TL_OK)
+        status = check_rest(t, t->base);
+    if (status == TL_OK)
+        status = weaken(t, t->base, RAISED);
+    if (status != TL_OK)
+        return status;
+    tl_safety_trial trial;
+    t->window = 100;
+    t->settles = first_scale(t->base);
+    status = settle(t, t->base, true, &trial, fall);
+    return status == TL_OK && trial.holds ? measure(t, trial.cycles) : status;
+}
+
+tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    tl_model *copy = NULL;
+    *fall = (tl_fall){.ids = NULL};
+    tl_status status = copy_of(t, t->base, &copy);
+    if (status == TL_OK)
+        status = weaken(t, copy, factor);
+    if (status == TL_OK)
+        status = settle(t, copy, false, trial, fall);
+    if (copy)
+        tl_model_destroy(copy);
+    if (status != TL_OK) {
+        tl_fall_free(fall);
+        return status;
+    }
+    trial->factor = factor;
+    t->undecided += trial->undecided ? 1 : 0;
+    if (!t->options.on_trial)
+        return TL_OK;
+    tl_model_only_read(t->asked, true);
+    status = t->options.on_trial(t->options.user, trial);
+    tl_model_only_read(t->asked, false);
+    if (status != TL_OK)
+        tl_fall_free(fall);
+    return status;
+}
+
+void tl_trials_end(tl_trials *t)
+{
+    if (t->base)
+        tl_model_destroy(t->base);
+    free(t->which);
+    t->base = NULL;
+    t->which = NULL;
+}

@@ -1,0 +1,43 @@
+/* trial.h - whether a model comes to rest with its strengths divided by a factor. */
+#ifndef TL_SAFETY_TRIAL_H
+#define TL_SAFETY_TRIAL_H
+
+#include "model/model.h"
+
+#include <talus/safety.h>
+
+/* A search for factors of a model: what its trials begin with. */
+typedef struct tl_trials {
+    const char *what; /* begins sentences */
+    tl_model *asked;  /* stays as it is */
+    tl_safety options;
+    uint8_t *which; /* of the laws: whether strengths are divided */
+    tl_model *base; /* a copy of the model that has come to rest with high strengths */
+    double settles; /* how far its elastic joints settle, m */
+    int64_t window; /* steps between two looks at a trial */
+    int64_t cycles; /* made so far, of all copies */
+    double began;   /* s, of the clock */
+    size_t undecided;
+} tl_trials;
+
+/* What fails in a copy. */
+typedef struct tl_fall {
+    tl_id *ids;
+    size_t count;
+    double volume; /* m3 */
+    tl_vec3 way;   /* unit, or zero */
+    tl_safety_mode mode;
+} tl_fall;
+
+void tl_fall_free(tl_fall *fall);
+
+/* Checks what is asked and how the model is, and makes the copy. TL_OK, and fall->count > 0: it does not come to rest
+ * even with high strengths; the copy then has not. */
+tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall);
+/* Brings the copy to rest again, after blocks of it have been deleted or held. */
+tl_status tl_trials_rest(tl_trials *t, tl_fall *fall);
+/* Makes a trial. It fails: `fall` has what does. */
+tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall);
+void tl_trials_end(tl_trials *t);
+
+#endif
