@@ -132,7 +132,9 @@ static int model_water(lua_State *L, tl_model *model)
 
 static const tl_lua_key keys[] = {
     {"level", "number", "of a level table: its height z, m"},
-    {"dip, dip_direction, origin", "degrees, degrees, {x, y, z}", "of a table that dips: in the place of level"},
+    {"dip", "number", "of a table that dips, degrees: with dip_direction and origin in the place of level"},
+    {"dip_direction", "number", "likewise, degrees"},
+    {"origin", "{x, y, z}", "a point of it, m"},
     {"unit_weight", "number", "of the water under a table, N/m3 (default 9810)"},
     {"factor", "number", "of the pressure under a table, as drains leave it (default 1)"},
     {"pressure", "number or function(x, y, z)",
