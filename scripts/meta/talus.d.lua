@@ -132,6 +132,16 @@ function talus.help(topic) end
 ---@class (exact) talus.damping.Combined
 ---@field alpha? number in [0, 1), default 0.8: share of the unbalanced force that opposes motion
 
+--- Dashpots at contacts, in proportion to their stiffness; for impacts.
+---@class (exact) talus.damping.Contact
+---@field ratio number > 0: fraction of critical damping of a motion of the frequency
+---@field frequency number Hz, > 0: of the block on its contact, of a wall, or of what else is to be damped
+
+--- Dashpots at contacts, in proportion to their stiffness; for impacts.
+---@class (exact) talus.damping.Dashpot
+---@field ratio number > 0: fraction of critical damping of a motion of the frequency
+---@field frequency number Hz, > 0: of the block on its contact, of a wall, or of what else is to be damped
+
 --- Stops all bodies whenever the kinetic energy of the model has been at its peak; the fastest way to an equilibrium of many blocks.
 ---@class (exact) talus.damping.Kinetic
 
@@ -141,6 +151,12 @@ function talus.help(topic) end
 
 --- No damping.
 ---@class (exact) talus.damping.None
+
+--- A fraction of critical damping at two frequencies, by mass and by the stiffness of contacts.
+---@class (exact) talus.damping.Rayleigh
+---@field ratio number in [0, 1]: fraction of critical damping at both frequencies
+---@field from number Hz, > 0: the lower frequency
+---@field to number Hz, > 0: the higher frequency
 
 --- Constant viscous damping of all velocities.
 ---@class (exact) talus.damping.Viscous
@@ -736,9 +752,12 @@ function Model:insitu(options) end
 ---@param options? table
 ---@overload fun(self: talus.Model, damping: "adaptive", options?: talus.damping.Adaptive)
 ---@overload fun(self: talus.Model, damping: "combined", options?: talus.damping.Combined)
+---@overload fun(self: talus.Model, damping: "contact", options: talus.damping.Contact)
+---@overload fun(self: talus.Model, damping: "dashpot", options: talus.damping.Dashpot)
 ---@overload fun(self: talus.Model, damping: "kinetic", options?: talus.damping.Kinetic)
 ---@overload fun(self: talus.Model, damping: "local", options?: talus.damping.Local)
 ---@overload fun(self: talus.Model, damping: "none", options?: talus.damping.None)
+---@overload fun(self: talus.Model, damping: "rayleigh", options: talus.damping.Rayleigh)
 ---@overload fun(self: talus.Model, damping: "viscous", options: talus.damping.Viscous)
 function Model:damping(damping, options) end
 
@@ -885,7 +904,7 @@ function Blocks:set(options) end
 function Blocks:load(options) end
 
 ---@class (exact) talus.DriveOptions
----@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. x, y or z may be a talus.record, whose time counts from the call. Zero when left out
 ---@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
 
 --- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
@@ -1673,5 +1692,32 @@ function talus.resumed() end
 ---@param options? talus.SeatOptions
 ---@return talus.SeatResult
 function Model:seat(options) end
+
+---@class (exact) talus.RecordOptions
+---@field file? string lines of numbers, or PEER's AT2 or VT2; or give samples in `at`
+---@field column? integer in [0, 64], default 0: which number of each line it is; 0: the last of two, all of a file that tells NPTS
+---@field dt? number s, >= 0, default 0: from one sample to the next; 0: as the file says
+---@field quantity? "acceleration"|"velocity" default "acceleration": what the samples are
+---@field unit? "own"|"m/s2"|"g"|"cm/s2"|"m/s"|"cm/s" default "own": of the samples; own: as the file says, or m/s2 and m/s; g is 9.80665 m/s2
+---@field scale? number default 1: by which the samples are multiplied
+---@field baseline? "as_is"|"mean"|"parabola" default "as_is": what is taken off a motion that drifts: nothing, the mean acceleration, or the parabola that fits the velocity best
+---@field at? number[] samples, in the place of a file; then dt must be given
+---@field band? number[] {low, high}, Hz: filters of Butterworth at both, forward and backward, so without a shift in time; low = 0: only at high
+
+--- A record of ground motion, which blocks follow as selection:drive{velocity = {rec, 0, 0}}.
+---
+---     rec = talus.record{at = {0, 1, -1, 0}, dt = 0.01}
+---@param options? talus.RecordOptions
+---@return userdata
+function talus.record(options) end
+
+---@class (exact) talus.ModesOptions
+---@field count? integer in [1, 1000], default 6: how many vibrations, the slowest first
+
+--- Finds the slowest vibrations of small size about the present place of a model at rest.
+---
+---     modes = model:modes{count = N}
+---@param options? talus.ModesOptions
+function Model:modes(options) end
 
 return talus
