@@ -1711,13 +1711,4 @@ function Model:seat(options) end
 ---@return userdata
 function talus.record(options) end
 
----@class (exact) talus.ModesOptions
----@field count? integer in [1, 1000], default 6: how many vibrations, the slowest first
-
---- Finds the slowest vibrations of small size about the present place of a model at rest.
----
----     modes = model:modes{count = N}
----@param options? talus.ModesOptions
-function Model:modes(options) end
-
 return talus
