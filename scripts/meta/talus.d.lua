@@ -1711,4 +1711,14 @@ function Model:seat(options) end
 ---@return userdata
 function talus.record(options) end
 
+---@class (exact) talus.ModesOptions
+---@field count? integer in [1, 1000], default 6: how many vibrations, the slowest first
+
+--- Finds the slowest vibrations of small size about the present place of a model at rest.
+---
+---     modes = model:modes{count = "COUNT"}
+---@param options? talus.ModesOptions
+---@return { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
+function Model:modes(options) end
+
 return talus
