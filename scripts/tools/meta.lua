@@ -65,6 +65,7 @@ local WORDS = {
     ["list of vectors"] = "talus.Vector[]",
     ["list of blocks"] = "talus.Block[]",
     ["list of 2 blocks"] = "talus.Block[]",
+    ["list of 2 numbers"] = "number[]",
     ["list of 4 numbers"] = "number[]",
     ["list of numbers"] = "number[]",
     ["list of numbers or legs"] = "(number|{ shear: number?, closure: number?, normal_stress: number?, time: number?, " ..
