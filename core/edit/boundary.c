@@ -348,8 +348,8 @@ static tl_status add_fixing(plan *p, const tl_boundary_action *a, const outer_fa
     unsigned what = a->fixed ? TL_FIX_ALL : 0;
     if (a->quiet)
         return tl_fail(&m->error, TL_E_STATE,
-                       "boundary: block %u is rigid, and only deformable blocks have quiet faces; give it zones first, "
-                       "or choose other faces",
+                       "boundary: block %u is rigid, and only deformable blocks have quiet faces of this sort: put "
+                       "elements of the kind 'quiet' on rigid ones",
                        m->blocks.id[f->row]);
     if (a->roller && !a->fixed) {
         what = roller_of(f->normal);
@@ -729,13 +729,11 @@ tl_status tl_blocks_release(tl_model *m, const tl_id *ids, size_t count, const u
                              "boundary: block %u is driven, so its faces cannot be quiet; let it go first: "
                              "selection:free()",
                              ids[i]);
-    if (status == TL_OK && !tl_bodies_hold_loads(&m->bodies))
-        status = tl_fail_memory(&m->error);
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         const uint32_t row = tl_block_row_quiet(m, ids[i]);
         const unsigned held = what[i] & m->bodies.fixed[m->blocks.body[row]];
         if (held)
-            status = release_body(m, row, held);
+            status = tl_bodies_hold_loads(&m->bodies) ? release_body(m, row, held) : tl_fail_memory(&m->error);
     }
     return status;
 }

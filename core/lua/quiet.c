@@ -255,6 +255,9 @@ bool tl_lua_quiet_plan(lua_State *L, tl_model *model, const char *side, const tl
 {
     if (!actions[which].quiet)
         return false;
+    if (holds(&actions[which]))
+        tl_lua_fail(L, "boundary: a quiet face moves, so it cannot be held as well: give quiet without fixed, roller "
+                       "and velocity");
     luaL_checkstack(L, 20, "too many sides");
     *plan = (tl_lua_quiet){.faces = found[which].faces, .face_count = found[which].face_count};
     plan->block = lua_newuserdatauv(L, (plan->face_count + 1) * sizeof *plan->block, 0);
@@ -274,9 +277,6 @@ bool tl_lua_quiet_plan(lua_State *L, tl_model *model, const char *side, const tl
                     (int)plan->block[0]);
     if (!rigid)
         return false;
-    if (holds(&actions[which]))
-        tl_lua_fail(L, "boundary: a quiet face moves, so it cannot be held as well: give quiet without fixed, roller "
-                       "and velocity");
     plan_release(L, model, actions, found, count, plan);
     lua_newtable(L);
     put_rock(L, model, table);
