@@ -47,7 +47,8 @@ typedef struct tl_boundary_action {
     bool loads;
     tl_sym3 stress, gradient;
     tl_vec3 at, traction;
-    bool quiet; /* deformable blocks only: lets waves out, and bears what it bore until now */
+    bool quiet; /* deformable blocks only: lets waves out, and bears what it bore until now. Rigid ones take elements of
+                 * the kind "quiet" */
     const tl_drive
         *drive; /* prescribes velocities, without turning; NULL: none. Functions are the model's from then on */
 } tl_boundary_action;

@@ -253,56 +253,62 @@ static tl_status place(const tl_element_host *host, const void *given)
 
 /* ---------------------------------------------------------------- acting ----------------- */
 
-/* Stiffness, N/m, and impedance, N s/m, of a unit area across the face and along it. */
+/* Of a unit area, across the face and along it: stiffness k, impedance z, the part a = k dt / (2 z) of the way of the
+ * block by which the dashpot follows in half a step, and 1 / (1 + a). */
 typedef struct half_space {
-    double k[2], z[2];
+    double k[2], z[2], a[2], inverse[2];
 } half_space;
 
-static half_space half_space_of(const params *p, double height, double density)
+static half_space half_space_of(const params *p, double height, double density, double dt)
 {
     const bool rock = isnan(p->kn);
-    const double modulus = density / height;
+    const double modulus = density / height, mass = density * height;
     const double kn = rock ? modulus * p->p_velocity * p->p_velocity : p->kn;
     const double ks = rock ? modulus * p->s_velocity * p->s_velocity : p->ks;
-    return (half_space){{2 * kn, 2 * ks}, {sqrt(kn * density * height), sqrt(ks * density * height)}};
+    half_space h = {.k = {2 * kn, 2 * ks}, .z = {sqrt(kn * mass), sqrt(ks * mass)}};
+    for (int i = 0; i < 2; i++) {
+        h.a[i] = 0.5 * dt * h.k[i] / h.z[i];
+        h.inverse[i] = 1 / (1 + h.a[i]);
+    }
+    return h;
 }
 
-/* Energies of a step at a node, J. */
-typedef struct work {
-    double stored, lost, given;
-} work;
-
-/* The dashpot's displacement after a step in a direction, of that before with twice the wave's, force f before, and u
- * after. */
-static double moved(double k, double half, double shift, double f, double u)
+/* The form c[1] x . x + (c[0] - c[1]) (x . n)^2: c[0] counts across a face and c[1] along it. */
+static double square(const double c[2], tl_vec3 x, tl_vec3 n)
 {
-    return (shift + half * f + half * k * u) / (1 + half * k);
+    const double across = tl_v3_dot(x, n);
+    return c[1] * tl_v3_dot(x, x) + (c[0] - c[1]) * across * across;
 }
 
-/* Moves the dashpot of node i along, and gives the force on it. */
-static tl_vec3 act(const half_space *h, const tl_element_batch *b, uint32_t i, tl_vec3 n, tl_vec3 in, work *sum)
+/* What the nodes of an element do in a step, J: `work` is that of the blocks on them. */
+typedef struct sums {
+    double stored, lost, work, area;
+} sums;
+
+/* Moves the dashpot of node i along, and puts the force on the block. */
+static void act(const half_space *h, const tl_element_batch *b, uint32_t i, tl_vec3 n, tl_vec3 in, sums *sum)
 {
-    const double area = b->weight[i], k0 = h->k[0] * area, k1 = h->k[1] * area, z0 = h->z[0] * area,
-                 z1 = h->z[1] * area, half0 = 0.5 * b->dt / z0, half1 = 0.5 * b->dt / z1;
-    const tl_vec3 u = {b->u[0][i], b->u[1][i], b->u[2][i]}, f = {-b->force[0][i], -b->force[1][i], -b->force[2][i]};
-    const tl_vec3 before = {b->state[SHIFT_X][i], b->state[SHIFT_Y][i], b->state[SHIFT_Z][i]};
-    const tl_vec3 s = tl_v3_madd(before, 2, in);
-    const double un = tl_v3_dot(u, n), fn = tl_v3_dot(f, n), sn = tl_v3_dot(s, n);
-    const tl_vec3 ut = tl_v3_madd(u, -un, n), ft = tl_v3_madd(f, -fn, n), st = tl_v3_madd(s, -sn, n);
-    const double now_n = moved(k0, half0, sn, fn, un);
-    const tl_vec3 now_t = {moved(k1, half1, st.x, ft.x, ut.x), moved(k1, half1, st.y, ft.y, ut.y),
-                           moved(k1, half1, st.z, ft.z, ut.z)};
-    const tl_vec3 now = tl_v3_madd(now_t, now_n, n), spring = tl_v3_sub(ut, now_t);
-    const double dn = un - now_n, per = b->dt > 0 ? 1 / b->dt : 0;
-    const tl_vec3 out = tl_v3_sub(tl_v3_sub(now, before), in);
-    const double out_n = tl_v3_dot(out, n), in_n = tl_v3_dot(in, n);
-    sum->lost += per * (z1 * tl_v3_norm2(out) + (z0 - z1) * out_n * out_n);
-    sum->given += per * (z1 * tl_v3_norm2(in) + (z0 - z1) * in_n * in_n);
-    sum->stored += 0.5 * (k1 * tl_v3_norm2(spring) + k0 * dn * dn);
+    const double area = b->weight[i], per = b->dt > 0 ? 1 / b->dt : 0;
+    const tl_vec3 u = {b->u[0][i], b->u[1][i], b->u[2][i]}, du = {b->du[0][i], b->du[1][i], b->du[2][i]};
+    const tl_vec3 s = {b->state[SHIFT_X][i], b->state[SHIFT_Y][i], b->state[SHIFT_Z][i]};
+    /* s1 (1 + a) = s + 2 in + a (u0 - s + u1) */
+    const tl_vec3 p = tl_v3_madd(s, 2, in), r = tl_v3_add(tl_v3_sub(u, s), tl_v3_sub(u, du));
+    const double pn = tl_v3_dot(p, n), rn = tl_v3_dot(r, n);
+    const double across = h->inverse[0] * (pn + h->a[0] * rn) - h->inverse[1] * (pn + h->a[1] * rn);
+    const tl_vec3 now = tl_v3_madd(tl_v3_scale(h->inverse[1], tl_v3_madd(p, h->a[1], r)), across, n);
+    const tl_vec3 d = tl_v3_sub(u, now), out = tl_v3_sub(tl_v3_sub(now, s), in);
+    const tl_vec3 f = tl_v3_madd(tl_v3_scale(area * h->k[1], d), area * (h->k[0] - h->k[1]) * tl_v3_dot(d, n), n);
+    sum->stored += 0.5 * area * square(h->k, d, n);
+    sum->lost += per * area * square(h->z, out, n);
+    sum->area += area;
+    double force[] = {-f.x, -f.y, -f.z};
+    for (int k = 0; k < 3; k++) {
+        sum->work -= 0.5 * (b->force[k][i] + force[k]) * b->du[k][i];
+        b->force[k][i] = force[k];
+    }
     b->state[SHIFT_X][i] = now.x;
     b->state[SHIFT_Y][i] = now.y;
     b->state[SHIFT_Z][i] = now.z;
-    return tl_v3_madd(tl_v3_scale(k1, spring), k0 * dn, n);
 }
 
 static tl_status update(const void *self, const tl_element_batch *b, tl_report *report)
@@ -312,20 +318,19 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
     double in[3];
     for (int k = 0; k < 3; k++)
         in[k] = b->dt > 0 ? wave_at(&kind->wave[k], b->time) - wave_at(&kind->wave[k], b->time - b->dt) : 0;
+    const tl_vec3 wave_in = {in[0], in[1], in[2]};
     for (uint32_t e = 0; e < b->count; e++) {
         double *const *of = b->element_state;
-        const half_space h = half_space_of(&kind->given, of[HEIGHT][e], of[DENSITY][e]);
+        const half_space h = half_space_of(&kind->given, of[HEIGHT][e], of[DENSITY][e], b->dt);
         const tl_vec3 n = {of[NORMAL_X][e], of[NORMAL_Y][e], of[NORMAL_Z][e]};
-        work sum = {0, 0, 0};
-        const bool gone = b->weight[b->start[e]] == 0; /* the block, and with it what the springs hold */
+        sums sum = {0, 0, 0, 0};
+        bool gone = false; /* a part of the block, and with it what the springs there hold */
         for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++) {
-            const tl_vec3 f = gone ? tl_v3(0, 0, 0) : act(&h, b, i, n, tl_v3(in[0], in[1], in[2]), &sum);
-            b->force[0][i] = -f.x;
-            b->force[1][i] = -f.y;
-            b->force[2][i] = -f.z;
+            gone = gone || b->weight[i] == 0;
+            act(&h, b, i, n, wave_in, &sum);
         }
-        b->lost[e] = gone ? b->stored[e] : sum.lost;
-        b->given[e] = sum.given;
+        b->given[e] = b->dt > 0 ? sum.area * square(h.z, wave_in, n) / b->dt : 0;
+        b->lost[e] = gone ? b->stored[e] + sum.work + b->given[e] - sum.stored : sum.lost;
         b->stored[e] = sum.stored;
     }
     return TL_OK;
@@ -336,7 +341,7 @@ static void stiffness(const void *self, const tl_element_batch *b, double *k, do
     const face_kind *kind = self;
     (void)c;
     for (uint32_t e = 0; e < b->count; e++) {
-        const half_space h = half_space_of(&kind->given, b->element_state[HEIGHT][e], b->element_state[DENSITY][e]);
+        const half_space h = half_space_of(&kind->given, b->element_state[HEIGHT][e], b->element_state[DENSITY][e], 0);
         for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++)
             k[i] = fmax(h.k[0], h.k[1]) * b->weight[i];
     }
