@@ -132,6 +132,11 @@ function talus.help(topic) end
 ---@class (exact) talus.damping.Combined
 ---@field alpha? number in [0, 1), default 0.8: share of the unbalanced force that opposes motion
 
+--- Dashpots at contacts, in proportion to their stiffness; for impacts.
+---@class (exact) talus.damping.Dashpot
+---@field ratio number > 0: fraction of critical damping of a motion of the frequency
+---@field frequency number Hz, > 0: of the block on its contact, of a wall, or of what else is to be damped
+
 --- Stops all bodies whenever the kinetic energy of the model has been at its peak; the fastest way to an equilibrium of many blocks.
 ---@class (exact) talus.damping.Kinetic
 
@@ -141,6 +146,12 @@ function talus.help(topic) end
 
 --- No damping.
 ---@class (exact) talus.damping.None
+
+--- A fraction of critical damping at two frequencies, by mass and by the stiffness of contacts.
+---@class (exact) talus.damping.Rayleigh
+---@field ratio number in [0, 1]: fraction of critical damping at both frequencies
+---@field from number Hz, > 0: the lower frequency
+---@field to number Hz, > 0: the higher frequency
 
 --- Constant viscous damping of all velocities.
 ---@class (exact) talus.damping.Viscous
@@ -755,9 +766,11 @@ function Model:insitu(options) end
 ---@param options? table
 ---@overload fun(self: talus.Model, damping: "adaptive", options?: talus.damping.Adaptive)
 ---@overload fun(self: talus.Model, damping: "combined", options?: talus.damping.Combined)
+---@overload fun(self: talus.Model, damping: "dashpot", options: talus.damping.Dashpot)
 ---@overload fun(self: talus.Model, damping: "kinetic", options?: talus.damping.Kinetic)
 ---@overload fun(self: talus.Model, damping: "local", options?: talus.damping.Local)
 ---@overload fun(self: talus.Model, damping: "none", options?: talus.damping.None)
+---@overload fun(self: talus.Model, damping: "rayleigh", options: talus.damping.Rayleigh)
 ---@overload fun(self: talus.Model, damping: "viscous", options: talus.damping.Viscous)
 function Model:damping(damping, options) end
 
@@ -904,7 +917,7 @@ function Blocks:set(options) end
 function Blocks:load(options) end
 
 ---@class (exact) talus.DriveOptions
----@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. x, y or z may be a talus.record, whose time counts from the call. Zero when left out
 ---@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
 
 --- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
@@ -1527,6 +1540,7 @@ function Model:filter(options) end
 
 ---@class (exact) talus.KeyblocksOptions
 ---@field gravity? talus.Vector m/s2: acceleration that acts on the blocks; that of the model when left out
+---@field target? number > 0: factor of safety that is asked for: each keyblock then tells the support that it takes
 ---@field friction? number|table<string, number> friction angle of the joints, degrees, in [0, 90): one for all, or by joint: {["*"] = 35, J1 = 30, ["J1:3"] = 25}; the closest name counts
 ---@field cohesion? number|table<string, number> cohesion of the joints, Pa, likewise; 0 where none is given
 
@@ -1540,6 +1554,8 @@ function Model:filter(options) end
 ---@field force talus.Vector weight and load, N; of the body, kg and m3
 ---@field mass number weight and load, N; of the body, kg and m3
 ---@field volume number weight and load, N; of the body, kg and m3
+---@field support any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
+---@field support_pressure any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
 ---@field pyramid talus.Vector[] edges of the joint pyramid, unit vectors: it can move in all directions between them
 
 --- Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor of safety in limit equilibrium.
@@ -1623,7 +1639,7 @@ function Model:memory() end
 ---@class (exact) talus.WriteHtmlOptions
 ---@field title? string title of the page; the name at the end of its path when left out
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1640,7 +1656,7 @@ function Model:write_html(path, options) end
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
 ---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field zone_fields? { NAME: number } numbers of each zone, likewise: fields of zones, states of their solids, functions
 
@@ -1674,7 +1690,7 @@ function Model:write_blocks(path) end
 ---@field commands? boolean default true: whether commands are taken; without, the page only shows
 ---@field share? number in (0, 1], default 0.02: most of the run's time that goes into frames
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1740,5 +1756,64 @@ function talus.resumed() end
 ---@param options? talus.SeatOptions
 ---@return talus.SeatResult
 function Model:seat(options) end
+
+---@class (exact) talus.FactorOfSafetyOptions
+---@field from? number >= 0.05, default 0.1: least factor that is tried
+---@field to? number > 0.05, default 10: largest factor that is tried; above `from`
+---@field resolution? number in [0.0001, 0.5], default 0.01: relative width of the bracket that is found
+---@field least_volume? number m3, >= 0, default 0: what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on
+---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+--- Finds by how much the strengths of laws and solids may be divided before the model does not come to rest any more. Trials are made on copies: the model stays as it is.
+---
+---     result = model:factor_of_safety{resolution = 0.01}
+---@param options? talus.FactorOfSafetyOptions
+function Model:factor_of_safety(options) end
+
+---@class (exact) talus.SafetyMapOptions
+---@field from? number >= 0.05, default 0.5: least factor that is tried
+---@field to? number > 0.05, default 3: largest factor that is tried; above `from`
+---@field step? number >= 0.001, default 0.02: from one factor to the next
+---@field failed? "delete"|"hold" default "delete": what becomes of blocks that have failed, in the copies: they are deleted, or held where they were
+---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+--- Finds the factor of safety of every block: strengths are divided by more and more, and what has failed goes before it goes on. Trials are made on copies: the model stays as it is.
+---
+---     map = model:safety_map{from = 0.5, to = 3, step = 0.5}
+---@param options? talus.SafetyMapOptions
+function Model:safety_map(options) end
+
+---@class (exact) talus.RecordOptions
+---@field file? string lines of numbers, or PEER's AT2 or VT2; or give samples in `at`
+---@field column? integer in [0, 64], default 0: which number of each line it is; 0: the last of two, all of a file that tells NPTS
+---@field dt? number s, >= 0, default 0: from one sample to the next; 0: as the file says
+---@field quantity? "acceleration"|"velocity" default "acceleration": what the samples are
+---@field unit? "own"|"m/s2"|"g"|"cm/s2"|"m/s"|"cm/s" default "own": of the samples; own: as the file says, or m/s2 and m/s; g is 9.80665 m/s2
+---@field scale? number default 1: by which the samples are multiplied
+---@field baseline? "as_is"|"mean"|"parabola" default "as_is": what is taken off a motion that drifts: nothing, the mean acceleration, or the parabola that fits the velocity best
+---@field at? number[] samples, in the place of a file; then dt must be given
+---@field band? any Hz: filters of Butterworth at both, forward and backward, so without a shift in time; low = 0: only at high
+
+--- A record of ground motion, which blocks follow as selection:drive{velocity = {rec, 0, 0}}.
+---
+---     rec = talus.record{at = {0, 1, -1, 0}, dt = 0.01}
+---@param options? talus.RecordOptions
+---@return userdata
+function talus.record(options) end
+
+---@class (exact) talus.ModesOptions
+---@field count? integer in [1, 1000], default 6: how many vibrations, the slowest first
+
+--- Finds the slowest vibrations of small size about the present place of a model at rest.
+---
+---     modes = model:modes{count = 3}
+---@param options? talus.ModesOptions
+function Model:modes(options) end
 
 return talus
