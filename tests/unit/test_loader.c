@@ -110,7 +110,7 @@ TEST(broken_plugins_are_refused_with_the_reason)
             "it was built for plugin ABI 1.77 and cannot do without it, this Talus has 1.13");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
-    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.12)");
+    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.13)");
     refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
     refused(bad_folder, "name_clash", "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
     refused(bad_folder, "bad_default",
