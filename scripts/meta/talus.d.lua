@@ -415,6 +415,17 @@ function talus.help(topic) end
 ---@field dip? number deg, in [0, 90], default 0: dip of the weak plane at the beginning
 ---@field dip_direction? number deg, in [0, 360], default 0: dip direction of the weak plane at the beginning
 
+--- Outer faces of rigid blocks that let waves out: model:boundary.
+---@class (exact) talus.element.Quiet
+---@field faces string Numbers: block, face (from 0), area (m2), height (m) and density (kg/m3), of one face after the other.
+---@field kn? number Pa/m, in (0, 1e+50]: Normal stiffness of the joints.
+---@field ks? number Pa/m, in (0, 1e+50]: Shear stiffness of the joints.
+---@field p_velocity? number m/s, in (0, 1e+50]: In the place of kn: of pressure waves in what was cut off.
+---@field s_velocity? number m/s, in (0, 1e+50]: In the place of ks: of shear waves in what was cut off.
+---@field input_x? string Incoming wave along x, numbers: time of its begin (s), time between samples (s), then displacement (m) and velocity (m/s) of each sample.
+---@field input_y? string Incoming wave along y, likewise.
+---@field input_z? string Incoming wave along z, likewise.
+
 --- A spring and a dashpot between two points, of blocks or of the ground.
 ---@class (exact) talus.element.Spring
 ---@field from talus.Vector m: One end: on the block that it lies in, or on the ground.
@@ -1269,7 +1280,11 @@ function talus.solid_test(options) end
 ---@field fixed? boolean default false: holds the bodies in all components
 ---@field roller? boolean default false: holds the bodies across their faces; those of rigid blocks must look along x, y or z
 ---@field rotation? boolean default false: with roller: holds the rotation of rigid blocks, too
----@field quiet? boolean default false: of deformable blocks: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), and bears what it bore
+---@field quiet? boolean default false: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), of rigid blocks behind springs, and bears what it bore
+---@field joint? string of quiet rigid blocks: the joint whose law has the stiffness kn and ks of what was cut off; "*" when left out
+---@field p_velocity? number m/s, in (0, 1e+50]: in the place of joint: velocity of pressure waves in what was cut off
+---@field s_velocity? number m/s, in (0, 1e+50]: likewise of shear waves
+---@field density? number kg/m3, in (0, 1e+50]: of what was cut off at quiet rigid blocks; that of the blocks when left out
 ---@field pressure? number Pa: pressure on the faces, inward
 ---@field traction? talus.Vector Pa: force per area on the faces
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height stress holds; the gradient counts from there
@@ -1279,6 +1294,7 @@ function talus.solid_test(options) end
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
 ---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) prescribes the velocity of the faces, m/s; rigid bodies move with it whole
+---@field input? talus.Vector of quiet rigid blocks: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)
 ---@field xmin? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field xmax? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise
@@ -1300,7 +1316,7 @@ function talus.solid_test(options) end
 ---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
 ---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
---- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added.
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added. Quiet faces of rigid blocks are elements of the kind quiet: model:elements{kind = "quiet"}. A body that was held is let go, and bears on as a load what held it: across the face, or in all components if it was held in all.
 ---
 ---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions
