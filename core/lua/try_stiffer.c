@@ -70,7 +70,7 @@ static verdict verdict_of(const char *reason)
     return OPEN;
 }
 
-/* Says how the verdicts differ, or that one of the runs came to none, and puts that into the trial's result at the top
+/* Says how the verdicts differ, or that one of the runs came to none. It puts that into the trial's result, at the top
  * of the stack. */
 static void compare_verdicts(lua_State *L, int result, const char *what)
 {
