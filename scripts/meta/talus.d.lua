@@ -1325,7 +1325,7 @@ function Model:boundary(options) end
 ---@field time number the model's time at the end, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block that forces move, m/s
----@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other fails, `message` says so, or that one came to a limit before; reason "error" of a trial that failed
 
 --- Runs a number of steps.
 ---
@@ -1359,7 +1359,7 @@ function Model:cycle(cycles) end
 ---@field time number the model's time at the end, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block that forces move, m/s
----@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other fails, `message` says so, or that one came to a limit before; reason "error" of a trial that failed
 
 --- Runs until the forces balance or a limit is met.
 ---
@@ -1394,7 +1394,7 @@ function Model:solve(options) end
 ---@field time number the model's time, which stands still, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block in the last step, by the masses of the relaxation, m/s
----@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other fails, `message` says so, or that one came to a limit before; reason "error" of a trial that failed
 
 --- Finds where the model rests, or that it does not, by the cheapest means. Time, damping, time step and masses are afterwards as before, and nothing moves.
 ---
