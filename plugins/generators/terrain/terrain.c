@@ -222,29 +222,25 @@ static bool bulges(const carving *c, size_t count, double top, double near, doub
 {
     for (size_t i = 0; i < count; i++) {
         const over *o = &c->over[i];
-        double removed[MOST_CORNERS], most = -INFINITY;
-        for (uint32_t k = 0; k < o->in_plan.count; k++)
-            removed[k] = INFINITY;
+        double removed = INFINITY; /* by the plane of i, at the middle of the triangle's corners */
         for (size_t j = 0; j < count && (o->parts & IS_BELOW); j++) {
             if (j == i || !(c->over[j].parts & IS_ABOVE))
                 continue;
             const facet *f = &c->ground->at[c->over[j].facet];
-            double gap[MOST_CORNERS], widest = 0, least = 0, lowest = INFINITY;
+            double sum = 0, widest = 0, least = 0, lowest = INFINITY;
             for (uint32_t k = 0; k < o->in_plan.count; k++) {
-                const double z = facet_height(f, o->in_plan.at[k]);
-                gap[k] = z - o->z[k];
-                widest = fmax(widest, gap[k]);
-                least = fmin(least, gap[k]);
+                const double z = facet_height(f, o->in_plan.at[k]), gap = z - o->z[k];
+                sum += gap;
+                widest = fmax(widest, gap);
+                least = fmin(least, gap);
                 lowest = fmin(lowest, z);
             }
             if (least < -near && !(o->parts == IS_BELOW && lowest >= top))
                 return false;
-            for (uint32_t k = 0; k < o->in_plan.count && widest > near; k++)
-                removed[k] = fmin(removed[k], gap[k]);
+            if (widest > near)
+                removed = fmin(removed, sum / o->in_plan.count);
         }
-        for (uint32_t k = 0; k < o->in_plan.count; k++)
-            most = fmax(most, removed[k]);
-        if (o->parts == (IS_BELOW | IS_ABOVE) && most < enough)
+        if (o->parts == (IS_BELOW | IS_ABOVE) && removed < enough)
             return false;
     }
     return true;
