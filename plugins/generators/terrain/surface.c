@@ -116,16 +116,16 @@ tl_status surface_add(surface *s, const tl_vec3 corner[3], uint32_t row, uint32_
     return TL_OK;
 }
 
-/* Lines of nodes that are taken: every n-th from the south or west, and the last. */
+/* Lines of nodes that are taken: every n-th from the south or west, and the last, which no line is nearer to than n. */
 static uint32_t lines_of(uint32_t nodes, uint32_t every)
 {
-    return (nodes - 2) / every + 2;
+    const uint32_t cells = (nodes - 1) / every;
+    return (cells ? cells : 1) + 1;
 }
 
 static uint32_t line_at(uint32_t k, uint32_t nodes, uint32_t every)
 {
-    const uint64_t at = (uint64_t)k * every;
-    return at < nodes - 1 ? (uint32_t)at : nodes - 1;
+    return k + 1 < lines_of(nodes, every) ? k * every : nodes - 1;
 }
 
 /* The range of cells [first, last) that may lie within [low, high] of the model. */
@@ -133,7 +133,7 @@ static void cells_within(double low, double high, double first_node, double step
                          uint32_t *first, uint32_t *last)
 {
     const double wide = step * every, cells = (double)(lines - 1);
-    *first = (uint32_t)fmin(fmax(floor((low - first_node) / wide) - 1, 0), cells);
+    *first = (uint32_t)fmin(fmax(floor((low - first_node) / wide) - 1, 0), cells - 1);
     *last = (uint32_t)fmin(fmax(floor((high - first_node) / wide) + 2, 0), cells);
 }
 
