@@ -1,7 +1,7 @@
 /* surface.c - facets of the ground: made of a grid's cells, listed by places in the plan, and clipped there.
  *
- * A cell of a grid has a node at each corner. A diagonal makes two facets of it: the one with the higher middle, so that
- * the ground of a cell bulges upward and is one convex part. Where both are as high, the cell is plane. */
+ * A cell of a grid has a node at each corner. The diagonal with the higher middle makes two facets of it. So the ground
+ * of a cell bulges upward and is one convex part. Where both diagonals are as high, the cell is plane. */
 #include "terrain.h"
 
 /* Cost only: facets for each cell of the plan, cells along its longer side, and entries of a facet. */
@@ -80,8 +80,10 @@ double facet_width(const facet *f)
 {
     const polygon p = polygon_of(f);
     double longest = 0;
-    for (int i = 0; i < 3; i++)
-        longest = fmax(longest, hypot(p.at[(i + 1) % 3].x - p.at[i].x, p.at[(i + 1) % 3].y - p.at[i].y));
+    for (int i = 0; i < 3; i++) {
+        const double x = p.at[(i + 1) % 3].x - p.at[i].x, y = p.at[(i + 1) % 3].y - p.at[i].y;
+        longest = fmax(longest, sqrt(x * x + y * y));
+    }
     return 2 * polygon_area(&p) / longest;
 }
 

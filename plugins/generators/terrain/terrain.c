@@ -215,9 +215,9 @@ static tl_status lay_all(carving *c, const job *j, const tl_bounds *box, size_t 
     return status;
 }
 
-/* Whether the planes of all triangles that have a part above bound the ground of a piece up to the height `top`. Where a
- * triangle i has a part below, z_i <= z_j for each such plane j, or it has no part above and top <= z_j. Each plane that
- * is not that of others removes enough to be cut. */
+/* Whether the planes of all triangles that have a part above bound the ground of a piece up to the height `top`. Where
+ * a triangle i has a part below, z_i <= z_j for each such plane j; or i has no part above and top <= z_j. Each plane
+ * that is not that of others removes enough to be cut. */
 static bool bulges(const carving *c, size_t count, double top, double near, double enough)
 {
     for (size_t i = 0; i < count; i++) {
