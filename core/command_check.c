@@ -74,7 +74,7 @@ typedef struct listing {
 
 static void tell(void *user, const tl_check_finding *f)
 {
-    static const char *const types[] = {"law", "damping", "generator", "screen", "solid"};
+    static const char *const types[] = {"law", "damping", "generator", "screen", "solid", "element"};
     listing *list = user;
     if (list->kind != f->kind) {
         const char *path;

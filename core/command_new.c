@@ -1,4 +1,4 @@
-/* command_new.c - `talus new law|damping|generator|solid NAME [FOLDER]`: a folder with a plugin that builds and works.
+/* command_new.c - `talus new law|damping|generator|solid|element NAME [FOLDER]`: a plugin that builds and works.
  *
  * The files are those of share/talus/templates/TYPE of an installation, or of templates/TYPE beside the program of a
  * build. NAME stands in the place of my_TYPE in names and texts. */
@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #define USAGE                                                                                                          \
-    "talus: usage: talus new law|damping|generator|solid NAME [FOLDER]\n"                                              \
+    "talus: usage: talus new law|damping|generator|solid|element NAME [FOLDER]\n"                                      \
     "Writes a plugin that builds and works into the new folder FOLDER, or NAME: CMakeLists.txt,\n"                     \
     "NAME.c, test_NAME.lua and README.md.\n"
 
@@ -26,8 +26,11 @@
 #define MOST_TEXT (1 << 16)
 
 /* Types that have a template; NULL: one that has none. */
-static const char *const types[] = {
-    [TL_KIND_LAW] = "law", [TL_KIND_DAMPING] = "damping", [TL_KIND_GENERATOR] = "generator", [TL_KIND_SOLID] = "solid"};
+static const char *const types[] = {[TL_KIND_LAW] = "law",
+                                    [TL_KIND_DAMPING] = "damping",
+                                    [TL_KIND_GENERATOR] = "generator",
+                                    [TL_KIND_SOLID] = "solid",
+                                    [TL_KIND_ELEMENT] = "element"};
 
 typedef struct project {
     tl_kind_type type;
@@ -41,12 +44,12 @@ typedef struct project {
 
 static bool read_type(const char *word, tl_kind_type *type)
 {
-    for (int i = 0; i <= TL_KIND_SOLID; i++)
+    for (int i = 0; i <= TL_KIND_ELEMENT; i++)
         if (types[i] && strcmp(word, types[i]) == 0) {
             *type = (tl_kind_type)i;
             return true;
         }
-    return tl_command_fail("new: '%s' is not law, damping, generator or solid", word);
+    return tl_command_fail("new: '%s' is not law, damping, generator, solid or element", word);
 }
 
 /* A name of a kind, that no kind has, and that CMake lets a target have. */

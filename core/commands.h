@@ -8,7 +8,7 @@
 bool tl_command_fail(const char *format, ...) TL_PRINTF(1, 2);
 /* talus check FILE.so [NAME=VALUE...] */
 int tl_command_check(int argc, char **argv);
-/* talus new law|damping|generator|solid NAME [FOLDER] */
+/* talus new law|damping|generator|solid|element NAME [FOLDER] */
 int tl_command_new(int argc, char **argv);
 
 #endif

@@ -13,7 +13,7 @@ static inline const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
 /* Columns of a state of that kind. */
 static inline uint32_t tl_state_width(uint32_t kind)
 {
-    return kind == TL_STATE_SCALAR ? 1 : kind == TL_STATE_TENSOR ? 6 : 3;
+    return kind == TL_STATE_SCALAR || kind == TL_STATE_WHOLE ? 1 : kind == TL_STATE_TENSOR ? 6 : 3;
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* check.c - the conformance check of a plugin's file: each of its kinds, each check of its type. */
 #include "check/damping.h"
+#include "check/element.h"
 #include "check/generator.h"
 #include "check/law.h"
 #include "check/screen.h"
@@ -60,7 +61,8 @@ tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tel
                                               [TL_KIND_DAMPING] = &tl_check_dampings,
                                               [TL_KIND_GENERATOR] = &tl_check_generators,
                                               [TL_KIND_SCREEN] = &tl_check_screens,
-                                              [TL_KIND_SOLID] = &tl_check_solids};
+                                              [TL_KIND_SOLID] = &tl_check_solids,
+                                              [TL_KIND_ELEMENT] = &tl_check_elements};
     *faults = 0;
     const tl_plugin *plugin = loaded_from(path);
     tl_status status = plugin ? TL_OK : tl_plugin_load(path, error);

@@ -7,6 +7,7 @@
 #include "contact/kind.h"
 #include "cycle/contact_beta.h"
 #include "cycle/cycle_data.h"
+#include "cycle/idle.h"
 #include "cycle/undo.h"
 #include "force/joint_laws.h"
 #include "force/laws.h"
@@ -159,7 +160,7 @@ static void gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *o
 {
     const uint8_t *idle = tl_idle_bodies(m);
     for (uint32_t body = begin; body < end; body++)
-        if (!idle || !idle[body])
+        if (!tl_body_idles(m, idle, body))
             gather_body(m, body, &on[body - begin]);
 }
 
@@ -207,8 +208,8 @@ void tl_contacts_damp(tl_model *m)
 static tl_energies energies(tl_model *m)
 {
     const struct tl_cycle *c = m->cycle;
-    tl_energies sum = {c->split_stored + tl_exact_value(&c->stored[0]),
-                       m->detect->parted + tl_exact_value(&c->heat[0])};
+    tl_energies sum = {.stored = c->split_stored + tl_exact_value(&c->stored[0]),
+                       .heat = m->detect->parted + tl_exact_value(&c->heat[0])};
     m->detect->parted = 0;
     return sum;
 }

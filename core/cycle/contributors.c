@@ -2,14 +2,16 @@
 #include "cycle/contributors.h"
 
 #include "cycle/contact_forces.h"
+#include "cycle/element_forces.h"
 #include "cycle/zone_forces.h"
+#include "element/elements.h"
 #include "segment/segments.h"
 #include "zone/zones.h"
 
 /* Those of every model. */
 static const tl_contributor *const known[] = {&tl_contacts_act};
 
-_Static_assert(sizeof known / sizeof *known + 2 <= TL_MOST_CONTRIBUTORS, "there is room for all");
+_Static_assert(sizeof known / sizeof *known + 3 <= TL_MOST_CONTRIBUTORS, "there is room for all");
 
 void tl_contributors_begin(struct tl_cycle *cycle)
 {
@@ -17,18 +19,23 @@ void tl_contributors_begin(struct tl_cycle *cycle)
         cycle->contributor[k] = known[k];
 }
 
+/* Adds one at the end, or takes it out. */
+static void list_if(struct tl_cycle *cycle, const tl_contributor *one, bool acts)
+{
+    const tl_contributor **at = cycle->contributor, **end = at + TL_MOST_CONTRIBUTORS;
+    while (*at && *at != one)
+        at++;
+    if (!*at && acts && at < end)
+        *at = one;
+    for (; *at && !acts; at++)
+        at[0] = at[1];
+}
+
 void tl_contributors_list(tl_model *m)
 {
-    const tl_contributor **at = m->cycle->contributor;
-    while (*at && *at != &tl_zones_act)
-        at++;
-    if (!*at && tl_model_deforms(m) && at + 1 < m->cycle->contributor + TL_MOST_CONTRIBUTORS) {
-        at[0] = &tl_zones_act;
-        at[1] = &tl_segments_act;
-    } else if (*at && !tl_model_deforms(m)) { /* its meshes have gone */
-        for (; *at; at++)
-            at[0] = at[1] ? at[2] : NULL;
-    }
+    list_if(m->cycle, &tl_zones_act, tl_model_deforms(m));
+    list_if(m->cycle, &tl_segments_act, tl_model_deforms(m));
+    list_if(m->cycle, &tl_elements_act, tl_model_has_elements(m));
 }
 
 double tl_body_stiffness(const tl_model *m, uint32_t body)
@@ -42,10 +49,9 @@ double tl_body_stiffness(const tl_model *m, uint32_t body)
 tl_vec3 tl_body_pushed(const tl_model *m, uint32_t body)
 {
     tl_acting on = {{0, 0, 0}, {0, 0, 0}, 0};
-    if (!m->cycle || !m->segments || m->segments->structure != m->structure)
-        return on.force;
-    for (tl_contributors with = m->cycle->contributor; *with; with++)
-        if (*with != &tl_contacts_act && (*with)->gather)
+    const bool segments = m->segments && m->segments->structure == m->structure;
+    for (tl_contributors with = m->cycle ? m->cycle->contributor : NULL; with && *with; with++)
+        if (*with != &tl_contacts_act && (*with)->gather && (*with != &tl_segments_act || segments))
             (*with)->gather(m, body, body + 1, &on);
     return on.force;
 }

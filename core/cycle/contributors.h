@@ -6,7 +6,7 @@
 
 /* Gives a new cycle the contributors that every model has. */
 void tl_contributors_begin(struct tl_cycle *cycle);
-/* Adds zones where there are any, and takes them off where there are none. */
+/* Adds zones and elements where there are any, and takes them off where there are none. */
 void tl_contributors_list(tl_model *m);
 /* The stiffness with which all of them hold a body where it is, N/m. */
 double tl_body_stiffness(const tl_model *m, uint32_t body);

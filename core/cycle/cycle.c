@@ -42,6 +42,7 @@
 #include "detect/asked.h"
 #include "detect/detect.h"
 #include "detect/overlap.h"
+#include "element/follow.h"
 #include "force/laws.h"
 #include "model/loads.h"
 #include "segment/carriers.h"
@@ -72,6 +73,8 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     }
     if (status == TL_OK)
         status = tl_segments_find(m);
+    if (status == TL_OK)
+        status = tl_elements_ready(m);
     if (status == TL_OK && !tl_carriers_begin(m))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)

@@ -126,6 +126,7 @@ typedef struct tl_ledger {
     double start_kinetic, start_stored;
     double largest;             /* change of a term so far */
     double by_hand;             /* energy given between steps */
+    double given;               /* by contributors, from outside */
     double error;               /* of the sum, at the last step */
     uint64_t structure, laws;   /* of the model, at the last step */
     double overlaps;            /* stored in the first step by blocks that were made overlapping */
@@ -376,13 +377,6 @@ typedef struct tl_row_value {
     double value;
     uint32_t row;
 } tl_row_value;
-
-/* Bodies on which what acts stands, a flag each, or NULL: they and their contacts rest. Only contacts are known to
- * rest. */
-static inline const uint8_t *tl_idle_bodies(const tl_model *m)
-{
-    return m->detect->any_idle && !m->cycle->contributor[1] ? m->detect->idle : NULL;
-}
 
 /* Whether a body counts for the rules: one that can move or, where none can, any. */
 static inline bool tl_body_counts(const tl_model *m, uint32_t body)

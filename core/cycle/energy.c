@@ -12,16 +12,19 @@
  * deleted, made, joined or parted, or laws changed: it is what the sum of that step lacks.
  *
  * Each contributor has a term of its own, by its name: what it stores, and what it has turned to heat. Those of the
- * zones are told by themselves, all others together as `stored` and `friction`.
+ * zones are told by themselves, all others together as `stored` and `friction`. What contributors bring in from outside
+ * is external work.
  *
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/energy.h"
 
 #include "contact/detection.h"
+#include "cycle/element_forces.h"
 #include "cycle/zone_forces.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <talus/elements.h>
 
 /* The term of a contributor; a new one at the end. Only a file can be full of others: the last one is shared then. */
 static tl_energy_term *term_of(tl_ledger *l, const char *name)
@@ -42,7 +45,7 @@ typedef struct stored_now {
 /* Asks all contributors; their sum: stored now, and heat of this step. */
 static tl_energies ask_contributors(tl_model *m, stored_now *now)
 {
-    tl_energies sum = {0, 0};
+    tl_energies sum = {.stored = 0};
     *now = (stored_now){0, 0};
     for (tl_contributors with = m->cycle->contributor; *with; with++) {
         if (!(*with)->energies)
@@ -53,6 +56,7 @@ static tl_energies ask_contributors(tl_model *m, stored_now *now)
         term->heat += own.heat;
         *(*with == &tl_zones_act ? &now->zones : &now->contacts) += own.stored;
         sum.heat += own.heat;
+        sum.given += own.given;
     }
     sum.stored = now->contacts + now->zones;
     return sum;
@@ -80,7 +84,7 @@ static void note_terms(tl_ledger *l, const double now[TL_BOOK_COUNT], double sto
     e->stored = stored;
     e->potential = -at[TL_WORK_GRAVITY];
     e->damping = -at[TL_WORK_DAMPING];
-    e->external = at[TL_WORK_EXTERNAL] + l->by_hand;
+    e->external = at[TL_WORK_EXTERNAL] + l->by_hand + l->given;
     e->friction = 0;
     for (size_t k = 0; k < TL_MOST_CONTRIBUTORS; k++)
         e->friction += strcmp(l->term[k].name, tl_zones_act.name) != 0 ? l->term[k].heat : 0;
@@ -170,6 +174,7 @@ void tl_energy_close(tl_model *m)
     l->structure = m->structure;
     l->laws = m->laws;
     m->cycle->kinetic_before = now[TL_BOOK_MOTION0];
+    l->given += own.given;
     note_terms(l, now, stored.contacts);
     balance(l, first, changed);
     tl_balance_note(m);
@@ -184,6 +189,16 @@ tl_status tl_model_energy(tl_model *m, tl_energy *energy)
 tl_status tl_model_zone_energy(tl_model *m, tl_zone_energy *energy)
 {
     *energy = m->cycle ? zones_of(&m->cycle->ledger) : (tl_zone_energy){0};
+    return TL_OK;
+}
+
+tl_status tl_model_element_energy(tl_model *m, tl_element_energy *energy)
+{
+    *energy = (tl_element_energy){0, 0, 0};
+    const tl_ledger *l = m->cycle ? &m->cycle->ledger : NULL;
+    for (size_t k = 0; l && k < TL_MOST_CONTRIBUTORS; k++)
+        if (strcmp(l->term[k].name, tl_elements_act.name) == 0)
+            *energy = (tl_element_energy){l->term[k].stored, l->term[k].heat, l->given};
     return TL_OK;
 }
 

@@ -10,6 +10,7 @@
 #include "cycle/contributors.h"
 #include "cycle/energy.h"
 #include "cycle/gridpoints.h"
+#include "cycle/idle.h"
 #include "cycle/loose.h"
 #include "cycle/rest.h"
 #include "model/loads.h"
@@ -102,7 +103,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     const uint8_t *idle = tl_idle_bodies(m);
     gather_acting(m, (uint32_t)begin, (uint32_t)end, on);
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        if (idle && idle[body])
+        if (tl_body_idles(m, idle, body))
             continue;
         gather_body(m, body, &on[body - begin]);
         if (b->fixed[body] == TL_FIX_ALL)

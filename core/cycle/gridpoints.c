@@ -14,6 +14,7 @@
 #include "cycle/gridpoint.h"
 #include "cycle/held_gridpoints.h"
 #include "cycle/meshes.h"
+#include "element/act.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
 #include "segment/gather.h"
@@ -38,6 +39,7 @@ static void find_holds(tl_model *m)
         p->holds[row] = 0;
     tl_segments_stiffen(m);
     tl_carriers_stiffen(m);
+    tl_elements_stiffen(m);
     for (size_t row = 0; row < p->table.rows; row++)
         p->holds[row] = p->stiffness[row] + tl_larger(p->holds[row], p->floor[row]);
     for (size_t row = 0; row < p->table.rows; row++)
@@ -50,9 +52,11 @@ double tl_gridpoints_least(tl_model *m)
         return INFINITY;
     struct tl_zones *z = m->zones;
     const bool carried = m->detect && m->detect->contacts.carrier[0];
-    if (tl_zones_stiffen(m) || carried || (m->segments && m->segments->version != z->segments_rated)) {
+    if (tl_zones_stiffen(m) || carried || (m->segments && m->segments->version != z->segments_rated) ||
+        (m->elements && m->elements->version != z->elements_rated)) {
         find_holds(m);
         z->segments_rated = m->segments ? m->segments->version : 0;
+        z->elements_rated = m->elements ? m->elements->version : 0;
         tl_zones_rate(m);
     }
     const double rate = tl_scales_all(m) ? z->lowest_rate : z->highest_rate;
@@ -315,6 +319,7 @@ void tl_gridpoints_gather(tl_model *m)
         return;
     tl_parallel_for(m->pool, m->zones->points.table.rows, CHUNK, gather_range, m);
     tl_carriers_push(m);
+    tl_elements_push(m);
     tl_outer_push(m, tl_loads_share(m));
     if (m->relaxing)
         tl_meshes_judge(m);

@@ -22,6 +22,8 @@
 #include "cycle/remarks.h"
 #include "cycle/sliver.h"
 #include "detect/detect.h"
+#include "element/act.h"
+#include "element/follow.h"
 #include "force/joint_laws.h"
 #include "model/options.h"
 
@@ -203,6 +205,25 @@ typedef struct step_rates {
     double rate, turn;
 } step_rates;
 
+/* The rate at which a body with dampers beside its springs asks for as short a step. They act by velocities of half a
+ * step ago. With w^2 = 2 rate, and C the sum of c (1/M + r^2/I), the step is at most (2 / w) (sqrt(1 + l^2) - l),
+ * l = C / w. No motion of a body and its neighbours is slowed by more than 2 C. */
+static double damped_rate(double rate, double c)
+{
+    const double w = sqrt(2 * rate + c * c) + c;
+    return 0.5 * w * w;
+}
+
+/* With mass scaling each rate has its own dampers; velocities do not count in a relaxation. */
+static step_rates damped_rates(const tl_model *m, step_rates of, tl_spread c, inverse_inertia per)
+{
+    if (m->relaxing)
+        return of;
+    if (!tl_scales_all(m))
+        return (step_rates){damped_rate(of.rate, c.sum * per.mass + c.r2 * per.moment), 0};
+    return (step_rates){damped_rate(of.rate, 2 * c.sum * per.mass), damped_rate(of.turn, 2 * c.r2 * per.moment)};
+}
+
 static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
     tl_holding of = holding_of(m, body);
@@ -212,9 +233,10 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
     double pushed = of.stiffness.sum * per.mass, turned = of.stiffness.r2 * per.moment;
     bool more = tl_scales_all(m) ? pushed < face - turn || turned < turn : pushed + turned < face;
     double part = more ? least_part(m, body, &of, face) : 0;
+    step_rates all = {2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
     if (!tl_scales_all(m))
-        return (step_rates){fmax(pushed + turned, part * face), 0};
-    return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
+        all = (step_rates){fmax(pushed + turned, part * face), 0};
+    return of.damping.sum > 0 ? damped_rates(m, all, of.damping, per) : all;
 }
 
 /* What a body's rate is no higher than, from what is known of its contacts at once. */
@@ -222,7 +244,9 @@ static double most_rate(const tl_model *m, uint32_t body, double stiffest)
 {
     tl_holding most = most_holding_of(m, body);
     double on_face = law_on_face(most, stiffest) * m->bodies.face_rate[body];
-    return fmax(rate_of(most.stiffness, inverse_of(m, body)), on_face);
+    const inverse_inertia per = inverse_of(m, body);
+    const double rate = fmax(rate_of(most.stiffness, per), on_face);
+    return most.damping.sum > 0 ? damped_rate(rate, rate_of(most.damping, per)) : rate;
 }
 
 /* The stiffness that a body's rate comes from, N/m: of its contacts, or of the part of its largest face that counts. */
@@ -350,7 +374,8 @@ static tl_row_value rates_keep(tl_model *m, double known)
 {
     struct tl_cycle *c = m->cycle;
     tl_detect *d = m->detect;
-    struct tl_stiffness_rates now = {.version = 1 + m->structure + m->constraints + m->laws,
+    struct tl_stiffness_rates now = {.version = 1 + m->structure + m->constraints + m->laws +
+                                                (m->elements ? m->elements->version : 0),
                                      .recheck = tl_scales_all(m) ? m->cycles / RECHECK_STEPS : 0,
                                      .rotation = m->config.rotation};
     bool all = now.version != c->stiffness_rates.version || now.recheck != c->stiffness_rates.recheck ||
@@ -441,12 +466,15 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
     keep_extreme(&s->found[thread], found);
 }
 
-/* M_min / (2 K_max), with K_max over the contacts of free bodies; no bound where none has an area. */
+/* M_min / (2 K_max), with K_max over contacts and nodes of free bodies; no bound where there is none. */
 static bound paper_rule(tl_model *m)
 {
     const struct tl_step_bounds *bounds = &m->cycle->step_bounds;
     row_search s = {.m = m};
     tl_row_value stiffest = row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
+    const double node = tl_model_has_elements(m) ? tl_elements_stiffest(m) : 0;
+    if (node > 0 && !(stiffest.row != TL_NO_ROW && stiffest.value >= node))
+        return (bound){bounds->least_mass / (2 * node), bounds->lightest, TL_NO_ROW, node, TL_NO_ROW};
     if (stiffest.row == TL_NO_ROW)
         return no_bound;
     return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row, stiffest.value,
@@ -725,6 +753,8 @@ static tl_status report_bound(tl_model *m, bound *by, double *dt)
     tl_status status = tl_cycle_prepare(m);
     if (status == TL_OK)
         status = tl_detect_refresh(m);
+    if (status == TL_OK)
+        status = tl_elements_ready(m);
     if (status != TL_OK)
         return status;
     const double in_use = m->cycle->dt;

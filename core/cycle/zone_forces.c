@@ -25,7 +25,7 @@ static tl_status apply(tl_model *m)
 
 static tl_energies energies(tl_model *m)
 {
-    tl_energies sum = {0, 0};
+    tl_energies sum = {.stored = 0};
     const tl_parcels *p = m->zones ? &m->zones->parcels : NULL;
     for (size_t k = 0; p && k < p->table.rows; k++) {
         sum.stored += p->stored[k];
@@ -96,7 +96,7 @@ static void hold_segments(const tl_model *m, uint32_t body, bool points, tl_hold
 
 static double stiffness_of_segments(const tl_model *m, uint32_t body)
 {
-    tl_holding sum = {{0, 0}, 0, false};
+    tl_holding sum = {.law = 0};
     hold_segments(m, body, true, &sum);
     return sum.stiffness.sum;
 }

@@ -18,9 +18,8 @@
 
 #include <math.h>
 
-/* Tolerance: sine of the tilt up to which a face lies along a plane. Faces tilted by more, up to the 15 degrees within
- * which a region has two faces for flush, are a wedge that is meant where a gap alone is beyond its limit. Test:
- * lua/test_masonry. */
+/* Tolerance: sine of the tilt up to which a face lies along a plane. Faces tilted by more are a wedge that is meant
+ * where a gap alone is beyond its limit. A region's are tilted by 15 degrees at the most. Test: lua/test_masonry. */
 #define MOST_TILT 0.1
 /* Tolerance: blocks that overlap along their flush faces by more than so many times the least, along another face, are
  * not on each other by them. Test: lua/test_masonry. */

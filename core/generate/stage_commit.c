@@ -193,6 +193,24 @@ static void keep_cut_parts(const tl_stage *stage, const commit_scratch *scratch)
     }
 }
 
+/* Notes for elements what blocks were cut out of, where there is room for it. */
+static void keep_cut_out(const tl_stage *stage, const commit_scratch *scratch)
+{
+    tl_model *m = stage->model;
+    const size_t known = m->cut_out_count;
+    for (size_t i = 0; m->elements && i < stage->count; i++) {
+        if (!tl_stage_cut(&stage->blocks[i]))
+            continue;
+        tl_split part = {scratch->ids[i], scratch->sources[scratch->slot[stage->blocks[i].source]].id};
+        for (size_t k = 0; k < known; k++)
+            if (m->cut_out[k].block == part.whole) {
+                part.whole = m->cut_out[k].whole;
+                break;
+            }
+        m->cut_out[m->cut_out_count++] = part;
+    }
+}
+
 /* Whether parts of a body have to go on as it does: after a step, or when something has been put on its contacts. */
 static bool goes_on(const tl_model *m)
 {
@@ -416,6 +434,8 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
            (!has_contacts(stage->model) ||
             tl_grow(&stage->model->cut_parts, &stage->model->cut_part_capacity, stage->model->cut_part_count + made,
                     sizeof *stage->model->cut_parts)) &&
+           (!stage->model->elements || tl_grow(&stage->model->cut_out, &stage->model->cut_out_capacity,
+                                               stage->model->cut_out_count + made, sizeof *stage->model->cut_out)) &&
            tl_rows_reserve(stage->model, rows) &&
            (!stage->regroups || tl_rows_set_aside(stage->model, &scratch->aside));
 }
@@ -516,6 +536,7 @@ tl_status tl_stage_commit(tl_stage *stage)
         tl_cut_loads_give(stage, scratch.ids, &scratch.loads);
         keep_record(stage, scratch.ids);
         keep_cut_parts(stage, &scratch);
+        keep_cut_out(stage, &scratch);
         keep_splits(stage, &scratch);
         tl_stage_seats_give(stage, scratch.ids, &scratch.seats);
         if (tl_laws_name_blocks(m))

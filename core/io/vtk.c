@@ -8,9 +8,11 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "base/signals.h"
+#include "element/elements.h"
 #include "io/extra_fields.h"
 #include "io/pieces.h"
 #include "io/vtk_contacts.h"
+#include "io/vtk_elements.h"
 #include "io/vtk_file.h"
 #include "io/vtk_section.h"
 #include "io/vtk_series.h"
@@ -372,13 +374,11 @@ typedef struct frame {
     const tl_vtk_parts *fields; /* of a whole frame: what is added to its arrays */
 } frame;
 
-enum { BLOCKS, CONTACTS, JOINTS, ZONES, PART_COUNT };
+enum { BLOCKS, CONTACTS, JOINTS, ZONES, ELEMENTS, PART_COUNT };
 
 static const part frame_parts[PART_COUNT] = {
-    [BLOCKS] = {"blocks", put_blocks},
-    [CONTACTS] = {"contacts", tl_vtk_contacts},
-    [JOINTS] = {"joints", tl_vtk_joints},
-    [ZONES] = {"zones", tl_vtk_zones},
+    [BLOCKS] = {"blocks", put_blocks}, [CONTACTS] = {"contacts", tl_vtk_contacts}, [JOINTS] = {"joints", tl_vtk_joints},
+    [ZONES] = {"zones", tl_vtk_zones}, [ELEMENTS] = {"elements", tl_vtk_elements},
 };
 
 static const part section_part = {"section", NULL};
@@ -485,6 +485,8 @@ tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *part
     tl_rows_tidy(m);
     if (of.zones != 0 && tl_model_deforms(m))
         f.wanted |= 1u << ZONES;
+    if (of.elements != 0 && tl_model_has_elements(m))
+        f.wanted |= 1u << ELEMENTS;
     if (f.wanted == 0)
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "write_vtk: blocks, contacts and joints are all false, %s, so there is nothing "

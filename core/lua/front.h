@@ -100,12 +100,12 @@ typedef struct tl_lua_verb {
 
 /* By what the kernel knows an item. */
 typedef union tl_lua_name {
-    tl_id block;
+    tl_id block; /* or element */
     tl_contact_name contact;
     tl_zone_name zone; /* or gridpoint */
 } tl_lua_name;
 
-/* What differs between blocks, contacts, zones and gridpoints. */
+/* What differs between blocks, contacts, zones, gridpoints and elements. */
 typedef struct tl_lua_kind {
     const char *item, *items;                       /* "block", "blocks": words in messages */
     const char *item_type, *selection_type;         /* names of the metatables */
@@ -133,6 +133,8 @@ typedef struct tl_lua_kind {
 #define TL_LUA_ZONES "talus.zones"
 #define TL_LUA_GRIDPOINT "talus.gridpoint"
 #define TL_LUA_GRIDPOINTS "talus.gridpoints"
+#define TL_LUA_ELEMENT "talus.element"
+#define TL_LUA_ELEMENTS "talus.elements"
 
 typedef struct tl_lua_item {
     const tl_lua_kind *kind;

@@ -147,7 +147,7 @@ static void walk_fields(const char *item, const tl_field *(*list)(size_t *count)
 
 static const char *plugin_word(tl_kind_type type)
 {
-    static const char *const words[] = {"law", "damping", "generator", "screen", "solid"};
+    static const char *const words[] = {"law", "damping", "generator", "screen", "solid", "element"};
     return words[type];
 }
 
@@ -242,7 +242,7 @@ static void print_overview(void)
          "  talus -e CHUNK                   run a piece of Lua\n"
          "  talus help [TOPIC]               this page, a function, or a plugin\n"
          "  talus plugins                    what is loaded, and what was refused and why\n"
-         "  talus new law|damping|generator|solid NAME [FOLDER]\n"
+         "  talus new law|damping|generator|solid|element NAME [FOLDER]\n"
          "                                   a folder with a plugin to change, that builds and "
          "works\n"
          "  talus check FILE.so [NAME=VALUE...]\n"
@@ -258,8 +258,8 @@ static void print_overview(void)
     const tl_lua_topic *topic;
     for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         print_row(topic->name, topic_doc(topic));
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
-        static const char *const titles[] = {"Laws", "Dampings", "Generators", "Screens", "Solids"};
+    for (int type = TL_KIND_LAW; type <= TL_KIND_ELEMENT; type++) {
+        static const char *const titles[] = {"Laws", "Dampings", "Generators", "Screens", "Solids", "Elements"};
         printf("\n%s:\n", titles[type]);
         print_kinds((tl_kind_type)type);
     }
@@ -324,7 +324,7 @@ typedef struct page_list {
 static void list_page(page_list *pages, const char *name)
 {
     size_t length = strlen(pages->text), room = sizeof pages->text - length;
-    bool fits = strlen(name) + sizeof ", ..." < room;
+    bool fits = strlen(", ") + strlen(name) + sizeof ", ..." <= room;
     if (strcmp(pages->text + (length < 3 ? 0 : length - 3), "...") == 0)
         return;
     snprintf(pages->text + length, room, "%s%s", length ? ", " : "", fits ? name : "...");
@@ -344,7 +344,7 @@ static bool unknown_topic(const char *word, tl_error *error)
         if (topic_says(topic, word))
             list_page(&pages, topic->name);
     }
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
+    for (int type = TL_KIND_LAW; type <= TL_KIND_ELEMENT; type++) {
         const tl_kind *kind;
         for (size_t i = 0; (kind = tl_plugin_kind((tl_kind_type)type, i)) != NULL; i++) {
             tl_lua_names_add(&names, kind->name);
@@ -380,7 +380,7 @@ bool tl_lua_help(const char *word, tl_error *error)
     for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         if (strcmp(topic->name, word) == 0 && ++found)
             print_topic(topic);
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++) {
+    for (int type = TL_KIND_LAW; type <= TL_KIND_ELEMENT; type++) {
         const tl_kind *kind = tl_plugin_find((tl_kind_type)type, word);
         if (kind && found++)
             putchar('\n');

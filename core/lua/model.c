@@ -13,6 +13,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <talus/elements.h>
 #include <talus/zones.h>
 
 /* ---------------------------------------------------------------- life ------------------- */
@@ -174,8 +175,10 @@ static int model_energy(lua_State *L, tl_model *model)
 {
     tl_energy energy;
     tl_zone_energy zones;
+    tl_element_energy elements;
     tl_lua_ok(L, model, tl_model_energy(model, &energy));
     tl_lua_ok(L, model, tl_model_zone_energy(model, &zones));
+    tl_lua_ok(L, model, tl_model_element_energy(model, &elements));
     lua_createtable(L, 0, 9);
 #define SET(name, unit, doc) tl_lua_set_number(L, #name, energy.name);
     TL_ENERGY(SET)
@@ -183,6 +186,7 @@ static int model_energy(lua_State *L, tl_model *model)
 #define SET(name, unit, doc) tl_lua_set_number(L, #name, zones.name);
     TL_ZONE_ENERGY(SET)
 #undef SET
+    TL_LUA_SET_NUMBERS(L, {"elements", elements.stored}, {"element_loss", elements.lost});
     return 1;
 }
 
@@ -386,7 +390,10 @@ static const tl_lua_key mass_scaling_results[] = {
 };
 
 #define KEY(name, unit, doc) {#name, "", doc},
-static const tl_lua_key energy_terms[] = {TL_ENERGY(KEY) TL_ZONE_ENERGY(KEY){NULL, NULL, NULL}};
+static const tl_lua_key energy_terms[] = {
+    TL_ENERGY(KEY) TL_ZONE_ENERGY(KEY){"elements", "", "held by elements, part of stored, J"},
+    {"element_loss", "", "turned to heat by elements until now, part of friction, J"},
+    {NULL, NULL, NULL}};
 #undef KEY
 
 const tl_lua_topic tl_lua_model_topics[] = {

@@ -2,6 +2,7 @@
 #include "lua/block.h"
 #include "lua/contact.h"
 #include "lua/convert.h"
+#include "lua/element.h"
 #include "lua/fail.h"
 #include "lua/help.h"
 #include "lua/item.h"
@@ -91,11 +92,9 @@ static int module_kinds(lua_State *L)
 /* Puts talus.laws, talus.dampings and so on into the module at the top of the stack. */
 static void put_kinds(lua_State *L)
 {
-    static const char *const lists[] = {[TL_KIND_LAW] = "laws",
-                                        [TL_KIND_DAMPING] = "dampings",
-                                        [TL_KIND_GENERATOR] = "generators",
-                                        [TL_KIND_SCREEN] = "screens",
-                                        [TL_KIND_SOLID] = "solids"};
+    static const char *const lists[] = {
+        [TL_KIND_LAW] = "laws",       [TL_KIND_DAMPING] = "dampings", [TL_KIND_GENERATOR] = "generators",
+        [TL_KIND_SCREEN] = "screens", [TL_KIND_SOLID] = "solids",     [TL_KIND_ELEMENT] = "elements"};
     for (size_t type = 0; type < TL_LUA_COUNT(lists); type++) {
         lua_pushinteger(L, (lua_Integer)type);
         lua_pushfstring(L, "talus.%s", lists[type]);
@@ -147,6 +146,7 @@ int luaopen_talus(lua_State *L)
     tl_lua_kind_open(L, &tl_lua_contact_kind);
     tl_lua_kind_open(L, &tl_lua_zone_kind);
     tl_lua_kind_open(L, &tl_lua_gridpoint_kind);
+    tl_lua_kind_open(L, &tl_lua_element_kind);
     lua_createtable(L, 0, 16);
     lua_newtable(L);
     put_functions(L);

@@ -22,8 +22,9 @@ typedef struct holder {
 
 static const tl_lua_key record_keys[] = {
     {"at", "list of numbers", "samples, in the place of a file; then dt must be given"},
-    {"band", "{low, high}",
-     "Hz: filters of Butterworth at both, forward and backward, so without a shift in time; low = 0: only at high"},
+    {"band", "list of 2 numbers",
+     "{low, high}, Hz: filters of Butterworth at both, forward and backward, so without a shift in time; low = 0: only "
+     "at high"},
     {NULL, NULL, NULL},
 };
 

@@ -529,7 +529,7 @@ static void complete_topic(const char *word)
     const tl_lua_topic *topic;
     for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         add(word, topic->name);
-    for (int type = TL_KIND_LAW; type <= TL_KIND_SOLID; type++)
+    for (int type = TL_KIND_LAW; type <= TL_KIND_ELEMENT; type++)
         add_plugins(word, (tl_kind_type)type);
 }
 

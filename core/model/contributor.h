@@ -22,13 +22,14 @@ typedef struct tl_spread {
 /* What holds a body. */
 typedef struct tl_holding {
     tl_spread stiffness; /* N/m and N m */
+    tl_spread damping;   /* N s/m and N m s */
     double law;          /* the stiffest joint law of its contacts, Pa/m; 0: none */
     bool presses;        /* something may be pressed in further as the body goes on */
 } tl_holding;
 
-/* Energy, J: held by springs and strains, and turned to heat in this step. */
+/* Energy, J: held by springs and strains; turned to heat, and brought in from outside, in this step. */
 typedef struct tl_energies {
-    double stored, heat;
+    double stored, heat, given;
 } tl_energies;
 
 /* Tables of a contributor whose columns a step overwrites. */
@@ -66,6 +67,6 @@ typedef struct tl_contributor {
 typedef const tl_contributor *const *tl_contributors;
 
 /* Most contributors of a model. */
-#define TL_MOST_CONTRIBUTORS 4
+#define TL_MOST_CONTRIBUTORS 5
 
 #endif

@@ -199,6 +199,7 @@ static const tl_param write_vtk_params[] = {
     TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, contacts, "", "whether the frame has a file of the contacts", .def = {1.0}),
     TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, joints, "", "whether the frame has a file of the faces that joints made",
              .def = {1.0}),
+    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, elements, "", "whether the frame has a file of the elements", .def = {1.0}),
     TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, zones, "", "whether the frame has a file of the zones of deformable blocks",
              .def = {1.0}),
 };

@@ -105,6 +105,8 @@ void tl_model_destroy(tl_model *m)
         m->zones_destroy(m->zones);
     if (m->segments)
         m->segments_destroy(m->segments);
+    if (m->elements)
+        m->elements_destroy(m->elements);
     if (m->outputs)
         m->outputs_destroy(m->outputs);
     for (size_t i = 0; i < m->blocks.table.rows; i++)
@@ -131,6 +133,7 @@ void tl_model_destroy(tl_model *m)
     free(m->histories);
     free(m->record.list);
     free(m->cut_parts);
+    free(m->cut_out);
     free(m->splits);
     free(m->face_loads);
     tl_seats_free(&m->seats);

@@ -175,6 +175,9 @@ struct tl_model {
     size_t cut_part_count, cut_part_capacity;
     tl_split *splits; /* by ascending id of the block */
     size_t split_count, split_capacity;
+    /* blocks that were cut out of others since nodes of elements followed last: `whole` is the block that nodes know */
+    tl_split *cut_out;
+    size_t cut_out_count, cut_out_capacity;
     tl_face_load *face_loads; /* by ascending block and face; of blocks that there were */
     size_t face_load_count, face_load_capacity;
     tl_extremes extremes;
@@ -237,7 +240,9 @@ struct tl_model {
     struct tl_segments *segments;           /* their flush contacts, or NULL: module segment */
     void (*segments_destroy)(struct tl_segments *);
     void (*segments_follow)(struct tl_model *); /* lets them follow rows that have moved */
-    struct tl_outputs *outputs;                 /* of the module state: files written so far */
+    struct tl_elements *elements;               /* what acts on points of blocks, or NULL: module element */
+    void (*elements_destroy)(struct tl_elements *);
+    struct tl_outputs *outputs; /* of the module state: files written so far */
     void (*outputs_destroy)(struct tl_outputs *);
 };
 

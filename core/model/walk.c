@@ -88,6 +88,7 @@ void tl_model_walk(tl_model *m, const tl_walk *walk)
     LIST(STATE, record.list, record.listed, record.listed);
     LIST(STATE, cut_parts, cut_part_count, cut_part_capacity);
     LIST(STATE, splits, split_count, split_capacity);
+    LIST(STATE, cut_out, cut_out_count, cut_out_capacity);
     LIST(STATE, face_loads, face_load_count, face_load_capacity);
     LIST(STATE, seats.list, seats.count, seats.capacity);
     FLAG(CACHE, extremes.known);

@@ -71,6 +71,11 @@ static const struct {
                        sizeof(tl_solid_ops),
                        {{AT(tl_solid_ops, update)}, {AT(tl_solid_ops, moduli)}},
                        {{AT(tl_solid_ops, create)}, {AT(tl_solid_ops, destroy)}}},
+    [TL_KIND_ELEMENT] = {"element",
+                         sizeof(tl_element_ops),
+                         sizeof(tl_element_ops),
+                         {{AT(tl_element_ops, place)}, {AT(tl_element_ops, update)}, {AT(tl_element_ops, stiffness)}},
+                         {{AT(tl_element_ops, create)}, {AT(tl_element_ops, destroy)}}},
 };
 
 /* A plugin's headers, as it states them. */
@@ -220,7 +225,9 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
         return tl_fail(error, TL_E_PLUGIN,
                        "parameter '%s' is a list of points in space: a solid takes tables, with TL_PARAM_FLAT",
                        p->name);
-    if (kind->type != TL_KIND_GENERATOR && !table && (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
+    bool kept = kind->type == TL_KIND_ELEMENT && p->type == TL_PARAM_STRING;
+    if (kind->type != TL_KIND_GENERATOR && !table && !kept &&
+        (p->type == TL_PARAM_STRING || p->type == TL_PARAM_POINTS))
         return tl_fail(error, TL_E_PLUGIN,
                        "parameter '%s' is a %s, which lives only as long as the call: a %s cannot keep it", p->name,
                        p->type == TL_PARAM_STRING ? "string" : "list of points", tl_kind_type_name(kind->type));
@@ -245,6 +252,7 @@ static bool state_fits(uint32_t type, uint32_t state)
     switch (type) {
     case TL_KIND_LAW: return state == TL_STATE_SCALAR || state == TL_STATE_TANGENT;
     case TL_KIND_SOLID: return state == TL_STATE_SCALAR || state == TL_STATE_AXIS || state == TL_STATE_TENSOR;
+    case TL_KIND_ELEMENT: return state == TL_STATE_SCALAR || state == TL_STATE_WHOLE;
     default: return state == TL_STATE_SCALAR;
     }
 }
@@ -258,19 +266,21 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name, s->doc ? "unit" : "doc");
     if (any_unclean(s->unit, s->doc))
         return unclean(error, "state", s->name);
-    if (s->kind > TL_STATE_TENSOR || s->transfer > TL_TRANSFER_LIFT)
+    if (s->kind > TL_STATE_WHOLE || s->transfer > TL_TRANSFER_LIFT)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has the unknown %s %u", s->name,
-                       s->kind > TL_STATE_TENSOR ? "kind" : "transfer",
-                       s->kind > TL_STATE_TENSOR ? s->kind : s->transfer);
+                       s->kind > TL_STATE_WHOLE ? "kind" : "transfer",
+                       s->kind > TL_STATE_WHOLE ? s->kind : s->transfer);
     if (!state_fits(kind->type, s->kind))
         return tl_fail(error, TL_E_PLUGIN, "state '%s' of a %s must be a scalar%s", s->name,
                        tl_kind_type_name(kind->type),
-                       kind->type == TL_KIND_LAW     ? " or a tangent"
-                       : kind->type == TL_KIND_SOLID ? ", an axis or a tensor"
-                                                     : "");
-    if (kind->type == TL_KIND_SOLID && s->transfer != TL_TRANSFER_COPY)
-        return tl_fail(error, TL_E_PLUGIN, "state '%s' of a solid must have TL_TRANSFER_COPY: zones stay what they are",
-                       s->name);
+                       kind->type == TL_KIND_LAW       ? " or a tangent"
+                       : kind->type == TL_KIND_SOLID   ? ", an axis or a tensor"
+                       : kind->type == TL_KIND_ELEMENT ? ", of a node or of the whole"
+                                                       : "");
+    if ((kind->type == TL_KIND_SOLID || kind->type == TL_KIND_ELEMENT) && s->transfer != TL_TRANSFER_COPY)
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' of %s must have TL_TRANSFER_COPY: %s stay what they are",
+                       s->name, kind->type == TL_KIND_SOLID ? "a solid" : "an element",
+                       kind->type == TL_KIND_SOLID ? "zones" : "nodes");
     if (s->kind == TL_STATE_AXIS && s->initial != 0)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' is an axis: it must begin at 0", s->name);
     if (s->transfer == TL_TRANSFER_ENERGY && (s->kind != TL_STATE_SCALAR || s->initial != 0))
@@ -335,7 +345,8 @@ static tl_status check_rows(const tl_kind *kind, tl_error *error)
 {
     tl_status status = TL_OK;
     bool solid = kind->type == TL_KIND_SOLID;
-    uint32_t columns = 0, most = solid ? TL_SOLID_COLUMNS : TL_STATE_COLUMNS;
+    bool element = kind->type == TL_KIND_ELEMENT;
+    uint32_t columns = 0, whole = 0, most = solid ? TL_SOLID_COLUMNS : element ? TL_ELEMENT_COLUMNS : TL_STATE_COLUMNS;
     for (uint32_t i = 0; i < kind->param_count && status == TL_OK; i++)
         status = check_param(kind, i, error);
     if (status != TL_OK)
@@ -345,10 +356,14 @@ static tl_status check_rows(const tl_kind *kind, tl_error *error)
                        kind->state_count);
     for (uint32_t i = 0; i < kind->state_count && status == TL_OK; i++) {
         status = check_state(kind, i, error);
-        columns += tl_state_width(kind->states[i].kind);
+        whole += kind->states[i].kind == TL_STATE_WHOLE;
+        columns += kind->states[i].kind == TL_STATE_WHOLE ? 0 : tl_state_width(kind->states[i].kind);
     }
     if (status != TL_OK)
         return status;
+    if (whole > TL_ELEMENT_COLUMNS || (element && columns > most))
+        return tl_fail(error, TL_E_PLUGIN, "it has %u states of nodes and %u of the whole; %u of each at the most",
+                       columns, whole, TL_ELEMENT_COLUMNS);
     if (columns > most)
         return tl_fail(error, TL_E_PLUGIN, "its states take %u columns (a scalar 1, %s); %u at the most", columns,
                        solid ? "an axis 3, a tensor 6" : "a tangent 3", most);
@@ -404,14 +419,14 @@ static void drop_unknown(tl_plugin *plugin, tl_kind *kinds, char note[TL_NOTE_TE
 {
     uint32_t kept = 0, given = plugin->kind_count;
     for (uint32_t i = 0; i < given; i++) {
-        if (kinds[i].type <= TL_KIND_SOLID)
+        if (kinds[i].type <= TL_KIND_ELEMENT)
             kinds[kept++] = kinds[i];
         else if (i == kept)
             snprintf(note, TL_NOTE_TEXT,
                      "kind %u, '%.60s', is of the unknown type %u and is left out: this Talus knows "
-                     "laws (%d), dampings (%d), generators (%d), screens (%d) and solids (%d)",
+                     "laws (%d), dampings (%d), generators (%d), screens (%d), solids (%d) and elements (%d)",
                      i + 1, kinds[i].name ? kinds[i].name : "", kinds[i].type, TL_KIND_LAW, TL_KIND_DAMPING,
-                     TL_KIND_GENERATOR, TL_KIND_SCREEN, TL_KIND_SOLID);
+                     TL_KIND_GENERATOR, TL_KIND_SCREEN, TL_KIND_SOLID, TL_KIND_ELEMENT);
     }
     size_t length = strlen(note);
     if (given - kept > 1)

@@ -6,8 +6,8 @@
  * holds more than zero. A block that is convex and finite then has its free faces on the way out. A cone other than
  * {0} holds an edge n_i x n_j or, when all normals are parallel, -n_1; so looking at these decides it.
  *
- * The active force r is the weight and the load of the body. It moves the body along the direction in the cone that
- * gains the most energy. That is the projection s of r on the cone,
+ * The active force r is the weight and the load of the body, and what elements do on it as it is now. It moves the body
+ * along the direction in the cone that gains the most energy. That is the projection s of r on the cone,
  *
  *     r = s + sum N_i n_i,   N_i >= 0,   s . n_i <= 0,   N_i (s . n_i) = 0
  *
@@ -30,6 +30,8 @@
  * Limits: translations only; each body alone, all others at rest. A body of several blocks is judged by its contact
  * faces alone, which is exact only when it is convex. */
 #include "base/error.h"
+#include "element/act.h"
+#include "element/follow.h"
 #include "model/joints.h"
 #include "model/options.h"
 #include "model/rows.h"
@@ -62,6 +64,7 @@ typedef struct work {
     tl_id moved_first;
     size_t block_capacity, edge_capacity;
     tl_vec3 gravity; /* m/s2 */
+    tl_vec3 *pushed; /* by elements, on each body, N; NULL: there are none */
     tl_keyblocks *result;
 } work;
 
@@ -383,6 +386,8 @@ static tl_status test_body(work *w, uint32_t body)
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
         block.volume += m->blocks.volume[m->members[m->bodies.member_start[body] + k]];
     block.force = tl_v3_madd(tl_load_of(&m->bodies, body).force, block.mass, w->gravity);
+    if (w->pushed)
+        block.force = tl_v3_add(block.force, w->pushed[body]);
     find_mode(w, part_along(w, block.force), &block);
     find_support(w, &block);
     result->blocks[result->count++] = block;
@@ -394,6 +399,19 @@ void tl_keyblocks_free(tl_keyblocks *keyblocks)
     free(keyblocks->blocks);
     free(keyblocks->edges);
     *keyblocks = (tl_keyblocks){0};
+}
+
+/* What elements do on bodies as they are. */
+static tl_status find_pushed(work *w)
+{
+    tl_model *m = w->model;
+    if (!tl_model_has_elements(m))
+        return TL_OK;
+    const tl_status status = tl_elements_ready(m);
+    if (status != TL_OK)
+        return status;
+    w->pushed = calloc(m->bodies.table.rows + 1, sizeof *w->pushed);
+    return w->pushed ? tl_elements_sum(m, w->pushed) : tl_fail_memory(&m->error);
 }
 
 /* Says what was left out, and whose faces are those of now. */
@@ -430,6 +448,8 @@ tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_key
         status = parse_strength(&w);
     if (status == TL_OK)
         status = tl_touches_find(m, &w.touches);
+    if (status == TL_OK)
+        status = find_pushed(&w);
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
         if (m->bodies.drive[body] && driven++ == 0)
             first_driven = m->bodies.id[body];
@@ -441,6 +461,7 @@ tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_key
     free(w.strength);
     tl_touches_free(&w.touches);
     free(w.faces);
+    free(w.pushed);
     if (status != TL_OK)
         tl_keyblocks_free(result);
     return status;

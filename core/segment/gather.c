@@ -105,7 +105,7 @@ void tl_segments_hold(const tl_model *m, uint32_t body, tl_holding *sum)
 tl_energies tl_segments_energies(tl_model *m)
 {
     struct tl_segments *s = m->segments;
-    tl_energies sum = {0, s ? s->lost : 0};
+    tl_energies sum = {.heat = s ? s->lost : 0};
     if (s) {
         sum.stored -= s->blend_stored;
         sum.heat -= s->blend_heat;

@@ -4,6 +4,8 @@
 #include "contact/store.h"
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
+#include "element/life.h"
+#include "element/walk.h"
 #include "model/joints.h"
 #include "model/rows.h"
 #include "model/seats.h"
@@ -82,6 +84,18 @@ static tl_status copy_zones(tl_model *to, const tl_model *from)
                : TL_OK;
 }
 
+/* The sets have been copied, and so the tables are there. */
+static tl_status copy_elements(tl_model *to, const tl_model *from)
+{
+    if (!from->elements)
+        return TL_OK;
+    tl_entries entries = {.count = 0};
+    tl_elements_walk(from->elements, &(tl_walk){tl_entries_note, &entries});
+    tl_entries_copy copy = {.from = &entries};
+    tl_elements_walk(to->elements, &(tl_walk){tl_entries_take, &copy});
+    return copy.failed ? tl_fail_memory(&to->error) : TL_OK;
+}
+
 static tl_status copy_cycle(tl_model *to, const tl_model *from)
 {
     if (!from->cycle)
@@ -110,6 +124,8 @@ static tl_status fill(tl_model *to, tl_model *from, const tl_drives_again *again
         status = copy_detection(to, from);
     if (status == TL_OK)
         status = copy_zones(to, from);
+    if (status == TL_OK)
+        status = copy_elements(to, from);
     if (status == TL_OK) /* gridpoints may follow them */
         status = tl_drives_copy(to, from, again);
     return status == TL_OK ? copy_cycle(to, from) : status;

@@ -1,4 +1,4 @@
-/* kinds.c - laws, damping and solids in an archive.
+/* kinds.c - laws, damping, solids and kinds of elements in an archive.
  *
  *     PREFIX.kind      name of the law or damping, "coulomb"
  *     PREFIX.plugin    id and version of its plugin, "talus.coulomb 1.0"
@@ -9,7 +9,8 @@
  *     PREFIX.pairs     its pairs of blocks, ids a < b: a 2^32 + b, ascending
  *
  * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules, or "solid.0", ... with
- * PREFIX.name. A parameter that is a table is a list of its rows. Parameters are checked as those of a script are. */
+ * PREFIX.name, or "element.0", ... with PREFIX.group and PREFIX.placed, the structure for which it was placed. A
+ * parameter that is a table is a list of its rows. Parameters are checked as those of a script are. */
 #include "state/kinds.h"
 
 #include "base/params.h"
@@ -17,8 +18,11 @@
 #include "cycle/cycle_data.h"
 #include "cycle/damping.h"
 #include "cycle/joint_law.h"
+#include "element/life.h"
+#include "element/set.h"
 #include "force/joint_laws.h"
 #include "model/scope.h"
+#include "plugin/descriptor.h"
 #include "zone/grid.h"
 #include "zone/life.h"
 #include "zone/solids.h"
@@ -56,7 +60,12 @@ static void put_param(tl_archive_writer *w, const char *prefix, const tl_param *
     const char *at = (const char *)params + p->offset;
     int32_t choice;
     tl_chunk_name(name, "%s.param.%s", prefix, p->name);
-    if (p->type == TL_PARAM_POINTS) {
+    if (p->type == TL_PARAM_STRING) {
+        const char *text;
+        memcpy(&text, at, sizeof text);
+        if (text)
+            tl_archive_put_text(w, name, text);
+    } else if (p->type == TL_PARAM_POINTS) {
         tl_points rows;
         memcpy(&rows, at, sizeof rows);
         tl_archive_put(w, name, rows.at, sizeof *rows.at, rows.count);
@@ -132,6 +141,22 @@ static void save_solids(const tl_model *m, tl_archive_writer *w)
     }
 }
 
+static void save_elements(const tl_model *m, tl_archive_writer *w)
+{
+    if (!m->elements)
+        return;
+    const uint64_t count = m->elements->set_count;
+    tl_archive_put(w, "elements", &count, sizeof count, 1);
+    for (uint64_t k = 0; k < count; k++) {
+        const tl_element_set *set = &m->elements->set[k];
+        char prefix[PREFIX], name[TL_CHUNK_NAME];
+        snprintf(prefix, sizeof prefix, "element.%" PRIu64, k);
+        tl_archive_put(w, tl_chunk_name(name, "%s.group", prefix), &set->group, sizeof set->group, 1);
+        tl_archive_put(w, tl_chunk_name(name, "%s.placed", prefix), &set->structure, sizeof set->structure, 1);
+        put_kind(w, prefix, set->kind, set->params);
+    }
+}
+
 /* ---------------------------------------------------------------- restoring -------------- */
 
 /* Finds the law or damping of a prefix among the plugins, and sees that it is the same one. */
@@ -143,7 +168,7 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
     if (!tl_archive_text(a, tl_chunk_name(chunk, "%s.kind", prefix), name, sizeof name) ||
         !tl_archive_text(a, tl_chunk_name(chunk, "%s.plugin", prefix), plugin, sizeof plugin))
         return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
-    const char *what = type == TL_KIND_LAW ? "law" : type == TL_KIND_SOLID ? "solid" : "damping";
+    const char *what = tl_kind_type_name(type);
     *kind = tl_plugin_find(type, name);
     if (!*kind)
         return tl_fail(&m->error, TL_E_NOT_FOUND,
@@ -167,7 +192,7 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
 typedef struct read_param {
     double numbers[3];
     char text[PLUGIN_NAME];
-    double *rows; /* of a table; from malloc */
+    void *rows; /* of a table or a text; from malloc */
 } read_param;
 
 /* A table. An empty one was not given. */
@@ -186,6 +211,20 @@ static bool read_rows(const tl_archive *a, const char *name, const tl_param *p, 
     value->data = r->rows;
     value->count = count;
     return r->rows && tl_archive_get(a, name, r->rows, sizeof(tl_vec3), count);
+}
+
+/* A text; one that is not there was not given. */
+static bool read_text(const tl_archive *a, const char *name, read_param *r, tl_value *value, bool *given)
+{
+    const tl_chunk *chunk = tl_archive_find(a, name);
+    *given = chunk != NULL;
+    value->type = TL_VALUE_STRING;
+    if (!chunk)
+        return true;
+    if (chunk->size != 1 || chunk->items >= SIZE_MAX)
+        return false;
+    value->text = r->rows = malloc((size_t)chunk->items + 1);
+    return r->rows && tl_archive_text(a, name, r->rows, (size_t)chunk->items + 1) && tl_text_is_utf8(r->rows);
 }
 
 /* Reads a parameter as a script would give it. false: it is not there. `*given` is false for one that was left out. */
@@ -211,6 +250,7 @@ static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p,
         value->number = yes != 0;
         return true;
     case TL_PARAM_POINTS: return read_rows(a, name, p, r, value, given);
+    case TL_PARAM_STRING: return read_text(a, name, r, value, given);
     case TL_PARAM_ENUM:
         value->type = TL_VALUE_STRING;
         value->text = r->text;
@@ -250,8 +290,19 @@ static tl_status tell_path(tl_model *m, const tl_archive *a, tl_status status)
                                                     : tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
 }
 
-/* Makes the law, solid or damping of a prefix: a law of that scope into `law`, a solid of that name, or the model's
- * damping. */
+static tl_status restore_set(tl_model *m, const tl_kind *kind, const tl_args *args)
+{
+    struct tl_elements *e = m->elements;
+    if (!tl_grow(&e->set, &e->set_capacity, e->set_count + 1, sizeof *e->set) ||
+        !tl_elements_hold_states(e, tl_element_columns(kind, false), tl_element_columns(kind, true)))
+        return tl_fail_memory(&m->error);
+    const tl_status status = tl_element_set_make(kind, args, NULL, kind->name, &m->error, &e->set[e->set_count]);
+    e->set_count += status == TL_OK;
+    return status;
+}
+
+/* Makes what a prefix says: a law of that scope into `law`, a solid of that name, the last set of elements, or the
+ * model's damping. */
 static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix, tl_kind_type type,
                               const tl_scope *scope, tl_law *law, const char *solid)
 {
@@ -265,6 +316,8 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     status = storage && values ? read_params(m, a, prefix, kind, storage, values, &args) : tl_fail_memory(&m->error);
     if (status == TL_OK && law) {
         status = tell_path(m, a, tl_law_make_for(m, scope, kind, &args, NULL, law));
+    } else if (status == TL_OK && type == TL_KIND_ELEMENT) {
+        status = tell_path(m, a, restore_set(m, kind, &args));
     } else if (status == TL_OK) {
         status = tell_path(m, a, solid ? tl_solid_set(m, solid, kind, &args) : tl_damping_make(m, kind, &args, NULL));
     }
@@ -394,6 +447,32 @@ static tl_status restore_solids(tl_model *m, const tl_archive *a)
     return status;
 }
 
+static tl_status restore_elements(tl_model *m, const tl_archive *a)
+{
+    uint64_t count;
+    if (!tl_archive_find(a, "elements"))
+        return TL_OK;
+    if (!tl_archive_get(a, "elements", &count, sizeof count, 1) || count > a->chunk_count)
+        return tl_archive_bad(a, &m->error, "'elements' does not fit");
+    tl_status status = tl_elements_begin(m) ? TL_OK : tl_fail_memory(&m->error);
+    for (uint64_t k = 0; k < count && status == TL_OK; k++) {
+        char prefix[PREFIX], group[TL_CHUNK_NAME], placed[TL_CHUNK_NAME];
+        tl_element_set had;
+        snprintf(prefix, sizeof prefix, "element.%" PRIu64, k);
+        tl_chunk_name(group, "%s.group", prefix);
+        tl_chunk_name(placed, "%s.placed", prefix);
+        if (!tl_archive_get(a, group, &had.group, sizeof had.group, 1) || had.group >= m->group_count ||
+            !tl_archive_get(a, placed, &had.structure, sizeof had.structure, 1))
+            return tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", prefix);
+        status = restore_kind(m, a, prefix, TL_KIND_ELEMENT, NULL, NULL, NULL);
+        if (status == TL_OK) {
+            m->elements->set[k].group = had.group;
+            m->elements->set[k].structure = had.structure;
+        }
+    }
+    return status;
+}
+
 /* ---------------------------------------------------------------- copying ---------------- */
 
 static tl_status copy_laws(tl_model *to, const tl_model *from)
@@ -438,6 +517,24 @@ static tl_status copy_solids(tl_model *to, const tl_model *from)
     return status;
 }
 
+static tl_status copy_elements(tl_model *to, const tl_model *from)
+{
+    if (from->elements && !tl_elements_begin(to))
+        return tl_fail_memory(&to->error);
+    tl_status status = TL_OK;
+    for (size_t k = 0; from->elements && k < from->elements->set_count && status == TL_OK; k++) {
+        const tl_element_set *set = &from->elements->set[k];
+        struct tl_elements *e = to->elements;
+        if (!tl_grow(&e->set, &e->set_capacity, k + 1, sizeof *e->set) ||
+            !tl_elements_hold_states(e, from->elements->nodes.state_columns, from->elements->table.state_columns))
+            return tl_fail_memory(&to->error);
+        status = tl_element_set_make(set->kind, &(tl_args){NULL, 0}, set, set->kind->name, &to->error, &e->set[k]);
+        e->set_count += status == TL_OK;
+    }
+    return status;
+}
+
 const tl_state_part tl_laws_part = {save_laws, restore_laws, copy_laws};
 const tl_state_part tl_damping_part = {save_damping, restore_damping, copy_damping};
 const tl_state_part tl_solids_part = {save_solids, restore_solids, copy_solids};
+const tl_state_part tl_elements_part = {save_elements, restore_elements, copy_elements};

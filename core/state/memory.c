@@ -4,6 +4,7 @@
 #include "contact/store.h"
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
+#include "element/walk.h"
 #include "geometry/make.h"
 #include "model/seats.h"
 #include "model/walk.h"
@@ -74,6 +75,10 @@ tl_memory tl_model_memory(const tl_model *m)
         tl_zones_walk(m->zones, &walk);
     if (m->segments)
         tl_segments_walk(m->segments, &walk);
+    if (m->elements) {
+        tl_elements_walk(m->elements, &walk);
+        memory.other += sizeof *m->elements + m->elements->set_capacity * sizeof *m->elements->set;
+    }
     if (m->cycle) {
         tl_cycle_walk(m->cycle, &walk);
         memory.step += sizeof *m->cycle + tl_undo_bytes(m->cycle);

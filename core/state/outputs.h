@@ -10,7 +10,7 @@
 #include <sys/types.h>
 
 /* Most files that a frame consists of. */
-#define TL_VTK_PARTS 4
+#define TL_VTK_PARTS 5
 
 /* Which file of a system a file is, whatever its name. */
 typedef struct tl_vtk_file_id {

@@ -9,7 +9,8 @@
 
 /* NULL ends the list. */
 static const tl_state_part *const tl_state_parts[] = {
-    &tl_shapes_part, &tl_laws_part, &tl_damping_part, &tl_solids_part, &tl_outputs_part, &tl_histories_part, NULL,
+    &tl_shapes_part,   &tl_laws_part,    &tl_damping_part,   &tl_solids_part,
+    &tl_elements_part, &tl_outputs_part, &tl_histories_part, NULL,
 };
 
 #endif

@@ -12,6 +12,9 @@
 #include "cycle/cycle_data.h"
 #include "cycle/prepare.h"
 #include "detect/kinds.h"
+#include "element/set.h"
+#include "element/sound.h"
+#include "element/walk.h"
 #include "geometry/seam.h"
 #include "model/joints.h"
 #include "model/loads.h"
@@ -242,6 +245,9 @@ static bool edits_are_sound(const tl_model *m)
             (i && s->block <= s[-1].block))
             return false;
     }
+    for (size_t i = 0; i < m->cut_out_count; i++)
+        if (m->cut_out[i].block >= m->next_id || m->cut_out[i].whole >= m->next_id)
+            return false;
     for (size_t i = 0; i < m->face_load_count; i++) {
         const tl_face_load *f = &m->face_loads[i];
         if (f->block == TL_NO_ID || f->block >= m->next_id || !tl_v3_finite(f->force) || !tl_v3_finite(f->moment) ||
@@ -625,6 +631,26 @@ static tl_status read_segments(tl_model *m, const tl_archive *a)
     return tl_segments_index(m) ? TL_OK : tl_fail_memory(&m->error);
 }
 
+static tl_status read_elements(tl_model *m, const tl_archive *a)
+{
+    if (!m->elements)
+        return TL_OK;
+    struct tl_elements *e = m->elements;
+    uint32_t nodes, whole; /* columns: also those of kinds whose elements have gone */
+    if (!tl_archive_get(a, "elements.nodes.state_columns", &nodes, sizeof nodes, 1) || nodes > TL_ELEMENT_COLUMNS ||
+        !tl_archive_get(a, "elements.table.state_columns", &whole, sizeof whole, 1) || whole > TL_ELEMENT_COLUMNS)
+        return tl_archive_bad(a, &m->error, "'elements' is missing or does not fit");
+    if (!tl_elements_hold_states(e, nodes, whole))
+        return tl_fail_memory(&m->error);
+    const uint32_t had[2] = {e->nodes.state_columns, e->table.state_columns};
+    reader r = {.archive = a};
+    tl_elements_walk(e, &(tl_walk){read_entry, &r});
+    const tl_status status = told(&r, m);
+    if (status == TL_OK && (had[0] != e->nodes.state_columns || had[1] != e->table.state_columns))
+        return unsound(a, m, "states of elements are missing");
+    return status == TL_OK ? unsound(a, m, tl_elements_unsound(m)) : status;
+}
+
 static tl_status read_cycle(tl_model *m, const tl_archive *a)
 {
     if (!tl_archive_find(a, "cycle.rows"))
@@ -666,6 +692,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, const tl_drives_again *a
         status = read_zones(m, a);
     if (status == TL_OK)
         status = read_segments(m, a);
+    if (status == TL_OK)
+        status = read_elements(m, a);
     if (status == TL_OK)
         status = unsound(a, m, tl_carriers_unsound(m));
     if (status == TL_OK) /* gridpoints may follow them */

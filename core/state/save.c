@@ -5,6 +5,8 @@
 #include "contact/store.h"
 #include "cycle/prepare.h"
 #include "cycle/undo.h"
+#include "element/follow.h"
+#include "element/walk.h"
 #include "model/rows.h"
 #include "model/walk.h"
 #include "segment/walk.h"
@@ -105,6 +107,8 @@ static void save_all(tl_archive_writer *w, tl_model *m)
         tl_zones_walk(m->zones, &walk);
     if (m->segments)
         tl_segments_walk(m->segments, &walk);
+    if (m->elements)
+        tl_elements_walk(m->elements, &walk);
     if (m->cycle)
         tl_cycle_walk(m->cycle, &walk);
 }
@@ -122,6 +126,7 @@ static tl_status save_under(tl_model *m, const char *path)
 static tl_status prepare(tl_model *m)
 {
     tl_rows_tidy(m);
+    tl_elements_follow(m);
     if (!m->cycle)
         return TL_OK;
     if (tl_undo_lost(m->cycle))

@@ -16,6 +16,8 @@
 #include "cycle/prepare.h"
 #include "cycle/timestep.h"
 #include "detect/detect.h"
+#include "element/follow.h"
+#include "element/set.h"
 #include "model/loads.h"
 #include "model/record.h"
 #include "model/scope.h"
@@ -361,6 +363,26 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
     tl_hash_word(hash, sum.b);
 }
 
+/* ---------------------------------------------------------------- elements --------------- */
+
+/* By name: which numbers kinds, groups and states have depends on what was there before. */
+static void hash_elements(tl_hash *hash, const tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    const tl_element_table *t = &e->table;
+    tl_hash_word(hash, e->next_id);
+    for (size_t k = 0; k < e->set_count; k++) {
+        hash_text(hash, e->set[k].kind->name);
+        hash_text(hash, m->groups[e->set[k].group]);
+        tl_element_set_hash(&e->set[k], hash);
+    }
+    for (size_t row = 0; row < t->table.rows; row++) {
+        tl_hash_word(hash, t->set[row]);
+        hash_rows(hash, &t->table, row, row + 1);
+    }
+    hash_rows(hash, &e->nodes.table, 0, e->nodes.table.rows);
+}
+
 /* ---------------------------------------------------------------- settings --------------- */
 
 /* The blocks that a law names, those that live, and how many such laws were named before it. */
@@ -506,7 +528,10 @@ tl_status tl_state_hash(tl_model *m, char text[33])
 {
     tl_hash hash = tl_hash_start();
     tl_segments_forget_asked(m);
-    tl_status status = hash_next_contacts(&hash, m);
+    tl_status status = tl_elements_ready(m);
+    if (status != TL_OK)
+        return status;
+    status = hash_next_contacts(&hash, m);
     if (status != TL_OK)
         return status;
     hash_settings(&hash, m);
@@ -515,6 +540,8 @@ tl_status tl_state_hash(tl_model *m, char text[33])
         hash_meshes(&hash, m);
     if (m->segments && m->segments->meet_count > 0)
         hash_segments(&hash, m);
+    if (m->elements)
+        hash_elements(&hash, m);
     snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;
 }

@@ -35,4 +35,5 @@ void tl_zones_walk(struct tl_zones *z, const tl_walk *walk)
     VALUE(CACHE, rated_for);
     VALUE(CACHE, rated_at);
     VALUE(CACHE, segments_rated);
+    VALUE(CACHE, elements_rated);
 }

@@ -213,7 +213,8 @@ struct tl_zones {
     uint32_t highest, lowest;         /* rows of those with these, or TL_NO_ROW */
     uint64_t rated_for;               /* version then; 0: not known */
     int64_t rated_at;                 /* steps made then */
-    uint64_t segments_rated;          /* version of the segments then */
+    uint64_t segments_rated;          /* version of the segments then, */
+    uint64_t elements_rated;          /* and of the elements */
 };
 
 static inline bool tl_model_deforms(const tl_model *m)

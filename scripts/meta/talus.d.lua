@@ -1527,6 +1527,7 @@ function Model:filter(options) end
 
 ---@class (exact) talus.KeyblocksOptions
 ---@field gravity? talus.Vector m/s2: acceleration that acts on the blocks; that of the model when left out
+---@field target? number > 0: factor of safety that is asked for: each keyblock then tells the support that it takes
 ---@field friction? number|table<string, number> friction angle of the joints, degrees, in [0, 90): one for all, or by joint: {["*"] = 35, J1 = 30, ["J1:3"] = 25}; the closest name counts
 ---@field cohesion? number|table<string, number> cohesion of the joints, Pa, likewise; 0 where none is given
 
@@ -1540,11 +1541,13 @@ function Model:filter(options) end
 ---@field force talus.Vector weight and load, N; of the body, kg and m3
 ---@field mass number weight and load, N; of the body, kg and m3
 ---@field volume number weight and load, N; of the body, kg and m3
+---@field support number? with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
+---@field support_pressure number? with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
 ---@field pyramid talus.Vector[] edges of the joint pyramid, unit vectors: it can move in all directions between them
 
 --- Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor of safety in limit equilibrium.
 ---
----     list = model:keyblocks{friction = 35}
+---     list = model:keyblocks{friction = 35, target = 1.5}
 ---@param options? talus.KeyblocksOptions
 ---@return talus.Keyblock[]
 function Model:keyblocks(options) end
@@ -1623,7 +1626,7 @@ function Model:memory() end
 ---@class (exact) talus.WriteHtmlOptions
 ---@field title? string title of the page; the name at the end of its path when left out
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1640,7 +1643,7 @@ function Model:write_html(path, options) end
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
 ---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field zone_fields? { NAME: number } numbers of each zone, likewise: fields of zones, states of their solids, functions
 
@@ -1674,7 +1677,7 @@ function Model:write_blocks(path) end
 ---@field commands? boolean default true: whether commands are taken; without, the page only shows
 ---@field share? number in (0, 1], default 0.02: most of the run's time that goes into frames
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1740,5 +1743,62 @@ function talus.resumed() end
 ---@param options? talus.SeatOptions
 ---@return talus.SeatResult
 function Model:seat(options) end
+
+---@class (exact) talus.FactorOfSafetyOptions
+---@field from? number >= 0.05, default 0.1: least factor that is tried
+---@field to? number > 0.05, default 10: largest factor that is tried; above `from`
+---@field resolution? number in [0.0001, 0.5], default 0.01: relative width of the bracket that is found
+---@field least_volume? number m3, >= 0, default 0: what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on
+---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+---@class (exact) talus.FactorOfSafetyResult
+---@field factor number sqrt(lower * upper); 0 where it fails whatever the strengths, math.huge where it holds at `to`, `from` where it fails there
+---@field lower number the largest factor that holds, 0: none; and the least that fails, math.huge: none
+---@field upper number the largest factor that holds, 0: none; and the least that fails, math.huge: none
+---@field failing talus.Blocks selection of the blocks that go together at `upper`: those within 0.3 of the fastest
+---@field volume number? of these, m3, and where they go, a unit vector; without any direction is nil
+---@field direction talus.Vector? of these, m3, and where they go, a unit vector; without any direction is nil
+---@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "holds" without any
+---@field keyblock { block: talus.Block, factor: number }? {factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is none, or laws have no friction and cohesion or name blocks
+---@field trials { F: number, cycles: integer, holds: boolean, undecided: boolean, why: string }[] each a table: F, holds, undecided, cycles, why; in the order in which they were made
+---@field small talus.Blocks selection of the blocks below least_volume that failed before, and were deleted in the copies
+---@field undecided integer number of trials that neither came to rest nor failed: they count as failing
+---@field cycles integer steps of all trials, and s
+---@field wall number steps of all trials, and s
+---@field message string all of this in a sentence
+
+--- Finds by how much the strengths of laws and solids may be divided before the model does not come to rest any more. Trials are made on copies: the model stays as it is.
+---
+---     result = model:factor_of_safety{resolution = 0.01}
+---@param options? talus.FactorOfSafetyOptions
+---@return talus.FactorOfSafetyResult
+function Model:factor_of_safety(options) end
+
+---@class (exact) talus.SafetyMapOptions
+---@field from? number >= 0.05, default 0.5: least factor that is tried
+---@field to? number > 0.05, default 3: largest factor that is tried; above `from`
+---@field step? number >= 0.001, default 0.02: from one factor to the next
+---@field failed? "delete"|"hold" default "delete": what becomes of blocks that have failed, in the copies: they are deleted, or held where they were
+---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+---@class (exact) talus.SafetyMapResult
+---@field factor table by the id of each block that can move: the factor at which it fails once those before it have gone; math.huge: it holds at `to`; 0: nothing holds it. Files and screens take it as block_fields = {safety = map.factor}
+---@field curve { blocks: integer, factor: number, volume: number }[] by ascending factors, each {factor =, volume =, blocks =}: what has failed by then, in all
+---@field undecided integer number of trials that neither came to rest nor failed: they count as failing
+---@field cycles integer steps of all trials, and s
+---@field wall number steps of all trials, and s
+
+--- Finds the factor of safety of every block: strengths are divided by more and more, and what has failed goes before it goes on. Trials are made on copies: the model stays as it is.
+---
+---     map = model:safety_map{from = 0.5, to = 3, step = 0.5}
+---@param options? talus.SafetyMapOptions
+---@return talus.SafetyMapResult
+function Model:safety_map(options) end
 
 return talus

@@ -65,6 +65,7 @@ local WORDS = {
     ["list of vectors"] = "talus.Vector[]",
     ["list of blocks"] = "talus.Block[]",
     ["list of 2 blocks"] = "talus.Block[]",
+    ["list of 2 numbers"] = "number[]",
     ["list of 4 numbers"] = "number[]",
     ["list of numbers"] = "number[]",
     ["list of numbers or legs"] = "(number|{ shear: number?, closure: number?, normal_stress: number?, time: number?, " ..
@@ -81,10 +82,15 @@ local WORDS = {
     ["list of two groups"] = "(string|talus.Blocks|talus.Block)[]",
     ["block or its id"] = "talus.Block|integer",
     ["a table of what is to be done"] = "talus.BoundaryOptions",
+    ["function(trial)"] = "fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string })",
     ["function(block)"] = "fun(block: talus.Block): any",
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(zone)"] = "fun(zone: talus.Zone): any",
     ["function(gridpoint)"] = "fun(gridpoint: talus.Gridpoint): any",
+    ["list of tables"] = "table[]",
+    ["function(element)"] = "fun(element: talus.Element): any",
+    ["number or function(x, y, z)"] = "number|fun(x: number, y: number, z: number): number",
+    ["name or list of names"] = "string|string[]",
     ["number or function({x, y, z})"] = "number|fun(place: talus.Vector): number",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
@@ -102,7 +108,8 @@ local WORDS = {
     ["{NAME = value}"] = "table<string, number|string|boolean|talus.Vector>",
     ["{friction =, cohesion =, gravity =}"] = "talus.KeyblocksOptions",
     ['true, false or "slipping"'] = 'boolean|"slipping"',
-    ['{"FIELD", NAME = "FIELD" or function(block)}'] = "string[]|table<string, string|fun(block: talus.Block): number?>",
+    ['{"FIELD", NAME = "FIELD", {[id] = number} or function(block)}'] = "string[]|table<string, string|table<integer, number>|" ..
+        "fun(block: talus.Block): number?>",
     ['{"FIELD", NAME = "FIELD" or function(contact)}'] = "string[]|table<string, string|fun(contact: talus.Contact): number?>",
     ["{BLOCK = function(t)}"] = "table<integer, function|{ velocity: function?, angular_velocity: function? }>",
 }
@@ -156,7 +163,8 @@ local function seen_type(value)
             word:match("^model ") and "talus.Model" or word:match("^selection of %d+ block") and "talus.Blocks" or
             word:match("^selection of %d+ contact") and "talus.Contacts" or word:match("^zone ") and "talus.Zone" or
             word:match("^gridpoint ") and "talus.Gridpoint" or word:match("^selection of %d+ zone") and "talus.Zones" or
-            word:match("^selection of %d+ gridpoint") and "talus.Gridpoints" or "userdata"
+            word:match("^selection of %d+ gridpoint") and "talus.Gridpoints" or word:match("^element ") and "talus.Element" or
+            word:match("^selection of %d+ element") and "talus.Elements" or "userdata"
     elseif kind ~= "table" then
         return ({ float = "number", ["nil"] = false })[kind] or (kind ~= "nil" and kind or nil)
     elseif getmetatable(value) then
@@ -598,6 +606,7 @@ local function whole()
     put_items("contacts", "Contact", "Contacts", functions)
     put_items("zones", "Zone", "Zones", functions)
     put_items("gridpoints", "Gridpoint", "Gridpoints", functions)
+    put_items("elements", "Element", "Elements", functions)
     for _, name in ipairs(names) do
         local topic = pages.topic(name)
         for _, of in ipairs(functions_of(name, topic.head[1])) do

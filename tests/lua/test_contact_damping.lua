@@ -26,8 +26,9 @@ local function fall(options)
     m:generate("polyhedron", { vertices = vertices, density = 2500, group = "block" })
     m:joint("*", options.law or "coulomb", options.params or { kn = 1e9, ks = 1e9, friction = 35 })
     if options.zones then
-        m:solid("rock", "elastic", { young = 5e9, poisson = 0.2 })
-        m:blocks { group = "block" }:deformable { zone = 0.6, solid = "rock" }
+        m:solid("rock", "elastic", { young = 1e9, poisson = 0.2 })
+        m:timestep { fraction = 0.25, zone_fraction = 0.25 }
+        m:blocks { group = "block" }:deformable { zone = 1, solid = "rock" }
     end
     if options.damping ~= false then
         m:damping("dashpot", { ratio = options.ratio or 0.3, frequency = 400 })
@@ -54,7 +55,7 @@ for name, options in pairs {
     curved = { law = "barton_bandis", params = { jrc = 8, jcs = 80e6, phi_r = 30, kni = 1e9, vm = 1e-3, ks = 1e9 } },
     zones = { zones = true }, zones_edge = { zones = true, turn = 0.4 },
 } do
-    local time = options.zones and 0.075 or 0.1
+    local time = options.zones and 0.068 or 0.08
     local plain = {}
     for key, value in pairs(options) do
         plain[key] = value

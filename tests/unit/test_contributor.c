@@ -61,7 +61,7 @@ static void hold(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
 static tl_energies energies(tl_model *m)
 {
     (void)m;
-    return (tl_energies){springs.stored, 0};
+    return (tl_energies){.stored = springs.stored};
 }
 
 static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])

@@ -47,7 +47,7 @@ typedef struct tl_keyblock {
     tl_id block; /* the oldest block of the body */
     int32_t mode;
     double volume, mass; /* of the body */
-    tl_vec3 force;       /* weight and load, N */
+    tl_vec3 force;       /* weight, load and elements, N */
     tl_vec3 direction;   /* of the motion, unit; zero when stable */
     double driving;      /* force along it, N */
     double safety;       /* factor of safety: 0 falling, infinite stable */

@@ -32,10 +32,11 @@ typedef struct tl_vtk_parts {
     int32_t zones;                     /* since 1.10: of deformable blocks, where there are any */
     const tl_extra_field *zone_fields; /* since 1.10: of each zone of all blocks, as tl_zones_select gives them */
     size_t zone_field_count;           /* since 1.10 */
+    int32_t elements;                  /* since 1.13: where there are any */
 } tl_vtk_parts;
 /* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_, _joints_ and, where blocks are
- * deformable, _zones_, or those of `parts`, and PREFIX_{blocks,contacts,joints,zones}.vtk.series. Folders are made as
- * needed. Files of one number are of one frame. */
+ * deformable, _zones_, and where there are elements, _elements_, or those of `parts`. For each there is a list, as
+ * PREFIX_blocks.vtk.series. Folders are made as needed. Files of one number are of one frame. */
 TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix, const tl_vtk_parts *parts);
 
 /* Which contacts a frame of a page has. */

@@ -1,13 +1,13 @@
-/* talus/plugin.h - the plugin interface: contact laws, dampings, generators, screens and solids as shared objects.
+/* talus/plugin.h - the plugin interface: laws, dampings, generators, screens, solids and elements as shared objects.
  *
  * A plugin is a shared object that exports one function,
  *
  *     const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor);
  *
  * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a plugin creates
- * nothing. The descriptor lists *kinds*: laws, dampings, generators, screens and solids, each with its parameters,
- * states and operations. The host checks, defaults and documents parameters from one table. It owns states, carries
- * them over, saves and writes them.
+ * nothing. The descriptor lists *kinds*: laws, dampings, generators, screens, solids and elements, each with its
+ * parameters, states and operations. The host checks, defaults and documents parameters from one table. It owns
+ * states, carries them over, saves and writes them.
  *
  * Growth: every struct begins with its `size` and every array carries a stride, so a newer host
  * reads an older plugin. The major version must match; a minor version only appends.
@@ -70,7 +70,8 @@ typedef enum tl_param_type {
     TL_PARAM_BOOL, /* int32_t, 0 or 1 */
     TL_PARAM_ENUM, /* int32_t, index into `choices` */
     TL_PARAM_VEC3, /* tl_vec3; NaN when optional and not given */
-    /* of generators only: they are valid during the call, and the host refuses them in kinds that keep parameters */
+    /* of generators only: they are valid during the call, and the host refuses them in kinds that keep parameters.
+     * Since 1.13 also of elements: the host keeps the text as long as `self`. */
     TL_PARAM_STRING, /* const char *; NULL when optional and not given */
     /* tl_points: a list of vectors; empty when optional and not given. Since 1.10 also of solids, with TL_PARAM_FLAT: a
      * table of rows {x, y} in which x ascends. The host keeps the rows as long as `self`. */
@@ -102,7 +103,9 @@ enum {
     TL_PARAM_STRENGTH = 64,
     TL_PARAM_STRENGTH_ANGLE = 256,
     TL_PARAM_STRENGTH_DIVISOR = 512,
-    TL_PARAM_STRENGTH_ENERGY = 1024
+    TL_PARAM_STRENGTH_ENERGY = 1024,
+    /* since 1.13, of an element: `place` reads it, so it cannot be set later */
+    TL_PARAM_PLACE = 2048
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
@@ -136,6 +139,8 @@ typedef struct tl_param {
 #define TL_STATE_COLUMNS 8
 /* Columns that the states of one solid may take. */
 #define TL_SOLID_COLUMNS 16
+/* Columns that the states of one kind of element may take: of its nodes, and as many of whole elements. */
+#define TL_ELEMENT_COLUMNS 16
 
 typedef enum tl_state_kind {
     TL_STATE_SCALAR,  /* one column */
@@ -143,7 +148,8 @@ typedef enum tl_state_kind {
     /* since 1.10, of solids, three columns: a vector, turned with the zone by the host. A new one is 0, and 0 stays
      * 0: a solid whose axis is 0 takes the one that its parameters give. */
     TL_STATE_AXIS,
-    TL_STATE_TENSOR /* since 1.10, of solids, six columns xx yy zz xy yz zx, turned with the zone by the host */
+    TL_STATE_TENSOR, /* since 1.10, of solids, six columns xx yy zz xy yz zx, turned with the zone by the host */
+    TL_STATE_WHOLE   /* since 1.13, of elements, one column: a number of a whole element, not of each node */
 } tl_state_kind;
 
 /* What becomes of a state when the contact polygon changes. */
@@ -156,11 +162,12 @@ typedef enum tl_state_transfer {
     TL_TRANSFER_LIFT /* 1.8, >= 0: what the normal force is linear in; its moments over the area stay, too */
 } tl_state_transfer;
 
-/* One state of a law (per contact point), of a damping (per model) or of a solid (per zone). The host owns it. */
+/* One state: of a law per contact point, of a damping per model, of a solid per zone, of an element per node or for the
+ * whole. The host owns it. */
 typedef struct tl_state {
     uint32_t size;
     uint32_t kind;     /* tl_state_kind; a damping has scalars only */
-    uint32_t transfer; /* tl_state_transfer; TL_TRANSFER_COPY for dampings and solids */
+    uint32_t transfer; /* tl_state_transfer; TL_TRANSFER_COPY for dampings, solids and elements */
     const char *name;
     const char *unit;
     const char *doc;
@@ -588,6 +595,161 @@ typedef struct tl_solid_ops {
     uint32_t never_fails;
 } tl_solid_ops;
 
+/* ---------------------------------------------------------------- elements --------------- */
+
+/* Since 1.13: an element acts on points of blocks, its nodes. A bolt is one, and so is water between two walls. */
+
+/* Limit: nodes of one element. A worker takes so many at a time. */
+#define TL_ELEMENT_NODES 512
+
+/* Flags of an element. The kind sets and clears them, but for the last one, which the host sets. */
+enum {
+    TL_ELEMENT_YIELDED = 1,
+    TL_ELEMENT_BROKEN = 2,
+    TL_ELEMENT_DETACHED = 4 /* the block of a node has been deleted: the node has weight 0 and acts on nothing */
+};
+
+/* Whole elements of one call, in the order of their ids, as columns: element e has the nodes start[e] .. start[e + 1]
+ * of the columns of nodes. Columns need not be aligned. Places count from `origin`, so far from zero they keep their
+ * digits. A node without a block is on the ground: it does not move.
+ *
+ * Energies are those at the present places. `given` is work that comes from outside, as of water. The bodies do the
+ * work stored - stored before + lost - given on the element; the balance of the model shows what is missing. It books
+ * the work of a step with the mean of the forces before and after it: lost and given should do so, too. */
+typedef struct tl_element_batch {
+    uint32_t size, count;
+    double dt;   /* s, in which nodes have moved last; 0 in the first step of a run, and while model:relax runs */
+    double time; /* s */
+    tl_vec3 origin;
+    const uint32_t *start;        /* [count + 1] */
+    const double *rest[3];        /* m, place when installed, from `origin` */
+    const double *u[3];           /* m, displacement since */
+    const double *du[3];          /* m, displacement in the last step */
+    const double *v[3];           /* m/s, of that motion; 0 while model:relax runs */
+    const double *normal[3];      /* present outward normal of the node's face; 0: it was placed without one */
+    const double *weight;         /* m or m2 that the node stands for */
+    double *const *state;         /* in/out: states of nodes (TL_STATE_SCALAR), in the order declared */
+    double *const *element_state; /* in/out: states of elements (TL_STATE_WHOLE), likewise */
+    uint32_t *flags;              /* in/out, of elements: TL_ELEMENT_* */
+    double *force[3];             /* in: of the last step; out: N, on the block */
+    double *stored;               /* in: of the last step; out: J that an element holds */
+    double *lost;                 /* out, preset to 0: J turned to heat in this step */
+    double *given;                /* out, preset to 0: J brought in from outside in this step */
+} tl_element_batch;
+
+/* A node to be. */
+typedef struct tl_element_node {
+    tl_id block;    /* 0: the ground */
+    tl_vec3 place;  /* m, in the user's coordinates; on or in the block */
+    tl_vec3 normal; /* outward, unit; 0: none */
+    double weight;  /* m or m2 that it stands for, >= 0 */
+} tl_element_node;
+
+/* An element to be. */
+typedef struct tl_new_element {
+    uint32_t size;
+    const tl_element_node *nodes; /* 1 to TL_ELEMENT_NODES */
+    size_t count;
+    const double *node_state; /* [count][states of a node]; NULL: their initial values */
+    const double *state;      /* [states of an element]; NULL: their initial values */
+    /* With `lays_again`, a name among the elements of the kind; 0: none. The element takes the place of that of an
+     * earlier call with the same key. Where `place` is called again it keeps its states: nodes have those of the
+     * nearest old one on the same block. */
+    uint64_t key;
+} tl_new_element;
+
+/* A node on a line through blocks. Those of one body follow each other without a gap. */
+typedef struct tl_line_node {
+    tl_id block;
+    uint32_t passes; /* 1: the line enters or leaves a body here */
+    tl_vec3 place;   /* in the user's coordinates */
+    double at;       /* m from the beginning of the line */
+    double length;   /* m of the line that it stands for: half of the way to its neighbours in the body */
+} tl_line_node;
+
+/* An outer face, or the part of it that lies on no other block. */
+typedef struct tl_element_face {
+    tl_id block;
+    uint32_t face;
+    tl_vec3 normal;         /* outward, unit */
+    const tl_vec3 *corners; /* counter-clockwise from outside, in the user's coordinates */
+    size_t corner_count;
+} tl_element_face;
+
+/* The polygon in which a face of one block faces one of another. */
+typedef struct tl_element_wall {
+    tl_id block[2]; /* the lower id first */
+    uint32_t face[2];
+    const char *joint;         /* name of the joint that made the face; "": none */
+    tl_vec3 normal[2];         /* of the faces, outward, unit */
+    const tl_vec3 *corners[2]; /* on both walls, in the user's coordinates: opposite corners have the same number */
+    size_t corner_count;
+    double area;    /* m2, halfway between */
+    double opening; /* m, mean distance of the walls; below 0 they overlap */
+} tl_element_wall;
+
+/* Which walls. */
+typedef struct tl_wall_filter {
+    uint32_t size;
+    const char *joints; /* names or patterns ("A", "A:3", "*"), separated by commas */
+    double gap;         /* m: walls farther apart on the mean are left out */
+    double angle;       /* degrees: so far their normals may be from opposite, 0 to 45 */
+} tl_wall_filter;
+
+/* What `place` may ask of the host. Lists last until `place` returns or asks the same service again. A function that
+ * returns a status has written its sentence when it is not TL_OK: return that status at once. */
+typedef struct tl_element_host tl_element_host;
+struct tl_element_host {
+    uint32_t size;
+    void *impl;
+    uint64_t seed;  /* of the model */
+    uint32_t again; /* 1: the call is repeated: none of what it finds may be there any more */
+
+    /* Makes an element. Elements of one call get ascending ids. */
+    tl_status (*add)(const tl_element_host *, const tl_new_element *element);
+    /* Nodes on the line between two points: at both ends of each way through a body, and between at distances of at
+     * most `spacing`. Where the line passes from one body to another there are two, one on each side. None lie outside
+     * of all blocks. */
+    tl_status (*line)(const tl_element_host *, tl_vec3 from, tl_vec3 to, double spacing, const tl_line_node **nodes,
+                      size_t *count);
+    /* Outer faces of blocks whose group is `group`, NULL: of all, that look along `facing` within `angle` degrees; a
+     * vector of zeros: of all that there are. */
+    tl_status (*faces)(const tl_element_host *, const char *group, tl_vec3 facing, double angle,
+                       const tl_element_face **faces, size_t *count);
+    /* Pairs of faces that face each other, of blocks of different bodies, by ascending blocks and faces. */
+    tl_status (*walls)(const tl_element_host *, const tl_wall_filter *filter, const tl_element_wall **walls,
+                       size_t *count);
+    /* The block that holds a point, the deepest of several, or 0. */
+    tl_id (*block_at)(const tl_element_host *, tl_vec3 place);
+    /* A remark for the user. */
+    void (*log)(const tl_element_host *, const char *format, ...) TL_PRINTF(2, 3);
+    /* Puts a sentence into the error and returns `status`. */
+    tl_status (*fail)(const tl_element_host *, tl_status status, const char *format, ...) TL_PRINTF(3, 4);
+};
+
+/* Operations of an element. `create` and `destroy` may both be NULL: then `self` is the host's own copy of the params
+ * struct. */
+typedef struct tl_element_ops {
+    uint32_t size;
+    /* [main] */
+    tl_status (*create)(const void *params, void **self, tl_report *report);
+    /* [main] Makes the elements of one call; all or nothing. */
+    tl_status (*place)(const tl_element_host *host, const void *params);
+    /* [worker] a pure function; elements do not depend on each other */
+    tl_status (*update)(const void *self, const tl_element_batch *batch, tl_report *report);
+    /* [worker] bounds of the stiffness k, N/m, and of the damping c, N s/m, with which each node holds its block, both
+     * preset to 0. Of the batch are known rest, weight, states and flags; `u` and the motion are 0. Asked once, and
+     * again when parameters or blocks have changed. */
+    void (*stiffness)(const void *self, const tl_element_batch *batch, double *k, double *c);
+    /* [main] */
+    void (*destroy)(void *self);
+    /* not 0: `update` always returns TL_OK, as a law's */
+    uint32_t never_fails;
+    /* not 0: `place` is called again when blocks have come, gone or been cut. So it is when the first and the last node
+     * of an element have moved apart by 1e-3 of the size of their blocks. Its elements are then those that it makes. */
+    uint32_t lays_again;
+} tl_element_ops;
+
 /* ---------------------------------------------------------------- descriptors ------------ */
 
 typedef enum tl_kind_type {
@@ -595,11 +757,12 @@ typedef enum tl_kind_type {
     TL_KIND_DAMPING,
     TL_KIND_GENERATOR,
     TL_KIND_SCREEN, /* since 1.7 */
-    TL_KIND_SOLID   /* since 1.10 */
+    TL_KIND_SOLID,  /* since 1.10 */
+    TL_KIND_ELEMENT /* since 1.13 */
 } tl_kind_type;
 
-/* One law, damping, generator, screen or solid. `ops` points to tl_law_ops, tl_damping_ops, tl_generator_ops,
- * tl_screen_ops or tl_solid_ops. */
+/* One law, damping, generator, screen, solid or element. `ops` points to tl_law_ops, tl_damping_ops, tl_generator_ops,
+ * tl_screen_ops, tl_solid_ops or tl_element_ops. */
 typedef struct tl_kind {
     uint32_t size;
     uint32_t type;    /* tl_kind_type */

@@ -3,9 +3,9 @@
  * Vertices within `weld` of each other become one, at their mean. Faces that lose their area by it go. Every edge then
  * belongs to two faces. Neighbours that run along it the same way are turned against each other: of faces that hang
  * together the fewer are turned. Where shells touch along an edge, four faces or more meet there. Faces that close a
- * surface by the file's numbers of their vertices are a part, and belong with each other. Within a part, or where none
- * is closed so, a half-edge belongs with that of the face which is met first when turning from its own face through the
- * inside. A shell of negative volume is turned inside out. */
+ * surface by the file's numbers of their vertices are a part, and belong with each other. Among other faces, a
+ * half-edge belongs with that of the face which is met first when turning from its own face through the inside. A
+ * shell of negative volume is turned inside out. */
 #include "solids.h"
 
 #include <stdlib.h>
@@ -374,7 +374,7 @@ static double reach_of(const mesh *m, uint32_t h, tl_vec3 along)
 }
 
 /* The angle through the inside from the face of half-edge h to that of g, which runs the other way. Faces off their
- * planes by `flat` and less are along each other within an angle of 2 flat over how far they reach from the edge. */
+ * planes by `flat` are along each other within an angle of 2 flat / reach, with their reach from the edge. */
 static double inner_angle(const mesh *m, uint32_t h, uint32_t g, double flat)
 {
     tl_vec3 a = m->vertex[m->corner[h]], b = m->vertex[m->corner[mesh_next(m, h)]];

@@ -1,0 +1,221 @@
+/* act.c - elements act on their nodes.
+ *
+ * A thread takes whole elements of one set at a time. A rigid body adds its nodes in the order of (element, node), so
+ * sums do not depend on threads. The force f of a node at the arm R p adds the moment R p x f. */
+#include "element/act.h"
+
+#include "base/columns.h"
+#include "base/inside.h"
+#include "element/batch.h"
+#include "element/carry.h"
+#include "plugin/loader.h"
+#include "zone/zones.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------- forces ----------------- */
+
+typedef struct apply_job {
+    tl_model *m;
+    tl_failure *failure;
+} apply_job;
+
+/* Where the nodes of a chunk have gone since the last step. */
+static void move_nodes(tl_model *m, const tl_element_chunk *of, tl_element_lanes *lanes)
+{
+    tl_node_table *n = &m->elements->nodes;
+    const double per = m->dt > 0 && !m->relaxing ? 1 / m->dt : 0;
+    for (uint32_t row = of->node_begin, i = 0; row < of->node_end; row++, i++) {
+        const tl_vec3 u = tl_node_moved(m, row), normal = tl_node_normal(m, row);
+        const tl_vec3 du = tl_v3_sub(u, tl_columns_get(n->u, row));
+        tl_columns_put(n->u, row, u);
+        for (int k = 0; k < 3; k++) {
+            const double way = k == 0 ? du.x : k == 1 ? du.y : du.z;
+            lanes->du[k][i] = way;
+            lanes->v[k][i] = per * way;
+            lanes->normal[k][i] = k == 0 ? normal.x : k == 1 ? normal.y : normal.z;
+        }
+    }
+}
+
+/* The first element of a chunk whose forces or energies are not finite; `end`: there is none. */
+static uint32_t find_odd(const struct tl_elements *e, const tl_element_chunk *of)
+{
+    const tl_element_table *t = &e->table;
+    for (uint32_t row = of->begin; row < of->end; row++) {
+        double sum = t->stored[row] + t->lost[row] + t->given[row];
+        for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++)
+            sum += 0 * (e->nodes.force[0][k] + e->nodes.force[1][k] + e->nodes.force[2][k]);
+        if (!isfinite(sum))
+            return row;
+    }
+    return of->end;
+}
+
+static void apply_chunk(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)end, (void)thread;
+    const apply_job *job = user;
+    struct tl_elements *e = job->m->elements;
+    const tl_element_chunk *of = &e->chunk[begin];
+    const tl_element_set *set = &e->set[of->set];
+    tl_report report = {.size = sizeof report};
+    tl_element_lanes lanes;
+    const tl_element_batch batch = tl_element_batch_of(job->m, of, &lanes);
+    move_nodes(job->m, of, &lanes);
+    memset(batch.lost, 0, batch.count * sizeof *batch.lost);
+    memset(batch.given, 0, batch.count * sizeof *batch.given);
+    tl_enter(set->kind, "update");
+    tl_status status = tl_element_ops_of(set)->update(set->self, &batch, &report);
+    tl_leave();
+    const char *text =
+        status == TL_OK ? "it gives a force or an energy that is not finite" : tl_report_text(&report, status);
+    uint32_t row = of->begin + (report.first_bad < batch.count ? (uint32_t)report.first_bad : 0);
+    if (status == TL_OK) {
+        row = find_odd(e, of);
+        status = row < of->end ? TL_E_NUMERIC : TL_OK;
+    }
+    if (status != TL_OK)
+        tl_failure_note(job->failure, chunk, status, row, text);
+}
+
+tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
+{
+    struct tl_elements *e = m->elements;
+    apply_job job = {m, failure};
+    tl_parallel_for(m->pool, e->chunk_count, 1, apply_chunk, &job);
+    const tl_status status = failure->error.status;
+    failure->error.status = TL_OK;
+    if (status == TL_OK)
+        return TL_OK;
+    const uint32_t row = (uint32_t)failure->point;
+    const tl_kind *kind = e->set[e->table.set[row]].kind;
+    return tl_fail(&m->error, status, "cycle %lld, element %u, '%s' of plugin '%s': %s", (long long)m->cycles + 1,
+                   e->table.id[row], kind->name, tl_plugin_id(kind), failure->error.text);
+}
+
+/* The tables as they were; empty, when out of memory. */
+typedef struct kept {
+    tl_element_table table;
+    tl_node_table nodes;
+} kept;
+
+tl_status tl_elements_sum(tl_model *m, tl_vec3 *force)
+{
+    struct tl_elements *e = m->elements;
+    tl_failure failure = {.error = {.status = TL_OK}};
+    kept had = {.table = e->table, .nodes = e->nodes};
+    const bool enough = tl_table_copy(&had.table.table, &had.table, &e->table.table) &&
+                        tl_table_copy(&had.nodes.table, &had.nodes, &e->nodes.table);
+    tl_status status = enough ? TL_OK : tl_fail_memory(&m->error);
+    pthread_mutex_init(&failure.lock, NULL);
+    if (status == TL_OK)
+        status = tl_elements_apply(m, &failure);
+    pthread_mutex_destroy(&failure.lock);
+    for (size_t row = 0; status == TL_OK && row < e->nodes.table.rows; row++)
+        if (e->nodes.body[row] != TL_NO_ROW)
+            force[e->nodes.body[row]] = tl_v3_add(force[e->nodes.body[row]], tl_columns_get(e->nodes.force, row));
+    for (size_t k = 0; enough && k < e->table.table.column_count; k++)
+        memcpy(tl_table_data(&e->table.table, k), tl_table_data(&had.table.table, k),
+               e->table.table.rows * e->table.table.columns[k].size);
+    for (size_t k = 0; enough && k < e->nodes.table.column_count; k++)
+        memcpy(tl_table_data(&e->nodes.table, k), tl_table_data(&had.nodes.table, k),
+               e->nodes.table.rows * e->nodes.table.columns[k].size);
+    tl_table_free(&had.table.table);
+    tl_table_free(&had.nodes.table);
+    return status;
+}
+
+static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
+{
+    const struct tl_elements *e = m->elements;
+    const tl_mat3 *r = &m->bodies.pose[body].r;
+    tl_acting sum = *on;
+    for (uint32_t k = e->use_start[body]; k < e->use_start[body + 1]; k++) {
+        const uint32_t row = e->use[k];
+        const tl_vec3 f = tl_columns_get(e->nodes.force, row);
+        sum.force = tl_v3_add(sum.force, f);
+        sum.moment = tl_v3_add(sum.moment, tl_v3_cross(tl_m3_mul(r, tl_columns_get(e->nodes.local, row)), f));
+        sum.magnitude += tl_v3_norm(f);
+    }
+    *on = sum;
+}
+
+void tl_elements_gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
+{
+    for (uint32_t body = begin; tl_elements_are_listed(m) && body < end; body++)
+        gather_body(m, body, &on[body - begin]);
+}
+
+void tl_elements_push(tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    tl_gridpoints *p = &m->zones->points;
+    for (size_t i = 0; e && i < e->carried_count; i++) {
+        const uint32_t row = e->carried[i], first = tl_node_first_point(m, row);
+        const tl_vec3 f = tl_columns_get(e->nodes.force, row);
+        for (int a = 0; a < 4; a++) {
+            const uint32_t point = first + e->nodes.point[row][a];
+            const tl_vec3 part = tl_v3_scale(e->nodes.share[row][a], f);
+            tl_columns_put(p->force, point, tl_v3_add(tl_columns_get(p->force, point), part));
+            p->bears[point] += tl_v3_norm(part);
+            p->touched[point] += tl_v3_norm(part);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------- stiffness -------------- */
+
+/* Of the dampers only the stiffness counts here: gridpoints are moved with their mean velocity by quiet faces alone. */
+void tl_elements_stiffen(tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    for (size_t i = 0; e && i < e->carried_count; i++) {
+        const uint32_t row = e->carried[i], first = tl_node_first_point(m, row);
+        const double *share = e->nodes.share[row];
+        const double all = fabs(share[0]) + fabs(share[1]) + fabs(share[2]) + fabs(share[3]);
+        for (int a = 0; a < 4; a++)
+            m->zones->points.holds[first + e->nodes.point[row][a]] += e->nodes.k[row] * all * fabs(share[a]);
+    }
+}
+
+void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum)
+{
+    const struct tl_elements *e = m->elements;
+    for (uint32_t k = 0; tl_elements_are_listed(m) && k < e->use_start[body + 1] - e->use_start[body]; k++) {
+        const uint32_t row = e->use[e->use_start[body] + k];
+        const double arm2 = tl_v3_norm2(tl_columns_get(e->nodes.local, row));
+        sum->stiffness.sum += e->nodes.k[row];
+        sum->stiffness.r2 += e->nodes.k[row] * arm2;
+        sum->damping.sum += e->nodes.c[row];
+        sum->damping.r2 += e->nodes.c[row] * arm2;
+    }
+}
+
+double tl_elements_stiffest(const tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    double most = 0;
+    for (size_t row = 0; e && row < e->nodes.table.rows; row++) {
+        const uint32_t body = e->nodes.body[row];
+        if (body != TL_NO_ROW && m->bodies.fixed[body] != TL_FIX_ALL)
+            most = fmax(most, e->nodes.k[row]);
+    }
+    return most;
+}
+
+/* ---------------------------------------------------------------- energy ----------------- */
+
+tl_energies tl_elements_energies(tl_model *m)
+{
+    const tl_element_table *t = &m->elements->table;
+    tl_energies sum = {.stored = 0};
+    for (size_t row = 0; row < t->table.rows; row++) {
+        sum.stored += t->stored[row];
+        sum.heat += t->lost[row];
+        sum.given += t->given[row];
+    }
+    return sum;
+}

@@ -1,0 +1,26 @@
+/* act.h - elements act on their nodes. */
+#ifndef TL_ELEMENT_ACT_H
+#define TL_ELEMENT_ACT_H
+
+#include "element/elements.h"
+#include "model/contributor.h"
+
+/* Asks all kinds for the forces at the present places. The first failure is told with its element; the step is then to
+ * be undone. */
+tl_status tl_elements_apply(tl_model *m, tl_failure *failure);
+/* The force of all nodes on each body, force[rows of bodies], N, at the present places. Nothing changes by it.
+ * TL_E_MEMORY, or a failure of a kind. */
+tl_status tl_elements_sum(tl_model *m, tl_vec3 *force);
+/* Adds what nodes do to rigid bodies. */
+void tl_elements_gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on);
+/* Adds what nodes do to gridpoints, and how stiff these are held, N/m. */
+void tl_elements_push(tl_model *m);
+void tl_elements_stiffen(tl_model *m);
+/* How nodes hold a rigid body: stiffness and damping. */
+void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum);
+/* The largest stiffness of a node on a body that can move, N/m. */
+double tl_elements_stiffest(const tl_model *m);
+/* What all elements hold, and have turned to heat and brought in during the step, J. */
+tl_energies tl_elements_energies(tl_model *m);
+
+#endif

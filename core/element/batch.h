@@ -1,0 +1,18 @@
+/* batch.h - a share of the elements as their kind sees it. */
+#ifndef TL_ELEMENT_BATCH_H
+#define TL_ELEMENT_BATCH_H
+
+#include "element/elements.h"
+#include "model/law_time.h"
+
+/* Columns of a chunk that are found anew in each step. */
+typedef struct tl_element_lanes {
+    double du[3][TL_ELEMENT_NODES], v[3][TL_ELEMENT_NODES], normal[3][TL_ELEMENT_NODES];
+    uint32_t start[TL_ELEMENT_NODES + 1];
+    double *state[TL_ELEMENT_COLUMNS], *element_state[TL_ELEMENT_COLUMNS];
+} tl_element_lanes;
+
+/* A batch without motion: du, v and normal are 0, and u is what it was in the last step. */
+tl_element_batch tl_element_batch_of(const tl_model *m, const tl_element_chunk *of, tl_element_lanes *lanes);
+
+#endif

@@ -1,0 +1,121 @@
+/* elements.h - elements: what acts on points of blocks, its nodes, by kinds of plugins.
+ *
+ * A *set* is what one call has made: a kind, its parameters, and elements of ascending ids. An element has nodes in
+ * rows that follow each other; rows of both tables are in the order of the ids. A node is carried by a rigid body, by
+ * the zone of a deformable one that it lies in, or by the ground.
+ *
+ * A node's place when installed is `rest`. Its block had moved by `from` there since it was made. Cuts and joins keep
+ * where blocks were made (tl_block_made). So rest - from gives the place in the frame of any later body:
+ *
+ *     x_made = x_ref + shift + T p,    p = T^t (rest - from - x_ref - shift)
+ *
+ * with the shift and turn T of tl_block_made. The displacement since installing, of the present pose u, R:
+ *
+ *     u_node = (u + R p) - base
+ *
+ * base is u + R p when the node was installed, or what keeps u_node as it is when the frame changes. A node in a zone
+ * has shares N_a of its gridpoints. It moves by the sum of N_a u_a and gives them N_a f of its force f. */
+#ifndef TL_ELEMENT_ELEMENTS_H
+#define TL_ELEMENT_ELEMENTS_H
+
+#include "base/parallel.h"
+#include "model/model.h"
+
+#include <talus/elements.h>
+
+/* The block of a node whose block has been deleted. */
+#define TL_GONE UINT32_MAX
+
+/* What one call has made. */
+typedef struct tl_element_set {
+    const tl_kind *kind;
+    void *params;       /* the plugin's params struct; its texts are owned by it */
+    void *self;         /* what its create made, or params */
+    uint32_t group;     /* of the model's groups */
+    uint32_t number;    /* scratch */
+    uint64_t structure; /* of the model when the kind last placed its elements */
+} tl_element_set;
+
+typedef struct tl_element_table {
+    tl_table table;
+    tl_id *id;
+    uint32_t *set;
+    uint32_t *node_begin, *node_count;
+    uint32_t *flags;      /* TL_ELEMENT_* */
+    uint64_t *key;        /* by which `place` knows it again; 0: none */
+    double *stored;       /* J */
+    double *lost, *given; /* in the last step, J */
+    double *state[TL_ELEMENT_COLUMNS];
+    uint32_t state_columns; /* that there are; the others are NULL */
+} tl_element_table;
+
+typedef struct tl_node_table {
+    tl_table table;
+    tl_id *block;       /* TL_NO_ID: the ground; or TL_GONE */
+    double *rest[3];    /* m, place when installed, from the model's origin */
+    double *from[3];    /* m, how far the block had moved there since it was made */
+    double *local[3];   /* m, in the body's frame */
+    double *base[3];    /* m */
+    double *outward[3]; /* normal of its face when its block was made, or 0; */
+    double *normal[3];  /* likewise in the body's frame, */
+    double *weight;     /* m or m2 */
+    double *u[3];       /* m, displacement since it was installed, as of the last step */
+    double *force[3];   /* N, on the block, in the last step */
+    double *state[TL_ELEMENT_COLUMNS];
+    uint32_t *body;       /* row, or TL_NO_ROW */
+    uint32_t (*point)[4]; /* numbers of gridpoints in the mesh; of a node on a face the corners of its triangle first */
+    double (*share)[4];   /* of them at the node; all 0: it is in no zone */
+    double *k, *c;        /* N/m and N s/m, bounds that the kind has told */
+    uint32_t state_columns;
+} tl_node_table;
+
+/* Whole elements of one set that a thread takes at a time. */
+typedef struct tl_element_chunk {
+    uint32_t set, begin, end; /* rows of elements */
+    uint32_t node_begin, node_end;
+} tl_element_chunk;
+
+struct tl_elements {
+    tl_element_table table;
+    tl_node_table nodes;
+    tl_element_set *set;
+    size_t set_count, set_capacity;
+    tl_element_chunk *chunk;
+    size_t chunk_count, chunk_capacity;
+    /* rows of nodes on a rigid body: use[use_start[body]] .. use[use_start[body + 1] - 1], ascending */
+    uint32_t *use, *use_start;
+    size_t use_capacity, use_start_capacity;
+    uint32_t *carried; /* rows of nodes in zones, ascending */
+    size_t carried_count, carried_capacity;
+    tl_id next_id;
+    uint64_t version;  /* counts changes of elements, nodes and their carriers */
+    uint64_t listed;   /* version for which there are chunks and lists */
+    uint64_t rated;    /* version for which k and c are known */
+    uint64_t followed; /* structure of the model for which nodes have their carriers */
+    uint64_t zones;    /* version of the zones, likewise */
+};
+
+static inline bool tl_model_has_elements(const tl_model *m)
+{
+    return m->elements && m->elements->table.table.rows > 0;
+}
+
+static inline const tl_element_ops *tl_element_ops_of(const tl_element_set *set)
+{
+    return set->kind->ops;
+}
+
+/* Whether its lists are those of the model as it is. */
+static inline bool tl_elements_are_listed(const tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    return e && e->listed == e->version && e->followed == m->structure;
+}
+
+/* Present place of a node, as of the last step, from the model's origin. */
+static inline tl_vec3 tl_node_place(const tl_node_table *n, size_t row)
+{
+    return tl_v3(n->rest[0][row] + n->u[0][row], n->rest[1][row] + n->u[1][row], n->rest[2][row] + n->u[2][row]);
+}
+
+#endif

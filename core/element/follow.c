@@ -1,0 +1,215 @@
+/* follow.c - nodes follow their blocks through edits, and what a step needs of elements is made ready.
+ *
+ * A node of a block that was cut goes to the part that holds its point; on a face that parts share, to the one that it
+ * lies deeper in. A node of a block that was deleted gets weight 0 and acts on nothing: its element is detached. */
+#include "element/follow.h"
+
+#include "base/error.h"
+#include "base/inside.h"
+#include "element/batch.h"
+#include "element/carry.h"
+#include "element/relay.h"
+#include "element/set.h"
+#include "plugin/loader.h"
+#include "zone/zones.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------- blocks ----------------- */
+
+/* The row of the part of a block that was cut which holds a place where the block was made; TL_NO_ROW: there is no
+ * part. */
+static uint32_t part_with(const tl_model *m, tl_id block, tl_vec3 began)
+{
+    uint32_t best = TL_NO_ROW;
+    double most = -INFINITY;
+    for (size_t k = 0; k < m->cut_out_count; k++) {
+        const uint32_t row = m->cut_out[k].whole == block ? tl_block_row_quiet(m, m->cut_out[k].block) : TL_NO_ROW;
+        if (row == TL_NO_ROW)
+            continue;
+        const uint32_t body = m->blocks.body[row];
+        const tl_base made = tl_block_made(m, row);
+        const tl_mat3 turn = tl_q_matrix(made.turn);
+        const tl_vec3 local = tl_m3_tmul(&turn, tl_v3_sub(tl_v3_sub(began, m->bodies.pose[body].x_ref), made.shift));
+        const double depth = tl_block_depth(m, row, tl_body_point(&m->bodies, body, local));
+        if (depth > most) {
+            most = depth;
+            best = row;
+        }
+    }
+    return best;
+}
+
+/* The row of the block that a node is on now. */
+static uint32_t row_of(tl_model *m, size_t row)
+{
+    tl_node_table *n = &m->elements->nodes;
+    uint32_t block = tl_block_row_quiet(m, n->block[row]);
+    if (block == TL_NO_ROW) {
+        const tl_vec3 began = tl_v3(n->rest[0][row] - n->from[0][row], n->rest[1][row] - n->from[1][row],
+                                    n->rest[2][row] - n->from[2][row]);
+        block = part_with(m, n->block[row], began);
+        if (block != TL_NO_ROW)
+            n->block[row] = m->blocks.id[block];
+    }
+    return block;
+}
+
+static void lose(tl_model *m, size_t row)
+{
+    tl_node_table *n = &m->elements->nodes;
+    n->block[row] = TL_GONE;
+    n->body[row] = TL_NO_ROW;
+    n->weight[row] = 0;
+    for (int k = 0; k < 3; k++)
+        n->force[k][row] = 0;
+}
+
+/* Whether a node lies in no zone though its block has some. */
+static bool lacks_zone(const tl_model *m, size_t row)
+{
+    const tl_node_table *n = &m->elements->nodes;
+    const double *share = n->share[row];
+    return tl_node_first_point(m, row) != TL_NO_ROW && share[0] == 0 && share[1] == 0 && share[2] == 0 && share[3] == 0;
+}
+
+/* false: its block has gone. */
+static bool follow_node(tl_model *m, size_t row)
+{
+    struct tl_elements *e = m->elements;
+    tl_node_table *n = &e->nodes;
+    if (n->block[row] == TL_NO_ID || n->block[row] == TL_GONE)
+        return true;
+    const tl_id had = n->block[row];
+    const uint32_t block = row_of(m, row);
+    if (block == TL_NO_ROW) {
+        lose(m, row);
+        return false;
+    }
+    n->body[row] = m->blocks.body[block];
+    if (n->block[row] != had || m->blocks.changed[block] > e->followed || lacks_zone(m, row))
+        tl_node_reframe(m, row, block);
+    return true;
+}
+
+void tl_elements_follow(tl_model *m)
+{
+    struct tl_elements *e = m->elements;
+    if (!e || (e->followed == m->structure && e->zones == (m->zones ? m->zones->version : 0)))
+        return;
+    const tl_element_table *t = &e->table;
+    size_t detached = 0;
+    tl_id first = TL_NO_ID;
+    for (size_t row = 0; row < t->table.rows; row++) {
+        bool whole = true;
+        for (uint32_t k = 0; k < t->node_count[row]; k++)
+            whole = follow_node(m, t->node_begin[row] + k) && whole;
+        if (whole || t->flags[row] & TL_ELEMENT_DETACHED || tl_element_ops_of(&e->set[t->set[row]])->lays_again)
+            continue;
+        t->flags[row] |= TL_ELEMENT_DETACHED;
+        first = detached++ ? first : t->id[row];
+    }
+    e->followed = m->structure;
+    e->zones = m->zones ? m->zones->version : 0;
+    e->version++;
+    m->cut_out_count = 0;
+    if (detached)
+        tl_model_say(m,
+                     "elements: %zu of them, the first with id %u, ha%s lost a block that was deleted: nodes there act "
+                     "on nothing any more",
+                     detached, first, detached == 1 ? "s" : "ve");
+}
+
+/* ---------------------------------------------------------------- lists ------------------ */
+
+/* Shares of threads: whole elements of one set, of at most TL_ELEMENT_NODES nodes. */
+static bool list_chunks(struct tl_elements *e)
+{
+    const tl_element_table *t = &e->table;
+    e->chunk_count = 0;
+    for (uint32_t row = 0; row < t->table.rows; row++) {
+        tl_element_chunk *last = e->chunk_count ? &e->chunk[e->chunk_count - 1] : NULL;
+        const uint32_t end = t->node_begin[row] + t->node_count[row];
+        if (last && last->set == t->set[row] && end - last->node_begin <= TL_ELEMENT_NODES) {
+            last->end = row + 1;
+            last->node_end = end;
+            continue;
+        }
+        if (!tl_grow(&e->chunk, &e->chunk_capacity, e->chunk_count + 1, sizeof *e->chunk))
+            return false;
+        e->chunk[e->chunk_count++] = (tl_element_chunk){t->set[row], row, row + 1, t->node_begin[row], end};
+    }
+    return true;
+}
+
+/* The nodes of each rigid body, and those in zones. */
+static bool list_nodes(tl_model *m)
+{
+    struct tl_elements *e = m->elements;
+    const tl_node_table *n = &e->nodes;
+    const size_t bodies = m->bodies.table.rows, nodes = n->table.rows;
+    if (!tl_fit(&e->use, &e->use_capacity, nodes, sizeof *e->use) ||
+        !tl_fit(&e->carried, &e->carried_capacity, nodes, sizeof *e->carried) ||
+        !tl_fit(&e->use_start, &e->use_start_capacity, bodies + 2, sizeof *e->use_start))
+        return false;
+    memset(e->use_start, 0, (bodies + 2) * sizeof *e->use_start);
+    e->carried_count = 0;
+    for (uint32_t row = 0; row < nodes; row++)
+        if (tl_node_first_point(m, row) != TL_NO_ROW)
+            e->carried[e->carried_count++] = row;
+        else if (n->body[row] != TL_NO_ROW)
+            e->use_start[n->body[row] + 2]++;
+    for (size_t body = 0; body < bodies; body++)
+        e->use_start[body + 2] += e->use_start[body + 1];
+    for (uint32_t row = 0; row < nodes; row++)
+        if (n->body[row] != TL_NO_ROW && tl_node_first_point(m, row) == TL_NO_ROW)
+            e->use[e->use_start[n->body[row] + 1]++] = row;
+    return true;
+}
+
+/* ---------------------------------------------------------------- stiffness -------------- */
+
+/* Asks the kind of a chunk for the stiffnesses of its nodes. */
+static tl_status rate_chunk(tl_model *m, const tl_element_chunk *of)
+{
+    struct tl_elements *e = m->elements;
+    const tl_element_set *set = &e->set[of->set];
+    tl_node_table *n = &e->nodes;
+    tl_element_lanes lanes;
+    const tl_element_batch batch = tl_element_batch_of(m, of, &lanes);
+    memset(n->k + of->node_begin, 0, (of->node_end - of->node_begin) * sizeof *n->k);
+    memset(n->c + of->node_begin, 0, (of->node_end - of->node_begin) * sizeof *n->c);
+    tl_enter(set->kind, "stiffness");
+    tl_element_ops_of(set)->stiffness(set->self, &batch, n->k + of->node_begin, n->c + of->node_begin);
+    tl_leave();
+    for (uint32_t row = of->node_begin; row < of->node_end; row++)
+        if (!(n->k[row] >= 0 && isfinite(n->k[row]) && n->c[row] >= 0 && isfinite(n->c[row])))
+            return tl_fail(
+                &m->error, TL_E_PLUGIN,
+                "element '%s' of plugin '%s': its stiffness() gives %g N/m and %g N s/m; both must be finite "
+                "and at least 0",
+                set->kind->name, tl_plugin_id(set->kind), n->k[row], n->c[row]);
+    return TL_OK;
+}
+
+tl_status tl_elements_ready(tl_model *m)
+{
+    struct tl_elements *e = m->elements;
+    if (!e)
+        return TL_OK;
+    tl_elements_follow(m);
+    tl_status status = tl_elements_lay_again(m);
+    if (status != TL_OK)
+        return status;
+    if (e->listed != e->version) {
+        if (!list_chunks(e) || !list_nodes(m))
+            return tl_fail_memory(&m->error);
+        e->listed = e->version;
+    }
+    for (size_t k = 0; e->rated != e->version && k < e->chunk_count && status == TL_OK; k++)
+        status = rate_chunk(m, &e->chunk[k]);
+    if (status == TL_OK)
+        e->rated = e->version;
+    return status;
+}

@@ -1,0 +1,276 @@
+/* relay.c - elements that are placed again where blocks have changed or slid.
+ *
+ * Kinds with `lays_again` lie on what blocks have in common, such as walls of joints. They place again when blocks have
+ * come, gone or been cut. So they do when two blocks of one element have slid by SLID of their size. All calls of
+ * such a kind are repeated, the last one first. Of elements with one key that of the last call counts. An element
+ * keeps the states and flags of the one that had its key; its nodes take those of the nearest old node on the same
+ * block. Nodes of an element with a new key take those of the nearest old node of their call. Where nothing has moved
+ * all are the same to the bit. */
+#include "element/relay.h"
+
+#include "base/columns.h"
+#include "base/error.h"
+#include "element/carry.h"
+#include "element/life.h"
+#include "element/place.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Tolerance: how far two blocks of an element have slid against each other, over the smaller one's size, when it is
+ * placed again. */
+#define SLID 1e-3
+
+/* Cost only: steps after which it is looked at how far blocks have slid. */
+#define LOOK_EVERY 16
+
+/* ---------------------------------------------------------------- when ------------------- */
+
+/* Whether the first and last node of an element have gone apart. */
+static bool has_slid(const tl_model *m, size_t row)
+{
+    const struct tl_elements *e = m->elements;
+    const tl_node_table *n = &e->nodes;
+    const uint32_t a = e->table.node_begin[row], b = a + e->table.node_count[row] - 1;
+    const tl_vec3 way = tl_v3_sub(tl_columns_get(n->u, b), tl_columns_get(n->u, a));
+    double size = INFINITY;
+    for (int k = 0; k < 2; k++) {
+        const uint32_t block = tl_block_row_quiet(m, n->block[k ? b : a]);
+        size = block == TL_NO_ROW ? size : fmin(size, m->blocks.size[block]);
+    }
+    return tl_v3_norm2(way) > SLID * SLID * size * size;
+}
+
+static bool is_due(const tl_model *m)
+{
+    const struct tl_elements *e = m->elements;
+    bool due = false;
+    for (size_t k = 0; k < e->set_count && !due; k++)
+        due = tl_element_ops_of(&e->set[k])->lays_again && e->set[k].structure != m->structure;
+    for (size_t row = 0; m->cycles % LOOK_EVERY == 0 && row < e->table.table.rows && !due; row++)
+        due = tl_element_ops_of(&e->set[e->table.set[row]])->lays_again && has_slid(m, row);
+    return due;
+}
+
+/* ---------------------------------------------------------------- keys ------------------- */
+
+static int compare_keys(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Keys that are taken, ascending. */
+typedef struct keys {
+    uint64_t *at;
+    size_t count, capacity;
+} keys;
+
+static bool is_taken(const keys *k, uint64_t key)
+{
+    return key && k->count && bsearch(&key, k->at, k->count, sizeof key, compare_keys);
+}
+
+/* Takes the keys of what has been placed, and leaves out what has a key that was taken before. */
+static bool take_keys(keys *k, tl_placing *p)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < p->placed_count; i++)
+        if (!is_taken(k, p->placed[i].key))
+            p->placed[kept++] = p->placed[i];
+    p->placed_count = kept;
+    if (!tl_grow(&k->at, &k->capacity, k->count + kept + 1, sizeof *k->at))
+        return false;
+    for (size_t i = 0; i < kept; i++)
+        k->at[k->count++] = p->placed[i].key;
+    qsort(k->at, k->count, sizeof *k->at, compare_keys);
+    return true;
+}
+
+bool tl_elements_give_way(struct tl_elements *e, size_t first)
+{
+    const tl_element_table *t = &e->table;
+    const size_t rows = t->table.rows;
+    keys taken = {0};
+    unsigned char *keep = malloc(rows + 1);
+    const bool enough = keep && tl_grow(&taken.at, &taken.capacity, rows - first + 1, sizeof *taken.at);
+    for (size_t row = first; row < rows && enough; row++)
+        taken.at[taken.count++] = t->key[row];
+    if (enough && taken.count > 1)
+        qsort(taken.at, taken.count, sizeof *taken.at, compare_keys);
+    for (size_t row = 0; row < rows && enough; row++)
+        keep[row] =
+            row >= first || e->set[t->set[row]].kind != e->set[t->set[first]].kind || !is_taken(&taken, t->key[row]);
+    if (enough)
+        tl_elements_keep(e, keep, false);
+    free(taken.at);
+    free(keep);
+    return enough;
+}
+
+/* ---------------------------------------------------------------- states ----------------- */
+
+/* A row of an element that was, by its set and key. */
+typedef struct old_one {
+    uint32_t set, row;
+    uint64_t key;
+} old_one;
+
+static int compare_old(const void *a, const void *b)
+{
+    const old_one *x = a, *y = b;
+    if (x->set != y->set)
+        return x->set < y->set ? -1 : 1;
+    return (x->key > y->key) - (x->key < y->key);
+}
+
+/* The node of an old element on the same block that is nearest to a new one; TL_NO_ROW: none is. */
+static uint32_t nearest_node(const tl_node_table *n, uint32_t row, uint32_t begin, uint32_t end)
+{
+    uint32_t best = TL_NO_ROW;
+    double least = INFINITY;
+    for (uint32_t k = begin; k < end; k++) {
+        const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(n, k), tl_node_place(n, row)));
+        if (n->block[k] == n->block[row] && far < least) {
+            least = far;
+            best = k;
+        }
+    }
+    return best;
+}
+
+/* Gives an element what an old one with its key had. Blocks have moved since forces were last asked for: nodes are
+ * given that motion for the step to come. */
+static void inherit(tl_model *m, uint32_t row, uint32_t from)
+{
+    struct tl_elements *e = m->elements;
+    tl_element_table *t = &e->table;
+    tl_node_table *n = &e->nodes;
+    t->flags[row] = t->flags[from] & ~(uint32_t)TL_ELEMENT_DETACHED;
+    t->stored[row] = t->stored[from];
+    for (uint32_t k = 0; k < t->state_columns; k++)
+        t->state[k][row] = t->state[k][from];
+    for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
+        const uint32_t old = nearest_node(n, k, t->node_begin[from], t->node_begin[from] + t->node_count[from]);
+        for (uint32_t c = 0; old != TL_NO_ROW && c < n->state_columns; c++)
+            n->state[c][k] = n->state[c][old];
+        for (int c = 0; old != TL_NO_ROW && c < 3; c++)
+            n->force[c][k] = n->weight[old] > 0 ? n->force[c][old] * (n->weight[k] / n->weight[old]) : 0;
+        if (old != TL_NO_ROW)
+            tl_columns_put(n->u, k, tl_v3_sub(tl_columns_get(n->u, old), tl_node_moved(m, old)));
+    }
+}
+
+/* The nodes of an element that has no older one get states from the nearest node of its set before `first`. It may be
+ * on any block: parts of blocks that were cut have other names. */
+static void inherit_near(struct tl_elements *e, uint32_t row, uint32_t first)
+{
+    const tl_element_table *t = &e->table;
+    tl_node_table *n = &e->nodes;
+    for (uint32_t k = t->node_begin[row]; k < t->node_begin[row] + t->node_count[row]; k++) {
+        uint32_t best = TL_NO_ROW;
+        double least = INFINITY;
+        for (uint32_t old = 0; old < first; old++)
+            for (uint32_t i = t->node_begin[old];
+                 t->set[old] == t->set[row] && i < t->node_begin[old] + t->node_count[old]; i++) {
+                const double far = tl_v3_norm2(tl_v3_sub(tl_node_place(n, i), tl_node_place(n, k)));
+                best = far < least ? i : best;
+                least = fmin(least, far);
+            }
+        for (uint32_t c = 0; best != TL_NO_ROW && c < n->state_columns; c++)
+            n->state[c][k] = n->state[c][best];
+    }
+}
+
+/* Lets new elements, rows from `first` on, inherit from those before. false: out of memory. */
+static bool inherit_all(tl_model *m, uint32_t first)
+{
+    struct tl_elements *e = m->elements;
+    const tl_element_table *t = &e->table;
+    old_one *list = malloc((first + (size_t)1) * sizeof *list);
+    if (!list)
+        return false;
+    for (uint32_t row = 0; row < first; row++)
+        list[row] = (old_one){t->set[row], row, t->key[row]};
+    if (first > 1)
+        qsort(list, first, sizeof *list, compare_old);
+    for (uint32_t row = first; row < t->table.rows; row++) {
+        const old_one sought = {t->set[row], row, t->key[row]};
+        const old_one *found = first && t->key[row] ? bsearch(&sought, list, first, sizeof *list, compare_old) : NULL;
+        if (found)
+            inherit(m, row, found->row);
+        else
+            inherit_near(e, row, first);
+    }
+    free(list);
+    return true;
+}
+
+/* ---------------------------------------------------------------- again ------------------ */
+
+/* Asks all sets that are placed again, the last one first. */
+static tl_status ask_all(tl_model *m, tl_placing *of)
+{
+    struct tl_elements *e = m->elements;
+    keys taken = {0};
+    tl_status status = TL_OK;
+    for (size_t k = e->set_count; k-- > 0 && status == TL_OK;) {
+        if (!tl_element_ops_of(&e->set[k])->lays_again)
+            continue;
+        of[k].host.again = 1;
+        status = tl_placing_ask(&of[k], &e->set[k], 0);
+        if (status == TL_OK && !take_keys(&taken, &of[k]))
+            status = tl_fail_memory(&m->error);
+    }
+    free(taken.at);
+    return status;
+}
+
+/* Puts new elements in the place of old ones. */
+static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
+{
+    struct tl_elements *e = m->elements;
+    const uint32_t before = (uint32_t)e->table.table.rows;
+    const size_t nodes = e->nodes.table.rows;
+    tl_status status = TL_OK;
+    for (size_t k = 0; k < e->set_count && status == TL_OK; k++)
+        status = tl_placing_commit(&of[k], (uint32_t)k);
+    if (status == TL_OK && !inherit_all(m, before))
+        status = tl_fail_memory(&m->error);
+    if (status != TL_OK) {
+        tl_table_resize(&e->table.table, before);
+        tl_table_resize(&e->nodes.table, nodes);
+        return status;
+    }
+    for (size_t row = 0; row < e->table.table.rows; row++)
+        keep[row] = row >= before || !tl_element_ops_of(&e->set[e->table.set[row]])->lays_again;
+    for (size_t k = 0; k < e->set_count; k++)
+        e->set[k].structure = m->structure;
+    tl_elements_keep(e, keep, false);
+    return TL_OK;
+}
+
+tl_status tl_elements_lay_again(tl_model *m)
+{
+    struct tl_elements *e = m->elements;
+    if (!is_due(m))
+        return TL_OK;
+    tl_placing *of = calloc(e->set_count + 1, sizeof *of);
+    size_t rows = e->table.table.rows;
+    tl_status status = of ? TL_OK : tl_fail_memory(&m->error);
+    for (size_t k = 0; of && k < e->set_count; k++)
+        tl_placing_begin(&of[k], m, NULL);
+    if (status == TL_OK)
+        status = ask_all(m, of);
+    for (size_t k = 0; of && k < e->set_count; k++)
+        rows += of[k].placed_count;
+    unsigned char *keep = status == TL_OK ? malloc(rows + 1) : NULL;
+    if (status == TL_OK)
+        status = keep ? replace(m, of, keep) : tl_fail_memory(&m->error);
+    for (size_t k = 0; of && k < e->set_count; k++)
+        tl_placing_free(&of[k]);
+    free(keep);
+    free(of);
+    return status;
+}
