@@ -183,6 +183,17 @@ do
         model:generate("terrain", { file = write("tent" .. k .. ".stl", text) })
         check.near(ground(model):sum "volume", 200 + 400 / 3, 1e-9)
     end
+    local hash = {}
+    for k, order in ipairs { { 1, 2, 3, 4 }, { 3, 1, 4, 2 } } do
+        local list = {}
+        for i, t in ipairs(order) do
+            list[i] = k == 1 and tent[t] or { tent[t][2], tent[t][3], tent[t][1] }
+        end
+        local model = rock()
+        model:generate("terrain", { file = write("order.stl", (stl(list))) })
+        hash[k] = model:state_hash()
+    end
+    check.equal(hash[1], hash[2])
     local model = rock { joints = 0 }
     model:generate("terrain", { file = folder .. "/tent1.stl" })
     check.equal(#ground(model), 1) -- a pyramid is convex

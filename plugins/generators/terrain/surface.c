@@ -89,6 +89,16 @@ double facet_width(const facet *f)
 
 /* ---------------------------------------------------------------- facets ----------------- */
 
+/* Whether a place comes before another, in the order of x, y and z: -1, 0 or 1. */
+static int by_place(tl_vec3 a, tl_vec3 b)
+{
+    if (a.x != b.x)
+        return a.x < b.x ? -1 : 1;
+    if (a.y != b.y)
+        return a.y < b.y ? -1 : 1;
+    return (a.z > b.z) - (a.z < b.z);
+}
+
 tl_status surface_add(surface *s, const tl_vec3 corner[3], uint32_t row, uint32_t line)
 {
     facet *at = (facet *)tl_grown(s->at, &s->capacity, s->count + 1, sizeof *at);
@@ -109,8 +119,14 @@ tl_status surface_add(surface *s, const tl_vec3 corner[3], uint32_t row, uint32_
         const tl_vec3 second = f->corner[1];
         f->corner[1] = f->corner[2];
         f->corner[2] = second;
-        up = tl_v3_neg(up);
     }
+    while (by_place(f->corner[0], f->corner[1]) > 0 || by_place(f->corner[0], f->corner[2]) > 0) {
+        const tl_vec3 first = f->corner[0];
+        f->corner[0] = f->corner[1];
+        f->corner[1] = f->corner[2];
+        f->corner[2] = first;
+    }
+    up = tl_v3_cross(tl_v3_sub(f->corner[1], f->corner[0]), tl_v3_sub(f->corner[2], f->corner[0]));
     f->normal = tl_v3_unit(up);
     f->fall[0] = -up.x / up.z;
     f->fall[1] = -up.y / up.z;
@@ -273,10 +289,20 @@ static tl_status check_overlaps(const surface *s)
     return status;
 }
 
+static int by_corners(const void *left, const void *right)
+{
+    const facet *a = (const facet *)left, *b = (const facet *)right;
+    int order = 0;
+    for (int k = 0; k < 3 && order == 0; k++)
+        order = by_place(a->corner[k], b->corner[k]);
+    return order;
+}
+
 tl_status surface_index(surface *s)
 {
     if (s->count == 0)
         return TL_OK;
+    qsort(s->at, s->count, sizeof *s->at, by_corners); /* cuts do not depend on the order of the file */
     const size_t entries = lay_cells(s), cells = (size_t)s->columns * s->rows;
     s->start = (uint32_t *)calloc(cells + 1, sizeof *s->start);
     s->facet = (uint32_t *)malloc((entries + 1) * sizeof *s->facet);

@@ -17,7 +17,7 @@
 /* Tolerance: relative, of lengths and areas that are sums of a few products: the roundings of coordinates. */
 #define ROUNDINGS 1e-10
 
-/* A triangle of the surface, its corners counter-clockwise in the plan. */
+/* A triangle of the surface, its corners counter-clockwise in the plan, from the one with the least x, y, z on. */
 typedef struct facet {
     tl_vec3 corner[3];
     tl_vec3 normal;     /* upward, of unit length */
@@ -61,7 +61,7 @@ tl_status stl_read(surface *s, const char *bytes, size_t count);
 tl_status surface_add(surface *s, const tl_vec3 corner[3], uint32_t row, uint32_t line);
 /* Makes the facets of the grid that may meet a box in the plan. */
 tl_status surface_of_grid(surface *s, const tl_bounds *box);
-/* Lists the facets by places, and refuses those that lie one above the other. */
+/* Sorts the facets, lists them by places, and refuses those that lie one above the other. */
 tl_status surface_index(surface *s);
 /* Facets with an area in common with a box in the plan, ascending. `list` has room for `count` of the surface. */
 size_t surface_list(surface *s, const tl_bounds *box, uint32_t *list);
