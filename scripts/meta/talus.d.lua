@@ -264,6 +264,14 @@ function talus.help(topic) end
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
 
+--- Divides the visible blocks by the ground, a grid or triangles of a file.
+---@class (exact) talus.generator.Terrain
+---@field file string heights of the ground: ESRI ASCII grid (.asc), or STL (.stl)
+---@field scale? number > 0, default 1: factor on coordinates and heights: 0.001 for millimetres
+---@field translate? talus.Vector m, default {0, 0, 0}: added to the scaled coordinates
+---@field group? string default "air": group of what lies above the ground
+---@field every? integer in [1, 1e+06], default 1: takes every n-th row and column of a grid, and the last
+
 --- Creates one block from its four corners.
 ---@class (exact) talus.generator.Tetrahedron
 ---@field vertices talus.Vector[] m: the four corners, in any order
@@ -795,6 +803,7 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "polyhedron", options: talus.generator.Polyhedron|talus.generator.Polyhedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "prism", options: talus.generator.Prism|talus.generator.Prism[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "profile", options: talus.generator.Profile|talus.generator.Profile[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "terrain", options: talus.generator.Terrain|talus.generator.Terrain[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tetrahedron", options: talus.generator.Tetrahedron|talus.generator.Tetrahedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tunnel", options?: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "wedge", options: talus.generator.Wedge|talus.generator.Wedge[]): talus.GenerateResult
