@@ -49,10 +49,9 @@ double tl_body_stiffness(const tl_model *m, uint32_t body)
 tl_vec3 tl_body_pushed(const tl_model *m, uint32_t body)
 {
     tl_acting on = {{0, 0, 0}, {0, 0, 0}, 0};
-    if (!m->cycle || !m->segments || m->segments->structure != m->structure)
-        return on.force;
-    for (tl_contributors with = m->cycle->contributor; *with; with++)
-        if (*with != &tl_contacts_act && (*with)->gather)
+    const bool segments = m->segments && m->segments->structure == m->structure;
+    for (tl_contributors with = m->cycle ? m->cycle->contributor : NULL; with && *with; with++)
+        if (*with != &tl_contacts_act && (*with)->gather && (*with != &tl_segments_act || segments))
             (*with)->gather(m, body, body + 1, &on);
     return on.force;
 }

@@ -645,7 +645,7 @@ void tl_boundary_free(tl_boundary_result *r)
     *r = (tl_boundary_result){0};
 }
 
-/* What contacts, segments, weight and load put on a body, as of the last step. */
+/* What contacts, segments, elements, weight and load put on a body, as of the last step. */
 static tl_vec3 acting_on(const tl_model *m, uint32_t body)
 {
     const tl_contacts *c = &m->detect->contacts;
@@ -653,7 +653,7 @@ static tl_vec3 acting_on(const tl_model *m, uint32_t body)
     tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
     for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
         force = tl_v3_madd(force, tl_contact_sign(c, at.contact, at.block), c->force[at.contact]);
-    return tl_model_deforms(m) ? tl_v3_add(force, tl_body_pushed(m, body)) : force;
+    return tl_v3_add(force, tl_body_pushed(m, body));
 }
 
 tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec3 *force)

@@ -22,6 +22,9 @@
  * placed again. */
 #define SLID 1e-3
 
+/* Cost only: steps after which it is looked at how far blocks have slid. */
+#define LOOK_EVERY 16
+
 /* ---------------------------------------------------------------- when ------------------- */
 
 /* Whether the first and last node of an element have gone apart. */
@@ -45,7 +48,7 @@ static bool is_due(const tl_model *m)
     bool due = false;
     for (size_t k = 0; k < e->set_count && !due; k++)
         due = tl_element_ops_of(&e->set[k])->lays_again && e->set[k].structure != m->structure;
-    for (size_t row = 0; row < e->table.table.rows && !due; row++)
+    for (size_t row = 0; m->cycles % LOOK_EVERY == 0 && row < e->table.table.rows && !due; row++)
         due = tl_element_ops_of(&e->set[e->table.set[row]])->lays_again && has_slid(m, row);
     return due;
 }

@@ -163,7 +163,7 @@ tl_status tl_vtk_elements(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out
     FILE *file = out->output->file;
     const size_t cells = e->table.table.rows, points = e->nodes.table.rows;
     tl_status status = tl_vtk_countable(cells + points, "elements", &m->error);
-    tl_vtk_header(file, m, "elements", "UNSTRUCTURED_GRID");
+    tl_vtk_header(file, m, "elements", "UNSTRUCTURED_GRID", false);
     fprintf(file, "POINTS %zu double\n", points);
     if (status == TL_OK)
         status = put_list(m, PLACE, NULL, out);

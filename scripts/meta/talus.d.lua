@@ -810,6 +810,8 @@ function Model:contact_area(options) end
 ---@field balance number error of the sum over the largest change of a term so far
 ---@field strain number elastic, in all zones of deformable blocks, J
 ---@field plastic number turned to heat in zones, by yielding, J
+---@field elements number held by elements, part of stored, J
+---@field element_loss number turned to heat by elements until now, part of friction, J
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
@@ -1460,6 +1462,7 @@ function Model:filter(options) end
 
 ---@class (exact) talus.KeyblocksOptions
 ---@field gravity? talus.Vector m/s2: acceleration that acts on the blocks; that of the model when left out
+---@field target? number > 0: factor of safety that is asked for: each keyblock then tells the support that it takes
 ---@field friction? number|table<string, number> friction angle of the joints, degrees, in [0, 90): one for all, or by joint: {["*"] = 35, J1 = 30, ["J1:3"] = 25}; the closest name counts
 ---@field cohesion? number|table<string, number> cohesion of the joints, Pa, likewise; 0 where none is given
 
@@ -1473,6 +1476,8 @@ function Model:filter(options) end
 ---@field force talus.Vector weight and load, N; of the body, kg and m3
 ---@field mass number weight and load, N; of the body, kg and m3
 ---@field volume number weight and load, N; of the body, kg and m3
+---@field support any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
+---@field support_pressure any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
 ---@field pyramid talus.Vector[] edges of the joint pyramid, unit vectors: it can move in all directions between them
 
 --- Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor of safety in limit equilibrium.
@@ -1556,7 +1561,7 @@ function Model:memory() end
 ---@class (exact) talus.WriteHtmlOptions
 ---@field title? string title of the page; the name at the end of its path when left out
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1572,8 +1577,9 @@ function Model:write_html(path, options) end
 ---@field blocks? boolean default true: whether the frame has a file of the blocks
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+---@field elements? boolean default true: whether the frame has a file of the elements
 ---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field zone_fields? { NAME: number } numbers of each zone, likewise: fields of zones, states of their solids, functions
 
@@ -1607,7 +1613,7 @@ function Model:write_blocks(path) end
 ---@field commands? boolean default true: whether commands are taken; without, the page only shows
 ---@field share? number in (0, 1], default 0.02: most of the run's time that goes into frames
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1673,5 +1679,81 @@ function talus.resumed() end
 ---@param options? talus.SeatOptions
 ---@return talus.SeatResult
 function Model:seat(options) end
+
+--- Puts elements on the blocks as they are now: one, or what a list of tables says, all or none. An element acts on points of blocks, its nodes: a spring, a bolt, water between walls. group = "NAME" names those of a call. Nodes follow their blocks when these are cut or joined.
+---
+---     selection = model:element("KIND", {...})  or  model:element("KIND", {{...}, {...}})
+---@param name string
+---@param options? table
+---@return { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
+---@overload fun(self: talus.Model, name: string, options?: table): { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
+function Model:element(name, options) end
+
+---@class (exact) talus.ElementsOptions
+---@field kind? string elements of this kind
+---@field group? string elements of this group
+---@field block? talus.Block|integer elements with a node on this block
+---@field where? any elements for which the function answers true
+
+--- Selects elements; all conditions must hold. Beside its fields an element has the states of its kind by their names, as element.axial; those of its nodes are in element.nodes.
+---
+---     selection = model:elements{...}
+---@param options? talus.ElementsOptions
+---@return userdata
+function Model:elements(options) end
+
+---@class (exact) talus.WaterOptions
+---@field level? number of a level table: its height z, m
+---@field dip? any degrees, {x, y, z}: of a table that dips: in the place of level
+---@field dip_direction? any degrees, {x, y, z}: of a table that dips: in the place of level (another name)
+---@field origin? any degrees, {x, y, z}: of a table that dips: in the place of level (another name)
+---@field unit_weight? any N/m3 (default 9810):
+---@field factor? any as drains leave it (default 1):
+---@field pressure? any uniform pressure, Pa; or of a field, asked once for each node and then kept
+---@field joints? any
+---@field drain_gap? any m (default 0.05):
+
+--- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
+---
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"A"}})  or  model:water("field", {pressure = function(x, y, z) ... end})  or  model:water("none")
+---@param name string
+---@param options? talus.WaterOptions
+---@return userdata
+---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): userdata
+---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): userdata
+---@overload fun(self: talus.Model, name: string): userdata
+function Model:water(name, options) end
+
+---@class (exact) talus.FactorOfSafetyOptions
+---@field from? number >= 0.05, default 0.1: least factor that is tried
+---@field to? number > 0.05, default 10: largest factor that is tried; above `from`
+---@field resolution? number in [0.0001, 0.5], default 0.01: relative width of the bracket that is found
+---@field least_volume? number m3, >= 0, default 0: what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on
+---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+--- Finds by how much the strengths of laws and solids may be divided before the model does not come to rest any more. Trials are made on copies: the model stays as it is.
+---
+---     result = model:factor_of_safety{resolution = 0.01}
+---@param options? talus.FactorOfSafetyOptions
+function Model:factor_of_safety(options) end
+
+---@class (exact) talus.SafetyMapOptions
+---@field from? number >= 0.05, default 0.5: least factor that is tried
+---@field to? number > 0.05, default 3: largest factor that is tried; above `from`
+---@field step? number >= 0.001, default 0.02: from one factor to the next
+---@field failed? "delete"|"hold" default "delete": what becomes of blocks that have failed, in the copies: they are deleted, or held where they were
+---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
+---@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+--- Finds the factor of safety of every block: strengths are divided by more and more, and what has failed goes before it goes on. Trials are made on copies: the model stays as it is.
+---
+---     map = model:safety_map{from = 0.5, to = 3, step = 0.5}
+---@param options? talus.SafetyMapOptions
+function Model:safety_map(options) end
 
 return talus

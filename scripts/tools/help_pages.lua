@@ -7,7 +7,7 @@ local pages = {}
 -- Column in which the help begins the text beside a name.
 local TEXT_COLUMN = 21
 -- Titles of the overview, and what the plugins under them are.
-pages.kinds = { Laws = "law", Dampings = "damping", Generators = "generator", Screens = "screen", Solids = "solid" }
+pages.kinds = { Laws = "law", Dampings = "damping", Generators = "generator", Screens = "screen", Solids = "solid", Elements = "element" }
 
 function pages.print(topic)
     local program = os.getenv("TALUS_PROGRAM") or "build/release/talus"
@@ -108,7 +108,7 @@ function pages.topic(name)
     return read_topic(lines, 1, last or #lines)
 end
 
--- A plugin's help: type is "law", "damping", "generator", "screen" or "solid".
+-- A plugin's help: type is "law", "damping", "generator", "screen", "solid" or "element".
 function pages.plugin(type, name)
     local lines, first = pages.print(name), 1
     while lines[first] ~= ("%s '%s'"):format(type, name) do

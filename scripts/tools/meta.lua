@@ -85,6 +85,10 @@ local WORDS = {
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(zone)"] = "fun(zone: talus.Zone): any",
     ["function(gridpoint)"] = "fun(gridpoint: talus.Gridpoint): any",
+    ["list of tables"] = "table[]",
+    ["function(element)"] = "fun(element: talus.Element): any",
+    ["number or function(x, y, z)"] = "number|fun(x: number, y: number, z: number): number",
+    ["name or list of names"] = "string|string[]",
     ["number or function({x, y, z})"] = "number|fun(place: talus.Vector): number",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
@@ -146,7 +150,8 @@ local function seen_type(value)
             word:match("^model ") and "talus.Model" or word:match("^selection of %d+ block") and "talus.Blocks" or
             word:match("^selection of %d+ contact") and "talus.Contacts" or word:match("^zone ") and "talus.Zone" or
             word:match("^gridpoint ") and "talus.Gridpoint" or word:match("^selection of %d+ zone") and "talus.Zones" or
-            word:match("^selection of %d+ gridpoint") and "talus.Gridpoints" or "userdata"
+            word:match("^selection of %d+ gridpoint") and "talus.Gridpoints" or word:match("^element ") and "talus.Element" or
+            word:match("^selection of %d+ element") and "talus.Elements" or "userdata"
     elseif kind ~= "table" then
         return ({ float = "number", ["nil"] = false })[kind] or (kind ~= "nil" and kind or nil)
     elseif #value == 3 and type(value[1]) == "number" then
@@ -586,6 +591,7 @@ local function whole()
     put_items("contacts", "Contact", "Contacts", functions)
     put_items("zones", "Zone", "Zones", functions)
     put_items("gridpoints", "Gridpoint", "Gridpoints", functions)
+    put_items("elements", "Element", "Elements", functions)
     for _, name in ipairs(names) do
         local topic = pages.topic(name)
         for _, of in ipairs(functions_of(name, topic.head[1])) do

@@ -89,9 +89,9 @@ TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *ac
 /* Frees the lists of a result and empties it. NULL and an empty one are left alone. */
 TL_API void tl_boundary_free(tl_boundary_result *result);
 
-/* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts, in the last
- * step, weight and load put on them, the other way. Each body counts once; inertia of driven ones does not. Of
- * deformable bodies it is the sum over their held gridpoints, as of the last step. */
+/* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts and elements,
+ * in the last step, weight and load put on them, the other way. Each body counts once; inertia of driven ones does not.
+ * Of deformable bodies it is the sum over their held gridpoints, as of the last step. */
 TL_API tl_status tl_blocks_reaction(tl_model *model, const tl_id *ids, size_t count, tl_vec3 *force);
 
 #ifdef __cplusplus
