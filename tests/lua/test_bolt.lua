@@ -1,8 +1,7 @@
+-- program only
 -- Bolts: forces on blocks, pretension, yield, rupture, dowels, energy, edits, and what is refused.
 local talus = require "talus"
 local check = require "check"
-
-local said = {}
 
 -- A held block above z = 0 and a free one of 1 m below it, joined by nothing.
 local function roof(gravity, threads)
@@ -58,7 +57,7 @@ local function fall(threads)
     one:element("bolt", { bolt { yield = 4e4, grout_strength = 4e4, grout_residual = 2e4, dowel_stiffness = 1e7,
         dowel_strength = 1e4, rupture_strain = 0.5 },
         bolt { from = { 100.8, 0.7, -1 }, to = { 100.9, 0.5, 1.5 }, plate_strength = 3e4, pretension = 1e4 } })
-    one:blocks { fixed = false }:set { velocity = { 0.3, 0.1, -1 }, spin = { 1, 2, 3 } }
+    one:blocks { fixed = false }:set { velocity = { 0.3, 0.1, -1 }, angular_velocity = { 1, 2, 3 } }
     one:cycle(2000)
     return one
 end
@@ -85,7 +84,7 @@ check.equal(e[1].axial > 4e4, true)
 -- A bolt that is pulled beyond its rupture strain lets the block go; a dowel is cut by the slip.
 m = roof()
 e = m:element("bolt", bolt { yield = 1e4, rupture_strain = 0.05 })
-m:cycle(20000)
+m:cycle(1000)
 check.equal(e[1].broken, true)
 check.near(e[1].axial < 2e4 and 1 or 0, 1, 0)
 check.near(m:energy().balance, 0, 1e-3)
@@ -133,17 +132,26 @@ refuse({ yield = -1 }, "yield")
 refuse({ grout_strength = -1 }, "grout_strength")
 refuse({ grout_residual = 5e5 }, "grout_residual = 500000 N/m is above grout_strength = 400000 N/m")
 refuse({ grouted_from = 0.5, grouted_to = 0.5 }, "grouted_from = 0.5 must be below grouted_to = 0.5")
-refuse({ pretension = 3e5 }, "pretension = 300000 N is above what steel %(240000 N%) and plate %(200000 N%) bear")
+refuse({ pretension = 3e5 }, "pretension = 300000 N is above what steel (240000 N) and plate (200000 N) bear")
 refuse({ pretension = 1e5, grout_strength = 1e4 }, "pulls the bolt out of its grout")
 refuse({ spacing = 0.002 }, "more than 512 nodes")
 refuse({ diameter = 25 }, "diameter")
 
 -- What holds nothing is said.
-said = {}
-talus.log(function(text) said[#said + 1] = text end)
-m:element("bolt", bolt { from = { 100.5, 0.5, 0.5 } })
-m:blocks { fixed = false }:move { 0, 0, -0.5 }
-m:element("bolt", bolt { from = { 100.5, 0.5, -1.5 } })
-check.equal(#said, 2)
-check.equal(said[1]:find "lies in one body, so it holds nothing" ~= nil, true)
-check.equal(said[2]:find "passes through a void of 0.5 m: it is free there" ~= nil, true)
+local path = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/bolt.lua"
+local function says(script, words)
+    local file = assert(io.open(path, "w"))
+    file:write([[
+local m = require "talus".model {}
+m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 2 }, density = 2500 })
+m:generate("box", { min = { 0, 0, -1.5 }, max = { 1, 1, -0.5 }, density = 2500 })
+]], script)
+    file:close()
+    local pipe = assert(io.popen(string.format("'%s' '%s' 2>&1", os.getenv("TALUS_PROGRAM") or arg[-1], path)))
+    local text = pipe:read("a")
+    pipe:close()
+    check.holds(text:find(words, 1, true), words .. " in: " .. text)
+end
+says("m:element('bolt', { from = { 0.5, 0.5, 0 }, to = { 0.5, 0.5, 1.5 } })", "lies in one body, so it holds nothing")
+says("m:element('bolt', { from = { 0.5, 0.5, -1.5 }, to = { 0.5, 0.5, 1.5 } })", "passes through a void of 0.5 m: it is free there")
+os.remove(path)

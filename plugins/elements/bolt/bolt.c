@@ -41,7 +41,7 @@
 #define NOISE 2e-15
 /* Constant: of the stiffness of grout that slips or steel that yields, the part left in the matrix. Any small number
  * gives the same forces. */
-#define LEFT 1e-6
+#define LEFT 1e-4
 /* Constant: over the diameter, the length of steel in a crossing without a void. */
 #define SHORT 1e-3
 /* Constant: over the diameter, the active length where none is given. */
@@ -164,20 +164,20 @@ static double within(double x, double limit)
     return fmax(-limit, fmin(limit, x));
 }
 
-/* Forces at the present w. */
-static void respond(chain *c)
+/* Forces at the present w; `elastic`: as if nothing had a limit but steel that is broken. */
+static void respond(chain *c, bool elastic)
 {
     const uint32_t n = c->count;
     for (uint32_t k = 0; k < n; k++) {
         const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
         c->grout_trial[k] = trial;
-        c->grout[k] = within(trial, c->worn[k] ? c->residual[k] : c->bond[k]);
+        c->grout[k] = elastic ? trial : within(trial, c->worn[k] ? c->residual[k] : c->bond[k]);
         c->grout_tangent[k] = c->grout[k] == trial ? c->hold[k] : LEFT * fmin(c->hold[k], c->even[k]);
     }
     for (uint32_t k = 0; k + 1 < n; k++) {
         const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
         c->tension_trial[k] = trial;
-        c->tension[k] = within(trial, c->limit[k]);
+        c->tension[k] = elastic && c->limit[k] > 0 ? trial : within(trial, c->limit[k]);
         c->tension_tangent[k] = c->tension[k] == trial ? c->stiff[k] : LEFT * c->even[k];
     }
     c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
@@ -244,7 +244,7 @@ static double go(chain *c, const double *from, const double *step, double part, 
     double sum = 0;
     for (uint32_t k = 0; k < c->count; k++)
         c->w[k] = from[k] + part * step[k];
-    respond(c);
+    respond(c, false);
     *balanced = is_balanced(c);
     for (uint32_t k = 0; k < c->count; k++)
         sum += c->off[k] * step[k];
@@ -271,10 +271,18 @@ static bool advance(chain *c)
     return balanced;
 }
 
-/* Finds w; true when the steel is in equilibrium. */
+/* Finds w; true when the steel is in equilibrium. It begins with what the steel would do if nothing had a limit. */
 static bool solve(chain *c)
 {
-    respond(c);
+    respond(c, true);
+    if (!is_balanced(c)) {
+        double step[TL_ELEMENT_NODES];
+        find_step(c, step);
+        for (uint32_t k = 0; k < c->count; k++)
+            c->w[k] += step[k];
+    }
+    respond(c, false);
+    wear(c);
     bool balanced = is_balanced(c);
     for (int pass = 0; pass < PASSES && !balanced; pass++) {
         balanced = advance(c);
