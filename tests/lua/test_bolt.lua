@@ -155,3 +155,36 @@ end
 says("m:element('bolt', { from = { 0.5, 0.5, 0 }, to = { 0.5, 0.5, 1.5 } })", "lies in one body, so it holds nothing")
 says("m:element('bolt', { from = { 0.5, 0.5, -1.5 }, to = { 0.5, 0.5, 1.5 } })", "passes through a void of 0.5 m: it is free there")
 os.remove(path)
+
+-- A pattern over a roof: a grid of bolts with the spacings, the same on faces that share a plane.
+m = talus.model { gravity = { 0, 0, -10 } }
+m:generate("box", { min = { 0, 0, 0 }, max = { 6, 6, 4 }, density = 2500 })
+m:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 2, 0, 0 } })
+m:generate("joint", { joint = "K", dip = 0, dip_direction = 0, origin = { 0, 0, 1 } })
+m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+local lower = m:boundary "zmin"
+local list = talus.bolt_pattern { on = lower, spacing = { 1.6, 1.6 }, length = 3, diameter = 0.02, node_spacing = 0.2 }
+check.equal(#list, 9)
+check.near(list[1].to[3], 3, 1e-12)
+check.equal(list[1].diameter, 0.02)
+check.equal(#m:element("bolt", list), 9)
+list = talus.bolt_pattern { on = lower, spacing = { 1.5, 1.5 }, length = 3, direction = { 0, 1, 1 }, origin = { 0.75, 0.75, 0 } }
+check.equal(#list, 16)
+check.near(list[1].to[2] - list[1].from[2], 3 / math.sqrt(2), 1e-12)
+check.raises(function() talus.bolt_pattern { on = lower, spacing = { 50, 50 }, length = 3, origin = { -1, -1, 0 } } end,
+    "no bolt of the grid hits a face: there are 2 of 36.0 m2")
+check.raises(function() talus.bolt_pattern { on = lower, spacing = { 1, 1 }, length = 3, direction = { 0, 0, -1 } } end,
+    "no bolt of the grid hits a face")
+check.raises(function() talus.bolt_pattern { on = m:blocks(), spacing = { 1, 1 }, length = 3 } end, "model:boundary{...}")
+check.raises(function() talus.bolt_pattern { on = lower, spacing = { 1, 0 }, length = 3 } end, "both above 0")
+check.raises(function() talus.bolt_pattern { on = lower, spacing = { 1, 1 } } end, "length")
+
+-- Tests of a bolt without a model: pull-out to what its grout bears, and shear to what the dowel bears.
+local curve = talus.bolt_test { length = 0.5, pull = 0.01, yield = 1e9, grout_strength = 1e5 }
+check.near(curve.force[#curve.force], 5e4, 100)
+check.equal(curve.yielded, true)
+curve = talus.bolt_test { length = 2, shear = 0.02, angle = 30, dowel_stiffness = 1e8, dowel_strength = 1.2e5 }
+check.near(curve.dowel[#curve.dowel], 1.2e5, 1)
+check.holds(curve.along[#curve.along] > 1.2e5 * math.cos(math.rad(30)), "the axial force helps")
+check.raises(function() talus.bolt_test { length = 1 } end, "give pull or shear")
+check.raises(function() talus.bolt_test { length = 1, pull = 0.1, yeild = 1 } end, "yield")
