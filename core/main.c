@@ -100,6 +100,60 @@ static bool load_plugins(void)
     return tl_command_fail("out of memory while the plugins are loaded");
 }
 
+/* A whole number of the environment, or -1. */
+static int64_t number_of(const char *name)
+{
+    const char *text = name ? getenv(name) : NULL;
+    char *end;
+    errno = 0;
+    const long long number = text && text[0] ? strtoll(text, &end, 10) : -1;
+    return !text || !text[0] || errno || *end || number < 0 ? -1 : (int64_t)number;
+}
+
+/* What batch systems and MPI tell a process: its number, how many there are, and the number of the first. */
+static const struct batch {
+    const char *rank, *count, *first;
+} batches[] = {{"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"},
+               {"SLURM_PROCID", "SLURM_NTASKS", NULL},
+               {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", NULL},
+               {"PMI_RANK", "PMI_SIZE", NULL}};
+
+static bool shard_auto(tl_lua_options *lua)
+{
+    for (size_t i = 0; i < sizeof batches / sizeof *batches; i++) {
+        const int64_t rank = number_of(batches[i].rank), count = number_of(batches[i].count);
+        const int64_t first = number_of(batches[i].first), step = i == 0 ? number_of("SLURM_ARRAY_TASK_STEP") : 1;
+        if (rank < 0 || count < 1)
+            continue;
+        lua->shard = (rank - (first > 0 ? first : 0)) / (step > 0 ? step : 1) + 1;
+        lua->shards = count;
+        if (lua->shard >= 1 && lua->shard <= count)
+            return true;
+        return tl_command_fail("--shard auto: %s = %lld is no process of %lld", batches[i].rank, (long long)rank,
+                               (long long)count);
+    }
+    return tl_command_fail("%s", "--shard auto: neither SLURM_ARRAY_TASK_ID and _COUNT, SLURM_PROCID and SLURM_NTASKS, "
+                                 "OMPI_COMM_WORLD_RANK and _SIZE nor PMI_RANK and PMI_SIZE are set");
+}
+
+/* --shard i/n or auto */
+static bool read_shard(const char *text, tl_lua_options *lua)
+{
+    if (strcmp(text, "auto") == 0)
+        return shard_auto(lua);
+    char *end;
+    errno = 0;
+    const long long shard = strtoll(text, &end, 10);
+    const bool begun = end != text && *end == '/';
+    const char *rest = begun ? end + 1 : end;
+    const long long shards = begun ? strtoll(rest, &end, 10) : 0;
+    if (errno || !begun || end == rest || *end || shard < 1 || shard > shards || shards > 1000000)
+        return tl_command_fail("--shard: '%s' is neither auto nor i/n with 1 <= i <= n <= 1000000", text);
+    lua->shard = shard;
+    lua->shards = shards;
+    return true;
+}
+
 static bool load_plugin(const char *path)
 {
     tl_error error;
@@ -113,7 +167,7 @@ static bool load_plugin(const char *path)
 static bool unknown_option(const char *word)
 {
     static const char *const known[] = {"--threads", "--quiet", "--plugin",   "--version", "--help",
-                                        "-v",        "-e",      "--autosave", "--resume"};
+                                        "-v",        "-e",      "--autosave", "--resume",  "--shard"};
     const char *nearest = tl_nearest_name(word, known, sizeof known / sizeof known[0]);
     if (nearest)
         return tl_command_fail("unknown option '%s'; did you mean '%s'?", word, nearest);
@@ -125,7 +179,7 @@ static bool read_option(int argc, char **argv, options *o)
 {
     const char *word = argv[o->next++];
     bool takes_value = strcmp(word, "--threads") == 0 || strcmp(word, "--plugin") == 0 || strcmp(word, "-e") == 0 ||
-                       strcmp(word, "--autosave") == 0;
+                       strcmp(word, "--autosave") == 0 || strcmp(word, "--shard") == 0;
     if (strcmp(word, "--quiet") == 0)
         o->lua.quiet = true;
     else if (strcmp(word, "--resume") == 0)
@@ -140,6 +194,8 @@ static bool read_option(int argc, char **argv, options *o)
         return read_threads(argv[o->next++], &o->lua.threads);
     else if (strcmp(word, "--autosave") == 0)
         return read_minutes(argv[o->next++], &o->lua.autosave);
+    else if (strcmp(word, "--shard") == 0)
+        return read_shard(argv[o->next++], &o->lua);
     else if (strcmp(word, "--plugin") == 0)
         return load_plugin(argv[o->next++]);
     else
@@ -344,7 +400,8 @@ static bool prepare_saves(int argc, char **argv, options *o, bool runs)
 {
     bool script = o->next < argc && !o->chunk && strcmp(argv[o->next], "-") != 0;
     if (runs && !script)
-        return tl_command_fail("%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
+        return tl_command_fail("%s", "run: name the script: talus run [--autosave MINUTES] [--resume] [--shard i/n] "
+                                     "SCRIPT.lua");
     if (!script && (o->lua.autosave > 0 || o->lua.resume))
         return tl_command_fail("%s", "--autosave and --resume are for a script in a file, beside which it saves");
     if (script && !(o->lua.save_path = autosave_path(argv[o->next])))

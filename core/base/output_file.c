@@ -30,8 +30,7 @@ tl_status tl_output_fail(tl_error *error, const char *path, int code)
     return tl_fail(error, TL_E_IO, "cannot write '%s': %s", path, strerror(code));
 }
 
-/* Makes every folder in front of the last '/' of `path`; 0 or an errno. */
-static int make_folders(const char *path)
+int tl_output_folders(const char *path)
 {
     if (strlen(path) >= PATH_MAX)
         return ENAMETOOLONG; /* before any folder is made */
@@ -164,7 +163,7 @@ tl_status tl_output_open(tl_output *output, const char *path, tl_error *error)
     if (!*path)
         return tl_fail(error, TL_E_ARGUMENT, "cannot write '': the name of the file is empty");
     output->path = strdup(path);
-    int code = output->path ? make_folders(path) : ENOMEM;
+    int code = output->path ? tl_output_folders(path) : ENOMEM;
     tl_status status = TL_OK;
     if (code == 0)
         status = find_place(output, error);

@@ -40,6 +40,8 @@ tl_status tl_output_whole(const char *path, tl_output_fn fill, void *user, tl_er
 /* What the user gave before the ending that the files get in any case, in memory of its own; NULL when there is none
  * left. */
 char *tl_output_prefix(const char *given, const char *ending);
+/* Makes every folder in front of the last '/' of `path`; 0 or an errno. */
+int tl_output_folders(const char *path);
 /* TL_E_IO: "cannot write 'path': " and the text of an errno. */
 tl_status tl_output_fail(tl_error *error, const char *path, int code);
 

@@ -392,6 +392,15 @@ static void see_states(trial *t)
     }
 }
 
+/* What it gives contacts, s. */
+static double beta_of(const trial *t, const void *self)
+{
+    double beta = 0;
+    if (t->ops->contact)
+        t->ops->contact(self, &beta);
+    return beta;
+}
+
 /* The same step of a damping with another value of one parameter. */
 static void see_param(trial *t, uint32_t k, void *params)
 {
@@ -400,7 +409,7 @@ static void see_param(trial *t, uint32_t k, void *params)
     memcpy(text, t->c->params_text, sizeof text);
     if (tl_check_params(t->c, t->c->set, (int)k, params, &held) == TL_OK &&
         tl_check_create(t->c, t->ops->create, params, &t->self) == TL_OK) {
-        t->matters[k] = gives_other(t, t->began);
+        t->matters[k] = gives_other(t, t->began) || beta_of(t, own) != beta_of(t, t->self);
         if (t->ops->destroy)
             t->ops->destroy(t->self);
     }

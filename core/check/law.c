@@ -689,7 +689,7 @@ static tl_status try_set(tl_checker *c, void *params, void *user)
     if (!tl_check_failed(c, TL_LAW_STIFFNESS) || isfinite(t->law.kn + t->law.ks))
         status = try_varied(t);
     if (status == TL_OK && !tl_check_failed(c, TL_LAW_RUNS) && !tl_check_failed(c, TL_LAW_STIFFNESS))
-        status = tl_law_check_strengths(c, &t->law, params, open_law, close_law);
+        status = tl_law_check_strengths(c, &t->law, params, open_law, close_law, &t->seen);
     close_law(&t->law);
     return status;
 }
@@ -703,6 +703,8 @@ static tl_status check_kind(tl_checker *c)
     tl_status status = tl_check_sets(c, try_set, t);
     if (status == TL_OK && !tl_check_failed(c, TL_LAW_RUNS))
         tell_unseen(c, &t->seen);
+    if (status == TL_OK)
+        tl_law_tell_strengths(c, &t->seen);
     free(t);
     return status;
 }

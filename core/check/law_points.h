@@ -98,6 +98,8 @@ typedef struct tl_check_seen {
     uint32_t kept;                 /* ... its own next value depends on it */
     bool slips, heats;             /* a point was flagged as slipping; shear was turned to heat */
     bool matters[TL_CHECK_PARAMS]; /* what the law gives depends on that parameter */
+    int divided, wrong;            /* sets whose strengths were divided, and those that then bore something else */
+    char strengths[300];           /* what the first of these bore */
 } tl_check_seen;
 
 /* One set of parameters, and the points as they are. */

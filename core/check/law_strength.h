@@ -10,6 +10,8 @@ typedef void (*tl_check_close_fn)(tl_check_law *law);
 
 /* Tries a law with its strengths divided by 0.5 and 2. `law` is that of the parameters. */
 tl_status tl_law_check_strengths(tl_checker *c, const tl_check_law *law, const void *params, tl_check_open_fn open,
-                                 tl_check_close_fn close);
+                                 tl_check_close_fn close, tl_check_seen *seen);
+/* After all sets: whether most bore what they should. */
+void tl_law_tell_strengths(tl_checker *c, const tl_check_seen *seen);
 
 #endif

@@ -58,6 +58,9 @@ typedef struct tl_kind_force {
     /* Force, moment and energies of each contact, of what the law has made of its points. */
     void (*sum)(const tl_model *m, const struct tl_law *law, const tl_simd_group *group, const tl_point_lanes *lanes,
                 size_t lane, const struct tl_arms *arms, struct tl_group_sums *out);
+    /* Likewise force and moment of the damping of their points, which is in the first four columns of `before`. */
+    void (*damp)(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
+                 const struct tl_arms *arms, struct tl_group_sums *out);
 } tl_kind_force;
 
 /* A contact that is found, and one whose points are to be others. */

@@ -125,14 +125,21 @@ static inline double tl_contact_sign(const tl_contacts *c, uint32_t contact, uin
 {
     return tl_contact_is_b(c, contact, block) ? 1 : -1;
 }
-/* Moment of a contact's forces on A, or on B, about the centroid of that side. */
+/* Moment of forces of a contact on A, or on B, about the centroid of that side; of a force and a moment on B, about A's
+ * centroid. */
+static inline tl_vec3 tl_contact_moment_of(const tl_model *m, uint32_t contact, bool on_b, tl_vec3 force,
+                                           tl_vec3 moment)
+{
+    if (!on_b)
+        return tl_v3_neg(moment);
+    tl_vec3 apart = tl_sides_apart(m, tl_contact_sides(m, contact));
+    return tl_v3_sub(moment, tl_v3_cross(apart, force));
+}
+/* Of its own forces. */
 static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, bool on_b)
 {
     const tl_contacts *c = &m->detect->contacts;
-    if (!on_b)
-        return tl_v3_neg(c->moment[contact]);
-    tl_vec3 apart = tl_sides_apart(m, tl_contact_sides(m, contact));
-    return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
+    return tl_contact_moment_of(m, contact, on_b, c->force[contact], c->moment[contact]);
 }
 
 #endif

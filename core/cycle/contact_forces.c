@@ -1,14 +1,20 @@
 /* contact_forces.c - contacts act on bodies by the laws of their joints: the first contributor of a step. */
 #include "cycle/contact_forces.h"
 
+#include "base/columns.h"
 #include "contact/body_contacts.h"
 #include "contact/contacts.h"
 #include "contact/kind.h"
+#include "cycle/contact_beta.h"
 #include "cycle/cycle_data.h"
 #include "cycle/idle.h"
 #include "cycle/undo.h"
 #include "force/joint_laws.h"
 #include "force/laws.h"
+#include "segment/act.h"
+#include "segment/carriers.h"
+#include "segment/gather.h"
+#include "zone/grid.h"
 
 #include <string.h>
 
@@ -93,13 +99,36 @@ static void sum_stored(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_exact_add(&m->cycle->stored[thread], stored, end - begin);
 }
 
+/* Makes room for what damps contacts. */
+static tl_status prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    const size_t rows = m->detect->contacts.table.rows;
+    const bool enough = !(tl_contact_beta(m) > 0) ||
+                        tl_fit(&c->contact_damping, &c->contact_damping_capacity, rows, sizeof *c->contact_damping);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+/* What is damped, and how much. Contacts that are passed over are not. */
+static void begin_damping(tl_model *m, tl_law_phase *phase)
+{
+    struct tl_cycle *c = m->cycle;
+    const double beta = tl_contact_beta(m);
+    if (!(beta > 0))
+        return;
+    memset(c->contact_damping, 0, m->detect->contacts.table.rows * sizeof *c->contact_damping);
+    phase->damping = c->contact_damping;
+    phase->damping_rate = m->dt > 0 ? beta / m->dt : 0;
+}
+
 /* Energies are summed at once: a split gives contacts others later in the step. Contacts that rest store what they
  * did, and make no heat. */
 static tl_status apply(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
     const unsigned threads = tl_pool_threads(m->pool);
-    const tl_law_phase phase = {&c->failure, c->heat, keep_groups};
+    tl_law_phase phase = {.failure = &c->failure, .heat = c->heat, .keep = keep_groups};
+    begin_damping(m, &phase);
     memset(c->heat, 0, threads * sizeof *c->heat);
     memset(c->stored, 0, threads * sizeof *c->stored);
     tl_status status = tl_laws_apply(m, &phase);
@@ -133,6 +162,46 @@ static void gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *o
     for (uint32_t body = begin; body < end; body++)
         if (!tl_body_idles(m, idle, body))
             gather_body(m, body, &on[body - begin]);
+}
+
+static void damp_body(const tl_model *m, uint32_t body)
+{
+    const struct tl_cycle *c = m->cycle;
+    tl_vec3 force = tl_columns_get(c->damping_force, body), moment = tl_columns_get(c->damping_moment, body);
+    if (m->segments)
+        tl_segments_damp_body(m, body, &force, &moment);
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        const uint32_t i = at.contact;
+        const tl_wrench *by = &c->contact_damping[i];
+        const bool on_b = tl_contact_is_b(&m->detect->contacts, i, at.block);
+        force = tl_v3_madd(force, on_b ? 1 : -1, by->force);
+        moment = tl_v3_add(moment, tl_contact_moment_of(m, i, on_b, by->force, by->moment));
+    }
+    tl_columns_put(c->damping_force, body, force);
+    tl_columns_put(c->damping_moment, body, moment);
+}
+
+static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    for (size_t body = begin; body < end; body++)
+        damp_body(user, (uint32_t)body);
+}
+
+void tl_contacts_damp(tl_model *m)
+{
+    if (!(tl_contact_beta(m) > 0))
+        return;
+    const double *share = m->detect->contacts.share;
+    for (uint32_t i = 0; m->segments && share && i < m->detect->contacts.table.rows; i++) {
+        tl_wrench *by = &m->cycle->contact_damping[i];
+        *by = (tl_wrench){tl_v3_scale(share[i], by->force), tl_v3_scale(share[i], by->moment)};
+    }
+    tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, damp_range, m);
+    if (tl_model_deforms(m)) {
+        tl_carriers_damp(m, m->cycle->contact_damping);
+        tl_segments_damp(m);
+    }
 }
 
 /* Elastic energy and slip. */
@@ -237,6 +306,7 @@ static double approach(const tl_model *m, uint32_t body)
 }
 
 const tl_contributor tl_contacts_act = {.name = "contacts",
+                                        .prepare = prepare,
                                         .apply = apply,
                                         .gather = gather,
                                         .stiffness = stiffness,

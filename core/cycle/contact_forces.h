@@ -7,4 +7,7 @@
 /* By the laws of their joints. */
 extern const tl_contributor tl_contacts_act;
 
+/* Adds the damping of contacts to the damping forces of bodies and gridpoints. */
+void tl_contacts_damp(tl_model *m);
+
 #endif

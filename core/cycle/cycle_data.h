@@ -163,6 +163,8 @@ struct tl_cycle {
     double *turn_rate;
     double *inertia;                                      /* over its own, where `adds` */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
+    tl_wrench *contact_damping; /* of each contact, where these are damped: on B, about A's centroid */
+    size_t contact_damping_capacity;
     /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
     uint32_t *reaction_of;
     tl_reaction *reaction;

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/params.h"
 #include "contact/contacts.h"
+#include "cycle/contact_forces.h"
 #include "cycle/gridpoint.h"
 #include "cycle/undo.h"
 #include "plugin/loader.h"
@@ -25,6 +26,19 @@ static void note_forces(tl_bodies *b, size_t begin, size_t end)
         b->force_before[i] = b->force[i];
         b->moment_before[i] = b->moment[i];
     }
+}
+
+/* A plugin's beta must be one that the step can follow. */
+static tl_status check_contact(tl_model *m, const tl_kind *kind, const void *self)
+{
+    const tl_damping_ops *ops = kind->ops;
+    double beta = 0;
+    if (ops->contact)
+        ops->contact(self, &beta);
+    if (beta >= 0 && isfinite(beta))
+        return TL_OK;
+    return tl_fail(&m->error, TL_E_PLUGIN, "damping '%.40s' gives contacts beta = %g s, which must be finite and >= 0",
+                   kind->name, beta);
 }
 
 tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args, const void *from)
@@ -59,6 +73,8 @@ tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args,
             tl_fail(&m->error, status, "%s of plugin '%s': %s", context, tl_plugin_id(kind),
                     tl_report_text(&report, status));
     }
+    if (status == TL_OK && (status = check_contact(m, kind, self)) != TL_OK && ops->destroy)
+        ops->destroy(self);
     if (status != TL_OK) {
         free(params);
         free(state);
@@ -306,6 +322,8 @@ tl_status tl_damping_apply(tl_model *m, double dt)
         if (tl_model_deforms(m))
             tl_parallel_for(m->pool, m->zones->points.table.rows, POINT_CHUNK, damp_points, &job);
         status = c->failure.error.status;
+        if (status == TL_OK)
+            tl_contacts_damp(m);
         if (status == TL_OK)
             status = check_states(m, &c->failure.error);
     } else {

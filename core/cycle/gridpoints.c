@@ -17,6 +17,7 @@
 #include "element/act.h"
 #include "segment/act.h"
 #include "segment/carriers.h"
+#include "segment/gather.h"
 #include "zone/outer.h"
 #include "zone/stiffness.h"
 

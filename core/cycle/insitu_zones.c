@@ -6,6 +6,7 @@
 #include "cycle/insitu_zones.h"
 
 #include "segment/act.h"
+#include "segment/gather.h"
 #include "segment/lay.h"
 #include "segment/preload.h"
 #include "zone/solids.h"

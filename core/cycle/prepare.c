@@ -15,6 +15,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
 {
     pthread_mutex_destroy(&cycle->failure.lock);
     tl_table_free(&cycle->table);
+    free(cycle->contact_damping);
     free(cycle->reaction);
     free(cycle->motion);
     free(cycle->swept);
@@ -126,6 +127,7 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     VALUE(CACHE, fails_at);
     LIST(STATE, secant, &c->secant_count, &c->secant_capacity, step);
     LIST(STATE, conjugate, &c->conjugate_count, &c->conjugate_capacity, step);
+    LIST(SCRATCH, contact_damping, &c->contact_damping_capacity, &c->contact_damping_capacity, step);
     LIST(SCRATCH, link, &c->link_count, &c->link_capacity, step);
     LIST(SCRATCH, leap, &c->leap_capacity, &c->leap_capacity, step);
     LIST(SCRATCH, gathered, &c->gathered_capacity, &c->gathered_capacity, step);

@@ -22,35 +22,53 @@
 
 /* Default: limits of gap and overlap over the mean size of the blocks. */
 #define USUAL 0.01
-/* Limit: overlap over the thickness of the thinner block, up to which a face may be drawn back. Test:
- * lua/test_seat_limits. */
+/* Limit: share of a block's least thickness by which a face of it may be drawn back. Test: lua/test_seat_limits. */
 #define MOST_THIN 0.25
+
+/* Pairs that stay as drawn for one reason. */
+typedef struct left_out {
+    size_t count;
+    tl_seat_beyond first; /* by the blocks' ids */
+    double gap, overlap;  /* the largest, m */
+} left_out;
 
 typedef struct seating {
     tl_model *m;
-    double gap, overlap; /* limits */
+    tl_fit_limits limits;
     tl_seated *made;
     size_t made_count, made_capacity;
     tl_seat_result *out;
     size_t beyond_capacity;
+    left_out far, thin;          /* beyond the limits; of which a face would be drawn back too far */
     double area;                 /* of those to be made */
     tl_id deformable, neighbour; /* a pair that cannot be seated, or TL_NO_ID */
 } seating;
 
 /* ---------------------------------------------------------------- one pair --------------- */
 
-/* The largest overlap of a pair that is taken. */
-static double most_overlap(const seating *s, uint32_t a, uint32_t b)
+/* Whether faces of a pair would be drawn back too far for how thin its blocks are. */
+static bool is_too_thin(const tl_model *m, uint32_t a, uint32_t b, const tl_pair_fit *fit)
 {
-    return fmin(s->overlap, MOST_THIN * fmin(tl_least_thickness(s->m, a), tl_least_thickness(s->m, b)));
+    return fit->drawn[0] > MOST_THIN * tl_least_thickness(m, a) || fit->drawn[1] > MOST_THIN * tl_least_thickness(m, b);
 }
 
-static bool note_beyond(seating *s, uint32_t a, uint32_t b, const tl_pair_fit *now)
+static int compare_beyond(const void *x, const void *y)
+{
+    const tl_seat_beyond *p = x, *q = y;
+    return p->a != q->a ? (p->a > q->a) - (p->a < q->a) : (p->b > q->b) - (p->b < q->b);
+}
+
+static bool note_beyond(seating *s, uint32_t a, uint32_t b, const tl_pair_fit *now, left_out *why)
 {
     tl_seat_result *out = s->out;
+    const tl_seat_beyond pair = {s->m->blocks.id[a], s->m->blocks.id[b], now->gap, now->overlap};
     if (!tl_grow(&out->beyond, &s->beyond_capacity, out->beyond_count + 1, sizeof *out->beyond))
         return false;
-    out->beyond[out->beyond_count++] = (tl_seat_beyond){s->m->blocks.id[a], s->m->blocks.id[b], now->gap, now->overlap};
+    out->beyond[out->beyond_count++] = pair;
+    if (why->count++ == 0 || compare_beyond(&pair, &why->first) < 0)
+        why->first = pair;
+    why->gap = fmax(why->gap, pair.gap);
+    why->overlap = fmax(why->overlap, pair.overlap);
     return true;
 }
 
@@ -79,7 +97,7 @@ static bool note_seat(seating *s, uint32_t a, uint32_t b, const tl_pair_fit *now
 static bool seat_pair(seating *s, uint32_t a, uint32_t b)
 {
     tl_pair_fit now;
-    if (!tl_fit_measure(s->m, a, b, false, s->gap, &now))
+    if (!tl_fit_measure(s->m, a, b, false, s->limits, &now))
         return false;
     if (now.how == TL_FIT_WELL || now.how == TL_FIT_APART)
         return true;
@@ -91,20 +109,16 @@ static bool seat_pair(seating *s, uint32_t a, uint32_t b)
     }
     const tl_pair_fit fits = now;
     const bool seated = tl_seated_of(s->m, s->m->blocks.id[a], s->m->blocks.id[b]) != NULL;
-    if (seated && !tl_fit_measure(s->m, a, b, true, s->gap, &now))
+    if (seated && !tl_fit_measure(s->m, a, b, true, s->limits, &now))
         return false;
-    if (fits.gap > s->gap || fits.overlap > most_overlap(s, a, b))
-        return note_beyond(s, a, b, &fits);
+    if (is_too_thin(s->m, a, b, &fits))
+        return note_beyond(s, a, b, &fits, &s->thin);
+    if (fits.gap > s->limits.gap || fits.overlap > s->limits.overlap)
+        return note_beyond(s, a, b, &fits, &s->far);
     return now.how == TL_FIT_APART || note_seat(s, a, b, &now);
 }
 
 /* ---------------------------------------------------------------- all of them ------------ */
-
-static int compare_beyond(const void *x, const void *y)
-{
-    const tl_seat_beyond *p = x, *q = y;
-    return p->a != q->a ? (p->a > q->a) - (p->a < q->a) : (p->b > q->b) - (p->b < q->b);
-}
 
 /* Looks at all pairs that the broad phase lists. */
 static bool seat_pairs(seating *s)
@@ -193,28 +207,39 @@ static bool some_opened(tl_model *m)
     return some;
 }
 
-static void say_seated(tl_model *m, const tl_seat_result *r, bool given)
+/* The words for one, or for more. */
+static const char *plural(size_t count, const char *one, const char *more)
 {
+    return count == 1 ? one : more;
+}
+
+static void say_seated(const seating *s, bool given)
+{
+    tl_model *m = s->m;
+    const tl_seat_result *r = s->out;
+    const left_out *far = &s->far, *thin = &s->thin;
     tl_model_say(
         m,
         "seat: %zu contact%s made to fit, with gaps up to %.3g m (mean %.3g m) and overlaps up to %.3g m (mean "
         "%.3g m); limits: gap = %.3g, overlap = %.3g%s",
-        r->contacts, r->contacts == 1 ? " was" : "s were", r->largest_gap, r->mean_gap, r->largest_overlap,
+        r->contacts, plural(r->contacts, " was", "s were"), r->largest_gap, r->mean_gap, r->largest_overlap,
         r->mean_overlap, r->gap, r->overlap, given ? "" : ", of the blocks' mean size 1 %");
-    if (r->beyond_count == 0)
-        return;
-    double gap = r->gap, overlap = r->overlap; /* limits within which all of them lie */
-    for (size_t i = 0; i < r->beyond_count; i++) {
-        gap = fmax(gap, r->beyond[i].gap);
-        overlap = fmax(overlap, r->beyond[i].overlap);
-    }
-    tl_model_say(m,
-                 "seat: %zu pair%s of blocks lie%s beyond the limits (first: blocks %u and %u, with a gap of %.3g m "
-                 "and an overlap of %.3g m) and stay%s as drawn: draw them otherwise, or give larger limits (gap = "
-                 "%.3g, overlap = %.3g would hold all)",
-                 r->beyond_count, r->beyond_count == 1 ? "" : "s", r->beyond_count == 1 ? "s" : "", r->beyond[0].a,
-                 r->beyond[0].b, r->beyond[0].gap, r->beyond[0].overlap, r->beyond_count == 1 ? "s" : "", 1.01 * gap,
-                 1.01 * overlap);
+    if (far->count)
+        tl_model_say(m,
+                     "seat: %zu %s beyond the limits (first: blocks %u and %u, with a gap of %.3g m and an overlap of "
+                     "%.3g m) and %s as drawn: draw them otherwise, or give larger limits (gap = %.3g, overlap = %.3g "
+                     "would hold all)",
+                     far->count, plural(far->count, "pair of blocks lies", "pairs of blocks lie"), far->first.a,
+                     far->first.b, far->first.gap, far->first.overlap, plural(far->count, "stays", "stay"),
+                     fmax(1.01 * far->gap, r->gap), fmax(1.01 * far->overlap, r->overlap));
+    if (thin->count)
+        tl_model_say(m,
+                     "seat: %zu %s too deep for %s thickness (first: blocks %u and %u, by %.3g m) and %s as drawn: a "
+                     "block gives way by a quarter of its thickness at the most, whatever the limits; draw them apart, "
+                     "or delete a block that is there twice",
+                     thin->count, plural(thin->count, "pair of blocks overlaps", "pairs of blocks overlap"),
+                     plural(thin->count, "its", "their"), thin->first.a, thin->first.b, thin->first.overlap,
+                     plural(thin->count, "stays", "stay"));
 }
 
 static double mean_size(const tl_model *m)
@@ -229,7 +254,7 @@ static double mean_size(const tl_model *m)
 static tl_status seat_all(tl_model *m, seating *s)
 {
     tl_segments_forget_asked(m);
-    tl_status status = list_pairs(m, s->gap);
+    tl_status status = list_pairs(m, s->limits.gap);
     if (status != TL_OK)
         return status;
     const bool looked = seat_pairs(s);
@@ -272,11 +297,11 @@ tl_status tl_model_seat(tl_model *m, const tl_seat *given, tl_seat_result *resul
     found.overlap = isnan(seat.overlap) ? usual : seat.overlap;
     if (!(found.gap >= 0) || !(found.overlap >= 0) || !isfinite(found.gap) || !isfinite(found.overlap))
         return tl_fail(&m->error, TL_E_ARGUMENT, "seat: gap and overlap must be lengths of at least 0 m");
-    seating s = {.m = m, .gap = found.gap, .overlap = found.overlap, .out = &found};
+    seating s = {.m = m, .limits = {found.gap, found.overlap}, .out = &found};
     status = seat_all(m, &s);
     free(s.made);
     if (status == TL_OK)
-        say_seated(m, &found, !isnan(seat.gap) && !isnan(seat.overlap));
+        say_seated(&s, !isnan(seat.gap) && !isnan(seat.overlap));
     if (status == TL_OK && result)
         *result = found;
     else

@@ -7,6 +7,7 @@
 #include "cycle/cycle_data.h"
 #include "cycle/failing.h"
 #include "cycle/meshes.h"
+#include "cycle/records.h"
 #include "cycle/remarks.h"
 #include "cycle/rest.h"
 #include "cycle/settle.h"
@@ -220,6 +221,9 @@ tl_status tl_solve_run(tl_model *m, const tl_solve *solve, tl_solve_result *want
     *result = (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time, .measure = solve->measure};
     if (m->running || m->reading)
         return tl_fail(&m->error, TL_E_STATE, "cycle and solve cannot be called from a function that a run has called");
+    const tl_status records = tl_records_check(m);
+    if (records != TL_OK)
+        return records;
     progress p = {solve, result, m->cycles, m->time, tl_clock()};
     tl_watch *watch = NULL;
     if ((solve->ratio > 0 || solve->stop_at_failure) && !(watch = tl_watch_begin(m)))
@@ -233,6 +237,8 @@ tl_status tl_solve_run(tl_model *m, const tl_solve *solve, tl_solve_result *want
         status = tl_step(m);
         if (status != TL_OK)
             break;
+        if (result->cycles == 0)
+            tl_records_remark(m);
         measure(m, &p);
         if (watch)
             m->cycle->failing = result->failing = tl_watch_step(watch, m);

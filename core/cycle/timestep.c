@@ -13,6 +13,7 @@
 #include "base/columns.h"
 #include "contact/sides.h"
 #include "cycle/added_mass.h"
+#include "cycle/contact_beta.h"
 #include "cycle/energy.h"
 #include "cycle/gridpoint.h"
 #include "cycle/gridpoints.h"
@@ -531,11 +532,18 @@ static double damping_factor(const tl_model *m)
     return factor;
 }
 
+/* The longest stable step with damping of contacts, over the one without it, `critical` s: (1 + l^2)^(1/2) - l. */
+static double contact_factor(const tl_model *m, double critical)
+{
+    const double beta = tl_contact_beta(m), l = critical > 0 ? beta / critical : 0;
+    return beta > 0 ? 1 / (sqrt(1 + l * l) + l) : 1;
+}
+
 /* The highest rate that is stable at the step for which inertia is added, 1/s2. */
 static double rate_limit(const tl_model *m)
 {
     double share = tl_timestep_fraction(m) * damping_factor(m) / m->added_dt;
-    return 2 * share * share;
+    return 2 * share * share / (1 + 2 * tl_contact_beta(m) * share);
 }
 
 bool tl_rates_are_state(const tl_model *m, double *known)
@@ -587,9 +595,12 @@ static void judge_step(tl_model *m)
     if (!due || c->all_held || tl_scales_all(m))
         return;
     double far_above = TOO_LONG / m->timestep.dt, bearable = 2 * far_above * far_above;
+    bearable /= 1 + 2 * tl_contact_beta(m) * far_above;
     tl_row_value fastest = tl_rates_anew(m, bearable);
     double stable = 2 * sqrt(0.5 / fastest.value);
-    const double zones = 2 * sqrt(tl_gridpoints_least(m));
+    stable *= contact_factor(m, stable);
+    double zones = 2 * sqrt(tl_gridpoints_least(m));
+    zones *= contact_factor(m, zones);
     c->long_step = (fastest.row != TL_NO_ROW && fastest.value > bearable) || m->timestep.dt > TOO_LONG * zones;
     if (!c->long_step || !tl_model_says(m, TL_REMARK_STEP))
         return;
@@ -685,6 +696,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     }
     c->long_step = false;
     double fresh = tl_timestep_fraction(m) * balance_factor(m) * damping_factor(m) * 2 * sqrt(least);
+    fresh *= contact_factor(m, 2 * sqrt(least));
     if (!(isfinite(fresh) && fresh > 0)) {
         *dt = 0;
         return tl_model_moves(m) ? no_step(m, fresh) : TL_OK;

@@ -1,9 +1,11 @@
 /* zone_forces.c - zones act on gridpoints, and segments on these and on bodies: contributors of a step. */
 #include "cycle/zone_forces.h"
 
+#include "cycle/contact_beta.h"
 #include "cycle/cycle_data.h"
 #include "cycle/zone_limits.h"
 #include "segment/act.h"
+#include "segment/gather.h"
 #include "zone/columns.h"
 #include "zone/grid.h"
 #include "zone/life.h"
@@ -65,6 +67,11 @@ static tl_status prepare(tl_model *m)
 
 /* ---------------------------------------------------------------- segments --------------- */
 
+static tl_status prepare_segments(tl_model *m)
+{
+    return tl_segments_prepare(m, m->dt > 0 ? tl_contact_beta(m) / m->dt : 0);
+}
+
 static tl_status apply_segments(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
@@ -104,7 +111,7 @@ static size_t tables_of_segments(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TAB
 }
 
 const tl_contributor tl_segments_act = {.name = "segments",
-                                        .prepare = tl_segments_prepare,
+                                        .prepare = prepare_segments,
                                         .apply = apply_segments,
                                         .gather = gather_segments,
                                         .stiffness = stiffness_of_segments,

@@ -18,8 +18,12 @@
 
 #include <math.h>
 
-/* Tolerance: sine of the tilt up to which two faces may be put into one plane. Test: lua/test_seat. */
+/* Tolerance: sine of the tilt up to which a face lies along a plane. Faces tilted by more are a wedge that is meant
+ * where a gap alone is beyond its limit. A region's are tilted by 15 degrees at the most. Test: lua/test_masonry. */
 #define MOST_TILT 0.1
+/* Tolerance: blocks that overlap along their flush faces by more than so many times the least, along another face, are
+ * not on each other by them. Test: lua/test_masonry. */
+#define DEEPER 2.0
 /* Tolerance: gaps and overlaps over the size of the smaller block that are the rounding of places. A pair that fits to
  * that stays as it is. Test: lua/test_seat_limits. */
 #define FITS 1e-12
@@ -29,7 +33,7 @@
 
 typedef struct search {
     tl_narrow_scratch *scratch;
-    double gap; /* up to which faces are on each other, m */
+    tl_fit_limits limits;
 } search;
 
 /* The plane between two faces, in A's frame. */
@@ -67,7 +71,7 @@ static bool measure_faces(const search *s, const tl_pair_view *view, const tl_re
 {
     tl_common_polygon common;
     const uint32_t fa = r->flush_a, fb = r->flush_b;
-    if (!r->flush || tl_region_tilt(view, fa, fb) > MOST_TILT)
+    if (!r->flush || r->flush_gap < DEEPER * fmin(r->gap, -tiny))
         return true;
     if (!tl_common_polygon_find(view, fa, fb, s->scratch, &common))
         return false;
@@ -82,13 +86,17 @@ static bool measure_faces(const search *s, const tl_pair_view *view, const tl_re
     }
     const double mean = tl_gap_at(of, common.centroid);
     out->area = common.frame.secant * common.area;
-    if (least > s->gap)
+    const bool wedge = tl_region_tilt(view, fa, fb) > MOST_TILT && most > s->limits.gap;
+    if (least > s->limits.gap || (wedge && -least <= s->limits.overlap))
         return true;
     out->gap = fmax(most, 0);
     out->overlap = fmax(-least, 0);
     out->mean_gap = fmax(mean, 0);
     out->mean_overlap = fmax(-mean, 0);
     out->how = most <= tiny && least >= -tiny ? TL_FIT_WELL : TL_FIT_FACES;
+    const double area_a = tl_poly_face_area(view->a, fa), area_b = tl_poly_face_area(view->b, fb);
+    out->drawn[0] = out->overlap * area_b / (area_a + area_b);
+    out->drawn[1] = out->overlap * area_a / (area_a + area_b);
     put_planes(view, fa, fb, out);
     return true;
 }
@@ -137,14 +145,14 @@ static bool measure_edges(const search *s, const tl_pair_view *view, const tl_re
         return true;
     const double low = of_b ? lows.a_over_b[fb] : lows.b_over_a[fa];
     out->how = TL_FIT_EDGES;
-    out->overlap = fmax(-low, 0);
+    out->overlap = out->drawn[of_b] = fmax(-low, 0);
     out->mean_overlap = 0.5 * out->overlap;
     out->area = press.area;
     out->face[of_b] = of_b ? fb : fa;
     out->plane[of_b] = of_b ? view->b->plane[fb] : view->a->plane[fa];
     out->plane[of_b].offset += fmin(low, 0);
     const tl_plane other = across(view, of_b, out->plane[of_b]);
-    out->face[!of_b] = face_along(of_b ? view->a : view->b, other, s->gap);
+    out->face[!of_b] = face_along(of_b ? view->a : view->b, other, s->limits.gap);
     if (out->face[!of_b] != TL_NO_ROW)
         out->plane[!of_b] = other;
     return true;
@@ -157,9 +165,9 @@ static bool measure(const search *s, tl_pair_view view, tl_pair_fit *out)
     const double tiny = FITS * view.size + ROUNDED * tl_v3_norm(view.shift);
     tl_region region;
     if (!tl_pair_place(&view, s->scratch) ||
-        !tl_region_find(&view, TL_LIST_MARGIN * view.size + s->gap, s->scratch, &region))
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size + s->limits.gap, s->scratch, &region))
         return false;
-    if (region.gap > s->gap)
+    if (region.gap > s->limits.gap)
         return true;
     if (!measure_faces(s, &view, &region, tiny, out) ||
         (out->how == TL_FIT_APART && region.gap < -tiny && !measure_edges(s, &view, &region, out)))
@@ -167,9 +175,9 @@ static bool measure(const search *s, tl_pair_view view, tl_pair_fit *out)
     return true;
 }
 
-bool tl_fit_measure(tl_model *m, uint32_t a, uint32_t b, bool drawn, double gap, tl_pair_fit *out)
+bool tl_fit_measure(tl_model *m, uint32_t a, uint32_t b, bool drawn, tl_fit_limits limits, tl_pair_fit *out)
 {
-    const search s = {&m->detect->narrow[0], gap};
+    const search s = {&m->detect->narrow[0], limits};
     tl_pair_view view = tl_pair_view_of(m, a, b);
     if (drawn) {
         view.a = m->blocks.shape[a];

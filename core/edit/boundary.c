@@ -594,8 +594,10 @@ static tl_status begin_drive(plan *p, const tl_boundary_action *a, uint32_t *mad
 static void end_drives(tl_model *m, const uint32_t *made, size_t count, bool failed)
 {
     for (size_t i = 0; i < count; i++)
-        if (made[i] && failed)
+        if (made[i] && failed) {
+            tl_drive_let_records_go(&m->drives[made[i] - 1].drive);
             m->drives[made[i] - 1] = (tl_drive_record){.bodies = 0};
+        }
     tl_drives_recount(m);
 }
 

@@ -396,4 +396,27 @@ static void follow_fields(tl_model *m, const tl_simd_group *group, const tl_poin
     tl_simd_group_follow(m, group, true, t, lane, tangents, arms);
 }
 
-const tl_kind_force tl_field_force = {.follow = follow_fields, .sum = sum_fields};
+/* The first point carries the normal force and the shear, the other one the torsion. */
+static void damp_fields(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                        const tl_arms *arms, tl_group_sums *out)
+{
+    (void)arms;
+    memset(out, 0, sizeof *out);
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const uint32_t c = group->contact[l];
+        const size_t k = lane + l, torsion = k + TL_FIELD_TORSION * TL_LANES;
+        if (c == TL_NO_ROW || !(m->detect->points.area[group->start + l] > 0))
+            continue;
+        const tl_vec3 shear = tl_v3(t->before[1][k], t->before[2][k], t->before[3][k]);
+        const tl_vec3 twist = tl_v3(t->before[1][torsion], t->before[2][torsion], t->before[3][torsion]);
+        const tl_vec3 force = tl_v3_madd(shear, t->before[0][k], tl_columns_get(t->normal, k));
+        const tl_vec3 moment =
+            tl_v3_madd(tl_v3_cross(tl_columns_get(t->arm, k), force), tl_press_row_of(m, c)->press.radius, twist);
+        for (int axis = 0; axis < 3; axis++) {
+            out->force[axis][l] = (&force.x)[axis];
+            out->moment[axis][l] = (&moment.x)[axis];
+        }
+    }
+}
+
+const tl_kind_force tl_field_force = {.follow = follow_fields, .sum = sum_fields, .damp = damp_fields};

@@ -12,6 +12,7 @@
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/prefetch.h"
+#include "force/contact_damping.h"
 #include "force/follow.h"
 #include "force/joint_laws.h"
 #include "force/partly_open.h"
@@ -517,7 +518,17 @@ static void follow_patches(tl_model *m, const tl_simd_group *group, const tl_poi
     tl_simd_group_follow(m, group, false, t, lane, tangents, arms);
 }
 
-const tl_kind_force tl_patch_force = {.cells = true, .follow = follow_patches, .sum = sum_patches};
+/* The sum over points, of other forces. */
+static void damp_patches(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
+                         const tl_arms *arms, tl_group_sums *out)
+{
+    (void)m;
+    const tl_points_table damping = {.f_n = t->before[0], .f_s = {t->before[1], t->before[2], t->before[3]}};
+    add_points(&damping, t, lane, lane, group->slots, arms, out);
+}
+
+const tl_kind_force tl_patch_force = {
+    .cells = true, .follow = follow_patches, .sum = sum_patches, .damp = damp_patches};
 
 /* Adds what partly open patches have beside their points. Gives the lanes that slip has opened. */
 static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t, size_t lane,
@@ -592,6 +603,42 @@ static bool sum_group(const span_job *job, const tl_simd_group *group, const tl_
     return any_heat;
 }
 
+/* ---------------------------------------------------------------- damping ---------------- */
+
+static tl_point_forces forces_before(const tl_point_lanes *t)
+{
+    return (tl_point_forces){t->before[0], {t->before[1], t->before[2], t->before[3]}};
+}
+
+/* Whether contacts of a span are damped: those that are held still do not move anything. */
+static bool is_damped(const span_job *job)
+{
+    return job->phase->damping && !job->changed;
+}
+
+/* Damping forces of the points of a tile, and what they do to the contacts of its SIMD groups. */
+static void damp_tile(const span_job *job, const tl_simd_group *groups, size_t count, size_t points,
+                      const tl_point_lanes *t, const tl_arms *arms)
+{
+    const tl_points_table *p = &job->m->detect->points;
+    const size_t first = groups->start;
+    const tl_damped_points of = {points,          p->area + first,
+                                 p->f_n + first,  {p->f_s[0] + first, p->f_s[1] + first, p->f_s[2] + first},
+                                 t->du_n,         {t->du_s[0], t->du_s[1], t->du_s[2]},
+                                 p->flags + first};
+    const tl_point_forces forces = forces_before(t);
+    tl_damping_of_points(job->law, &of, job->phase->damping_rate, &forces);
+    for (size_t r = 0; r < count; r++) {
+        tl_group_sums sum;
+        job->kind->damp(job->m, &groups[r], t, groups[r].start - first, &arms[r], &sum);
+        for (size_t l = 0; l < TL_LANES; l++)
+            if (groups[r].contact[l] != TL_NO_ROW)
+                job->phase->damping[groups[r].contact[l]] =
+                    (tl_wrench){tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]),
+                                tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l])};
+    }
+}
+
 /* ---------------------------------------------------------------- tiles ------------------ */
 
 static size_t tile_points(const tl_simd_group *groups, size_t count)
@@ -637,8 +684,15 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
     for (size_t r = 0; any && r < count; r++)
         if (!part[r].parts)
             memset(t->apart + (groups[r].start - first), 0, (size_t)groups[r].slots * TL_LANES * sizeof *t->apart);
+    if (is_damped(job)) {
+        const tl_point_forces forces = forces_before(t);
+        const tl_points_table *p = &job->m->detect->points;
+        tl_damping_note(p->f_n, p->f_s, first, points, &forces);
+    }
     if (!call_law(job, first, points, any != 0, t))
         return;
+    if (is_damped(job))
+        damp_tile(job, groups, count, points, t, arms);
     if (odd_states(&job->m->detect->points, job->law->columns, first, points) != 0)
         law_check_states(job->m, job->phase->failure, job->law, first, points);
     double heat[GROUP_CHUNK][TL_LANES];

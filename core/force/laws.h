@@ -14,6 +14,9 @@ typedef struct tl_law_phase {
     tl_exact *heat; /* of each thread: what contacts turn to heat in this step, J */
     /* keeps what the points of some SIMD groups and their contacts carry; on any thread */
     void (*keep)(tl_model *m, const tl_simd_group *groups, size_t count);
+    /* of each contact that is not held still: what its damping adds, on B and about A's centroid; NULL: nothing */
+    tl_wrench *damping;
+    double damping_rate; /* beta over the last step */
 } tl_law_phase;
 
 /* Patches, from places to forces. */

@@ -9,6 +9,7 @@
  *
  * A cut that would leave a thin piece is taken back, and the next one is tried. Where all three planes do at all edges,
  * more planes between those of the faces are tried. What is thin by itself gets thin parts: a solid always divides.
+ * Where faces bend by about what is flat, the whole solid is divided again with another measure of flat.
  *
  * Each edge on a plane is cut for good, so their number bounds the cuts. A section takes time in proportion to the
  * faces of its piece, one product each for those that the plane passes by. */
@@ -160,8 +161,8 @@ static bool try_cuts(divider *d, uint32_t piece, bool *made)
     return true;
 }
 
-/* Lists cuts by more planes through the reflex edges of a piece: n = cos(k a) u + sin(k a) v, with the normal u of the
- * plane midway, the direction v across it and the edge, and the angle a from u to the planes of the faces. */
+/* Lists cuts by more planes through the reflex edges of a piece: n = cos(k a) u + sin(k a) v. u is the normal of the
+ * plane midway, and v lies across it and the edge. a is the angle between u and the normal of a face. */
 static bool add_fans(divider *d, uint32_t piece)
 {
     tl_solid_mesh *m = &d->m;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/elementary.h>
 #include <talus/vmath.h>
 
 /* Constant: makes a radius an upper bound in spite of the rounding of its root and sums. */
@@ -235,35 +236,24 @@ int tl_solid_in_face(const tl_solid_mesh *m, uint32_t face, tl_vec3 at)
     return turns > 0 ? 1 : -1;
 }
 
-/* How often a loop goes round a point, as seen along x. An edge belongs to one of the two faces that meet there, to the
- * bit: so each face counts once. */
-static int turns_along_x(const tl_solid_mesh *m, uint32_t first, tl_vec3 at)
+/* The solid angle of a triangle over 2, after A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983). */
+static double half_angle(tl_vec3 a, tl_vec3 b, tl_vec3 c)
 {
-    int turns = 0;
-    bool near = false;
-    uint32_t h = first;
-    do {
-        const tl_vec3 a = m->vertex[m->half[h].from], b = m->vertex[tl_half_to(m, h)];
-        turns += ray_meets(a.y - at.y, a.z - at.z, b.y - at.y, b.z - at.z, 0, &near);
-        h = m->half[h].next;
-    } while (h != first);
-    return turns;
+    const double la = tl_v3_norm(a), lb = tl_v3_norm(b), lc = tl_v3_norm(c);
+    const double up = tl_v3_dot(a, tl_v3_cross(b, c));
+    const double down = la * lb * lc + tl_v3_dot(a, b) * lc + tl_v3_dot(b, c) * la + tl_v3_dot(c, a) * lb;
+    return tl_atan2(up, down);
 }
 
 int tl_solid_winding(const tl_solid_mesh *m, const uint32_t *face, size_t count, tl_vec3 at)
 {
-    int turns = 0;
-    for (size_t i = 0; i < count; i++) {
-        const tl_solid_face *f = &m->face[face[i]];
-        if (fabs(f->center.y - at.y) > f->radius || fabs(f->center.z - at.z) > f->radius ||
-            f->center.x + f->radius < at.x)
-            continue;
-        const tl_plane p = m->plane[f->plane];
-        /* the face is met at a larger x: its plane passes there */
-        if ((tl_v3_dot(p.normal, at) < p.offset) != (p.normal.x > 0))
-            continue;
-        for (uint32_t first = f->first; first != TL_SOLID_NONE; first = m->half[first].ring)
-            turns += turns_along_x(m, first, at);
-    }
-    return turns;
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t first = m->face[face[i]].first; first != TL_SOLID_NONE; first = m->half[first].ring) {
+            const tl_vec3 base = tl_v3_sub(m->vertex[m->half[first].from], at);
+            for (uint32_t h = m->half[first].next; m->half[h].next != first; h = m->half[h].next)
+                sum += half_angle(base, tl_v3_sub(m->vertex[m->half[h].from], at),
+                                  tl_v3_sub(m->vertex[tl_half_to(m, h)], at));
+        }
+    return (int)floor(sum / (2 * TL_PI) + 0.5);
 }

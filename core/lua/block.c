@@ -7,6 +7,7 @@
 #include "lua/fail.h"
 #include "lua/item.h"
 #include "lua/living.h"
+#include "lua/record.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -398,7 +399,8 @@ static const char *const key_names[] = {
 const tl_lua_key tl_lua_drive_keys[] = {
     {"velocity", "{x, y, z} or function(t)",
      "velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, "
-     "s: the middle of each step. Zero when left out"},
+     "s: the middle of each step. x, y or z may be a talus.record, whose time counts from the call. Zero when left "
+     "out"},
     {"angular_velocity", "{x, y, z} or function(t)", "angular velocity, rad/s, likewise"},
     {NULL, NULL, NULL},
 };
@@ -544,7 +546,8 @@ static tl_status load(lua_State *L, const tl_lua_selection *b)
 
 /* Reads one of the two velocities of the table at index 2; true when it is given. A function goes to
  * the anchor at the top of the stack. */
-static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *function, tl_drive_fn ours)
+static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *function, tl_drive_fn ours,
+                        const tl_record *records[3])
 {
     static const tl_param vectors[] = {
         [TL_LUA_VELOCITY] = TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0}),
@@ -554,6 +557,10 @@ static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *f
     if (type == LUA_TFUNCTION) {
         lua_setiuservalue(L, -2, key);
         *function = ours;
+        return true;
+    }
+    if (key == TL_LUA_VELOCITY && tl_lua_record_velocity(L, records, constant)) {
+        lua_pop(L, 1);
         return true;
     }
     if (type != LUA_TNIL) {
@@ -583,9 +590,9 @@ static tl_status drive(lua_State *L, const tl_lua_selection *b)
     given.release = on_release;
     bool moves = false;
     if (lua_istable(L, 2)) {
-        moves = read_motion(L, TL_LUA_VELOCITY, &given.velocity, &given.velocity_at, velocity_at);
+        moves = read_motion(L, TL_LUA_VELOCITY, &given.velocity, &given.velocity_at, velocity_at, given.record);
         moves |= read_motion(L, TL_LUA_ANGULAR_VELOCITY, &given.angular_velocity, &given.angular_velocity_at,
-                             angular_velocity_at);
+                             angular_velocity_at, NULL);
     }
     if (!moves)
         tl_lua_fail(L, "drive: give velocity, angular_velocity or both; to hold blocks use "

@@ -6,6 +6,7 @@
 #include "lua/fail.h"
 #include "lua/item.h"
 #include "lua/living.h"
+#include "lua/record.h"
 
 #include <math.h>
 #include <string.h>
@@ -202,13 +203,15 @@ static void read_velocity(lua_State *L, int index, asked *of)
         tl_lua_anchor_push(L, 1, &of->drive);
         return;
     }
+    of->drive = tl_drive_default();
+    if (tl_lua_record_velocity(L, of->drive.record, &of->drive.velocity))
+        return;
     if (type != LUA_TTABLE)
         tl_lua_fail(L, "boundary: velocity must be a list of 3 numbers or a function(t), not %s",
                     tl_lua_describe(L, -1));
     const tl_lua_spec spec = {"boundary", params, 1, NULL};
     tl_drive read;
     tl_lua_read_one(L, lua_gettop(L), &spec, "velocity", &read);
-    of->drive = tl_drive_default();
     of->drive.velocity = read.velocity;
 }
 

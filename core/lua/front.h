@@ -30,6 +30,7 @@ typedef struct tl_lua_options {
     double autosave;       /* s between two saves of a run's model; 0: none */
     double save_due;       /* s, of the clock */
     const char *save_path; /* the file of the script's saves; NULL: it has none */
+    int64_t shard, shards; /* which of how many processes this is; shards = 0: the only one */
     bool resume;           /* talus.resumed gives the model that was saved last */
 } tl_lua_options;
 

@@ -324,7 +324,7 @@ typedef struct page_list {
 static void list_page(page_list *pages, const char *name)
 {
     size_t length = strlen(pages->text), room = sizeof pages->text - length;
-    bool fits = strlen(name) + sizeof ", ..." < room;
+    bool fits = strlen(", ") + strlen(name) + sizeof ", ..." <= room;
     if (strcmp(pages->text + (length < 3 ? 0 : length - 3), "...") == 0)
         return;
     snprintf(pages->text + length, room, "%s%s", length ? ", " : "", fits ? name : "...");

@@ -5,8 +5,10 @@
  * been loaded yet, Lua's search for C modules loads it for its function luaopen_talus_NAME. */
 #include "lua/library.h"
 
+#include "lua/chance.h"
 #include "lua/convert.h"
 #include "lua/fail.h"
+#include "lua/workers.h"
 
 #include <ctype.h>
 #include <limits.h>
@@ -36,10 +38,19 @@ static int push_loader(lua_State *L, const char *name)
     return 2;
 }
 
+/* Modules in C that those in Lua use. */
+static const luaL_Reg inner[] = {
+    {PREFIX "chance", tl_lua_chance_open}, {PREFIX "workers", tl_lua_workers_open}, {NULL, NULL}};
+
 /* One of package.searchers. */
 static int search(lua_State *L)
 {
     const char *name = luaL_checkstring(L, 1);
+    for (const luaL_Reg *one = inner; one->name; one++)
+        if (strcmp(name, one->name) == 0) {
+            lua_pushcfunction(L, one->func);
+            return 1;
+        }
     return strncmp(name, PREFIX, sizeof PREFIX - 1) == 0 ? push_loader(L, name) : 0;
 }
 
@@ -55,11 +66,19 @@ static int open_module(lua_State *L, const char *name)
     return 1;
 }
 
+TL_API int luaopen_talus_back_analysis(lua_State *L);
 TL_API int luaopen_talus_bolt_pattern(lua_State *L);
 TL_API int luaopen_talus_bolt_test(lua_State *L);
 TL_API int luaopen_talus_convert(lua_State *L);
 TL_API int luaopen_talus_plot(lua_State *L);
+TL_API int luaopen_talus_poles(lua_State *L);
+TL_API int luaopen_talus_realisations(lua_State *L);
 TL_API int luaopen_talus_stereonet(lua_State *L);
+
+int luaopen_talus_back_analysis(lua_State *L)
+{
+    return open_module(L, PREFIX "back_analysis");
+}
 
 int luaopen_talus_bolt_pattern(lua_State *L)
 {
@@ -79,6 +98,16 @@ int luaopen_talus_convert(lua_State *L)
 int luaopen_talus_plot(lua_State *L)
 {
     return open_module(L, PREFIX "plot");
+}
+
+int luaopen_talus_poles(lua_State *L)
+{
+    return open_module(L, PREFIX "poles");
+}
+
+int luaopen_talus_realisations(lua_State *L)
+{
+    return open_module(L, PREFIX "realisations");
 }
 
 int luaopen_talus_stereonet(lua_State *L)
@@ -201,6 +230,7 @@ static const tl_lua_key stereonet_keys[] = {
     {"joints", "list of names", "which of its joint sets (\"J1\"), in this order; all when left out"},
     {"sets", "list of {name =, dip =, dip_direction =}",
      "further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes"},
+    {"poles", "poles or list of poles", "what talus.poles gave, or a list of sets as its method sets gives"},
     {"keyblocks", "list of keyblocks", "what model:keyblocks{...} gave: a cross for the direction of each movement"},
     {"projection", "\"equal_area\" or \"equal_angle\"", "of Schmidt and Lambert, the default, or of Wulff"},
     {"great_circles", "\"mean\", \"all\" or \"none\"",
@@ -232,18 +262,95 @@ static const tl_lua_key convert_result[] = {
     {NULL, NULL, NULL},
 };
 
-static const tl_lua_key pattern_keys[] = {
-    {"on", "what model:boundary{...} gave, required", "the faces that are bolted"},
-    {"spacing", "{across, along}, required", "m, both above 0: of the grid in the plane of each face"},
-    {"length", "number, required", "of the bolts, m, from 1e-3 to 1e4"},
-    {"direction", "\"normal\" or {x, y, z}, default \"normal\"",
-     "into the rock; faces that a bolt would not enter get none"},
-    {"along", "{x, y, z}, default {0, 1, 0}", "direction of the rows, as it lies in each face: the axis of a tunnel"},
-    {"origin", "{x, y, z}", "a point of the grid; left out: the centroid of the faces"},
-    {"node_spacing", "number", "`spacing` of the nodes of each bolt, m"},
-    {"...", "", "parameters of the element \"bolt\", for each"},
+static const tl_lua_key realisations_keys[] = {
+    {"number", "whole number, required", "of realisations"},
+    {"build", "function(draw), required", "gives the model of a realisation, by what it draws"},
+    {"measure", "function(model, draw), required",
+     "gives a table of what is measured: numbers, true and false, texts; the same names in each realisation"},
+    {"screen", "function(model, draw)",
+     "cheap test before the measure: gives a table likewise, and true when that decides, so that nothing is measured"},
+    {"seed", "whole number, default 1", "of all draws"},
+    {"latin", "true or false, default false",
+     "a Latin hypercube: of n realisations each n-th part of a distribution has one"},
+    {"workers", "whole number, default 1", "processes that work at once; the rows are the same for any number"},
+    {"file", "text in quotes, may be left out",
+     "file of rows; one that is there is gone on with, and rows that it has are not computed again"},
+    {"stop_when", "{field =, half_width =, at_least =}",
+     "ends when the 95 % interval of the probability of the field has at most this half width, of so many rows or "
+     "more"},
+    {"on_row", "function(rows)", "called after each row that is written, with the number of rows"},
     {NULL, NULL, NULL},
 };
+
+static const tl_lua_key realisations_draws[] = {
+    {"draw.normal(name, mean, sd, range)", "", "a number; range {min =, max =} cuts the distribution off"},
+    {"draw.lognormal(name, mean, sd, range)", "", "likewise, by mean and deviation of the number itself"},
+    {"draw.uniform(name, min, max)", "", "each alike"},
+    {"draw.triangular(name, min, mode, max)", "", "most often near the mode"},
+    {"draw.power_law(name, exponent, min, max)", "", "density proportional to x^-(1 + exponent)"},
+    {"draw.fisher(name, dip, dip_direction, kappa)", "",
+     "dip and dip direction of a plane; kappa is the concentration"},
+    {"draw.choice(name, list, weights)", "", "one of the list"},
+    {"draw.seed(name)", "", "a seed for a model"},
+    {"draw.correlated(names, {{mean, sd}, ...}, correlation)", "",
+     "numbers of normal distributions, or with distribution = \"lognormal\" in a pair, correlated before they are cut "
+     "off by min and max; a number for two, else a matrix"},
+    {"draw.row", "", "number of the realisation"},
+    {"set:probability(field)", "",
+     "share of rows in which the field is true or not 0; low and high of its 95 % interval"},
+    {"set:mean(field), set:sd(field), set:quantile(field, share)", "", "of its numbers"},
+    {"set:histogram(field, intervals)", "", "{edges =, counts =}"},
+    {"set:sensitivity(field)", "",
+     "list of {name =, rank_correlation =, correlation =} of the draws, the strongest first"},
+    {"set:rows()", "", "list of {row =, error =, NAME = value}"},
+    {"set:model(row)", "", "the model of a realisation, built anew"},
+    {"set.errors, set.stopped, #set", "", "rows with an error; whether stop_when has ended it; rows"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key poles_methods[] = {
+    {"#poles", "", "number of planes"},
+    {"poles:mean()", "",
+     "{dip =, dip_direction =, normal =, resultant =, kappa =, cone =} after Fisher: R / N, the concentration (N - 1) "
+     "/ (N "
+     "- R), and the half angle of the 95 % cone, degrees"},
+    {"poles:sets(count, {seed =})", "", "a list of poles: sets by k-means on axes, the largest first"},
+    {"poles:terzaghi{trend =, plunge =, most = 10}", "", "poles weighted by 1 / |cos| of their angle to a scan line"},
+    {"poles:draw(number, {seed =, distribution =})", "",
+     "list of {dip =, dip_direction =}, each \"measured\" or by \"fisher\" about the mean"},
+    {"poles:list()", "", "list of {dip, dip_direction}"},
+    {"poles:write(file)", "", "writes a table that talus.poles and the generators jointset and dfn read"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key back_analysis_keys[] = {
+    {"build", "function(values), required", "gives the model for values {NAME = number} of the unknown"},
+    {"unknown", "{NAME = {from, to}}, required", "the interval in which its value is sought"},
+    {"observed", "{FIELD = value}, required", "what was observed: a number, a pair {low, high} of them, true or false"},
+    {"measure", "function(model, values)",
+     "gives a table with the field; when left out the second value that build gives is that table"},
+    {"tolerance", "number, default 1e-4", "share of the interval that is left when the search ends"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key back_analysis_result[] = {
+    {"value, low, high", "",
+     "of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends"},
+    {"trials", "", "list of {NAME = value, FIELD = measured}"},
+
+    static const tl_lua_key pattern_keys[] = {
+        {"on", "what model:boundary{...} gave, required", "the faces that are bolted"},
+        {"spacing", "{across, along}, required", "m, both above 0: of the grid in the plane of each face"},
+        {"length", "number, required", "of the bolts, m, from 1e-3 to 1e4"},
+        {"direction", "\"normal\" or {x, y, z}, default \"normal\"",
+         "into the rock; faces that a bolt would not enter get none"},
+        {"along", "{x, y, z}, default {0, 1, 0}",
+         "direction of the rows, as it lies in each face: the axis of a tunnel"},
+        {"origin", "{x, y, z}", "a point of the grid; left out: the centroid of the faces"},
+        {"node_spacing", "number", "`spacing` of the nodes of each bolt, m"},
+        {"...", "", "parameters of the element \"bolt\", for each"},
+        {NULL, NULL, NULL},
+    };
 
 static const tl_lua_key bolt_test_keys[] = {
     {"length", "number, required", "of the bolt, m, from 0.01 to 1000"},
@@ -265,6 +372,15 @@ static const tl_lua_key bolt_test_results[] = {
 };
 
 const tl_lua_topic tl_lua_library_topics[] = {
+    {.name = "back_analysis",
+     .usage = "found = talus.back_analysis{build = function(v) return model, {safety = v.friction / 30} end, unknown = "
+              "{friction = {20, 60}}, observed = {safety = 1}}",
+     .doc = "Finds the value of an unknown for which a model does what was observed, by halving an interval. Measured "
+            "must "
+            "be something that passes the observed value once in it.",
+     .keys = back_analysis_keys,
+     .title = "Fields of the result",
+     .verbs = back_analysis_result},
     {.name = "bolt_pattern",
      .usage = "bolts = talus.bolt_pattern{on = model:boundary{facing = {0, 0, -1}}, spacing = {1.5, 1.5}, length = 3}",
      .doc = "Lays a grid of bolts over outer faces and gives a list for model:element(\"bolt\", list).",
@@ -288,6 +404,27 @@ const tl_lua_topic tl_lua_library_topics[] = {
               "{name = \"subsidence\", unit = \"m\"}}",
      .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
      .keys = plot_keys},
+    {.name = "poles",
+     .usage = "poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles(\"FILE\")",
+     .doc = "Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, "
+            "and weight "
+            "if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.",
+     .title = "Methods",
+     .verbs = poles_methods},
+    {.name = "realisations",
+     .usage = "set = talus.realisations{number = 3, build = function(draw) return model end, measure = function(model, "
+              "draw) "
+              "return {failed = draw.uniform(\"u\", 0, 1) < 0.1} end}",
+     .doc = "Builds and measures many models, each with draws of its own, in worker processes, and gives the set of "
+            "rows. A draw is "
+            "a pure function of seed, row and name. A row that errs has its sentence in `error`; more than 5 % of them "
+            "end the "
+            "run. `talus run --shard i/n SCRIPT` makes the rows i, i + n, ... in FILE.shard-i-of-n, and `talus merge "
+            "FILE` one "
+            "file of the shards.",
+     .keys = realisations_keys,
+     .title = "Draws, and methods of the set",
+     .verbs = realisations_draws},
     {.name = "stereonet",
      .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = model:keyblocks{friction = 30}}",
      .doc = "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",

@@ -571,7 +571,7 @@ const tl_lua_topic tl_lua_quality_topics[] = {
      .arguments = 1,
      .method = model_filter},
     {.name = "keyblocks",
-     .usage = "list = model:keyblocks{friction = 35}",
+     .usage = "list = model:keyblocks{friction = 35, target = 1.5}",
      .function = "keyblocks",
      .keys = keyblocks_keys,
      .title = "Fields of each keyblock",

@@ -22,7 +22,7 @@ typedef struct caller {
 /* ---------------------------------------------------------------- arguments -------------- */
 
 static const tl_lua_key safety_keys[] = {
-    {"joints", "{\"A\", \"B:2\"} or \"A\"",
+    {"joints", "text in quotes or list of names",
      "joints whose laws are divided: they must have laws of their own; all when left out"},
     {"on_trial", "function(trial)", "called after each trial with {F =, holds =, undecided =, cycles =, why =}"},
     {NULL, NULL, NULL},

@@ -11,8 +11,10 @@
 #include "lua/library.h"
 #include "lua/lists.h"
 #include "lua/model.h"
+#include "lua/modes.h"
 #include "lua/page.h"
 #include "lua/quality.h"
+#include "lua/record.h"
 #include "lua/run.h"
 #include "lua/safety.h"
 #include "lua/seat.h"
@@ -27,7 +29,8 @@ static const tl_lua_topic *const lists[] = {
     tl_lua_zone_topics,     tl_lua_lists_topics,   tl_lua_law_test_topics, tl_lua_solid_test_topics,
     tl_lua_boundary_topics, tl_lua_run_topics,     tl_lua_history_topics,  tl_lua_library_topics,
     tl_lua_quality_topics,  tl_lua_page_topics,    tl_lua_view_topics,     tl_lua_state_topics,
-    tl_lua_seat_topics,     tl_lua_element_topics, tl_lua_water_topics,    tl_lua_safety_topics};
+    tl_lua_seat_topics,     tl_lua_element_topics, tl_lua_water_topics,    tl_lua_safety_topics,
+    tl_lua_record_topics,   tl_lua_modes_topics};
 
 const tl_lua_topic *tl_lua_topic_at(size_t i)
 {

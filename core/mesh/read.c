@@ -1,15 +1,13 @@
 /* read.c - reads the tetrahedra of a file, and tells what is wrong with them. */
 #include "mesh/read.h"
 
-#include "base/regular.h"
+#include "base/file_bytes.h"
 #include "base/table.h"
 #include "geometry/measure.h"
 #include "mesh/gmsh.h"
 #include "mesh/pair.h"
 #include "mesh/vtk.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
@@ -17,8 +15,6 @@
 
 /* Limit: larger files are refused. Points are numbered in 32 bits. */
 #define MOST_BYTES ((size_t)8 << 30)
-/* Bytes that are read at a time, at the least. */
-#define PART ((size_t)64 << 10)
 /* Tolerance: a tetrahedron is flat when its least altitude is below this times its longest edge. The roundings of
  * coordinates in single precision are as large in a mesh that is fine beside its place. */
 #define FLAT 1e-9
@@ -139,38 +135,6 @@ static tl_status check_zones(const tl_mesh *m, tl_error *error)
 
 /* ---------------------------------------------------------------- the file --------------- */
 
-static tl_status fail_file(const char *file, const char *what, tl_error *error)
-{
-    return tl_fail(error, TL_E_IO, "file '%.200s' cannot be %s: %s", file, what, strerror(errno));
-}
-
-static tl_status read_bytes(const char *file, char **bytes, size_t *count, tl_error *error)
-{
-    const char *other = tl_not_regular(file);
-    size_t room = 0;
-    tl_status status = TL_OK;
-    if (other)
-        return tl_fail(error, TL_E_IO, "file '%.200s' is %s: only regular files are read", file, other);
-    FILE *stream = fopen(file, "rb");
-    if (!stream)
-        return fail_file(file, "opened", error);
-    while (status == TL_OK && !feof(stream)) {
-        if (!tl_grow(bytes, &room, *count + PART, 1)) {
-            status = tl_fail_memory(error);
-            break;
-        }
-        *count += fread(*bytes + *count, 1, room - 1 - *count, stream);
-        if (ferror(stream))
-            status = fail_file(file, "read", error);
-        else if (*count > MOST_BYTES)
-            status = tl_fail(error, TL_E_IO, "file '%.200s' is larger than %zu bytes; divide it", file, MOST_BYTES);
-    }
-    fclose(stream);
-    if (status == TL_OK)
-        (*bytes)[*count] = '\0';
-    return status;
-}
-
 static tl_status read_format(tl_mesh_reading *r)
 {
     static const char vtk[] = "# vtk DataFile", gmsh[] = "$MeshFormat", vtu[] = "<";
@@ -193,7 +157,7 @@ tl_status tl_mesh_read(const char *file, tl_mesh *mesh, tl_error *error)
     char *bytes = NULL;
     size_t count = 0;
     *mesh = (tl_mesh){.file = file};
-    tl_status status = read_bytes(file, &bytes, &count, error);
+    tl_status status = tl_file_read(file, MOST_BYTES, &bytes, &count, error);
     if (status == TL_OK) {
         tl_mesh_reading r = {.text = {.file = file, .at = bytes, .end = bytes + count, .line = 1, .error = error},
                              .mesh = mesh};

@@ -54,6 +54,15 @@ static const tl_param insitu_params[] = {
              "point at whose height the stress holds; the gradient counts from there", .def = {0.0, 0.0, 0.0}),
 };
 
+typedef struct modes_args {
+    int64_t count;
+} modes_args;
+
+static const tl_param modes_params[] = {
+    TL_PARAM(TL_PARAM_INT, modes_args, count, "", "how many vibrations, the slowest first", .def = {6.0}, .min = 1.0,
+             .max = 1000.0),
+};
+
 static const tl_param seat_params[] = {
     TL_PARAM(
         TL_PARAM_REAL, tl_seat, gap, "m",
@@ -289,6 +298,32 @@ static const tl_param safety_map_params[] = {
     SAFETY_PARAMS,
 };
 
+static const char *const record_quantities[] = {"acceleration", "velocity", NULL};
+static const char *const record_units[] = {"own", "m/s2", "g", "cm/s2", "m/s", "cm/s", NULL};
+static const char *const record_baselines[] = {"as_is", "mean", "parabola", NULL};
+
+static const tl_param record_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_record_options, file, "",
+             "lines of numbers, or PEER's AT2 or VT2; or give samples in `at`",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_FILE),
+    TL_PARAM(TL_PARAM_INT, tl_record_options, column, "",
+             "which number of each line it is; 0: the last of two, all of a file that tells NPTS", .def = {0.0},
+             .min = 0.0, .max = 64.0),
+    TL_PARAM(TL_PARAM_REAL, tl_record_options, dt, "s", "from one sample to the next; 0: as the file says",
+             .def = {0.0}, .min = 0.0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_ENUM, tl_record_options, quantity, "", "what the samples are", .def = {TL_RECORD_ACCELERATION},
+             .choices = record_quantities),
+    TL_PARAM(TL_PARAM_ENUM, tl_record_options, unit, "",
+             "of the samples; own: as the file says, or m/s2 and m/s; g is 9.80665 m/s2", .def = {TL_RECORD_UNIT_OWN},
+             .choices = record_units),
+    TL_PARAM(TL_PARAM_REAL, tl_record_options, scale, "", "by which the samples are multiplied", .def = {1.0},
+             .min = -INFINITY, .max = INFINITY),
+    TL_PARAM(TL_PARAM_ENUM, tl_record_options, baseline, "",
+             "what is taken off a motion that drifts: nothing, the mean acceleration, or the parabola that fits the "
+             "velocity best",
+             .def = {TL_BASELINE_NONE}, .choices = record_baselines),
+};
+
 static const tl_param law_test_params[] = {
     TL_PARAM(TL_PARAM_STRING, tl_law_test, law, "", "name of the law", .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_REAL, tl_law_test, normal_stress, "Pa",
@@ -363,6 +398,8 @@ static const model_function functions[] = {
     {"model", "Makes an empty model.", PARAMS(model_params)},
     {"insitu", "Puts an initial stress in the zones, and on the face contacts, that exist now, once.",
      PARAMS(insitu_params)},
+    {"modes", "Finds the slowest vibrations of small size about the present place of a model at rest.",
+     PARAMS(modes_params)},
     {"seat",
      "Takes blocks as drawn as fitting: gaps and overlaps up to a limit become the state free of force, under any law. "
      "Contacts are free of force after it. Prints and returns what was found.",
@@ -424,6 +461,8 @@ static const model_function functions[] = {
      "Tries a joint law on one contact point, without a model: direct shear under a constant normal stress, or in "
      "surroundings of constant normal stiffness, and closure tests.",
      PARAMS(law_test_params)},
+    {"record", "A record of ground motion, which blocks follow as selection:drive{velocity = {rec, 0, 0}}.",
+     PARAMS(record_params)},
     {"law_leg", "One leg of the path of a law_test.", PARAMS(law_leg_params)},
     {"solid_test",
      "Tries a solid on one zone, without a model: any path of strains that are driven and stresses that are held.",

@@ -121,9 +121,11 @@ void tl_model_destroy(tl_model *m)
     for (size_t i = 0; i < m->joint_law_count; i++)
         tl_law_clear(&m->joint_laws[i]);
     tl_damping_clear(m);
-    for (size_t i = 0; i < m->drive_count; i++)
+    for (size_t i = 0; i < m->drive_count; i++) {
+        tl_drive_let_records_go(&m->drives[i].drive);
         if (m->drives[i].drive.release)
             m->drives[i].drive.release(m->drives[i].drive.user);
+    }
     free(m->drives);
     tl_notes_free(m->notes);
     while (m->history_count > 0)

@@ -196,8 +196,28 @@ tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity, t
 
 /* ---------------------------------------------------------------- drives ----------------- */
 
+static void hold_records(const tl_drive *drive)
+{
+    for (int k = 0; k < 3; k++)
+        tl_record_hold(drive->record[k]);
+}
+
+void tl_drive_let_records_go(tl_drive *drive)
+{
+    for (int k = 0; k < 3; k++) {
+        tl_record_let_go((tl_record *)(uintptr_t)drive->record[k]);
+        drive->record[k] = NULL;
+    }
+}
+
+bool tl_drive_has_record(const tl_drive *drive)
+{
+    return drive->record[0] || drive->record[1] || drive->record[2];
+}
+
 static void release(tl_drive_record *record)
 {
+    tl_drive_let_records_go(&record->drive);
     if (record->drive.release)
         record->drive.release(record->drive.user);
     *record = (tl_drive_record){0};
@@ -260,6 +280,8 @@ uint32_t tl_drive_new(tl_model *m, const tl_drive *drive)
     }
     release(&m->drives[i]); /* that of gridpoints that have gone, or none */
     m->drives[i].drive = *drive;
+    m->drives[i].drive.record_begin = m->time;
+    hold_records(drive);
     m->drives[i].velocity = drive->velocity;
     m->drives[i].angular_velocity = drive->angular_velocity;
     return (uint32_t)i + 1;
@@ -322,6 +344,15 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
     return TL_OK;
 }
 
+/* The constant velocity with that of the records at a time of the model. */
+static tl_vec3 recorded_velocity(const tl_drive *drive, double t)
+{
+    tl_vec3 v = drive->velocity;
+    for (int k = 0; k < 3; k++)
+        (&v.x)[k] += drive->record[k] ? tl_record_velocity(drive->record[k], t - drive->record_begin) : 0;
+    return v;
+}
+
 bool tl_drives_evaluate(tl_model *m, double t)
 {
     bool known = true;
@@ -329,6 +360,8 @@ bool tl_drives_evaluate(tl_model *m, double t)
     for (size_t i = 0; i < m->drive_count && known; i++) {
         tl_drive_record *r = &m->drives[i];
         const tl_drive *d = &r->drive;
+        if (r->bodies > 0 && tl_drive_has_record(d))
+            r->velocity = recorded_velocity(d, t);
         if (r->bodies > 0 && d->velocity_at)
             known = d->velocity_at(d->user, t, &r->velocity);
         if (r->bodies > 0 && d->angular_velocity_at && known)

@@ -35,6 +35,9 @@ bool tl_drives_evaluate(tl_model *m, double t);
 uint32_t tl_drive_new(tl_model *m, const tl_drive *drive);
 /* Whether a drive has a gradient of velocity. */
 bool tl_drive_has_gradient(const tl_drive *drive);
+/* Whether a drive follows records, and lets it go of those. */
+bool tl_drive_has_record(const tl_drive *drive);
+void tl_drive_let_records_go(tl_drive *drive);
 /* Lets a body follow a drive, in the place of any other and of what held it. */
 void tl_drive_follow(tl_model *m, uint32_t body, uint32_t index);
 /* Lets a body go from its drive. */

@@ -16,7 +16,8 @@ typedef enum tl_remark {
     TL_REMARK_CLOSURE,   /* a contact closes by much of a block's thickness */
     TL_REMARK_UNDECIDED, /* a run for equilibrium has ended before it, without failure */
     TL_REMARK_SEAT,      /* overlaps press with more than the weight before the first step */
-    TL_REMARK_MOVED      /* at rest after a movement that is a word on stiffness */
+    TL_REMARK_MOVED,     /* at rest after a movement that is a word on stiffness */
+    TL_REMARK_RECORD     /* a step is longer than those of a record */
 } tl_remark;
 
 #endif

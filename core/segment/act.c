@@ -30,6 +30,7 @@
 #include "base/parallel.h"
 #include "base/series.h"
 #include "contact/contacts.h"
+#include "force/contact_damping.h"
 #include "force/joint_laws.h"
 #include "model/law_time.h"
 #include "segment/blend.h"
@@ -606,19 +607,33 @@ TL_INLINE void push_corners(push_lanes *restrict of, int number, double *const a
     put_push(of->corner[number][2], l, f2);
 }
 
+/* Forces of the points of a group, from its first one on: across and along the face, and what presses beside that. */
+typedef struct point_pushes {
+    const double *normal, *shear[3], *beside;
+} point_pushes;
+
+/* Those of the law. */
+TL_INLINE point_pushes own_pushes(const tl_segment_points *p, size_t row, size_t number, const lanes *of)
+{
+    const size_t first = TL_SEGMENT_POINTS * row;
+    return (point_pushes){p->f_n + first,
+                          {p->f_s[0] + first, p->f_s[1] + first, p->f_s[2] + first},
+                          of->parts ? of->beside + number * GROUP_POINTS : nothing};
+}
+
 /* Sums of the points of a group, by its number in the tile: what they do to both sides, store and turn into heat.
- * `any_rigid`: some sides may be. */
-TL_INLINE void push_points(struct tl_segments *s, size_t row, size_t number, lanes *of, bool any_rigid,
-                           push_lanes *restrict to)
+ * `any_rigid`: some sides may be. `own`: they are the law's, else only what they do to the sides is wanted. */
+TL_INLINE void push_points(struct tl_segments *s, size_t row, size_t number, lanes *of, const point_pushes *by,
+                           bool any_rigid, bool own, push_lanes *restrict to)
 {
     const tl_segment_points *p = &s->points;
     tl_segment_table *t = &s->table;
     const size_t first = TL_SEGMENT_POINTS * row, at = number * GROUP_POINTS;
     side_lanes *a = &of->side[number][0], *b = &of->side[number][1];
-    const double *restrict beside = of->parts ? of->beside : nothing, *restrict per_p = of->per_p + number * TL_LANES;
+    const double *restrict beside = by->beside, *restrict per_p = of->per_p + number * TL_LANES;
     double *restrict bears = t->bears + row, *restrict stored = t->stored + row, *restrict heat = t->heat + row;
-    const double *restrict sx = p->f_s[0] + first, *restrict sy = p->f_s[1] + first, *restrict sz = p->f_s[2] + first;
-    const double *restrict f_n = p->f_n + first, *restrict shares = t->share + row;
+    const double *restrict sx = by->shear[0], *restrict sy = by->shear[1], *restrict sz = by->shear[2];
+    const double *restrict f_n = by->normal, *restrict shares = t->share + row;
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         const size_t j = at + l, l1 = l + TL_LANES, l2 = l + 2 * TL_LANES, j1 = j + TL_LANES, j2 = j + 2 * TL_LANES;
@@ -626,7 +641,7 @@ TL_INLINE void push_points(struct tl_segments *s, size_t row, size_t number, lan
         const tl_vec3 n = {of->normal[0][j], of->normal[1][j], of->normal[2][j]};
         const tl_vec3 e0 = apart_at(of, j), e1 = apart_at(of, j1), e2 = apart_at(of, j2);
         const tl_vec3 s0 = {sx[l], sy[l], sz[l]}, s1 = {sx[l1], sy[l1], sz[l1]}, s2 = {sx[l2], sy[l2], sz[l2]};
-        const double q0 = f_n[l] + beside[j], q1 = f_n[l1] + beside[j1], q2 = f_n[l2] + beside[j2];
+        const double q0 = f_n[l] + beside[l], q1 = f_n[l1] + beside[l1], q2 = f_n[l2] + beside[l2];
         const tl_vec3 f0 = tl_v3_madd(s0, q0, n), f1 = tl_v3_madd(s1, q1, n), f2 = tl_v3_madd(s2, q2, n);
         const tl_vec3 moment = sum_of(tl_v3_cross(e0, s0), tl_v3_cross(e1, s1), tl_v3_cross(e2, s2));
         const tl_vec3 pressed = {q0 * e0.x + q1 * e1.x + q2 * e2.x, q0 * e0.y + q1 * e1.y + q2 * e2.y,
@@ -639,9 +654,11 @@ TL_INLINE void push_points(struct tl_segments *s, size_t row, size_t number, lan
                               tilt_a * tilts_a.z - share * moment.z};
         const tl_vec3 on_b = {tilt_b * tilts_b.x - rest * moment.x, tilt_b * tilts_b.y - rest * moment.y,
                               tilt_b * tilts_b.z - rest * moment.z};
-        bears[l] = size_of(f0) + size_of(f1) + size_of(f2);
-        stored[l] = of->stored[j] + of->stored[j1] + of->stored[j2];
-        heat[l] = of->dissipated[j] + of->dissipated[j1] + of->dissipated[j2];
+        if (own) {
+            bears[l] = size_of(f0) + size_of(f1) + size_of(f2);
+            stored[l] = of->stored[j] + of->stored[j1] + of->stored[j2];
+            heat[l] = of->dissipated[j] + of->dissipated[j1] + of->dissipated[j2];
+        }
         push_corners(to, 0, p->at_a, first + l, l, -1, f0, f1, f2, all, on_a, a);
         push_corners(to, 1, p->at_b, first + l, l, 1, f0, f1, f2, all, on_b, b);
         if (any_rigid) {
@@ -654,10 +671,9 @@ TL_INLINE void push_points(struct tl_segments *s, size_t row, size_t number, lan
     }
 }
 
-TL_INLINE void store_pushes(struct tl_segments *s, size_t row, push_lanes *by)
+TL_INLINE void store_pushes(tl_segment_push *to, push_lanes *by)
 {
-    for (size_t l = 0; l < TL_LANES; l += 4) {
-        tl_segment_push *to = s->table.push + row + l;
+    for (size_t l = 0; l < TL_LANES; l += 4, to += 4) {
         for (int side = 0; side < 2; side++)
             for (int c = 0; c < 3; c++) {
                 double(*corner)[TL_LANES] = by->corner[side][c];
@@ -669,23 +685,25 @@ TL_INLINE void store_pushes(struct tl_segments *s, size_t row, push_lanes *by)
 
 TL_VECTORIZED static void push_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
 {
-    push_points(s, row, number, of, false, by);
-    store_pushes(s, row, by);
+    const point_pushes own = own_pushes(&s->points, row, number, of);
+    push_points(s, row, number, of, &own, false, true, by);
+    store_pushes(s->table.push + row, by);
 }
 
 TL_VECTORIZED static void push_rigid_group(struct tl_segments *s, size_t row, size_t number, lanes *of, push_lanes *by)
 {
-    push_points(s, row, number, of, true, by);
-    store_pushes(s, row, by);
+    const point_pushes own = own_pushes(&s->points, row, number, of);
+    push_points(s, row, number, of, &own, true, true, by);
+    store_pushes(s->table.push + row, by);
 }
 
 /* A rigid side gets the force, and the moment about its centroid: a couple, and that of the forces of the points. */
-static void push_rigid(const tl_model *m, size_t row, int side, push_lanes *by)
+static void push_rigid(const tl_model *m, size_t row, int side, push_lanes *by, tl_segment_push *push)
 {
     const tl_segment_points *p = &m->segments->points;
     const tl_segment *of = &m->segments->table.of[row];
     const uint32_t body = side ? of->b.at[0] : of->a.at[0];
-    double(*to)[4] = m->segments->table.push[row].of[side];
+    double(*to)[4] = push->of[side];
     const size_t lane = row % TL_LANES;
     tl_vec3 force = {0, 0, 0}, moment = get(by->couple[side], lane);
     for (size_t k = 0; k < TL_SEGMENT_POINTS; k++) {
@@ -713,7 +731,51 @@ static void push_sides(const tl_model *m, size_t row, size_t number, lanes *of)
     for (size_t l = 0; l < TL_LANES; l++)
         for (int side = 0; side < 2; side++)
             if (of->rigid_side[number][side][l])
-                push_rigid(m, row + l, side, &by);
+                push_rigid(m, row + l, side, &by, &m->segments->table.push[row + l]);
+}
+
+/* ---------------------------------------------------------------- damping ---------------- */
+
+/* What the points of a tile carry before their law is called, then their damping. */
+typedef struct damping_lanes {
+    _Alignas(TL_ALIGN) double of[4][TILE_POINTS];
+} damping_lanes;
+
+static tl_point_forces forces_in(damping_lanes *d)
+{
+    return (tl_point_forces){d->of[0], {d->of[1], d->of[2], d->of[3]}};
+}
+
+/* What the damping of the points of a group does to its sides. */
+static void damp_sides(const tl_model *m, size_t row, size_t number, lanes *of, damping_lanes *d)
+{
+    push_lanes by;
+    const size_t at = number * GROUP_POINTS;
+    const point_pushes damping = {d->of[0] + at, {d->of[1] + at, d->of[2] + at, d->of[3] + at}, nothing};
+    tl_segment_push *to = m->segments->damping + row;
+    push_points(m->segments, row, number, of, &damping, true, false, &by);
+    store_pushes(to, &by);
+    for (size_t l = 0; l < TL_LANES && of->rigid[number]; l++)
+        for (int side = 0; side < 2; side++)
+            if (of->rigid_side[number][side][l])
+                push_rigid(m, row + l, side, &by, &to[l]);
+}
+
+static void damp_tile(const act_job *job, size_t first, size_t groups, lanes *l, damping_lanes *d)
+{
+    const tl_segment_points *p = &job->m->segments->points;
+    const size_t point = TL_SEGMENT_POINTS * first;
+    const tl_damped_points of = {groups * GROUP_POINTS,
+                                 p->area + point,
+                                 p->f_n + point,
+                                 {p->f_s[0] + point, p->f_s[1] + point, p->f_s[2] + point},
+                                 l->du_n,
+                                 {l->du_s[0], l->du_s[1], l->du_s[2]},
+                                 p->flags + point};
+    const tl_point_forces forces = forces_in(d);
+    tl_damping_of_points(&job->m->joint_laws[job->span->law], &of, job->m->segments->damping_rate, &forces);
+    for (size_t g = 0; g < groups; g++)
+        damp_sides(job->m, first + g * TL_LANES, g, l, d);
 }
 
 static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -729,12 +791,21 @@ static void act_range(void *user, size_t begin, size_t end, size_t chunk, unsign
         apart |= follow_sides(m, first + g * TL_LANES, g, &l);
     if (apart)
         close_parts(job, first, count, &l);
+    damping_lanes d;
+    const bool damped = m->segments->damping_rate > 0;
+    if (damped) {
+        const tl_point_forces forces = forces_in(&d);
+        const tl_segment_points *p = &m->segments->points;
+        tl_damping_note(p->f_n, p->f_s, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &forces);
+    }
     if (!call_law(job, TL_SEGMENT_POINTS * first, TL_SEGMENT_POINTS * count, &l))
         return;
     if (l.parts)
         press_parts(&m->segments->points, first, count, &l);
     for (size_t g = 0; g < groups; g++)
         push_sides(m, first + g * TL_LANES, g, &l);
+    if (damped)
+        damp_tile(job, first, groups, &l, &d);
     if (l.parts)
         store_parts(m->segments, first, count, &l);
 }
@@ -757,11 +828,18 @@ static void find_touched(tl_model *m)
     tl_parallel_for(m->pool, m->segments->touched_count, CHUNK, touch_range, m);
 }
 
-tl_status tl_segments_prepare(tl_model *m)
+tl_status tl_segments_prepare(tl_model *m, double damping_rate)
 {
     struct tl_segments *s = m->segments;
-    const size_t need = s ? s->touched_count + TL_SEGMENT_DUMMIES + 1 : 0;
-    return !s || tl_fit(&s->now, &s->now_capacity, need, sizeof *s->now) ? TL_OK : tl_fail_memory(&m->error);
+    if (!s)
+        return TL_OK;
+    const size_t need = s->touched_count + TL_SEGMENT_DUMMIES + 1, rows = damping_rate > 0 ? s->table.table.rows : 0;
+    s->damping_rate = damping_rate;
+    const bool enough = tl_fit(&s->now, &s->now_capacity, need, sizeof *s->now) &&
+                        tl_fit(&s->damping, &s->damping_capacity, rows, sizeof *s->damping);
+    if (enough && rows > 0)
+        memset(s->damping, 0, rows * sizeof *s->damping);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
 tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
@@ -777,82 +855,4 @@ tl_status tl_segments_apply(tl_model *m, tl_failure *failure)
     if (s && failure->error.status == TL_OK)
         tl_blends_apply(m);
     return failure->error.status;
-}
-
-/* ---------------------------------------------------------------- who gets what ---------- */
-
-void tl_segments_gather_body(const tl_model *m, uint32_t body, tl_acting *on)
-{
-    const struct tl_segments *s = m->segments;
-    if (body >= s->bodies_listed)
-        return;
-    for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
-        const tl_segment_use *use = &s->body_use[k];
-        double(*push)[4] = s->table.push[use->segment].of[use->side];
-        on->force = tl_v3_add(on->force, tl_v3(push[0][0], push[0][1], push[0][2]));
-        on->moment = tl_v3_add(on->moment, tl_v3(push[1][0], push[1][1], push[1][2]));
-        on->magnitude += s->table.bears[use->segment];
-    }
-}
-
-/* Twice k w of each point, for each corner: w its weight there. */
-void tl_segments_stiffen(tl_model *m)
-{
-    const struct tl_segments *s = m->segments;
-    for (uint32_t row = 0; s && row < s->table.table.rows; row++) {
-        const tl_segment *of = &s->table.of[row];
-        if (of->meet == TL_NO_ROW || s->meet[of->meet].law == TL_NO_ROW)
-            continue;
-        const double k = tl_law_stiffness(&m->joint_laws[s->meet[of->meet].law]);
-        for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
-            const size_t point = tl_segment_point_row(row, i);
-            for (int side = 0; side < 2; side++) {
-                const tl_segment_side *to = side ? &of->b : &of->a;
-                for (int c = 0; c < 3 && !tl_side_is_rigid(to); c++)
-                    m->zones->points.holds[to->at[c]] +=
-                        2 * k * s->points.area[point] * fabs((side ? s->points.at_b : s->points.at_a)[c][point]);
-            }
-        }
-    }
-}
-
-void tl_segments_hold(const tl_model *m, uint32_t body, tl_holding *sum)
-{
-    const struct tl_segments *s = m->segments;
-    if (body >= s->bodies_listed)
-        return;
-    for (uint32_t k = s->body_start[body]; k < s->body_start[body + 1]; k++) {
-        const tl_segment *of = &s->table.of[s->body_use[k].segment];
-        const uint32_t law = of->meet != TL_NO_ROW ? s->meet[of->meet].law : TL_NO_ROW;
-        if (law == TL_NO_ROW)
-            continue;
-        const double stiff = tl_law_stiffness(&m->joint_laws[law]);
-        sum->law = fmax(sum->law, stiff);
-        sum->presses = true;
-        for (size_t i = 0; i < TL_SEGMENT_POINTS; i++) {
-            const uint32_t row = s->body_use[k].segment;
-            const size_t point = tl_segment_point_row(row, i);
-            double *const *at = s->body_use[k].side ? s->points.at_b : s->points.at_a;
-            sum->stiffness.sum += stiff * s->points.area[point];
-            sum->stiffness.r2 += stiff * s->points.area[point] * tl_v3_norm2(tl_columns_get(at, point));
-        }
-    }
-}
-
-tl_energies tl_segments_energies(tl_model *m)
-{
-    struct tl_segments *s = m->segments;
-    tl_energies sum = {.heat = s ? s->lost : 0};
-    if (s) {
-        sum.stored -= s->blend_stored;
-        sum.heat -= s->blend_heat;
-    }
-    for (size_t row = 0; s && row < s->table.table.rows; row++)
-        if (s->table.of[row].meet != TL_NO_ROW) {
-            sum.stored += s->table.stored[row];
-            sum.heat += s->table.heat[row];
-        }
-    if (s)
-        s->lost = 0;
-    return sum;
 }

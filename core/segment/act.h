@@ -7,8 +7,8 @@
 #include "model/contributor.h"
 #include "segment/segments.h"
 
-/* Makes room for a step. */
-tl_status tl_segments_prepare(tl_model *m);
+/* Makes room for a step in which segments are damped by beta over the last step; 0: not at all. */
+tl_status tl_segments_prepare(tl_model *m, double damping_rate);
 /* Finds the forces of all segments at the present places. */
 tl_status tl_segments_apply(tl_model *m, tl_failure *failure);
 /* What they do to a gridpoint: the components, and the sum of the sizes. */
@@ -21,12 +21,4 @@ TL_INLINE void tl_segments_gather(const struct tl_segments *s, size_t gridpoint,
     }
     *(tl_four *)sum = all;
 }
-/* Adds what they do to a body. */
-void tl_segments_gather_body(const tl_model *m, uint32_t body, tl_acting *on);
-/* Adds how stiff they hold the gridpoints, N/m, and a body. */
-void tl_segments_stiffen(tl_model *m);
-void tl_segments_hold(const tl_model *m, uint32_t body, tl_holding *sum);
-/* What they store, and the heat of this step. */
-tl_energies tl_segments_energies(tl_model *m);
-
 #endif

@@ -194,10 +194,10 @@ void tl_carriers_follow(tl_model *m, double dt)
 
 /* ---------------------------------------------------------------- forces ----------------- */
 
-/* Adds a force and a moment about the place of a carrier to the corners of its zone. */
-static void push(tl_model *m, uint32_t first, const tl_carrier *by, tl_vec3 force, tl_vec3 moment)
+/* The forces on the corners of a zone of a force and a moment about the place of its carrier. */
+static void corner_forces(const tl_model *m, uint32_t first, const tl_carrier *by, tl_vec3 force, tl_vec3 moment,
+                          tl_vec3 out[4])
 {
-    tl_gridpoints *p = &m->zones->points;
     tl_vec3 x[4];
     corners_of(m, first, by->point, x);
     const tl_mat3 edges = edges_of(x), inverse = tl_m3_inverse(&edges);
@@ -206,13 +206,18 @@ static void push(tl_model *m, uint32_t first, const tl_carrier *by, tl_vec3 forc
         g[a] = tl_v3(inverse.m[a - 1][0], inverse.m[a - 1][1], inverse.m[a - 1][2]);
         g[0] = tl_v3_sub(g[0], g[a]);
     }
-    for (int a = 0; a < 4; a++) {
-        const tl_vec3 f = tl_v3_madd(tl_v3_scale(0.5, tl_v3_cross(moment, g[a])), by->weight[a], force);
-        const uint32_t row = first + by->point[a];
-        tl_columns_put(p->force, row, tl_v3_add(tl_columns_get(p->force, row), f));
-        p->bears[row] += tl_v3_norm(f);
-        p->touched[row] += tl_v3_norm(f);
-    }
+    for (int a = 0; a < 4; a++)
+        out[a] = tl_v3_madd(tl_v3_scale(0.5, tl_v3_cross(moment, g[a])), by->weight[a], force);
+}
+
+/* The forces of a contact on the corners of the zone that bears a side; of a force on B and a moment about A. */
+static void side_forces(const tl_model *m, uint32_t contact, int side, tl_vec3 on_b, tl_vec3 about_a, tl_vec3 out[4])
+{
+    const tl_carrier *by = &m->detect->contacts.carrier[side][contact];
+    const tl_vec3 force = tl_v3_scale(side ? 1 : -1, on_b);
+    const tl_vec3 arm = tl_m3_mul(&by->pose.r, by->at); /* from the carrier's centroid to the place */
+    const tl_vec3 moment = tl_contact_moment_of(m, contact, side, on_b, about_a);
+    corner_forces(m, first_point(m, contact, side), by, force, tl_v3_sub(moment, tl_v3_cross(arm, force)), out);
 }
 
 void tl_carriers_push(tl_model *m)
@@ -223,10 +228,33 @@ void tl_carriers_push(tl_model *m)
             const tl_carrier *by = &c->carrier[side][i];
             if (!by->on)
                 continue;
-            const tl_vec3 force = tl_v3_scale(side ? 1 : -1, c->force[i]);
-            const tl_vec3 arm = tl_m3_mul(&by->pose.r, by->at); /* from the carrier's centroid to the place */
-            push(m, first_point(m, i, side), by, force,
-                 tl_v3_sub(tl_contact_moment(m, i, side), tl_v3_cross(arm, force)));
+            tl_gridpoints *p = &m->zones->points;
+            tl_vec3 f[4];
+            side_forces(m, i, side, c->force[i], c->moment[i], f);
+            for (int a = 0; a < 4; a++) {
+                const uint32_t row = first_point(m, i, side) + by->point[a];
+                tl_columns_put(p->force, row, tl_v3_add(tl_columns_get(p->force, row), f[a]));
+                p->bears[row] += tl_v3_norm(f[a]);
+                p->touched[row] += tl_v3_norm(f[a]);
+            }
+        }
+}
+
+void tl_carriers_damp(tl_model *m, const tl_wrench *damping)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    tl_gridpoints *p = &m->zones->points;
+    for (uint32_t i = 0; c->carrier[0] && i < c->table.rows; i++)
+        for (int side = 0; side < 2; side++) {
+            const tl_carrier *by = &c->carrier[side][i];
+            tl_vec3 f[4];
+            if (!by->on)
+                continue;
+            side_forces(m, i, side, damping[i].force, damping[i].moment, f);
+            for (int a = 0; a < 4; a++) {
+                const uint32_t row = first_point(m, i, side) + by->point[a];
+                tl_columns_put(p->damping, row, tl_v3_add(tl_columns_get(p->damping, row), f[a]));
+            }
         }
 }
 

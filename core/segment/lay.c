@@ -72,9 +72,9 @@ void tl_segments_free(struct tl_segments *s)
     tl_table_free(&s->points.table);
     tl_table_free(&s->spare.table);
     tl_table_free(&s->spare_points.table);
-    void *const owned[] = {s->meet,       s->span,   s->use,         s->body_use,     s->use_start,
-                           s->body_start, s->corner, s->room_memory, s->blend,        s->outline,
-                           s->touched,    s->now,    s->box,         s->spare_outline};
+    void *const owned[] = {s->meet,       s->span,   s->use,         s->body_use,      s->use_start,
+                           s->body_start, s->corner, s->room_memory, s->blend,         s->outline,
+                           s->touched,    s->now,    s->box,         s->spare_outline, s->damping};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);

@@ -160,6 +160,10 @@ struct tl_segments {
     uint32_t *touched;
     tl_gridpoint_now *now;
     size_t touched_count, touched_capacity, now_capacity;
+    /* what the damping of each does to its sides, in this step; by beta over the last step, 0: it does nothing */
+    tl_segment_push *damping;
+    size_t damping_capacity;
+    double damping_rate;
     /* of the model, the zones and the pairs of the broad phase, when meets were listed */
     uint64_t structure, laws, zones, lists;
     uint64_t followed; /* structure of the model for which sides have their rows */

@@ -25,6 +25,7 @@ void tl_segments_walk(struct tl_segments *s, const tl_walk *walk)
     LIST(DERIVED, touched, touched_capacity, touched_capacity);
     VALUE(DERIVED, touched_count);
     LIST(SCRATCH, now, now_capacity, now_capacity);
+    LIST(SCRATCH, damping, damping_capacity, damping_capacity);
     LIST(SCRATCH, corner, corner_capacity, corner_capacity);
     LIST(SCRATCH, box, box_capacity, box_capacity);
     LIST(SCRATCH, blend, blend_capacity, blend_capacity);

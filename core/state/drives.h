@@ -18,6 +18,19 @@ typedef struct tl_gradient_kept {
     tl_vec3 at;
 } tl_gradient_kept;
 
+/* Which records a drive follows, as a file keeps it: the chunk "drive_records", of all drives if one follows any.
+ * Numbers count from 1 in "record_heads"; 0: none. */
+typedef struct tl_records_kept {
+    uint32_t number[3];
+    double begin;
+} tl_records_kept;
+
+/* A record: its accelerations at both ends of each interval are in "record_samples", one record after the other. */
+typedef struct tl_record_head {
+    double dt, velocity; /* s, m/s at the begin */
+    uint64_t count;
+} tl_record_head;
+
 /* Who gives the functions of drives again. */
 typedef struct tl_drives_again {
     tl_drive_again_fn fn; /* NULL: nobody */

@@ -19,6 +19,7 @@
 #include "element/follow.h"
 #include "element/set.h"
 #include "model/loads.h"
+#include "model/record.h"
 #include "model/scope.h"
 #include "model/seats.h"
 #include "model/walk.h"
@@ -201,6 +202,14 @@ static void hash_shape(tl_hash *hash, const tl_poly *p)
     tl_hash_bytes(hash, p->loop, p->start[p->face_count] * sizeof *p->loop);
 }
 
+static void hash_record(tl_hash *hash, const tl_record *record, int axis, double begin)
+{
+    const double head[] = {axis, begin, record->dt, (double)record->count, record->interval[0].velocity};
+    tl_hash_numbers(hash, head, sizeof head / sizeof *head);
+    for (size_t i = 0; i < record->count; i++)
+        tl_hash_numbers(hash, &record->interval[i].from, 2);
+}
+
 /* Of a drive's functions it is only told that they are there: what they do is the script's. */
 static void hash_drive(tl_hash *hash, const tl_drive *drive)
 {
@@ -208,6 +217,9 @@ static void hash_drive(tl_hash *hash, const tl_drive *drive)
                             drive->angular_velocity.x, drive->angular_velocity.y, drive->angular_velocity.z};
     tl_hash_numbers(hash, parts, sizeof parts / sizeof *parts);
     tl_hash_word(hash, (uint64_t)(drive->velocity_at != NULL) << 1 | (uint64_t)(drive->angular_velocity_at != NULL));
+    for (int k = 0; k < 3; k++)
+        if (drive->record[k])
+            hash_record(hash, drive->record[k], k, drive->record_begin);
     if (tl_drive_has_gradient(drive)) {
         tl_hash_numbers(hash, &drive->gradient[0][0], 9);
         tl_hash_numbers(hash, &drive->at.x, 3);

@@ -157,6 +157,23 @@ function talus.help(topic) end
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
 
+--- Cuts the visible blocks by a network of discs, drawn or of a file.
+---@class (exact) talus.generator.Dfn
+---@field joint string name of the joint set
+---@field p32? number 1/m, > 0: intensity: area of discs in a volume, m2/m3; or give number, or file
+---@field number? integer in [0, 1e+06], default 0: number of discs in the bounds grown by the largest radius; 0: by p32
+---@field dip? number deg, in [0, 90]: mean dip below horizontal
+---@field dip_direction? number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
+---@field fisher_k? number in (0, 1e+09]: concentration of the poles about the mean; all parallel without it
+---@field poles? string table of measured planes with the columns dip and dip_direction, in the place of dip and dip_direction
+---@field size? "power_law"|"lognormal"|"fixed" default "fixed": distribution of the radius
+---@field exponent? number > 0: a of power_law: the density of radii is proportional to r^-(1 + a)
+---@field size_mean? number m, > 0: mean radius of lognormal; the radius of fixed
+---@field size_dev? number m, > 0: standard deviation of the radius of lognormal
+---@field size_min? number m, > 0: smallest radius of power_law and lognormal
+---@field size_max? number m, > 0: largest radius of power_law and lognormal
+---@field file? string discs in the place of drawn ones: a table with x, y, z, dip, dip_direction, radius; or .fab of FracMan
+
 --- Creates one block: a cylinder of flat sides.
 ---@class (exact) talus.generator.Drum
 ---@field center? talus.Vector m, default {0, 0, 0}: middle of the drum
@@ -197,9 +214,9 @@ function talus.help(topic) end
 --- Cuts the visible blocks by a set of nearly parallel planes.
 ---@class (exact) talus.generator.Jointset
 ---@field joint string name of the joint set
----@field dip number deg, in [0, 90]: mean dip below horizontal
+---@field dip? number deg, in [0, 90]: mean dip below horizontal
 ---@field dip_dev? number deg, in [0, 90], default 0: deviation of the dip: largest, or standard when normal
----@field dip_direction number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
+---@field dip_direction? number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
 ---@field dip_direction_dev? number deg, in [0, 180], default 0: deviation of the dip direction
 ---@field spacing number m, > 0: mean distance between planes
 ---@field spacing_dev? number m, >= 0, default 0: deviation of the spacing; less than the spacing, unless lognormal
@@ -210,6 +227,7 @@ function talus.help(topic) end
 ---@field fisher_k? number in (0, 1e+09]: concentration of the poles by fisher
 ---@field radius? number m, > 0: of discs in the place of planes: a block is in a disc's path when the disc meets its section
 ---@field spacing_distribution? "same"|"uniform"|"normal"|"exponential"|"lognormal" default "same": of the gaps: uniform within spacing_dev, normal, exponential with the mean spacing, or lognormal; same: as distribution, uniform with fisher
+---@field poles? string table of measured planes with the columns dip and dip_direction, in the place of dip and dip_direction
 
 --- Creates one convex block from its vertices.
 ---@class (exact) talus.generator.Polyhedron
@@ -685,6 +703,7 @@ function talus.model(options) end
 ---@return talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "blocks", options: talus.generator.Blocks|talus.generator.Blocks[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "box", options: talus.generator.Box|talus.generator.Box[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "dfn", options: talus.generator.Dfn|talus.generator.Dfn[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "drum", options: talus.generator.Drum|talus.generator.Drum[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "fracture", options: talus.generator.Fracture|talus.generator.Fracture[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "import", options: talus.generator.Import|talus.generator.Import[]): talus.GenerateResult
@@ -810,8 +829,6 @@ function Model:contact_area(options) end
 ---@field balance number error of the sum over the largest change of a term so far
 ---@field strain number elastic, in all zones of deformable blocks, J
 ---@field plastic number turned to heat in zones, by yielding, J
----@field elements number held by elements, part of stored, J
----@field element_loss number turned to heat by elements until now, part of friction, J
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
@@ -1337,6 +1354,26 @@ function Model:histories() end
 ---@param path string
 function Model:write_histories(path) end
 
+---@class (exact) talus.BackAnalysisOptions
+---@field build fun(values: table<string, number>): talus.Model, table? gives the model for values {NAME = number} of the unknown
+---@field unknown table<string, number[]> the interval in which its value is sought
+---@field observed table<string, number|number[]|boolean> what was observed: a number, a pair {low, high} of them, true or false
+---@field measure? fun(model: talus.Model, values: table<string, number>): table gives a table with the field; when left out the second value that build gives is that table
+---@field tolerance? number default 1e-4: share of the interval that is left when the search ends
+
+---@class (exact) talus.BackAnalysisResult
+---@field value number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field low number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field high number of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends
+---@field trials { friction: integer, safety: number }[] list of {NAME = value, FIELD = measured}
+
+--- Finds the value of an unknown for which a model does what was observed, by halving an interval. Measured must be something that passes the observed value once in it.
+---
+---     found = talus.back_analysis{build = function(v) return model, {safety = v.friction / 30} end, unknown = {friction = {20, 60}}, observed = {safety = 1}}
+---@param options talus.BackAnalysisOptions
+---@return talus.BackAnalysisResult
+function talus.back_analysis(options) end
+
 ---@class (exact) talus.ConvertOptions
 ---@field file string name of the data file, of 3DEC 7 to 9 or a classic one
 ---@field to? string name of the script that is written; folders are made
@@ -1377,11 +1414,39 @@ function talus.convert(options) end
 ---@param options talus.PlotOptions
 function talus.plot(options) end
 
+--- Reads measured orientations of joints: a table whose first line names the columns dip and dip_direction, and weight if there is one; or a list of {dip, dip_direction}. Poles are axes, and their order means nothing.
+---
+---     poles = talus.poles{{30, 120}, {32, 118}}  or  talus.poles("FILE")
+---@param options? table
+---@return table
+---@overload fun(name: string): table
+function talus.poles(options) end
+
+---@class (exact) talus.RealisationsOptions
+---@field number integer of realisations
+---@field build fun(draw: table): talus.Model gives the model of a realisation, by what it draws
+---@field measure fun(model: talus.Model, draw: table): table, boolean? gives a table of what is measured: numbers, true and false, texts; the same names in each realisation
+---@field screen? fun(model: talus.Model, draw: table): table, boolean? cheap test before the measure: gives a table likewise, and true when that decides, so that nothing is measured
+---@field seed? integer default 1: of all draws
+---@field latin? boolean default false: a Latin hypercube: of n realisations each n-th part of a distribution has one
+---@field workers? integer default 1: processes that work at once; the rows are the same for any number
+---@field file? string file of rows; one that is there is gone on with, and rows that it has are not computed again
+---@field stop_when? { field: string, half_width: number, at_least: integer? } ends when the 95 % interval of the probability of the field has at most this half width, of so many rows or more
+---@field on_row? fun(rows: integer) called after each row that is written, with the number of rows
+
+--- Builds and measures many models, each with draws of its own, in worker processes, and gives the set of rows. A draw is a pure function of seed, row and name. A row that errs has its sentence in `error`; more than 5 % of them end the run. `talus run --shard i/n SCRIPT` makes the rows i, i + n, ... in FILE.shard-i-of-n, and `talus merge FILE` one file of the shards.
+---
+---     set = talus.realisations{number = 3, build = function(draw) return model end, measure = function(model, draw) return {failed = draw.uniform("u", 0, 1) < 0.1} end}
+---@param options talus.RealisationsOptions
+---@return table
+function talus.realisations(options) end
+
 ---@class (exact) talus.StereonetOptions
 ---@field file string name of the SVG file; folders are made
 ---@field model? talus.Model draws the joint sets of this model, from the faces of its blocks as they lie now
 ---@field joints? string[] which of its joint sets ("J1"), in this order; all when left out
 ---@field sets? { name: string?, dip: number, dip_direction: number }[] further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes
+---@field poles? table|table[] what talus.poles gave, or a list of sets as its method sets gives
 ---@field keyblocks? talus.Keyblock[] what model:keyblocks{...} gave: a cross for the direction of each movement
 ---@field projection? "equal_area"|"equal_angle" of Schmidt and Lambert, the default, or of Wulff
 ---@field great_circles? "mean"|"all"|"none" of the mean plane of each set, the default, of every plane, or of none
@@ -1476,13 +1541,13 @@ function Model:filter(options) end
 ---@field force talus.Vector weight and load, N; of the body, kg and m3
 ---@field mass number weight and load, N; of the body, kg and m3
 ---@field volume number weight and load, N; of the body, kg and m3
----@field support any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
----@field support_pressure any with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
+---@field support number? with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
+---@field support_pressure number? with target: least force against the motion that brings that factor, N; and the pressure on its outer faces that pushes as much against the motion, Pa, whatever it adds to normal forces; 0 where nothing is needed, nil where outer faces do not look along the motion
 ---@field pyramid talus.Vector[] edges of the joint pyramid, unit vectors: it can move in all directions between them
 
 --- Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor of safety in limit equilibrium.
 ---
----     list = model:keyblocks{friction = 35}
+---     list = model:keyblocks{friction = 35, target = 1.5}
 ---@param options? talus.KeyblocksOptions
 ---@return talus.Keyblock[]
 function Model:keyblocks(options) end
@@ -1561,7 +1626,7 @@ function Model:memory() end
 ---@class (exact) talus.WriteHtmlOptions
 ---@field title? string title of the page; the name at the end of its path when left out
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1577,9 +1642,8 @@ function Model:write_html(path, options) end
 ---@field blocks? boolean default true: whether the frame has a file of the blocks
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
----@field elements? boolean default true: whether the frame has a file of the elements
 ---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
----@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field zone_fields? { NAME: number } numbers of each zone, likewise: fields of zones, states of their solids, functions
 
@@ -1613,7 +1677,7 @@ function Model:write_blocks(path) end
 ---@field commands? boolean default true: whether commands are taken; without, the page only shows
 ---@field share? number in (0, 1], default 0.02: most of the run's time that goes into frames
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
----@field block_fields? { NAME: number } numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
+---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 ---@field safety_limit? number factor of safety that is asked for: the legend marks it
@@ -1680,50 +1744,6 @@ function talus.resumed() end
 ---@return talus.SeatResult
 function Model:seat(options) end
 
---- Puts elements on the blocks as they are now: one, or what a list of tables says, all or none. An element acts on points of blocks, its nodes: a spring, a bolt, water between walls. group = "NAME" names those of a call. Nodes follow their blocks when these are cut or joined.
----
----     selection = model:element("KIND", {...})  or  model:element("KIND", {{...}, {...}})
----@param name string
----@param options? table
----@return { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
----@overload fun(self: talus.Model, name: string, options?: table): { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
-function Model:element(name, options) end
-
----@class (exact) talus.ElementsOptions
----@field kind? string elements of this kind
----@field group? string elements of this group
----@field block? talus.Block|integer elements with a node on this block
----@field where? any elements for which the function answers true
-
---- Selects elements; all conditions must hold. Beside its fields an element has the states of its kind by their names, as element.axial; those of its nodes are in element.nodes.
----
----     selection = model:elements{...}
----@param options? talus.ElementsOptions
----@return userdata
-function Model:elements(options) end
-
----@class (exact) talus.WaterOptions
----@field level? number of a level table: its height z, m
----@field dip? any degrees, {x, y, z}: of a table that dips: in the place of level
----@field dip_direction? any degrees, {x, y, z}: of a table that dips: in the place of level (another name)
----@field origin? any degrees, {x, y, z}: of a table that dips: in the place of level (another name)
----@field unit_weight? any N/m3 (default 9810):
----@field factor? any as drains leave it (default 1):
----@field pressure? any uniform pressure, Pa; or of a field, asked once for each node and then kept
----@field joints? any
----@field drain_gap? any m (default 0.05):
-
---- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
----
----     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"A"}})  or  model:water("field", {pressure = function(x, y, z) ... end})  or  model:water("none")
----@param name string
----@param options? talus.WaterOptions
----@return userdata
----@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): userdata
----@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): userdata
----@overload fun(self: talus.Model, name: string): userdata
-function Model:water(name, options) end
-
 ---@class (exact) talus.FactorOfSafetyOptions
 ---@field from? number >= 0.05, default 0.1: least factor that is tried
 ---@field to? number > 0.05, default 10: largest factor that is tried; above `from`
@@ -1731,13 +1751,30 @@ function Model:water(name, options) end
 ---@field least_volume? number m3, >= 0, default 0: what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
----@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
----@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+---@class (exact) talus.FactorOfSafetyResult
+---@field factor number sqrt(lower * upper); 0 where it fails whatever the strengths, math.huge where it holds at `to`, `from` where it fails there
+---@field lower number the largest factor that holds, 0: none; and the least that fails, math.huge: none
+---@field upper number the largest factor that holds, 0: none; and the least that fails, math.huge: none
+---@field failing talus.Blocks selection of the blocks that go together at `upper`: those within 0.3 of the fastest
+---@field volume number? of these, m3, and where they go, a unit vector; without any direction is nil
+---@field direction talus.Vector? of these, m3, and where they go, a unit vector; without any direction is nil
+---@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "holds" without any
+---@field keyblock { block: talus.Block, factor: number }? {factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is none, or laws have no friction and cohesion or name blocks
+---@field trials { F: number, cycles: integer, holds: boolean, undecided: boolean, why: string }[] each a table: F, holds, undecided, cycles, why; in the order in which they were made
+---@field small talus.Blocks selection of the blocks below least_volume that failed before, and were deleted in the copies
+---@field undecided integer number of trials that neither came to rest nor failed: they count as failing
+---@field cycles integer steps of all trials, and s
+---@field wall number steps of all trials, and s
+---@field message string all of this in a sentence
 
 --- Finds by how much the strengths of laws and solids may be divided before the model does not come to rest any more. Trials are made on copies: the model stays as it is.
 ---
 ---     result = model:factor_of_safety{resolution = 0.01}
 ---@param options? talus.FactorOfSafetyOptions
+---@return talus.FactorOfSafetyResult
 function Model:factor_of_safety(options) end
 
 ---@class (exact) talus.SafetyMapOptions
@@ -1747,13 +1784,21 @@ function Model:factor_of_safety(options) end
 ---@field failed? "delete"|"hold" default "delete": what becomes of blocks that have failed, in the copies: they are deleted, or held where they were
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
----@field joints? any joints whose laws are divided: they must have laws of their own; all when left out
----@field on_trial? any called after each trial with {F =, holds =, undecided =, cycles =, why =}
+---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
+---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
+
+---@class (exact) talus.SafetyMapResult
+---@field factor table by the id of each block that can move: the factor at which it fails once those before it have gone; math.huge: it holds at `to`; 0: nothing holds it. Files and screens take it as block_fields = {safety = map.factor}
+---@field curve { blocks: integer, factor: number, volume: number }[] by ascending factors, each {factor =, volume =, blocks =}: what has failed by then, in all
+---@field undecided integer number of trials that neither came to rest nor failed: they count as failing
+---@field cycles integer steps of all trials, and s
+---@field wall number steps of all trials, and s
 
 --- Finds the factor of safety of every block: strengths are divided by more and more, and what has failed goes before it goes on. Trials are made on copies: the model stays as it is.
 ---
 ---     map = model:safety_map{from = 0.5, to = 3, step = 0.5}
 ---@param options? talus.SafetyMapOptions
+---@return talus.SafetyMapResult
 function Model:safety_map(options) end
 
 return talus

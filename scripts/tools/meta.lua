@@ -65,6 +65,7 @@ local WORDS = {
     ["list of vectors"] = "talus.Vector[]",
     ["list of blocks"] = "talus.Block[]",
     ["list of 2 blocks"] = "talus.Block[]",
+    ["list of 2 numbers"] = "number[]",
     ["list of 4 numbers"] = "number[]",
     ["list of numbers"] = "number[]",
     ["list of numbers or legs"] = "(number|{ shear: number?, closure: number?, normal_stress: number?, time: number?, " ..
@@ -81,6 +82,7 @@ local WORDS = {
     ["list of two groups"] = "(string|talus.Blocks|talus.Block)[]",
     ["block or its id"] = "talus.Block|integer",
     ["a table of what is to be done"] = "talus.BoundaryOptions",
+    ["function(trial)"] = "fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string })",
     ["function(block)"] = "fun(block: talus.Block): any",
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(zone)"] = "fun(zone: talus.Zone): any",
@@ -92,12 +94,22 @@ local WORDS = {
     ["number or function({x, y, z})"] = "number|fun(place: talus.Vector): number",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
+    ["function(values)"] = "fun(values: table<string, number>): talus.Model, table?",
+    ["function(model, values)"] = "fun(model: talus.Model, values: table<string, number>): table",
+    ["function(draw)"] = "fun(draw: table): talus.Model",
+    ["function(model, draw)"] = "fun(model: talus.Model, draw: table): table, boolean?",
+    ["function(rows)"] = "fun(rows: integer)",
+    ["{NAME = {from, to}}"] = "table<string, number[]>",
+    ["{FIELD = value}"] = "table<string, number|number[]|boolean>",
+    ["{field =, half_width =, at_least =}"] = "{ field: string, half_width: number, at_least: integer? }",
+    ["poles or list of poles"] = "table|table[]",
     ["function(t)"] = "(fun(t: number): number|talus.Vector, number?, number?)",
     ["{JOINT = number}"] = "table<string, number>",
     ["{NAME = value}"] = "table<string, number|string|boolean|talus.Vector>",
     ["{friction =, cohesion =, gravity =}"] = "talus.KeyblocksOptions",
     ['true, false or "slipping"'] = 'boolean|"slipping"',
-    ['{"FIELD", NAME = "FIELD" or function(block)}'] = "string[]|table<string, string|fun(block: talus.Block): number?>",
+    ['{"FIELD", NAME = "FIELD", {[id] = number} or function(block)}'] = "string[]|table<string, string|table<integer, number>|" ..
+        "fun(block: talus.Block): number?>",
     ['{"FIELD", NAME = "FIELD" or function(contact)}'] = "string[]|table<string, string|fun(contact: talus.Contact): number?>",
     ["{BLOCK = function(t)}"] = "table<integer, function|{ velocity: function?, angular_velocity: function? }>",
 }
@@ -120,6 +132,7 @@ end
 
 -- The type of "number, Pa/m, > 0, required" and the like.
 function to_type(text)
+    text = text:gsub(", required$", "")
     local choices = text:match("^one of (.*)$")
     if choices then
         local words = {}
@@ -154,6 +167,8 @@ local function seen_type(value)
             word:match("^selection of %d+ element") and "talus.Elements" or "userdata"
     elseif kind ~= "table" then
         return ({ float = "number", ["nil"] = false })[kind] or (kind ~= "nil" and kind or nil)
+    elseif getmetatable(value) then
+        return "table"
     elseif #value == 3 and type(value[1]) == "number" then
         return "talus.Vector"
     elseif #value > 0 then

@@ -22,6 +22,7 @@ return function()
     local free = model:blocks { fixed = false }
     model:history { name = "roof", of = free, field = "displacement" }
     model:cycle(10)
+    free:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } } -- factors of safety are asked of what rests
     return setmetatable({ talus = talus, model = model, selection = free, block = free[1],
         contact = model:contacts()[1], zone = model:zones()[1], gridpoint = model:gridpoints()[1], x = 2, y = 2, z = 2, text = "", f = function() end }, { __index = _G })
 end

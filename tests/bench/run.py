@@ -4,7 +4,7 @@
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
 NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest edits output examples
-yade beside million cuts zones deformable); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
+yade beside million cuts solids zones deformable); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
 
@@ -222,6 +222,11 @@ def cuts(r):
         r.program("cuts")
 
 
+def solids(r):
+    """Dividing solids that are not convex, timed in C."""
+    r.program("solids", *(["quick"] if r.quick else []))
+
+
 def zones(r):
     """Dividing blocks into zones, timed in C."""
     r.program("zones", *(["quick"] if r.quick else []))
@@ -234,7 +239,7 @@ def deformable(r):
 
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest, edits,
                                       output,
-                                      examples, yade, beside, million, cuts, zones, deformable)}
+                                      examples, yade, beside, million, cuts, solids, zones, deformable)}
 
 
 # ---------------------------------------------------------------------- figures

@@ -2,9 +2,11 @@
  *
  *     ./bootstrap bench solids
  *
+ * With "quick" the largest balls are left out.
+ *
  * The solid is a ball of 8 n^2 triangles. Some vertices that are not neighbours are pushed in: each of these pits has
- * six reflex edges. Or a part of the ball is rough, or it has cavities, each of twelve reflex edges. The time is to grow in proportion to triangles and pits, but for a logarithm. Processor time, so
- * other work on the machine counts little. */
+ * six reflex edges. Or a part of the ball is rough, or it has cavities, each of twelve reflex edges. The time is to grow
+ * little faster than triangles and reflex edges. It is processor time: other work on the machine counts little. */
 #include "check.h"
 #include "geometry/convex_parts.h"
 
@@ -147,12 +149,12 @@ static size_t add_cavities(ball *b, size_t count)
 
 typedef enum kind { PITS, ROUGH, CAVITIES } kind;
 
-static void time_ball(int n, kind kind, size_t count)
+static void time_ball(int n, kind what, size_t count)
 {
     ball b;
-    make_ball(&b, n, kind == CAVITIES ? count : 0);
-    const size_t made = kind == PITS       ? push_pits(&b, count, 4.0 / n)
-                        : kind == CAVITIES ? add_cavities(&b, count)
+    make_ball(&b, n, what == CAVITIES ? count : 0);
+    const size_t made = what == PITS       ? push_pits(&b, count, 4.0 / n)
+                        : what == CAVITIES ? add_cavities(&b, count)
                                            : roughen(&b, 1 - 2 * (double)count / (double)b.vertices, 2.0 / n);
     const tl_solid_surface given = {
         .vertices = b.vertex, .vertex_count = b.vertices, .start = b.start, .loops = b.loop, .face_count = b.faces};
@@ -172,13 +174,14 @@ static void time_ball(int n, kind kind, size_t count)
     free(b.start);
 }
 
-int main(void)
+int main(int count, char **given)
 {
+    const int largest = count > 1 && strcmp(given[1], "quick") == 0 ? 56 : 112;
     static const char *name[] = {"pits", "rough", "cavities"};
     static const size_t most[][2] = {{PITS, 167}, {PITS, 4000}, {ROUGH, 16000}, {CAVITIES, 2000}};
     for (size_t k = 0; k < sizeof most / sizeof *most; k++) {
         printf("%s\n", name[most[k][0]]);
-        for (int n = 28; n <= 112; n *= 2)
+        for (int n = 28; n <= largest; n *= 2)
             time_ball(n, (kind)most[k][0], most[k][1] * (size_t)(n * n) / (112 * 112));
     }
     return 0;

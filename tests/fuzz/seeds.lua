@@ -1,5 +1,5 @@
 -- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj,
--- stl, ply, vtk, poly, compas, mesh and command.
+-- stl, ply, vtk, poly, compas, mesh, command, fab, discs, poles and record.
 local talus = require "talus"
 local folder = arg[1]
 
@@ -57,7 +57,8 @@ local function write(name, text)
     file:write(text)
     file:close()
 end
-for _, kind in ipairs { "obj", "stl", "ply", "vtk", "poly", "compas", "mesh", "command" } do -- makes the folders
+for _, kind in ipairs { "obj", "stl", "ply", "vtk", "poly", "compas", "mesh", "command", "fab", "discs", "poles",
+    "record" } do -- makes the folders
     saved[5]:write_blocks(string.format("%s/%s/0", folder, kind))
 end
 write("obj/1", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
@@ -116,6 +117,21 @@ for k, text in ipairs { '{"op":"step","n":100}', '{"op":"delete","blocks":[3,5]}
     '{ "op" : "cut", "joint": "a\\"b", "dip": 60, "dip_direction": 90.5, "origin": [1, -2.5, 1e3] }' } do
     write("command/" .. k, text)
 end
+
+for k, text in ipairs { "\0time,acc\n0,0\n0.01,1\n0.02,-0.5\n", "\1 0\r\n1e-1\r\n-.5\r\n# end\n",
+    "\8PEER\nX\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   4, DT=   .0100 SEC,\n .1E+00 .2\n .5 -1\n",
+    "\22VELOCITY TIME HISTORY IN UNITS OF CM/S\n 4    0.0100    NPTS, DT\n 0 1 .5\n-1\n", "\97 0;1;2;3\n1;2;3;4\n" } do
+    write("record/" .. k, text)
+end
+-- Data of the site.
+write("fab/1", "BEGIN FORMAT\n  Format = Ascii\n  XAxis = East\n  Length_Unit = Meter\n  No_Fractures = 2\nEND FORMAT\n" ..
+    "BEGIN PROPERTIES\n  Prop1 = (Real*4) \"T\"\nEND PROPERTIES\nBEGIN FRACTURE\n  1 4 1 1e-7\n  1 0 0 0\n  2 2 0 0\n  3 2 2 0\n" ..
+    "  4 0 2 0\n  0 0 0 1\n  2 3 1\n 1 0 0 0\n 2 0 1.5 0\n 3 0 0 1e0\n 0 1 0 0\nEND FRACTURE\nBEGIN TESSFRACTURE\nEND TESSFRACTURE\n")
+write("fab/2", "BEGIN FORMAT\nLength_Unit = Feet\nEND FORMAT\n")
+write("discs/1", "x,y,z,dip,dip_direction,radius\n0,0,0,30,120,2.5\n1.5,-2,3,90,0,1e-3\n")
+write("discs/2", '\xef\xbb\xbf# a remark\n"Radius";X;Y;Z;Dip Direction;DIP;name\r\n1;0;0;0;10;20;a\r\n\r\n')
+write("poles/1", "dip,dip_direction\n30,120\n31,121.5\n89,300\n")
+write("poles/2", "set\tdip\tdip-direction\tweight\nA\t30\t120\t1.5\nB\t0\t0\t0.1\n")
 
 -- Meshes of a cube in all formats.
 package.path = "tests/lua/?.lua;" .. package.path

@@ -145,7 +145,7 @@ local function refused(arguments, part)
 end
 local set = { dip = 10, dip_direction = 20 }
 refused(nil, "stereonet: the argument must be a table, not nil")
-refused({}, "stereonet: give model, sets = {{dip =, dip_direction =}, ...} or keyblocks")
+refused({}, "stereonet: give model, sets = {{dip =, dip_direction =}, ...}, poles or keyblocks")
 refused({ sts = {} }, "stereonet: unknown parameter 'sts'; did you mean 'sets'?")
 refused({ sets = { { dip = 10 } } }, "stereonet, set 1: 'dip_direction' is missing")
 refused({ sets = { set, { dip = 91, dip_direction = 0 } } }, "stereonet, set 2: dip = 91 is outside [0, 90]")

@@ -49,9 +49,16 @@ PUBLIC = {
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
     "state.h": {"types.h", "plugin.h"},
+    "record.h": {"types.h", "plugin.h"},
     "history.h": {"types.h", "plugin.h"},
     "keyblocks.h": {"types.h"},
     "safety.h": {"types.h"},
+    "workers.h": {"types.h"},
+    "log_file.h": {"types.h"},
+    "draws.h": {"types.h"},
+    "distributions.h": {"elementary.h", "types.h", "vmath.h"},
+    "csv.h": {"number.h"},
+    "poles.h": {"csv.h", "distributions.h", "kit.h"},
     "verdict.h": {"types.h", "plugin.h"},
     "watch.h": {"types.h", "plugin.h"},
     "settings.h": {"types.h", "plugin.h"},
@@ -60,17 +67,19 @@ PUBLIC = {
     "view.h": {"types.h", "plugin.h", "values.h"},
     "values.h": {"types.h", "plugin.h"},
     "check.h": {"plugins.h", "values.h"},
-    "talus.h": {"types.h", "plugin.h", "plugins.h", "history.h", "keyblocks.h", "safety.h", "law_test.h", "solid_test.h", "output.h", "state.h", "watch.h", "settings.h", "values.h",
+    "talus.h": {"types.h", "plugin.h", "plugins.h", "record.h", "history.h", "keyblocks.h", "safety.h", "law_test.h", "solid_test.h", "output.h", "state.h", "watch.h", "settings.h", "values.h",
                 "version.h", "verdict.h", "view.h", "defaults.h"},
     "defaults.h": {"talus.h"},
     "fields.h": {"talus.h"},
     "zones.h": {"talus.h"},
     "elements.h": {"talus.h"},
     "views.h": {"talus.h"},
+    "modes.h": {"talus.h"},
     "boundary.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h",
-                  "talus/kit.h", "talus/solid_kit.h", "talus/solid_returns.h", "talus/number.h", "talus/text.h"}
+                  "talus/kit.h", "talus/solid_kit.h", "talus/solid_returns.h", "talus/number.h", "talus/text.h",
+                  "talus/distributions.h", "talus/csv.h", "talus/poles.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"

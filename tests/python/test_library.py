@@ -12,7 +12,7 @@ import tempfile
 
 BUILD = pathlib.Path(os.environ["TALUS_MODULE_DIR"])
 STOCK = os.environ.get("TALUS_STOCK_LUA")
-MODULES = ("convert", "plot", "stereonet")
+MODULES = ("back_analysis", "convert", "plot", "poles", "realisations", "stereonet")
 
 faults = []
 

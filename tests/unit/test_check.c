@@ -183,14 +183,14 @@ TEST(the_plugins_of_talus_pass)
     static const struct {
         const char *name;
         size_t checks;
-    } plugins[] = {{"elastic", 23},
-                   {"coulomb", 23},
-                   {"coulomb_tensile", 23},
-                   {"slip_weakening", 23},
-                   {"cohesive", 23},
-                   {"barton_bandis", 23},
-                   {"continuously_yielding", 23},
-                   {"rate_state", 23},
+    } plugins[] = {{"elastic", 24},
+                   {"coulomb", 24},
+                   {"coulomb_tensile", 24},
+                   {"slip_weakening", 24},
+                   {"cohesive", 24},
+                   {"barton_bandis", 24},
+                   {"continuously_yielding", 24},
+                   {"rate_state", 24},
                    {"none", 14},
                    {"local", 14},
                    {"viscous", 14},
@@ -207,8 +207,7 @@ TEST(the_plugins_of_talus_pass)
                    {"tetrahedron", 3},
                    {"polyhedron", 3},
                    {"drum", 3},
-                   {"joint", 3},
-                   {"jointset", 3}};
+                   {"joint", 3}};
     for (size_t i = 0; i < sizeof plugins / sizeof *plugins; i++) {
         char path[1024];
         findings h = {0};
@@ -219,6 +218,26 @@ TEST(the_plugins_of_talus_pass)
         CHECK_INT(h.checks, plugins[i].checks);
         if (!CHECK_INT(faults, 0))
             printf("  %s: %s%s\n", plugins[i].name, h.list, h.fault);
+    }
+}
+
+/* Either by measured planes or by a mean: no single parameter is required. */
+TEST(generators_of_several_ways_pass_with_one)
+{
+    static const char *const names[] = {"jointset", "dfn"};
+    const tl_value given[] = {tl_arg_number("dip", 30), tl_arg_number("dip_direction", 200), tl_arg_number("number", 3),
+                              tl_arg_number("size_mean", 1)};
+    for (size_t i = 0; i < 2; i++) {
+        char path[1024];
+        findings h = {0};
+        size_t faults = 1;
+        tl_error error;
+        const tl_args args = {given, i == 0 ? 3 : 4};
+        snprintf(path, sizeof path, "%s/%s.so", TALUS_TEST_PLUGIN_DIR, names[i]);
+        CHECK_INT(tl_plugin_check(path, &args, hear, &h, &faults, &error), TL_OK);
+        CHECK_INT(h.checks, 3);
+        if (!CHECK_INT(faults, 0))
+            printf("  %s: %s%s\n", names[i], h.list, h.fault);
     }
 }
 
@@ -282,5 +301,5 @@ TEST(what_cannot_be_tried_is_told)
 
 TEST_MAIN(RUN(each_check_of_solids_finds_what_breaks_it), RUN(each_check_finds_what_breaks_it),
           RUN(others_are_found_among_the_rest), RUN(a_fault_tells_its_parameters), RUN(the_plugins_of_talus_pass),
-          RUN(a_screen_that_is_there_passes), RUN(points_are_parameters_too), RUN(a_wrong_mark_of_a_strength_is_found),
-          RUN(what_cannot_be_tried_is_told))
+          RUN(generators_of_several_ways_pass_with_one), RUN(a_screen_that_is_there_passes),
+          RUN(points_are_parameters_too), RUN(a_wrong_mark_of_a_strength_is_found), RUN(what_cannot_be_tried_is_told))

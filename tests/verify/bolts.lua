@@ -204,4 +204,65 @@ end
 figures.equal("periods", periods, 5)
 figures.near("balance", model:energy().balance, 0, 1e-6)
 
+-- ------------------------------------------------------------ factors of safety
+
+-- The prism on a plane of tests/verify/safety.lua, its bolt an anchor through the plane instead of a load.
+local safety = require "reference_safety"
+local plane, cases = safety.plane, {}
+for _, one in ipairs(safety.plane.cases) do
+    cases[one.id] = one
+end
+local active = cases["FS.plane.bolt_active"]
+local water = cases["FS.plane.water"].load
+local along, force = {}, 0
+for k = 1, 3 do
+    along[k] = active.load[k] - water[k]
+    force = math.sqrt(force ^ 2 + along[k] ^ 2)
+end
+
+-- The bolt begins 4 m above the toe on the front of the prism and is 10 m long, grouted on its last 2 m.
+local function prism(bolt, friction)
+    local t = math.tan(math.rad(plane.dip))
+    local model = talus.model { gravity = { 0, 0, -plane.g } }
+    local function profile(section)
+        model:generate("profile", { section = section, from = 0, to = plane.width, density = plane.density })
+    end
+    profile { { 0, -4 }, { 14, -4 }, { 14, 14 * t }, { 0, 0 } }
+    model:blocks():fix()
+    profile { { plane.front, plane.front * t }, { plane.rear, plane.rear * t }, { plane.rear, plane.top },
+        { plane.front, plane.top } }
+    local block = model:blocks { fixed = false }
+    block:fix { rotation = true }
+    block:load { force = water }
+    model:joint("*", "coulomb", { kn = 1e9, ks = 2e8, friction = friction })
+    bolt.from = { plane.front, 0.5, plane.front * t + 4 }
+    bolt.to = {}
+    for k = 1, 3 do
+        bolt.to[k] = bolt.from[k] + 10 * along[k] / force
+    end
+    bolt.grouted_from, bolt.grout_stiffness, bolt.grout_strength, bolt.plate_strength = 0.8, 1e10, 1e9, 1e9
+    model:element("bolt", bolt)
+    return model
+end
+
+figures.case("FS.bolt_active", "A prism on a plane with water and a bolt of constant force: a pretensioned anchor that is soft.",
+    "Hoek and Bray 1977, chapter 7")
+model = prism({ pretension = force, young = 1e8, yield = 1e9, active_length = 100 }, active.friction)
+figures.relative("keyblocks", model:keyblocks { friction = active.friction }[1].safety, active.FS, 1e-3)
+figures.relative("divided strengths", model:factor_of_safety { resolution = 0.002 }.factor, active.FS, 0.005)
+
+figures.case("FS.bolt_passive", "The same with a bolt whose strength is divided by the factor, as that of the plane is: at 1 % "
+    .. "below the factor it holds, at 1 % above it the prism slides.", "Hoek and Bray 1977, chapter 7")
+for _, share in ipairs { 0.99, 1.01 } do
+    local F = 1.0416075216 * share
+    local friction = math.deg(math.atan(math.tan(math.rad(active.friction)) / F))
+    local one = prism({ yield = force / F, active_length = 100, rupture_strain = 10 }, friction)
+    one:damping "local"
+    local r = one:solve { ratio = 1e-5, max_cycles = 20000, stop = function()
+        return one:blocks { fixed = false }[1].displacement[1] < -0.2
+    end, every = 50 }
+    figures.equal(("factor %.4f"):format(F), r.reason, share < 1 and "ratio" or "stop")
+    figures.relative("tension", one:elements {}[1].axial, force / F, share < 1 and 1e-3 or 1e-9)
+end
+
 figures.finish()

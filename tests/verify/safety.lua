@@ -232,7 +232,6 @@ while found < math.max(4, 40 // SHARE) do
         local r = model:factor_of_safety { resolution = 0.005 }
         found = found + 1
         worst = math.max(worst, math.abs(r.factor / key.safety - 1))
-        if math.abs(r.factor / key.safety - 1) > 0.006 then print(seed, r.factor, key.safety, n[1] / n[2], r.cycles, r.undecided, r.message) end
     end
 end
 figures.between("largest relative difference from limit equilibrium", worst, 0, 0.015)

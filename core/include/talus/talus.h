@@ -20,6 +20,7 @@
 #include <talus/output.h>
 #include <talus/plugin.h>
 #include <talus/plugins.h>
+#include <talus/record.h>
 #include <talus/safety.h>
 #include <talus/settings.h>
 #include <talus/solid_test.h>
@@ -640,6 +641,10 @@ typedef struct tl_drive {
     /* of driven gridpoints (zones.h): gradient (x - at) comes to the velocity, x the present place; 1/s and m */
     double gradient[3][3];
     tl_vec3 at;
+    /* Records of x, y and z, or NULL: their velocity comes to the constant one, at the middle of each step. Their time
+     * counts from that of the model when the drive begins. The drive holds them. */
+    const tl_record *record[3];
+    double record_begin; /* s, that time: the model's own entry */
 } tl_drive;
 
 /* Prescribes the motion of the blocks' bodies, in the place of any fixing; free ends it. A function is

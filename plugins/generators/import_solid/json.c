@@ -31,7 +31,8 @@ static tl_status damaged(const checker *c, const char *at, const char *wanted)
 {
     size_t line = json_line(c->begin, at);
     if (at >= c->end)
-        return SOUP_FAULT(c->s, " ends at line %zu where %s is expected: it is truncated", line, wanted);
+        return SOUP_FAULT(c->s, " ends at line %zu where %s is expected: it is truncated; export it again", line,
+                          wanted);
     return SOUP_FAULT(c->s, ", line %zu: %s is expected at '%.20s'; the file is damaged, or no JSON", line, wanted, at);
 }
 

@@ -146,14 +146,15 @@ static tl_status read_header(reader *r)
         if (status != TL_OK)
             return status;
     }
-    return SOUP_FAULT(r->s, " ends at line %zu within the header: it is truncated", r->l.number);
+    return SOUP_FAULT(r->s, " ends at line %zu within the header: it is truncated; export it again", r->l.number);
 }
 
 /* ---------------------------------------------------------------- data ------------------- */
 
 static tl_status truncated(const reader *r, const element *e, size_t row)
 {
-    return SOUP_FAULT(r->s, " ends in %s %zu of the %zu it announces: it is truncated", e->name, row + 1, e->count);
+    return SOUP_FAULT(r->s, " ends in %s %zu of the %zu it announces: it is truncated; export it again", e->name,
+                      row + 1, e->count);
 }
 
 /* The next number. */

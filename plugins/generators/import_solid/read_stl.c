@@ -81,7 +81,7 @@ static tl_status read_text(soup *s, char *text, size_t count)
     while (status == TL_OK && line_next(&l))
         status = read_line(s, &l, &state, &inside);
     if (status == TL_OK && inside)
-        return SOUP_FAULT(s, " ends at line %zu where '%s' is expected: it is truncated", l.number,
+        return SOUP_FAULT(s, " ends at line %zu where '%s' is expected: it is truncated; export it again", l.number,
                           state == FACET ? "endsolid" : words[state]);
     return status;
 }

@@ -50,8 +50,8 @@ static void skip_line(reader *r)
 
 static tl_status truncated(const reader *r, const char *what)
 {
-    return SOUP_FAULT(r->s, " ends at line %zu, byte %zu, where %s is expected: it is truncated", r->line,
-                      (size_t)(r->end - r->at), what);
+    return SOUP_FAULT(r->s, " ends at line %zu, byte %zu, where %s is expected: it is truncated; export it again",
+                      r->line, (size_t)(r->end - r->at), what);
 }
 
 static tl_status wrong(const reader *r, const char *what)
@@ -83,7 +83,8 @@ static tl_status begin_data(reader *r, size_t count, number_type type)
     skip_line(r);
     if (r->binary && (size_t)(r->end - r->at) / number_bytes[type] < count)
         return SOUP_FAULT(r->s,
-                          ", line %zu: %zu numbers of %zu bytes are announced, but %zu bytes follow; it is truncated",
+                          ", line %zu: %zu numbers of %zu bytes are announced, but %zu bytes follow; it is truncated; "
+                          "export it again",
                           r->line, count, number_bytes[type], (size_t)(r->end - r->at));
     return TL_OK;
 }

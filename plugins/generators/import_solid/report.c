@@ -12,7 +12,9 @@
 const char *object_name(const solids *s, uint32_t object, uint32_t shell, char *text)
 {
     const char *name = s->soup.names + s->soup.object[object].name;
-    if (*name)
+    if (*name && s->soup.object[object].again)
+        tl_text_print(text, NAME_TEXT, "%s (%u)", name, s->soup.object[object].again + 1);
+    else if (*name)
         tl_text_print(text, NAME_TEXT, "%s", name);
     else
         tl_text_print(text, NAME_TEXT, "%u", object + 1);

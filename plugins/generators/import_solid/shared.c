@@ -1,8 +1,9 @@
 /* shared.c - sides of two solids at one place get one plane, so that their blocks meet flush.
  *
  * Such sides face each other, and their polygons overlap. The corners of one lie within flat + weld of the plane of the
- * other. Sides that hang together so are a group with one plane, if all their corners lie as near to it. Else smaller
- * groups are formed, pair after pair. Solids that may touch are found by sweeping along the longest axis. */
+ * other. Sides that hang together so are a group with one plane, if all their corners lie as near to it. Else they keep
+ * their own planes: a plane for some of them would tilt them against the others, as in a dome whose stones are in bond.
+ * Solids that may touch are found by sweeping along the longest axis. */
 #include "solids.h"
 
 #include <stdlib.h>
@@ -11,8 +12,6 @@
 
 /* Tolerance: normals of sides that face each other differ by less than acos of this from opposite: 18 degrees. */
 #define FACING 0.95
-/* Cost only: a group that does not fit one plane is formed anew of at most so many sides. */
-#define MOST_REGROUPED 64
 
 typedef struct box {
     tl_vec3 min, max;
@@ -209,45 +208,39 @@ static void join(finder *f, uint32_t a, uint32_t b)
     f->s->plane[b > a ? b : a].group = b > a ? a : b;
 }
 
-/* The plane fitted to the sides of a group, and of another one that may be the same; the number of sides. */
-static size_t fit_group(const finder *f, uint32_t a, uint32_t b, plane *fitted)
+/* The plane fitted to the sides of a group. */
+static plane fit_group(const finder *f, uint32_t first)
 {
     cloud sum = {.count = 0};
-    size_t sides = 0;
-    for (int k = 0; k < (a == b ? 1 : 2); k++) {
-        const uint32_t first = k ? b : a;
-        uint32_t side = first;
-        do {
-            EACH_CORNER(f, side, at)
-            {
-                if (!(sum.count > 0))
-                    sum.zero = at;
-                cloud_add(&sum, at);
-            }
-            sides++;
-            side = f->ring[side];
-        } while (side != first);
-    }
-    *fitted = cloud_plane(&sum, f->s->plane[a].normal);
-    return sides;
-}
-
-static bool group_fits(const finder *f, uint32_t first, const plane *p)
-{
     uint32_t side = first;
     do {
-        if (farthest_off(f, side, p) > f->near)
+        EACH_CORNER(f, side, at)
+        {
+            if (!(sum.count > 0))
+                sum.zero = at;
+            cloud_add(&sum, at);
+        }
+        side = f->ring[side];
+    } while (side != first);
+    return cloud_plane(&sum, f->s->plane[first].normal);
+}
+
+static bool group_fits(const finder *f, uint32_t first)
+{
+    const plane fitted = fit_group(f, first);
+    uint32_t side = first;
+    do {
+        if (farthest_off(f, side, &fitted) > f->near)
             return false;
         side = f->ring[side];
     } while (side != first);
     return true;
 }
 
-/* Groups of all pairs; those that fit no plane are taken apart, and formed anew as far as they do. */
+/* Groups of all pairs; those that fit no plane are taken apart. */
 static void form_groups(finder *f)
 {
     solids *s = f->s;
-    plane fitted;
     for (uint32_t p = 0; p < s->planes; p++)
         f->ring[p] = p;
     for (size_t i = 0; i < f->pairs; i++) {
@@ -256,22 +249,13 @@ static void form_groups(finder *f)
             join(f, a, b);
     }
     for (uint32_t p = 0; p < s->planes; p++) {
-        if (s->plane[p].group != p || f->ring[p] == p)
-            continue;
-        fit_group(f, p, p, &fitted);
-        if (group_fits(f, p, &fitted))
+        if (s->plane[p].group != p || f->ring[p] == p || group_fits(f, p))
             continue;
         for (uint32_t side = p, next; f->ring[side] != side; side = next) {
             next = f->ring[side];
             f->ring[side] = side;
             s->plane[side].group = side;
         }
-    }
-    for (size_t i = 0; i < f->pairs; i++) {
-        uint32_t a = root_of(s, f->pair[i].a), b = root_of(s, f->pair[i].b);
-        if (a != b && fit_group(f, a, b, &fitted) <= MOST_REGROUPED && group_fits(f, a, &fitted) &&
-            group_fits(f, b, &fitted))
-            join(f, a, b);
     }
     for (uint32_t p = 0; p < s->planes; p++) {
         s->plane[p].group = root_of(s, p);

@@ -77,7 +77,8 @@ uint32_t solid_planes(const solids *s, size_t i);
 typedef struct shell_face {
     uint32_t first, count; /* half-edges */
     uint32_t shell, side;
-    tl_vec3 area; /* twice the vector area */
+    uint32_t part; /* faces of one part close a surface by the file's numbers of their vertices; 0: those of none */
+    tl_vec3 area;  /* twice the vector area */
     double longest;
 } shell_face;
 
@@ -92,6 +93,7 @@ typedef struct mesh {
     /* scratch, and room */
     uint32_t *local; /* [vertices of the soup] */
     uint32_t *cell, *next, *root;
+    uint32_t *part; /* [faces of the object in the soup] */
     void *sides;
     size_t vertex_room, corner_room, face_room, cell_room;
 } mesh;
@@ -129,7 +131,8 @@ tl_status blocks_create(solids *s);
 
 /* ---------------------------------------------------------------- report.c --------------- */
 
-/* The name of an object, in words: 'stone_17', or number 3; of one of several shells with its number. */
+/* The name of an object: 'stone_17', or its number; 'stone_17 (2)' where that comes again; of one of several shells
+ * with its number. */
 #define NAME_TEXT 100
 const char *object_name(const solids *s, uint32_t object, uint32_t shell, char *text);
 /* Lists a refused object, of which the text goes on behind its name. */

@@ -98,6 +98,7 @@ tl_status soup_object(soup *s, const char *name, size_t length, const char *grou
     file_object *now = &list[s->objects - replaces];
     const file_object before = s->objects ? list[s->objects - 1] : (file_object){0};
     now->face = (uint32_t)s->faces;
+    now->again = 0;
     if (!keep_name(s, name, length, before.name, &now->name) ||
         !keep_name(s, group, group_length, before.group, &now->group))
         return soup_no_memory(s);
@@ -109,6 +110,36 @@ tl_status soup_group(soup *s, const char *group, size_t length)
 {
     file_object *last = &s->object[s->objects - 1];
     return keep_name(s, group, length, last->group, &last->group) ? TL_OK : soup_no_memory(s);
+}
+
+/* A name and the object that has it. */
+typedef struct named {
+    const char *name;
+    uint32_t object;
+} named;
+
+static int by_name(const void *left, const void *right)
+{
+    const named *a = left, *b = right;
+    int order = strcmp(a->name, b->name);
+    return order != 0 ? order : (a->object > b->object) - (a->object < b->object);
+}
+
+/* Counts how often the name of each object came before. */
+static tl_status count_names(soup *s)
+{
+    named *list = malloc((s->objects + 1) * sizeof *list);
+    if (!list)
+        return soup_no_memory(s);
+    for (uint32_t i = 0; i < s->objects; i++)
+        list[i] = (named){s->names + s->object[i].name, i};
+    qsort(list, s->objects, sizeof *list, by_name);
+    for (size_t i = 0; i < s->objects; i++) {
+        const bool same = i > 0 && *list[i].name && strcmp(list[i - 1].name, list[i].name) == 0;
+        s->object[list[i].object].again = same ? s->object[list[i - 1].object].again + 1 : 0;
+    }
+    free(list);
+    return TL_OK;
 }
 
 tl_status soup_check(const soup *s)
@@ -181,6 +212,9 @@ tl_status soup_read(soup *s)
         char *text;
         size_t count;
         tl_status status = tl_file_bytes(s->host, s->file, MOST_BYTES, &text, &count);
+        if (status == TL_OK && count == 0)
+            status =
+                s->host->fail(s->host, TL_E_GEOMETRY, "file '%.200s' is empty (0 bytes); export it again", s->file);
         if (status == TL_OK)
             status = readers[i].read(s, text, count);
         free(text);
@@ -188,11 +222,16 @@ tl_status soup_read(soup *s)
             s->objects--; /* a name without faces */
         if (status == TL_OK)
             status = soup_check(s);
+        if (status == TL_OK && s->objects > 0)
+            status = count_names(s);
         if (status == TL_OK && s->faces == 0)
-            status = s->host->fail(s->host, TL_E_GEOMETRY, "file '%.200s' holds no faces", s->file);
+            status = s->host->fail(s->host, TL_E_GEOMETRY,
+                                   "file '%.200s' holds no faces; export the solids with the faces of their surfaces",
+                                   s->file);
         return status;
     }
-    return s->host->fail(s->host, TL_E_ARGUMENT,
-                         "file '%.200s' does not end in .obj, .stl, .ply, .vtk, .json, .dat, .3ddat, .3dec or .txt",
-                         s->file);
+    return s->host->fail(
+        s->host, TL_E_ARGUMENT,
+        "file '%.200s' does not end in .obj, .stl, .ply, .vtk, .json, .dat, .3ddat, .3dec or .txt; export it so",
+        s->file);
 }

@@ -19,6 +19,7 @@
 typedef struct file_object {
     uint32_t name, group; /* of the soup's names; 0: it has none */
     uint32_t face;        /* its first one; its last one is before the next object's first */
+    uint32_t again;       /* how many objects before it have its name */
 } file_object;
 
 /* The corners of face f are corner[start[f]] .. corner[start[f + 1] - 1], indices into vertex. */

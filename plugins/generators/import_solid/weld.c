@@ -2,22 +2,26 @@
  *
  * Vertices within `weld` of each other become one, at their mean. Faces that lose their area by it go. Every edge then
  * belongs to two faces. Neighbours that run along it the same way are turned against each other: of faces that hang
- * together the fewer are turned. Where shells touch along an edge, four faces or more meet there. A half-edge then
- * belongs with that of the face which is met first when turning from its own face through the inside. A shell of
- * negative volume is turned inside out. */
+ * together the fewer are turned. Where shells touch along an edge, four faces or more meet there. Faces that close a
+ * surface by the file's numbers of their vertices are a part, and belong with each other. Among other faces, a
+ * half-edge belongs with that of the face which is met first when turning from its own face through the inside. A
+ * shell of negative volume is turned inside out. */
 #include "solids.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <talus/kit.h>
 
-/* Tolerance: faces along each other are a full turn apart, not none: less than this, in radians, is none. */
+/* Tolerance: faces along each other are a full turn apart, not none: less than this, in radians, is none. So is what
+ * corners off their planes by `flat` make of none, up to MOST_SAME_SIDE. */
 #define SAME_SIDE 1e-6
+#define MOST_SAME_SIDE 0.3
 /* Tolerance: a shell holds no volume below this times the cube of its size. */
 #define EMPTY 1e-9
 
 typedef struct side {
     uint32_t low, high; /* vertices */
+    uint32_t part;      /* of its face */
     uint32_t half;      /* half-edge */
     bool up;            /* it runs from low to high */
 } side;
@@ -39,6 +43,7 @@ void mesh_free(mesh *m)
     free(m->cell);
     free(m->next);
     free(m->root);
+    free(m->part);
     free(m->sides);
 }
 
@@ -74,11 +79,81 @@ static bool make_room(const solids *s, mesh *m, size_t corners, size_t faces)
         m->corner_room = corners;
     }
     if (faces > m->face_room) {
-        if (!resize(&m->face, faces, sizeof *m->face))
+        if (!resize(&m->face, faces, sizeof *m->face) || !resize(&m->part, faces, sizeof *m->part))
             return false;
         m->face_room = faces;
     }
     return true;
+}
+
+/* ---------------------------------------------------------------- parts ------------------ */
+
+/* Compares half-edges by edge, part and number. */
+static int by_edge(const void *left, const void *right)
+{
+    const side *a = left, *b = right;
+    if (a->low != b->low)
+        return a->low < b->low ? -1 : 1;
+    if (a->high != b->high)
+        return a->high < b->high ? -1 : 1;
+    if (a->part != b->part)
+        return a->part < b->part ? -1 : 1;
+    return (a->half > b->half) - (a->half < b->half);
+}
+
+/* The end of the run of half-edges of one edge. */
+static size_t edge_end(const mesh *m, size_t corners, size_t from)
+{
+    const side *list = m->sides;
+    size_t to = from;
+    while (to < corners && list[to].low == list[from].low && list[to].high == list[from].high &&
+           list[to].part == list[from].part)
+        to++;
+    return to;
+}
+
+/* Marks the root of vertices that hang together, where their faces close no surface. */
+#define OPEN_PART (NONE - 1)
+
+static uint32_t vertex_root(mesh *m, uint32_t v)
+{
+    uint32_t root = v;
+    while (m->local[root] != root && m->local[root] != OPEN_PART)
+        root = m->local[root];
+    while (v != root) {
+        const uint32_t next = m->local[v];
+        m->local[v] = root;
+        v = next;
+    }
+    return root;
+}
+
+/* Numbers the parts of an object: faces that hang together by the file's numbers of their vertices, and close a surface
+ * so. All other faces are part 0. */
+static void find_parts(const soup *from, const file_object *o, uint32_t last, mesh *m)
+{
+    side *list = m->sides;
+    size_t corners = 0;
+    for (uint32_t h = from->start[o->face]; h < from->start[last]; h++)
+        m->local[from->corner[h]] = from->corner[h];
+    for (uint32_t f = o->face; f < last; f++)
+        for (uint32_t h = from->start[f]; h < from->start[f + 1]; h++) {
+            const uint32_t a = from->corner[h], b = from->corner[h + 1 < from->start[f + 1] ? h + 1 : from->start[f]];
+            m->local[vertex_root(m, a)] = vertex_root(m, b);
+            list[corners++] = a < b ? (side){a, b, 0, h, true} : (side){b, a, 0, h, false};
+        }
+    qsort(list, corners, sizeof *list, by_edge);
+    for (size_t at = 0, to; at < corners; at = to) {
+        to = edge_end(m, corners, at);
+        if (to != at + 2 && list[at].low != list[at].high)
+            m->local[vertex_root(m, list[at].low)] = OPEN_PART;
+    }
+    for (uint32_t f = o->face; f < last; f++) {
+        const uint32_t root = vertex_root(m, from->corner[from->start[f]]);
+        m->part[f - o->face] = m->local[root] == OPEN_PART ? 0 : root + 1;
+    }
+    for (uint32_t h = from->start[o->face]; h < from->start[last]; h++)
+        m->local[from->corner[h]] = NONE;
 }
 
 /* ---------------------------------------------------------------- welding ---------------- */
@@ -184,7 +259,8 @@ static void make_faces(const solids *s, const file_object *o, uint32_t last, mes
             continue;
         }
         shell_face *face = &m->face[m->faces++];
-        *face = (shell_face){.first = first, .count = (uint32_t)(m->corners - first), .shell = NONE};
+        *face = (shell_face){
+            .first = first, .count = (uint32_t)(m->corners - first), .shell = NONE, .part = m->part[f - o->face]};
         for (size_t h = first; h < m->corners; h++)
             m->face_of[h] = (uint32_t)(m->faces - 1);
     }
@@ -219,35 +295,15 @@ static void turn_face(mesh *m, uint32_t face)
 
 /* ---------------------------------------------------------------- edges ------------------ */
 
-static int by_edge(const void *left, const void *right)
-{
-    const side *a = left, *b = right;
-    if (a->low != b->low)
-        return a->low < b->low ? -1 : 1;
-    if (a->high != b->high)
-        return a->high < b->high ? -1 : 1;
-    return (a->half > b->half) - (a->half < b->half);
-}
-
 static void sort_edges(mesh *m)
 {
     side *list = m->sides;
     for (uint32_t h = 0; h < m->corners; h++) {
-        uint32_t a = m->corner[h], b = m->corner[mesh_next(m, h)];
-        list[h] = a < b ? (side){a, b, h, true} : (side){b, a, h, false};
+        uint32_t a = m->corner[h], b = m->corner[mesh_next(m, h)], part = m->face[m->face_of[h]].part;
+        list[h] = a < b ? (side){a, b, part, h, true} : (side){b, a, part, h, false};
         m->mate[h] = NONE;
     }
     qsort(list, m->corners, sizeof *list, by_edge);
-}
-
-/* The end of the run of half-edges of one edge. */
-static size_t edge_end(const mesh *m, size_t from)
-{
-    const side *list = m->sides;
-    size_t to = from;
-    while (to < m->corners && list[to].low == list[from].low && list[to].high == list[from].high)
-        to++;
-    return to;
 }
 
 /* Where two faces share an edge, they are neighbours in any case. */
@@ -255,7 +311,7 @@ static void pair_twos(mesh *m)
 {
     const side *list = m->sides;
     for (size_t from = 0, to; from < m->corners; from = to) {
-        to = edge_end(m, from);
+        to = edge_end(m, m->corners, from);
         if (to != from + 2)
             continue;
         m->mate[list[from].half] = list[from + 1].half;
@@ -306,20 +362,34 @@ static bool agree(mesh *m, done *d)
     return sided;
 }
 
-/* The angle through the inside from the face of half-edge h to that of g, which runs the other way. */
-static double inner_angle(const mesh *m, uint32_t h, uint32_t g)
+/* The largest distance of a face's corners from the line of one of its half-edges, along a unit vector. */
+static double reach_of(const mesh *m, uint32_t h, tl_vec3 along)
+{
+    const shell_face *f = &m->face[m->face_of[h]];
+    double reach2 = 0;
+    for (uint32_t k = f->first; k < f->first + f->count; k++)
+        reach2 =
+            fmax(reach2, tl_v3_norm2(tl_v3_cross(along, tl_v3_sub(m->vertex[m->corner[k]], m->vertex[m->corner[h]]))));
+    return sqrt(reach2);
+}
+
+/* The angle through the inside from the face of half-edge h to that of g, which runs the other way. Faces off their
+ * planes by `flat` are along each other within an angle of 2 flat / reach, with their reach from the edge. */
+static double inner_angle(const mesh *m, uint32_t h, uint32_t g, double flat)
 {
     tl_vec3 a = m->vertex[m->corner[h]], b = m->vertex[m->corner[mesh_next(m, h)]];
     tl_vec3 along = tl_v3_unit(tl_v3_sub(b, a)), n = tl_v3_unit(m->face[m->face_of[h]].area);
     tl_vec3 into = tl_v3_cross(n, along);
     tl_vec3 other = tl_v3_cross(along, tl_v3_unit(m->face[m->face_of[g]].area));
     double angle = tl_atan2(-tl_v3_dot(other, n), tl_v3_dot(other, into));
-    return angle < SAME_SIDE ? angle + 2 * TL_PI : angle;
+    double reach = fmin(reach_of(m, h, along), reach_of(m, g, along));
+    double same = fmin(fmax(2 * flat / fmax(reach, 1e-300), SAME_SIDE), MOST_SAME_SIDE);
+    return angle < same ? angle + 2 * TL_PI : angle;
 }
 
 /* Pairs the half-edges of one edge, of which as many run one way as the other. False when two of them find the same
  * partner: faces lie on each other. */
-static bool pair_edge(mesh *m, const side *sides, size_t count)
+static bool pair_edge(mesh *m, const side *sides, size_t count, double flat)
 {
     for (size_t i = 0; i < count; i++) {
         if (!sides[i].up)
@@ -327,7 +397,7 @@ static bool pair_edge(mesh *m, const side *sides, size_t count)
         uint32_t best = NONE;
         double least = INFINITY;
         for (size_t k = 0; k < count; k++) {
-            double angle = sides[k].up ? (double)INFINITY : inner_angle(m, sides[i].half, sides[k].half);
+            double angle = sides[k].up ? (double)INFINITY : inner_angle(m, sides[i].half, sides[k].half, flat);
             if (angle < least) {
                 least = angle;
                 best = sides[k].half;
@@ -348,7 +418,8 @@ static const char *const faults_text[FAULTS][2] = {
     [TURNED] = {"more than two faces meet, and are turned against each other",
                 "make each solid an object of its own, or give the corners of all faces counter-clockwise as seen from "
                 "outside"},
-    [DOUBLED] = {"faces lie on each other", "remove faces that are there twice"}};
+    [DOUBLED] = {"faces lie on each other, or are turned against each other",
+                 "remove faces that are there twice, or give each solid corners of its own"}};
 
 /* Pairs all half-edges; refuses the object where that cannot be. */
 static tl_status pair_all(solids *s, uint32_t object, mesh *m, bool *taken)
@@ -358,11 +429,11 @@ static tl_status pair_all(solids *s, uint32_t object, mesh *m, bool *taken)
     const side *list = m->sides;
     for (size_t from = 0, to; from < m->corners; from = to) {
         size_t up = 0;
-        to = edge_end(m, from);
+        to = edge_end(m, m->corners, from);
         for (size_t i = from; i < to; i++)
             up += list[i].up;
         bool even = 2 * up == to - from;
-        if (even && pair_edge(m, list + from, to - from))
+        if (even && pair_edge(m, list + from, to - from, s->flat))
             continue;
         int fault = even ? DOUBLED : (to - from) % 2 == 0 ? TURNED : OPEN;
         first[fault] = count[fault]++ ? first[fault] : from;
@@ -518,6 +589,7 @@ tl_status mesh_close(solids *s, uint32_t object, mesh *m, bool *taken)
     *taken = true;
     if (!make_room(s, m, from->start[last] - from->start[o->face], last - o->face))
         return soup_no_memory(from);
+    find_parts(from, o, last, m);
     weld_vertices(s, o, last, m, d);
     make_faces(s, o, last, m, d);
     for (size_t f = 0; f < m->faces; f++)

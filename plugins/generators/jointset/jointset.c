@@ -22,10 +22,13 @@
  *
  *     1 - cos t = -ln(1 - u (1 - exp(-2 k))) / k,   azimuth = 360 deg v,   u, v uniform in [0, 1).
  *
+ * With `poles` each plane has the attitude of one that was measured. The mean pole is theirs (talus/poles.h).
+ *
  * A gap belongs to the plane on its far side from the middle; the middle gap of an even set to the
  * plane above. Draws are keyed by model seed, set and plane number (Hart, Cundall and Lemos, Int. J.
  * Rock Mech. Min. Sci. 25 (1988) 117-125, section on model generation, for the six parameters). */
 #include <talus/kit.h>
+#include <talus/poles.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
 
@@ -57,16 +60,17 @@ typedef struct params {
     int32_t distribution;
     double fisher_k, radius;
     int32_t spacing_distribution;
+    const char *poles;
 } params;
 
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_STRING, params, joint, "", "name of the joint set", .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "mean dip below horizontal", .flags = TL_PARAM_REQUIRED, .min = 0,
+    TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "mean dip below horizontal", .flags = TL_PARAM_OPTIONAL, .min = 0,
              .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, dip_dev, "deg", "deviation of the dip: largest, or standard when normal", .min = 0,
              .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg", "mean dip direction, clockwise from north (+y)",
-             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 360),
+             .flags = TL_PARAM_OPTIONAL, .min = 0, .max = 360),
     TL_PARAM(TL_PARAM_REAL, params, dip_direction_dev, "deg", "deviation of the dip direction", .min = 0, .max = 180),
     TL_PARAM_POSITIVE(params, spacing, "m", "mean distance between planes"),
     TL_PARAM_NOT_NEGATIVE(params, spacing_dev, "m",
@@ -88,12 +92,16 @@ static const tl_param param_table[] = {
              "of the gaps: uniform within spacing_dev, normal, exponential with the mean spacing, or lognormal; same: "
              "as distribution, uniform with fisher",
              .def = {GAPS_SAME}, .choices = spacing_distributions),
+    TL_PARAM(TL_PARAM_STRING, params, poles, "",
+             "table of measured planes with the columns dip and dip_direction, in the place of dip and dip_direction",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_FILE),
 };
 
 /* Where the draws of one call are found: planes of an earlier call of the same set come first. */
 typedef struct draws {
     const tl_host *host;
     uint32_t joint, first;
+    tl_poles poles; /* count 0: attitudes are drawn about the mean */
 } draws;
 
 /* The quantities a plane draws. */
@@ -188,6 +196,8 @@ static double offset_of(const draws *d, const params *p, int64_t index)
 
 static tl_vec3 normal_of(const draws *d, const params *p, tl_vec3 mean, int64_t index)
 {
+    if (d->poles.count > 0)
+        return tl_poles_pick(&d->poles, draw_one(d, index, DRAW_DIP));
     if (p->distribution == FISHER)
         return draw_fisher(d, index, mean, p->fisher_k);
     double dip = p->dip + p->dip_dev * deviation(d, p, index, DRAW_DIP);
@@ -227,10 +237,29 @@ static tl_status check_gaps(const tl_host *host, const params *p)
     return TL_OK;
 }
 
+static tl_status check_attitudes(const tl_host *host, const params *p)
+{
+    if (!p->poles && (isnan(p->dip) || isnan(p->dip_direction)))
+        return host->fail(host, TL_E_ARGUMENT, "'%s' is missing: give dip and dip_direction, or poles",
+                          isnan(p->dip) ? "dip" : "dip_direction");
+    const char *const surplus = !isnan(p->dip)              ? "dip"
+                                : !isnan(p->dip_direction)  ? "dip_direction"
+                                : p->dip_dev > 0            ? "dip_dev"
+                                : p->dip_direction_dev > 0  ? "dip_direction_dev"
+                                : p->distribution == FISHER ? "distribution"
+                                                            : NULL;
+    if (p->poles && surplus)
+        return host->fail(host, TL_E_ARGUMENT, "%s does not go with poles, which give the attitudes: leave it out",
+                          surplus);
+    return TL_OK;
+}
+
 /* What the ranges of single parameters cannot tell. */
 static tl_status check(const tl_host *host, const params *p)
 {
-    tl_status status = check_gaps(host, p);
+    tl_status status = check_attitudes(host, p);
+    if (status == TL_OK)
+        status = check_gaps(host, p);
     if (status != TL_OK)
         return status;
     if (p->distribution == FISHER && !(p->fisher_k > 0))
@@ -248,28 +277,39 @@ static tl_status check(const tl_host *host, const params *p)
     return TL_OK;
 }
 
-static tl_status generate(const tl_host *host, const void *given)
+static tl_status cut_planes(draws *d, const params *p)
 {
-    const params *p = given;
-    draws d = {.host = host};
-    tl_status status = check(host, p);
-    if (status == TL_OK)
-        status = host->joint(host, p->joint, &d.joint);
-    if (status != TL_OK)
-        return status;
-    d.first = host->next_plane(host, d.joint);
+    const tl_host *host = d->host;
+    tl_status status = TL_OK;
+    d->first = host->next_plane(host, d->joint);
     for (int64_t i = 1; i < p->number; i++)
-        host->next_plane(host, d.joint);
-    tl_vec3 mean = tl_plane_normal(p->dip, p->dip_direction);
+        host->next_plane(host, d->joint);
+    const tl_vec3 mean = d->poles.count > 0 ? tl_poles_mean_of(d->poles.normal, d->poles.weight, d->poles.count).mean
+                                            : tl_plane_normal(p->dip, p->dip_direction);
     size_t met = 0;
     for (int64_t i = 0; i < p->number && status == TL_OK; i++) {
-        status = cut_plane(&d, p, mean, i, &met);
+        status = cut_plane(d, p, mean, i, &met);
         if (status == TL_OK)
             status = host->progress(host, (double)(i + 1) / (double)p->number);
     }
     if (status == TL_OK && met == 0)
         host->log(host, "joint set '%s': none of its %lld plane%s meets a visible block", p->joint,
                   (long long)p->number, p->number == 1 ? "" : "s");
+    return status;
+}
+
+static tl_status generate(const tl_host *host, const void *given)
+{
+    const params *p = given;
+    draws d = {.host = host};
+    tl_status status = check(host, p);
+    if (status == TL_OK && p->poles)
+        status = tl_poles_read(host, p->poles, &d.poles);
+    if (status == TL_OK)
+        status = host->joint(host, p->joint, &d.joint);
+    if (status == TL_OK)
+        status = cut_planes(&d, p);
+    tl_poles_free(&d.poles);
     return status;
 }
 

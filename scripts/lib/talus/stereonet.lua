@@ -13,7 +13,8 @@ local svg = require "talus.svg"
 
 local fail = arguments.fail
 
-local KEYS = { "file", "great_circles", "grid", "joints", "keyblocks", "legend", "model", "projection", "sets", "size",
+local KEYS = { "file", "great_circles", "grid", "joints", "keyblocks", "legend", "model", "poles", "projection", "sets",
+    "size",
     "title" }
 local SET_KEYS = { "dip", "dip_direction", "name", "planes" }
 local FONT_SIZE, TITLE_SIZE = 12, 14
@@ -177,6 +178,17 @@ local function model_sets(given, into)
     end
 end
 
+-- What talus.poles gave, or a list of such, as its method sets gives.
+local function add_poles(given, into)
+    arguments.table("stereonet", given, "poles")
+    for i, one in ipairs(given.planes and { given } or given) do
+        if type(one) ~= "table" or type(one.list) ~= "function" then
+            fail("stereonet: poles must be what talus.poles gives, or a list of such; item %d is not of it", i)
+        end
+        into[#into + 1] = read_set("stereonet, poles " .. i, { planes = one:list(), name = given.planes and "poles" or nil }, i)
+    end
+end
+
 local function all_sets(given)
     local sets = {}
     if given.model ~= nil then
@@ -190,8 +202,11 @@ local function all_sets(given)
             sets[#sets + 1] = read_set("stereonet, set " .. i, set, i)
         end
     end
+    if given.poles ~= nil then
+        add_poles(given.poles, sets)
+    end
     if #sets == 0 and given.keyblocks == nil then
-        fail("stereonet: give model, sets = {{dip =, dip_direction =}, ...} or keyblocks")
+        fail("stereonet: give model, sets = {{dip =, dip_direction =}, ...}, poles or keyblocks")
     end
     for _, set in ipairs(sets) do
         set.mean = mean_axis(set.poles)

@@ -1,0 +1,418 @@
+-- talus.realisations: rows of a file that are the same for any number of workers, after kills, of shards; errors and deaths;
+-- draws and statistics; bad input.
+--
+-- program only: a script is run, killed and sharded
+local talus = require "talus"
+local check = require "check"
+
+local folder = assert(os.getenv "TALUS_TEST_TMP")
+local program = assert(os.getenv "TALUS_PROGRAM")
+local empty = talus.model {}
+
+local function read(path)
+    local file = assert(io.open(path, "rb"))
+    local text = file:read "a"
+    file:close()
+    return text
+end
+
+local function exists(path)
+    local file = io.open(path, "rb")
+    if file then
+        file:close()
+    end
+    return file ~= nil
+end
+
+local function run(given)
+    given.build = given.build or function(draw)
+        draw.normal("x", 10, 2)
+        return empty
+    end
+    given.measure = given.measure or function(_, draw)
+        local x = draw.normal("x", 10, 2)
+        return { failed = x < 8, double = 2 * x }
+    end
+    return talus.realisations(given)
+end
+
+-- ------------------------------------------------------------------ rows
+
+-- The same bytes for any number of workers, with a script that keeps something from row to row, and its own random numbers.
+do
+    local bytes
+    for _, workers in ipairs { 1, 2, 5 } do
+        local path = ("%s/rows_%d.csv"):format(folder, workers)
+        os.remove(path)
+        local set = run { number = 60, seed = 4, workers = workers, file = path, measure = function(_, draw)
+            return { failed = draw.normal("x", 10, 2) < 8, own = math.random(), name = 'a "text", two\nlines',
+                odd = draw.row % 2 == 1 and 0 / 0 or math.huge }
+        end }
+        check.equal(#set, 60)
+        bytes = bytes or read(path)
+        check.equal(read(path), bytes)
+        local row = set:rows()[3]
+        check.equal(row.row, 3)
+        check.equal(row.name, 'a "text", two lines')
+        check.holds(row.odd ~= row.odd and set:rows()[4].odd == math.huge)
+        check.near(set:rows()[3].x, set:rows()[3].x, 0)
+        -- a second call reads all and computes nothing
+        local again = run { number = 60, seed = 4, file = path, build = error, measure = error }
+        check.equal(again:mean "x", set:mean "x")
+        check.equal(again:sensitivity("x")[1], nil)
+    end
+    -- another variable changes none; another seed all
+    local set = run { number = 5, seed = 4, build = function(draw)
+        draw.uniform("first", 0, 1)
+        draw.normal("x", 10, 2)
+        return empty
+    end }
+    local other = run { number = 5, seed = 5 }
+    local first = run { number = 60, seed = 4, file = folder .. "/rows_1.csv", build = error, measure = error }
+    for i = 1, 5 do
+        check.equal(set:rows()[i].x, first:rows()[i].x)
+        check.holds(other:rows()[i].x ~= first:rows()[i].x)
+    end
+end
+
+-- A screen that decides leaves out the measure; the columns are those of the trial all the same.
+do
+    local set = run { number = 40, screen = function(_, draw)
+        local x = draw.normal("x", 10, 2)
+        return { near = x < 10, failed = false }, x >= 10
+    end, measure = function(_, draw) return { failed = draw.normal("x", 10, 2) < 8, size = 1 } end }
+    for _, row in ipairs(set:rows()) do
+        check.equal(row.size, row.near and 1 or nil)
+    end
+    check.equal(set:probability "failed" > 0, true)
+    check.equal(set:model(3).cycles, 0)
+end
+
+-- A model has the row's own numbers again.
+do
+    local set = run { number = 3, build = function(draw)
+        local model = talus.model { seed = draw.seed "model" }
+        model:generate("box", { min = { 0, 0, 0 }, max = { draw.uniform("size", 1, 2), 1, 1 }, density = 1000 })
+        return model
+    end, measure = function(model, draw) return { volume = model:blocks():sum "volume" } end }
+    check.near(set:model(2):blocks():sum "volume", set:rows()[2].volume, 0)
+    check.near(set:rows()[2].size, set:rows()[2].volume, 1e-12)
+    check.raises(function() set:model(4) end, "must be a whole number in [1, 3], not the number 4")
+end
+
+-- stop_when: the file ends at the first row at which the interval is narrow enough.
+do
+    local bytes
+    for _, workers in ipairs { 1, 3 } do
+        local path = ("%s/stop_%d.csv"):format(folder, workers)
+        os.remove(path)
+        local set = run { number = 5000, workers = workers, file = path,
+            stop_when = { field = "failed", half_width = 0.05, at_least = 100 } }
+        local _, low, high = set:probability "failed"
+        check.holds(set.stopped and (high - low) / 2 <= 0.05 and #set >= 100 and #set < 400)
+        bytes = bytes or read(path)
+        check.equal(read(path), bytes)
+    end
+end
+
+-- ------------------------------------------------------------------ errors and deaths
+
+-- Rows that err are rows; a worker that dies once is started anew, and twice the row errs.
+do
+    local path, once = folder .. "/errors.csv", folder .. "/once"
+    os.remove(path)
+    os.remove(once)
+    local function build(draw)
+        draw.normal("x", 10, 2)
+        if draw.row == 7 then
+            error "no block at all, \"none\""
+        elseif draw.row == 9 then
+            os.exit(3)
+        elseif draw.row == 11 and not exists(once) then
+            io.open(once, "w"):close()
+            os.exit(3)
+        end
+        return empty
+    end
+    local set = run { number = 60, workers = 2, file = path, build = build }
+    check.equal(set.errors, 2)
+    check.holds(set:rows()[7].error:find 'test_realisations.lua:%d+: no block at all, "none"$')
+    check.equal(set:rows()[9].error, "the worker died 2 times: it ended with status 3")
+    check.equal(set:rows()[11].error, nil)
+    check.holds(set:rows()[7].x and not set:rows()[7].failed and exists(once))
+    local _, low, high = set:probability "failed"
+    check.holds(low >= 0 and high <= 1)
+    -- more than 5 % end the run, at the same row for any number of workers, and again when it goes on
+    local rows
+    for _, workers in ipairs { 1, 3 } do
+        os.remove(path)
+        for _ = 1, 2 do
+            check.raises(function()
+                run { number = 60, workers = workers, file = path, build = function(draw)
+                    return draw.row % 10 == 5 and error("this one", 0) or empty
+                end, measure = function() return { failed = false } end }
+            end, "4 of 35 rows err, more than 5 % of 60; the first is row 5: this one")
+        end
+        rows = rows or read(path)
+        check.equal(read(path), rows)
+    end
+end
+
+-- A field that the first realisation has not is an error of the row.
+check.raises(function()
+    run { number = 4, measure = function(_, draw) return draw.row == 3 and { failed = true, more = 1 } or { failed = true } end }
+end, "the field 'more' is not among those of the first realisation")
+
+-- ------------------------------------------------------------------ kills
+
+local script = folder .. "/script.lua"
+local text = [[
+local talus = require "talus"
+local set = talus.realisations { number = 150, seed = 9, workers = tonumber(arg[2]), file = arg[1], latin = true,
+    build = function(draw)
+        local model = talus.model { seed = draw.seed "model" }
+        model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 1000 })
+        model:generate("jointset", { joint = "J", dip = draw.uniform("dip", 0, 90), dip_direction = 90, spacing = 0.2, number = 4,
+            origin = { 0.5, 0.5, 0.5 } })
+        return model
+    end,
+    measure = function(model, draw) return { blocks = #model:blocks() } end }
+]]
+local file = assert(io.open(script, "w"))
+file:write(text)
+file:close()
+
+local function shell(format, ...)
+    return os.execute(format:format(...))
+end
+
+local whole = folder .. "/whole.csv"
+os.remove(whole)
+check.holds(shell("'%s' --quiet '%s' '%s' 1", program, script, whole))
+
+-- Killed at any moment it goes on, to the same bytes: 100 kills in all, one in ten of them in a short test.
+do
+    local path, kills = folder .. "/killed.csv", check.cases(100)
+    for kill = 1, kills do
+        os.remove(path)
+        local shares = 1 + kill % 3
+        for _ = 1, shares do
+            -- the clock that kills has steps that share nothing with that of rows
+            shell("'%s' --quiet '%s' '%s' %d & p=$!; sleep 0.0%02d; kill -9 $p 2>/dev/null; wait $p 2>/dev/null", program, script,
+                path, 1 + kill % 3, 11 + (37 * kill) % 79)
+        end
+        -- an end in the middle of a line
+        if kill % 5 == 0 and exists(path) then
+            local cut = read(path)
+            local torn = assert(io.open(path, "wb"))
+            torn:write(cut:sub(1, math.max(#cut - 1 - kill % 40, 0)))
+            torn:close()
+        end
+        check.holds(shell("'%s' --quiet '%s' '%s' 2", program, script, path))
+        check.equal(read(path), read(whole))
+    end
+end
+
+-- ------------------------------------------------------------------ shards
+
+do
+    local path = folder .. "/shards.csv"
+    os.remove(path)
+    for _, name in ipairs { "1-of-3", "2-of-3", "3-of-3", "1-of-2", "2-of-2" } do
+        os.remove(path .. ".shard-" .. name)
+    end
+    local function shard(which)
+        return shell("'%s' run --quiet --shard %s '%s' '%s' 1 2>'%s/said'", program, which, script, path, folder)
+    end
+    local function merge()
+        return shell("'%s' merge '%s' 2>'%s/said'", program, path, folder), read(folder .. "/said")
+    end
+    local good, said = merge()
+    check.holds(not good and said:find("there is no '.*shards.csv.shard%-i%-of%-n'"))
+    check.holds(shard "1/3" and shard "3/3")
+    good, said = merge()
+    check.holds(not good and said:find("of 150 rows there are not: 2, 5, 8, 11"))
+    -- shards of other numbers fill the gaps
+    check.holds(shard "2/2" and shell("OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=3 '%s' run --quiet --shard auto '%s' '%s' 2",
+        program, script, path))
+    good, said = merge()
+    check.holds(good and said:find "150 rows of 4 files")
+    check.equal(read(path), read(whole))
+    -- another seed is refused
+    local other = assert(io.open(path .. ".shard-2-of-2", "rb")):read "a"
+    local changed = assert(io.open(path .. ".shard-2-of-2", "wb"))
+    changed:write((other:gsub("seed 9", "seed 8")))
+    changed:close()
+    good, said = merge()
+    check.holds(not good and said:find("they are of two sets", 1, true))
+    -- what batch systems tell
+    for _, case in ipairs {
+        { "SLURM_ARRAY_TASK_ID=7 SLURM_ARRAY_TASK_COUNT=3 SLURM_ARRAY_TASK_MIN=5", "3-of-3" },
+        { "SLURM_ARRAY_TASK_ID=9 SLURM_ARRAY_TASK_COUNT=3 SLURM_ARRAY_TASK_MIN=5 SLURM_ARRAY_TASK_STEP=2", "3-of-3" },
+        { "SLURM_PROCID=0 SLURM_NTASKS=2", "1-of-2" }, { "PMI_RANK=1 PMI_SIZE=2", "2-of-2" } } do
+        os.remove(path .. ".shard-" .. case[2])
+        check.holds(shell("%s '%s' run --quiet --shard auto '%s' '%s' 1", case[1], program, script, path))
+        check.holds(exists(path .. ".shard-" .. case[2]))
+    end
+    for _, case in ipairs { { "", "auto" }, { "SLURM_PROCID=2 SLURM_NTASKS=2", "auto" }, { "", "0/3" }, { "", "4/3" }, { "", "x" },
+        { "", "1/2/3" } } do
+        check.holds(not shell("%s '%s' run --quiet --shard %s '%s' '%s' 1 2>'%s/said'", case[1], program, case[2], script, path,
+            folder))
+        check.holds(read(folder .. "/said"):find "%-%-shard")
+    end
+end
+
+-- ------------------------------------------------------------------ draws
+
+local function with(f)
+    local caught
+    run { number = 1, build = function(draw)
+        caught = draw
+        return empty
+    end, measure = function() return { made = 1 } end }
+    local set = run { number = 1, build = function(draw)
+        caught = draw
+        return empty
+    end, measure = function() return { made = 1 } end }
+    set:model(1) -- in this process
+    return f(caught)
+end
+
+with(function(draw)
+    check.equal(draw.normal("a", 1, 2), draw.normal("a", 1, 2))
+    check.equal(draw.normal("zero", 3, 0), 3.0)
+    local x = draw.normal("cut", 35, 30, { min = 34, max = 36 })
+    check.holds(x >= 34 and x <= 36)
+    check.holds(draw.lognormal("l", 5, 1, { min = 5 }) >= 5)
+    check.holds(draw.triangular("t", 1, 2, 5) <= 5 and draw.power_law("p", 2.5, 1, 20) >= 1)
+    check.equal(draw.choice("c", { "only" }), "only")
+    check.equal(draw.choice("w", { "a", "b" }, { 0, 1 }), "b")
+    local c, phi = draw.correlated({ "c2", "phi" }, { { 2e4, 5e3, min = 0 }, { 35, 3 } }, -1)
+    check.near((c - 2e4) / 5e3, -(phi - 35) / 3, 1e-3)
+    for _, case in ipairs {
+        { function() draw.normal("a", 1, 3) end, "draw.normal('a'): 'a' is drawn as normal(1, 2, -inf, inf) already" },
+        { function() draw.uniform("a", 1, 3) end, "'a' is drawn as normal" },
+        { function() draw.normal("b", 1, -1) end, "sd = -1 must be >= 0" },
+        { function() draw.normal("b", 0 / 0, 1) end, "the mean must be a number" },
+        { function() draw.normal("b", 0, 1, { min = 2, max = 1 }) end, "min = 2 is above max = 1" },
+        { function() draw.normal("b", 0, 1, { min = 8 }) end, "fewer than 1 in 1000 draws of mean 0 and sd 1 are in [8, inf]" },
+        { function() draw.normal("b", 0, 1, { mim = 8 }) end, "unknown parameter 'mim'; did you mean 'min'?" },
+        { function() draw.normal(3, 1) end, "the first argument is the name of the draw" },
+        { function() draw.lognormal("b", -1, 1) end, "the mean = -1 must be > 0" },
+        { function() draw.uniform("b", 2, 1) end, "min = 2 is above max = 1" },
+        { function() draw.triangular("b", 1, 6, 5) end, "are not in this order" },
+        { function() draw.power_law("b", 2, 0, 5) end, "min = 0 must be > 0" },
+        { function() draw.fisher("b", 95, 5, 20) end, "dip = 95 is outside [0, 90]" },
+        { function() draw.fisher("b", 5, 5, 0) end, "the concentration = 0 must be > 0" },
+        { function() draw.choice("b", {}) end, "the list is empty" },
+        { function() draw.choice("b", { 1, 2 }, { 1 }) end, "weight 2 must be a number >= 0, not nil" },
+        { function() draw.correlated({ "e", "f" }, { { 0, 1 }, { 0, 1 } }, 2) end, "must be in [-1, 1]" },
+        { function() draw.correlated({ "e", "f", "g" }, { { 0, 1 }, { 0, 1 }, { 0, 1 } },
+            { { 1, 0.9, -0.9 }, { 0.9, 1, 0.9 }, { -0.9, 0.9, 1 } }) end, "the correlation matrix is none" },
+        { function() draw.correlated({ "e" }, { { 0, 1 } }, 1) end, "give two or more" },
+    } do
+        check.raises(case[1], case[2])
+    end
+end)
+
+-- Correlations and strata of a hypercube, over many rows.
+do
+    local set = run { number = 400, latin = true, seed = 2, build = function(draw)
+        draw.correlated({ "c", "phi", "t" }, { { 2e4, 5e3, distribution = "lognormal" }, { 35, 3 }, { 1, 0.1 } },
+            { { 1, -0.5, 0.3 }, { -0.5, 1, 0 }, { 0.3, 0, 1 } })
+        draw.uniform("u", 0, 400)
+        return empty
+    end, measure = function() return { made = true } end }
+    local by = {}
+    for _, item in ipairs(set:sensitivity "c") do
+        by[item.name] = item.rank_correlation
+    end
+    check.near(by.phi, -0.48, 0.12) -- three standard errors; the rank correlation is 6 / pi asin(r / 2)
+    check.near(by.t, 0.29, 0.14)
+    check.near(by.u, 0, 0.15)
+    local seen = {}
+    for _, row in ipairs(set:rows()) do
+        seen[math.floor(row.u)] = true
+    end
+    check.equal(#seen + (seen[0] and 1 or 0), 400)
+end
+
+-- ------------------------------------------------------------------ statistics
+
+do
+    local values = { 1, 2, 2, 10 }
+    local set = run { number = 4, build = function() return empty end, measure = function(_, draw)
+        return { v = values[draw.row], some = draw.row < 3 and draw.row or nil, yes = true, n = draw.row - 1 }
+    end }
+    check.near(set:mean "v", 3.75, 1e-15)
+    check.near(set:sd "v", math.sqrt(52.75 / 3), 1e-12)
+    check.equal(set:quantile("v", 0), 1)
+    check.equal(set:quantile("v", 0.5), 2)
+    check.near(set:quantile("v", 0.9), 7.6, 1e-12)
+    check.equal((set:probability "yes"), 1)
+    check.equal((set:probability "n"), 0.75)
+    local histogram = set:histogram("v", 3)
+    check.near(histogram.edges, { 1, 4, 7, 10 }, 0)
+    check.near(histogram.counts, { 3, 0, 1 }, 0)
+    for _, case in ipairs {
+        { function() set:mean "w" end, "mean: no realisation has a field 'w'" },
+        { function() set:mean() end, "mean: name a field" },
+        { function() set:quantile("v", 2) end, "quantile: the share must be in [0, 1], not the number 2" },
+        { function() set:histogram("v", 0) end, "histogram: the number of intervals must be in [1, 10000]" },
+        { function() set:probability "some" end, "probability: realisation 3 has no 'some' that is true, false or a number" },
+    } do
+        check.raises(case[1], case[2])
+    end
+end
+
+-- ------------------------------------------------------------------ bad input
+
+for _, case in ipairs {
+    { {}, "'number' is missing" },
+    { { number = 0 }, "number = 0 is outside [1, 1000000000.0]" },
+    { { number = 1.5 }, "number = 1.5 must be a whole number" },
+    { { number = 3, workers = 300 }, "workers = 300 is outside [1, 256]" },
+    { { number = 3, sed = 1 }, "unknown parameter 'sed'; did you mean 'seed'?" },
+    { { number = 3, build = 3 }, "build must be a function, not the number 3" },
+    { { number = 3, build = function() end }, "none of the first 3 can be made; the first: build gave nil, not a model" },
+    { { number = 3, measure = function() return 3 end }, "measure gave the number 3, not a table of fields" },
+    { { number = 3, measure = function() return { row = 3 } end }, "measure gave a field 'row'" },
+    { { number = 3, measure = function() return { x = 3 } end }, "'x' is a draw and a field" },
+    { { number = 3, measure = function() return { y = {} } end }, "field 'y' must be a number, true, false or text, not a table" },
+    { { number = 3, build = function() os.exit(4) end }, "the worker died: it ended with status 4" },
+    { { number = 3, stop_when = { field = "fail", half_width = 0.1 } }, "there is no field 'fail' (there are: double, failed)" },
+    { { number = 3, stop_when = { field = "failed" } }, "stop_when: 'half_width' is missing" },
+    { { number = 3, file = "/dev/null" }, "it is no regular file" },
+    { { number = 61, seed = 4, file = folder .. "/rows_1.csv" }, "is of number = 60, seed = 4, latin = false, not of 61, 4, false" },
+    { { number = 3, file = script }, "is no file of realisations: give another name" },
+} do
+    check.raises(function()
+        run(case[1])
+    end, case[2])
+end
+-- A file that is damaged is not gone on with.
+do
+    local path = folder .. "/damaged.csv"
+    local file = assert(io.open(path, "wb"))
+    file:write((read(folder .. "/rows_1.csv"):gsub("\n7,", "\n8,", 1)))
+    file:close()
+    check.raises(function()
+        run { number = 60, seed = 4, file = path }
+    end, "line 9 is not the whole row 7: the file is damaged")
+end
+-- Beside threads no copy is made; another process is kept off the file.
+do
+    local several = talus.model { threads = 2 }
+    check.raises(function() run { number = 3 } end, "realisations: 1 other threads run")
+    check.equal(several.cycles, 0)
+    several = nil
+    check.equal(#run { number = 3 }, 3)
+    local path = folder .. "/locked.csv"
+    os.remove(path)
+    run { number = 3, file = path, on_row = function(rows)
+        if rows == 1 then
+            check.holds(not shell("'%s' --quiet '%s' '%s' 1 2>'%s/said'", program, script, path, folder))
+            check.holds(read(folder .. "/said"):find "another process writes")
+        end
+    end }
+end
