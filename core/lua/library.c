@@ -337,20 +337,21 @@ static const tl_lua_key back_analysis_result[] = {
     {"value, low, high", "",
      "of the unknown; the ends of the interval that is left or, of a pair, the values for its two ends"},
     {"trials", "", "list of {NAME = value, FIELD = measured}"},
+    {NULL, NULL, NULL},
+};
 
-    static const tl_lua_key pattern_keys[] = {
-        {"on", "what model:boundary{...} gave, required", "the faces that are bolted"},
-        {"spacing", "{across, along}, required", "m, both above 0: of the grid in the plane of each face"},
-        {"length", "number, required", "of the bolts, m, from 1e-3 to 1e4"},
-        {"direction", "\"normal\" or {x, y, z}, default \"normal\"",
-         "into the rock; faces that a bolt would not enter get none"},
-        {"along", "{x, y, z}, default {0, 1, 0}",
-         "direction of the rows, as it lies in each face: the axis of a tunnel"},
-        {"origin", "{x, y, z}", "a point of the grid; left out: the centroid of the faces"},
-        {"node_spacing", "number", "`spacing` of the nodes of each bolt, m"},
-        {"...", "", "parameters of the element \"bolt\", for each"},
-        {NULL, NULL, NULL},
-    };
+static const tl_lua_key pattern_keys[] = {
+    {"on", "what model:boundary{...} gave, required", "the faces that are bolted"},
+    {"spacing", "{across, along}, required", "m, both above 0: of the grid in the plane of each face"},
+    {"length", "number, required", "of the bolts, m, from 1e-3 to 1e4"},
+    {"direction", "\"normal\" or {x, y, z}, default \"normal\"",
+     "into the rock; faces that a bolt would not enter get none"},
+    {"along", "{x, y, z}, default {0, 1, 0}", "direction of the rows, as it lies in each face: the axis of a tunnel"},
+    {"origin", "{x, y, z}", "a point of the grid; left out: the centroid of the faces"},
+    {"node_spacing", "number", "`spacing` of the nodes of each bolt, m"},
+    {"...", "", "parameters of the element \"bolt\", for each"},
+    {NULL, NULL, NULL},
+};
 
 static const tl_lua_key bolt_test_keys[] = {
     {"length", "number, required", "of the bolt, m, from 0.01 to 1000"},
