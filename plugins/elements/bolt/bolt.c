@@ -159,9 +159,20 @@ typedef struct chain {
     double off[TL_ELEMENT_NODES]; /* N, unbalance of the steel */
 } chain;
 
-static double within(double x, double limit)
+/* As fmax and fmin, which compilers do not put inline for the sake of NaN. */
+static inline double larger(double a, double b)
 {
-    return fmax(-limit, fmin(limit, x));
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double within(double x, double limit)
+{
+    return larger(-limit, smaller(limit, x));
 }
 
 /* Forces at the present w; `elastic`: as if nothing had a limit but steel that is broken. */
@@ -172,7 +183,7 @@ static void respond(chain *c, bool elastic)
         const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
         c->grout_trial[k] = trial;
         c->grout[k] = elastic ? trial : within(trial, c->worn[k] ? c->residual[k] : c->bond[k]);
-        c->grout_tangent[k] = c->grout[k] == trial ? c->hold[k] : LEFT * fmin(c->hold[k], c->even[k]);
+        c->grout_tangent[k] = c->grout[k] == trial ? c->hold[k] : LEFT * smaller(c->hold[k], c->even[k]);
     }
     for (uint32_t k = 0; k + 1 < n; k++) {
         const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
@@ -181,8 +192,8 @@ static void respond(chain *c, bool elastic)
         c->tension_tangent[k] = c->tension[k] == trial ? c->stiff[k] : LEFT * c->even[k];
     }
     c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
-    c->plate = fmax(0, fmin(c->plate_limit, c->plate_trial));
-    c->plate_tangent = c->plate == c->plate_trial ? c->plate_stiff : LEFT * fmin(c->plate_stiff, c->even[0]);
+    c->plate = larger(0, smaller(c->plate_limit, c->plate_trial));
+    c->plate_tangent = c->plate == c->plate_trial ? c->plate_stiff : LEFT * smaller(c->plate_stiff, c->even[0]);
 }
 
 /* Grout beyond its bond falls to the residual; whether some has. */
@@ -207,11 +218,11 @@ static bool is_balanced(chain *c)
         const double after = k + 1 < c->count ? c->tension[k] : 0;
         c->off[k] = after + before - c->grout[k];
         before = -after;
-        off = fmax(off, fabs(c->off[k]));
-        most = fmax(most, fmax(fabs(after), fabs(c->grout[k])));
-        stiffest = fmax(stiffest, fmax(c->hold[k], k + 1 < c->count ? c->stiff[k] : 0));
-        moved = fmax(moved, fmax(fabs(c->w[k]), fabs(c->rock[k])));
-        moved = fmax(moved, fabs(c->slip[k]));
+        off = larger(off, fabs(c->off[k]));
+        most = larger(most, larger(fabs(after), fabs(c->grout[k])));
+        stiffest = larger(stiffest, larger(c->hold[k], k + 1 < c->count ? c->stiff[k] : 0));
+        moved = larger(moved, larger(fabs(c->w[k]), fabs(c->rock[k])));
+        moved = larger(moved, fabs(c->slip[k]));
     }
     return off <= BALANCED * most + ROUNDED * stiffest * moved;
 }
@@ -320,7 +331,7 @@ static void put_grout(chain *c, uint32_t k, const params *p, const steel *s, dou
 /* Steel of the length h from node k on, whose strain counts over `gauge`. */
 static void put_steel(chain *c, uint32_t k, const params *p, const steel *s, double h, double gauge, bool cut)
 {
-    c->stiff[k] = s->ea / fmax(h, SHORT * p->diameter);
+    c->stiff[k] = s->ea / larger(h, SHORT * p->diameter);
     c->even[k] = s->ea / gauge;
     c->gauge[k] = gauge;
     c->even[k + 1] = c->even[k];
@@ -641,7 +652,7 @@ static void keep_grout(const bolt *t, const tl_element_batch *b, uint32_t e, boo
         b->state[ROCK][i] = c->rock[k];
         b->state[WORN][i] = c->worn[k];
         b->flags[e] |= slips != 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
-        most = fmax(most, fabs(b->state[GROUT_SLIP][i]));
+        most = larger(most, fabs(b->state[GROUT_SLIP][i]));
     }
     b->element_state[SLIP][e] = most;
 }
@@ -659,7 +670,7 @@ static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b
         b->state[TENSION][i] = force;
         b->state[PLASTIC][i] += yields;
         b->flags[e] |= yields != 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
-        most = fmax(most, fabs(force));
+        most = larger(most, fabs(force));
         if (!last && fabs(c->w[k + 1] - c->w[k]) >= p->rupture_strain * c->gauge[k] && b->state[CUT][i] == 0) {
             b->state[CUT][i] = 1; /* it bears nothing from the next step on */
             b->flags[e] |= (uint32_t)TL_ELEMENT_BROKEN;
@@ -678,7 +689,7 @@ static void keep_plate(const bolt *t, const tl_element_batch *b, uint32_t e, boo
         const double way = (c->w[0] - c->rock[0]) - (b->state[STEEL][i] - b->state[ROCK][i]);
         sum->lost += 0.5 * (*plate + c->plate) * (way - (c->plate - *plate) / c->plate_stiff);
         sum->stored += 0.5 * c->plate * c->plate / c->plate_stiff;
-        const double crushed = fmax(0, c->plate_trial - c->plate_limit) / c->plate_stiff;
+        const double crushed = larger(0, c->plate_trial - c->plate_limit) / c->plate_stiff;
         b->element_state[SEAT][e] += crushed;
         b->flags[e] |= crushed > 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
     }
@@ -697,7 +708,7 @@ static void keep_dowels(bolt *t, const params *p, const tl_element_batch *b, uin
         b->flags[e] |= *peak < p->dowel_rupture && x->size >= p->dowel_rupture && p->dowel_stiffness > 0
                            ? (uint32_t)TL_ELEMENT_BROKEN
                            : 0;
-        *peak = fmax(*peak, x->size);
+        *peak = larger(*peak, x->size);
         const double has = dowel_stiffness(p, *peak);
         x->shear = has * x->size;
         const tl_vec3 way = tl_v3_sub(column(b->du, j), column(b->du, i));
@@ -706,7 +717,7 @@ static void keep_dowels(bolt *t, const params *p, const tl_element_batch *b, uin
         sum->stored += 0.5 * x->shear * x->size;
         b->flags[e] |= has < p->dowel_stiffness ? (uint32_t)TL_ELEMENT_YIELDED : 0;
         *dowel = x->shear;
-        most = fmax(most, x->shear);
+        most = larger(most, x->shear);
     }
     b->element_state[SHEAR][e] = most;
 }
@@ -756,14 +767,14 @@ static void put_forces(const bolt *t, const tl_element_batch *b, uint32_t e)
     }
 }
 
-/* Work of the bodies on the element in this step. */
-static double work_on(const tl_element_batch *b, uint32_t e, double sign)
+/* Work of the bodies on the element in this step: the half of one end of the step. */
+static double work_on(const tl_element_batch *b, uint32_t e)
 {
     double sum = 0;
     for (int k = 0; k < 3; k++)
         for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++)
-            sum += 0.5 * b->force[k][i] * b->du[k][i];
-    return sign * sum;
+            sum -= 0.5 * b->force[k][i] * b->du[k][i];
+    return sum;
 }
 
 static tl_status update(const void *self, const tl_element_batch *b, tl_report *report)
@@ -774,9 +785,9 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
     bolt t;
     for (uint32_t e = 0; e < b->count; e++) {
         books sum = {0, 0};
-        const double before = work_on(b, e, -1);
         lay(&t, p, &s, b, e);
         const bool whole = t.c.count == b->start[e + 1] - b->start[e];
+        const double before = whole ? 0 : work_on(b, e);
         if (t.c.count > 0) {
             follow_rock(&t, p, &s, b);
             solve(&t.c);
@@ -787,7 +798,7 @@ static tl_status update(const void *self, const tl_element_batch *b, tl_report *
         }
         put_forces(&t, b, e);
         /* what gone nodes held is heat */
-        b->lost[e] = whole ? sum.lost : before + work_on(b, e, -1) - (sum.stored - b->stored[e]);
+        b->lost[e] = whole ? sum.lost : before + work_on(b, e) - (sum.stored - b->stored[e]);
         b->stored[e] = sum.stored;
     }
     return TL_OK;
@@ -798,7 +809,7 @@ static void stiffness(const void *self, const tl_element_batch *b, double *k, do
     const params *p = self;
     const steel s = steel_of(p);
     (void)c;
-    const double turning = fmin(p->yield, MOST_STRAIN * s.ea) / s.active;
+    const double turning = smaller(p->yield, MOST_STRAIN * s.ea) / s.active;
     for (uint32_t e = 0; e < b->count; e++)
         for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++) {
             const bool first = i == b->start[e], crosses = b->state[CROSSES][i] != 0;
