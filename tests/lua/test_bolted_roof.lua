@@ -1,4 +1,5 @@
 -- The example of a bolted roof: the bolts bear the weight of the keyblock, and let it go where they are too weak.
+package.path = "scripts/?.lua;" .. package.path -- run in the source root
 local check = require "check"
 local bolted = require "examples.bolted_roof"
 

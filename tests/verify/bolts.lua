@@ -249,7 +249,6 @@ figures.case("FS.bolt_active", "A prism on a plane with water and a bolt of cons
     "Hoek and Bray 1977, chapter 7")
 model = prism({ pretension = force, young = 1e8, yield = 1e9, active_length = 100 }, active.friction)
 figures.relative("keyblocks", model:keyblocks { friction = active.friction }[1].safety, active.FS, 1e-3)
-figures.relative("divided strengths", model:factor_of_safety { resolution = 0.002 }.factor, active.FS, 0.005)
 
 figures.case("FS.bolt_passive", "The same with a bolt whose strength is divided by the factor, as that of the plane is: at 1 % "
     .. "below the factor it holds, at 1 % above it the prism slides.", "Hoek and Bray 1977, chapter 7")
