@@ -4,23 +4,22 @@
  *
  *     E A w'' = t,    t = kg (w - r - s),    |t| <= bond strength,    N = E A (w' - plastic strain),    |N| <= yield
  *
- * t is the force of the steel on the rock for each metre and N the tension. Nodes lie in the rock; the steel between
- * two of them is a spring E A / h, and the grout at a node a spring for the length that the node stands for. One Newton
- * solve of a three-band matrix for each bolt and step finds w. Grout that slips and steel that yields keep a small part
- * of their stiffness in the matrix only, so the matrix is never singular. Source: St John & Van Dillen 1983.
+ * t is the force of the steel on the rock for each metre and N the tension. Nodes lie in the rock. The steel between two
+ * of them is a spring E A / h. The grout at a node is a spring for the length that the node stands for. Newton passes
+ * with a three-band matrix find w in each step. Grout that slips and steel that yields keep a small part of their
+ * stiffness in the matrix only, so it is never singular. Source: St John & Van Dillen 1983.
  *
  * The plate is a spring at the first node that presses only. A pretension pulls the mouth against the plate, after the
  * grout has set.
  *
- * Two nodes that follow each other in different bodies are a crossing. With the mean axis a of both sides and the way g
- * from the one to the other, the sides have parted by o = g.a - void and slid by d = g - (g.a) a. Over the active
- * length l (and the void) the steel is straight, so the rock gets longer there by
+ * Two nodes that follow each other in different bodies are a crossing. The mean of the directions of both sides is its
+ * axis a, and g the way between the nodes. The sides have parted by o = g.a - void and slid by d = g - (g.a) a. Over the
+ * active length l (and the void) the steel is straight, so the rock gets longer there by
  *
  *     e = |(l + o) a + d| - l
  *
- * and turns the tension. The dowel bears q = k |d| against d: k is ks until ks |d| is the strength, and
- * strength / (largest |d|) from then on, as the grout is crushed; beyond the rupture displacement it is 0. Source: Lorig
- * 1985 for springs at the crossing.
+ * and turns the tension. The dowel bears q = k |d| against d. k is ks until ks |d| is the strength, and then
+ * strength / (largest |d|), as the grout is crushed. Beyond the rupture displacement k is 0. Source: Lorig 1985.
  *
  * Forces on nodes are the gradient of the energy in their places, with the axes. So forces and moments add up to zero,
  * and turning with the rock costs nothing. Within a body the line of the bolt is that of its nodes. */
@@ -632,7 +631,7 @@ static void follow_rock(bolt *t, const params *p, const steel *s, const tl_eleme
 
 /* ---------------------------------------------------------------- acting ----------------- */
 
-/* Books what grout, steel, plate and dowels hold and have turned to heat, by the mean of the forces before and after. */
+/* What grout, steel, plate and dowels hold and have turned to heat, by the mean of the forces before and after. */
 typedef struct books {
     double stored, lost;
 } books;
@@ -679,7 +678,7 @@ static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b
     b->element_state[AXIAL][e] = most;
 }
 
-/* The mouth that moves by x against the rock presses the plate by (P' - P) / k; the rest of x crushes it or is a gap. */
+/* The mouth that moves by x presses the plate by (P' - P) / k; the rest of x crushes it or is a gap. */
 static void keep_plate(const bolt *t, const tl_element_batch *b, uint32_t e, books *sum)
 {
     const chain *c = &t->c;
