@@ -4,8 +4,8 @@
  *
  *     E A w'' = t,    t = kg (w - r - s),    |t| <= bond strength,    N = E A (w' - plastic strain),    |N| <= yield
  *
- * t is the force of the steel on the rock for each metre and N the tension. Nodes lie in the rock. The steel between two
- * of them is a spring E A / h. The grout at a node is a spring for the length that the node stands for. Newton passes
+ * t is the force of the steel on the rock for each metre and N the tension. Nodes lie in the rock. The steel between
+ * two of them is a spring E A / h. The grout at a node is a spring for the length that the node stands for. Newton passes
  * with a three-band matrix find w in each step. Grout that slips and steel that yields keep a small part of their
  * stiffness in the matrix only, so it is never singular. Source: St John & Van Dillen 1983.
  *
@@ -13,8 +13,8 @@
  * grout has set.
  *
  * Two nodes that follow each other in different bodies are a crossing. The mean of the directions of both sides is its
- * axis a, and g the way between the nodes. The sides have parted by o = g.a - void and slid by d = g - (g.a) a. Over the
- * active length l (and the void) the steel is straight, so the rock gets longer there by
+ * axis a, and g the way between the nodes. The sides have parted by o = g.a - void and slid by d = g - (g.a) a. Over
+ * the active length l (and the void) the steel is straight, so the rock gets longer there by
  *
  *     e = |(l + o) a + d| - l
  *
