@@ -6,9 +6,8 @@
  *
  * t is the force of the steel on the rock for each metre and N the tension. Nodes lie in the rock. The steel between
  * two of them is a spring E A / h. The grout at a node is a spring for the length that the node stands for.
- * Newton passes
- * with a three-band matrix find w in each step. Grout that slips and steel that yields keep a small part of their
- * stiffness in the matrix only, so it is never singular. Source: St John & Van Dillen 1983.
+ * Newton passes with a three-band matrix find w in each step. Grout that slips and steel that yields keep a small part
+ * of their stiffness in the matrix only, so it is never singular. Source: St John & Van Dillen 1983.
  *
  * The plate is a spring at the first node that presses only. A pretension pulls the mouth against the plate, after the
  * grout has set.
