@@ -135,12 +135,12 @@ static const tl_lua_key keys[] = {
     {"dip", "number", "of a table that dips, degrees: with dip_direction and origin in the place of level"},
     {"dip_direction", "number", "likewise, degrees"},
     {"origin", "{x, y, z}", "a point of it, m"},
-    {"unit_weight", "number", "of the water under a table, N/m3 (default 9810)"},
-    {"factor", "number", "of the pressure under a table, as drains leave it (default 1)"},
+    {"unit_weight", "number", "of the water under a table, N/m3; 9810 when left out"},
+    {"factor", "number", "of the pressure under a table, as drains leave it; 1 when left out"},
     {"pressure", "number or function(x, y, z)",
      "uniform pressure, Pa; or of a field, asked once for each node and then kept"},
-    {"joints", "name or list of names", "joints that have this water, \"A\", \"A:3\" or \"*\" (default all)"},
-    {"drain_gap", "number", "mean opening beyond which a joint runs dry, m (default 0.05)"},
+    {"joints", "name or list of names", "joints that have this water, \"A\", \"A:3\" or \"*\"; all when left out"},
+    {"drain_gap", "number", "mean opening beyond which a joint runs dry, m; 0.05 when left out"},
     {NULL, NULL, NULL},
 };
 
