@@ -148,7 +148,8 @@ const tl_lua_topic tl_lua_water_topics[] = {
     {.name = "water",
      .usage =
          "selection = model:water(\"table\", {level = 20})  or  model:water(\"uniform\", {pressure = 65e3, joints = "
-         "{\"A\"}})  or  model:water(\"field\", {pressure = function(x, y, z) ... end})  or  model:water(\"none\")",
+         "{\"J1\"}})  or  model:water(\"field\", {pressure = function(x, y, z) return 9810 * z end})  or  "
+         "model:water(\"none\")",
      .doc =
          "Lets water press on the walls of joints: on the polygons in which a face of one block faces one of "
          "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "
