@@ -113,7 +113,6 @@ tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
     const tl_status status = ask_all(m, failure);
     if (e->any_steady && !e->resting && status == TL_OK)
         tl_steady_take(m);
-    e->resting = false;
     return status;
 }
 
@@ -127,6 +126,8 @@ tl_status tl_elements_sum(tl_model *m, tl_vec3 *force)
 {
     struct tl_elements *e = m->elements;
     tl_failure failure = {.error = {.status = TL_OK}};
+    const bool rested = e->resting;
+    e->resting = false;
     kept had = {.table = e->table, .nodes = e->nodes};
     const bool enough = tl_table_copy(&had.table.table, &had.table, &e->table.table) &&
                         tl_table_copy(&had.nodes.table, &had.nodes, &e->nodes.table);
@@ -134,6 +135,7 @@ tl_status tl_elements_sum(tl_model *m, tl_vec3 *force)
     pthread_mutex_init(&failure.lock, NULL);
     if (status == TL_OK)
         status = ask_all(m, &failure);
+    e->resting = rested;
     pthread_mutex_destroy(&failure.lock);
     for (size_t row = 0; status == TL_OK && row < e->nodes.table.rows; row++)
         if (e->nodes.body[row] != TL_NO_ROW)
@@ -236,7 +238,8 @@ tl_energies tl_elements_energies(tl_model *m)
 {
     const tl_element_table *t = &m->elements->table;
     tl_energies sum = {.stored = 0};
-    for (size_t row = 0; row < t->table.rows; row++) {
+    const bool rest = m->elements->resting && m->elements->all_steady; /* all of these are 0 */
+    for (size_t row = 0; row < t->table.rows && !rest; row++) {
         sum.stored += t->stored[row];
         sum.heat += t->lost[row];
         sum.given += t->given[row];
