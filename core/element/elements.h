@@ -104,7 +104,7 @@ struct tl_elements {
     size_t use_capacity, use_start_capacity, steady_start_capacity;
     bool any_steady;   /* some chunks are, */
     bool all_steady;   /* or all */
-    bool resting;      /* in this step steady elements are not asked for their forces */
+    bool resting;      /* steady elements were not asked for forces in the last step */
     uint64_t asked;    /* counts steps in which some were */
     uint64_t looked;   /* that count, when it was looked at how far blocks have slid */
     uint32_t *carried; /* rows of nodes in zones, ascending */
