@@ -47,6 +47,8 @@ typedef struct tl_boundary_action {
     bool loads;
     tl_sym3 stress, gradient;
     tl_vec3 at, traction;
+    double level; /* m: loads act on what lies below this height z; NaN: on all. A triangle that it crosses keeps the
+                     forces it has then */
     bool quiet; /* deformable blocks only: lets waves out, and bears what it bore until now. Rigid ones take elements of
                  * the kind "quiet" */
     const tl_drive
