@@ -345,7 +345,7 @@ static const tl_lua_key pattern_keys[] = {
     {"spacing", "list of 2 numbers, required",
      "of the grid in the plane of each face, across and along, m, both above 0"},
     {"length", "number, required", "of the bolts, m, from 1e-3 to 1e4"},
-    {"direction", "text or vector, default \"normal\"", "into the rock; faces that a bolt would not enter get none"},
+    {"direction", "vector or text, default \"normal\"", "into the rock; faces that a bolt would not enter get none"},
     {"along", "vector, default {0, 1, 0}", "direction of the rows, as it lies in each face: the axis of a tunnel"},
     {"origin", "vector", "a point of the grid; left out: the centroid of the faces"},
     {"node_spacing", "number", "`spacing` of the nodes of each bolt, m"},

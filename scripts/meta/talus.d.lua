@@ -778,8 +778,8 @@ function Gridpoints:reaction() end
 ---@field stored number J: energy that it holds
 ---@field lost number J: energy turned to heat in the last step
 ---@field given number J: energy brought in from outside in the last step
----@field nodes any each a table: rest, where it was when installed,: position now, m; force on its block, N; weight, m or m2 that it stands for; block, nil on the ground; and the states of a node by their names
----@field params any by their names:
+---@field nodes table[] list of its nodes, each a table: rest, where it was when installed, position now, m; force on its block, N; weight, m or m2 that it stands for; block, nil on the ground; and the states of a node by their names
+---@field params table<string, number|string|boolean|talus.Vector> its parameters, by their names
 local Element = {}
 
 --- A selection of elements: a snapshot, in ascending order of id.
@@ -1215,35 +1215,41 @@ function Model:groups() end
 ---@field parameters string[] list of the names of its parameters
 ---@field states string[] list of the names of its states
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.laws() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.dampings() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.generators() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.screens() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.solids() end
+
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---@return talus.Kind[]
+function talus.elements() end
 
 ---@class (exact) talus.ParametersResult
 ---@field gravity talus.Vector and all others that talus.model{...} takes
@@ -1537,15 +1543,15 @@ function Model:write_histories(path) end
 function talus.back_analysis(options) end
 
 ---@class (exact) talus.BoltPatternOptions
----@field on any the faces that are bolted
----@field spacing any m, both above 0: of the grid in the plane of each face
+---@field on talus.BoundaryResult the faces that are bolted
+---@field spacing number[] of the grid in the plane of each face, across and along, m, both above 0
 ---@field length number of the bolts, m, from 1e-3 to 1e4
 ---@field direction? any into the rock; faces that a bolt would not enter get none
 ---@field along? talus.Vector default {0, 1, 0}: direction of the rows, as it lies in each face: the axis of a tunnel
 ---@field origin? talus.Vector a point of the grid; left out: the centroid of the faces
 ---@field node_spacing? number `spacing` of the nodes of each bolt, m
 
---- Lays a grid of bolts over outer faces and gives a list for model:element("bolt", list).
+--- Lays a grid of bolts over outer faces and gives a list for model:element("bolt", list). Other entries are parameters of the element "bolt", for each.
 ---
 ---     bolts = talus.bolt_pattern{on = model:boundary{facing = {0, 0, -1}}, spacing = {1.5, 1.5}, length = 3}
 ---@param options talus.BoltPatternOptions
@@ -1569,7 +1575,7 @@ function talus.bolt_pattern(options) end
 ---@field yielded boolean booleans whether the bolt has at the end
 ---@field broken any booleans whether the bolt has at the end
 
---- Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists.
+--- Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists. Other entries are parameters of the element "bolt".
 ---
 ---     curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}
 ---@param options talus.BoltTestOptions
@@ -1974,15 +1980,15 @@ function Model:elements(options) end
 ---@field dip? number of a table that dips, degrees: with dip_direction and origin in the place of level
 ---@field dip_direction? number likewise, degrees
 ---@field origin? talus.Vector a point of it, m
----@field unit_weight? any N/m3 (default 9810):
----@field factor? any as drains leave it (default 1):
+---@field unit_weight? number of the water under a table, N/m3; 9810 when left out
+---@field factor? number of the pressure under a table, as drains leave it; 1 when left out
 ---@field pressure? number|fun(x: number, y: number, z: number): number uniform pressure, Pa; or of a field, asked once for each node and then kept
----@field joints? any
----@field drain_gap? any m (default 0.05):
+---@field joints? string|string[] joints that have this water, "A", "A:3" or "*"; all when left out
+---@field drain_gap? number mean opening beyond which a joint runs dry, m; 0.05 when left out
 
 --- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
 ---
----     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"A"}})  or  model:water("field", {pressure = function(x, y, z) ... end})  or  model:water("none")
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")
 ---@param name string
 ---@param options? talus.WaterOptions
 ---@return talus.Elements
