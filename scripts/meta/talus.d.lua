@@ -1147,35 +1147,41 @@ function Model:groups() end
 ---@field parameters string[] list of the names of its parameters
 ---@field states string[] list of the names of its states
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.laws() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.dampings() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.generators() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.screens() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.solids() end
+
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---@return talus.Kind[]
+function talus.elements() end
 
 ---@class (exact) talus.ParametersResult
 ---@field gravity talus.Vector and all others that talus.model{...} takes
@@ -1861,15 +1867,15 @@ function Model:elements(options) end
 ---@field dip? number of a table that dips, degrees: with dip_direction and origin in the place of level
 ---@field dip_direction? number likewise, degrees
 ---@field origin? talus.Vector a point of it, m
----@field unit_weight? any N/m3 (default 9810):
----@field factor? any as drains leave it (default 1):
+---@field unit_weight? number of the water under a table, N/m3; 9810 when left out
+---@field factor? number of the pressure under a table, as drains leave it; 1 when left out
 ---@field pressure? number|fun(x: number, y: number, z: number): number uniform pressure, Pa; or of a field, asked once for each node and then kept
----@field joints? any
----@field drain_gap? any m (default 0.05):
+---@field joints? string|string[] joints that have this water, "A", "A:3" or "*"; all when left out
+---@field drain_gap? number mean opening beyond which a joint runs dry, m; 0.05 when left out
 
 --- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
 ---
----     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"A"}})  or  model:water("field", {pressure = function(x, y, z) ... end})  or  model:water("none")
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")
 ---@param name string
 ---@param options? talus.WaterOptions
 ---@return talus.Elements
