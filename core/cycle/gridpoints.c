@@ -30,8 +30,8 @@
 
 /* ---------------------------------------------------------------- step ------------------- */
 
-/* The stiffness that asks for as short a step as a stiffness k and a damping c together. With w^2 = k/m and b = c/(2 m)
- * the longest stable step is 2/w (sqrt(1 + l^2) - l) for l = b/w, which is 2/s for s = b + sqrt(w^2 + b^2). */
+/* The stiffness that asks for as short a step as a stiffness k and a damping c together. Let w^2 = k/m and b = c/(2 m).
+ * The longest stable step is 2/w (sqrt(1 + l^2) - l) with l = b/w. It is 2/s with s = b + sqrt(w^2 + b^2). */
 static double damped(double k, double c, double mass)
 {
     if (!(c > 0))
