@@ -100,6 +100,10 @@ static tl_safety read_options(lua_State *L, const char *what, caller *c)
     *c = (caller){.L = L, .owner = lua_touserdata(L, TL_LUA_AT_MODEL)};
     options.on_trial = type == LUA_TFUNCTION ? on_trial : NULL;
     options.user = c;
+    if (options.workers > 1) { /* models that nothing holds any more may have threads */
+        lua_gc(L, LUA_GCCOLLECT);
+        lua_gc(L, LUA_GCCOLLECT);
+    }
     return options;
 }
 

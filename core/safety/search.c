@@ -1,11 +1,12 @@
 /* search.c - the factor of safety of a model: the largest factor by which its strengths may be divided.
  *
  * Factors are those of a grid, from (1 + resolution)^k with the last one `to`. So trials do not depend on the order in
- * which they are made. The search begins about the least factor of the keyblocks, or about 1, with a bracket of a few
- * per cent. It is widened twice as far each time until one end holds and the other fails, and then halved. */
+ * which they are made, nor on how many processes make them. The search begins about the least factor of the keyblocks,
+ * or about 1, with a bracket of a few per cent (safety/bracket.c). */
 #include "base/clock.h"
 #include "base/error.h"
 #include "model/scope.h"
+#include "safety/ahead.h"
 #include "safety/trial.h"
 
 #include <math.h>
@@ -22,8 +23,8 @@ typedef struct search {
     tl_safety_result *result;
     double *grid; /* [last + 1] */
     size_t last, listed, capacity, small_capacity;
-    int64_t holds, fails; /* on the grid: the largest that holds, -1; the least that fails, last + 1 */
-    tl_fall fall;         /* at `fails` */
+    tl_bracket bracket; /* on the grid */
+    tl_fall fall;       /* at the least factor that fails */
 } search;
 
 static const char *const mode_names[] = {[TL_SAFETY_HOLDS] = "holds",
@@ -164,11 +165,9 @@ static tl_status try_at(search *s, int64_t at)
     }
     if (status != TL_OK)
         return status;
-    if (trial.holds) {
-        s->holds = at;
+    tl_bracket_take(&s->bracket, at, trial.holds != 0);
+    if (trial.holds)
         return TL_OK;
-    }
-    s->fails = at;
     tl_fall_free(&s->fall);
     s->fall = fall;
     return TL_OK;
@@ -191,8 +190,6 @@ static bool make_grid(search *s)
     for (double f = o->from; f < o->to; f *= 1 + o->resolution)
         s->grid[s->last++] = f;
     s->grid[s->last] = o->to;
-    s->holds = -1;
-    s->fails = (int64_t)s->last + 1;
     return true;
 }
 
@@ -205,22 +202,34 @@ static int64_t place_of(const search *s, double factor)
     return at;
 }
 
+static double factor_at(const void *user, int64_t at)
+{
+    const search *s = user;
+    return s->grid[at];
+}
+
 /* Makes trials until neighbours on the grid hold and fail. */
 static tl_status narrow(search *s)
 {
     const double key = s->result->keyblock_factor;
     const int64_t middle = place_of(s, key > 0 && isfinite(key) ? key : 1);
-    int64_t width = 1 + (int64_t)(BRACKET / s->trials.options.resolution);
+    const int64_t width = 1 + (int64_t)(BRACKET / s->trials.options.resolution);
     const int64_t last = (int64_t)s->last;
-    tl_status status = try_at(s, clamped(s, middle - width));
-    if (status == TL_OK && s->holds >= 0 && s->holds < last)
-        status = try_at(s, clamped(s, middle + width));
-    while (status == TL_OK && s->fails > last && s->holds < last)
-        status = try_at(s, clamped(s, s->holds + (width *= 2)));
-    while (status == TL_OK && s->holds < 0 && s->fails > 0)
-        status = try_at(s, clamped(s, s->fails - (width *= 2)));
-    while (status == TL_OK && s->fails - s->holds > 1 && s->holds >= 0 && s->fails <= last)
-        status = try_at(s, s->holds + (s->fails - s->holds) / 2);
+    tl_status status = TL_OK;
+    s->bracket = (tl_bracket){.last = last,
+                              .holds = -1,
+                              .fails = last + 1,
+                              .first = clamped(s, middle - width),
+                              .second = clamped(s, middle + width),
+                              .width = width};
+    while (status == TL_OK) {
+        status = tl_ahead(&s->trials, &s->bracket, factor_at, s);
+        const int64_t at = tl_bracket_next(&s->bracket);
+        if (at < 0)
+            break;
+        if (status == TL_OK)
+            status = try_at(s, at);
+    }
     return status;
 }
 
@@ -262,10 +271,10 @@ static void finish(search *s, bool never)
 {
     tl_safety_result *r = s->result;
     const int64_t last = (int64_t)s->last;
-    r->lower = !never && s->holds >= 0 ? s->grid[s->holds] : 0;
-    r->upper = never ? s->trials.options.from : s->fails <= last ? s->grid[s->fails] : INFINITY;
+    r->lower = !never && s->bracket.holds >= 0 ? s->grid[s->bracket.holds] : 0;
+    r->upper = never ? s->trials.options.from : s->bracket.fails <= last ? s->grid[s->bracket.fails] : INFINITY;
     r->factor = never ? 0 : isinf(r->upper) ? INFINITY : r->lower > 0 ? sqrt(r->lower * r->upper) : r->upper;
-    if (never || s->fails <= last)
+    if (never || s->bracket.fails <= last)
         take_fall(r, &s->fall);
     r->undecided = (int32_t)s->trials.undecided;
     r->cycles = s->trials.cycles;

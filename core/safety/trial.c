@@ -26,6 +26,7 @@
 #include "model/options.h"
 #include "model/rows.h"
 #include "model/scope.h"
+#include "safety/ahead.h"
 #include "zone/solids.h"
 
 #include <math.h>
@@ -33,6 +34,7 @@
 #include <string.h>
 #include <talus/number.h>
 #include <talus/talus.h>
+#include <talus/workers.h>
 
 /* Tolerance: what strengths are divided by while joints settle: nothing that holds at all slips then. */
 #define RAISED 0.05
@@ -118,6 +120,9 @@ static tl_status check_options(const tl_trials *t)
                               "a finite number >= 0");
     if (status == TL_OK)
         status = check_number(t, "max_cycles", (double)o->max_cycles, o->max_cycles >= 1, "at least 1");
+    if (status == TL_OK)
+        status = check_number(t, "workers", (double)o->workers, o->workers >= 1 && o->workers <= TL_MOST_WORKERS,
+                              "in [1, 256]");
     return status;
 }
 
@@ -382,6 +387,7 @@ static tl_status measure(tl_trials *t, int64_t settled)
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
 {
     tl_safety_trial trial;
+    tl_ahead_clear(t);
     tl_status status = settle(t, t->base, true, &trial, fall);
     if (status == TL_OK && trial.holds)
         status = measure(t, trial.cycles > 2 * t->window ? trial.cycles : 2 * t->window);
@@ -410,6 +416,8 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
         status = choose_laws(t);
     if (status == TL_OK)
         status = check_bodies(t);
+    if (status == TL_OK)
+        status = tl_ahead_check(t);
     atomic_store(&m->interrupted, false);
     if (status == TL_OK)
         status = copy_of(t, m, &t->base);
@@ -426,10 +434,10 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
     return status == TL_OK && trial.holds ? measure(t, trial.cycles) : status;
 }
 
-tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+/* Makes a trial on a copy. */
+static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
     tl_model *copy = NULL;
-    *fall = (tl_fall){.ids = NULL};
     tl_status status = copy_of(t, t->base, &copy);
     if (status == TL_OK)
         status = weaken(t, copy, factor);
@@ -437,17 +445,22 @@ tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_
         status = settle(t, copy, false, trial, fall);
     if (copy)
         tl_model_destroy(copy);
-    if (status != TL_OK) {
-        tl_fall_free(fall);
-        return status;
-    }
     trial->factor = factor;
-    t->undecided += trial->undecided ? 1 : 0;
-    if (!t->options.on_trial)
-        return TL_OK;
-    tl_model_only_read(t->asked, true);
-    status = t->options.on_trial(t->options.user, trial);
-    tl_model_only_read(t->asked, false);
+    return status;
+}
+
+tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.ids = NULL};
+    tl_status status = TL_OK;
+    if (!tl_ahead_take(t, factor, trial, fall))
+        status = make(t, factor, trial, fall);
+    t->undecided += status == TL_OK && trial->undecided ? 1 : 0;
+    if (status == TL_OK && t->options.on_trial) {
+        tl_model_only_read(t->asked, true);
+        status = t->options.on_trial(t->options.user, trial);
+        tl_model_only_read(t->asked, false);
+    }
     if (status != TL_OK)
         tl_fall_free(fall);
     return status;
@@ -457,7 +470,10 @@ void tl_trials_end(tl_trials *t)
 {
     if (t->base)
         tl_model_destroy(t->base);
+    tl_ahead_clear(t);
+    free(t->ahead);
     free(t->which);
+    t->ahead = NULL;
     t->base = NULL;
     t->which = NULL;
 }

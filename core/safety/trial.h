@@ -6,6 +6,21 @@
 
 #include <talus/safety.h>
 
+/* What fails in a copy. */
+typedef struct tl_fall {
+    tl_id *ids;
+    size_t count;
+    double volume; /* m3 */
+    tl_vec3 way;   /* unit, or zero */
+    tl_safety_mode mode;
+} tl_fall;
+
+/* A trial that was made before its turn (safety/ahead.h). */
+typedef struct tl_trial_ahead {
+    tl_safety_trial trial;
+    tl_fall fall;
+} tl_trial_ahead;
+
 /* A search for factors of a model: what its trials begin with. */
 typedef struct tl_trials {
     const char *what; /* begins sentences */
@@ -18,16 +33,9 @@ typedef struct tl_trials {
     int64_t cycles; /* made so far, of all copies */
     double began;   /* s, of the clock */
     size_t undecided;
+    tl_trial_ahead *ahead; /* [ahead_count], begun with `base` as it is */
+    size_t ahead_count, ahead_capacity;
 } tl_trials;
-
-/* What fails in a copy. */
-typedef struct tl_fall {
-    tl_id *ids;
-    size_t count;
-    double volume; /* m3 */
-    tl_vec3 way;   /* unit, or zero */
-    tl_safety_mode mode;
-} tl_fall;
 
 void tl_fall_free(tl_fall *fall);
 
