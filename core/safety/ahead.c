@@ -17,7 +17,7 @@
 /* Cost only: seconds after which an interrupt is looked for. */
 #define PATIENCE 0.1
 
-/* What a process sends: this, and the ids of the blocks that fail. */
+/* What a process sends: this, the ids of the blocks that fail, and of those that are small and did. */
 typedef struct report {
     int32_t made; /* 0: an error */
     tl_safety_trial trial;
@@ -39,15 +39,18 @@ static void do_trial(void *user, uint64_t job, const void **data, size_t *size)
     of->trials->options.on_trial = NULL;
     r.made = tl_trials_try(of->trials, of->factor[job], &r.trial, &r.fall) == TL_OK;
     const size_t ids = r.made ? r.fall.count * sizeof *r.fall.ids : 0;
+    const size_t small = r.made ? r.fall.small_count * sizeof *r.fall.small : 0;
     free(of->bytes);
-    of->bytes = malloc(sizeof r + ids);
+    of->bytes = malloc(sizeof r + ids + small);
     if (!of->bytes)
         _Exit(EXIT_FAILURE);
     memcpy(of->bytes, &r, sizeof r);
     if (ids > 0)
         memcpy(of->bytes + sizeof r, r.fall.ids, ids);
+    if (small > 0)
+        memcpy(of->bytes + sizeof r + ids, r.fall.small, small);
     *data = of->bytes;
-    *size = sizeof r + ids;
+    *size = sizeof r + ids + small;
     if (r.made)
         tl_fall_free(&r.fall);
 }
@@ -62,6 +65,15 @@ static tl_trial_ahead *found(const tl_trials *t, double factor)
     return NULL;
 }
 
+/* Copies a list of ids out of an answer; false without memory. */
+static bool copy_ids(tl_id **ids, const char *from, size_t count)
+{
+    *ids = count > 0 ? malloc(count * sizeof **ids) : NULL;
+    if (count > 0 && *ids)
+        memcpy(*ids, from, count * sizeof **ids);
+    return count == 0 || *ids;
+}
+
 /* Keeps an answer; one of a process that failed is left out, and its trial is made here when its turn comes. */
 static tl_status keep(tl_trials *t, const tl_worker_answer *answer)
 {
@@ -69,19 +81,19 @@ static tl_status keep(tl_trials *t, const tl_worker_answer *answer)
     if (!answer->data || answer->size < sizeof r)
         return TL_OK;
     memcpy(&r, answer->data, sizeof r);
-    const size_t ids = answer->size - sizeof r;
-    if (!r.made || ids != r.fall.count * sizeof *r.fall.ids)
+    if (!r.made)
         return TL_OK;
-    r.fall.ids = ids > 0 ? malloc(ids) : NULL;
-    if (ids > 0 && !r.fall.ids)
-        return tl_fail_memory(&t->asked->error);
-    if (ids > 0)
-        memcpy(r.fall.ids, (const char *)answer->data + sizeof r, ids);
-    if (!tl_grow(&t->ahead, &t->ahead_capacity, t->ahead_count + 1, sizeof *t->ahead)) {
-        tl_fall_free(&r.fall);
+    const char *ids = (const char *)answer->data + sizeof r;
+    tl_fall fall = r.fall;
+    fall.ids = fall.small = NULL;
+    fall.small_capacity = fall.small_count;
+    if (!copy_ids(&fall.ids, ids, fall.count) ||
+        !copy_ids(&fall.small, ids + fall.count * sizeof *fall.ids, fall.small_count) ||
+        !tl_grow(&t->ahead, &t->ahead_capacity, t->ahead_count + 1, sizeof *t->ahead)) {
+        tl_fall_free(&fall);
         return tl_fail_memory(&t->asked->error);
     }
-    t->ahead[t->ahead_count++] = (tl_trial_ahead){r.trial, r.fall};
+    t->ahead[t->ahead_count++] = (tl_trial_ahead){r.trial, fall};
     return TL_OK;
 }
 
@@ -99,8 +111,6 @@ static bool needs_more(const batch *of, const bool *ended, size_t count, tl_brac
                     return !ended[i];
             return false;
         }
-        if (!made->trial.holds && made->fall.volume < of->trials->options.least_volume)
-            return false; /* it is deleted, and all begin anew */
         tl_bracket_take(&b, at, made->trial.holds != 0);
     }
 }

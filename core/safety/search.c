@@ -22,9 +22,10 @@ typedef struct search {
     tl_trials trials;
     tl_safety_result *result;
     double *grid; /* [last + 1] */
-    size_t last, listed, capacity, small_capacity;
+    size_t last, capacity;
+    tl_fall loose;      /* whatever the strengths */
     tl_bracket bracket; /* on the grid */
-    tl_fall fall;       /* at the least factor that fails */
+    tl_fall fall;       /* at the least factor that fails; where none does, at the largest that holds */
 } search;
 
 static const char *const mode_names[] = {[TL_SAFETY_HOLDS] = "holds",
@@ -96,41 +97,6 @@ static tl_status ask_keyblocks(search *s)
     return TL_OK;
 }
 
-/* ---------------------------------------------------------------- small blocks ----------- */
-
-/* Deletes what falls in the copy that trials begin with, and lists it. */
-static tl_status drop(search *s, tl_fall *fall)
-{
-    tl_safety_blocks *small = &s->result->small;
-    tl_model *m = s->trials.asked;
-    if (!tl_grow(&small->ids, &s->small_capacity, small->count + fall->count, sizeof *small->ids))
-        return tl_fail_memory(&m->error);
-    memcpy(small->ids + small->count, fall->ids, fall->count * sizeof *fall->ids);
-    small->count += fall->count;
-    tl_status status = tl_blocks_delete(s->trials.base, fall->ids, fall->count);
-    if (status != TL_OK)
-        status = tl_fail(&m->error, status, "%s: %s", s->trials.what, tl_model_error(s->trials.base)->text);
-    tl_fall_free(fall);
-    return status;
-}
-
-static bool is_small(const search *s, const tl_fall *fall)
-{
-    return fall->count > 0 && fall->volume < s->trials.options.least_volume;
-}
-
-/* Takes away what falls even with high strengths, as long as it is small. */
-static tl_status drop_loose(search *s, tl_fall *fall)
-{
-    tl_status status = TL_OK;
-    while (status == TL_OK && is_small(s, fall)) {
-        status = drop(s, fall);
-        if (status == TL_OK)
-            status = tl_trials_rest(&s->trials, fall);
-    }
-    return status;
-}
-
 /* ---------------------------------------------------------------- search ----------------- */
 
 static tl_status list_trial(search *s, const tl_safety_trial *trial)
@@ -142,35 +108,23 @@ static tl_status list_trial(search *s, const tl_safety_trial *trial)
     return TL_OK;
 }
 
-/* Tries one factor of the grid. Small blocks that fail go first, and it is tried again. */
+/* Tries one factor of the grid. */
 static tl_status try_at(search *s, int64_t at)
 {
     tl_safety_trial trial;
     tl_fall fall;
-    tl_status status = TL_OK;
-    for (;;) {
-        status = tl_trials_try(&s->trials, s->grid[at], &trial, &fall);
-        if (status == TL_OK)
-            status = list_trial(s, &trial);
-        if (status != TL_OK || !is_small(s, &fall))
-            break;
-        status = drop(s, &fall);
-        if (status == TL_OK)
-            status = tl_trials_rest(&s->trials, &fall);
-        if (status == TL_OK)
-            status = drop_loose(s, &fall);
-        tl_fall_free(&fall);
-        if (status != TL_OK)
-            break;
-    }
+    tl_status status = tl_trials_try(&s->trials, s->grid[at], &trial, &fall);
     if (status != TL_OK)
         return status;
+    status = list_trial(s, &trial);
     tl_bracket_take(&s->bracket, at, trial.holds != 0);
-    if (trial.holds)
-        return TL_OK;
+    if (trial.holds && s->bracket.fails <= (int64_t)s->last) {
+        tl_fall_free(&fall);
+        return status;
+    }
     tl_fall_free(&s->fall);
     s->fall = fall;
-    return TL_OK;
+    return status;
 }
 
 static int64_t clamped(const search *s, int64_t at)
@@ -235,6 +189,22 @@ static tl_status narrow(search *s)
 
 /* ---------------------------------------------------------------- result ----------------- */
 
+/* Lists what was small and failed: in the first copy, and at the factor that is told. */
+static tl_status take_small(search *s)
+{
+    tl_safety_blocks *small = &s->result->small;
+    const tl_fall *from[] = {&s->loose, &s->fall};
+    size_t capacity = 0;
+    for (size_t k = 0; k < 2; k++) {
+        if (!tl_grow(&small->ids, &capacity, small->count + from[k]->small_count, sizeof *small->ids))
+            return tl_fail_memory(&s->trials.asked->error);
+        if (from[k]->small_count > 0)
+            memcpy(small->ids + small->count, from[k]->small, from[k]->small_count * sizeof *small->ids);
+        small->count += from[k]->small_count;
+    }
+    return TL_OK;
+}
+
 static void take_fall(tl_safety_result *r, tl_fall *fall)
 {
     r->failing = (tl_safety_blocks){fall->ids, fall->count};
@@ -243,7 +213,7 @@ static void take_fall(tl_safety_result *r, tl_fall *fall)
     r->direction[1] = fall->way.y;
     r->direction[2] = fall->way.z;
     r->mode = (int32_t)fall->mode;
-    *fall = (tl_fall){.ids = NULL};
+    fall->ids = NULL;
 }
 
 static void tell(const search *s)
@@ -275,7 +245,7 @@ static void finish(search *s, bool never)
     r->upper = never ? s->trials.options.from : s->bracket.fails <= last ? s->grid[s->bracket.fails] : INFINITY;
     r->factor = never ? 0 : isinf(r->upper) ? INFINITY : r->lower > 0 ? sqrt(r->lower * r->upper) : r->upper;
     if (never || s->bracket.fails <= last)
-        take_fall(r, &s->fall);
+        take_fall(r, never ? &s->loose : &s->fall);
     r->undecided = (int32_t)s->trials.undecided;
     r->cycles = s->trials.cycles;
     r->wall = tl_clock() - s->trials.began;
@@ -294,21 +264,22 @@ tl_status tl_model_factor_of_safety(tl_model *m, const tl_safety *given, tl_safe
 {
     search s = {.result = result, .fall = {.ids = NULL}};
     *result = (tl_safety_result){.keyblock_factor = NAN};
-    tl_status status = tl_trials_begin(&s.trials, "factor_of_safety", m, given, &s.fall);
+    tl_status status = tl_trials_begin(&s.trials, "factor_of_safety", m, given, &s.loose);
     if (status == TL_OK)
         status = ask_keyblocks(&s);
-    if (status == TL_OK)
-        status = drop_loose(&s, &s.fall);
     if (status == TL_OK && !make_grid(&s))
         status = tl_fail_memory(&m->error);
-    const bool never = s.fall.count > 0;
+    const bool never = s.loose.count > 0;
     if (status == TL_OK && !never)
         status = narrow(&s);
+    if (status == TL_OK)
+        status = take_small(&s);
     if (status == TL_OK)
         finish(&s, never);
     else
         tl_safety_free(result);
     tl_fall_free(&s.fall);
+    tl_fall_free(&s.loose);
     tl_trials_end(&s.trials);
     free(s.grid);
     return status;

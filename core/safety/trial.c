@@ -10,6 +10,11 @@
  * becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter, or that
  * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
  *
+ * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
+ * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
+ *
+ * What fails and is smaller than least_volume is deleted in the copy, and the trial goes on with the rest.
+ *
  * Limit: a body that is turned about its centre alone is not seen before it moves. */
 #include "safety/trial.h"
 
@@ -51,7 +56,7 @@
 #define STANDS 0.02
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
 #define STEPS_A_BLOCK 16
-/* Tolerance: speed over that of the fastest body that fails, from which on another goes with it. */
+/* Tolerance: speed over that of the fastest body that fails, and way likewise, from which on another goes with it. */
 #define ALONG 0.3
 /* Tolerance: sum of contact forces over the weight below which nothing bears a body. */
 #define BARE 0.01
@@ -59,6 +64,7 @@
 void tl_fall_free(tl_fall *fall)
 {
     free(fall->ids);
+    free(fall->small);
     *fall = (tl_fall){.ids = NULL};
 }
 
@@ -229,6 +235,7 @@ static tl_status check_rest(const tl_trials *t, tl_model *copy)
 
 /* A body from look to look. */
 typedef struct look {
+    tl_id body;
     tl_vec3 start, last; /* displacements */
     tl_quat turned;      /* when it began */
     double way;          /* between the last two looks, m */
@@ -240,6 +247,7 @@ typedef struct watch {
     look *look;     /* [bodies] */
     int64_t looked; /* cycle of the last look */
     bool fails;
+    tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     const char *why;
 } watch;
 
@@ -277,10 +285,15 @@ static bool looks(void *user, tl_model *copy)
 
 static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
 {
-    *w = (watch){.t = t, .looked = copy->cycles, .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look)};
+    *w = (watch){.t = t,
+                 .looked = copy->cycles,
+                 .verdict = TL_NO_ID,
+                 .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look)};
     for (uint32_t body = 0; w->look && body < copy->bodies.table.rows; body++)
-        w->look[body] = (look){
-            .start = copy->bodies.pose[body].u, .last = copy->bodies.pose[body].u, .turned = copy->bodies.q[body]};
+        w->look[body] = (look){.body = copy->bodies.id[body],
+                               .start = copy->bodies.pose[body].u,
+                               .last = copy->bodies.pose[body].u,
+                               .turned = copy->bodies.q[body]};
     return w->look != NULL;
 }
 
@@ -291,22 +304,51 @@ static double turned_of(const tl_model *m, const look *l, uint32_t body)
     return 2 * m->bodies.radius[body] * sqrt(by.x * by.x + by.y * by.y + by.z * by.z);
 }
 
-/* Lists what goes together, with its volume, direction and mode. */
+static double gone_of(const watch *w, const tl_model *m, uint32_t body)
+{
+    return tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->look[body].start));
+}
+
+static bool body_fails(const watch *w, const tl_model *m, uint32_t body)
+{
+    const look *l = &w->look[body];
+    return l->body == w->verdict || l->grows >= GROWS || gone_of(w, m, body) > FAR * w->t->settles;
+}
+
+/* The fastest of the bodies that fail; where none does, of all. */
+static uint32_t fastest_of(const watch *w, const tl_model *m)
+{
+    uint32_t fastest = TL_NO_ROW;
+    bool fails = false;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (!tl_body_is_free(m, body))
+            continue;
+        const bool here = body_fails(w, m, body);
+        if (fastest == TL_NO_ROW || here > fails || (here == fails && w->look[body].way > w->look[fastest].way)) {
+            fastest = body;
+            fails = here;
+        }
+    }
+    return fastest;
+}
+
+/* Lists what goes together, with its volume, direction and mode: bodies about as fast as the fastest, and about as far.
+ * While what is small falls, the rest may settle as fast, but not as far. */
 static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 {
-    double fastest = 0;
+    const uint32_t fastest = fastest_of(w, m);
+    if (fastest == TL_NO_ROW)
+        return TL_OK;
+    const double fast = w->look[fastest].way, far = gone_of(w, m, fastest);
     tl_addends volume = {.count = 0}, sum[3] = {{.count = 0}, {.count = 0}, {.count = 0}};
     tl_addends ways = {.count = 0}, turns = {.count = 0}, bears = {.count = 0}, weighs = {.count = 0};
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (tl_body_is_free(m, body))
-            fastest = fmax(fastest, w->look[body].way);
     fall->ids = malloc((m->blocks.table.rows + 1) * sizeof *fall->ids);
     if (!fall->ids)
         return tl_fail_memory(&w->t->asked->error);
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         const uint32_t body = m->blocks.body[row];
         const look *l = &w->look[body];
-        if (!tl_body_is_free(m, body) || !(l->way >= ALONG * fastest))
+        if (!tl_body_is_free(m, body) || !(l->way >= ALONG * fast && gone_of(w, m, body) >= ALONG * far))
             continue;
         const tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->start);
         const double own = m->blocks.volume[row], share = own / m->bodies.mass[body];
@@ -328,43 +370,110 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
     return TL_OK;
 }
 
+/* How far the joints of a copy settle, m, by what they bear now. */
+static double settles_now(const tl_model *copy)
+{
+    tl_watch *w = tl_watch_begin(copy);
+    const double settles = w ? tl_watch_settlement(w, copy) : 0;
+    if (w)
+        tl_watch_end(w);
+    return settles;
+}
+
+/* Whether the verdict of a relaxation is more than the settling of its joints. */
+static bool confirmed(const watch *w, const tl_model *copy, tl_id failing)
+{
+    const double settles = w->t->measured ? w->t->settles : settles_now(copy);
+    bool far = copy->cycle->fails_strained;
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
+        if (copy->bodies.id[body] == failing)
+            far = far || gone_of(w, copy, body) > SUSPECT * settles;
+    return far;
+}
+
+/* Deletes what is small and has failed, and goes on with the watch of all others. */
+static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
+{
+    const size_t before = copy->bodies.table.rows, all = fall->small_count + fall->count;
+    if (!tl_grow(&fall->small, &fall->small_capacity, all, sizeof *fall->small))
+        return tl_fail_memory(&w->t->asked->error);
+    memcpy(fall->small + fall->small_count, fall->ids, fall->count * sizeof *fall->ids);
+    fall->small_count = all;
+    const tl_status status = told(w->t, copy, tl_blocks_delete(copy, fall->ids, fall->count));
+    free(fall->ids);
+    fall->ids = NULL;
+    fall->count = 0;
+    const look *old = w->look;
+    watch next;
+    if (status != TL_OK)
+        return status;
+    if (!watch_begin(&next, w->t, copy))
+        return tl_fail_memory(&w->t->asked->error);
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
+        for (size_t row = 0; row < before; row++)
+            if (old[row].body == next.look[body].body)
+                next.look[body] = old[row];
+    free(w->look);
+    *w = next;
+    return TL_OK;
+}
+
+/* What a relaxation of a copy has ended with. *over: nothing is to be done any more. */
+static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_safety_trial *trial, tl_fall *fall,
+                       bool *over)
+{
+    const tl_trials *t = w->t;
+    const tl_solve_reason reason = r->run.reason;
+    const bool left = trial->cycles < t->options.max_cycles;
+    trial->holds = reason == TL_SOLVE_REST;
+    if (reason == TL_SOLVE_OVERLAP)
+        return tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r->message,
+                       tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
+    const bool fails = reason == TL_SOLVE_FAILURE && confirmed(w, copy, r->run.failing);
+    *over = trial->holds || w->fails || fails || !left;
+    trial->why = trial->holds ? "at rest" : w->fails ? w->why : fails ? "fails" : "undecided";
+    trial->undecided = *over && !trial->holds && !w->fails && !fails;
+    if (trial->holds || !*over)
+        return TL_OK;
+    if (fails)
+        w->verdict = r->run.failing;
+    if (copy->cycles > w->looked)
+        looks(w, copy); /* the ways since the last look */
+    tl_status status = list_fall(w, copy, fall);
+    if (status != TL_OK || trial->undecided || !left || !(fall->volume < t->options.least_volume))
+        return status;
+    *over = false;
+    return take_out(w, copy, fall);
+}
+
 /* Brings a copy to rest, or finds what fails. */
 static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_trial *trial, tl_fall *fall)
 {
     watch w;
-    tl_relax relax = tl_relax_default();
-    tl_relax_result r;
+    tl_status status = TL_OK;
+    *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
-    relax.ratio = RESTS;
-    relax.max_cycles = t->options.max_cycles;
-    relax.every = t->window;
-    relax.each = on_step;
-    relax.stop = looks;
-    relax.user = &w;
-    if (copy->cycle)
-        copy->cycle->only_stops = !leaps;
-    tl_status status = tl_model_relax(copy, &relax, &r);
-    t->cycles += r.run.cycles;
-    if (r.run.reason == TL_SOLVE_INTERRUPT || tl_model_interrupted(t->asked))
-        status = tl_fail(&t->asked->error, TL_E_CANCELLED, "%s: stopped; the model is as it was", t->what);
-    else
-        status = told(t, copy, status);
-    const bool holds = r.run.reason == TL_SOLVE_REST, undecided = r.run.reason == TL_SOLVE_CYCLES;
-    *trial = (tl_safety_trial){.holds = holds,
-                               .undecided = undecided,
-                               .cycles = r.run.cycles,
-                               .why = holds       ? "at rest"
-                                      : w.fails   ? w.why
-                                      : undecided ? "undecided"
-                                                  : "fails"};
-    if (status == TL_OK && r.run.reason == TL_SOLVE_OVERLAP)
-        status = tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r.message,
-                         tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
-    if (status == TL_OK && !holds) {
-        if (copy->cycles > w.looked)
-            looks(&w, copy); /* the ways since the last look */
-        status = list_fall(&w, copy, fall);
+    for (bool over = false; status == TL_OK && !over;) {
+        tl_relax relax = tl_relax_default();
+        tl_relax_result r;
+        relax.ratio = RESTS;
+        relax.max_cycles = t->options.max_cycles - trial->cycles;
+        relax.every = t->window;
+        relax.each = on_step;
+        relax.stop = looks;
+        relax.user = &w;
+        if (copy->cycle)
+            copy->cycle->only_stops = !leaps;
+        status = tl_model_relax(copy, &relax, &r);
+        t->cycles += r.run.cycles;
+        trial->cycles += r.run.cycles;
+        if (r.run.reason == TL_SOLVE_INTERRUPT || tl_model_interrupted(t->asked))
+            status = tl_fail(&t->asked->error, TL_E_CANCELLED, "%s: stopped; the model is as it was", t->what);
+        else
+            status = told(t, copy, status);
+        if (status == TL_OK)
+            status = judge(&w, copy, &r, trial, fall, &over);
     }
     free(w.look);
     return status;
@@ -379,6 +488,7 @@ static tl_status measure(tl_trials *t, int64_t settled)
     const double on_end = tl_watch_on_end(w);
     const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
     t->settles = tl_watch_settlement(w, t->base);
+    t->measured = true;
     t->window = 1 + (int64_t)(0.5 * steps);
     tl_watch_end(w);
     return TL_OK;
