@@ -10,6 +10,10 @@
  * becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter, or that
  * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
  *
+ * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
+ * slip that springs ask for is a multiple of u. So a trial that rests with a suspect is made again with joints STIFFER
+ * times as stiff. It holds when it rests there as well, and no body has gone GROWN times as many u.
+ *
  * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
  * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
  *
@@ -50,6 +54,11 @@
 /* Tolerance: way over u from which on a body is watched, and from which on it fails anyway. */
 #define SUSPECT 10.0
 #define FAR 300.0
+/* Tolerance: how much stiffer joints are made to tell slip that springs ask for from motion that something ends, how
+ * many u more a body then goes, and the largest stiffness over that of the model. */
+#define STIFFER 10.0
+#define GROWN 2.0
+#define STIFFEST 1000.0
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
@@ -92,6 +101,8 @@ static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
     tl_status status = tl_joints_weaken(copy, t->asked, t->which, factor);
     if (status == TL_OK && t->options.solids)
         status = tl_solids_weaken(copy, t->asked, factor);
+    if (status == TL_OK && t->stiffness > 1)
+        status = tl_joints_stiffen(copy, t->stiffness);
     return told(t, copy, status);
 }
 
@@ -475,6 +486,10 @@ static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_tria
         if (status == TL_OK)
             status = judge(&w, copy, &r, trial, fall, &over);
     }
+    t->moved = 0;
+    for (uint32_t body = 0; status == TL_OK && body < copy->bodies.table.rows; body++)
+        if (tl_body_is_free(copy, body))
+            t->moved = fmax(t->moved, gone_of(&w, copy, body) / t->settles);
     free(w.look);
     return status;
 }
@@ -494,10 +509,22 @@ static tl_status measure(tl_trials *t, int64_t settled)
     return TL_OK;
 }
 
+static void end_stiffer(tl_trials *t)
+{
+    if (!t->stiffer)
+        return;
+    end_stiffer(t->stiffer);
+    if (t->stiffer->base)
+        tl_model_destroy(t->stiffer->base);
+    free(t->stiffer);
+    t->stiffer = NULL;
+}
+
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
 {
     tl_safety_trial trial;
     tl_ahead_clear(t);
+    end_stiffer(t);
     tl_status status = settle(t, t->base, true, &trial, fall);
     if (status == TL_OK && trial.holds)
         status = measure(t, trial.cycles > 2 * t->window ? trial.cycles : 2 * t->window);
@@ -515,7 +542,7 @@ static double first_scale(const tl_model *m)
 
 tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall)
 {
-    *t = (tl_trials){.what = what, .asked = m, .began = tl_clock()};
+    *t = (tl_trials){.what = what, .asked = m, .stiffness = 1, .began = tl_clock()};
     *fall = (tl_fall){.ids = NULL};
     tl_status status = TL_OPTIONS_READ(tl_safety, given, &t->options, &m->error);
     if (status == TL_OK)
@@ -545,7 +572,7 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
 }
 
 /* Makes a trial on a copy. */
-static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+static tl_status make_one(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
     tl_model *copy = NULL;
     tl_status status = copy_of(t, t->base, &copy);
@@ -555,6 +582,58 @@ static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fa
         status = settle(t, copy, false, trial, fall);
     if (copy)
         tl_model_destroy(copy);
+    return status;
+}
+
+/* Trials with stiffer joints, which have come to rest as the first copy has; *usable: they did. */
+static tl_status make_stiffer(tl_trials *t, bool *usable)
+{
+    *usable = t->stiffer && t->stiffer->measured;
+    if (t->stiffer || t->stiffness * STIFFER > STIFFEST)
+        return TL_OK;
+    tl_trials *s = t->stiffer = malloc(sizeof *s);
+    if (!s)
+        return tl_fail_memory(&t->asked->error);
+    *s = (tl_trials){.what = t->what,
+                     .asked = t->asked,
+                     .options = t->options,
+                     .which = t->which,
+                     .stiffness = STIFFER * t->stiffness,
+                     .settles = t->settles,
+                     .window = t->window};
+    tl_safety_trial trial;
+    tl_fall fall = {.ids = NULL};
+    tl_status status = copy_of(s, t->base, &s->base);
+    if (status == TL_OK)
+        status = weaken(s, s->base, RAISED);
+    if (status == TL_OK)
+        status = settle(s, s->base, true, &trial, &fall);
+    if (status == TL_OK && trial.holds)
+        status = measure(s, trial.cycles);
+    *usable = s->measured;
+    tl_fall_free(&fall);
+    return status;
+}
+
+/* Makes a trial, with stiffer and stiffer joints while it rests and that may hang on how soft they are. */
+static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    tl_status status = make_one(t, factor, trial, fall);
+    int64_t cycles = trial->cycles;
+    double before = 0;
+    bool usable = true;
+    for (tl_trials *at = t; status == TL_OK && usable && trial->holds && at->moved > fmax(SUSPECT, GROWN * before);) {
+        before = at->moved;
+        status = make_stiffer(at, &usable);
+        at = at->stiffer;
+        if (status != TL_OK || !usable)
+            break;
+        tl_fall_free(fall);
+        status = make_one(at, factor, trial, fall);
+        cycles += trial->cycles;
+        t->cycles += trial->cycles;
+    }
+    trial->cycles = cycles;
     trial->factor = factor;
     return status;
 }
@@ -581,6 +660,7 @@ void tl_trials_end(tl_trials *t)
     if (t->base)
         tl_model_destroy(t->base);
     tl_ahead_clear(t);
+    end_stiffer(t);
     free(t->ahead);
     free(t->which);
     t->ahead = NULL;
