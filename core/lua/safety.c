@@ -238,7 +238,8 @@ static const tl_lua_key safety_results[] = {
      "none, "
      "or laws have no friction and cohesion or name blocks"},
     {"trials", "", "each a table: F, holds, undecided, cycles, why; in the order in which they were made"},
-    {"small", "", "selection of the blocks below least_volume that failed before, and were deleted in the copies"},
+    {"small", "",
+     "selection of the blocks below least_volume that failed before at `upper`, and were deleted in that copy"},
     {"undecided", "", "number of trials that neither came to rest nor failed: they count as failing"},
     {"cycles, wall", "", "steps of all trials, and s"},
     {"message", "", "all of this in a sentence"},

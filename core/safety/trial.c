@@ -11,8 +11,8 @@
  * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
  *
  * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
- * slip that springs ask for is a multiple of u. So a trial that rests with a suspect is made again with joints STIFFER
- * times as stiff. It holds when it rests there as well, and no body has gone GROWN times as many u.
+ * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is made again
+ * with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as many u.
  *
  * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
  * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
@@ -54,6 +54,8 @@
 /* Tolerance: way over u from which on a body is watched, and from which on it fails anyway. */
 #define SUSPECT 10.0
 #define FAR 300.0
+/* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
+#define SLIPS 1.0
 /* Tolerance: how much stiffer joints are made to tell slip that springs ask for from motion that something ends, how
  * many u more a body then goes, and the largest stiffness over that of the model. */
 #define STIFFER 10.0
@@ -622,7 +624,7 @@ static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fa
     int64_t cycles = trial->cycles;
     double before = 0;
     bool usable = true;
-    for (tl_trials *at = t; status == TL_OK && usable && trial->holds && at->moved > fmax(SUSPECT, GROWN * before);) {
+    for (tl_trials *at = t; status == TL_OK && usable && trial->holds && at->moved > fmax(SLIPS, GROWN * before);) {
         before = at->moved;
         status = make_stiffer(at, &usable);
         at = at->stiffer;

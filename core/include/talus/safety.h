@@ -65,7 +65,7 @@ typedef struct tl_safety_result {
     int32_t mode;             /* tl_safety_mode */
     double keyblock_factor;   /* least factor of tl_model_keyblocks; NaN: none is known */
     tl_id keyblock;           /* and of which block; TL_NO_ID */
-    tl_safety_blocks small;   /* deleted in the copies by least_volume */
+    tl_safety_blocks small;   /* deleted by least_volume in the copy of `upper` */
     tl_safety_trial *trials;  /* in the order in which they were made */
     size_t trial_count;
     int32_t undecided; /* trials that were */
