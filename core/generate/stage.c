@@ -183,10 +183,12 @@ typedef struct plane_in_block {
     double reach;   /* the largest coordinate that it was computed with */
 } plane_in_block;
 
-/* `point` is relative to the model's origin. */
+/* `point` is relative to the model's origin. It was given in the axes of the model, so it is known to a rounding of its
+ * coordinates there, however near the origin is. */
 static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point)
 {
-    plane_in_block x = {{normal, tl_v3_dot(normal, point)}, tl_v3_norm(point)};
+    double given = tl_v3_norm(tl_v3_add(point, m->origin));
+    plane_in_block x = {{normal, tl_v3_dot(normal, point)}, fmax(given, tl_v3_norm(point))};
     uint32_t body = tl_stage_frame(m, block);
     if (body == TL_NO_ROW)
         return x;

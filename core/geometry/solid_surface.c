@@ -86,13 +86,14 @@ static int by_edge(const void *left, const void *right)
     return (a->corner > b->corner) - (a->corner < b->corner);
 }
 
-static tl_status edge_fault(const reader *r, const side *s, const char *what)
+static tl_status edge_fault(const reader *r, const side *s, const char *what, const char *remedy)
 {
     const uint32_t from = r->given->loops[s->corner], to = s->low == from ? s->high : s->low;
     const tl_vec3 a = tl_v3_add(r->given->place, r->given->vertices[from]);
     const tl_vec3 b = tl_v3_add(r->given->place, r->given->vertices[to]);
-    return tl_fail(r->error, TL_E_GEOMETRY, "the surface %s at the edge from {%g, %g, %g} to {%g, %g, %g} of face %u",
-                   what, a.x, a.y, a.z, b.x, b.y, b.z, r->of[s->corner] + 1);
+    return tl_fail(r->error, TL_E_GEOMETRY,
+                   "the surface %s at the edge from {%g, %g, %g} to {%g, %g, %g} of face %u; %s", what, a.x, a.y, a.z,
+                   b.x, b.y, b.z, r->of[s->corner] + 1, remedy);
 }
 
 static tl_status pair_sides(const reader *r, side *sides, uint32_t count)
@@ -104,13 +105,16 @@ static tl_status pair_sides(const reader *r, side *sides, uint32_t count)
         while (end < count && sides[end].low == s->low && sides[end].high == s->high)
             end++;
         if (s->low == s->high)
-            return edge_fault(r, s, "has two corners that are one");
+            return edge_fault(r, s, "has two corners that are one", "leave one of them out");
         if (end - i == 1)
-            return edge_fault(r, s, "is open");
+            return edge_fault(r, s, "is open", "close it, so that every edge belongs to two faces");
         if (end - i > 2)
-            return edge_fault(r, s, "has more than two faces");
+            return edge_fault(
+                r, s, "has more than two faces",
+                "a solid must not touch itself along an edge: make a solid of each of the parts that meet there");
         if (loops[s->corner] == loops[s[1].corner])
-            return edge_fault(r, s, "has two faces of which one is turned over");
+            return edge_fault(r, s, "has two faces of which one is turned over",
+                              "give the corners of all faces counter-clockwise as seen from outside");
         r->mate[s->corner] = s[1].corner;
         r->mate[s[1].corner] = s->corner;
     }

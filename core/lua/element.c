@@ -182,11 +182,11 @@ static bool extra(lua_State *L, tl_model *model, const tl_lua_item *item, const 
 }
 
 static const tl_lua_key extra_keys[] = {
-    {"nodes", "",
+    {"nodes", "list of tables",
      "list of its nodes, each a table: rest, where it was when installed, position now, m; force on its block, N; "
      "weight, "
      "m or m2 that it stands for; block, nil on the ground; and the states of a node by their names"},
-    {"params", "", "its parameters, by their names"},
+    {"params", "{NAME = value}", "its parameters, by their names"},
     {NULL, NULL, NULL},
 };
 

@@ -67,6 +67,8 @@ static int open_module(lua_State *L, const char *name)
 }
 
 TL_API int luaopen_talus_back_analysis(lua_State *L);
+TL_API int luaopen_talus_bolt_pattern(lua_State *L);
+TL_API int luaopen_talus_bolt_test(lua_State *L);
 TL_API int luaopen_talus_convert(lua_State *L);
 TL_API int luaopen_talus_plot(lua_State *L);
 TL_API int luaopen_talus_poles(lua_State *L);
@@ -76,6 +78,16 @@ TL_API int luaopen_talus_stereonet(lua_State *L);
 int luaopen_talus_back_analysis(lua_State *L)
 {
     return open_module(L, PREFIX "back_analysis");
+}
+
+int luaopen_talus_bolt_pattern(lua_State *L)
+{
+    return open_module(L, PREFIX "bolt_pattern");
+}
+
+int luaopen_talus_bolt_test(lua_State *L)
+{
+    return open_module(L, PREFIX "bolt_test");
 }
 
 int luaopen_talus_convert(lua_State *L)
@@ -328,6 +340,38 @@ static const tl_lua_key back_analysis_result[] = {
     {NULL, NULL, NULL},
 };
 
+static const tl_lua_key pattern_keys[] = {
+    {"on", "what model:boundary{...} gave, required", "the faces that are bolted"},
+    {"spacing", "{across, along}, required", "m, both above 0: of the grid in the plane of each face"},
+    {"length", "number, required", "of the bolts, m, from 1e-3 to 1e4"},
+    {"direction", "\"normal\" or {x, y, z}, default \"normal\"",
+     "into the rock; faces that a bolt would not enter get none"},
+    {"along", "{x, y, z}, default {0, 1, 0}", "direction of the rows, as it lies in each face: the axis of a tunnel"},
+    {"origin", "{x, y, z}", "a point of the grid; left out: the centroid of the faces"},
+    {"node_spacing", "number", "`spacing` of the nodes of each bolt, m"},
+    {"...", "", "parameters of the element \"bolt\", for each"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key bolt_test_keys[] = {
+    {"length", "number, required", "of the bolt, m, from 0.01 to 1000"},
+    {"pull", "number", "how far its mouth is drawn out, m; or `shear`"},
+    {"shear", "number", "how far a joint across its middle slides, m"},
+    {"angle", "number, default 0", "between the bolt and the normal of that joint, degrees, 0 to 89"},
+    {"steps", "number, default 200", "points of the curve"},
+    {"...", "", "parameters of the element \"bolt\""},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key bolt_test_results[] = {
+    {"displacement", "list, m", "of the mouth, or of the joint"},
+    {"force", "list, N", "pull: at the mouth"},
+    {"axial, dowel", "lists, N", "shear: largest tension, and the dowel's force"},
+    {"along, closing", "lists, N", "shear: what resists the slip, and what presses the joint together"},
+    {"yielded, broken", "booleans", "whether the bolt has at the end"},
+    {NULL, NULL, NULL},
+};
+
 const tl_lua_topic tl_lua_library_topics[] = {
     {.name = "back_analysis",
      .usage = "found = talus.back_analysis{build = function(v) return model, {safety = v.friction / 30} end, unknown = "
@@ -338,6 +382,16 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .keys = back_analysis_keys,
      .title = "Fields of the result",
      .verbs = back_analysis_result},
+    {.name = "bolt_pattern",
+     .usage = "bolts = talus.bolt_pattern{on = model:boundary{facing = {0, 0, -1}}, spacing = {1.5, 1.5}, length = 3}",
+     .doc = "Lays a grid of bolts over outer faces and gives a list for model:element(\"bolt\", list).",
+     .keys = pattern_keys},
+    {.name = "bolt_test",
+     .usage = "curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}",
+     .doc = "Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists.",
+     .keys = bolt_test_keys,
+     .title = "Fields of the curve",
+     .verbs = bolt_test_results},
     {.name = "convert",
      .usage = "result = talus.convert{file = \"scripts/examples/fault.3ddat\"}",
      .doc = "Writes a data file of 3DEC as a script of Talus, one line a command, and tells what is left out. "

@@ -470,8 +470,8 @@ const tl_lua_topic tl_lua_lists_topics[] = {
      .method = model_groups},
     {.name = "kinds",
      .usage = "list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or "
-              " list = talus.screens()  or  list = talus.solids()",
-     .doc = "Lists the laws, dampings, generators, screens or solids that are loaded.",
+              " list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()",
+     .doc = "Lists the laws, dampings, generators, screens, solids or elements that are loaded.",
      .title = "Fields of each kind",
      .verbs = kinds_results},
     {.name = "parameters",

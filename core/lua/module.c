@@ -106,7 +106,8 @@ static void put_kinds(lua_State *L)
 /* ---------------------------------------------------------------- modules in Lua --------- */
 
 /* Modules that the table `talus` holds, each a function; loaded when first used. */
-static const char *const functions[] = {"back_analysis", "convert", "plot", "poles", "realisations", "stereonet", NULL};
+static const char *const functions[] = {"back_analysis", "bolt_pattern", "bolt_test", "convert", "plot",
+                                        "poles",         "realisations", "stereonet", NULL};
 
 /* __index of the table `talus`: the modules it holds. Upvalue 1 is `require`. */
 static int module_index(lua_State *L)

@@ -772,8 +772,7 @@ int tl_lua_model_generate(lua_State *L, tl_model *model)
     {                                                                                                                  \
         "stiffer", "",                                                                                                 \
             "table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other "   \
-            "does not, "                                                                                               \
-            "`message` says so; reason \"error\" of a trial that failed"                                               \
+            "fails, `message` says so, or that one came to a limit before; reason \"error\" of a trial that failed"    \
     }
 
 static const tl_lua_key run_results[] = {

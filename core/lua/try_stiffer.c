@@ -55,36 +55,41 @@ static void push_trial_args(lua_State *L, int args, const tl_lua_key *keys)
     }
 }
 
-/* Whether a run ended at rest, by a failure, or by neither. */
-static const char *verdict_of(const char *reason)
+/* What a run has shown. One that came to a limit of its own, as that of cycles, has shown neither. */
+typedef enum verdict { OPEN, RESTS, FAILS } verdict;
+
+static verdict verdict_of(const char *reason)
 {
     static const char *const rests[] = {"rest", "ratio", "velocity"}, *const fails[] = {"failure", "overlap"};
     for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++)
         if (strcmp(reason, rests[i]) == 0)
-            return "rests";
+            return RESTS;
     for (size_t i = 0; i < sizeof fails / sizeof fails[0]; i++)
         if (strcmp(reason, fails[i]) == 0)
-            return "fails";
-    return "neither rests nor fails";
+            return FAILS;
+    return OPEN;
 }
 
-/* Says how the verdicts differ, and puts that into the trial's result at the top of the stack. */
+/* Says how the verdicts differ, or that one of the runs came to none. It puts that into the trial's result, at the top
+ * of the stack. */
 static void compare_verdicts(lua_State *L, int result, const char *what)
 {
+    static const char *const words[] = {
+        [OPEN] = "it comes to a limit of the run first", [RESTS] = "it rests", [FAILS] = "it fails"};
     lua_getfield(L, result, "reason");
     lua_getfield(L, -2, "reason");
-    const char *one = verdict_of(lua_tostring(L, -2)), *other = verdict_of(lua_tostring(L, -1));
+    const verdict one = verdict_of(lua_tostring(L, -2)), other = verdict_of(lua_tostring(L, -1));
     lua_pop(L, 2);
-    const bool differs = strcmp(one, other) != 0;
-    lua_pushboolean(L, differs);
+    lua_pushboolean(L, one != OPEN && other != OPEN && one != other);
     lua_setfield(L, -2, "differs");
-    if (!differs)
+    if (one == other)
         return;
-    lua_pushfstring(
-        L,
-        "%s: the verdict hangs on the stiffness of the joints: with it as given the model %s, with %d times "
-        "as much it %s; measure the stiffness, or take that which stands for rigid blocks (docs/how_stiff.md)",
-        what, one, (int)STIFFER, other);
+    const bool open = one == OPEN || other == OPEN;
+    lua_pushfstring(L, "%s: %s the stiffness of the joints: with it as given %s, with %d times as much %s; %s", what,
+                    open ? "it is open whether the verdict hangs on" : "the verdict hangs on", words[one], (int)STIFFER,
+                    words[other],
+                    open ? "raise max_cycles, or max_time where it is given"
+                         : "measure the stiffness, or take that which stands for rigid blocks (docs/how_stiff.md)");
     tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -1));
     lua_setfield(L, -2, "message");
 }

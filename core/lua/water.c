@@ -135,12 +135,12 @@ static const tl_lua_key keys[] = {
     {"dip", "number", "of a table that dips, degrees: with dip_direction and origin in the place of level"},
     {"dip_direction", "number", "likewise, degrees"},
     {"origin", "{x, y, z}", "a point of it, m"},
-    {"unit_weight", "number", "of the water under a table, N/m3 (default 9810)"},
-    {"factor", "number", "of the pressure under a table, as drains leave it (default 1)"},
+    {"unit_weight", "number", "of the water under a table, N/m3; 9810 when left out"},
+    {"factor", "number", "of the pressure under a table, as drains leave it; 1 when left out"},
     {"pressure", "number or function(x, y, z)",
      "uniform pressure, Pa; or of a field, asked once for each node and then kept"},
-    {"joints", "name or list of names", "joints that have this water, \"A\", \"A:3\" or \"*\" (default all)"},
-    {"drain_gap", "number", "mean opening beyond which a joint runs dry, m (default 0.05)"},
+    {"joints", "name or list of names", "joints that have this water, \"A\", \"A:3\" or \"*\"; all when left out"},
+    {"drain_gap", "number", "mean opening beyond which a joint runs dry, m; 0.05 when left out"},
     {NULL, NULL, NULL},
 };
 
@@ -148,7 +148,8 @@ const tl_lua_topic tl_lua_water_topics[] = {
     {.name = "water",
      .usage =
          "selection = model:water(\"table\", {level = 20})  or  model:water(\"uniform\", {pressure = 65e3, joints = "
-         "{\"A\"}})  or  model:water(\"field\", {pressure = function(x, y, z) ... end})  or  model:water(\"none\")",
+         "{\"J1\"}})  or  model:water(\"field\", {pressure = function(x, y, z) return 9810 * z end})  or  "
+         "model:water(\"none\")",
      .doc =
          "Lets water press on the walls of joints: on the polygons in which a face of one block faces one of "
          "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "

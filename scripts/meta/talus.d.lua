@@ -132,6 +132,11 @@ function talus.help(topic) end
 ---@class (exact) talus.damping.Combined
 ---@field alpha? number in [0, 1), default 0.8: share of the unbalanced force that opposes motion
 
+--- Dashpots at contacts, in proportion to their stiffness; for impacts.
+---@class (exact) talus.damping.Dashpot
+---@field ratio number > 0: fraction of critical damping of a motion of the frequency
+---@field frequency number Hz, > 0: of the block on its contact, of a wall, or of what else is to be damped
+
 --- Stops all bodies whenever the kinetic energy of the model has been at its peak; the fastest way to an equilibrium of many blocks.
 ---@class (exact) talus.damping.Kinetic
 
@@ -141,6 +146,12 @@ function talus.help(topic) end
 
 --- No damping.
 ---@class (exact) talus.damping.None
+
+--- A fraction of critical damping at two frequencies, by mass and by the stiffness of contacts.
+---@class (exact) talus.damping.Rayleigh
+---@field ratio number in [0, 1]: fraction of critical damping at both frequencies
+---@field from number Hz, > 0: the lower frequency
+---@field to number Hz, > 0: the higher frequency
 
 --- Constant viscous damping of all velocities.
 ---@class (exact) talus.damping.Viscous
@@ -252,6 +263,14 @@ function talus.help(topic) end
 ---@field to number m: where it ends there, > from
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
+
+--- Divides the visible blocks by the ground, a grid or triangles of a file.
+---@class (exact) talus.generator.Terrain
+---@field file string heights of the ground: ESRI ASCII grid (.asc), or STL (.stl)
+---@field scale? number > 0, default 1: factor on coordinates and heights: 0.001 for millimetres
+---@field translate? talus.Vector m, default {0, 0, 0}: added to the scaled coordinates
+---@field group? string default "air": group of what lies above the ground
+---@field every? integer in [1, 1e+06], default 1: takes every n-th row and column of a grid, and the last
 
 --- Creates one block from its four corners.
 ---@class (exact) talus.generator.Tetrahedron
@@ -403,6 +422,28 @@ function talus.help(topic) end
 ---@field joint_tension? number Pa, >= 0: tensile strength of the weak plane; no more than its cohesion / tan(friction), which it is when left out
 ---@field dip? number deg, in [0, 90], default 0: dip of the weak plane at the beginning
 ---@field dip_direction? number deg, in [0, 360], default 0: dip direction of the weak plane at the beginning
+
+--- A spring and a dashpot between two points, of blocks or of the ground.
+---@class (exact) talus.element.Spring
+---@field from talus.Vector m: One end: on the block that it lies in, or on the ground.
+---@field to talus.Vector m: The other end.
+---@field stiffness number N/m, in (0, 1e+50]: Stiffness.
+---@field damping? number N s/m, in [0, 1e+50], default 0: Of the dashpot beside it.
+---@field pretension? number N, in [-1e+50, 1e+50], default 0: Tension when installed; below 0 it presses.
+---@field strength? number N, in [0, 1e+50]: Force at which the spring yields; without it, it never does.
+
+--- Water that presses on the walls of joints: model:water.
+---@class (exact) talus.element.Water
+---@field source "table"|"uniform"|"field"|"none" "uniform", "field", "none": Where the pressure comes from.
+---@field level? number m: Of a level table: its height z.
+---@field dip? number deg, in [0, 90): Of a table that dips.
+---@field dip_direction? number deg, in [-360, 360]: Of a table that dips.
+---@field origin? talus.Vector m: A point of a table that dips.
+---@field unit_weight? number N/m3, in (0, 1e+50], default 9810: Of the water under a table.
+---@field factor? number in [0, 1e+06], default 1: Of the pressure under a table: the part that is not drained.
+---@field pressure? number Pa, in [0, 1e+50]: Uniform pressure.
+---@field drain_gap? number m, in (0, 1e+50], default 0.05: Mean opening beyond which a joint is dry.
+---@field joints? string default "*": Joints, sets or planes of them, separated by commas.
 
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
@@ -667,6 +708,56 @@ function Gridpoints:free(options) end
 ---@return talus.Gridpoints
 function Gridpoints:reaction() end
 
+---@class (exact) talus.Element
+---@field id integer id
+---@field kind string name of its kind
+---@field group string name that was given with the call that placed it
+---@field node_count integer number of its nodes
+---@field yielded boolean whether it has ever yielded
+---@field broken boolean whether it has broken
+---@field detached boolean whether a block of its nodes has been deleted
+---@field stored number J: energy that it holds
+---@field lost number J: energy turned to heat in the last step
+---@field given number J: energy brought in from outside in the last step
+---@field nodes table[] list of its nodes, each a table: rest, where it was when installed, position now, m; force on its block, N; weight, m or m2 that it stands for; block, nil on the ground; and the states of a node by their names
+---@field params table<string, number|string|boolean|talus.Vector> its parameters, by their names
+local Element = {}
+
+--- A selection of elements: a snapshot, in ascending order of id.
+---@class (exact) talus.Elements
+---@field [integer] talus.Element
+---@operator len: integer
+local Elements = {}
+
+--- sum, largest and smallest value of a field of numbers, or of a state of whole elements
+---@param field string
+---@return number|talus.Vector
+function Elements:sum(field) end
+
+--- sum, largest and smallest value of a field of numbers, or of a state of whole elements
+---@param field string
+---@return number
+function Elements:max(field) end
+
+--- sum, largest and smallest value of a field of numbers, or of a state of whole elements
+---@param field string
+---@return number
+function Elements:min(field) end
+
+--- list of the field's values, in the order of the selection; likewise a state of whole elements, NaN where the element's kind has no such state
+---@param field string
+---@return any
+function Elements:values(field) end
+
+--- those for which the function answers true
+---@param keep fun(item: talus.Element): any
+---@return talus.Elements
+function Elements:where(keep) end
+
+--- takes them away; what they hold counts as work by hand
+---@return talus.Elements
+function Elements:delete() end
+
 ---@class (exact) talus.ModelOptions
 ---@field gravity? talus.Vector m/s2, default {0, 0, -9.81}: acceleration of gravity
 ---@field seed? integer >= 0, default 1: seed of every random draw: the same seed gives the same model
@@ -712,6 +803,7 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "polyhedron", options: talus.generator.Polyhedron|talus.generator.Polyhedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "prism", options: talus.generator.Prism|talus.generator.Prism[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "profile", options: talus.generator.Profile|talus.generator.Profile[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "terrain", options: talus.generator.Terrain|talus.generator.Terrain[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tetrahedron", options: talus.generator.Tetrahedron|talus.generator.Tetrahedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tunnel", options?: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "wedge", options: talus.generator.Wedge|talus.generator.Wedge[]): talus.GenerateResult
@@ -755,9 +847,11 @@ function Model:insitu(options) end
 ---@param options? table
 ---@overload fun(self: talus.Model, damping: "adaptive", options?: talus.damping.Adaptive)
 ---@overload fun(self: talus.Model, damping: "combined", options?: talus.damping.Combined)
+---@overload fun(self: talus.Model, damping: "dashpot", options: talus.damping.Dashpot)
 ---@overload fun(self: talus.Model, damping: "kinetic", options?: talus.damping.Kinetic)
 ---@overload fun(self: talus.Model, damping: "local", options?: talus.damping.Local)
 ---@overload fun(self: talus.Model, damping: "none", options?: talus.damping.None)
+---@overload fun(self: talus.Model, damping: "rayleigh", options: talus.damping.Rayleigh)
 ---@overload fun(self: talus.Model, damping: "viscous", options: talus.damping.Viscous)
 function Model:damping(damping, options) end
 
@@ -829,6 +923,8 @@ function Model:contact_area(options) end
 ---@field balance number error of the sum over the largest change of a term so far
 ---@field strain number elastic, in all zones of deformable blocks, J
 ---@field plastic number turned to heat in zones, by yielding, J
+---@field elements number held by elements, part of stored, J
+---@field element_loss number turned to heat by elements until now, part of friction, J
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step. After model:relax stored, potential and friction keep their meaning; the others also hold what its own inertia and stops have given and taken.
 ---
@@ -904,7 +1000,7 @@ function Blocks:set(options) end
 function Blocks:load(options) end
 
 ---@class (exact) talus.DriveOptions
----@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. x, y or z may be a talus.record, whose time counts from the call. Zero when left out
 ---@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
 
 --- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
@@ -1060,35 +1156,41 @@ function Model:groups() end
 ---@field parameters string[] list of the names of its parameters
 ---@field states string[] list of the names of its states
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.laws() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.dampings() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.generators() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.screens() end
 
---- Lists the laws, dampings, generators, screens or solids that are loaded.
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
 ---@return talus.Kind[]
 function talus.solids() end
+
+--- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---@return talus.Kind[]
+function talus.elements() end
 
 ---@class (exact) talus.ParametersResult
 ---@field gravity talus.Vector and all others that talus.model{...} takes
@@ -1232,7 +1334,7 @@ function Model:boundary(options) end
 ---@field time number the model's time at the end, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block that forces move, m/s
----@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other fails, `message` says so, or that one came to a limit before; reason "error" of a trial that failed
 
 --- Runs a number of steps.
 ---
@@ -1266,7 +1368,7 @@ function Model:cycle(cycles) end
 ---@field time number the model's time at the end, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block that forces move, m/s
----@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other fails, `message` says so, or that one came to a limit before; reason "error" of a trial that failed
 
 --- Runs until the forces balance or a limit is met.
 ---
@@ -1301,7 +1403,7 @@ function Model:solve(options) end
 ---@field time number the model's time, which stands still, s
 ---@field wall number seconds it took
 ---@field max_velocity number largest speed of a block in the last step, by the masses of the relaxation, m/s
----@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other does not, `message` says so; reason "error" of a trial that failed
+---@field stiffer table table of the same of the trial, with try_stiffer; `differs` tells whether the one rests and the other fails, `message` says so, or that one came to a limit before; reason "error" of a trial that failed
 
 --- Finds where the model rests, or that it does not, by the cheapest means. Time, damping, time step and masses are afterwards as before, and nothing moves.
 ---
@@ -1642,6 +1744,7 @@ function Model:write_html(path, options) end
 ---@field blocks? boolean default true: whether the frame has a file of the blocks
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+---@field elements? boolean default true: whether the frame has a file of the elements
 ---@field zones? boolean default true: whether the frame has a file of the zones of deformable blocks
 ---@field block_fields? string[]|table<string, string|table<integer, number>|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, tables of numbers by ids, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
@@ -1744,6 +1847,50 @@ function talus.resumed() end
 ---@return talus.SeatResult
 function Model:seat(options) end
 
+--- Puts elements on the blocks as they are now: one, or what a list of tables says, all or none. An element acts on points of blocks, its nodes: a spring, a bolt, water between walls. group = "NAME" names those of a call. Nodes follow their blocks when these are cut or joined.
+---
+---     selection = model:element("KIND", {...})  or  model:element("KIND", {{...}, {...}})
+---@param name string
+---@param options? table
+---@return { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
+---@overload fun(self: talus.Model, name: string, options?: table): { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
+function Model:element(name, options) end
+
+---@class (exact) talus.ElementsOptions
+---@field kind? string elements of this kind
+---@field group? string elements of this group
+---@field block? talus.Block|integer elements with a node on this block
+---@field where? fun(element: talus.Element): any elements for which the function answers true
+
+--- Selects elements; all conditions must hold. Beside its fields an element has the states of its kind by their names, as element.axial; those of its nodes are in element.nodes.
+---
+---     selection = model:elements{...}
+---@param options? talus.ElementsOptions
+---@return talus.Elements
+function Model:elements(options) end
+
+---@class (exact) talus.WaterOptions
+---@field level? number of a level table: its height z, m
+---@field dip? number of a table that dips, degrees: with dip_direction and origin in the place of level
+---@field dip_direction? number likewise, degrees
+---@field origin? talus.Vector a point of it, m
+---@field unit_weight? number of the water under a table, N/m3; 9810 when left out
+---@field factor? number of the pressure under a table, as drains leave it; 1 when left out
+---@field pressure? number|fun(x: number, y: number, z: number): number uniform pressure, Pa; or of a field, asked once for each node and then kept
+---@field joints? string|string[] joints that have this water, "A", "A:3" or "*"; all when left out
+---@field drain_gap? number mean opening beyond which a joint runs dry, m; 0.05 when left out
+
+--- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
+---
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")
+---@param name string
+---@param options? talus.WaterOptions
+---@return talus.Elements
+---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
+---@overload fun(self: talus.Model, name: string, options?: talus.WaterOptions): talus.Elements
+---@overload fun(self: talus.Model, name: string): talus.Elements
+function Model:water(name, options) end
+
 ---@class (exact) talus.FactorOfSafetyOptions
 ---@field from? number >= 0.05, default 0.1: least factor that is tried
 ---@field to? number > 0.05, default 10: largest factor that is tried; above `from`
@@ -1800,5 +1947,33 @@ function Model:factor_of_safety(options) end
 ---@param options? talus.SafetyMapOptions
 ---@return talus.SafetyMapResult
 function Model:safety_map(options) end
+
+---@class (exact) talus.RecordOptions
+---@field file? string lines of numbers, or PEER's AT2 or VT2; or give samples in `at`
+---@field column? integer in [0, 64], default 0: which number of each line it is; 0: the last of two, all of a file that tells NPTS
+---@field dt? number s, >= 0, default 0: from one sample to the next; 0: as the file says
+---@field quantity? "acceleration"|"velocity" default "acceleration": what the samples are
+---@field unit? "own"|"m/s2"|"g"|"cm/s2"|"m/s"|"cm/s" default "own": of the samples; own: as the file says, or m/s2 and m/s; g is 9.80665 m/s2
+---@field scale? number default 1: by which the samples are multiplied
+---@field baseline? "as_is"|"mean"|"parabola" default "as_is": what is taken off a motion that drifts: nothing, the mean acceleration, or the parabola that fits the velocity best
+---@field at? number[] samples, in the place of a file; then dt must be given
+---@field band? number[] {low, high}, Hz: filters of Butterworth at both, forward and backward, so without a shift in time; low = 0: only at high
+
+--- A record of ground motion, which blocks follow as selection:drive{velocity = {rec, 0, 0}}.
+---
+---     rec = talus.record{at = {0, 1, -1, 0}, dt = 0.01}
+---@param options? talus.RecordOptions
+---@return userdata
+function talus.record(options) end
+
+---@class (exact) talus.ModesOptions
+---@field count? integer in [1, 1000], default 6: how many vibrations, the slowest first
+
+--- Finds the slowest vibrations of small size about the present place of a model at rest.
+---
+---     modes = model:modes{count = "COUNT"}
+---@param options? talus.ModesOptions
+---@return { after: integer, before: integer, coincident: integer, cuts: integer, refused: integer, slivers: integer, smallest_edge: number, smallest_face: number, smallest_volume: number, volume_error: number }
+function Model:modes(options) end
 
 return talus

@@ -87,6 +87,7 @@ local WORDS = {
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(zone)"] = "fun(zone: talus.Zone): any",
     ["function(gridpoint)"] = "fun(gridpoint: talus.Gridpoint): any",
+    ["list of tables"] = "table[]",
     ["function(element)"] = "fun(element: talus.Element): any",
     ["number or function(x, y, z)"] = "number|fun(x: number, y: number, z: number): number",
     ["name or list of names"] = "string|string[]",

@@ -3,7 +3,7 @@
 
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
-NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest edits output examples
+NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate rest edits output terrain examples
 yade beside million cuts solids zones deformable); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
@@ -197,6 +197,11 @@ def edits(r):
     r.script("edits", f"blocks={'1000' if r.quick else '10000,100000'}", f"reps={3 if r.quick else 5}")
 
 
+def terrain(r):
+    """Blocks divided by the ground."""
+    r.script("terrain", f"cells={20 if r.quick else 100}")
+
+
 def examples(r):
     for example in ("slope", "tunnel"):
         r.script("examples", f"example={example}", cold=COLD)
@@ -238,7 +243,7 @@ def deformable(r):
 
 
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, rest, edits,
-                                      output,
+                                      output, terrain,
                                       examples, yade, beside, million, cuts, solids, zones, deformable)}
 
 

@@ -1,5 +1,5 @@
 -- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj,
--- stl, ply, vtk, poly, compas, mesh, command, fab, discs, poles and record.
+-- stl, ply, vtk, poly, compas, mesh, command, fab, discs, poles, esri and record.
 local talus = require "talus"
 local folder = arg[1]
 
@@ -58,7 +58,7 @@ local function write(name, text)
     file:close()
 end
 for _, kind in ipairs { "obj", "stl", "ply", "vtk", "poly", "compas", "mesh", "command", "fab", "discs", "poles",
-    "record" } do -- makes the folders
+    "esri", "record" } do -- makes the folders
     saved[5]:write_blocks(string.format("%s/%s/0", folder, kind))
 end
 write("obj/1", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
@@ -132,6 +132,12 @@ write("discs/1", "x,y,z,dip,dip_direction,radius\n0,0,0,30,120,2.5\n1.5,-2,3,90,
 write("discs/2", '\xef\xbb\xbf# a remark\n"Radius";X;Y;Z;Dip Direction;DIP;name\r\n1;0;0;0;10;20;a\r\n\r\n')
 write("poles/1", "dip,dip_direction\n30,120\n31,121.5\n89,300\n")
 write("poles/2", "set\tdip\tdip-direction\tweight\nA\t30\t120\t1.5\nB\t0\t0\t0.1\n")
+
+-- The ground: grids, and triangles as text and binary.
+write("esri/1", "ncols 3\nnrows 2\nxllcorner -5.5\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n1 2.5 3\n4 -9999 6e0\n")
+write("esri/2", "NCOLS 2\r\nNROWS 2\r\nXLLCENTER 0\r\nYLLCENTER 0\r\nDX 1\r\nDY 2\r\n1 2\r\n3 4\r\n")
+write("esri/3", "solid g\n" .. string.rep("facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 1\nvertex 0 1 0\nendloop\nendfacet\n", 2) .. "endsolid g\n")
+write("esri/4", string.rep(" ", 80) .. string.pack("<I4", 4) .. triangles)
 
 -- Meshes of a cube in all formats.
 package.path = "tests/lua/?.lua;" .. package.path

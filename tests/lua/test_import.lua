@@ -248,10 +248,12 @@ end
 
 refused(without(unit, 5), "the surface is open at 3 edges, the first from {")
 refused(joined(box(4, 4, 4, 5, 5, 5), without(unit, 5)), "close it, so that every edge belongs to two faces")
-refused({ unit[1] }, "has 1 faces: it closes no solid")
+refused({ unit[1] }, "has 1 face: it closes no solid, which takes 4 or more")
 refused(exchanged(unit, 3, { { 0, 0, 0 }, { 0, 0, 0 }, { 1, 1, 1 } }), "the surface is open")
 refused(exchanged(unit, 3, { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } }), "the surface is open")
 refused(joined(unit, unit), "faces lie on each other")
+refused(joined(unit, { unit[5] }), "an odd number of faces meet, more than two, at 3 edges, the first from {")
+refused_file(write(writers[1][1], writers[1][2](unit)), "and 12 without: it closes no solid; set weld lower", { weld = 9 })
 refused({}, "holds no faces")
 -- Faces turned, one of them or all, are turned back.
 comes_out(inside_out(unit), { 1 }, 6, 1e-14)

@@ -434,3 +434,32 @@ good, why = pcall(talus.convert, { file = "no/such/file" })
 has(why, "convert: cannot read 'no/such/file'")
 good, why = pcall(talus.convert, { fil = "x" })
 has(why, "did you mean 'file'?")
+
+-- A script never takes the place of a file that it was made of, by whatever name that is called.
+local base = os.tmpname()
+local function write(name, text)
+    local file = assert(io.open(name, "wb"))
+    file:write(text)
+    file:close()
+end
+local function read_back(name)
+    local file = assert(io.open(name, "rb"))
+    local text = file:read "a"
+    file:close()
+    return text
+end
+write(base .. ".dat", "poly brick 0 1\n")
+write(base .. "_main.dat", "call " .. base .. ".dat\n")
+for _, one in ipairs { { base .. ".dat", base .. ".dat" }, { base .. ".dat", (base:gsub("/([^/]*)$", "/./%1")) .. ".dat" },
+    { base .. "_main.dat", base .. ".dat" } } do
+    good, why = pcall(talus.convert, { file = one[1], to = one[2] })
+    check.equal(good, false)
+    has(why, "is the data file, which the script would replace")
+    check.equal(read_back(one[2]), "poly brick 0 1\n")
+end
+talus.convert { file = base .. ".dat", to = base .. ".lua" }
+talus.convert { file = base .. ".dat", to = base .. ".lua" } -- a script of before is replaced
+has(read_back(base .. ".lua"), "model:generate")
+for _, ending in ipairs { "", ".dat", "_main.dat", ".lua" } do
+    os.remove(base .. ending)
+end

@@ -196,3 +196,8 @@ end
 model = run(TOWER .. "block contact property friction 11 range group 'a'\nblock contact property friction 12 range position-z 0 1.5\n" ..
     "block delete range group 'a'\nblock contact property friction 13")
 check.equal(model:laws()[model:contacts {}[1].law_number].parameters.friction, 13)
+
+-- A line that begins as another branch and is none leaves the function out, with its lines, as anything else that cannot be read.
+local broken = convert "fish define f\n  if 1 > 0 then\n    a = 1\n  else = 2\n  endif\nend\nblock create brick 0 [a] 0 1 0 1\n"
+check.holds(#broken.left_out > 0)
+has(broken.left_out[1].reason, "'else = 2' in line 4")

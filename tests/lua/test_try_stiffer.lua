@@ -72,6 +72,22 @@ plain = arch(1e9, 0)
 plain:solve { ratio = 1e-4 }
 check.equal(plain:state_hash(), model:state_hash())
 
+-- A trial that comes to a limit of cycles has no verdict: nothing differs, and what is open is told.
+local few = arch(kn, push):relax { max_cycles = 200000 }.cycles
+for cycles = few, few + 20000, 500 do
+    result = arch(kn, push):relax { max_cycles = cycles, try_stiffer = true }
+    check.equal(result.reason, "failure")
+    check.equal(result.stiffer.differs, result.stiffer.reason == "rest")
+    if result.stiffer.differs then
+        break
+    end
+    check.equal(result.stiffer.reason, "cycles")
+    check.holds(result.stiffer.message:find("it is open whether", 1, true) and result.stiffer.message:find("raise max_cycles", 1, true))
+end
+result = arch(kn, push):relax { max_cycles = 3, try_stiffer = true }
+check.equal(result.stiffer.differs, false)
+check.equal(result.stiffer.message:find("stiffness", 1, true), nil)
+
 -- A run that is stopped has nothing to compare with.
 result = arch(1e9, 0):solve { every = 5, try_stiffer = true, stop = function() return true end }
 check.equal(result.reason, "stop")

@@ -326,3 +326,23 @@ for number = 1, check.cases(300) do
     check.equal(#inside(model), #path - 1)
     check.equal(bodies(inside(model)), 1)
 end
+
+-- A section that is not convex is cut along planes that meet in lines. Corners of the tunnel are rounded where they are given, in a
+-- grid of a map far more coarsely than the blocks' own frame can tell: no block has an edge of that length, which no file can keep.
+local angle = { { -1, -1 }, { 1, -1 }, { 1, 0 }, { 0, 0 }, { 0, 1 }, { -1, 1 } }
+local file = os.tmpname()
+for number = 1, check.cases(60) do
+    local random = shapes.random(500 + number)
+    local far = 10 ^ random(2, 6)
+    local at = { far, -2 * far, 0.1 * far }
+    local half = { random(5, 50), random(5, 50), random(5, 50) }
+    local way = { math.cos(number), math.sin(number), random(-0.4, 0.4) }
+    model = rock(shapes.sum(at, -1, half), shapes.sum(at, 1, half))
+    local made = model:generate("tunnel", { profile = angle, path = { shapes.sum(at, -3, way), shapes.sum(at, 3, way) } })
+    check.holds(made.smallest_edge > 1e-3, string.format("tunnel %d: an edge of %g m", number, made.smallest_edge))
+    model:write_blocks(file)
+    local again = talus.model {}
+    again:generate("blocks", { file = file })
+    check.equal(#again:blocks(), #model:blocks())
+end
+os.remove(file)

@@ -353,8 +353,8 @@ def check_places(page, text):
     """The files and functions that a page names exist, and where it says `FILE`: `NAME`, or beside each other in a drawing, that file has it."""
     sources = {path.relative_to(ROOT).as_posix(): path for top in ("core", "plugins", "scripts", "tests", "viewer", "cmake") for path in (ROOT / top).rglob("*.*")
                if path.suffix in (".c", ".h", ".lua", ".py", ".js", ".cmake")}
-    texts = {name: path.read_text(encoding="utf-8") for name, path in sources.items() if name.startswith("core/")}
-    words = set(re.findall(r"\btl_\w+", "".join(texts.values())))
+    texts = {name: path.read_text(encoding="utf-8") for name, path in sources.items() if name.startswith(("core/", "plugins/"))}
+    words = set(re.findall(r"\btl_\w+", "".join(texts[name] for name in texts if name.startswith("core/"))))
 
     def found(name):
         return next((full for full in (name, "core/" + name, "core/include/" + name, "tests/" + name) if full in sources), None)

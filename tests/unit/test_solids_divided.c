@@ -159,6 +159,7 @@ TEST(faults_are_told_with_their_place)
     refused("of which one is turned over at the edge from {", false);
     cells_of(&s, "#. .#");
     refused("has more than two faces at the edge from {1, 1, 0} to {1, 1, 1}", false);
+    refused("; a solid must not touch itself along an edge: make a solid of each of the parts", false);
     clear(&s);
     put_cube(0, 1, true);
     refused("turned inside out: its volume is -1 m3", false);

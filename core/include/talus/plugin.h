@@ -397,7 +397,8 @@ typedef struct tl_solid_shape {
     const char *group;
     uint32_t fixed, hidden;
     /* m, >= 0: what stands off a plane, or bends inward, by less is flat. 0 is what rounding asks for: 1e-9 of the
-     * solid's size. */
+     * solid's size. Seams of parts may bend by as much, and what touches them then presses: give what corners really
+     * are off their faces. */
     double flat;
     uint32_t whole; /* 1: a solid that is not convex is refused with the edge at which it bends inward */
 } tl_solid_shape;

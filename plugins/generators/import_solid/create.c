@@ -39,7 +39,8 @@ static tl_status refuse_reason(solids *s, size_t i)
         reason);
 }
 
-/* Makes joined convex blocks of a solid that bends inward. */
+/* Makes joined convex blocks of a solid that bends inward. Its corners have been moved into the planes of its sides, so
+ * it is cut as exactly as they lie in them. With the corners a seam of the parts lies in one plane. */
 static tl_status create_parts(solids *s, size_t i)
 {
     solid *o = &s->solid[i];
@@ -66,7 +67,7 @@ static tl_status create_parts(solids *s, size_t i)
                                   .face_count = faces,
                                   .density = s->density,
                                   .group = group_of(s, i),
-                                  .flat = s->flat,
+                                  .flat = o->off,
                                   .whole = !s->split};
     size_t parts = 0;
     tl_status status = s->host->create_solid(s->host, &shape, &parts);

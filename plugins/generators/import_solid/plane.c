@@ -299,7 +299,8 @@ static tl_status end(mover *m)
     tl_status status = TL_OK;
     for (size_t i = 0; i < s->solids && status == TL_OK; i++) {
         solid *o = &s->solid[i];
-        double off = gather(m, i, false), size = size_of(s, i);
+        const double off = gather(m, i, false), size = size_of(s, i);
+        o->off = off;
         for (uint32_t v = o->vertex; v < solid_vertices(s, i); v++)
             o->move = fmax(o->move, tl_v3_norm(tl_v3_sub(s->vertex[v], m->before[v])));
         if (o->move > s->largest_move) {

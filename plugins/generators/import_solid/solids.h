@@ -23,6 +23,7 @@ typedef struct solid {
     bool reflex; /* it bends inward at an edge, with these ends */
     tl_vec3 reflex_at[2];
     double move;                 /* farthest that a vertex was moved to make faces plane */
+    double off;                  /* by how much a corner misses its plane after that */
     uint32_t made_plane, shared; /* sides */
     uint32_t parts;              /* convex blocks of it */
     bool refused;

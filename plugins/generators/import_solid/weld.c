@@ -412,9 +412,11 @@ static bool pair_edge(mesh *m, const side *sides, size_t count, double flat)
 }
 
 /* What may be wrong with the edges of the surface, the worst first. */
-enum { OPEN, TURNED, DOUBLED, FAULTS };
+enum { OPEN, ODD, TURNED, DOUBLED, FAULTS };
 static const char *const faults_text[FAULTS][2] = {
     [OPEN] = {"the surface is open", "close it, so that every edge belongs to two faces, or set weld"},
+    [ODD] = {"an odd number of faces meet, more than two,",
+             "remove faces that are there twice and walls inside a solid, or make each solid an object of its own"},
     [TURNED] = {"more than two faces meet, and are turned against each other",
                 "make each solid an object of its own, or give the corners of all faces counter-clockwise as seen from "
                 "outside"},
@@ -435,7 +437,7 @@ static tl_status pair_all(solids *s, uint32_t object, mesh *m, bool *taken)
         bool even = 2 * up == to - from;
         if (even && pair_edge(m, list + from, to - from, s->flat))
             continue;
-        int fault = even ? DOUBLED : (to - from) % 2 == 0 ? TURNED : OPEN;
+        int fault = even ? DOUBLED : (to - from) % 2 == 0 ? TURNED : to - from > 1 ? ODD : OPEN;
         first[fault] = count[fault]++ ? first[fault] : from;
     }
     for (int k = 0; k < FAULTS; k++) {
@@ -596,7 +598,15 @@ tl_status mesh_close(solids *s, uint32_t object, mesh *m, bool *taken)
         measure_face(m, &m->face[f]);
     if (m->faces < 4) {
         *taken = false;
-        return refuse_object(s, object, 0, " has %zu faces: it closes no solid", m->faces);
+        if (d->collapsed > 0)
+            return refuse_object(
+                s, object, 0,
+                " has %zu faces with corners that are farther apart than weld = %g m, and %u without: it "
+                "closes no solid; set weld lower",
+                m->faces, s->weld, d->collapsed);
+        return refuse_object(s, object, 0,
+                             " has %zu face%s: it closes no solid, which takes 4 or more; export all its faces",
+                             m->faces, m->faces == 1 ? "" : "s");
     }
     sort_edges(m);
     pair_twos(m);

@@ -14,8 +14,13 @@ return arguments.call(function(given)
     if not good then
         arguments.fail("convert: %s", tostring(result))
     end
+    if to ~= "" and threedec.was_read(result, to) then
+        arguments.fail("convert: '%s' is the data file, which the script would replace: "
+            .. "give the script another name, as one that ends in .lua", to)
+    end
     result.script = threedec.script(result)
     result.report = threedec.report(result)
+    result.texts = nil
     if to ~= "" then
         arguments.write("convert", to, result.script)
     end

@@ -256,7 +256,13 @@ end
 -- dip directions count from z; read = function(path) for the files it calls. Raises when the file cannot be read.
 function threedec.convert(path, options)
     options = options or {}
-    local c = converter.new { up = options.up, read = options.read or read_file }
+    local texts = {}
+    local function read(name)
+        local text, why = (options.read or read_file)(name)
+        texts[#texts + 1] = text
+        return text, why
+    end
+    local c = converter.new { up = options.up, read = read }
     local text, why = options.text, nil
     if not text then
         text, why = c.read(path)
@@ -270,8 +276,19 @@ function threedec.convert(path, options)
     add_calls(c, path)
     convert_text(c, text, path)
     local result = gather(c)
-    result.file = path
+    result.file, result.texts = path, texts
     return result
+end
+
+-- Whether a file is one of those that were converted, or a copy of one, by whatever name.
+function threedec.was_read(result, path)
+    local text = read_file(path)
+    for _, one in ipairs(text and result.texts or {}) do
+        if one == text then
+            return true
+        end
+    end
+    return false
 end
 
 -- ---------------------------------------------------------------- as Lua -----------------

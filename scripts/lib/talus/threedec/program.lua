@@ -129,7 +129,11 @@ function reader:branches(head)
         elseif ending == "else" and condition then
             condition = nil
         elseif ending == "elseif" and condition then
-            condition = condition_of(line.code:match "^%s*[eE][lL][sS][eE][%s_]*[iI][fF]%s*(.*)$")
+            local after = line.code:match "^%s*[eE][lL][sS][eE][%s_]*[iI][fF]%s*(.*)$"
+            if not after then
+                self:refuse(line)
+            end
+            condition = condition_of(after)
         else
             self:refuse(head)
         end

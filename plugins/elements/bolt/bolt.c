@@ -1,0 +1,836 @@
+/* bolt.c - elements "bolt" and "anchor": a grouted steel bar with a plate, across joints.
+ *
+ * The bolt has no mass. With the axial displacement w of the steel, r of the rock and s, slip of the grout:
+ *
+ *     E A w'' = t,    t = kg (w - r - s),    |t| <= bond strength,    N = E A (w' - plastic strain),    |N| <= yield
+ *
+ * t is the force of the steel on the rock for each metre and N the tension. Nodes lie in the rock. The steel between
+ * two of them is a spring E A / h. The grout at a node is a spring for the length that the node stands for.
+ * Newton passes with a three-band matrix find w in each step. Grout that slips and steel that yields keep a small part
+ * of their stiffness in the matrix only, so it is never singular. Source: St John & Van Dillen 1983.
+ *
+ * The plate is a spring at the first node that presses only. A pretension pulls the mouth against the plate, after the
+ * grout has set.
+ *
+ * Two nodes that follow each other in different bodies are a crossing. The mean of the directions of both sides is its
+ * axis a, and g the way between the nodes. The sides have parted by o = g.a - void and slid by d = g - (g.a) a. Over
+ * the active length l (and the void) the steel is straight, so the rock gets longer there by
+ *
+ *     e = |(l + o) a + d| - l
+ *
+ * and turns the tension. The dowel bears q = k |d| against d. k is ks until ks |d| is the strength, and then
+ * strength / (largest |d|), as the grout is crushed. Beyond the rupture displacement k is 0. Source: Lorig 1985.
+ *
+ * Forces on nodes are the gradient of the energy in their places, with the axes. So forces and moments add up to zero,
+ * and turning with the rock costs nothing. Within a body the line of the bolt is that of its nodes. */
+#include <talus/kit.h>
+#include <talus/version.h>
+
+/* Limit: Newton passes of a step; what is left then is mended in the next step. */
+#define PASSES 40
+/* Limit: parts of one pass that are tried; the part that is reached is good enough. */
+#define SEARCH 12
+/* Constant: of the unbalance along a pass at its beginning, how much may be left with the other sign at its end. */
+#define OVERSHOT 0.5
+/* Tolerance: relative to the largest force of the bolt, the unbalance with which the passes end. */
+#define BALANCED 1e-11
+/* Tolerance: the same, relative to what rounding of w makes with the stiffest part. */
+#define ROUNDED 1e-15
+/* Tolerance: over how far two nodes have moved apart, an elongation that rounding explains. Test: `talus check`. */
+#define NOISE 2e-15
+/* Constant: of the stiffness of grout that slips or steel that yields, the part left in the matrix. Any small number
+ * gives the same forces. */
+#define LEFT 1e-4
+/* Constant: over the diameter, the length of steel in a crossing without a void. */
+#define SHORT 1e-3
+/* Constant: over the diameter, the active length where none is given. */
+#define ACTIVE 2.0
+/* Constant: strain of steel up to which stiffness() counts the tension of a bolt that never yields. */
+#define MOST_STRAIN 0.01
+
+typedef struct params {
+    tl_vec3 from, to;
+    double diameter, young, yield, rupture_strain, grout_stiffness, grout_strength, grout_residual, grout_friction;
+    double confining, grouted_from, grouted_to, plate_stiffness, plate_strength, pretension, dowel_stiffness;
+    double dowel_strength, dowel_rupture, active_length, spacing;
+} params;
+
+/* Limit: of forces, N, and of forces for each metre; what is larger is a mistake of units. */
+#define MOST 1e12
+/* Limit: of stiffness, N/m and N/m2, for the same reason. */
+#define STIFFEST 1e14
+#define PLACED TL_PARAM_PLACE
+/* Rows of reals: `more` are flags. */
+#define REAL(member, unit, doc, least, most, more, ...)                                                                \
+    TL_PARAM(TL_PARAM_REAL, params, member, unit, doc, .min = (least), .max = (most), .flags = (more), __VA_ARGS__)
+#define STRONG(member, unit, doc, least, more, ...)                                                                    \
+    REAL(member, unit, doc, least, MOST, TL_PARAM_STRENGTH | (more), __VA_ARGS__)
+#define BOLT_PARAMS(begin)                                                                                             \
+    {                                                                                                                  \
+        TL_PARAM(TL_PARAM_VEC3, params, from, "m", "The mouth, where the plate is.",                                   \
+                 .flags = TL_PARAM_REQUIRED | PLACED),                                                                 \
+            TL_PARAM(TL_PARAM_VEC3, params, to, "m", "The far end.", .flags = TL_PARAM_REQUIRED | PLACED),             \
+            REAL(diameter, "m", "Of the steel.", 1e-3, 1, 0, .def = {0.025}),                                          \
+            REAL(young, "Pa", "Young's modulus of the steel.", 1e8, 1e13, 0, .def = {200e9}),                          \
+            STRONG(yield, "N", "Tension and compression at which the steel yields.", 1, 0, .def = {2.4e5}),            \
+            REAL(rupture_strain, "", "Strain at which the steel breaks.", 1e-4, 1e6, 0, .def = {0.1}),                 \
+            REAL(grout_stiffness, "N/m2", "Of the grout in shear, for each metre.", 1e5, STIFFEST, 0, .def = {1e9}),   \
+            STRONG(grout_strength, "N/m", "Bond of the grout for each metre.", 0, 0, .def = {4e5}),                    \
+            STRONG(grout_residual, "N/m", "What is left of the bond where it has slipped; without it, all.", 0,        \
+                   TL_PARAM_OPTIONAL, .alias = NULL),                                                                  \
+            REAL(grout_friction, "deg", "Of the bond under the confining pressure.", 0, 90,                            \
+                 TL_PARAM_STRENGTH_ANGLE | TL_PARAM_MAX_OPEN, .alias = NULL),                                          \
+            REAL(confining, "Pa", "Pressure on the bar, for the friction of the bond.", 0, MOST, 0, .alias = NULL),    \
+            REAL(grouted_from, "", "Part of the length where the grout begins.", 0, 1, PLACED, .def = {begin}),        \
+            REAL(grouted_to, "", "Part of the length where the grout ends.", 0, 1, PLACED, .def = {1}),                \
+            REAL(plate_stiffness, "N/m", "Of the plate at the mouth; 0: there is none.", 0, STIFFEST, 0,               \
+                 .def = {5e7}),                                                                                        \
+            STRONG(plate_strength, "N", "Force at which the plate yields.", 0, 0, .def = {2e5}),                       \
+            REAL(pretension, "N", "Pull at the mouth against the plate when installed.", 0, MOST, PLACED,              \
+                 .alias = NULL),                                                                                       \
+            REAL(dowel_stiffness, "N/m", "Of the dowel at each joint, across the bolt.", 0, STIFFEST, 0,               \
+                 .alias = NULL),                                                                                       \
+            STRONG(dowel_strength, "N", "Force that the dowel bears at most.", 0, 0, .alias = NULL),                   \
+            REAL(dowel_rupture, "m", "Displacement across the bolt that cuts the dowel.", 1e-6, 1e6, 0,                \
+                 .def = {0.05}),                                                                                       \
+            REAL(active_length, "m", "Length that turns where a joint shears; without it, two diameters.", 1e-3, 1e6,  \
+                 TL_PARAM_OPTIONAL, .alias = NULL),                                                                    \
+            REAL(spacing, "m", "Of the nodes, at most.", 1e-3, 1e6, PLACED, .def = {0.1})                              \
+    }
+
+static const tl_param bolt_params[] = BOLT_PARAMS(0);
+static const tl_param anchor_params[] = BOLT_PARAMS(0.8);
+
+enum { /* of a node */
+       TENSION,
+       GROUT,
+       GROUT_SLIP,
+       STEEL,
+       ROCK,
+       PLASTIC,
+       GROUTED,
+       CROSSES,
+       DOWEL,
+       DOWEL_PEAK,
+       WORN,
+       CUT,
+       NODE_STATES
+};
+enum { AXIAL, SLIP, SHEAR, PLATE, SEAT, WHOLE_STATES }; /* of the whole */
+
+static const tl_state state_table[] = {
+    TL_STATE(TL_STATE_SCALAR, "tension", "N", "in the steel from here to the next node"),
+    TL_STATE(TL_STATE_SCALAR, "grout", "N", "force of the steel on the rock by the grout, towards the far end"),
+    TL_STATE(TL_STATE_SCALAR, "grout_slip", "m", "slip of the grout"),
+    TL_STATE(TL_STATE_SCALAR, "steel", "m", "displacement of the steel along the bolt"),
+    TL_STATE(TL_STATE_SCALAR, "rock", "m", "displacement of the rock along the bolt"),
+    TL_STATE(TL_STATE_SCALAR, "plastic", "m", "plastic elongation of the steel from here to the next node"),
+    TL_STATE(TL_STATE_SCALAR, "grouted", "m", "length of grout that the node stands for"),
+    TL_STATE(TL_STATE_SCALAR, "crosses", "", "1: a joint or a void lies between here and the next node"),
+    TL_STATE(TL_STATE_SCALAR, "dowel", "N", "force across the bolt at that joint"),
+    TL_STATE(TL_STATE_SCALAR, "dowel_peak", "m", "largest displacement across the bolt at that joint so far"),
+    TL_STATE(TL_STATE_SCALAR, "worn", "", "1: the grout has slipped, so it bears its residual bond"),
+    TL_STATE(TL_STATE_SCALAR, "cut", "", "1: the steel is broken between here and the next node"),
+    TL_STATE(TL_STATE_WHOLE, "axial", "N", "largest tension, of either sign"),
+    TL_STATE(TL_STATE_WHOLE, "slip", "m", "largest slip of the grout, of either sign"),
+    TL_STATE(TL_STATE_WHOLE, "shear", "N", "largest force of a dowel"),
+    TL_STATE(TL_STATE_WHOLE, "plate", "N", "force of the plate on the rock"),
+    TL_STATE(TL_STATE_WHOLE, "seat", "m", "displacement of the mouth at which the plate bears nothing")};
+
+/* ---------------------------------------------------------------- the steel -------------- */
+
+/* The steel and the springs that hold it. Segment k goes from node k to the next. */
+typedef struct chain {
+    uint32_t count;
+    double w[TL_ELEMENT_NODES], rock[TL_ELEMENT_NODES], slip[TL_ELEMENT_NODES]; /* m */
+    double hold[TL_ELEMENT_NODES];                                              /* N/m, of the grout */
+    double bond[TL_ELEMENT_NODES], residual[TL_ELEMENT_NODES];                  /* N */
+    bool worn[TL_ELEMENT_NODES];
+    double stiff[TL_ELEMENT_NODES], even[TL_ELEMENT_NODES]; /* N/m, of segments: E A / h and E A / gauge */
+    double plastic[TL_ELEMENT_NODES], limit[TL_ELEMENT_NODES];
+    double gauge[TL_ELEMENT_NODES];        /* m, over which the strain counts */
+    double seat, plate_stiff, plate_limit; /* the plate is at node 0 */
+    double pull;                           /* N, by which the mouth is pulled out */
+    /* the answer: forces, forces that there would be without a limit, and what is left of the stiffness */
+    double grout[TL_ELEMENT_NODES], grout_trial[TL_ELEMENT_NODES], grout_tangent[TL_ELEMENT_NODES];
+    double tension[TL_ELEMENT_NODES], tension_trial[TL_ELEMENT_NODES], tension_tangent[TL_ELEMENT_NODES];
+    double plate, plate_trial, plate_tangent;
+    double off[TL_ELEMENT_NODES]; /* N, unbalance of the steel */
+} chain;
+
+/* As fmax and fmin, which compilers do not put inline for the sake of NaN. */
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double within(double x, double limit)
+{
+    return larger(-limit, smaller(limit, x));
+}
+
+/* Forces at the present w; `elastic`: as if nothing had a limit but steel that is broken. */
+static void respond(chain *c, bool elastic)
+{
+    const uint32_t n = c->count;
+    for (uint32_t k = 0; k < n; k++) {
+        const double trial = c->hold[k] * (c->w[k] - c->rock[k] - c->slip[k]);
+        c->grout_trial[k] = trial;
+        c->grout[k] = elastic ? trial : within(trial, c->worn[k] ? c->residual[k] : c->bond[k]);
+        c->grout_tangent[k] = c->grout[k] == trial ? c->hold[k] : LEFT * smaller(c->hold[k], c->even[k]);
+    }
+    for (uint32_t k = 0; k + 1 < n; k++) {
+        const double trial = c->stiff[k] * (c->w[k + 1] - c->w[k] - c->plastic[k]);
+        c->tension_trial[k] = trial;
+        c->tension[k] = elastic && c->limit[k] > 0 ? trial : within(trial, c->limit[k]);
+        c->tension_tangent[k] = c->tension[k] == trial ? c->stiff[k] : LEFT * c->even[k];
+    }
+    c->plate_trial = c->plate_stiff * (c->w[0] - c->rock[0] - c->seat);
+    c->plate = larger(0, smaller(c->plate_limit, c->plate_trial));
+    c->plate_tangent = c->plate == c->plate_trial ? c->plate_stiff : LEFT * smaller(c->plate_stiff, c->even[0]);
+}
+
+/* Grout beyond its bond falls to the residual; whether some has. */
+static bool wear(chain *c)
+{
+    bool wears = false;
+    for (uint32_t k = 0; k < c->count; k++)
+        if (!c->worn[k] && fabs(c->grout_trial[k]) > c->bond[k]) {
+            c->worn[k] = true;
+            c->grout[k] = within(c->grout_trial[k], c->residual[k]);
+            wears = wears || c->residual[k] < c->bond[k];
+        }
+    return wears;
+}
+
+/* Whether the steel is in equilibrium; fills `off`. */
+static bool is_balanced(chain *c)
+{
+    double most = fabs(c->pull) + c->plate, off = 0, before = -c->plate - c->pull;
+    double stiffest = c->plate_stiff, moved = fabs(c->seat);
+    for (uint32_t k = 0; k < c->count; k++) {
+        const double after = k + 1 < c->count ? c->tension[k] : 0;
+        c->off[k] = after + before - c->grout[k];
+        before = -after;
+        off = larger(off, fabs(c->off[k]));
+        most = larger(most, larger(fabs(after), fabs(c->grout[k])));
+        stiffest = larger(stiffest, larger(c->hold[k], k + 1 < c->count ? c->stiff[k] : 0));
+        moved = larger(moved, larger(fabs(c->w[k]), fabs(c->rock[k])));
+        moved = larger(moved, fabs(c->slip[k]));
+    }
+    return off <= BALANCED * most + ROUNDED * stiffest * moved;
+}
+
+/* The step of w of a Newton pass: elimination down the three bands, and back. */
+static void find_step(const chain *c, double *step)
+{
+    double over[TL_ELEMENT_NODES], inverse[TL_ELEMENT_NODES]; /* upper band over the pivot, 1 over the pivot */
+    double before = 0, part = 0, alone = 1, carried = 0;
+    const uint32_t n = c->count;
+    for (uint32_t k = 0; k < n; k++) {
+        const double after = k + 1 < n ? c->tension_tangent[k] : 0;
+        /* what is left of the segment before when all nodes before it are eliminated */
+        const double own = c->grout_tangent[k] + (k == 0 ? c->plate_tangent : 0) + before * alone;
+        const double pivot = own + after;
+        inverse[k] = pivot > 0 ? 1 / pivot : 0;
+        carried = c->off[k] + part * carried;
+        step[k] = carried * inverse[k];
+        part = over[k] = after * inverse[k];
+        alone = own * inverse[k];
+        before = after;
+    }
+    for (uint32_t k = n - 1; k-- > 0;)
+        step[k] += over[k] * step[k + 1];
+}
+
+/* Goes a part of a step on from `from`. Gives the unbalance along the step, J, which falls to 0 at the best part. */
+static double go(chain *c, const double *from, const double *step, double part, bool *balanced)
+{
+    double sum = 0;
+    for (uint32_t k = 0; k < c->count; k++)
+        c->w[k] = from[k] + part * step[k];
+    respond(c, false);
+    *balanced = is_balanced(c);
+    for (uint32_t k = 0; k < c->count; k++)
+        sum += c->off[k] * step[k];
+    return sum;
+}
+
+/* A Newton pass. Where it goes too far, beyond where the energy along the step is least, it goes back. */
+static bool advance(chain *c)
+{
+    double step[TL_ELEMENT_NODES], from[TL_ELEMENT_NODES], least = 0, most = 1;
+    bool balanced;
+    find_step(c, step);
+    memcpy(from, c->w, c->count * sizeof *from);
+    const double begin = go(c, from, step, 0, &balanced);
+    double low = begin, high = go(c, from, step, 1, &balanced);
+    for (int k = 0; k < SEARCH && high < -OVERSHOT * begin && !balanced; k++) {
+        const double part = k % 3 == 2 ? 0.5 * (least + most) : least + (most - least) * low / (low - high);
+        const double at = go(c, from, step, part, &balanced);
+        if (fabs(at) <= OVERSHOT * begin)
+            break;
+        *(at > 0 ? &least : &most) = part;
+        *(at > 0 ? &low : &high) = at;
+    }
+    return balanced;
+}
+
+/* Finds w; true when the steel is in equilibrium. It begins with what the steel would do if nothing had a limit. */
+static bool solve(chain *c)
+{
+    respond(c, true);
+    if (!is_balanced(c)) {
+        double step[TL_ELEMENT_NODES];
+        find_step(c, step);
+        for (uint32_t k = 0; k < c->count; k++)
+            c->w[k] += step[k];
+    }
+    respond(c, false);
+    wear(c);
+    bool balanced = is_balanced(c);
+    for (int pass = 0; pass < PASSES && !balanced; pass++) {
+        balanced = advance(c);
+        if (wear(c))
+            balanced = is_balanced(c);
+    }
+    return balanced;
+}
+
+/* ---------------------------------------------------------------- the bolt --------------- */
+
+/* What follows from the parameters. */
+typedef struct steel {
+    double ea, active, bond, residual; /* N, m, N/m, N/m */
+} steel;
+
+static steel steel_of(const params *p)
+{
+    const double d = p->diameter, pi = 180 * TL_DEGREE, angle = p->grout_friction * TL_DEGREE;
+    const double friction = pi * d * p->confining * (tl_sin(angle) / tl_cos(angle));
+    return (steel){.ea = p->young * 0.25 * pi * d * d,
+                   .active = isnan(p->active_length) ? ACTIVE * d : p->active_length,
+                   .bond = p->grout_strength + friction,
+                   .residual = (isnan(p->grout_residual) ? p->grout_strength : p->grout_residual) + friction};
+}
+
+/* Grout of `length` at node k. */
+static void put_grout(chain *c, uint32_t k, const params *p, const steel *s, double length)
+{
+    c->hold[k] = p->grout_stiffness * length;
+    c->bond[k] = s->bond * length;
+    c->residual[k] = s->residual * length;
+}
+
+/* Steel of the length h from node k on, whose strain counts over `gauge`. */
+static void put_steel(chain *c, uint32_t k, const params *p, const steel *s, double h, double gauge, bool cut)
+{
+    c->stiff[k] = s->ea / larger(h, SHORT * p->diameter);
+    c->even[k] = s->ea / gauge;
+    c->gauge[k] = gauge;
+    c->even[k + 1] = c->even[k];
+    c->limit[k] = cut ? 0 : p->yield;
+}
+
+/* ---------------------------------------------------------------- placing ---------------- */
+
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    const params *p = given;
+    if (!isnan(p->grout_residual) && p->grout_residual > p->grout_strength)
+        return tl_refuse(report, "grout_residual = %g N/m is above grout_strength = %g N/m", p->grout_residual,
+                         p->grout_strength);
+    if (!(p->grouted_from < p->grouted_to))
+        return tl_refuse(report, "grouted_from = %g must be below grouted_to = %g", p->grouted_from, p->grouted_to);
+    if (p->pretension > fmin(p->yield, p->plate_stiffness > 0 ? p->plate_strength : 0))
+        return tl_refuse(report, "pretension = %g N is above what steel (%g N) and plate (%g N) bear", p->pretension,
+                         p->yield, p->plate_stiffness > 0 ? p->plate_strength : 0);
+    return tl_keep(p, sizeof *p, self, report);
+}
+
+static double distance(tl_vec3 a, tl_vec3 b)
+{
+    return tl_v3_norm(tl_v3_sub(a, b));
+}
+
+/* Keeps the nodes of the ways through bodies that are at least as long as a diameter; `passes` becomes 1 where a joint
+ * or a void follows. Gives how many, at most one more than an element may have. */
+static size_t keep_ways(tl_line_node *to, const tl_line_node *line, size_t count, double least)
+{
+    size_t kept = 0;
+    for (size_t first = 0, end; first < count; first = end) {
+        for (end = first + 1; end < count && !line[end].passes;)
+            end++;
+        end += end < count;
+        for (size_t i = first; i < end && line[end - 1].at - line[first].at >= least; i++) {
+            if (kept == TL_ELEMENT_NODES)
+                return kept + 1;
+            to[kept] = line[i];
+            to[kept++].passes = i + 1 == end;
+        }
+    }
+    if (kept > 0)
+        to[kept - 1].passes = 0;
+    return kept;
+}
+
+/* Says what a bolt cannot do. */
+static void warn(const tl_element_host *host, const params *p, const tl_line_node *at, size_t count)
+{
+    double empty = 0;
+    size_t crossings = 0;
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double gap = at[i + 1].at - at[i].at;
+        crossings += at[i].passes;
+        empty += at[i].passes && gap > p->diameter ? gap : 0;
+    }
+    if (crossings == 0)
+        host->log(host, "the bolt from (%g, %g, %g) to (%g, %g, %g) lies in one body, so it holds nothing", p->from.x,
+                  p->from.y, p->from.z, p->to.x, p->to.y, p->to.z);
+    if (empty > 0)
+        host->log(host, "the bolt from (%g, %g, %g) to (%g, %g, %g) passes through a void of %g m: it is free there",
+                  p->from.x, p->from.y, p->from.z, p->to.x, p->to.y, p->to.z, empty);
+}
+
+/* Length of steel that a segment from k to k + 1 strains over: of a crossing, half of the two beside it at least. */
+static double gauge_of(double before, double h, double after, bool crosses)
+{
+    return crosses ? fmax(h, 0.5 * (before + after)) : h;
+}
+
+/* Fills the chain of a new bolt, at rest, from its nodes and their states. */
+static void begin_chain(chain *c, const params *p, const tl_line_node *at, size_t count, double *state)
+{
+    const steel s = steel_of(p);
+    const double begin = p->grouted_from * distance(p->from, p->to), end = p->grouted_to * distance(p->from, p->to);
+    memset(c, 0, sizeof *c);
+    c->count = (uint32_t)count;
+    for (uint32_t k = 0; k < count; k++) {
+        const bool first = k == 0 || at[k - 1].passes, last = k + 1 == count || at[k].passes;
+        const double low = first ? at[k].at : 0.5 * (at[k - 1].at + at[k].at);
+        const double high = last ? at[k].at : 0.5 * (at[k].at + at[k + 1].at);
+        const double length = fmax(0, fmin(high, end) - fmax(low, begin));
+        put_grout(c, k, p, &s, length);
+        if (k + 1 < count) {
+            const double h = at[k + 1].at - at[k].at, before = k ? at[k].at - at[k - 1].at : h;
+            const double after = k + 2 < count ? at[k + 2].at - at[k + 1].at : h;
+            put_steel(c, k, p, &s, h, gauge_of(before, h, after, at[k].passes), false);
+        }
+        state[k * NODE_STATES + GROUTED] = length;
+        state[k * NODE_STATES + CROSSES] = at[k].passes;
+    }
+}
+
+/* Pulls the mouth by the pretension and puts the plate under it. */
+static tl_status tighten(const tl_element_host *host, const params *p, chain *c, double *state, double *whole)
+{
+    c->pull = p->pretension;
+    if (!solve(c))
+        return host->fail(host, TL_E_ARGUMENT,
+                          "pretension = %g N pulls the bolt out of its grout: lower it, or grout "
+                          "more of the bolt",
+                          p->pretension);
+    double axial = 0;
+    for (uint32_t k = 0; k < c->count; k++) {
+        double *of = &state[k * NODE_STATES];
+        of[STEEL] = c->w[k];
+        of[GROUT] = c->grout[k];
+        of[GROUT_SLIP] = c->hold[k] > 0 ? (c->grout_trial[k] - c->grout[k]) / c->hold[k] : 0;
+        of[TENSION] = k + 1 < c->count ? c->tension[k] : 0;
+        of[WORN] = c->worn[k];
+        axial = fmax(axial, of[TENSION]);
+    }
+    whole[AXIAL] = axial;
+    whole[PLATE] = p->pretension;
+    whole[SEAT] = p->plate_stiffness > 0 ? c->w[0] - p->pretension / p->plate_stiffness : 0;
+    return TL_OK;
+}
+
+static tl_status place(const tl_element_host *host, const void *given)
+{
+    const params *p = given;
+    if (!(distance(p->from, p->to) > 0))
+        return host->fail(host, TL_E_ARGUMENT, "from and to are the same point (%g, %g, %g)", p->from.x, p->from.y,
+                          p->from.z);
+    const tl_line_node *line;
+    tl_line_node at[TL_ELEMENT_NODES];
+    tl_element_node nodes[TL_ELEMENT_NODES];
+    size_t count;
+    tl_status status = host->line(host, p->from, p->to, p->spacing, &line, &count);
+    if (status != TL_OK)
+        return status;
+    count = keep_ways(at, line, count, p->diameter);
+    if (count == 0)
+        return host->fail(host, TL_E_ARGUMENT, "the bolt from (%g, %g, %g) to (%g, %g, %g) lies outside of all blocks",
+                          p->from.x, p->from.y, p->from.z, p->to.x, p->to.y, p->to.z);
+    if (count > TL_ELEMENT_NODES)
+        return host->fail(
+            host, TL_E_ARGUMENT,
+            "the bolt from (%g, %g, %g) to (%g, %g, %g) has more than %d nodes: make spacing = %g m longer", p->from.x,
+            p->from.y, p->from.z, p->to.x, p->to.y, p->to.z, TL_ELEMENT_NODES, p->spacing);
+    double *state = calloc(count, NODE_STATES * sizeof *state), whole[WHOLE_STATES] = {0};
+    if (!state)
+        return host->fail(host, TL_E_MEMORY, "out of memory");
+    chain c;
+    begin_chain(&c, p, at, count, state);
+    status = tighten(host, p, &c, state, whole);
+    for (size_t i = 0; i < count; i++)
+        nodes[i] = (tl_element_node){at[i].block, at[i].place, {0, 0, 0}, at[i].length};
+    if (status == TL_OK) {
+        warn(host, p, at, count);
+        status = host->add(
+            host,
+            &(tl_new_element){
+                .size = sizeof(tl_new_element), .nodes = nodes, .count = count, .node_state = state, .state = whole});
+    }
+    free(state);
+    return status;
+}
+
+/* ---------------------------------------------------------------- the rock --------------- */
+
+/* A joint or a void between two nodes of the chain, as it is now. */
+typedef struct crossing {
+    uint32_t segment;
+    uint32_t begin, end;              /* first node of the way before, last node of that after */
+    tl_vec3 axis, along, slid;        /* unit vectors of bolt and tension, and d */
+    tl_vec3 side[2];                  /* unit vectors of the ways; 0: one node only */
+    double side_length[2], sum, part; /* m; size of the sum of the sides; g.a */
+    double turn;                      /* active length over that of the straight piece now */
+    double shear, size;               /* q and |d| */
+} crossing;
+
+/* A bolt where its nodes are now. Node k of the chain is row[k] of the batch. */
+typedef struct bolt {
+    chain c;
+    uint32_t row[TL_ELEMENT_NODES];
+    double h[TL_ELEMENT_NODES]; /* of segments, when installed */
+    tl_vec3 along[TL_ELEMENT_NODES];
+    crossing cross[TL_ELEMENT_NODES / 2]; /* each has nodes of its own on either side */
+    uint32_t crossings;
+} bolt;
+
+static tl_vec3 column(const double *const of[3], uint32_t i)
+{
+    return tl_v3(of[0][i], of[1][i], of[2][i]);
+}
+
+static tl_vec3 way_of(const tl_element_batch *b, uint32_t i, uint32_t j)
+{
+    return tl_v3(b->rest[0][j] - b->rest[0][i] + (b->u[0][j] - b->u[0][i]),
+                 b->rest[1][j] - b->rest[1][i] + (b->u[1][j] - b->u[1][i]),
+                 b->rest[2][j] - b->rest[2][i] + (b->u[2][j] - b->u[2][i]));
+}
+
+/* Elongation of a way within a body; fills h and along. L^2 - h^2 = d . (2 r + d) keeps the digits of a small d. */
+static double stretch(bolt *t, uint32_t k, const tl_element_batch *b)
+{
+    const uint32_t i = t->row[k], j = t->row[k + 1];
+    const tl_vec3 rest = tl_v3_sub(column(b->rest, j), column(b->rest, i));
+    const tl_vec3 moved = tl_v3(b->u[0][j] - b->u[0][i], b->u[1][j] - b->u[1][i], b->u[2][j] - b->u[2][i]);
+    const tl_vec3 now = tl_v3_add(rest, moved);
+    const double h = tl_v3_norm(rest), length = tl_v3_norm(now);
+    t->h[k] = h;
+    t->along[k] = length > 0 ? tl_v3_scale(1 / length, now) : tl_v3(0, 0, 0);
+    const double longer = tl_v3_dot(moved, tl_v3_add(tl_v3_add(rest, rest), moved)) / (length + h);
+    return fabs(longer) > NOISE * tl_v3_norm(moved) ? longer : 0;
+}
+
+/* Elongation at a crossing, whose ends are known. */
+static double part_sides(bolt *t, crossing *x, const tl_element_batch *b, double active)
+{
+    const uint32_t k = x->segment, i = t->row[k], j = t->row[k + 1];
+    const tl_vec3 side[2] = {way_of(b, t->row[x->begin], i), way_of(b, j, t->row[x->end])}, g = way_of(b, i, j);
+    const double gap = t->h[k] = tl_v3_norm(tl_v3_sub(column(b->rest, j), column(b->rest, i)));
+    for (int s = 0; s < 2; s++) {
+        x->side_length[s] = tl_v3_norm(side[s]);
+        x->side[s] = x->side_length[s] > 0 ? tl_v3_scale(1 / x->side_length[s], side[s]) : tl_v3(0, 0, 0);
+    }
+    const tl_vec3 sum = tl_v3_add(x->side[0], x->side[1]);
+    x->sum = tl_v3_norm(sum);
+    x->axis = x->sum > 0 ? tl_v3_scale(1 / x->sum, sum) : tl_v3(0, 0, 0);
+    x->part = tl_v3_dot(g, x->axis);
+    x->slid = tl_v3_madd(g, -x->part, x->axis);
+    x->size = tl_v3_norm(x->slid);
+    const double l = active + gap, opened = x->part - gap;
+    const tl_vec3 straight = tl_v3_madd(x->slid, l + opened, x->axis);
+    const double length = tl_v3_norm(straight);
+    x->turn = length > 0 ? active / length : 0;
+    x->along = length > 0 ? tl_v3_scale(1 / length, straight) : x->axis;
+    t->along[k] = x->along;
+    return (opened * (2 * l + opened) + x->size * x->size) / (length + l);
+}
+
+/* Stiffness of a dowel whose largest displacement is known. */
+static double dowel_stiffness(const params *p, double peak)
+{
+    if (peak >= p->dowel_rupture)
+        return 0;
+    return peak * p->dowel_stiffness > p->dowel_strength ? p->dowel_strength / peak : p->dowel_stiffness;
+}
+
+/* Finds the nodes that are left of an element, and where they are. */
+static void lay(bolt *t, const params *p, const steel *s, const tl_element_batch *b, uint32_t e)
+{
+    chain *c = &t->c;
+    c->count = t->crossings = 0;
+    c->pull = 0;
+    uint32_t begin = 0;
+    bool crosses = false;
+    for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++) {
+        const bool gone = b->weight[i] == 0;
+        if (!gone) {
+            const uint32_t k = c->count++;
+            t->row[k] = i;
+            if (k > 0 && crosses) {
+                if (t->crossings > 0)
+                    t->cross[t->crossings - 1].end = k - 1;
+                t->cross[t->crossings++] = (crossing){.segment = k - 1, .begin = begin};
+                begin = k;
+            }
+            c->w[k] = b->state[STEEL][i];
+            c->slip[k] = b->state[GROUT_SLIP][i];
+            c->worn[k] = b->state[WORN][i] != 0;
+            c->plastic[k] = b->state[PLASTIC][i];
+            put_grout(c, k, p, s, b->state[GROUTED][i]);
+        }
+        crosses = (crosses && gone) || gone || b->state[CROSSES][i] != 0;
+    }
+    if (t->crossings > 0)
+        t->cross[t->crossings - 1].end = c->count - 1;
+    const bool mouth = c->count > 0 && t->row[0] == b->start[e];
+    c->plate_stiff = mouth ? p->plate_stiffness : 0;
+    c->plate_limit = p->plate_strength;
+    c->seat = b->element_state[SEAT][e];
+}
+
+/* Displacement of the rock along the bolt, from its first node on. */
+static void follow_rock(bolt *t, const params *p, const steel *s, const tl_element_batch *b)
+{
+    chain *c = &t->c;
+    uint32_t next = 0;
+    c->rock[0] = b->state[ROCK][t->row[0]];
+    for (uint32_t k = 0; k + 1 < c->count; k++) {
+        const bool crosses = next < t->crossings && t->cross[next].segment == k;
+        c->rock[k + 1] = c->rock[k] + (crosses ? part_sides(t, &t->cross[next], b, s->active) : stretch(t, k, b));
+        next += crosses;
+    }
+    next = 0;
+    for (uint32_t k = 0; k + 1 < c->count; k++) {
+        const bool crosses = next < t->crossings && t->cross[next].segment == k;
+        const double before = k ? t->h[k - 1] : t->h[k], after = k + 2 < c->count ? t->h[k + 1] : t->h[k];
+        put_steel(c, k, p, s, t->h[k], gauge_of(before, t->h[k], after, crosses), b->state[CUT][t->row[k]] != 0);
+        next += crosses;
+    }
+}
+
+/* ---------------------------------------------------------------- acting ----------------- */
+
+/* What grout, steel, plate and dowels hold and have turned to heat, by the mean of the forces before and after. */
+typedef struct books {
+    double stored, lost;
+} books;
+
+static void keep_grout(const bolt *t, const tl_element_batch *b, uint32_t e, books *sum)
+{
+    const chain *c = &t->c;
+    double most = 0;
+    for (uint32_t k = 0; k < c->count; k++) {
+        const uint32_t i = t->row[k];
+        const double slips = c->hold[k] > 0 ? (c->grout_trial[k] - c->grout[k]) / c->hold[k] : 0;
+        sum->lost += 0.5 * (b->state[GROUT][i] + c->grout[k]) * slips;
+        sum->stored += c->hold[k] > 0 ? 0.5 * c->grout[k] * c->grout[k] / c->hold[k] : 0;
+        b->state[GROUT][i] = c->grout[k];
+        b->state[GROUT_SLIP][i] += slips;
+        b->state[STEEL][i] = c->w[k];
+        b->state[ROCK][i] = c->rock[k];
+        b->state[WORN][i] = c->worn[k];
+        b->flags[e] |= slips != 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
+        most = larger(most, fabs(b->state[GROUT_SLIP][i]));
+    }
+    b->element_state[SLIP][e] = most;
+}
+
+static void keep_steel(const bolt *t, const params *p, const tl_element_batch *b, uint32_t e, books *sum)
+{
+    const chain *c = &t->c;
+    double most = 0;
+    for (uint32_t k = 0; k < c->count; k++) {
+        const uint32_t i = t->row[k];
+        const bool last = k + 1 == c->count;
+        const double force = last ? 0 : c->tension[k], yields = last ? 0 : (c->tension_trial[k] - force) / c->stiff[k];
+        sum->lost += 0.5 * (b->state[TENSION][i] + force) * yields;
+        sum->stored += last ? 0 : 0.5 * force * force / c->stiff[k];
+        b->state[TENSION][i] = force;
+        b->state[PLASTIC][i] += yields;
+        b->flags[e] |= yields != 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
+        most = larger(most, fabs(force));
+        if (!last && fabs(c->w[k + 1] - c->w[k]) >= p->rupture_strain * c->gauge[k] && b->state[CUT][i] == 0) {
+            b->state[CUT][i] = 1; /* it bears nothing from the next step on */
+            b->flags[e] |= (uint32_t)TL_ELEMENT_BROKEN;
+        }
+    }
+    b->element_state[AXIAL][e] = most;
+}
+
+/* The mouth that moves by x presses the plate by (P' - P) / k; the rest of x crushes it or is a gap. */
+static void keep_plate(const bolt *t, const tl_element_batch *b, uint32_t e, books *sum)
+{
+    const chain *c = &t->c;
+    double *plate = &b->element_state[PLATE][e];
+    if (c->plate_stiff > 0) {
+        const uint32_t i = t->row[0];
+        const double way = (c->w[0] - c->rock[0]) - (b->state[STEEL][i] - b->state[ROCK][i]);
+        sum->lost += 0.5 * (*plate + c->plate) * (way - (c->plate - *plate) / c->plate_stiff);
+        sum->stored += 0.5 * c->plate * c->plate / c->plate_stiff;
+        const double crushed = larger(0, c->plate_trial - c->plate_limit) / c->plate_stiff;
+        b->element_state[SEAT][e] += crushed;
+        b->flags[e] |= crushed > 0 ? (uint32_t)TL_ELEMENT_YIELDED : 0;
+    }
+    *plate = c->plate;
+}
+
+/* As the stiffness of a dowel falls from k to k' between d and d', (k - k') d.d' / 2 becomes heat. */
+static void keep_dowels(bolt *t, const params *p, const tl_element_batch *b, uint32_t e, books *sum)
+{
+    double most = 0;
+    for (uint32_t n = 0; n < t->crossings; n++) {
+        crossing *x = &t->cross[n];
+        const uint32_t i = t->row[x->segment], j = t->row[x->segment + 1];
+        double *peak = &b->state[DOWEL_PEAK][i], *dowel = &b->state[DOWEL][i];
+        const double had = dowel_stiffness(p, *peak), before = had > 0 ? *dowel / had : 0;
+        b->flags[e] |= *peak < p->dowel_rupture && x->size >= p->dowel_rupture && p->dowel_stiffness > 0
+                           ? (uint32_t)TL_ELEMENT_BROKEN
+                           : 0;
+        *peak = larger(*peak, x->size);
+        const double has = dowel_stiffness(p, *peak);
+        x->shear = has * x->size;
+        const tl_vec3 way = tl_v3_sub(column(b->du, j), column(b->du, i));
+        const double way2 = tl_v3_norm2(tl_v3_madd(way, -tl_v3_dot(way, x->axis), x->axis));
+        sum->lost += 0.25 * (had - has) * (before * before + x->size * x->size - way2);
+        sum->stored += 0.5 * x->shear * x->size;
+        b->flags[e] |= has < p->dowel_stiffness ? (uint32_t)TL_ELEMENT_YIELDED : 0;
+        *dowel = x->shear;
+        most = larger(most, x->shear);
+    }
+    b->element_state[SHEAR][e] = most;
+}
+
+static void push(const tl_element_batch *b, uint32_t i, double scale, tl_vec3 f)
+{
+    b->force[0][i] += scale * f.x;
+    b->force[1][i] += scale * f.y;
+    b->force[2][i] += scale * f.z;
+}
+
+/* Forces that turn the way s of a crossing: `couple` is the gradient of the energy in the axis. */
+static void turn_side(const bolt *t, const crossing *x, const tl_element_batch *b, int s, tl_vec3 couple)
+{
+    if (!(x->side_length[s] > 0))
+        return;
+    const uint32_t from = t->row[s ? x->segment + 1 : x->begin], to = t->row[s ? x->end : x->segment];
+    const tl_vec3 across = tl_v3_madd(couple, -tl_v3_dot(couple, x->side[s]), x->side[s]);
+    push(b, to, -1 / x->side_length[s], across);
+    push(b, from, 1 / x->side_length[s], across);
+}
+
+/* Forces on the nodes: minus the gradient of the energy. Plate and grout of the nodes so far give the tension that the
+ * rock bears between two nodes. */
+static void put_forces(const bolt *t, const tl_element_batch *b, uint32_t e)
+{
+    const chain *c = &t->c;
+    for (int k = 0; k < 3; k++)
+        memset(&b->force[k][b->start[e]], 0, (b->start[e + 1] - b->start[e]) * sizeof(double));
+    double tension = c->plate;
+    uint32_t next = 0;
+    for (uint32_t k = 0; k + 1 < c->count; k++) {
+        tension += c->grout[k];
+        push(b, t->row[k], tension, t->along[k]);
+        push(b, t->row[k + 1], -tension, t->along[k]);
+        if (next == t->crossings || t->cross[next].segment != k)
+            continue;
+        const crossing *x = &t->cross[next++];
+        const double dowel = x->size > 0 ? x->shear / x->size : 0;
+        push(b, t->row[k], dowel, x->slid);
+        push(b, t->row[k + 1], -dowel, x->slid);
+        if (!(x->sum > 0))
+            continue;
+        const tl_vec3 couple = tl_v3_scale((tension * x->turn - dowel * x->part) / x->sum, x->slid);
+        turn_side(t, x, b, 0, couple);
+        turn_side(t, x, b, 1, couple);
+    }
+}
+
+/* Work of the bodies on the element in this step: the half of one end of the step. */
+static double work_on(const tl_element_batch *b, uint32_t e)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++)
+            sum -= 0.5 * b->force[k][i] * b->du[k][i];
+    return sum;
+}
+
+static tl_status update(const void *self, const tl_element_batch *b, tl_report *report)
+{
+    (void)report;
+    const params *p = self;
+    const steel s = steel_of(p);
+    bolt t;
+    for (uint32_t e = 0; e < b->count; e++) {
+        books sum = {0, 0};
+        lay(&t, p, &s, b, e);
+        const bool whole = t.c.count == b->start[e + 1] - b->start[e];
+        const double before = whole ? 0 : work_on(b, e);
+        if (t.c.count > 0) {
+            follow_rock(&t, p, &s, b);
+            solve(&t.c);
+            keep_plate(&t, b, e, &sum);
+            keep_grout(&t, b, e, &sum);
+            keep_steel(&t, p, b, e, &sum);
+            keep_dowels(&t, p, b, e, &sum);
+        }
+        put_forces(&t, b, e);
+        /* what gone nodes held is heat */
+        b->lost[e] = whole ? sum.lost : before + work_on(b, e) - (sum.stored - b->stored[e]);
+        b->stored[e] = sum.stored;
+    }
+    return TL_OK;
+}
+
+static void stiffness(const void *self, const tl_element_batch *b, double *k, double *c)
+{
+    const params *p = self;
+    const steel s = steel_of(p);
+    (void)c;
+    const double turning = smaller(p->yield, MOST_STRAIN * s.ea) / s.active;
+    for (uint32_t e = 0; e < b->count; e++)
+        for (uint32_t i = b->start[e]; i < b->start[e + 1]; i++) {
+            const bool first = i == b->start[e], crosses = b->state[CROSSES][i] != 0;
+            const bool beside = crosses || (!first && b->state[CROSSES][i - 1] != 0);
+            k[i] = p->grout_stiffness * b->state[GROUTED][i] + (first ? p->plate_stiffness : 0) +
+                   (beside ? p->dowel_stiffness + turning : 0);
+        }
+}
+
+static const tl_element_ops ops = {.size = sizeof ops,
+                                   .create = create,
+                                   .place = place,
+                                   .update = update,
+                                   .stiffness = stiffness,
+                                   .destroy = free,
+                                   .never_fails = 1};
+
+static const tl_kind kinds[] = {
+    TL_KIND(TL_KIND_ELEMENT, ops, .name = "bolt", .doc = "A grouted steel bar with a plate, across joints.",
+            TL_KIND_PARAMS(params, bolt_params), TL_KIND_STATES(state_table)),
+    TL_KIND(TL_KIND_ELEMENT, ops, .name = "anchor", .doc = "A bolt that is grouted at its far end only.",
+            TL_KIND_PARAMS(params, anchor_params), TL_KIND_STATES(state_table))};
+
+TL_PLUGIN_SINCE(13, kinds, .id = "talus.bolt", .version = TALUS_VERSION, .doc = "Bolts and anchors.",
+                .licence = "BSD-3-Clause");
