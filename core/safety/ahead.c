@@ -57,14 +57,6 @@ static void do_trial(void *user, uint64_t job, const void **data, size_t *size)
 
 /* ---------------------------------------------------------------- in this process -------- */
 
-static tl_trial_ahead *found(const tl_trials *t, double factor)
-{
-    for (size_t i = 0; i < t->ahead_count; i++)
-        if (t->ahead[i].trial.factor == factor)
-            return &t->ahead[i];
-    return NULL;
-}
-
 /* Copies a list of ids out of an answer; false without memory. */
 static bool copy_ids(tl_id **ids, const char *from, size_t count)
 {
@@ -104,7 +96,7 @@ static bool needs_more(const batch *of, const bool *ended, size_t count, tl_brac
     for (;;) {
         const int64_t at = tl_bracket_next(&b);
         const double factor = at >= 0 ? factor_at(user, at) : 0;
-        const tl_trial_ahead *made = at >= 0 ? found(of->trials, factor) : NULL;
+        const tl_trial_ahead *made = at >= 0 ? tl_trials_made(of->trials, factor) : NULL;
         if (!made) {
             for (size_t i = 0; at >= 0 && i < count; i++)
                 if (of->factor[i] == factor)
@@ -143,45 +135,10 @@ tl_status tl_ahead(tl_trials *t, const tl_bracket *b, tl_factor_fn factor_at, co
     batch of = {.trials = t};
     tl_bracket first = *b;
     const int64_t at = tl_bracket_next(&first);
-    if (t->options.workers < 2 || at < 0 || found(t, factor_at(user, at)))
+    if (t->options.workers < 2 || at < 0 || tl_trials_made(t, factor_at(user, at)))
         return TL_OK;
     const size_t count = tl_bracket_ahead(b, places, (size_t)t->options.workers);
     for (size_t i = 0; i < count; i++)
         of.factor[i] = factor_at(user, places[i]);
     return run(&of, count, b, factor_at, user);
-}
-
-static void no_job(void *user, uint64_t job, const void **data, size_t *size)
-{
-    (void)user, (void)job, (void)data, (void)size;
-}
-
-tl_status tl_ahead_check(const tl_trials *t)
-{
-    tl_workers *workers = NULL;
-    tl_error error;
-    if (t->options.workers < 2)
-        return TL_OK;
-    tl_status status = tl_workers_start(1, no_job, NULL, &workers, &error);
-    tl_workers_end(workers);
-    return status == TL_OK ? TL_OK : tl_fail(&t->asked->error, status, "%s: %s", t->what, error.text);
-}
-
-bool tl_ahead_take(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
-{
-    tl_trial_ahead *made = found(t, factor);
-    if (!made)
-        return false;
-    *trial = made->trial;
-    *fall = made->fall;
-    *made = t->ahead[--t->ahead_count];
-    t->cycles += trial->cycles;
-    return true;
-}
-
-void tl_ahead_clear(tl_trials *t)
-{
-    for (size_t i = 0; i < t->ahead_count; i++)
-        tl_fall_free(&t->ahead[i].fall);
-    t->ahead_count = 0;
 }

@@ -35,7 +35,6 @@
 #include "model/options.h"
 #include "model/rows.h"
 #include "model/scope.h"
-#include "safety/ahead.h"
 #include "zone/solids.h"
 
 #include <math.h>
@@ -56,8 +55,8 @@
 #define FAR 300.0
 /* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
 #define SLIPS 1.0
-/* Tolerance: how much stiffer joints are made to tell slip that springs ask for from motion that something ends, how
- * many u more a body then goes, and the largest stiffness over that of the model. */
+/* Tolerance: stiffness of joints, over that before, by which slip that springs ask for is told from motion that
+ * something ends. With it a body goes GROWN times as many u or more. STIFFEST is the largest one tried. */
 #define STIFFER 10.0
 #define GROWN 2.0
 #define STIFFEST 1000.0
@@ -229,6 +228,23 @@ static tl_status check_bodies(const tl_trials *t)
     return free > 0 ? TL_OK : tl_fail(&t->asked->error, TL_E_STATE, "%s: nothing can move: no block is free", t->what);
 }
 
+static void no_job(void *user, uint64_t job, const void **data, size_t *size)
+{
+    (void)user, (void)job, (void)data, (void)size;
+}
+
+/* Refuses processes where there can be none, before any work is done. */
+static tl_status check_processes(const tl_trials *t)
+{
+    tl_workers *workers = NULL;
+    tl_error error;
+    if (t->options.workers < 2)
+        return TL_OK;
+    tl_status status = tl_workers_start(1, no_job, NULL, &workers, &error);
+    tl_workers_end(workers);
+    return status == TL_OK ? TL_OK : tl_fail(&t->asked->error, status, "%s: %s", t->what, error.text);
+}
+
 /* Refuses a model that is under way: what would be asked is where it rests. `copy` is one of it. */
 static tl_status check_rest(const tl_trials *t, tl_model *copy)
 {
@@ -242,6 +258,37 @@ static tl_status check_rest(const tl_trials *t, tl_model *copy)
     return tl_fail(&t->asked->error, TL_E_STATE,
                    "%s: the model moves (block %u at %.3g m/s): bring it to rest first, %s", t->what, b->id[mover],
                    tl_v3_norm(b->v[mover]), tl_words(t->asked, "with model:relax{}", "with tl_model_relax()"));
+}
+
+/* ---------------------------------------------------------------- made ahead ------------- */
+
+tl_trial_ahead *tl_trials_made(const tl_trials *t, double factor)
+{
+    for (size_t i = 0; i < t->ahead_count; i++)
+        if (t->ahead[i].trial.factor == factor)
+            return &t->ahead[i];
+    return NULL;
+}
+
+/* Hands over a trial that was made ahead; false: there is none. */
+static bool take_made(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    tl_trial_ahead *made = tl_trials_made(t, factor);
+    if (!made)
+        return false;
+    *trial = made->trial;
+    *fall = made->fall;
+    *made = t->ahead[--t->ahead_count];
+    t->cycles += trial->cycles;
+    return true;
+}
+
+/* Forgets trials that were made ahead: those to come begin with another copy. */
+static void forget_made(tl_trials *t)
+{
+    for (size_t i = 0; i < t->ahead_count; i++)
+        tl_fall_free(&t->ahead[i].fall);
+    t->ahead_count = 0;
 }
 
 /* ---------------------------------------------------------------- a trial ---------------- */
@@ -525,7 +572,7 @@ static void end_stiffer(tl_trials *t)
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
 {
     tl_safety_trial trial;
-    tl_ahead_clear(t);
+    forget_made(t);
     end_stiffer(t);
     tl_status status = settle(t, t->base, true, &trial, fall);
     if (status == TL_OK && trial.holds)
@@ -556,7 +603,7 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
     if (status == TL_OK)
         status = check_bodies(t);
     if (status == TL_OK)
-        status = tl_ahead_check(t);
+        status = check_processes(t);
     atomic_store(&m->interrupted, false);
     if (status == TL_OK)
         status = copy_of(t, m, &t->base);
@@ -644,7 +691,7 @@ tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_
 {
     *fall = (tl_fall){.ids = NULL};
     tl_status status = TL_OK;
-    if (!tl_ahead_take(t, factor, trial, fall))
+    if (!take_made(t, factor, trial, fall))
         status = make(t, factor, trial, fall);
     t->undecided += status == TL_OK && trial->undecided ? 1 : 0;
     if (status == TL_OK && t->options.on_trial) {
@@ -661,7 +708,7 @@ void tl_trials_end(tl_trials *t)
 {
     if (t->base)
         tl_model_destroy(t->base);
-    tl_ahead_clear(t);
+    forget_made(t);
     end_stiffer(t);
     free(t->ahead);
     free(t->which);

@@ -52,6 +52,8 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall);
 /* Makes a trial. It fails: `fall` has what does. Small blocks that fail are deleted in its own copy only. */
 tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall);
+/* A trial at a factor that was made ahead, and not yet taken; or NULL. */
+tl_trial_ahead *tl_trials_made(const tl_trials *t, double factor);
 void tl_trials_end(tl_trials *t);
 
 #endif
