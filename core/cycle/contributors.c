@@ -46,12 +46,12 @@ double tl_body_stiffness(const tl_model *m, uint32_t body)
     return sum;
 }
 
-tl_vec3 tl_body_pushed(const tl_model *m, uint32_t body)
+tl_wrench tl_body_pushed(const tl_model *m, uint32_t body)
 {
     tl_acting on = {{0, 0, 0}, {0, 0, 0}, 0};
     const bool segments = m->segments && m->segments->structure == m->structure;
     for (tl_contributors with = m->cycle ? m->cycle->contributor : NULL; with && *with; with++)
         if (*with != &tl_contacts_act && (*with)->gather && (*with != &tl_segments_act || segments))
             (*with)->gather(m, body, body + 1, &on);
-    return on.force;
+    return (tl_wrench){on.force, on.moment};
 }

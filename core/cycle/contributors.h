@@ -10,7 +10,8 @@ void tl_contributors_begin(struct tl_cycle *cycle);
 void tl_contributors_list(tl_model *m);
 /* The stiffness with which all of them hold a body where it is, N/m. */
 double tl_body_stiffness(const tl_model *m, uint32_t body);
-/* The force of all of them but the contacts on a body in the last step, N; 0 where blocks have changed since. */
-tl_vec3 tl_body_pushed(const tl_model *m, uint32_t body);
+/* Force, N, and moment about its centroid, N m, of all of them but the contacts on a body in the last step; 0 where
+ * blocks have changed since. */
+tl_wrench tl_body_pushed(const tl_model *m, uint32_t body);
 
 #endif

@@ -348,8 +348,8 @@ static tl_status add_fixing(plan *p, const tl_boundary_action *a, const outer_fa
     unsigned what = a->fixed ? TL_FIX_ALL : 0;
     if (a->quiet)
         return tl_fail(&m->error, TL_E_STATE,
-                       "boundary: block %u is rigid, and only deformable blocks have quiet faces; give it zones first, "
-                       "or choose other faces",
+                       "boundary: block %u is rigid, and only deformable blocks have quiet faces of this sort: put "
+                       "elements of the kind 'quiet' on rigid ones",
                        m->blocks.id[f->row]);
     if (a->roller && !a->fixed) {
         what = roller_of(f->normal);
@@ -647,15 +647,20 @@ void tl_boundary_free(tl_boundary_result *r)
     *r = (tl_boundary_result){0};
 }
 
-/* What contacts, segments, elements, weight and load put on a body, as of the last step. */
-static tl_vec3 acting_on(const tl_model *m, uint32_t body)
+/* What contacts, segments, elements, weight and load put on a body, as of the last step: the moment about its centroid.
+ */
+static tl_wrench acting_on(const tl_model *m, uint32_t body)
 {
     const tl_contacts *c = &m->detect->contacts;
-    tl_body_load load = tl_load_of(&m->bodies, body);
-    tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
-    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);)
-        force = tl_v3_madd(force, tl_contact_sign(c, at.contact, at.block), c->force[at.contact]);
-    return tl_v3_add(force, tl_body_pushed(m, body));
+    const tl_wrench load = tl_body_loaded(&m->bodies, body) ? tl_load_wrench(&m->bodies, body) : (tl_wrench){0};
+    tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity), moment = load.moment;
+    for (tl_body_contacts at = tl_contacts_of_body(m, body); tl_next_contact(&at);) {
+        const uint32_t i = at.contact;
+        force = tl_v3_madd(force, tl_contact_sign(c, i, at.block), c->force[i]);
+        moment = tl_v3_add(moment, tl_contact_moment(m, i, tl_contact_is_b(c, i, at.block)));
+    }
+    const tl_wrench pushed = tl_body_pushed(m, body);
+    return (tl_wrench){tl_v3_add(force, pushed.force), tl_v3_add(moment, pushed.moment)};
 }
 
 tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec3 *force)
@@ -679,12 +684,56 @@ tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec
             continue;
         }
         unsigned fixed = m->bodies.fixed[body];
-        tl_vec3 f = fixed && !seen[body] ? acting_on(m, body) : tl_v3(0, 0, 0);
+        tl_vec3 f = fixed && !seen[body] ? acting_on(m, body).force : tl_v3(0, 0, 0);
         seen[body] = 1;
         force->x -= fixed & TL_FIX_X ? f.x : 0;
         force->y -= fixed & TL_FIX_Y ? f.y : 0;
         force->z -= fixed & TL_FIX_Z ? f.z : 0;
     }
     free(seen);
+    return status;
+}
+
+/* Puts what holds a body in some components on it as a load, and lets them go. The columns of loads are held. */
+static tl_status release_body(tl_model *m, uint32_t row, unsigned what)
+{
+    const uint32_t body = m->blocks.body[row];
+    const tl_id id = m->blocks.id[row];
+    const unsigned fixed = m->bodies.fixed[body];
+    const tl_wrench on = acting_on(m, body);
+    const tl_wrench had = tl_body_loaded(&m->bodies, body) ? tl_load_wrench(&m->bodies, body) : (tl_wrench){0};
+    tl_load load = tl_load_default();
+    load.force = tl_v3_sub(had.force, tl_free_part(on.force, ~what));
+    load.moment = what & TL_FIX_ROTATION ? tl_v3_sub(had.moment, on.moment) : had.moment;
+    load.at = tl_v3_add(m->origin, tl_body_place(&m->bodies, body));
+    if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment))
+        return tl_fail(&m->error, TL_E_NUMERIC, "boundary: what holds block %u is not finite", id);
+    tl_status status = tl_blocks_free(m, &id, 1);
+    if (status == TL_OK)
+        status = tl_blocks_load(m, &id, 1, &load);
+    if (status == TL_OK && (fixed & ~what))
+        status = tl_blocks_fix(m, &id, 1, fixed & ~what);
+    return status;
+}
+
+tl_status tl_blocks_release(tl_model *m, const tl_id *ids, size_t count, const uint8_t *what)
+{
+    tl_status status = tl_model_may_set(m, "let blocks go");
+    if (status == TL_OK)
+        status = tl_blocks_check_rigid(m, ids, count, "release", "let its gridpoints go");
+    if (status == TL_OK)
+        status = tl_detect_refresh(m);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        if (m->bodies.drive[m->blocks.body[tl_block_row_quiet(m, ids[i])]])
+            status = tl_fail(&m->error, TL_E_STATE,
+                             "boundary: block %u is driven, so its faces cannot be quiet; let it go first: "
+                             "selection:free()",
+                             ids[i]);
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        const uint32_t row = tl_block_row_quiet(m, ids[i]);
+        const unsigned held = what[i] & m->bodies.fixed[m->blocks.body[row]];
+        if (held)
+            status = tl_bodies_hold_loads(&m->bodies) ? release_body(m, row, held) : tl_fail_memory(&m->error);
+    }
     return status;
 }

@@ -6,6 +6,7 @@
 #include "lua/fail.h"
 #include "lua/item.h"
 #include "lua/living.h"
+#include "lua/quiet.h"
 #include "lua/record.h"
 
 #include <math.h>
@@ -20,6 +21,8 @@ typedef struct boundary_args {
     tl_vec3 facing;
     double within, tolerance;
     int32_t fixed, roller, rotation, quiet;
+    const char *joint;
+    double p_velocity, s_velocity, density;
     double pressure;
     tl_vec3 traction, at;
     int32_t add;
@@ -42,8 +45,21 @@ static const tl_param boundary_params[] = {
     TL_PARAM(TL_PARAM_BOOL, boundary_args, rotation, "", "with roller: holds the rotation of rigid blocks, too",
              .def = {0.0}),
     TL_PARAM(TL_PARAM_BOOL, boundary_args, quiet, "",
-             "of deformable blocks: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), and bears what it bore",
+             "lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), of rigid blocks behind springs, and bears what "
+             "it bore",
              .def = {0.0}),
+    TL_PARAM(TL_PARAM_STRING, boundary_args, joint, "",
+             "of quiet rigid blocks: the joint whose law has the stiffness kn and ks of what was cut off; \"*\" when "
+             "left out",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, p_velocity, "m/s",
+             "in the place of joint: velocity of pressure waves in what was cut off",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .max = 1e50),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, s_velocity, "m/s", "likewise of shear waves",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .max = 1e50),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, density, "kg/m3",
+             "of what was cut off at quiet rigid blocks; that of the blocks when left out",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .max = 1e50),
     TL_PARAM(TL_PARAM_REAL, boundary_args, pressure, "Pa", "pressure on the faces, inward", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, traction, "Pa", "force per area on the faces", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, at, "m",
@@ -60,6 +76,8 @@ static const tl_lua_key boundary_keys[] = {
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}", "change of the stress with height z, Pa/m"},
     {"velocity", "{x, y, z} or function(t)",
      "prescribes the velocity of the faces, m/s; rigid bodies move with it whole"},
+    {"input", "{x, y, z}, each a record or 0",
+     "of quiet rigid blocks: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)"},
     {"xmin, xmax", "\"roller\", \"fixed\" or a table of what is to be done", "several sides in one call"},
     {"ymin, ymax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {"zmin, zmax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
@@ -68,9 +86,9 @@ static const tl_lua_key boundary_keys[] = {
 
 /* The keys as they stand in a table. */
 static const tl_lua_key table_keys[] = {
-    {"plane", "", ""},    {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""},
-    {"velocity", "", ""}, {"xmin", "", ""}, {"xmax", "", ""},   {"ymin", "", ""},
-    {"ymax", "", ""},     {"zmin", "", ""}, {"zmax", "", ""},   {NULL, NULL, NULL},
+    {"plane", "", ""}, {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""}, {"velocity", "", ""},
+    {"input", "", ""}, {"xmin", "", ""}, {"xmax", "", ""},   {"ymin", "", ""},     {"ymax", "", ""},
+    {"zmin", "", ""},  {"zmax", "", ""}, {NULL, NULL, NULL},
 };
 
 static const tl_lua_spec boundary_spec = {"boundary", boundary_params, TL_LUA_COUNT(boundary_params), boundary_keys};
@@ -223,6 +241,11 @@ static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_bo
     a->roller = args->roller;
     a->rotation = args->rotation;
     a->at = args->at;
+    const bool behind = args->joint || !isnan(args->p_velocity) || !isnan(args->s_velocity) || !isnan(args->density);
+    const bool input = tl_lua_option(L, index, "input") != LUA_TNIL;
+    lua_pop(L, 1);
+    if (!a->quiet && (behind || input))
+        tl_lua_fail(L, "boundary: joint, p_velocity, s_velocity, density and input go with quiet = true");
     if (a->rotation && !a->roller)
         tl_lua_fail(L, "boundary: rotation is held with roller = true, or by fixed = true");
     a->loads = tl_lua_read_tensor(L, index, "boundary", "stress", &a->stress);
@@ -372,17 +395,26 @@ static int model_boundary(lua_State *L, tl_model *model)
     bool add;
     size_t sides = read_call(L, given, &add);
     size_t count = sides ? sides : 1;
-    bool acts = false;
     for (size_t i = 0; i < count; i++) {
         actions[i] = given[i].action;
         actions[i].drive = actions[i].drive ? &given[i].drive : NULL;
-        acts = acts || !does_nothing(&actions[i]);
         found[i] = actions[i];
         found[i].loads = found[i].fixed = found[i].roller = found[i].quiet = false;
         found[i].drive = NULL;
     }
     holder *h = push_holder(L), *done = push_holder(L);
     tl_lua_ok(L, model, tl_model_boundary(model, found, count, add, h->result));
+    tl_lua_quiet quiet[SIDES];
+    size_t quiets = 0;
+    bool acts = false;
+    for (size_t i = 0; i < count; i++) {
+        const char *side = sides ? name_of(actions[i].where.side) : NULL;
+        if (tl_lua_quiet_plan(L, model, side, actions, h->result, count, i, &quiet[quiets])) {
+            actions[i].quiet = false;
+            quiets++;
+        }
+        acts = acts || !does_nothing(&actions[i]);
+    }
     if (sides)
         lua_createtable(L, 0, (int)sides);
     for (size_t i = 0; i < count; i++) {
@@ -392,6 +424,8 @@ static int model_boundary(lua_State *L, tl_model *model)
     }
     if (acts)
         act(L, model, actions, sides, add, done);
+    for (size_t i = 0; i < quiets; i++)
+        tl_lua_quiet_place(L, model, &quiet[i]);
     return 1;
 }
 
@@ -404,7 +438,9 @@ const tl_lua_topic tl_lua_boundary_topics[] = {
             "the load the body had, keep their direction and go with the body. What one call puts on a body adds up. "
             "When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are "
             "meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle "
-            "takes the place of all that was done to it before, or with add is added.",
+            "takes the place of all that was done to it before, or with add is added. Quiet faces of rigid blocks are "
+            "elements of the kind quiet: model:elements{kind = \"quiet\"}. A body that was held is let go, and bears "
+            "on as a load what held it: across the face, or in all components if it was held in all.",
      .spec = &boundary_spec,
      .title = "Fields of the result",
      .verbs = boundary_results,

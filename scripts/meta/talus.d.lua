@@ -423,6 +423,65 @@ function talus.help(topic) end
 ---@field dip? number deg, in [0, 90], default 0: dip of the weak plane at the beginning
 ---@field dip_direction? number deg, in [0, 360], default 0: dip direction of the weak plane at the beginning
 
+--- A grouted steel bar with a plate, across joints.
+---@class (exact) talus.element.Bolt
+---@field from talus.Vector m: The mouth, where the plate is.
+---@field to talus.Vector m: The far end.
+---@field diameter? number m, in [0.001, 1], default 0.025: Of the steel.
+---@field young? number Pa, in [1e+08, 1e+13], default 2e+11: Young's modulus of the steel.
+---@field yield? number N, in [1, 1e+12], default 240000: Tension and compression at which the steel yields.
+---@field rupture_strain? number in [0.0001, 1e+06], default 0.1: Strain at which the steel breaks.
+---@field grout_stiffness? number N/m2, in [100000, 1e+14], default 1000000000: Of the grout in shear, for each metre.
+---@field grout_strength? number N/m, in [0, 1e+12], default 400000: Bond of the grout for each metre.
+---@field grout_residual? number N/m, in [0, 1e+12]: What is left of the bond where it has slipped; without it, all.
+---@field grout_friction? number deg, in [0, 90), default 0: Of the bond under the confining pressure.
+---@field confining? number Pa, in [0, 1e+12], default 0: Pressure on the bar, for the friction of the bond.
+---@field grouted_from? number in [0, 1], default 0: Part of the length where the grout begins.
+---@field grouted_to? number in [0, 1], default 1: Part of the length where the grout ends.
+---@field plate_stiffness? number N/m, in [0, 1e+14], default 50000000: Of the plate at the mouth; 0: there is none.
+---@field plate_strength? number N, in [0, 1e+12], default 200000: Force at which the plate yields.
+---@field pretension? number N, in [0, 1e+12], default 0: Pull at the mouth against the plate when installed.
+---@field dowel_stiffness? number N/m, in [0, 1e+14], default 0: Of the dowel at each joint, across the bolt.
+---@field dowel_strength? number N, in [0, 1e+12], default 0: Force that the dowel bears at most.
+---@field dowel_rupture? number m, in [1e-06, 1e+06], default 0.05: Displacement across the bolt that cuts the dowel.
+---@field active_length? number m, in [0.001, 1e+06]: Length that turns where a joint shears; without it, two diameters.
+---@field spacing? number m, in [0.001, 1e+06], default 0.1: Of the nodes, at most.
+
+--- A bolt that is grouted at its far end only.
+---@class (exact) talus.element.Anchor
+---@field from talus.Vector m: The mouth, where the plate is.
+---@field to talus.Vector m: The far end.
+---@field diameter? number m, in [0.001, 1], default 0.025: Of the steel.
+---@field young? number Pa, in [1e+08, 1e+13], default 2e+11: Young's modulus of the steel.
+---@field yield? number N, in [1, 1e+12], default 240000: Tension and compression at which the steel yields.
+---@field rupture_strain? number in [0.0001, 1e+06], default 0.1: Strain at which the steel breaks.
+---@field grout_stiffness? number N/m2, in [100000, 1e+14], default 1000000000: Of the grout in shear, for each metre.
+---@field grout_strength? number N/m, in [0, 1e+12], default 400000: Bond of the grout for each metre.
+---@field grout_residual? number N/m, in [0, 1e+12]: What is left of the bond where it has slipped; without it, all.
+---@field grout_friction? number deg, in [0, 90), default 0: Of the bond under the confining pressure.
+---@field confining? number Pa, in [0, 1e+12], default 0: Pressure on the bar, for the friction of the bond.
+---@field grouted_from? number in [0, 1], default 0.8: Part of the length where the grout begins.
+---@field grouted_to? number in [0, 1], default 1: Part of the length where the grout ends.
+---@field plate_stiffness? number N/m, in [0, 1e+14], default 50000000: Of the plate at the mouth; 0: there is none.
+---@field plate_strength? number N, in [0, 1e+12], default 200000: Force at which the plate yields.
+---@field pretension? number N, in [0, 1e+12], default 0: Pull at the mouth against the plate when installed.
+---@field dowel_stiffness? number N/m, in [0, 1e+14], default 0: Of the dowel at each joint, across the bolt.
+---@field dowel_strength? number N, in [0, 1e+12], default 0: Force that the dowel bears at most.
+---@field dowel_rupture? number m, in [1e-06, 1e+06], default 0.05: Displacement across the bolt that cuts the dowel.
+---@field active_length? number m, in [0.001, 1e+06]: Length that turns where a joint shears; without it, two diameters.
+---@field spacing? number m, in [0.001, 1e+06], default 0.1: Of the nodes, at most.
+
+--- Outer faces of rigid blocks that let waves out: model:boundary.
+---@class (exact) talus.element.Quiet
+---@field faces string Numbers: block, face (from 0), area (m2), height (m) and density (kg/m3), of one face after the other.
+---@field kn? number Pa/m, in (0, 1e+50]: Normal stiffness of the joints.
+---@field ks? number Pa/m, in (0, 1e+50]: Shear stiffness of the joints.
+---@field p_velocity? number m/s, in (0, 1e+50]: In the place of kn: of pressure waves in what was cut off.
+---@field s_velocity? number m/s, in (0, 1e+50]: In the place of ks: of shear waves in what was cut off.
+---@field input_x? string Incoming wave along x, numbers: time of its begin (s), time between samples (s), then displacement (m) and velocity (m/s) of each sample.
+---@field input_y? string Incoming wave along y, likewise.
+---@field input_z? string Incoming wave along z, likewise.
+
 --- A spring and a dashpot between two points, of blocks or of the ground.
 ---@class (exact) talus.element.Spring
 ---@field from talus.Vector m: One end: on the block that it lies in, or on the ground.
@@ -1278,7 +1337,11 @@ function talus.solid_test(options) end
 ---@field fixed? boolean default false: holds the bodies in all components
 ---@field roller? boolean default false: holds the bodies across their faces; those of rigid blocks must look along x, y or z
 ---@field rotation? boolean default false: with roller: holds the rotation of rigid blocks, too
----@field quiet? boolean default false: of deformable blocks: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), and bears what it bore
+---@field quiet? boolean default false: lets waves out, by dashpots (Lysmer and Kuhlemeyer 1969), of rigid blocks behind springs, and bears what it bore
+---@field joint? string of quiet rigid blocks: the joint whose law has the stiffness kn and ks of what was cut off; "*" when left out
+---@field p_velocity? number m/s, in (0, 1e+50]: in the place of joint: velocity of pressure waves in what was cut off
+---@field s_velocity? number m/s, in (0, 1e+50]: likewise of shear waves
+---@field density? number kg/m3, in (0, 1e+50]: of what was cut off at quiet rigid blocks; that of the blocks when left out
 ---@field pressure? number Pa: pressure on the faces, inward
 ---@field traction? talus.Vector Pa: force per area on the faces
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height stress holds; the gradient counts from there
@@ -1288,6 +1351,7 @@ function talus.solid_test(options) end
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
 ---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) prescribes the velocity of the faces, m/s; rigid bodies move with it whole
+---@field input? talus.Vector of quiet rigid blocks: velocity of a wave that comes in, by the traction 2 rho c v (Joyner and Chen 1975)
 ---@field xmin? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field xmax? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
 ---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise
@@ -1309,7 +1373,7 @@ function talus.solid_test(options) end
 ---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
 ---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
---- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added.
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share. Of deformable blocks the triangles of faces that are meant bear the traction, as they are in each step, or hold their gridpoints; what is done to a triangle takes the place of all that was done to it before, or with add is added. Quiet faces of rigid blocks are elements of the kind quiet: model:elements{kind = "quiet"}. A body that was held is let go, and bears on as a load what held it: across the face, or in all components if it was held in all.
 ---
 ---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions
@@ -1475,6 +1539,46 @@ function Model:write_histories(path) end
 ---@param options talus.BackAnalysisOptions
 ---@return talus.BackAnalysisResult
 function talus.back_analysis(options) end
+
+---@class (exact) talus.BoltPatternOptions
+---@field on any the faces that are bolted
+---@field spacing any m, both above 0: of the grid in the plane of each face
+---@field length number of the bolts, m, from 1e-3 to 1e4
+---@field direction? any into the rock; faces that a bolt would not enter get none
+---@field along? talus.Vector default {0, 1, 0}: direction of the rows, as it lies in each face: the axis of a tunnel
+---@field origin? talus.Vector a point of the grid; left out: the centroid of the faces
+---@field node_spacing? number `spacing` of the nodes of each bolt, m
+
+--- Lays a grid of bolts over outer faces and gives a list for model:element("bolt", list).
+---
+---     bolts = talus.bolt_pattern{on = model:boundary{facing = {0, 0, -1}}, spacing = {1.5, 1.5}, length = 3}
+---@param options talus.BoltPatternOptions
+---@return { from: talus.Vector, to: talus.Vector }[]
+function talus.bolt_pattern(options) end
+
+---@class (exact) talus.BoltTestOptions
+---@field length number of the bolt, m, from 0.01 to 1000
+---@field pull? number how far its mouth is drawn out, m; or `shear`
+---@field shear? number how far a joint across its middle slides, m
+---@field angle? number default 0: between the bolt and the normal of that joint, degrees, 0 to 89
+---@field steps? number default 200: points of the curve
+
+---@class (exact) talus.BoltTestResult
+---@field displacement integer[] list, m of the mouth, or of the joint
+---@field force integer[] list, N pull: at the mouth
+---@field axial number? lists, N shear: largest tension, and the dowel's force
+---@field dowel number? lists, N shear: largest tension, and the dowel's force
+---@field along any lists, N shear: what resists the slip, and what presses the joint together
+---@field closing any lists, N shear: what resists the slip, and what presses the joint together
+---@field yielded boolean booleans whether the bolt has at the end
+---@field broken any booleans whether the bolt has at the end
+
+--- Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists.
+---
+---     curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}
+---@param options talus.BoltTestOptions
+---@return talus.BoltTestResult
+function talus.bolt_test(options) end
 
 ---@class (exact) talus.ConvertOptions
 ---@field file string name of the data file, of 3DEC 7 to 9 or a classic one

@@ -153,7 +153,7 @@ block:free()
 
 model:generate("box", { { min = { 5, 0, 0 }, max = { 6, 1, 1 }, density = 2500 } })
 check.refused(model, function() model:boundary { side = "xmax", quiet = true } end,
-    "block 2 is rigid, and only deformable blocks have quiet faces")
+    "joint '*' has no law to take the stiffness")
 check.refused(model, function() model:boundary { side = "zmax", quiet = true, roller = true } end, "a quiet face moves")
 check.refused(model, function() model:boundary { side = "xmin", velocity = { 0, 0, 1 }, fixed = true } end,
     "is held by that")

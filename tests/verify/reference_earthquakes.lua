@@ -70,4 +70,20 @@ reference.kh = {
         U = 11207.1903535, kh = 0.299413684907, tips = true },
 }
 
+-- Energy that a row of rigid blocks sends back from its end, by blocks a wave: exact for the lattice, with a dashpot behind a
+-- spring of 2 k, and with the dashpot on the block. Then that of a plane dashpot by the angle between the wave and its normal,
+-- r = (cos a - 1) / (cos a + 1). Then a column on a quiet base, with the wave 0.1 sin^2(pi t / T) coming in.
+reference.quiet = {
+    source = "J. Lysmer and R. L. Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969); exact lattice",
+    reflection = { { blocks = 6, series = 0.00515477614287, dashpot = 0.0717967697245 },
+        { blocks = 8, series = 0.00156547863499, dashpot = 0.0395661298966 },
+        { blocks = 10, series = 0.000629288879503, dashpot = 0.0250856309369 } },
+    oblique = { { angle = 30, energy = 0.00515477614287 }, { angle = 45, energy = 0.0294372515229 },
+        { angle = 60, energy = 0.111111111111 } },
+}
+reference.input = {
+    source = "W. B. Joyner and A. T. F. Chen, Bull. Seism. Soc. Am. 65 (1975)", blocks = 20, height = 2, density = 2500,
+    ks = 1e9, size = 0.1, T = 0.4, peak = 0.2, arrival = 0.04472135955,
+}
+
 return reference
