@@ -28,7 +28,8 @@ static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
 {
     table[0] = &m->elements->table.table;
     table[1] = &m->elements->nodes.table;
-    return 2;
+    table[2] = &m->elements->steady.table;
+    return 3;
 }
 
 static bool may_fail(const tl_model *m)

@@ -30,20 +30,33 @@
 
 /* ---------------------------------------------------------------- step ------------------- */
 
+/* The stiffness that asks for as short a step as a stiffness k and a damping c together. With w^2 = k/m and b = c/(2 m)
+ * the longest stable step is 2/w (sqrt(1 + l^2) - l) for l = b/w, which is 2/s for s = b + sqrt(w^2 + b^2). */
+static double damped(double k, double c, double mass)
+{
+    if (!(c > 0))
+        return k;
+    const double b = c / (2 * mass), s = b + sqrt(k / mass + b * b);
+    return mass * s * s;
+}
+
 /* What holds each gridpoint: zones and, no less than the floor, segments and carriers. With that, what rounding of its
- * place would bring. */
+ * place would bring; before, that column has the damping of elements. */
 static void find_holds(tl_model *m)
 {
     tl_gridpoints *p = &m->zones->points;
     for (size_t row = 0; row < p->table.rows; row++)
-        p->holds[row] = 0;
+        p->holds[row] = p->rounded[row] = 0;
     tl_segments_stiffen(m);
     tl_carriers_stiffen(m);
-    tl_elements_stiffen(m);
+    tl_elements_stiffen(m, p->rounded);
     for (size_t row = 0; row < p->table.rows; row++)
         p->holds[row] = p->stiffness[row] + tl_larger(p->holds[row], p->floor[row]);
-    for (size_t row = 0; row < p->table.rows; row++)
-        p->rounded[row] = tl_least_borne(&m->bodies, m->zones->mesh[p->mesh[row]].row, p->holds[row]);
+    for (size_t row = 0; row < p->table.rows; row++) {
+        const double damping = p->rounded[row], stiffness = p->holds[row];
+        p->rounded[row] = tl_least_borne(&m->bodies, m->zones->mesh[p->mesh[row]].row, stiffness);
+        p->holds[row] = damped(stiffness, damping, p->mass[row]);
+    }
 }
 
 double tl_gridpoints_least(tl_model *m)

@@ -6,7 +6,8 @@
  *     F = int t dS,    M = int r x t dS
  *
  * both exact. What all faces put on a body becomes one load. The force F acts at the mean place of the faces, weighted
- * by the lengths of their forces, and goes with the body. What is left of M is a constant moment. */
+ * by the lengths of their forces, and goes with the body. What is left of M is a constant moment. Where a load has a
+ * level, its integrals go over what of the faces lies below it. */
 #include "model/model.h"
 
 #include "base/error.h"
@@ -37,6 +38,8 @@ typedef struct outer_face {
     uint32_t row, face;
     tl_vec3 normal, o, t1, t2; /* axes of the model; o relative to its origin */
     area_sums sums;
+    area_sums loaded;  /* of what lies below the level of the load */
+    double level;      /* relative to the origin, or NaN */
     tl_bare_face bare; /* of a deformable block: its triangles */
 } outer_face;
 
@@ -67,6 +70,7 @@ typedef struct plan {
     tl_bare_list bare;
     tl_outer_list outer;
     uint32_t now;    /* the drive of the action being planned, or 0 */
+    double level;    /* likewise of its load, relative to the origin, or NaN */
     double left_out; /* area of triangles that reach out of its box, m2 */
 } plan;
 
@@ -119,6 +123,34 @@ static void add_polygon(area_sums *s, const tl_point2 *c, size_t count, double s
     }
 }
 
+/* Likewise of what lies below a height: a fan of triangles as the polygon is cut. */
+static void add_below(const outer_face *f, area_sums *s, const tl_point2 *c, size_t count, double sign)
+{
+    tl_point2 fan[3];
+    size_t had = 0;
+    for (size_t i = 0; i < count; i++) {
+        const tl_point2 a = c[i], b = c[i + 1 < count ? i + 1 : 0];
+        const double from = f->level - f->o.z - a.x * f->t1.z - a.y * f->t2.z;
+        const double to = f->level - f->o.z - b.x * f->t1.z - b.y * f->t2.z, part = from / (from - to);
+        const tl_point2 next[2] = {a, {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y)}};
+        for (int k = from > 0 ? 0 : 1; k < ((from > 0) != (to > 0) ? 2 : 1); k++) {
+            fan[had < 2 ? had : 2] = next[k];
+            if (had++ >= 2) {
+                add_polygon(s, fan, 3, sign);
+                fan[1] = fan[2];
+            }
+        }
+    }
+}
+
+/* Adds a polygon to what a face has. */
+static void add_area(outer_face *f, const tl_point2 *c, size_t count, double sign)
+{
+    add_polygon(&f->sums, c, count, sign);
+    if (!isnan(f->level))
+        add_below(f, &f->loaded, c, count, sign);
+}
+
 /* Takes away what a face has in common with one that looks at it, as seen along its normal. */
 static tl_status take_away(tl_model *m, outer_face *f, uint32_t row, uint32_t face)
 {
@@ -134,7 +166,7 @@ static tl_status take_away(tl_model *m, outer_face *f, uint32_t row, uint32_t fa
     for (uint32_t i = 0; i < its; i++) /* clockwise, as seen from here */
         by[i] = flatten(f, corner_at(m, row, face, i));
     size_t count = tl_polygon_common(&now, &next, mine, by, its);
-    add_polygon(&f->sums, now, count, -1);
+    add_area(f, now, count, -1);
     free(memory);
     return TL_OK;
 }
@@ -172,7 +204,7 @@ static tl_status take_zones(tl_model *m, outer_face *f, const tl_covers *covers)
         for (int i = 0; i < 3; i++)
             by[i] = flatten(f, tl_gridpoint_place(&m->zones->points, part->corner[i]));
         const size_t count = tl_polygon_common(&now, &next, mine, by, 3);
-        add_polygon(&f->sums, now, count, -1);
+        add_area(f, now, count, -1);
         free(memory);
     }
     return TL_OK;
@@ -199,10 +231,11 @@ static tl_status take_members(tl_model *m, outer_face *f, double *bare)
 
 /* Measures the outer part of a face of the block in a row, after a tl_detect_refresh. Its area is 0 where all of the
  * face but for roundings lies on others. */
-static tl_status outer_measure(tl_model *m, const tl_covers *covers, uint32_t row, uint32_t face, outer_face *out)
+static tl_status outer_measure(const plan *p, uint32_t row, uint32_t face, outer_face *out)
 {
+    tl_model *m = p->m;
     const tl_poly *shape = m->blocks.shape[row];
-    *out = (outer_face){.row = row, .face = face};
+    *out = (outer_face){.row = row, .face = face, .level = p->level};
     out->normal = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
     out->t1 = tl_v3_perpendicular(out->normal);
     out->t2 = tl_v3_cross(out->normal, out->t1);
@@ -213,23 +246,25 @@ static tl_status outer_measure(tl_model *m, const tl_covers *covers, uint32_t ro
         return tl_fail_memory(&m->error);
     for (uint32_t i = 0; i < count; i++)
         corners[i] = flatten(out, corner_at(m, row, face, i));
-    add_polygon(&out->sums, corners, count, 1);
+    add_area(out, corners, count, 1);
     free(corners);
     double whole = out->sums.a, bare = UNCOVERED;
     tl_status status = take_contacts(m, out);
     if (status == TL_OK)
-        status = take_zones(m, out, covers);
+        status = take_zones(m, out, &p->covers);
     if (status == TL_OK)
         status = take_members(m, out, &bare);
     if (out->sums.a <= bare * whole)
         out->sums = (area_sums){0};
+    if (isnan(p->level) || out->sums.a == 0)
+        out->loaded = out->sums;
     return status;
 }
 
-/* Centroid of it, relative to the origin. */
-static tl_vec3 outer_centroid(const outer_face *f)
+/* Centroid of it, or of its loaded part, relative to the origin. */
+static tl_vec3 outer_centroid(const outer_face *f, const area_sums *s)
 {
-    double u = f->sums.u / f->sums.a, v = f->sums.v / f->sums.a;
+    double u = s->u / s->a, v = s->v / s->a;
     return tl_v3_madd(tl_v3_madd(f->o, u, f->t1), v, f->t2);
 }
 
@@ -275,7 +310,7 @@ static tl_status find_faces(plan *p, const tl_face_filter *filter, face_list *fa
             if (!tl_grow(&faces->at, &faces->capacity, faces->count + 1, sizeof *faces->at))
                 return tl_fail_memory(&m->error);
             outer_face *out = &faces->at[faces->count];
-            status = deforms ? bare_measure(p, filter, row, f, out) : outer_measure(m, &p->covers, row, f, out);
+            status = deforms ? bare_measure(p, filter, row, f, out) : outer_measure(p, row, f, out);
             faces->count += status == TL_OK && out->sums.a > 0;
         }
     if (status == TL_OK && faces->count == 0)
@@ -293,7 +328,7 @@ static tl_status find_faces(plan *p, const tl_face_filter *filter, face_list *fa
 static void face_load(const tl_model *m, const tl_boundary_action *a, const outer_face *f, tl_vec3 *force,
                       tl_vec3 *moment)
 {
-    const area_sums *s = &f->sums;
+    const area_sums *s = &f->loaded;
     double height = f->o.z + m->origin.z - a->at.z;
     tl_vec3 b = tl_s3_mul(a->gradient, f->normal);
     tl_vec3 t = tl_v3_madd(tl_v3_add(tl_s3_mul(a->stress, f->normal), a->traction), height, b);
@@ -318,7 +353,7 @@ static tl_status add_load(plan *p, const tl_boundary_action *a, const outer_face
     double weight = tl_v3_norm(force);
     sum->force = tl_v3_add(sum->force, force);
     sum->moment = tl_v3_add(sum->moment, moment);
-    sum->arm = tl_v3_madd(sum->arm, weight, tl_v3_sub(outer_centroid(f), place));
+    sum->arm = tl_v3_madd(sum->arm, weight, tl_v3_sub(outer_centroid(f, &f->loaded), place));
     sum->weight += weight;
     result->force = tl_v3_add(result->force, force);
     tl_vec3 about = tl_v3_cross(tl_v3_add(m->origin, place), force);
@@ -383,6 +418,12 @@ static tl_status add_triangles(plan *p, const tl_boundary_action *a, const tl_fa
         return tl_fail(&m->error, TL_E_STATE,
                        "boundary: block %u is driven as a whole, so its faces cannot be held; let it go first",
                        m->blocks.id[f->row]);
+    for (size_t k = f->bare.begin; a->loads && !isnan(a->level) && k < f->bare.end; k++)
+        if (tl_bare_crosses(m, &p->bare.at[k], a->level))
+            return tl_fail(&m->error, TL_E_ARGUMENT,
+                           "boundary: the level %g m crosses a triangle of face %u of block %u that another block "
+                           "covers in part: give another level, or let zones end where that block does",
+                           a->level, f->face + 1, m->blocks.id[f->row]);
     return tl_bare_act(m, a, filter, p->now, f->row, &p->bare, &f->bare, &p->outer, result) ? TL_OK
                                                                                             : tl_fail_memory(&m->error);
 }
@@ -396,7 +437,7 @@ static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_r
         const outer_face *f = &faces->at[i];
         tl_id id = m->blocks.id[f->row];
         r->faces[r->face_count++] =
-            (tl_boundary_face){id, f->face, f->sums.a, f->normal, tl_v3_add(m->origin, outer_centroid(f))};
+            (tl_boundary_face){id, f->face, f->sums.a, f->normal, tl_v3_add(m->origin, outer_centroid(f, &f->sums))};
         if (r->block_count == 0 || r->blocks[r->block_count - 1] != id)
             r->blocks[r->block_count++] = id;
         r->area += f->sums.a;
@@ -429,6 +470,7 @@ static tl_status plan_action(plan *p, const tl_boundary_action *a, tl_boundary_r
     face_list faces = {0};
     tl_face_filter filter;
     p->left_out = 0;
+    p->level = a->level - m->origin.z;
     tl_status status = check_action(m, a);
     if (status == TL_OK)
         status = tl_face_filter_begin(m, &a->where, &filter);
@@ -441,11 +483,15 @@ static tl_status plan_action(plan *p, const tl_boundary_action *a, tl_boundary_r
             continue;
         }
         status = add_fixing(p, a, f);
-        if (a->loads && status == TL_OK)
+        if (a->loads && f->loaded.a > 0 && status == TL_OK)
             status = add_load(p, a, f, result);
     }
     if (status == TL_OK && !fill_result(m, &faces, result))
         status = tl_fail_memory(&m->error);
+    if (status == TL_OK && a->loads && !isnan(a->level) && !(tl_v3_norm2(result->force) > 0))
+        status = tl_fail(&m->error, TL_E_NOT_FOUND,
+                         "boundary: no outer face there lies below the level %g m: give a higher one, or other faces",
+                         a->level);
     if (status == TL_OK && (!tl_v3_finite(result->force) || !tl_v3_finite(result->moment)))
         status = tl_fail(&m->error, TL_E_NUMERIC, "boundary: the load is not finite");
     if (status == TL_OK && does_something(a))
@@ -551,7 +597,8 @@ tl_boundary_action tl_boundary_action_default(void)
                                           .box = {none, none},
                                           .facing = none,
                                           .within = NAN,
-                                          .tolerance = NAN}};
+                                          .tolerance = NAN},
+                                .level = NAN};
 }
 
 /* Makes room for a plan. */

@@ -6,6 +6,7 @@
 #include "element/place.h"
 #include "element/relay.h"
 #include "element/set.h"
+#include "element/steady.h"
 #include "model/joints.h"
 #include "model/rows.h"
 #include "plugin/loader.h"
@@ -21,6 +22,7 @@
 /* What elements do has changed: the balance takes the change for one by hand, and the next step is kept. */
 static void changed(tl_model *m)
 {
+    tl_steady_let_go(m);
     m->elements->version++;
     m->laws++;
     tl_undo_by_hand(m);
@@ -108,6 +110,7 @@ static tl_status commit(making *k, tl_id **ids, size_t *made)
     memcpy(e->set + e->set_count, k->set, k->count * sizeof *k->set);
     const uint32_t first = (uint32_t)e->set_count;
     e->set_count += k->count;
+    tl_steady_let_go(m);
     const tl_status status = tl_placing_commit(&k->placing, first);
     if (status != TL_OK) {
         e->set_count -= k->count;
@@ -302,6 +305,7 @@ tl_status tl_elements_delete(tl_model *m, const tl_id *elements, size_t count)
         memset(keep, 1, e->table.table.rows);
         for (size_t i = 0; i < count; i++)
             keep[row[i]] = 0;
+        tl_steady_let_go(m);
         tl_elements_keep(e, keep, true);
         changed(m);
     }

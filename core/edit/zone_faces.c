@@ -5,6 +5,7 @@
 #include "zone/outer.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Tolerance: share of a triangle that may be left bare for roundings. */
 #define UNCOVERED 1e-9
@@ -134,6 +135,82 @@ static void add_load(const tl_model *m, const tl_outer_part *of, tl_boundary_res
     }
 }
 
+/* Integrals over a triangle within the triangle; its corners are given by their weights. */
+static void add_within(tl_bare *to, double p[3][3])
+{
+    const double share = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+                         p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+                         p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, j = (k + 1) % 3;
+            const double at = 0.5 * (p[k][a] + p[j][a]), beside = 0.5 * (p[k][b] + p[j][b]);
+            to->of[a] += share / 3 * at * at;
+            to->of[3 + a] += share / 3 * at * beside;
+        }
+}
+
+/* What of a triangle lies below a level. `depth`: of its corners. */
+static tl_bare part_below(const double depth[3])
+{
+    tl_bare wet = {{0}};
+    double fan[3][3];
+    size_t had = 0;
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3;
+        const double part = depth[i] / (depth[i] - depth[j]);
+        for (int k = depth[i] > 0 ? 0 : 1; k < ((depth[i] > 0) != (depth[j] > 0) ? 2 : 1); k++) {
+            double *to = fan[had < 2 ? had : 2];
+            to[0] = to[1] = to[2] = 0;
+            to[i] = k ? 1 - part : 1;
+            to[j] = k ? part : 0;
+            if (had++ >= 2) {
+                add_within(&wet, fan);
+                memcpy(fan[1], fan[2], sizeof fan[1]);
+            }
+        }
+    }
+    return wet;
+}
+
+/* How many corners of a triangle lie below the level of a load, with their depths. */
+static int depths_of(const tl_model *m, uint32_t part, double level, double depth[3])
+{
+    tl_vec3 x[3];
+    int below = 0;
+    corners_of(m, &m->zones->part[part], x);
+    for (int a = 0; a < 3; a++) {
+        depth[a] = level - m->origin.z - x[a].z;
+        below += depth[a] > 0;
+    }
+    return below;
+}
+
+bool tl_bare_crosses(const tl_model *m, const tl_bare_triangle *bare, double level)
+{
+    double depth[3];
+    const int below = depths_of(m, bare->part, level, depth);
+    return below > 0 && below < 3 && bare->share < 1 - UNCOVERED;
+}
+
+/* Cuts the load of a triangle at its level: one that is crossed keeps the forces it has now. */
+static void cut_load(const tl_model *m, double level, tl_outer_part *of)
+{
+    double depth[3];
+    const int below = depths_of(m, of->part, level, depth);
+    if (below == 3)
+        return;
+    if (below > 0) {
+        const tl_bare whole = of->bare;
+        of->bare = part_below(depth);
+        tl_outer_forces(m, of, of->rest);
+        of->bare = whole;
+    }
+    of->loaded = below > 0;
+    of->stress = of->gradient = (tl_sym3){0};
+    of->traction = tl_v3(0, 0, 0);
+}
+
 bool tl_bare_act(const tl_model *m, const tl_boundary_action *a, const tl_face_filter *filter, uint32_t drive,
                  uint32_t row, const tl_bare_list *list, const tl_bare_face *face, tl_outer_list *to,
                  tl_boundary_result *result)
@@ -157,9 +234,15 @@ bool tl_bare_act(const tl_model *m, const tl_boundary_action *a, const tl_face_f
                               .stress = a->stress,
                               .gradient = a->gradient,
                               .traction = a->traction};
+        if (a->loads && !isnan(a->level))
+            cut_load(m, a->level, of);
+        if (!of->loaded && a->loads && !(holds && (a->fixed || a->roller || drive)) && !a->quiet) {
+            to->count--;
+            continue;
+        }
         if (holds && a->roller && !a->fixed)
             roll(of, filter->plane ? filter->normal : face->normal);
-        if (a->loads)
+        if (of->loaded)
             add_load(m, of, result);
     }
     return true;

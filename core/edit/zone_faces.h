@@ -38,6 +38,9 @@ bool tl_bare_find(const tl_model *m, const tl_face_filter *filter, const tl_cove
 /* What covers a face of a rigid block: [*begin, return) of the list. */
 size_t tl_covers_of(const tl_covers *covers, uint32_t row, uint32_t face, size_t *begin);
 
+/* Whether a level crosses a triangle that others cover in part. */
+bool tl_bare_crosses(const tl_model *m, const tl_bare_triangle *bare, double level);
+
 /* What is done to triangles, on its way. */
 typedef struct tl_outer_list {
     tl_outer_part *at;

@@ -8,6 +8,7 @@
 #include "base/inside.h"
 #include "element/batch.h"
 #include "element/carry.h"
+#include "element/steady.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
 
@@ -61,6 +62,10 @@ static void apply_chunk(void *user, size_t begin, size_t end, size_t chunk, unsi
     struct tl_elements *e = job->m->elements;
     const tl_element_chunk *of = &e->chunk[begin];
     const tl_element_set *set = &e->set[of->set];
+    if (of->steady && e->resting) {
+        memset(e->table.given + of->begin, 0, (of->end - of->begin) * sizeof *e->table.given);
+        return;
+    }
     tl_report report = {.size = sizeof report};
     tl_element_lanes lanes;
     const tl_element_batch batch = tl_element_batch_of(job->m, of, &lanes);
@@ -81,7 +86,8 @@ static void apply_chunk(void *user, size_t begin, size_t end, size_t chunk, unsi
         tl_failure_note(job->failure, chunk, status, row, text);
 }
 
-tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
+/* Asks all kinds, but for steady ones that rest. */
+static tl_status ask_all(tl_model *m, tl_failure *failure)
 {
     struct tl_elements *e = m->elements;
     apply_job job = {m, failure};
@@ -96,6 +102,20 @@ tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
                    e->table.id[row], kind->name, tl_plugin_id(kind), failure->error.text);
 }
 
+tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
+{
+    struct tl_elements *e = m->elements;
+    e->resting = e->any_steady && tl_steady_keeps(m);
+    if (e->any_steady && !e->resting)
+        tl_steady_bring(m);
+    if (!e->resting || !e->all_steady)
+        e->asked++;
+    const tl_status status = ask_all(m, failure);
+    if (e->any_steady && !e->resting && status == TL_OK)
+        tl_steady_take(m);
+    return status;
+}
+
 /* The tables as they were; empty, when out of memory. */
 typedef struct kept {
     tl_element_table table;
@@ -106,13 +126,16 @@ tl_status tl_elements_sum(tl_model *m, tl_vec3 *force)
 {
     struct tl_elements *e = m->elements;
     tl_failure failure = {.error = {.status = TL_OK}};
+    const bool rested = e->resting;
+    e->resting = false;
     kept had = {.table = e->table, .nodes = e->nodes};
     const bool enough = tl_table_copy(&had.table.table, &had.table, &e->table.table) &&
                         tl_table_copy(&had.nodes.table, &had.nodes, &e->nodes.table);
     tl_status status = enough ? TL_OK : tl_fail_memory(&m->error);
     pthread_mutex_init(&failure.lock, NULL);
     if (status == TL_OK)
-        status = tl_elements_apply(m, &failure);
+        status = ask_all(m, &failure);
+    e->resting = rested;
     pthread_mutex_destroy(&failure.lock);
     for (size_t row = 0; status == TL_OK && row < e->nodes.table.rows; row++)
         if (e->nodes.body[row] != TL_NO_ROW)
@@ -133,7 +156,8 @@ static void gather_body(const tl_model *m, uint32_t body, tl_acting *on)
     const struct tl_elements *e = m->elements;
     const tl_mat3 *r = &m->bodies.pose[body].r;
     tl_acting sum = *on;
-    for (uint32_t k = e->use_start[body]; k < e->use_start[body + 1]; k++) {
+    const bool held = tl_steady_add(m, body, &sum);
+    for (uint32_t k = e->use_start[body]; k < (held ? e->steady_start[body] : e->use_start[body + 1]); k++) {
         const uint32_t row = e->use[k];
         const tl_vec3 f = tl_columns_get(e->nodes.force, row);
         sum.force = tl_v3_add(sum.force, f);
@@ -168,16 +192,18 @@ void tl_elements_push(tl_model *m)
 
 /* ---------------------------------------------------------------- stiffness -------------- */
 
-/* Of the dampers only the stiffness counts here: gridpoints are moved with their mean velocity by quiet faces alone. */
-void tl_elements_stiffen(tl_model *m)
+void tl_elements_stiffen(tl_model *m, double *damping)
 {
     const struct tl_elements *e = m->elements;
     for (size_t i = 0; e && i < e->carried_count; i++) {
         const uint32_t row = e->carried[i], first = tl_node_first_point(m, row);
         const double *share = e->nodes.share[row];
         const double all = fabs(share[0]) + fabs(share[1]) + fabs(share[2]) + fabs(share[3]);
-        for (int a = 0; a < 4; a++)
-            m->zones->points.holds[first + e->nodes.point[row][a]] += e->nodes.k[row] * all * fabs(share[a]);
+        for (int a = 0; a < 4; a++) {
+            const uint32_t point = first + e->nodes.point[row][a];
+            m->zones->points.holds[point] += e->nodes.k[row] * all * fabs(share[a]);
+            damping[point] += e->nodes.c[row] * all * fabs(share[a]);
+        }
     }
 }
 
@@ -212,10 +238,12 @@ tl_energies tl_elements_energies(tl_model *m)
 {
     const tl_element_table *t = &m->elements->table;
     tl_energies sum = {.stored = 0};
-    for (size_t row = 0; row < t->table.rows; row++) {
+    const bool rest = m->elements->resting && m->elements->all_steady; /* all of these are 0 */
+    for (size_t row = 0; row < t->table.rows && !rest; row++) {
         sum.stored += t->stored[row];
         sum.heat += t->lost[row];
         sum.given += t->given[row];
     }
+    sum.given += tl_steady_given(m);
     return sum;
 }

@@ -13,9 +13,10 @@ tl_status tl_elements_apply(tl_model *m, tl_failure *failure);
 tl_status tl_elements_sum(tl_model *m, tl_vec3 *force);
 /* Adds what nodes do to rigid bodies. */
 void tl_elements_gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on);
-/* Adds what nodes do to gridpoints, and how stiff these are held, N/m. */
+/* Adds what nodes do to gridpoints. */
 void tl_elements_push(tl_model *m);
-void tl_elements_stiffen(tl_model *m);
+/* Adds how stiff gridpoints are held, N/m, and to damping[rows of gridpoints] how they are damped, N s/m. */
+void tl_elements_stiffen(tl_model *m, double *damping);
 /* How nodes hold a rigid body: stiffness and damping. */
 void tl_elements_hold(const tl_model *m, uint32_t body, tl_holding *sum);
 /* The largest stiffness of a node on a body that can move, N/m. */

@@ -73,18 +73,40 @@ typedef struct tl_node_table {
 typedef struct tl_element_chunk {
     uint32_t set, begin, end; /* rows of elements */
     uint32_t node_begin, node_end;
+    bool steady; /* the forces of its kind are kept while bodies hardly move: steady.c */
 } tl_element_chunk;
+
+/* What steady elements do to each rigid body, in its own frame, and where it was. */
+typedef struct tl_steady_table {
+    tl_table table;
+    uint8_t *held;     /* 1: the sums are those of the nodes */
+    tl_vec3 *force;    /* N */
+    tl_vec3 *moment;   /* N m, about its centroid */
+    double *magnitude; /* N, sum of the lengths of the forces */
+    tl_vec3 *at;       /* m, displacement of the body in the last step, */
+    tl_mat3 *turn;     /* and its rotation then */
+    tl_mat3 *from;     /* likewise when its nodes were asked for their forces */
+    double *odometer;  /* m, of the body then */
+    double *given;     /* J, work of these forces in the last step */
+} tl_steady_table;
 
 struct tl_elements {
     tl_element_table table;
     tl_node_table nodes;
+    tl_steady_table steady;
     tl_element_set *set;
     size_t set_count, set_capacity;
     tl_element_chunk *chunk;
     size_t chunk_count, chunk_capacity;
-    /* rows of nodes on a rigid body: use[use_start[body]] .. use[use_start[body + 1] - 1], ascending */
-    uint32_t *use, *use_start;
-    size_t use_capacity, use_start_capacity;
+    /* rows of nodes on a rigid body: use[use_start[body]] .. use[use_start[body + 1] - 1]. Those of steady elements
+     * come last, from steady_start[body] on. Both ascend. */
+    uint32_t *use, *use_start, *steady_start;
+    size_t use_capacity, use_start_capacity, steady_start_capacity;
+    bool any_steady;   /* some chunks are, */
+    bool all_steady;   /* or all */
+    bool resting;      /* steady elements were not asked for forces in the last step */
+    uint64_t asked;    /* counts steps in which some were */
+    uint64_t looked;   /* that count, when it was looked at how far blocks have slid */
     uint32_t *carried; /* rows of nodes in zones, ascending */
     size_t carried_count, carried_capacity;
     tl_id next_id;

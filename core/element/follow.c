@@ -10,6 +10,7 @@
 #include "element/carry.h"
 #include "element/relay.h"
 #include "element/set.h"
+#include "element/steady.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
 
@@ -98,6 +99,7 @@ void tl_elements_follow(tl_model *m)
     struct tl_elements *e = m->elements;
     if (!e || (e->followed == m->structure && e->zones == (m->zones ? m->zones->version : 0)))
         return;
+    tl_steady_let_go(m);
     const tl_element_table *t = &e->table;
     size_t detached = 0;
     tl_id first = TL_NO_ID;
@@ -128,6 +130,8 @@ static bool list_chunks(struct tl_elements *e)
 {
     const tl_element_table *t = &e->table;
     e->chunk_count = 0;
+    e->any_steady = false;
+    e->all_steady = true;
     for (uint32_t row = 0; row < t->table.rows; row++) {
         tl_element_chunk *last = e->chunk_count ? &e->chunk[e->chunk_count - 1] : NULL;
         const uint32_t end = t->node_begin[row] + t->node_count[row];
@@ -138,12 +142,30 @@ static bool list_chunks(struct tl_elements *e)
         }
         if (!tl_grow(&e->chunk, &e->chunk_capacity, e->chunk_count + 1, sizeof *e->chunk))
             return false;
-        e->chunk[e->chunk_count++] = (tl_element_chunk){t->set[row], row, row + 1, t->node_begin[row], end};
+        const bool steady = e->carried_count == 0 && tl_element_ops_of(&e->set[t->set[row]])->steady;
+        e->any_steady = e->any_steady || steady;
+        e->all_steady = e->all_steady && steady;
+        e->chunk[e->chunk_count++] = (tl_element_chunk){t->set[row], row, row + 1, t->node_begin[row], end, steady};
     }
     return true;
 }
 
-/* The nodes of each rigid body, and those in zones. */
+static bool is_used(const tl_model *m, uint32_t row)
+{
+    return m->elements->nodes.body[row] != TL_NO_ROW && tl_node_first_point(m, row) == TL_NO_ROW;
+}
+
+/* Appends the nodes of chunks that are steady, or of those that are not, to the lists of their bodies. */
+static void use_chunks(tl_model *m, bool steady)
+{
+    struct tl_elements *e = m->elements;
+    for (size_t k = 0; k < e->chunk_count; k++)
+        for (uint32_t row = e->chunk[k].node_begin; row < e->chunk[k].node_end && e->chunk[k].steady == steady; row++)
+            if (is_used(m, row))
+                e->use[e->use_start[e->nodes.body[row] + 1]++] = row;
+}
+
+/* The nodes in zones, shares of threads, and the nodes of each rigid body. */
 static bool list_nodes(tl_model *m)
 {
     struct tl_elements *e = m->elements;
@@ -151,6 +173,7 @@ static bool list_nodes(tl_model *m)
     const size_t bodies = m->bodies.table.rows, nodes = n->table.rows;
     if (!tl_fit(&e->use, &e->use_capacity, nodes, sizeof *e->use) ||
         !tl_fit(&e->carried, &e->carried_capacity, nodes, sizeof *e->carried) ||
+        !tl_fit(&e->steady_start, &e->steady_start_capacity, bodies + 1, sizeof *e->steady_start) ||
         !tl_fit(&e->use_start, &e->use_start_capacity, bodies + 2, sizeof *e->use_start))
         return false;
     memset(e->use_start, 0, (bodies + 2) * sizeof *e->use_start);
@@ -160,11 +183,13 @@ static bool list_nodes(tl_model *m)
             e->carried[e->carried_count++] = row;
         else if (n->body[row] != TL_NO_ROW)
             e->use_start[n->body[row] + 2]++;
+    if (!list_chunks(e))
+        return false;
     for (size_t body = 0; body < bodies; body++)
         e->use_start[body + 2] += e->use_start[body + 1];
-    for (uint32_t row = 0; row < nodes; row++)
-        if (n->body[row] != TL_NO_ROW && tl_node_first_point(m, row) == TL_NO_ROW)
-            e->use[e->use_start[n->body[row] + 1]++] = row;
+    use_chunks(m, false);
+    memcpy(e->steady_start, e->use_start + 1, bodies * sizeof *e->steady_start);
+    use_chunks(m, true);
     return true;
 }
 
@@ -203,7 +228,7 @@ tl_status tl_elements_ready(tl_model *m)
     if (status != TL_OK)
         return status;
     if (e->listed != e->version) {
-        if (!list_chunks(e) || !list_nodes(m))
+        if (!list_nodes(m) || !tl_steady_fit(m))
             return tl_fail_memory(&m->error);
         e->listed = e->version;
     }

@@ -39,6 +39,18 @@ static void add_columns(struct tl_elements *e)
     TL_COLUMN(&n->table, n, share, TL_COLUMN_STATE);
     TL_COLUMN(&n->table, n, k, 0);
     TL_COLUMN(&n->table, n, c, 0);
+
+    tl_steady_table *s = &e->steady;
+    tl_table_init(&s->table, s);
+    TL_COLUMN(&s->table, s, held, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, force, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, moment, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, magnitude, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, at, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, turn, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, from, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, odometer, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(&s->table, s, given, TL_COLUMN_STEP);
 }
 
 bool tl_elements_begin(tl_model *m)
@@ -51,6 +63,7 @@ bool tl_elements_begin(tl_model *m)
     m->elements_destroy = tl_elements_free;
     m->elements->next_id = 1;
     m->elements->version = 1;
+    m->elements->asked = 1;
     add_columns(m->elements);
     return true;
 }
@@ -61,7 +74,8 @@ void tl_elements_free(struct tl_elements *e)
         tl_element_set_clear(&e->set[k]);
     tl_table_free(&e->table.table);
     tl_table_free(&e->nodes.table);
-    void *const owned[] = {e->set, e->chunk, e->use, e->use_start, e->carried};
+    tl_table_free(&e->steady.table);
+    void *const owned[] = {e->set, e->chunk, e->use, e->use_start, e->steady_start, e->carried};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);

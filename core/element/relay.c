@@ -13,6 +13,7 @@
 #include "element/carry.h"
 #include "element/life.h"
 #include "element/place.h"
+#include "element/steady.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,13 +43,16 @@ static bool has_slid(const tl_model *m, size_t row)
     return tl_v3_norm2(way) > SLID * SLID * size * size;
 }
 
-static bool is_due(const tl_model *m)
+static bool is_due(tl_model *m)
 {
-    const struct tl_elements *e = m->elements;
+    struct tl_elements *e = m->elements;
     bool due = false;
     for (size_t k = 0; k < e->set_count && !due; k++)
         due = tl_element_ops_of(&e->set[k])->lays_again && e->set[k].structure != m->structure;
-    for (size_t row = 0; m->cycles % LOOK_EVERY == 0 && row < e->table.table.rows && !due; row++)
+    if (due || m->cycles % LOOK_EVERY != 0 || e->looked == e->asked)
+        return due;
+    e->looked = e->asked; /* places of nodes change only where they are asked for their forces */
+    for (size_t row = 0; row < e->table.table.rows && !due; row++)
         due = tl_element_ops_of(&e->set[e->table.set[row]])->lays_again && has_slid(m, row);
     return due;
 }
@@ -234,6 +238,7 @@ static tl_status replace(tl_model *m, tl_placing *of, unsigned char *keep)
     const uint32_t before = (uint32_t)e->table.table.rows;
     const size_t nodes = e->nodes.table.rows;
     tl_status status = TL_OK;
+    tl_steady_let_go(m);
     for (size_t k = 0; k < e->set_count && status == TL_OK; k++)
         status = tl_placing_commit(&of[k], (uint32_t)k);
     if (status == TL_OK && !inherit_all(m, before))

@@ -23,7 +23,7 @@ typedef struct boundary_args {
     int32_t fixed, roller, rotation, quiet;
     const char *joint;
     double p_velocity, s_velocity, density;
-    double pressure;
+    double pressure, water_level, unit_weight;
     tl_vec3 traction, at;
     int32_t add;
 } boundary_args;
@@ -61,6 +61,11 @@ static const tl_param boundary_params[] = {
              "of what was cut off at quiet rigid blocks; that of the blocks when left out",
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .max = 1e50),
     TL_PARAM(TL_PARAM_REAL, boundary_args, pressure, "Pa", "pressure on the faces, inward", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, water_level, "m",
+             "height z of still water before the faces: it presses on what lies below", .min = -INFINITY,
+             .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, unit_weight, "N/m3", "of this water", .def = {9810.0}, .min = 0.0,
+             .max = 1e50, .flags = TL_PARAM_MIN_OPEN),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, traction, "Pa", "force per area on the faces", .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, boundary_args, at, "m",
              "point at whose height stress holds; the gradient counts from there", .def = {0.0, 0.0, 0.0}),
@@ -260,6 +265,14 @@ static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_bo
         a->traction = args->traction;
         a->loads = true;
     }
+    if (isnan(args->water_level))
+        return;
+    if (a->loads)
+        tl_lua_fail(L, "boundary: water_level is a load by itself: give pressure, stress, gradient and traction in "
+                       "another call with add = true");
+    a->gradient = (tl_sym3){.xx = args->unit_weight, .yy = args->unit_weight, .zz = args->unit_weight};
+    a->level = a->at.z = args->water_level;
+    a->loads = true;
 }
 
 /* Reads the table at `index`, which says where and what. */

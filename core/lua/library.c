@@ -341,15 +341,14 @@ static const tl_lua_key back_analysis_result[] = {
 };
 
 static const tl_lua_key pattern_keys[] = {
-    {"on", "what model:boundary{...} gave, required", "the faces that are bolted"},
-    {"spacing", "{across, along}, required", "m, both above 0: of the grid in the plane of each face"},
+    {"on", "result of model:boundary, required", "the faces that are bolted"},
+    {"spacing", "list of 2 numbers, required",
+     "of the grid in the plane of each face, across and along, m, both above 0"},
     {"length", "number, required", "of the bolts, m, from 1e-3 to 1e4"},
-    {"direction", "\"normal\" or {x, y, z}, default \"normal\"",
-     "into the rock; faces that a bolt would not enter get none"},
-    {"along", "{x, y, z}, default {0, 1, 0}", "direction of the rows, as it lies in each face: the axis of a tunnel"},
-    {"origin", "{x, y, z}", "a point of the grid; left out: the centroid of the faces"},
+    {"direction", "text or vector, default \"normal\"", "into the rock; faces that a bolt would not enter get none"},
+    {"along", "vector, default {0, 1, 0}", "direction of the rows, as it lies in each face: the axis of a tunnel"},
+    {"origin", "vector", "a point of the grid; left out: the centroid of the faces"},
     {"node_spacing", "number", "`spacing` of the nodes of each bolt, m"},
-    {"...", "", "parameters of the element \"bolt\", for each"},
     {NULL, NULL, NULL},
 };
 
@@ -359,7 +358,6 @@ static const tl_lua_key bolt_test_keys[] = {
     {"shear", "number", "how far a joint across its middle slides, m"},
     {"angle", "number, default 0", "between the bolt and the normal of that joint, degrees, 0 to 89"},
     {"steps", "number, default 200", "points of the curve"},
-    {"...", "", "parameters of the element \"bolt\""},
     {NULL, NULL, NULL},
 };
 
@@ -384,11 +382,13 @@ const tl_lua_topic tl_lua_library_topics[] = {
      .verbs = back_analysis_result},
     {.name = "bolt_pattern",
      .usage = "bolts = talus.bolt_pattern{on = model:boundary{facing = {0, 0, -1}}, spacing = {1.5, 1.5}, length = 3}",
-     .doc = "Lays a grid of bolts over outer faces and gives a list for model:element(\"bolt\", list).",
+     .doc = "Lays a grid of bolts over outer faces and gives a list for model:element(\"bolt\", list). "
+            "Other entries are parameters of the element \"bolt\", for each.",
      .keys = pattern_keys},
     {.name = "bolt_test",
      .usage = "curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}",
-     .doc = "Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists.",
+     .doc = "Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists. "
+            "Other entries are parameters of the element \"bolt\".",
      .keys = bolt_test_keys,
      .title = "Fields of the curve",
      .verbs = bolt_test_results},

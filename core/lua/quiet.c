@@ -1,8 +1,8 @@
 /* quiet.c - quiet faces of rigid blocks: what model:boundary{quiet = true} makes of the faces that it has found.
  *
- * Elements of the kind "quiet" get the block, face, area, height across the face and density of each, with the stiffness
- * of a joint's law or the velocities of waves. A wave that comes in is given by displacements and velocities at the
- * samples of its record. */
+ * Elements of the kind "quiet" get the block, face, area, height across the face and density of each. They get the
+ * stiffness of a joint's law, or the velocities of waves. A wave that comes in is given by displacements and velocities
+ * at the samples of its record. */
 #include "lua/quiet.h"
 
 #include "lua/convert.h"

@@ -381,6 +381,7 @@ static void hash_elements(tl_hash *hash, const tl_model *m)
         hash_rows(hash, &t->table, row, row + 1);
     }
     hash_rows(hash, &e->nodes.table, 0, e->nodes.table.rows);
+    hash_rows(hash, &e->steady.table, 0, e->steady.table.rows);
 }
 
 /* ---------------------------------------------------------------- settings --------------- */

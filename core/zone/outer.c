@@ -325,6 +325,8 @@ static void join(tl_outer_part *to, const tl_outer_part *from)
         to->stress = tl_s3_madd(tl_s3_madd(to->stress, 1, from->stress), at - from->at, from->gradient);
         to->gradient = tl_s3_madd(to->gradient, 1, from->gradient);
         to->traction = tl_v3_add(to->traction, from->traction);
+        for (int a = 0; a < 3; a++)
+            to->rest[a] = tl_v3_add(to->rest[a], from->rest[a]);
         to->at = at;
         to->loaded = 1;
     }

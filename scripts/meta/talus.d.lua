@@ -778,8 +778,8 @@ function Gridpoints:reaction() end
 ---@field stored number J: energy that it holds
 ---@field lost number J: energy turned to heat in the last step
 ---@field given number J: energy brought in from outside in the last step
----@field nodes table[] list of its nodes, each a table: rest, where it was when installed, position now, m; force on its block, N; weight, m or m2 that it stands for; block, nil on the ground; and the states of a node by their names
----@field params table<string, number|string|boolean|talus.Vector> its parameters, by their names
+---@field nodes any each a table: rest, where it was when installed,: position now, m; force on its block, N; weight, m or m2 that it stands for; block, nil on the ground; and the states of a node by their names
+---@field params any by their names:
 local Element = {}
 
 --- A selection of elements: a snapshot, in ascending order of id.
@@ -1215,41 +1215,35 @@ function Model:groups() end
 ---@field parameters string[] list of the names of its parameters
 ---@field states string[] list of the names of its states
 
---- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.laws() end
 
---- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.dampings() end
 
---- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.generators() end
 
---- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.screens() end
 
---- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
+--- Lists the laws, dampings, generators, screens or solids that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()
 ---@return talus.Kind[]
 function talus.solids() end
-
---- Lists the laws, dampings, generators, screens, solids or elements that are loaded.
----
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()  or  list = talus.solids()  or  list = talus.elements()
----@return talus.Kind[]
-function talus.elements() end
 
 ---@class (exact) talus.ParametersResult
 ---@field gravity talus.Vector and all others that talus.model{...} takes
@@ -1343,6 +1337,8 @@ function talus.solid_test(options) end
 ---@field s_velocity? number m/s, in (0, 1e+50]: likewise of shear waves
 ---@field density? number kg/m3, in (0, 1e+50]: of what was cut off at quiet rigid blocks; that of the blocks when left out
 ---@field pressure? number Pa: pressure on the faces, inward
+---@field water_level? number m: height z of still water before the faces: it presses on what lies below
+---@field unit_weight? number N/m3, in (0, 1e+50], default 9810: of this water
 ---@field traction? talus.Vector Pa: force per area on the faces
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height stress holds; the gradient counts from there
 ---@field add? boolean default false: adds to the loads that the bodies have, in the place of taking it
@@ -1978,15 +1974,15 @@ function Model:elements(options) end
 ---@field dip? number of a table that dips, degrees: with dip_direction and origin in the place of level
 ---@field dip_direction? number likewise, degrees
 ---@field origin? talus.Vector a point of it, m
----@field unit_weight? number of the water under a table, N/m3; 9810 when left out
----@field factor? number of the pressure under a table, as drains leave it; 1 when left out
+---@field unit_weight? any N/m3 (default 9810):
+---@field factor? any as drains leave it (default 1):
 ---@field pressure? number|fun(x: number, y: number, z: number): number uniform pressure, Pa; or of a field, asked once for each node and then kept
----@field joints? string|string[] joints that have this water, "A", "A:3" or "*"; all when left out
----@field drain_gap? number mean opening beyond which a joint runs dry, m; 0.05 when left out
+---@field joints? any
+---@field drain_gap? any m (default 0.05):
 
 --- Lets water press on the walls of joints: on the polygons in which a face of one block faces one of another, in contact or not. A later call takes the place of earlier water on the same walls; "none" takes it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; then it is dry. What the laws see is the effective force. Keyblocks take water as a force. The elements have the states area, opening and dry, their nodes pressure. element 'water' Water that presses on the walls of joints: model:water.
 ---
----     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"J1"}})  or  model:water("field", {pressure = function(x, y, z) return 9810 * z end})  or  model:water("none")
+---     selection = model:water("table", {level = 20})  or  model:water("uniform", {pressure = 65e3, joints = {"A"}})  or  model:water("field", {pressure = function(x, y, z) ... end})  or  model:water("none")
 ---@param name string
 ---@param options? talus.WaterOptions
 ---@return talus.Elements

@@ -81,6 +81,7 @@ local WORDS = {
     ["selection of contacts"] = "talus.Contacts",
     ["list of two groups"] = "(string|talus.Blocks|talus.Block)[]",
     ["block or its id"] = "talus.Block|integer",
+    ["result of model:boundary"] = "talus.BoundaryResult",
     ["a table of what is to be done"] = "talus.BoundaryOptions",
     ["function(trial)"] = "fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string })",
     ["function(block)"] = "fun(block: talus.Block): any",

@@ -310,3 +310,56 @@ model:blocks { containing = { 0.5, 2, 3.5 } }:drive { velocity = function()
 end }
 model:cycle(1)
 check.holds(seen and seen:find("hold or load a boundary", 1, true), "refused in a drive's function")
+
+-- A reservoir: water on all faces lifts by the weight of the water displaced, at any level, turned or not, of rigid and deformable blocks.
+local function cube(turn, zones)
+    local m = empty()
+    local corners, c, s = {}, math.cos(turn), math.sin(turn)
+    for _, x in ipairs { -1, 1 } do
+        for _, y in ipairs { -1.5, 1.5 } do
+            for _, z in ipairs { -2, 2 } do
+                local up = s * y + c * z
+                corners[#corners + 1] = { c * x + s * up, c * y - s * z, c * up - s * x }
+            end
+        end
+    end
+    m:generate("polyhedron", { vertices = corners, density = 2000 })
+    if zones then
+        m:solid("rock", "elastic", { young = 1e9, poisson = 0.2 })
+        m:blocks():deformable { zone = 0.9, solid = "rock" }
+    end
+    return m
+end
+for _, zones in ipairs { false, true } do
+    for _, turn in ipairs { 0, 0.3 } do
+        for _, level in ipairs { -0.7, 0.4, 1.1, 5 } do
+            local m = cube(turn, zones)
+            local load = m:boundary { facing = { 0, 0, 1 }, within = 180, water_level = level, unit_weight = 1e4 }
+            local below = 0 -- of the volume: by cutting a block of the same shape
+            local twin = cube(turn, false)
+            twin:generate("joint", { joint = "L", dip = 0, dip_direction = 0, origin = { 0, 0, level } })
+            local centre = { 0, 0, 0 }
+            for _, part in ipairs(twin:blocks()) do
+                if part.centroid[3] < level then
+                    below = below + part.volume
+                    centre = part.centroid
+                end
+            end
+            check.near(load.force[3], 1e4 * below, 1e-7)
+            check.near(load.force[1], 0, 1e-7)
+            check.near(load.force[2], 0, 1e-7)
+            check.near(load.moment[1], centre[2] * load.force[3], 1e-6)
+            check.near(load.moment[2], -centre[1] * load.force[3], 1e-6)
+        end
+    end
+end
+do
+    local m = cube(0, false)
+    local wall = { facing = { 1, 0, 0 }, water_level = -3 }
+    check.refused(m, function() m:boundary(wall) end, "lies below the level -3 m")
+    wall.water_level, wall.pressure = 0, 1
+    check.refused(m, function() m:boundary(wall) end, "water_level is a load by itself")
+    wall.pressure, wall.unit_weight = nil, 0
+    check.refused(m, function() m:boundary(wall) end, "unit_weight")
+    check.near(m:boundary { facing = { 1, 0, 0 }, water_level = 0 }.force[1], -9810 * 3 * 2, 1e-8)
+end

@@ -136,3 +136,22 @@ refuse({ from = { 100.5, 0.5, 0.5 }, to = { 0, 0, 60 }, stiffness = 1, pretensio
 refuse({ { from = { 100.5, 0.5, 0.5 }, to = { 0, 0, 60 }, stiffness = 1 }, { from = { 0, 0, 50 }, to = { 0, 0, 60 }, stiffness = 1 } },
     "entry 2")
 check.raises(function() m:element("sprink", {}) end, "spring")
+
+-- A dashpot on a deformable block shortens the step: without that its gridpoint would run away.
+do
+    local function cube(damping)
+        local m = talus.model { gravity = { 0, 0, 0 } }
+        m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+        m:solid("rock", "elastic", { young = 1e8, poisson = 0.2 })
+        m:blocks():deformable { zone = 0.5, solid = "rock" }
+        m:element("spring", { from = { 1, 1, 1 }, to = { 1, 1, 3 }, stiffness = 1e5, damping = damping })
+        m:blocks():set { velocity = { 0, 0, 1 } }
+        m:cycle(1)
+        return m
+    end
+    local free, damped = cube(0), cube(1e7)
+    check.holds(damped.dt < 0.1 * free.dt, "the dashpot shortens the step")
+    damped:cycle(300)
+    check.holds(damped:energy().kinetic < 1001, "a dashpot makes no energy")
+    check.near(damped:energy().balance, 0, 1e-3)
+end

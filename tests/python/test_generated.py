@@ -49,7 +49,7 @@ local talus = require "talus"
 for name in pairs(talus) do
     print("talus", name)
 end
-for _, name in ipairs { "back_analysis", "convert", "plot", "poles", "realisations", "stereonet" } do -- loaded when they are first used
+for _, name in ipairs { "back_analysis", "bolt_pattern", "bolt_test", "convert", "plot", "poles", "realisations", "stereonet" } do -- loaded when they are first used
     print("talus", talus[name] and not rawget(_G, name) and name)
 end
 """

@@ -207,8 +207,9 @@ def check_plugin_includes(path, parts, text):
 
 
 def check_kind_names(path, text, kinds):
-    """Nothing in core names a law, a damping or a generator; only model:water has a kind of its own."""
-    if path.as_posix().endswith("core/lua/water.c"):
+    """Nothing in core names a law, a damping or a generator; only model:water and quiet faces have kinds of
+    their own."""
+    if path.as_posix().endswith(("core/lua/water.c", "core/lua/quiet.c")):
         return
     for number, line in enumerate(without_comments(text).splitlines(), 1):
         for literal in STRING.findall(line):

@@ -47,6 +47,8 @@ typedef struct tl_boundary_action {
     bool loads;
     tl_sym3 stress, gradient;
     tl_vec3 at, traction;
+    double level; /* m: loads act on what lies below this height z; NaN: on all. A triangle that it crosses keeps the
+                     forces it has then */
     bool quiet; /* deformable blocks only: lets waves out, and bears what it bore until now. Rigid ones take elements of
                  * the kind "quiet" */
     const tl_drive
@@ -95,9 +97,9 @@ TL_API void tl_boundary_free(tl_boundary_result *result);
  * Of deformable bodies it is the sum over their held gridpoints, as of the last step. */
 TL_API tl_status tl_blocks_reaction(tl_model *model, const tl_id *ids, size_t count, tl_vec3 *force);
 
-/* Lets the components what[i] (TL_FIX_*) of the body of block ids[i] go as far as they are held, and puts on it, as of
- * the last step, what held them: a force in its centroid, N, and a moment, N m, added to the load that it has. A model
- * at rest stays so. TL_E_STATE: a body is driven, or deformable; then none is changed. */
+/* Lets the components what[i] (TL_FIX_*) of the body of block ids[i] go as far as they are held. What held them in the
+ * last step is added to the load of the body: a force in its centroid, N, and a moment, N m. A model at rest stays so.
+ * TL_E_STATE: a body is driven, or deformable; then none is changed. */
 TL_API tl_status tl_blocks_release(tl_model *model, const tl_id *ids, size_t count, const uint8_t *what);
 
 #ifdef __cplusplus

@@ -749,6 +749,10 @@ typedef struct tl_element_ops {
     /* not 0: `place` is called again when blocks have come, gone or been cut. So it is when the first and the last node
      * of an element have moved apart by 1e-3 of the size of their blocks. Its elements are then those that it makes. */
     uint32_t lays_again;
+    /* not 0: forces depend on nothing but places, and turn with the blocks. The host may then keep the forces, and turn
+     * them itself, until a block has gone farther than 1e-6 of its size. It books their work meanwhile. `stored` and
+     * `lost` must be 0. With nodes in zones all are asked in every step. */
+    uint32_t steady;
 } tl_element_ops;
 
 /* ---------------------------------------------------------------- descriptors ------------ */

@@ -1,16 +1,16 @@
 /* quiet.c - element "quiet": outer faces of rigid blocks that let waves out, and let one in.
  *
  * An element is a face. Behind each of its nodes stands the half space that was cut off. Half of the block's own rock
- * is a spring, and behind it the half space is a dashpot. With the area A of a node, the displacement u of the block
- * there, that of the dashpot s and the displacement w of an incoming wave,
+ * is a spring, and behind it the half space is a dashpot. A node of area A moves by u, the dashpot by s and an incoming
+ * wave by w:
  *
  *     f = K (u - s),    Z (s' - 2 w') = f,    force on the block = -f
  *
  * across the face K = 2 kn A and Z = A sqrt(kn rho h), along it K = 2 ks A and Z = A sqrt(ks rho h); kn and ks are
  * those of the joints, Pa/m, rho the density and h the height of the block across the face. A row of such blocks bears
- * waves as a lattice does. A dashpot alone would leave the outer half of a block as a mass, and reflect (w h / 4c)^2 of
- * the energy (Lysmer and Kuhlemeyer 1969). With the spring the first order cancels. Of given velocities c of waves,
- * kn h = rho c^2. An incoming wave acts as the traction 2 rho c w' (Joyner and Chen 1975).
+ * waves as a lattice does. A dashpot alone leaves the outer half of a block as a mass. At an angular frequency
+ * q it reflects (q h / 4c)^2 of the energy (Lysmer and Kuhlemeyer 1969). With the spring the first order cancels. Of
+ * given velocities c of waves, kn h = rho c^2. An incoming wave acts as the traction 2 rho c w' (Joyner and Chen 1975).
  *
  * s is centred in the step: s1 - s0 = dt (f0 + f1) / (2 Z) + 2 (w1 - w0). The wave brings Z w'^2 per time; the wave
  * that leaves takes Z (s' - w')^2. Their difference is the work of the step to rounding. */
@@ -253,8 +253,8 @@ static tl_status place(const tl_element_host *host, const void *given)
 
 /* ---------------------------------------------------------------- acting ----------------- */
 
-/* Of a unit area, across the face and along it: stiffness k, impedance z, the part a = k dt / (2 z) of the way of the
- * block by which the dashpot follows in half a step, and 1 / (1 + a). */
+/* Stiffness k and impedance z of a unit area, across the face and along it. a = k dt / (2 z) is the part of the way of
+ * the block by which the dashpot follows in half a step; inverse = 1 / (1 + a). */
 typedef struct half_space {
     double k[2], z[2], a[2], inverse[2];
 } half_space;

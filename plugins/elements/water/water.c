@@ -323,8 +323,13 @@ static void stiffness(const void *self, const tl_element_batch *b, double *k, do
         k[i] = p->factor * p->unit_weight * b->weight[i];
 }
 
-static const tl_element_ops ops = {
-    .size = sizeof ops, .place = place, .update = update, .stiffness = stiffness, .never_fails = 1, .lays_again = 1};
+static const tl_element_ops ops = {.size = sizeof ops,
+                                   .place = place,
+                                   .update = update,
+                                   .stiffness = stiffness,
+                                   .never_fails = 1,
+                                   .lays_again = 1,
+                                   .steady = 1};
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_ELEMENT, ops, .name = "water", .doc = "Water that presses on the walls of joints: model:water.",
