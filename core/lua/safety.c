@@ -100,6 +100,10 @@ static tl_safety read_options(lua_State *L, const char *what, caller *c)
     *c = (caller){.L = L, .owner = lua_touserdata(L, TL_LUA_AT_MODEL)};
     options.on_trial = type == LUA_TFUNCTION ? on_trial : NULL;
     options.user = c;
+    if (options.workers > 1) { /* models that nothing holds any more may have threads */
+        lua_gc(L, LUA_GCCOLLECT);
+        lua_gc(L, LUA_GCCOLLECT);
+    }
     return options;
 }
 
@@ -234,7 +238,8 @@ static const tl_lua_key safety_results[] = {
      "none, "
      "or laws have no friction and cohesion or name blocks"},
     {"trials", "", "each a table: F, holds, undecided, cycles, why; in the order in which they were made"},
-    {"small", "", "selection of the blocks below least_volume that failed before, and were deleted in the copies"},
+    {"small", "",
+     "selection of the blocks below least_volume that failed before at `upper`, and were deleted in that copy"},
     {"undecided", "", "number of trials that neither came to rest nor failed: they count as failing"},
     {"cycles, wall", "", "steps of all trials, and s"},
     {"message", "", "all of this in a sentence"},

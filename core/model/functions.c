@@ -265,6 +265,9 @@ static const char *const failed_blocks[] = {"delete", "hold", NULL};
     TL_PARAM(TL_PARAM_INT, tl_safety, max_cycles, "",                                                                  \
              "largest number of steps of one trial; one that is undecided then counts as failing", .def = {100000.0},  \
              .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),                                                 \
+        TL_PARAM(TL_PARAM_INT, tl_safety, workers, "",                                                                 \
+                 "processes that make trials at once; what is found is the same for any number", .def = {1.0},         \
+                 .min = 1.0, .max = 256.0),                                                                            \
         TL_PARAM(TL_PARAM_BOOL, tl_safety, solids, "",                                                                 \
                  "whether the strengths of deformable blocks' solids are divided, too", .def = {1.0})
 

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "cycle/meshes.h"
+#include "safety/ahead.h"
 #include "safety/trial.h"
 
 #include <math.h>
@@ -20,12 +21,14 @@
 typedef struct mapping {
     tl_trials trials;
     tl_safety_map *map;
-    size_t last, point_capacity, gone;
+    int64_t last; /* of the grid */
+    size_t point_capacity, gone;
     double volume; /* of what has gone */
 } mapping;
 
-static double factor_at(const mapping *p, size_t at)
+static double factor_at(const void *user, int64_t at)
 {
+    const mapping *p = user;
     const tl_safety *o = &p->trials.options;
     return at < p->last ? o->from + (double)at * o->step : o->to;
 }
@@ -92,28 +95,29 @@ static tl_status take_out(mapping *p, double factor, tl_fall *fall, bool *left)
 }
 
 /* Finds the least factor from `at` on that fails; `*at` is beyond the last when all hold. */
-static tl_status next_failure(mapping *p, size_t *at, tl_fall *fall)
+static tl_status next_failure(mapping *p, int64_t *at, tl_fall *fall)
 {
     tl_safety_trial trial;
-    size_t width = 1, low = *at, high = p->last + 1; /* all below `low` hold, and `high` fails */
+    tl_bracket b = {.lowest = *at, .last = p->last, .holds = *at - 1, .fails = p->last + 1, .width = 1};
     tl_status status = TL_OK;
+    b.first = b.second = *at;
     *fall = (tl_fall){.ids = NULL};
-    for (size_t next = low; status == TL_OK && low < high; width *= 2) {
+    while (status == TL_OK) {
         tl_fall here;
+        status = tl_ahead(&p->trials, &b, factor_at, p);
+        const int64_t next = tl_bracket_next(&b);
+        if (status != TL_OK || next < 0)
+            break;
         status = tl_trials_try(&p->trials, factor_at(p, next), &trial, &here);
         if (status != TL_OK)
             break;
-        if (trial.holds) {
-            low = next + 1;
-        } else {
+        tl_bracket_take(&b, next, trial.holds != 0);
+        if (!trial.holds) {
             tl_fall_free(fall);
             *fall = here;
-            high = next;
         }
-        next = high <= p->last ? low + (high - low) / 2 : next + width;
-        next = next > p->last ? p->last : next;
     }
-    *at = high;
+    *at = b.fails;
     return status;
 }
 
@@ -130,10 +134,10 @@ static tl_status go_up(mapping *p, tl_fall *fall)
     const tl_safety *o = &p->trials.options;
     bool left = true;
     tl_status status = TL_OK;
-    p->last = (size_t)ceil((o->to - o->from) / o->step * (1 - 1e-12)); /* Constant: rounding of the quotient */
+    p->last = (int64_t)ceil((o->to - o->from) / o->step * (1 - 1e-12)); /* Constant: rounding of the quotient */
     if (fall->count > 0)
         status = take_out(p, 0, fall, &left);
-    for (size_t at = 0; status == TL_OK && left && at <= p->last;) {
+    for (int64_t at = 0; status == TL_OK && left && at <= p->last;) {
         status = next_failure(p, &at, fall);
         if (status == TL_OK && at <= p->last)
             status = take_out(p, factor_at(p, at), fall, &left);

@@ -1,11 +1,12 @@
 /* search.c - the factor of safety of a model: the largest factor by which its strengths may be divided.
  *
  * Factors are those of a grid, from (1 + resolution)^k with the last one `to`. So trials do not depend on the order in
- * which they are made. The search begins about the least factor of the keyblocks, or about 1, with a bracket of a few
- * per cent. It is widened twice as far each time until one end holds and the other fails, and then halved. */
+ * which they are made, nor on how many processes make them. The search begins about the least factor of the keyblocks,
+ * or about 1, with a bracket of a few per cent (safety/bracket.c). */
 #include "base/clock.h"
 #include "base/error.h"
 #include "model/scope.h"
+#include "safety/ahead.h"
 #include "safety/trial.h"
 
 #include <math.h>
@@ -21,9 +22,10 @@ typedef struct search {
     tl_trials trials;
     tl_safety_result *result;
     double *grid; /* [last + 1] */
-    size_t last, listed, capacity, small_capacity;
-    int64_t holds, fails; /* on the grid: the largest that holds, -1; the least that fails, last + 1 */
-    tl_fall fall;         /* at `fails` */
+    size_t last, capacity;
+    tl_fall loose;      /* whatever the strengths */
+    tl_bracket bracket; /* on the grid */
+    tl_fall fall;       /* at the least factor that fails; where none does, at the largest that holds */
 } search;
 
 static const char *const mode_names[] = {[TL_SAFETY_HOLDS] = "holds",
@@ -95,41 +97,6 @@ static tl_status ask_keyblocks(search *s)
     return TL_OK;
 }
 
-/* ---------------------------------------------------------------- small blocks ----------- */
-
-/* Deletes what falls in the copy that trials begin with, and lists it. */
-static tl_status drop(search *s, tl_fall *fall)
-{
-    tl_safety_blocks *small = &s->result->small;
-    tl_model *m = s->trials.asked;
-    if (!tl_grow(&small->ids, &s->small_capacity, small->count + fall->count, sizeof *small->ids))
-        return tl_fail_memory(&m->error);
-    memcpy(small->ids + small->count, fall->ids, fall->count * sizeof *fall->ids);
-    small->count += fall->count;
-    tl_status status = tl_blocks_delete(s->trials.base, fall->ids, fall->count);
-    if (status != TL_OK)
-        status = tl_fail(&m->error, status, "%s: %s", s->trials.what, tl_model_error(s->trials.base)->text);
-    tl_fall_free(fall);
-    return status;
-}
-
-static bool is_small(const search *s, const tl_fall *fall)
-{
-    return fall->count > 0 && fall->volume < s->trials.options.least_volume;
-}
-
-/* Takes away what falls even with high strengths, as long as it is small. */
-static tl_status drop_loose(search *s, tl_fall *fall)
-{
-    tl_status status = TL_OK;
-    while (status == TL_OK && is_small(s, fall)) {
-        status = drop(s, fall);
-        if (status == TL_OK)
-            status = tl_trials_rest(&s->trials, fall);
-    }
-    return status;
-}
-
 /* ---------------------------------------------------------------- search ----------------- */
 
 static tl_status list_trial(search *s, const tl_safety_trial *trial)
@@ -141,37 +108,23 @@ static tl_status list_trial(search *s, const tl_safety_trial *trial)
     return TL_OK;
 }
 
-/* Tries one factor of the grid. Small blocks that fail go first, and it is tried again. */
+/* Tries one factor of the grid. */
 static tl_status try_at(search *s, int64_t at)
 {
     tl_safety_trial trial;
     tl_fall fall;
-    tl_status status = TL_OK;
-    for (;;) {
-        status = tl_trials_try(&s->trials, s->grid[at], &trial, &fall);
-        if (status == TL_OK)
-            status = list_trial(s, &trial);
-        if (status != TL_OK || !is_small(s, &fall))
-            break;
-        status = drop(s, &fall);
-        if (status == TL_OK)
-            status = tl_trials_rest(&s->trials, &fall);
-        if (status == TL_OK)
-            status = drop_loose(s, &fall);
-        tl_fall_free(&fall);
-        if (status != TL_OK)
-            break;
-    }
+    tl_status status = tl_trials_try(&s->trials, s->grid[at], &trial, &fall);
     if (status != TL_OK)
         return status;
-    if (trial.holds) {
-        s->holds = at;
-        return TL_OK;
+    status = list_trial(s, &trial);
+    tl_bracket_take(&s->bracket, at, trial.holds != 0);
+    if (trial.holds && s->bracket.fails <= (int64_t)s->last) {
+        tl_fall_free(&fall);
+        return status;
     }
-    s->fails = at;
     tl_fall_free(&s->fall);
     s->fall = fall;
-    return TL_OK;
+    return status;
 }
 
 static int64_t clamped(const search *s, int64_t at)
@@ -191,8 +144,6 @@ static bool make_grid(search *s)
     for (double f = o->from; f < o->to; f *= 1 + o->resolution)
         s->grid[s->last++] = f;
     s->grid[s->last] = o->to;
-    s->holds = -1;
-    s->fails = (int64_t)s->last + 1;
     return true;
 }
 
@@ -205,26 +156,54 @@ static int64_t place_of(const search *s, double factor)
     return at;
 }
 
+static double factor_at(const void *user, int64_t at)
+{
+    const search *s = user;
+    return s->grid[at];
+}
+
 /* Makes trials until neighbours on the grid hold and fail. */
 static tl_status narrow(search *s)
 {
     const double key = s->result->keyblock_factor;
     const int64_t middle = place_of(s, key > 0 && isfinite(key) ? key : 1);
-    int64_t width = 1 + (int64_t)(BRACKET / s->trials.options.resolution);
+    const int64_t width = 1 + (int64_t)(BRACKET / s->trials.options.resolution);
     const int64_t last = (int64_t)s->last;
-    tl_status status = try_at(s, clamped(s, middle - width));
-    if (status == TL_OK && s->holds >= 0 && s->holds < last)
-        status = try_at(s, clamped(s, middle + width));
-    while (status == TL_OK && s->fails > last && s->holds < last)
-        status = try_at(s, clamped(s, s->holds + (width *= 2)));
-    while (status == TL_OK && s->holds < 0 && s->fails > 0)
-        status = try_at(s, clamped(s, s->fails - (width *= 2)));
-    while (status == TL_OK && s->fails - s->holds > 1 && s->holds >= 0 && s->fails <= last)
-        status = try_at(s, s->holds + (s->fails - s->holds) / 2);
+    tl_status status = TL_OK;
+    s->bracket = (tl_bracket){.last = last,
+                              .holds = -1,
+                              .fails = last + 1,
+                              .first = clamped(s, middle - width),
+                              .second = clamped(s, middle + width),
+                              .width = width};
+    while (status == TL_OK) {
+        status = tl_ahead(&s->trials, &s->bracket, factor_at, s);
+        const int64_t at = tl_bracket_next(&s->bracket);
+        if (at < 0)
+            break;
+        if (status == TL_OK)
+            status = try_at(s, at);
+    }
     return status;
 }
 
 /* ---------------------------------------------------------------- result ----------------- */
+
+/* Lists what was small and failed: in the first copy, and at the factor that is told. */
+static tl_status take_small(search *s)
+{
+    tl_safety_blocks *small = &s->result->small;
+    const tl_fall *from[] = {&s->loose, &s->fall};
+    size_t capacity = 0;
+    for (size_t k = 0; k < 2; k++) {
+        if (!tl_grow(&small->ids, &capacity, small->count + from[k]->small_count, sizeof *small->ids))
+            return tl_fail_memory(&s->trials.asked->error);
+        if (from[k]->small_count > 0)
+            memcpy(small->ids + small->count, from[k]->small, from[k]->small_count * sizeof *small->ids);
+        small->count += from[k]->small_count;
+    }
+    return TL_OK;
+}
 
 static void take_fall(tl_safety_result *r, tl_fall *fall)
 {
@@ -234,7 +213,7 @@ static void take_fall(tl_safety_result *r, tl_fall *fall)
     r->direction[1] = fall->way.y;
     r->direction[2] = fall->way.z;
     r->mode = (int32_t)fall->mode;
-    *fall = (tl_fall){.ids = NULL};
+    fall->ids = NULL;
 }
 
 static void tell(const search *s)
@@ -262,11 +241,11 @@ static void finish(search *s, bool never)
 {
     tl_safety_result *r = s->result;
     const int64_t last = (int64_t)s->last;
-    r->lower = !never && s->holds >= 0 ? s->grid[s->holds] : 0;
-    r->upper = never ? s->trials.options.from : s->fails <= last ? s->grid[s->fails] : INFINITY;
+    r->lower = !never && s->bracket.holds >= 0 ? s->grid[s->bracket.holds] : 0;
+    r->upper = never ? s->trials.options.from : s->bracket.fails <= last ? s->grid[s->bracket.fails] : INFINITY;
     r->factor = never ? 0 : isinf(r->upper) ? INFINITY : r->lower > 0 ? sqrt(r->lower * r->upper) : r->upper;
-    if (never || s->fails <= last)
-        take_fall(r, &s->fall);
+    if (never || s->bracket.fails <= last)
+        take_fall(r, never ? &s->loose : &s->fall);
     r->undecided = (int32_t)s->trials.undecided;
     r->cycles = s->trials.cycles;
     r->wall = tl_clock() - s->trials.began;
@@ -285,21 +264,22 @@ tl_status tl_model_factor_of_safety(tl_model *m, const tl_safety *given, tl_safe
 {
     search s = {.result = result, .fall = {.ids = NULL}};
     *result = (tl_safety_result){.keyblock_factor = NAN};
-    tl_status status = tl_trials_begin(&s.trials, "factor_of_safety", m, given, &s.fall);
+    tl_status status = tl_trials_begin(&s.trials, "factor_of_safety", m, given, &s.loose);
     if (status == TL_OK)
         status = ask_keyblocks(&s);
-    if (status == TL_OK)
-        status = drop_loose(&s, &s.fall);
     if (status == TL_OK && !make_grid(&s))
         status = tl_fail_memory(&m->error);
-    const bool never = s.fall.count > 0;
+    const bool never = s.loose.count > 0;
     if (status == TL_OK && !never)
         status = narrow(&s);
+    if (status == TL_OK)
+        status = take_small(&s);
     if (status == TL_OK)
         finish(&s, never);
     else
         tl_safety_free(result);
     tl_fall_free(&s.fall);
+    tl_fall_free(&s.loose);
     tl_trials_end(&s.trials);
     free(s.grid);
     return status;

@@ -10,6 +10,15 @@
  * becomes faster: a body fails whose ways in GROWS looks in a row, N / 2 steps each, have not become shorter, or that
  * has gone FAR u. Motion comes from kinetic stops only: leaps carry what slips as far as they may.
  *
+ * A body that fails may meet something and rest: how far it goes until then hangs on what stands in its way, while
+ * slip that springs ask for is a multiple of u. So a trial that rests after a body has gone SLIPS u is made again
+ * with joints STIFFER times as stiff. It holds when it rests there as well, and no body has gone GROWN times as many u.
+ *
+ * The verdict of a relaxation (cycle/failing.c) counts as well once the body has gone as far as a suspect: while joints
+ * settle, all bodies go one way for a while, and of a sliver that is soon a multiple of its size.
+ *
+ * What fails and is smaller than least_volume is deleted in the copy, and the trial goes on with the rest.
+ *
  * Limit: a body that is turned about its centre alone is not seen before it moves. */
 #include "safety/trial.h"
 
@@ -33,6 +42,7 @@
 #include <string.h>
 #include <talus/number.h>
 #include <talus/talus.h>
+#include <talus/workers.h>
 
 /* Tolerance: what strengths are divided by while joints settle: nothing that holds at all slips then. */
 #define RAISED 0.05
@@ -43,13 +53,20 @@
 /* Tolerance: way over u from which on a body is watched, and from which on it fails anyway. */
 #define SUSPECT 10.0
 #define FAR 300.0
+/* Tolerance: way over u beyond which joints slip, and what rests may have met something. */
+#define SLIPS 1.0
+/* Tolerance: stiffness of joints, over that before, by which slip that springs ask for is told from motion that
+ * something ends. With it a body goes GROWN times as many u or more. STIFFEST is the largest one tried. */
+#define STIFFER 10.0
+#define GROWN 2.0
+#define STIFFEST 1000.0
 /* Tolerance: looks in a row in which a body that fails has not become slower. */
 #define GROWS 4
 /* Tolerance: way between two looks over u below which nothing is told of a body. */
 #define STANDS 0.02
 /* Tolerance: least number of steps in which a model settles, for each block on end. Motion crosses a block in one. */
 #define STEPS_A_BLOCK 16
-/* Tolerance: speed over that of the fastest body that fails, from which on another goes with it. */
+/* Tolerance: speed over that of the fastest body that fails, and way likewise, from which on another goes with it. */
 #define ALONG 0.3
 /* Tolerance: sum of contact forces over the weight below which nothing bears a body. */
 #define BARE 0.01
@@ -57,6 +74,7 @@
 void tl_fall_free(tl_fall *fall)
 {
     free(fall->ids);
+    free(fall->small);
     *fall = (tl_fall){.ids = NULL};
 }
 
@@ -84,6 +102,8 @@ static tl_status weaken(const tl_trials *t, tl_model *copy, double factor)
     tl_status status = tl_joints_weaken(copy, t->asked, t->which, factor);
     if (status == TL_OK && t->options.solids)
         status = tl_solids_weaken(copy, t->asked, factor);
+    if (status == TL_OK && t->stiffness > 1)
+        status = tl_joints_stiffen(copy, t->stiffness);
     return told(t, copy, status);
 }
 
@@ -118,6 +138,9 @@ static tl_status check_options(const tl_trials *t)
                               "a finite number >= 0");
     if (status == TL_OK)
         status = check_number(t, "max_cycles", (double)o->max_cycles, o->max_cycles >= 1, "at least 1");
+    if (status == TL_OK)
+        status = check_number(t, "workers", (double)o->workers, o->workers >= 1 && o->workers <= TL_MOST_WORKERS,
+                              "in [1, 256]");
     return status;
 }
 
@@ -205,6 +228,23 @@ static tl_status check_bodies(const tl_trials *t)
     return free > 0 ? TL_OK : tl_fail(&t->asked->error, TL_E_STATE, "%s: nothing can move: no block is free", t->what);
 }
 
+static void no_job(void *user, uint64_t job, const void **data, size_t *size)
+{
+    (void)user, (void)job, (void)data, (void)size;
+}
+
+/* Refuses processes where there can be none, before any work is done. */
+static tl_status check_processes(const tl_trials *t)
+{
+    tl_workers *workers = NULL;
+    tl_error error;
+    if (t->options.workers < 2)
+        return TL_OK;
+    tl_status status = tl_workers_start(1, no_job, NULL, &workers, &error);
+    tl_workers_end(workers);
+    return status == TL_OK ? TL_OK : tl_fail(&t->asked->error, status, "%s: %s", t->what, error.text);
+}
+
 /* Refuses a model that is under way: what would be asked is where it rests. `copy` is one of it. */
 static tl_status check_rest(const tl_trials *t, tl_model *copy)
 {
@@ -220,10 +260,42 @@ static tl_status check_rest(const tl_trials *t, tl_model *copy)
                    tl_v3_norm(b->v[mover]), tl_words(t->asked, "with model:relax{}", "with tl_model_relax()"));
 }
 
+/* ---------------------------------------------------------------- made ahead ------------- */
+
+tl_trial_ahead *tl_trials_made(const tl_trials *t, double factor)
+{
+    for (size_t i = 0; i < t->ahead_count; i++)
+        if (t->ahead[i].trial.factor == factor)
+            return &t->ahead[i];
+    return NULL;
+}
+
+/* Hands over a trial that was made ahead; false: there is none. */
+static bool take_made(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    tl_trial_ahead *made = tl_trials_made(t, factor);
+    if (!made)
+        return false;
+    *trial = made->trial;
+    *fall = made->fall;
+    *made = t->ahead[--t->ahead_count];
+    t->cycles += trial->cycles;
+    return true;
+}
+
+/* Forgets trials that were made ahead: those to come begin with another copy. */
+static void forget_made(tl_trials *t)
+{
+    for (size_t i = 0; i < t->ahead_count; i++)
+        tl_fall_free(&t->ahead[i].fall);
+    t->ahead_count = 0;
+}
+
 /* ---------------------------------------------------------------- a trial ---------------- */
 
 /* A body from look to look. */
 typedef struct look {
+    tl_id body;
     tl_vec3 start, last; /* displacements */
     tl_quat turned;      /* when it began */
     double way;          /* between the last two looks, m */
@@ -235,6 +307,7 @@ typedef struct watch {
     look *look;     /* [bodies] */
     int64_t looked; /* cycle of the last look */
     bool fails;
+    tl_id verdict; /* the body of which a relaxation says that it fails, or TL_NO_ID */
     const char *why;
 } watch;
 
@@ -272,10 +345,15 @@ static bool looks(void *user, tl_model *copy)
 
 static bool watch_begin(watch *w, const tl_trials *t, const tl_model *copy)
 {
-    *w = (watch){.t = t, .looked = copy->cycles, .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look)};
+    *w = (watch){.t = t,
+                 .looked = copy->cycles,
+                 .verdict = TL_NO_ID,
+                 .look = calloc(copy->bodies.table.rows + 1, sizeof *w->look)};
     for (uint32_t body = 0; w->look && body < copy->bodies.table.rows; body++)
-        w->look[body] = (look){
-            .start = copy->bodies.pose[body].u, .last = copy->bodies.pose[body].u, .turned = copy->bodies.q[body]};
+        w->look[body] = (look){.body = copy->bodies.id[body],
+                               .start = copy->bodies.pose[body].u,
+                               .last = copy->bodies.pose[body].u,
+                               .turned = copy->bodies.q[body]};
     return w->look != NULL;
 }
 
@@ -286,22 +364,51 @@ static double turned_of(const tl_model *m, const look *l, uint32_t body)
     return 2 * m->bodies.radius[body] * sqrt(by.x * by.x + by.y * by.y + by.z * by.z);
 }
 
-/* Lists what goes together, with its volume, direction and mode. */
+static double gone_of(const watch *w, const tl_model *m, uint32_t body)
+{
+    return tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->look[body].start));
+}
+
+static bool body_fails(const watch *w, const tl_model *m, uint32_t body)
+{
+    const look *l = &w->look[body];
+    return l->body == w->verdict || l->grows >= GROWS || gone_of(w, m, body) > FAR * w->t->settles;
+}
+
+/* The fastest of the bodies that fail; where none does, of all. */
+static uint32_t fastest_of(const watch *w, const tl_model *m)
+{
+    uint32_t fastest = TL_NO_ROW;
+    bool fails = false;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (!tl_body_is_free(m, body))
+            continue;
+        const bool here = body_fails(w, m, body);
+        if (fastest == TL_NO_ROW || here > fails || (here == fails && w->look[body].way > w->look[fastest].way)) {
+            fastest = body;
+            fails = here;
+        }
+    }
+    return fastest;
+}
+
+/* Lists what goes together, with its volume, direction and mode: bodies about as fast as the fastest, and about as far.
+ * While what is small falls, the rest may settle as fast, but not as far. */
 static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
 {
-    double fastest = 0;
+    const uint32_t fastest = fastest_of(w, m);
+    if (fastest == TL_NO_ROW)
+        return TL_OK;
+    const double fast = w->look[fastest].way, far = gone_of(w, m, fastest);
     tl_addends volume = {.count = 0}, sum[3] = {{.count = 0}, {.count = 0}, {.count = 0}};
     tl_addends ways = {.count = 0}, turns = {.count = 0}, bears = {.count = 0}, weighs = {.count = 0};
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (tl_body_is_free(m, body))
-            fastest = fmax(fastest, w->look[body].way);
     fall->ids = malloc((m->blocks.table.rows + 1) * sizeof *fall->ids);
     if (!fall->ids)
         return tl_fail_memory(&w->t->asked->error);
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         const uint32_t body = m->blocks.body[row];
         const look *l = &w->look[body];
-        if (!tl_body_is_free(m, body) || !(l->way >= ALONG * fastest))
+        if (!tl_body_is_free(m, body) || !(l->way >= ALONG * fast && gone_of(w, m, body) >= ALONG * far))
             continue;
         const tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->start);
         const double own = m->blocks.volume[row], share = own / m->bodies.mass[body];
@@ -323,44 +430,115 @@ static tl_status list_fall(const watch *w, tl_model *m, tl_fall *fall)
     return TL_OK;
 }
 
+/* How far the joints of a copy settle, m, by what they bear now. */
+static double settles_now(const tl_model *copy)
+{
+    tl_watch *w = tl_watch_begin(copy);
+    const double settles = w ? tl_watch_settlement(w, copy) : 0;
+    if (w)
+        tl_watch_end(w);
+    return settles;
+}
+
+/* Whether the verdict of a relaxation is more than the settling of its joints. */
+static bool confirmed(const watch *w, const tl_model *copy, tl_id failing)
+{
+    const double settles = w->t->measured ? w->t->settles : settles_now(copy);
+    bool far = copy->cycle->fails_strained;
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
+        if (copy->bodies.id[body] == failing)
+            far = far || gone_of(w, copy, body) > SUSPECT * settles;
+    return far;
+}
+
+/* Deletes what is small and has failed, and goes on with the watch of all others. */
+static tl_status take_out(watch *w, tl_model *copy, tl_fall *fall)
+{
+    const size_t before = copy->bodies.table.rows, all = fall->small_count + fall->count;
+    if (!tl_grow(&fall->small, &fall->small_capacity, all, sizeof *fall->small))
+        return tl_fail_memory(&w->t->asked->error);
+    memcpy(fall->small + fall->small_count, fall->ids, fall->count * sizeof *fall->ids);
+    fall->small_count = all;
+    const tl_status status = told(w->t, copy, tl_blocks_delete(copy, fall->ids, fall->count));
+    free(fall->ids);
+    fall->ids = NULL;
+    fall->count = 0;
+    const look *old = w->look;
+    watch next;
+    if (status != TL_OK)
+        return status;
+    if (!watch_begin(&next, w->t, copy))
+        return tl_fail_memory(&w->t->asked->error);
+    for (uint32_t body = 0; body < copy->bodies.table.rows; body++)
+        for (size_t row = 0; row < before; row++)
+            if (old[row].body == next.look[body].body)
+                next.look[body] = old[row];
+    free(w->look);
+    *w = next;
+    return TL_OK;
+}
+
+/* What a relaxation of a copy has ended with. *over: nothing is to be done any more. */
+static tl_status judge(watch *w, tl_model *copy, const tl_relax_result *r, tl_safety_trial *trial, tl_fall *fall,
+                       bool *over)
+{
+    const tl_trials *t = w->t;
+    const tl_solve_reason reason = r->run.reason;
+    const bool left = trial->cycles < t->options.max_cycles;
+    trial->holds = reason == TL_SOLVE_REST;
+    if (reason == TL_SOLVE_OVERLAP)
+        return tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r->message,
+                       tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
+    const bool fails = reason == TL_SOLVE_FAILURE && confirmed(w, copy, r->run.failing);
+    *over = trial->holds || w->fails || fails || !left;
+    trial->why = trial->holds ? "at rest" : w->fails ? w->why : fails ? "fails" : "undecided";
+    trial->undecided = *over && !trial->holds && !w->fails && !fails;
+    if (trial->holds || !*over)
+        return TL_OK;
+    if (fails)
+        w->verdict = r->run.failing;
+    if (copy->cycles > w->looked)
+        looks(w, copy); /* the ways since the last look */
+    tl_status status = list_fall(w, copy, fall);
+    if (status != TL_OK || trial->undecided || !left || !(fall->volume < t->options.least_volume))
+        return status;
+    *over = false;
+    return take_out(w, copy, fall);
+}
+
 /* Brings a copy to rest, or finds what fails. */
 static tl_status settle(tl_trials *t, tl_model *copy, bool leaps, tl_safety_trial *trial, tl_fall *fall)
 {
     watch w;
-    tl_relax relax = tl_relax_default();
-    tl_relax_result r;
+    tl_status status = TL_OK;
+    *trial = (tl_safety_trial){.why = "undecided"};
     if (!watch_begin(&w, t, copy))
         return tl_fail_memory(&t->asked->error);
-    relax.ratio = RESTS;
-    relax.max_cycles = t->options.max_cycles;
-    relax.every = t->window;
-    relax.each = on_step;
-    relax.stop = looks;
-    relax.user = &w;
-    if (copy->cycle)
-        copy->cycle->only_stops = !leaps;
-    tl_status status = tl_model_relax(copy, &relax, &r);
-    t->cycles += r.run.cycles;
-    if (r.run.reason == TL_SOLVE_INTERRUPT || tl_model_interrupted(t->asked))
-        status = tl_fail(&t->asked->error, TL_E_CANCELLED, "%s: stopped; the model is as it was", t->what);
-    else
-        status = told(t, copy, status);
-    const bool holds = r.run.reason == TL_SOLVE_REST, undecided = r.run.reason == TL_SOLVE_CYCLES;
-    *trial = (tl_safety_trial){.holds = holds,
-                               .undecided = undecided,
-                               .cycles = r.run.cycles,
-                               .why = holds       ? "at rest"
-                                      : w.fails   ? w.why
-                                      : undecided ? "undecided"
-                                                  : "fails"};
-    if (status == TL_OK && r.run.reason == TL_SOLVE_OVERLAP)
-        status = tl_fail(&t->asked->error, TL_E_STATE, "%s: %s; let %s take them as fitting first", t->what, r.message,
-                         tl_words(t->asked, "model:seat{}", "tl_model_seat()"));
-    if (status == TL_OK && !holds) {
-        if (copy->cycles > w.looked)
-            looks(&w, copy); /* the ways since the last look */
-        status = list_fall(&w, copy, fall);
+    for (bool over = false; status == TL_OK && !over;) {
+        tl_relax relax = tl_relax_default();
+        tl_relax_result r;
+        relax.ratio = RESTS;
+        relax.max_cycles = t->options.max_cycles - trial->cycles;
+        relax.every = t->window;
+        relax.each = on_step;
+        relax.stop = looks;
+        relax.user = &w;
+        if (copy->cycle)
+            copy->cycle->only_stops = !leaps;
+        status = tl_model_relax(copy, &relax, &r);
+        t->cycles += r.run.cycles;
+        trial->cycles += r.run.cycles;
+        if (r.run.reason == TL_SOLVE_INTERRUPT || tl_model_interrupted(t->asked))
+            status = tl_fail(&t->asked->error, TL_E_CANCELLED, "%s: stopped; the model is as it was", t->what);
+        else
+            status = told(t, copy, status);
+        if (status == TL_OK)
+            status = judge(&w, copy, &r, trial, fall, &over);
     }
+    t->moved = 0;
+    for (uint32_t body = 0; status == TL_OK && body < copy->bodies.table.rows; body++)
+        if (tl_body_is_free(copy, body))
+            t->moved = fmax(t->moved, gone_of(&w, copy, body) / t->settles);
     free(w.look);
     return status;
 }
@@ -374,14 +552,28 @@ static tl_status measure(tl_trials *t, int64_t settled)
     const double on_end = tl_watch_on_end(w);
     const double steps = fmax((double)settled, STEPS_A_BLOCK * on_end);
     t->settles = tl_watch_settlement(w, t->base);
+    t->measured = true;
     t->window = 1 + (int64_t)(0.5 * steps);
     tl_watch_end(w);
     return TL_OK;
 }
 
+static void end_stiffer(tl_trials *t)
+{
+    if (!t->stiffer)
+        return;
+    end_stiffer(t->stiffer);
+    if (t->stiffer->base)
+        tl_model_destroy(t->stiffer->base);
+    free(t->stiffer);
+    t->stiffer = NULL;
+}
+
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall)
 {
     tl_safety_trial trial;
+    forget_made(t);
+    end_stiffer(t);
     tl_status status = settle(t, t->base, true, &trial, fall);
     if (status == TL_OK && trial.holds)
         status = measure(t, trial.cycles > 2 * t->window ? trial.cycles : 2 * t->window);
@@ -399,7 +591,7 @@ static double first_scale(const tl_model *m)
 
 tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall)
 {
-    *t = (tl_trials){.what = what, .asked = m, .began = tl_clock()};
+    *t = (tl_trials){.what = what, .asked = m, .stiffness = 1, .began = tl_clock()};
     *fall = (tl_fall){.ids = NULL};
     tl_status status = TL_OPTIONS_READ(tl_safety, given, &t->options, &m->error);
     if (status == TL_OK)
@@ -410,6 +602,8 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
         status = choose_laws(t);
     if (status == TL_OK)
         status = check_bodies(t);
+    if (status == TL_OK)
+        status = check_processes(t);
     atomic_store(&m->interrupted, false);
     if (status == TL_OK)
         status = copy_of(t, m, &t->base);
@@ -426,10 +620,10 @@ tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_
     return status == TL_OK && trial.holds ? measure(t, trial.cycles) : status;
 }
 
-tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+/* Makes a trial on a copy. */
+static tl_status make_one(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
 {
     tl_model *copy = NULL;
-    *fall = (tl_fall){.ids = NULL};
     tl_status status = copy_of(t, t->base, &copy);
     if (status == TL_OK)
         status = weaken(t, copy, factor);
@@ -437,17 +631,74 @@ tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_
         status = settle(t, copy, false, trial, fall);
     if (copy)
         tl_model_destroy(copy);
-    if (status != TL_OK) {
-        tl_fall_free(fall);
-        return status;
-    }
-    trial->factor = factor;
-    t->undecided += trial->undecided ? 1 : 0;
-    if (!t->options.on_trial)
+    return status;
+}
+
+/* Trials with stiffer joints, which have come to rest as the first copy has; *usable: they did. */
+static tl_status make_stiffer(tl_trials *t, bool *usable)
+{
+    *usable = t->stiffer && t->stiffer->measured;
+    if (t->stiffer || t->stiffness * STIFFER > STIFFEST)
         return TL_OK;
-    tl_model_only_read(t->asked, true);
-    status = t->options.on_trial(t->options.user, trial);
-    tl_model_only_read(t->asked, false);
+    tl_trials *s = t->stiffer = malloc(sizeof *s);
+    if (!s)
+        return tl_fail_memory(&t->asked->error);
+    *s = (tl_trials){.what = t->what,
+                     .asked = t->asked,
+                     .options = t->options,
+                     .which = t->which,
+                     .stiffness = STIFFER * t->stiffness,
+                     .settles = t->settles,
+                     .window = t->window};
+    tl_safety_trial trial;
+    tl_fall fall = {.ids = NULL};
+    tl_status status = copy_of(s, t->base, &s->base);
+    if (status == TL_OK)
+        status = weaken(s, s->base, RAISED);
+    if (status == TL_OK)
+        status = settle(s, s->base, true, &trial, &fall);
+    if (status == TL_OK && trial.holds)
+        status = measure(s, trial.cycles);
+    *usable = s->measured;
+    tl_fall_free(&fall);
+    return status;
+}
+
+/* Makes a trial, with stiffer and stiffer joints while it rests and that may hang on how soft they are. */
+static tl_status make(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    tl_status status = make_one(t, factor, trial, fall);
+    int64_t cycles = trial->cycles;
+    double before = 0;
+    bool usable = true;
+    for (tl_trials *at = t; status == TL_OK && usable && trial->holds && at->moved > fmax(SLIPS, GROWN * before);) {
+        before = at->moved;
+        status = make_stiffer(at, &usable);
+        at = at->stiffer;
+        if (status != TL_OK || !usable)
+            break;
+        tl_fall_free(fall);
+        status = make_one(at, factor, trial, fall);
+        cycles += trial->cycles;
+        t->cycles += trial->cycles;
+    }
+    trial->cycles = cycles;
+    trial->factor = factor;
+    return status;
+}
+
+tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall)
+{
+    *fall = (tl_fall){.ids = NULL};
+    tl_status status = TL_OK;
+    if (!take_made(t, factor, trial, fall))
+        status = make(t, factor, trial, fall);
+    t->undecided += status == TL_OK && trial->undecided ? 1 : 0;
+    if (status == TL_OK && t->options.on_trial) {
+        tl_model_only_read(t->asked, true);
+        status = t->options.on_trial(t->options.user, trial);
+        tl_model_only_read(t->asked, false);
+    }
     if (status != TL_OK)
         tl_fall_free(fall);
     return status;
@@ -457,7 +708,11 @@ void tl_trials_end(tl_trials *t)
 {
     if (t->base)
         tl_model_destroy(t->base);
+    forget_made(t);
+    end_stiffer(t);
+    free(t->ahead);
     free(t->which);
+    t->ahead = NULL;
     t->base = NULL;
     t->which = NULL;
 }

@@ -6,20 +6,6 @@
 
 #include <talus/safety.h>
 
-/* A search for factors of a model: what its trials begin with. */
-typedef struct tl_trials {
-    const char *what; /* begins sentences */
-    tl_model *asked;  /* stays as it is */
-    tl_safety options;
-    uint8_t *which; /* of the laws: whether strengths are divided */
-    tl_model *base; /* a copy of the model that has come to rest with high strengths */
-    double settles; /* how far its elastic joints settle, m */
-    int64_t window; /* steps between two looks at a trial */
-    int64_t cycles; /* made so far, of all copies */
-    double began;   /* s, of the clock */
-    size_t undecided;
-} tl_trials;
-
 /* What fails in a copy. */
 typedef struct tl_fall {
     tl_id *ids;
@@ -27,17 +13,47 @@ typedef struct tl_fall {
     double volume; /* m3 */
     tl_vec3 way;   /* unit, or zero */
     tl_safety_mode mode;
+    tl_id *small; /* what has failed before, and was deleted in the copy: smaller than least_volume */
+    size_t small_count, small_capacity;
 } tl_fall;
+
+/* A trial that was made before its turn (safety/ahead.h). */
+typedef struct tl_trial_ahead {
+    tl_safety_trial trial;
+    tl_fall fall;
+} tl_trial_ahead;
+
+/* A search for factors of a model: what its trials begin with. */
+typedef struct tl_trials {
+    const char *what; /* begins sentences */
+    tl_model *asked;  /* stays as it is */
+    tl_safety options;
+    uint8_t *which;            /* of the laws: whether strengths are divided */
+    tl_model *base;            /* a copy of the model that has come to rest with high strengths */
+    double stiffness;          /* of its joints, over that of the model */
+    struct tl_trials *stiffer; /* the same with stiffer joints, or NULL */
+    double moved;              /* how far a body had gone at the end of the last trial, over `settles` */
+    double settles;            /* how far its elastic joints settle, m */
+    bool measured;             /* whether that is known; else a guess by the size of blocks */
+    int64_t window;            /* steps between two looks at a trial */
+    int64_t cycles;            /* made so far, of all copies */
+    double began;              /* s, of the clock */
+    size_t undecided;
+    tl_trial_ahead *ahead; /* [ahead_count], begun with `base` as it is */
+    size_t ahead_count, ahead_capacity;
+} tl_trials;
 
 void tl_fall_free(tl_fall *fall);
 
 /* Checks what is asked and how the model is, and makes the copy. TL_OK, and fall->count > 0: it does not come to rest
- * even with high strengths; the copy then has not. */
+ * even with high strengths; the copy then has not. Small blocks that do not are deleted in the copy. */
 tl_status tl_trials_begin(tl_trials *t, const char *what, tl_model *m, const tl_safety *given, tl_fall *fall);
 /* Brings the copy to rest again, after blocks of it have been deleted or held. */
 tl_status tl_trials_rest(tl_trials *t, tl_fall *fall);
-/* Makes a trial. It fails: `fall` has what does. */
+/* Makes a trial. It fails: `fall` has what does. Small blocks that fail are deleted in its own copy only. */
 tl_status tl_trials_try(tl_trials *t, double factor, tl_safety_trial *trial, tl_fall *fall);
+/* A trial at a factor that was made ahead, and not yet taken; or NULL. */
+tl_trial_ahead *tl_trials_made(const tl_trials *t, double factor);
 void tl_trials_end(tl_trials *t);
 
 #endif

@@ -2003,6 +2003,7 @@ function Model:water(name, options) end
 ---@field resolution? number in [0.0001, 0.5], default 0.01: relative width of the bracket that is found
 ---@field least_volume? number m3, >= 0, default 0: what fails and is smaller than this in all is deleted in the copies and listed, and the search goes on
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field workers? integer in [1, 256], default 1: processes that make trials at once; what is found is the same for any number
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
 ---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
 ---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}
@@ -2017,7 +2018,7 @@ function Model:water(name, options) end
 ---@field mode string "slides"; "turns" (its corners go farther by rotation than its centre goes); "falls" (nothing bears it); "holds" without any
 ---@field keyblock { block: talus.Block, factor: number }? {factor =, block =}: the least factor of model:keyblocks with the strengths of the laws; nil where there is none, or laws have no friction and cohesion or name blocks
 ---@field trials { F: number, cycles: integer, holds: boolean, undecided: boolean, why: string }[] each a table: F, holds, undecided, cycles, why; in the order in which they were made
----@field small talus.Blocks selection of the blocks below least_volume that failed before, and were deleted in the copies
+---@field small talus.Blocks selection of the blocks below least_volume that failed before at `upper`, and were deleted in that copy
 ---@field undecided integer number of trials that neither came to rest nor failed: they count as failing
 ---@field cycles integer steps of all trials, and s
 ---@field wall number steps of all trials, and s
@@ -2036,6 +2037,7 @@ function Model:factor_of_safety(options) end
 ---@field step? number >= 0.001, default 0.02: from one factor to the next
 ---@field failed? "delete"|"hold" default "delete": what becomes of blocks that have failed, in the copies: they are deleted, or held where they were
 ---@field max_cycles? integer >= 1, default 100000: largest number of steps of one trial; one that is undecided then counts as failing
+---@field workers? integer in [1, 256], default 1: processes that make trials at once; what is found is the same for any number
 ---@field solids? boolean default true: whether the strengths of deformable blocks' solids are divided, too
 ---@field joints? string|string[] joints whose laws are divided: they must have laws of their own; all when left out
 ---@field on_trial? fun(trial: { F: number, holds: boolean, undecided: boolean, cycles: integer, why: string }) called after each trial with {F =, holds =, undecided =, cycles =, why =}

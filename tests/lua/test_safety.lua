@@ -50,6 +50,36 @@ check.equal(r.keyblock.block.id, r.failing[1].id)
 check.equal(r.undecided, 0)
 check.holds(r.message:find("factor of safety", 1, true), "the message tells the factor")
 
+-- Processes beside this one change nothing: the same trials, in the same order, each told once.
+local function told(options)
+    local list = {}
+    options.on_trial = function(trial)
+        list[#list + 1] = string.format("%a %s %s %d %s", trial.F, trial.holds, trial.undecided, trial.cycles,
+            trial.why)
+    end
+    return model:factor_of_safety(options), table.concat(list, "\n")
+end
+local alone, trials = told { resolution = 0.002 }
+for _, workers in ipairs { 2, 3, 8 } do
+    local with, same = told { resolution = 0.002, workers = workers }
+    check.equal(same, trials)
+    check.equal(with.factor, alone.factor)
+    check.equal(with.cycles, alone.cycles)
+    check.equal(with.failing[1].id, alone.failing[1].id)
+    check.near(with.direction, alone.direction, 0)
+    check.equal(with.message, alone.message)
+end
+check.equal(model:state_hash(), before)
+
+-- A function that fails ends the search; the model stays as it was.
+for _, workers in ipairs { 1, 2 } do
+    check.refused(model, function()
+        model:factor_of_safety { workers = workers, on_trial = function()
+            error "enough"
+        end }
+    end, "enough")
+end
+
 -- Where the bracket ends.
 check.equal(model:factor_of_safety { from = 0.2, to = 0.9 }.factor, math.huge)
 local low = model:factor_of_safety { from = 2, to = 3 }
@@ -106,6 +136,9 @@ check.equal(#map.curve, 1)
 check.equal(map.curve[1].blocks, 1)
 check.near(map.curve[1].volume, 2, 1e-9)
 check.equal(two:safety_map { from = 1, to = 2, step = 0.05, failed = "hold" }.factor[id], map.factor[id])
+local beside = two:safety_map { from = 1, to = 2, step = 0.05, workers = 3 }
+check.equal(beside.factor[id], map.factor[id])
+check.equal(beside.cycles, map.cycles)
 two:write_vtk(os.getenv "TALUS_TEST_TMP" and os.getenv "TALUS_TEST_TMP" .. "/safety" or os.tmpname(),
     { block_fields = { safety = map.factor } })
 check.raises(function()
@@ -166,6 +199,14 @@ moving:blocks { fixed = false }:set { velocity = { 0.1, 0, 0 } }
 refused("the model moves (block 2 at 0.1 m/s): bring it to rest first, with model:relax{}", {}, moving)
 refused("no parameter of the laws 'elastic' is marked as a strength", {}, incline("elastic", { kn = 1e9, ks = 1e9 }))
 refused("the model has no law whose strengths could be divided", {}, incline())
+refused("workers = 0", { workers = 0 })
+refused("workers = 257", { workers = 257 })
+do
+    local threaded <close> = talus.model { threads = 2 }
+    check.refused(model, function()
+        model:factor_of_safety { workers = 2 }
+    end, "other threads run")
+end
 check.refused(model, function()
     model:safety_map { failed = "keep" }
 end, "unknown failed 'keep'")

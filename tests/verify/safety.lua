@@ -161,8 +161,8 @@ end
 -- are cut off.
 local CORNER = 0.05
 figures.case("FS.two_blocks", "A block on a steep plane pushes one on a flat plane; neither turns, and all three "
-    .. "surfaces are at their strength at once.", "limit equilibrium of rigid blocks")
-for _, one in ipairs(reference.two_blocks) do
+    .. "surfaces are at their strength at once. The corner that is cut off holds them once they have slid, whatever the stiffness.", "limit equilibrium of rigid blocks")
+local function two_blocks(one, stiffer)
     local model = talus.model { gravity = { 0, 0, -10 } }
     local t1, t2 = math.tan(math.rad(one.dip[1])), math.tan(math.rad(one.dip[2]))
     local a, b_end, h = one.length[1], one.length[1] + one.length[2], one.thickness
@@ -184,10 +184,17 @@ for _, one in ipairs(reference.two_blocks) do
         block:fix { rotation = true }
         block:load { force = { one.uplift[i] * math.sin(dip), 0, one.uplift[i] * math.cos(dip) } }
     end
-    model:joint("*", "coulomb", { kn = 10 * KN, ks = 10 * KS, friction = one.friction, cohesion = one.cohesion })
+    model:joint("*", "coulomb", { kn = stiffer * KN, ks = stiffer * KS, friction = one.friction, cohesion = one.cohesion })
     local r = model:factor_of_safety { resolution = FINE }
-    figures.relative(one.id, r.factor, one.FS, 0.01)
-    figures.equal(one.id .. ": blocks that go", #r.failing, 2)
+    local name = string.format("%s, kn %.0e", one.id, stiffer * KN)
+    figures.relative(name, r.factor, one.FS, 0.01)
+    figures.equal(name .. ": blocks that go", #r.failing, 2)
+end
+
+for _, one in ipairs(reference.two_blocks) do
+    for _, stiffer in ipairs { 0.1, 1, 10 } do
+        two_blocks(one, stiffer)
+    end
 end
 
 -- ------------------------------------------------------------ random wedges
