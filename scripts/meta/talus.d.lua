@@ -1546,7 +1546,7 @@ function talus.back_analysis(options) end
 ---@field on talus.BoundaryResult the faces that are bolted
 ---@field spacing number[] of the grid in the plane of each face, across and along, m, both above 0
 ---@field length number of the bolts, m, from 1e-3 to 1e4
----@field direction? any into the rock; faces that a bolt would not enter get none
+---@field direction? talus.Vector|string into the rock; faces that a bolt would not enter get none
 ---@field along? talus.Vector default {0, 1, 0}: direction of the rows, as it lies in each face: the axis of a tunnel
 ---@field origin? talus.Vector a point of the grid; left out: the centroid of the faces
 ---@field node_spacing? number `spacing` of the nodes of each bolt, m
