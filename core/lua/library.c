@@ -362,11 +362,14 @@ static const tl_lua_key bolt_test_keys[] = {
 };
 
 static const tl_lua_key bolt_test_results[] = {
-    {"displacement", "list, m", "of the mouth, or of the joint"},
-    {"force", "list, N", "pull: at the mouth"},
-    {"axial, dowel", "lists, N", "shear: largest tension, and the dowel's force"},
-    {"along, closing", "lists, N", "shear: what resists the slip, and what presses the joint together"},
-    {"yielded, broken", "booleans", "whether the bolt has at the end"},
+    {"displacement", "", "list of the displacement of the mouth, or of the joint, m"},
+    {"force", "", "list of the force at the mouth, N; nil with shear"},
+    {"axial", "", "list of the largest tension, N; nil with pull"},
+    {"dowel", "", "list of the dowel's force, N; nil with pull"},
+    {"along", "", "list of the force that resists the slip, N; nil with pull"},
+    {"closing", "", "list of the force that presses the joint together, N; nil with pull"},
+    {"yielded", "", "whether the bolt has yielded at the end"},
+    {"broken", "", "whether it has broken"},
     {NULL, NULL, NULL},
 };
 
@@ -386,7 +389,8 @@ const tl_lua_topic tl_lua_library_topics[] = {
             "Other entries are parameters of the element \"bolt\", for each.",
      .keys = pattern_keys},
     {.name = "bolt_test",
-     .usage = "curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}",
+     .usage = "curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}  or  "
+              "curve = talus.bolt_test{length = 2, shear = 0.01, dowel_stiffness = 1e8}",
      .doc = "Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists. "
             "Other entries are parameters of the element \"bolt\".",
      .keys = bolt_test_keys,

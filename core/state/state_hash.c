@@ -369,6 +369,8 @@ static void hash_segments(tl_hash *hash, const tl_model *m)
 static void hash_elements(tl_hash *hash, const tl_model *m)
 {
     const struct tl_elements *e = m->elements;
+    if (!e || (e->next_id == 1 && e->set_count == 0)) /* there have been none, but for calls that failed */
+        return;
     const tl_element_table *t = &e->table;
     tl_hash_word(hash, e->next_id);
     for (size_t k = 0; k < e->set_count; k++) {
@@ -541,8 +543,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
         hash_meshes(&hash, m);
     if (m->segments && m->segments->meet_count > 0)
         hash_segments(&hash, m);
-    if (m->elements)
-        hash_elements(&hash, m);
+    hash_elements(&hash, m);
     snprintf(text, 33, "%016" PRIx64 "%016" PRIx64, hash.a, hash.b);
     return TL_OK;
 }

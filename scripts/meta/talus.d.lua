@@ -1566,20 +1566,21 @@ function talus.bolt_pattern(options) end
 ---@field steps? number default 200: points of the curve
 
 ---@class (exact) talus.BoltTestResult
----@field displacement integer[] list, m of the mouth, or of the joint
----@field force integer[] list, N pull: at the mouth
----@field axial number? lists, N shear: largest tension, and the dowel's force
----@field dowel number? lists, N shear: largest tension, and the dowel's force
----@field along any lists, N shear: what resists the slip, and what presses the joint together
----@field closing any lists, N shear: what resists the slip, and what presses the joint together
----@field yielded boolean booleans whether the bolt has at the end
----@field broken any booleans whether the bolt has at the end
+---@field displacement number[] list of the displacement of the mouth, or of the joint, m
+---@field force number[]? list of the force at the mouth, N; nil with shear
+---@field axial number[]? list of the largest tension, N; nil with pull
+---@field dowel number[]? list of the dowel's force, N; nil with pull
+---@field along number[]? list of the force that resists the slip, N; nil with pull
+---@field closing number[]? list of the force that presses the joint together, N; nil with pull
+---@field yielded boolean whether the bolt has yielded at the end
+---@field broken boolean whether it has broken
 
 --- Draws a bolt out of rock, or shears it by a joint, without a model, and gives the curve as lists. Other entries are parameters of the element "bolt".
 ---
----     curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}
+---     curve = talus.bolt_test{length = 2, pull = 0.01, grout_strength = 2e5}  or  curve = talus.bolt_test{length = 2, shear = 0.01, dowel_stiffness = 1e8}
 ---@param options talus.BoltTestOptions
 ---@return talus.BoltTestResult
+---@overload fun(options: talus.BoltTestOptions): talus.BoltTestResult
 function talus.bolt_test(options) end
 
 ---@class (exact) talus.ConvertOptions

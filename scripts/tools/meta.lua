@@ -174,7 +174,11 @@ local function seen_type(value)
     elseif #value == 3 and type(value[1]) == "number" then
         return "talus.Vector"
     elseif #value > 0 then
-        return seen_type(value[1]) .. "[]"
+        local first = seen_type(value[1])
+        for i = 2, first == "integer" and #value or 0 do
+            first = math.type(value[i]) == "float" and "number" or first
+        end
+        return first .. "[]"
     end
     local names, fields = {}, {}
     for name in pairs(value) do
@@ -190,7 +194,9 @@ end
 -- A field of a result; nil where it has none, which some results refuse to tell.
 local function field_of(value, name)
     local good, field = pcall(function() return value[name] end)
-    return good and field or nil
+    if good then
+        return field
+    end
 end
 
 -- The type of a field of a result with this value and meaning. What may be nil says so.
@@ -208,7 +214,7 @@ local function field_type(value, meaning, class)
             meaning:match("^the selection of blocks") and "talus.Blocks" or meaning:match("^{x, y, z}") and "talus.Vector" or
             meaning:match("^name of the") and "string" or meaning:match("^two groups or") and "(string|talus.Blocks)[]" or
             meaning:match("laws as of model:laws%(%)") and "table[]" or
-            meaning:match("^the number of the") and "integer" or meaning:match("^lists of the components") and "number[]" or
+            meaning:match("^the number of the") and "integer" or meaning:match("^lists? of the %l+") and "number[]" or
             (meaning:match("^how many times") or meaning:match("%f[%w]m3%f[%W]")) and "number" or
             meaning:match("^where a file was read") and "table" or
             meaning:match("^{block =, factor =}") and "{ block: integer, factor: number }" or

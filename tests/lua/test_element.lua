@@ -123,11 +123,16 @@ check.raises(function() e:set { from = { 0, 0, 0 } } end, "says where it is")
 check.raises(function() e:set { stiffness = -1 } end, "stiffness")
 check.near(e[1].params.stiffness, 2e5, 0)
 
--- Bad input.
+-- Bad input. A failed call leaves the state as it was, with elements and without.
+local bare = talus.model()
+bare:generate("box", { min = { 100, 0, 0 }, max = { 101, 1, 1 }, density = 2000 })
 local function refuse(t, words)
-    local all = #m:elements {}
-    check.raises(function() m:element("spring", t) end, words)
-    check.equal(#m:elements {}, all)
+    for _, one in ipairs { m, bare } do
+        local all, hash = #one:elements {}, one.state_hash
+        check.raises(function() one:element("spring", t) end, words)
+        check.equal(#one:elements {}, all)
+        check.equal(one.state_hash, hash)
+    end
 end
 refuse({ from = { 0, 0, 0 }, to = { 0, 0, 0 }, stiffness = 1 }, "same point")
 refuse({ from = { 0, 0, 50 }, to = { 0, 0, 60 }, stiffness = 1 }, "neither end lies in a block")
