@@ -10,7 +10,7 @@
 /* Longer words are not typing errors of a parameter's name; the bound keeps the table on the stack. */
 #define LONGEST_WORD 63
 /* More names than this are not listed in a sentence. */
-#define MOST_LISTED 16
+#define MOST_LISTED 24
 /* Letters from which on the beginning of a name counts as a hint at it ("fric"). */
 #define SHORTEST_PREFIX 3
 

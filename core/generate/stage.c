@@ -183,12 +183,10 @@ typedef struct plane_in_block {
     double reach;   /* the largest coordinate that it was computed with */
 } plane_in_block;
 
-/* `point` is relative to the model's origin. It was given in the axes of the model, so it is known to a rounding of its
- * coordinates there, however near the origin is. */
+/* `point` is relative to the model's origin. */
 static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point)
 {
-    double given = tl_v3_norm(tl_v3_add(point, m->origin));
-    plane_in_block x = {{normal, tl_v3_dot(normal, point)}, fmax(given, tl_v3_norm(point))};
+    plane_in_block x = {{normal, tl_v3_dot(normal, point)}, tl_v3_norm(point)};
     uint32_t body = tl_stage_frame(m, block);
     if (body == TL_NO_ROW)
         return x;
@@ -199,10 +197,13 @@ static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block 
     return x;
 }
 
-/* Cuts a staged block by a plane through `point`, relative to the origin. */
+/* Cuts a staged block by a plane through `point`, relative to the origin: one of those that bound a space. Planes of a
+ * space meet in its edges, as well as the coordinates of points on them are known in the axes of the model. So a corner
+ * of the block that is nearer to the plane lies on it. */
 static tl_status cut_by(tl_model *m, const tl_stage_block *block, tl_vec3 normal, tl_vec3 point, tl_cut *cut)
 {
     plane_in_block x = plane_in_block_of(m, block, normal, point);
+    x.reach = fmax(x.reach, tl_v3_norm(tl_v3_add(point, m->origin)));
     return tl_poly_cut(block->shape, x.plane, x.reach, (tl_tag){0, 0}, cut, &m->error);
 }
 

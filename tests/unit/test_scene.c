@@ -137,7 +137,7 @@ TEST(what_is_sent_once)
     cut(m, "east", 1);
     set_law(m);
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
-    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM CONT LINE FIND DONE");
+    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM CONT LAWS LINE FIND DONE");
     CHECK(f.facts.news > 0);
     CHECK_INT(first_of(&f, "SHAP"), 2);
     CHECK_INT(first_of(&f, "TOUC"), 2);
@@ -152,7 +152,7 @@ TEST(what_is_sent_once)
     CHECK_INT(length_of(&f, "LINE"), 64 + 4);
 
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK); /* the one before was not sent */
-    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM CONT LINE FIND DONE");
+    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM CONT LAWS LINE FIND DONE");
     tl_scene_accept(&scene);
     const tl_html without = {.size = sizeof without, .contacts = TL_HTML_CONTACTS_NONE};
     CHECK_INT(write_frame(&f, &scene, m, &without), TL_OK);
@@ -268,7 +268,7 @@ TEST(zones_are_sent_with_their_numbers)
     zoned_column(m, 0.7);
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
     CHECK_TEXT(names_of(&f),
-               "HEAD SHAP TOUC SURF FRAM SPOS ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD CONT LINE FIND DONE");
+               "HEAD SHAP TOUC SURF FRAM SPOS ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD CONT LAWS LINE FIND DONE");
     CHECK(strstr((const char *)f.payload[0], "\"solids\": [\"rock\"]") != NULL);
     const surface s = surface_of(&f);
     CHECK_INT(s.zones, m->zones->mesh[0].zone_end - m->zones->mesh[0].zone_begin);
@@ -277,7 +277,7 @@ TEST(zones_are_sent_with_their_numbers)
     CHECK_INT(tl_model_cycle(m, 400, &result), TL_OK);
     frame later = {.count = 0};
     CHECK_INT(write_frame(&later, &scene, m, NULL), TL_OK);
-    CHECK_TEXT(names_of(&later), "FRAM SPOS ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD CONT LINE FIND DONE");
+    CHECK_TEXT(names_of(&later), "FRAM SPOS ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD ZFLD CONT LAWS LINE FIND DONE");
     const unsigned char *places = payload_of(&later, "SPOS", 0) + 4, *moved = places + 12 * (size_t)s.points;
     check_surface(&s, places, 6);
     double largest = 0;
@@ -310,7 +310,7 @@ TEST(zones_are_sent_with_their_numbers)
     const tl_id column = 2;
     CHECK_INT(tl_blocks_delete(m, &column, 1), TL_OK);
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
-    CHECK_TEXT(names_of(&f), "HEAD GONE TOUC SURF FRAM CONT LINE FIND DONE");
+    CHECK_TEXT(names_of(&f), "HEAD GONE TOUC SURF FRAM CONT LAWS LINE FIND DONE");
     CHECK_INT(u32(payload_of(&f, "SURF", 0)), 0);
     tl_scene_accept(&scene);
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
@@ -429,7 +429,7 @@ TEST(fields_have_a_value_for_each)
     tl_extra_field field = {.name = "safety", .unit = "m", .values = values, .count = 2};
     tl_html html = {.size = sizeof html, .block_fields = &field, .block_field_count = 1};
     CHECK_INT(write_frame(&f, &scene, m, &html), TL_OK);
-    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM FIEL CONT LINE FIND DONE");
+    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM FIEL CONT LAWS LINE FIND DONE");
     CHECK_INT(length_of(&f, "FIEL"), 12 + 8);
     field.count = 3;
     CHECK_INT(write_frame(&f, &scene, m, &html), TL_E_ARGUMENT);
