@@ -1,5 +1,6 @@
 -- The dam of the examples against statics: uplift and reservoir to rounding, keyblocks to 5e-5, strength reduction to 1 %.
 local check = require "check"
+package.path = "scripts/?.lua;" .. package.path
 local dam = require "examples.dam"
 
 for _, case in ipairs(dam.cases) do

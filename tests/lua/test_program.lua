@@ -95,12 +95,12 @@ check.equal(run("--quiet -e 'x = 1'"), 0)
 
 -- Plugins that must be refused, with path and reason; one of them is of another major version. Those
 -- in `loads` load: half_way fails when it is used, single_blocks, failing, liar, unfit, unfit_solid, crasher and mumbles when told to,
--- older_minor, blank_screen and halving never.
+-- older_minor, blank_screen, halving and half_marked never.
 local bad = os.getenv("TALUS_BAD_PLUGIN_DIR")
 if bad then
     local reasons = { wrong_major = "ABI 2.14", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
     local loads = { half_way = true, single_blocks = true, failing = true, older_minor = true, liar = true, crasher = true,
-        mumbles = true, unfit = true, unfit_solid = true, blank_screen = true, halving = true }
+        mumbles = true, unfit = true, unfit_solid = true, blank_screen = true, halving = true, half_marked = true }
     local refusals = 0
     local list = io.popen("ls '" .. bad .. "'/*.so")
     for path in list:lines() do
