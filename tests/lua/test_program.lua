@@ -148,7 +148,7 @@ contains(select(2, run("help coulomb")), "in [0, 90)")
 contains(select(2, run("help blocks")), "kinetic_energy")
 refused("help solv", "there is no help on 'solv'; did you mean 'solve'?")
 refused("help join", "there is no page 'join'; these speak of it (talus help NAME): blocks")
-refused("help Cohesion", "there is no page 'Cohesion'; these speak of it (talus help NAME): keyblocks, cohesive, coulomb,")
+refused("help Cohesion", "there is no page 'Cohesion'; these speak of it (talus help NAME): keyblocks, factor_of_safety, cohesive,")
 refused("help friction", ", ...") -- more than a sentence holds
 refused("help submarine", "there is no help on 'submarine', and no page speaks of it; `talus help` lists all")
 refused("help bolt", "there is no help on 'bolt', and no page speaks of it") -- not "plot"
