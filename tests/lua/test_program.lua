@@ -151,7 +151,7 @@ refused("help join", "there is no page 'join'; these speak of it (talus help NAM
 refused("help Cohesion", "there is no page 'Cohesion'; these speak of it (talus help NAME): keyblocks, factor_of_safety, cohesive,")
 refused("help friction", ", ...") -- more than a sentence holds
 refused("help submarine", "there is no help on 'submarine', and no page speaks of it; `talus help` lists all")
-refused("help bolt", "there is no help on 'bolt', and no page speaks of it") -- not "plot"
+refused("help volt", "there is no help on 'volt', and no page speaks of it") -- not "bolt"
 status, output = run("plugins")
 check.equal(status, 0)
 contains(output, "law 'coulomb'")

@@ -12,7 +12,7 @@ ctest --test-dir sticky/build --output-on-failure >tests.txt || { cat tests.txt;
 
 # the change: cohesion
 sed -i -e 's/double kn, ks, peak, residual, distance;/double kn, ks, peak, residual, distance, cohesion;/' \
-    -e 's/^    TL_PARAM(TL_PARAM_REAL, params, distance,/    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength without pressure", .min = 0, .max = INFINITY),\n&/' \
+    -e 's/^    TL_PARAM(TL_PARAM_REAL, params, distance,/    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength without pressure", .min = 0, .max = INFINITY, .flags = TL_PARAM_STRENGTH),\n&/' \
     -e 's/limit = f_n \* (low + drop \* left)/glue = f_n > 0 ? p->cohesion * area : 0, limit = glue + f_n * (low + drop * left)/' \
     -e 's/slip_of(trial, limit, f_n \* low,/slip_of(trial, limit, glue + f_n * low,/' sticky/sticky.c
 grep -c cohesion sticky/sticky.c | grep -q 3

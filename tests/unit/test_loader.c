@@ -65,8 +65,8 @@ static size_t found[TL_KIND_ELEMENT + 1];
 
 TEST(default_search_finds_every_plugin_once_in_order)
 {
-    static const char *const known[] = {"coulomb", "adaptive", "box", NULL,
-                                        "mohr_coulomb"}; /* a screen need not be there */
+    static const char *const known[] = {"coulomb", "adaptive",     "box",
+                                        NULL,      "mohr_coulomb", "spring"}; /* a screen need not be there */
     for (int type = TL_KIND_LAW; type <= TL_KIND_ELEMENT; type++) {
         found[type] = kinds_of((tl_kind_type)type);
         CHECK(found[type] >= 3 || type == TL_KIND_SCREEN);

@@ -30,9 +30,9 @@ typedef struct tl_measured {
 /* Columns of a table of poles, in the order of tl_measured. */
 #define TL_POLES_COLUMNS                                                                                               \
     {                                                                                                                  \
-        {.name = "dip", .min = 0, .max = 90}, {.name = "dip_direction", .min = 0, .max = 360},                         \
+        {"dip", 0, 90, false, false, 0}, {"dip_direction", 0, 360, false, false, 0},                                   \
         {                                                                                                              \
-            .name = "weight", .min = 0, .max = INFINITY, .above = true, .optional = true, .absent = 1                  \
+            "weight", 0, INFINITY, true, true, 1                                                                       \
         }                                                                                                              \
     }
 
@@ -148,7 +148,9 @@ static inline tl_poles_mean tl_poles_mean_of(const tl_vec3 *normal, const double
     const double n = (double)count, length = tl_v3_norm(sum), lack = fmax(n - length, 0);
     const double share = count > 1 ? tl_expm1(2.995732273553991 / (n - 1)) : NAN; /* ln 20 */
     const double cosine = fmax(1 - lack / length * share, -1);
-    tl_poles_mean made = {.mean = mean.z < 0 ? tl_v3_neg(mean) : mean, .resultant = fmin(length / n, 1)};
+    tl_poles_mean made;
+    made.mean = mean.z < 0 ? tl_v3_neg(mean) : mean;
+    made.resultant = fmin(length / n, 1);
     made.concentration = count < 2 ? NAN : lack <= 1e-15 * n ? INFINITY : (n - 1) / lack;
     made.cone = count < 2 ? NAN : 57.29577951308232 * tl_atan2(sqrt(fmax(1 - cosine * cosine, 0)), cosine);
     return made;
@@ -168,7 +170,10 @@ static inline tl_vec3 tl_poles_pick(const tl_poles *poles, double u)
 static inline tl_status tl_poles_read(const tl_host *host, const char *file, tl_poles *poles)
 {
     static const tl_csv_column columns[] = TL_POLES_COLUMNS;
-    tl_csv table = {.column = columns, .columns = 3};
+    tl_csv table;
+    memset(&table, 0, sizeof table);
+    table.column = columns;
+    table.columns = sizeof columns / sizeof *columns;
     char *text;
     size_t length;
     tl_status status = tl_file_bytes(host, file, TL_SITE_FILE, &text, &length);
