@@ -87,7 +87,7 @@ TEST(default_search_finds_every_plugin_once_in_order)
         kinds += r.plugin ? r.plugin->kind_count : 0;
         CHECK(strncmp(r.path, good_folder, strlen(good_folder)) == 0);
     }
-    CHECK_INT(found[0] + found[1] + found[2] + found[3] + found[4], kinds);
+    CHECK_INT(found[0] + found[1] + found[2] + found[3] + found[4] + found[5], kinds);
     tl_plugins_load_default();
     CHECK_INT(tl_plugin_record_count(), files);
     CHECK(tl_plugin_record_at(files).path == NULL);
