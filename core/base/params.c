@@ -248,8 +248,8 @@ static void write_default(const tl_param *param, void *to)
 {
     bool none = param->flags & (TL_PARAM_OPTIONAL | TL_PARAM_REQUIRED);
     double real = none ? NAN : param->def[0];
-    int64_t whole = (int64_t)param->def[0];
-    int32_t small = (int32_t)param->def[0];
+    int64_t whole = param->type == TL_PARAM_INT ? (int64_t)param->def[0] : 0;
+    int32_t small = param->type == TL_PARAM_BOOL || param->type == TL_PARAM_ENUM ? (int32_t)param->def[0] : 0;
     tl_vec3 v = {none ? NAN : param->def[0], none ? NAN : param->def[1], none ? NAN : param->def[2]};
     const char *text = none ? NULL : param->def_text;
     tl_points points = {NULL, 0};

@@ -114,9 +114,10 @@ static void begin_damping(tl_model *m, tl_law_phase *phase)
 {
     struct tl_cycle *c = m->cycle;
     const double beta = tl_contact_beta(m);
-    if (!(beta > 0))
+    const size_t rows = m->detect->contacts.table.rows;
+    if (!(beta > 0) || rows == 0)
         return;
-    memset(c->contact_damping, 0, m->detect->contacts.table.rows * sizeof *c->contact_damping);
+    memset(c->contact_damping, 0, rows * sizeof *c->contact_damping);
     phase->damping = c->contact_damping;
     phase->damping_rate = m->dt > 0 ? beta / m->dt : 0;
 }
