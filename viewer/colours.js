@@ -86,10 +86,9 @@ export function blockColours(model) {
 /** Ways to colour contacts. @param {Model} model @returns {[string, string][]} */
 export function contactColours(model) {
     const fields = (model.head?.fields ?? []).filter((f) => f.of === "contacts");
+    const own = ["state", "normal stress", "shear stress", "slip", "joint", ...(model.head?.laws[2] ? ["law"] : [])];
     return [
-        ["", "none"], ["state", "state"], ["normal stress", "normal stress"], ["shear stress", "shear stress"],
-        ["slip", "slip"], ["joint", "joint"],
-        .../** @type {[string, string][]} */ ((model.head?.laws.length ?? 0) > 2 ? [["law", "law"]] : []),
+        ["", "none"], .../** @type {[string, string][]} */ (own.map((name) => [name, name])),
         .../** @type {[string, string][]} */ (fields.map((f) => [`contact field:${f.name}`, plain(f.name)]))
     ];
 }
@@ -97,10 +96,8 @@ export function contactColours(model) {
 /** Ways to colour zones. @param {Model} model @returns {[string, string][]} */
 export function zoneColours(model) {
     const head = model.head;
-    return [
-        ["", "as blocks"], ["displacement", "displacement"], ["state", "state"], ["solid", "solid"],
-        .../** @type {[string, string][]} */ ((head ? zoneNames(head) : []).map((name) => [name, plain(name)]))
-    ];
+    const names = ["displacement", "state", "solid", ...(head ? zoneNames(head) : [])];
+    return [["", "as blocks"], .../** @type {[string, string][]} */ (names.map((name) => [name, plain(name)]))];
 }
 
 /**

@@ -98,21 +98,21 @@ class Columns {
      */
     f32(count, what, none) {
         const out = new Float32Array(this.buffer, this.take(count, 4, what), count);
-        for (let i = 0; i < count; i++) {
-            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i])))
-                throw this.bad(`value ${i} of ${what} is not a number`);
-        }
+        this.finite(out, what, none);
         return out;
+    }
+
+    /** @param {Float32Array | Float64Array} list @param {string} what @param {boolean} [none] */
+    finite(list, what, none) {
+        const i = list.findIndex((value) => !Number.isFinite(value) && !(none && Number.isNaN(value)));
+        if (i >= 0) throw this.bad(`value ${i} of ${what} is not a number`);
     }
 
     /** @param {number} count @param {string} what @param {boolean} [none] */
     f64(count, what, none) {
         const view = new DataView(this.buffer, this.take(count, 8, what), count * 8), out = new Float64Array(count);
-        for (let i = 0; i < count; i++) {
-            out[i] = view.getFloat64(8 * i, true);
-            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i])))
-                throw this.bad(`value ${i} of ${what} is not a number`);
-        }
+        for (let i = 0; i < count; i++) out[i] = view.getFloat64(8 * i, true);
+        this.finite(out, what, none);
         return out;
     }
 
@@ -278,15 +278,25 @@ function readContacts(c, head) {
     return k;
 }
 
+/** @param {Columns} c @param {number} field @param {object[]} fields */
+function checkField(c, field, fields) {
+    if (field >= fields.length) throw c.bad(`field ${field} has no name`);
+}
+
+/** @param {Columns} c @param {number} n @param {number | undefined} rows */
+function checkCount(c, n, rows) {
+    if (rows !== n) throw c.bad(`it has ${n} values for ${rows ?? "no"} rows`);
+}
+
 /**
  * Which law each contact has.
  * @param {Columns} c @param {FrameData} frame @param {Head} head @returns {Uint32Array}
  */
 function readLaws(c, frame, head) {
     const n = c.u32(1, "count")[0];
-    if (n !== frame.contacts?.n) throw c.bad(`it has ${n} laws for ${frame.contacts?.n ?? "no"} contacts`);
+    checkCount(c, n, frame.contacts?.n);
     const laws = c.u32(n, "law");
-    c.below(laws, Math.max(1, head.laws.length), "law");
+    c.below(laws, head.laws.length || 1, "law");
     return laws;
 }
 
@@ -294,8 +304,8 @@ function readLaws(c, frame, head) {
 function readExtra(c, frame, head) {
     const [of, field, n] = c.u32(3, "counts");
     const rows = of === 0 ? frame.poses?.n : of === 1 ? frame.contacts?.n : undefined;
-    if (rows !== n) throw c.bad(`it has ${n} values for ${rows ?? "no"} rows`);
-    if (field >= head.fields.length) throw c.bad(`field ${field} has no name`);
+    checkCount(c, n, rows);
+    checkField(c, field, head.fields);
     return {of, field, value: c.f32(n, "value", true)};
 }
 
@@ -376,7 +386,7 @@ function readPoints(c) {
 /** @param {Columns} c @param {Head} head @returns {ZoneField} */
 function readZoneField(c, head) {
     const [field, n] = c.u32(2, "counts");
-    if (field >= head.zoneFields.length) throw c.bad(`field ${field} has no name`);
+    checkField(c, field, head.zoneFields);
     return {field, value: c.f32(n, "value", true)};
 }
 

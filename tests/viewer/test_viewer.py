@@ -33,7 +33,7 @@ AREA = 1e-5       # relative difference of a section polygon's area
 COLOUR = 3        # of 255
 CONTRAST = 4.5    # of text (WCAG 2.1, level AA)
 RAYS = 200
-SCRIPT = 121000   # characters of the page's script
+SCRIPT = 120000   # characters of the page's script
 NOTHING = 0xffffffff
 
 faults = []
