@@ -114,9 +114,9 @@ function signed(low, high) {
     });
 }
 
-/** @param {import("./scene.js").Head} head @param {string} name @param {number} least @param {number} most */
-function zoneScale(head, name, least, most) {
-    const unit = zoneUnit(head, name), low = least < 0 ? -roundUp(-least) : 0;
+/** @param {string} name @param {string} unit @param {number} least @param {number} most */
+function signedScale(name, unit, least, most) {
+    const low = least < 0 ? -roundUp(-least) : 0;
     const high = most > 0 ? roundUp(most) : low < 0 ? 0 : 1;
     const title = capital(plain(name)) + (unit ? `, ${unit}` : "");
     return {title, kind: /** @type {const} */ ("scale"), low, high, log: false, ramp: signed(low, high), none: true};
@@ -131,7 +131,10 @@ function zoneScale(head, name, least, most) {
 export function scaleOf(model, name) {
     const head = /** @type {import("./scene.js").Head} */ (model.head);
     const most = model.largest(name), least = model.least(name), size = head.size;
-    if (name.startsWith("zone:")) return zoneScale(head, name.slice(5), least, most);
+    const [kind, of] = name.split(":");
+    if (kind === "zone") return signedScale(of, zoneUnit(head, of), least, most);
+    if (kind === "element")
+        return signedScale(of, head.elementFields.find((f) => f.name === of)?.unit ?? "", least, most);
     const weight = 1e-3 * Math.hypot(...head.gravity) * model.density * size ** 3;
     /** @type {Record<string, [string, number]>} */
     const floors = {

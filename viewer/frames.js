@@ -83,6 +83,8 @@ export function column(data, head, name) {
     if (name === "rotation") return lengths(p.rotation).map((x) => x * 180 / Math.PI);
     if (name === "unbalanced") return p.unbalanced;
     if (name.startsWith("zone:")) return zoneColumn(data, head, name.slice(5));
+    if (name.startsWith("element:"))
+        return data.elementFields.find((f) => head.elementFields[f.field].name === name.slice(8))?.value ?? null;
     if (name.startsWith("field:") || name.startsWith("contact field:")) {
         const of = name.startsWith("field:") ? 0 : 1, wanted = name.slice(name.indexOf(":") + 1);
         return data.extras.find((e) => e.of === of && head.fields[e.field].name === wanted)?.value ?? null;
@@ -106,7 +108,8 @@ export function columnNames(data, head) {
     return [
         "displacement", "velocity", "rotation", "unbalanced",
         ...(data.contacts ? ["slip", "normal stress", "shear stress", "force"] : []), ...extra,
-        ...(data.zones.length ? zoneNames(head).map((name) => `zone:${name}`) : [])
+        ...(data.zones.length ? zoneNames(head).map((name) => `zone:${name}`) : []),
+        ...data.elementFields.map((f) => `element:${head.elementFields[f.field].name}`)
     ];
 }
 
