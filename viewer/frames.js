@@ -1,7 +1,7 @@
 // The model over time: a row for each block that ever was, and the frames, packed until they are looked at.
 // @ts-check
 import {readFrame} from "./scene.js";
-import {norm, triple} from "./math.js";
+import {BEYOND, norm, triple} from "./math.js";
 import {zoneColumn, zoneNames} from "./zones.js";
 
 /** @typedef {import("./scene.js").FrameData} FrameData */
@@ -124,7 +124,7 @@ function summarise(data, head) {
         let low = Infinity, high = -Infinity;
         for (let i = 0; i < values.length; i++) {
             if (values[i] < low) low = values[i];
-            if (values[i] > high) {
+            if (values[i] > high && values[i] < BEYOND) {
                 high = values[i];
                 if (name === "displacement") {
                     most = high;

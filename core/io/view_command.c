@@ -49,6 +49,7 @@ static const struct {
     [TL_VIEW_FRICTION] = {"friction", JOINT | VALUE},
     [TL_VIEW_VTK] = {"write_vtk", 0},
     [TL_VIEW_SNAPSHOT] = {"snapshot", 0},
+    [TL_VIEW_SAFETY] = {"safety", 0},
 };
 #define OPS (sizeof ops / sizeof ops[0])
 

@@ -163,7 +163,7 @@ static void look_up(lua_State *L, const request *r, tl_extra_field *field, doubl
         if (type != LUA_TNUMBER && type != LUA_TNIL)
             tl_lua_fail(L, "%s: %s: '%s' has %s for %s %I, and not a number", r->context, r->key, field->name,
                         tl_lua_describe(L, -1), r->kind->item, number);
-        values[i] = type == LUA_TNIL || isinf(lua_tonumber(L, -1)) ? NAN : lua_tonumber(L, -1);
+        values[i] = type == LUA_TNIL ? NAN : lua_tonumber(L, -1);
         lua_pop(L, 1);
     }
     lua_pop(L, 1);
