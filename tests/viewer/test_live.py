@@ -193,6 +193,7 @@ def test_commands(chrome, page):
         sends("Save", {"op": "snapshot"})
         sends("VTK", {"op": "write_vtk"})
         sends("Show all", {"op": "show"})
+        sends("Safety", {"op": "safety"})
         chrome.run("talus.app.pick(92), talus.app.pickMore(88), talus.app.drawn()")
         table = dict(chrome.run("[...document.querySelectorAll('#picked tr')].map(r => [...r.cells].map(c => c.textContent))"))
         check(chrome.run("document.querySelector('#picked h2').textContent") == "2 blocks" and table["ids"] == "92, 88", f"of two blocks the table says {table}")
