@@ -217,11 +217,45 @@ check.equal(#named:blocks { group = "right" }, 1)
 named:generate("import", { file = stem .. ".obj", density = 1, group = "mine", translate = { 0, 5, 0 } })
 check.equal(#named:blocks { group = "mine" }, 2)
 
+-- Names that agree in all of the letters that are kept stay apart.
+lines = { "o " .. ("n"):rep(70) .. "A" }
+cube(0, 0, lines)
+lines[#lines + 1] = "o " .. ("n"):rep(70) .. "B"
+cube(8, 1.5, lines)
+local long = talus.model {}
+local told = long:generate("import", { file = write(".obj", table.concat(lines, "\n")), density = 1 })
+check.equal(told.report.long_names, 4)
+local first, second = long:blocks()[1].group, long:blocks()[2].group
+check.holds(first ~= second and #first == 63 and first:sub(1, 50) == ("n"):rep(50), first .. ", " .. second)
+
 local turned = talus.model {}
 turned:generate("import", { density = 1, file = write("_moved.json", [==[
 {"data": {"transformation": {"dtype": "t", "data": {"matrix": [[0, -1, 0, 10], [1, 0, 0, 20], [0, 0, 1, 30], [0, 0, 0, 1]]}},
  "geometry": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]}}}]==]) })
 check.near(turned:blocks()[1].centroid, { 9.75, 20.25, 30.25 }, 1e-12)
+
+-- ---------------------------------------------------------------- solids that touch along a sharp edge
+
+-- Two wedges of 25 degrees whose sharp edges are one, as triangles without numbers. Faces far off their plane may not take
+-- the angle of such a wedge for none.
+local sharp, tan = {}, math.tan(math.rad(25))
+for side = -1, 1, 2 do
+    local at = { { 0, 0, 0 }, { 0, 1, 0 }, { side, 0, 0 }, { side, 1, 0 }, { side, 0, tan }, { side, 1, tan } }
+    for _, f in ipairs { { 1, 5, 6 }, { 1, 6, 2 }, { 1, 2, 4 }, { 1, 4, 3 }, { 3, 4, 6 }, { 3, 6, 5 }, { 1, 3, 5 }, { 2, 6, 4 } } do
+        sharp[#sharp + 1] = "facet normal 0 0 0\nouter loop"
+        for k = 1, 3 do
+            sharp[#sharp + 1] = ("vertex %.9f %.9f %.9f"):format(table.unpack(at[f[side < 0 and (5 - k) % 3 + 1 or k]]))
+        end
+        sharp[#sharp + 1] = "endloop\nendfacet"
+    end
+end
+write(".stl", "solid a\n" .. table.concat(sharp, "\n") .. "\nendsolid a\n")
+for _, flat in ipairs { 1e-3, 0.3 } do
+    local wedges = talus.model {}
+    wedges:generate("import", { file = stem .. ".stl", density = 1, weld = 1e-6, flat = flat })
+    check.equal(#wedges:blocks(), 2)
+    check.near(wedges:blocks():sum "volume", tan, 1e-8)
+end
 
 -- ---------------------------------------------------------------- what write_blocks writes
 
