@@ -127,6 +127,50 @@ for seed = 1, check.cases(MODELS) do
     end
 end
 
+-- ---------------------------------------------------------------- faces divided on one side of an edge only
+
+-- Divides some faces of an object between two of their edges, time and again. Neighbours know nothing of the new corners.
+local function divided(object, times)
+    for _ = 1, times do
+        local f = math.random(#object.faces)
+        local face, new = object.faces[f], { {}, {} }
+        local i = math.random(#face - 1)
+        local j = math.random(i + 1, #face)
+        local at = {}
+        for k, edge in ipairs { i, j } do
+            local p, q, share = object.vertices[face[edge]], object.vertices[face[edge % #face + 1]], 0.2 + 0.6 * math.random()
+            object.vertices[#object.vertices + 1] = { p[1] + share * (q[1] - p[1]), p[2] + share * (q[2] - p[2]), p[3] + share * (q[3] - p[3]) }
+            at[k] = #object.vertices
+        end
+        new[1] = { at[1] }
+        table.move(face, i + 1, j, 2, new[1])
+        table.insert(new[1], at[2])
+        new[2] = { at[2] }
+        table.move(face, j + 1, #face, 2, new[2])
+        table.move(face, 1, i, #new[2] + 1, new[2])
+        table.insert(new[2], at[1])
+        object.faces[f], object.faces[#object.faces + 1] = new[1], new[2]
+    end
+    return object
+end
+
+for seed = 1, check.cases(MODELS) do
+    local model, corners = random_model(seed), 0
+    for ending, writer in pairs { [".obj"] = writers[".obj"], [".stl"] = writers[".stl"] } do
+        local objects = objects_of(model)
+        for _, object in ipairs(objects) do
+            divided(object, seed % 7)
+        end
+        local other = talus.model {}
+        local summary = other:generate("import", { file = write(ending, writer(objects, digits("%.12f"))), density = 2000 })
+        same(model, other, 1e-9)
+        for _, row in ipairs(summary.report) do
+            corners = corners + (row.between or 0)
+        end
+    end
+    check.equal(corners > 0, seed % 7 > 0)
+end
+
 -- ---------------------------------------------------------------- a vault
 
 -- A barrel vault of 20 courses with 35 stones, every other one offset by half a stone, rounded to `unit`.

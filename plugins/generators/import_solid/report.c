@@ -95,6 +95,8 @@ static tl_status note_object(const solids *s, uint32_t object, const char *name)
     if (status == TL_OK)
         status = note_count(s, name, "collapsed", d->collapsed);
     if (status == TL_OK)
+        status = note_count(s, name, "between", d->between);
+    if (status == TL_OK)
         status = note_count(s, name, "merged", d->merged);
     if (status == TL_OK)
         status = note_count(s, name, "turned", d->turned);
