@@ -1,8 +1,9 @@
 /* solids.h - from the faces of a file to closed solids with plane faces, and to blocks.
  *
- * An object is welded, closed, turned outward and divided into its shells (weld.c, between.c). Faces of a shell in one
- * plane become one side (sides.c). Sides of two solids at one place get one plane (shared.c). Vertices are moved into
- * the planes of their sides (plane.c). Then each solid becomes a block (create.c). Refused ones are listed (report.c). */
+ * An object is welded, closed, turned outward and divided into its shells (weld.c, between.c). Faces of a shell in
+ * one plane become one side (sides.c). Sides of two solids at one place get one plane (shared.c). Vertices are moved
+ * into the planes of their sides (plane.c). Then each solid becomes a block (create.c). Refused ones are listed
+ * (report.c). */
 #ifndef IMPORT_SOLID_SOLIDS_H
 #define IMPORT_SOLID_SOLIDS_H
 
