@@ -147,7 +147,8 @@ static uint32_t nearest_node(const tl_node_table *n, uint32_t row, uint32_t begi
     return best;
 }
 
-/* Whether column `column` of the states of a kind, of nodes or of the whole, passes to elements that are placed again. */
+/* Whether column `column` of the states of a kind, of nodes or of the whole, passes to elements that are placed
+ * again. */
 static bool passes(const tl_kind *kind, uint32_t column, bool whole)
 {
     for (uint32_t k = 0; k < kind->state_count; k++)

@@ -78,11 +78,10 @@ static tl_status call(tl_model *m, const tl_element_set *set, const tl_element_b
         return tl_fail(&m->error, status, "element '%s' of plugin '%s': %s", set->kind->name, tl_plugin_id(set->kind),
                        tl_report_text(&report, status));
     const uint32_t odd = find_odd(batch, set->kind);
-    return odd == batch->count
-               ? TL_OK
-               : tl_fail(&m->error, TL_E_NUMERIC,
-                         "element %u, '%s' of plugin '%s': together() gives a state that is not finite",
-                         m->elements->table.id[begin + odd], set->kind->name, tl_plugin_id(set->kind));
+    return odd == batch->count ? TL_OK
+                               : tl_fail(&m->error, TL_E_NUMERIC,
+                                         "element %u, '%s' of plugin '%s': together() gives a state that is not finite",
+                                         m->elements->table.id[begin + odd], set->kind->name, tl_plugin_id(set->kind));
 }
 
 /* Asks the kind of the elements in rows that follow each other. */

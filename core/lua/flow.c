@@ -240,7 +240,7 @@ int tl_lua_flow_place(lua_State *L, tl_model *model)
     const double *aperture = type == LUA_TFUNCTION ? ask_apertures(L, model, table, function, &args) : NULL;
     tl_lua_selection *made = tl_lua_selection_push(L, &tl_lua_element_kind, 1);
     tl_id *ids = NULL;
-    const tl_status status = tl_model_element(model, TL_LUA_FLOW, &args, 1, "water", &ids, &made->count);
+    const tl_status status = tl_model_element(model, TL_LUA_FLOW, &args, 1, TL_LUA_FLOW, &ids, &made->count);
     made->names = ids;
     tl_lua_ok(L, model, status);
     if (aperture)

@@ -148,7 +148,8 @@ static const tl_lua_key keys[] = {
      "uniform pressure, Pa; or of a field, asked once for each node and then kept"},
     {"joints", "name or list of names", "joints that have this water, \"A\", \"A:3\" or \"*\"; all when left out"},
     {"aperture", "number, {JOINT = number} or function(x, y, z)",
-     "of \"flow\", m: hydraulic aperture of walls that just touch, of all joints, by joint with \"*\" for the others, or "
+     "of \"flow\", m: hydraulic aperture of walls that just touch, of all joints, by joint with \"*\" for the others, "
+     "or "
      "asked once for each wet joint, at its middle; it grows as the joint opens and falls as it closes"},
     {"residual", "number", "likewise: least aperture; 2e-5 when left out"},
     {"maximum", "number", "likewise: largest aperture that counts; 2e-3 when left out"},
@@ -175,16 +176,18 @@ const tl_lua_topic tl_lua_water_topics[] = {
          "another, in contact or not. A later call takes the place of earlier water on the same walls; \"none\" takes "
          "it away, from some joints or from all. A joint keeps its water until its mean opening passes drain_gap; "
          "then it is dry. Of \"flow\" pressures are found by the cubic law, between heads and drains, with apertures "
-         "that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks take water as a force. The elements "
+         "that follow the joints: model:flow tells what flows. What the laws see is the effective force. Keyblocks "
+         "take water as a force. The elements "
          "have the states area, opening and dry, their nodes pressure.",
      .keys = keys,
      .arguments = 2,
      .method = model_water},
     {.name = "flow",
      .usage = "result = model:flow()",
-     .doc = "What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were "
-            "given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, "
-            "flow, head and closed; and closed, how many of them reach neither a head nor a drain.",
+     .doc =
+         "What flows in the joints, as of the last solution: lists heads and drains, in the order in which they were "
+         "given, of tables with flow, m3/s into the rock; joints, the selection of wet joints, with area, aperture, "
+         "flow, head and closed; and closed, how many of them reach neither a head nor a drain.",
      .arguments = 0,
      .method = tl_lua_model_flow},
     {.name = NULL},

@@ -6,15 +6,13 @@ local reference = require "reference_water"
 
 local GW = 1e4 -- N/m3
 
--- Boxes below and above a level joint, of the length, width and number of parts along x; all is held.
-local function strip(length, width, parts, thickness)
+-- Rock of a length and width with a level joint "level" at z = 0, in parts along x; all is held.
+local function strip(length, width, parts)
     local model = talus.model { gravity = { 0, 0, 0 } }
-    for k = 1, parts do
-        for side = -1, 1, 2 do
-            model:generate("box", { min = { (k - 1) * length / parts, 0, math.min(0, side * thickness) },
-                max = { k * length / parts, width, math.max(0, side * thickness) }, density = 2500,
-                group = side < 0 and "floor" or "roof" })
-        end
+    model:generate("box", { min = { 0, 0, -1 }, max = { length, width, 1 }, density = 2500 })
+    model:generate("joint", { joint = "level", dip = 0, dip_direction = 0, origin = { 0, 0, 0 } })
+    for k = 1, parts - 1 do
+        model:generate("joint", { joint = "parts", dip = 90, dip_direction = 90, origin = { k * length / parts, 0, 0 } })
     end
     model:blocks():fix()
     model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
@@ -31,8 +29,8 @@ local function check_one()
     local case = reference["FLOW.one"]
     local c, e = case.inputs, case.expected
     for _, parts in ipairs { 1, 7 } do
-        local model = strip(c.length, c.width, parts, 1)
-        model:water("flow", { aperture = c.aperture, viscosity = c.viscosity, unit_weight = GW,
+        local model = strip(c.length, c.width, parts)
+        model:water("flow", { joints = "level", aperture = c.aperture, viscosity = c.viscosity, unit_weight = GW,
             heads = { { inside = at(0, c.width), head = c.dp / GW }, { inside = at(c.length, c.width), head = 0 } } })
         local r = model:flow()
         figures.near(parts .. " parts: flow in, m3/s", r.heads[1].flow, e.Q, 1e-9 * e.Q)
@@ -44,8 +42,8 @@ local function check_taper()
     figures.case("FLOW.taper", "A joint whose aperture grows along it, in 20 parts.", "closed form")
     local case = reference["FLOW.taper"]
     local c, e = case.inputs, case.expected
-    local model = strip(c.length, c.width, 20, 1)
-    model:water("flow", { viscosity = c.viscosity, unit_weight = GW,
+    local model = strip(c.length, c.width, 20)
+    model:water("flow", { joints = "level", viscosity = c.viscosity, unit_weight = GW,
         aperture = function(x)
             return c.aperture_at_ends[1] + (c.aperture_at_ends[2] - c.aperture_at_ends[1]) * x / c.length
         end,
@@ -122,9 +120,9 @@ local function check_filling()
     figures.case("FLOW.filling", "A closed joint fills from one end, in 40 parts.", "closed form")
     local case = reference["FLOW.filling"]
     local c, e = case.inputs, case.expected
-    local model = strip(c.length, 1, 40, 1)
-    model:water("flow", { aperture = c.aperture, viscosity = c.viscosity, bulk = c.fluid_bulk, steady = false,
-        unit_weight = GW, heads = { { inside = at(0, 1), head = 1 } } })
+    local model = strip(c.length, 1, 40)
+    model:water("flow", { joints = "level", aperture = c.aperture, viscosity = c.viscosity, unit_weight = GW,
+        bulk = c.fluid_bulk, steady = false, heads = { { inside = at(0, 1), head = 1 } } })
     local goal, dt = e.time_to_half_pressure_at_closed_end, 2.5e-4
     model:timestep { dt = dt }
     local function far_end()

@@ -74,7 +74,8 @@ typedef enum tl_param_type {
      * Since 1.13 also of elements: the host keeps the text as long as `self`. */
     TL_PARAM_STRING, /* const char *; NULL when optional and not given */
     /* tl_points: a list of vectors; empty when optional and not given. Since 1.10 also of solids, with TL_PARAM_FLAT: a
-     * table of rows {x, y} in which x ascends. The host keeps the rows as long as `self`. Since 1.15 also of elements. */
+     * table of rows {x, y} in which x ascends. The host keeps the rows as long as `self`. Since 1.15 also of
+     * elements. */
     TL_PARAM_POINTS
 } tl_param_type;
 

@@ -169,7 +169,7 @@ typedef struct placing {
     const flow_params *p;
     own_aperture *own; /* in the order in which they were given */
     size_t own_count;
-    tl_vec3 *corner;   /* of all polygons, halfway between the walls */
+    tl_vec3 *corner; /* of all polygons, halfway between the walls */
     uint32_t *first, *wall, *which;
     double *slack, *area;
     size_t count;
@@ -238,8 +238,8 @@ static tl_status read_apertures(placing *k)
         if (before > 0 && k->own_count > before) {
             qsort(k->own + before, k->own_count - before, sizeof *k->own, compare_own);
             for (size_t i = 0; i < k->own_count; i++)
-                if (i >= before || !bsearch(&k->own[i], k->own + before, k->own_count - before, sizeof *k->own,
-                                            compare_own))
+                if (i >= before ||
+                    !bsearch(&k->own[i], k->own + before, k->own_count - before, sizeof *k->own, compare_own))
                     k->own[kept++] = k->own[i];
             k->own_count = kept;
         }
@@ -302,9 +302,8 @@ static tl_status place_joint(const placing *k, const tl_element_wall *w, size_t 
                                      "blocks",
                                      w->block[0], w->block[1], MOST_CORNERS - 1);
             for (int side = 0; side < 2; side++)
-                all.at[side][all.count] =
-                    tl_v3_madd(w->corners[side][from], k->crossings.piece[s].from,
-                               tl_v3_sub(w->corners[side][to], w->corners[side][from]));
+                all.at[side][all.count] = tl_v3_madd(w->corners[side][from], k->crossings.piece[s].from,
+                                                     tl_v3_sub(w->corners[side][to], w->corners[side][from]));
             crossing[all.count++] = k->crossings.piece[s].crossing;
         }
     const tl_vec3 n = tl_v3_unit(tl_v3_sub(w->normal[0], w->normal[1]));
@@ -317,8 +316,7 @@ static tl_status place_joint(const placing *k, const tl_element_wall *w, size_t 
         weight[c + 1] += part;
     }
     const own_aperture key = {joint_key(w, k->which[i]), 0};
-    const own_aperture *own =
-        k->own_count ? bsearch(&key, k->own, k->own_count, sizeof key, compare_own) : NULL;
+    const own_aperture *own = k->own_count ? bsearch(&key, k->own, k->own_count, sizeof key, compare_own) : NULL;
     for (size_t c = 0; c < 2 * all.count; c++) {
         const int side = c >= all.count;
         const size_t at = side ? c - all.count : c;
@@ -348,10 +346,8 @@ static tl_status place_ends(const placing *k, const tl_points *of, int role)
         const tl_element_node nodes[2] = {{0, of->at[i], {0, 0, 0}, role == FLOW_AT_DRAIN ? number : 0},
                                           {0, of->at[i + 1], {0, 0, 0}, role == FLOW_AT_DRAIN ? number : 0}};
         const double whole[] = {0, 0, 0, 0, 0, role == FLOW_AT_HEAD ? number : 0, role, 0, -1};
-        status = k->host->add(k->host, &(tl_new_element){.size = sizeof(tl_new_element),
-                                                         .nodes = nodes,
-                                                         .count = 2,
-                                                         .state = whole});
+        status = k->host->add(
+            k->host, &(tl_new_element){.size = sizeof(tl_new_element), .nodes = nodes, .count = 2, .state = whole});
     }
     return status;
 }
@@ -385,7 +381,8 @@ static tl_status check_boxes(const placing *k, reach *r)
                     }
         if (!found)
             return k->host->fail(k->host, TL_E_NOT_FOUND,
-                                 "head %zu: no edge of a wet joint has its middle in the box: widen the box", h / 3 + 1);
+                                 "head %zu: no edge of a wet joint has its middle in the box: widen the box",
+                                 h / 3 + 1);
     }
     return TL_OK;
 }
@@ -432,11 +429,12 @@ static tl_status tell_closed(const placing *k, const tl_element_wall *walls, rea
     }
     const tl_element_wall *w = &walls[k->wall[which]];
     if (closed == k->count)
-        return k->host->fail(k->host, TL_E_ARGUMENT,
-                             "the network of joints between blocks %u and %u, '%s', reaches neither a head nor a drain, "
-                             "so steady flow has no pressure: give heads = {{inside = box, head = m}} with the edge of "
-                             "a joint inside the box",
-                             w->block[0], w->block[1], w->joint);
+        return k->host->fail(
+            k->host, TL_E_ARGUMENT,
+            "the network of joints between blocks %u and %u, '%s', reaches neither a head nor a drain, "
+            "so steady flow has no pressure: give heads = {{inside = box, head = m}} with the edge of "
+            "a joint inside the box",
+            w->block[0], w->block[1], w->joint);
     if (closed > 0)
         k->host->log(k->host,
                      "%zu wet joint%s, the first between blocks %u and %u, '%s', reach%s neither a head nor a drain: "

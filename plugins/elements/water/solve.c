@@ -5,15 +5,17 @@
  *     w = mean of clamp(touching + opening, residual, maximum)
  *
  * with the opening of the walls, below 0 where they overlap, and the aperture `touching` where they just touch. The
- * potential is phi = p + unit_weight z, Pa. From the centroid of a cell to a side of the length L at the distance d
- * flows, m3/s, by the cubic law (Witherspoon, Wang, Iwai and Gale 1980),
+ * potential is phi = p + unit_weight z, Pa. A side has the length L and the distance d from the centroid. By the cubic
+ * law (Witherspoon, Wang, Iwai and Gale 1980) there flows to it, m3/s,
  *
  *     q = t (phi_cell - phi_side),    t = w^3 / (12 viscosity) L / d
  *
- * Sides that meet have one phi, the mean with the weights t, unless a head gives it; one that meets none is closed. A
- * drain of the radius r takes 2 pi w^3 / (12 viscosity) / ln(r0 / r) (phi_cell - unit_weight z) of a cell that it
- * passes, with r0 = 0.2 sqrt(A) (Peaceman 1978), since its pressure is 0. Steady flow: the sum over each cell is 0.
- * Otherwise water of the bulk modulus K is stored,
+ * Sides that meet have one phi, the mean with the weights t, unless a head gives it; one that meets none is closed. The
+ * pressure in a drain is 0. One of the radius r takes from a cell that it passes at the height z (Peaceman 1978)
+ *
+ *     q = 2 pi w^3 / (12 viscosity) / ln(r0 / r) (phi_cell - unit_weight z),    r0 = 0.2 sqrt(A)
+ *
+ * Steady flow: the sum over each cell is 0. Otherwise water of the bulk modulus K is stored,
  *
  *     w A / K d(phi)/dt + A dw/dt + sum of q = 0
  *
@@ -24,6 +26,7 @@
  * and bears no pressure. */
 #include "flow.h"
 
+#define TWO_PI (2 * 3.14159265358979323846)
 /* Tolerance: residual of the equations over that of the heads, where iterations end. Test: lua/test_flow. */
 #define CONVERGED 1e-10
 /* Limit: iterations for each cell. Those of a network in a plane grow as the root of their number. */
@@ -42,15 +45,15 @@ typedef struct net {
     const flow_params *p;
     const tl_element_batch *b;
     size_t cells, sides, crossings;
-    uint32_t *first;        /* of the sides of a cell, [cells + 1] */
-    uint32_t *crossing;     /* of a side */
-    double *t;              /* of a side, m3/s/Pa */
-    uint32_t *head;         /* of a crossing: row of the element + 1; 0: none */
-    double *given;          /* of a crossing: its potential where it has a head, Pa */
-    double *sum, *phi;      /* of a crossing: of t; its potential in the last product */
-    double *x, *r, *way, *y; /* of a cell: potential, Pa; residual, direction and product */
+    uint32_t *first;          /* of the sides of a cell, [cells + 1] */
+    uint32_t *crossing;       /* of a side */
+    double *t;                /* of a side, m3/s/Pa */
+    uint32_t *head;           /* of a crossing: row of the element + 1; 0: none */
+    double *given;            /* of a crossing: its potential where it has a head, Pa */
+    double *sum, *phi;        /* of a crossing: of t; its potential in the last product */
+    double *x, *r, *way, *y;  /* of a cell: potential, Pa; residual, direction and product */
     double *extra, *diagonal; /* of a cell: of drains and storage; of the matrix */
-    double *width;          /* of a cell, m: aperture */
+    double *width;            /* of a cell, m: aperture */
     unsigned char *closed, *open, *drained;
     hit *drain;
     size_t hits, hit_capacity;
@@ -192,9 +195,9 @@ static bool make_room(net *n)
 
 static void release(net *n)
 {
-    void *const owned[] = {n->first, n->crossing, n->t,     n->head,     n->given, n->sum,    n->phi,  n->x,
-                           n->r,     n->way,      n->y,     n->extra,    n->diagonal, n->width, n->closed,
-                           n->open,  n->drained,  n->drain};
+    void *const owned[] = {n->first,    n->crossing, n->t,      n->head, n->given,   n->sum,
+                           n->phi,      n->x,        n->r,      n->way,  n->y,       n->extra,
+                           n->diagonal, n->width,    n->closed, n->open, n->drained, n->drain};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
 }
@@ -220,7 +223,7 @@ static bool add_drains(net *n, size_t e, const cell *c, size_t first_drain)
             n->hit_capacity = more;
         }
         const double ratio = FLOW_WELL_RADIUS * sqrt(c->area) / b->weight[b->start[k]], w = n->width[e];
-        const double conductance = 2 * 3.14159265358979323846 * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
+        const double conductance = TWO_PI * w * w * w / (12 * n->p->viscosity) / tl_log1p(fmax(ratio, LEAST_RATIO) - 1);
         n->drain[n->hits++] =
             (hit){(uint32_t)e, (uint32_t)k, conductance, n->p->unit_weight * (b->origin.z + z) - n->base};
         n->drained[e] = 1;
@@ -523,9 +526,9 @@ static tl_status solve(net *n, tl_report *report)
     set_up(n);
     if ((n->p->steady || n->step > 0) && !iterate(n))
         return refuse(report, TL_E_NUMERIC,
-                              "the flow does not converge in %d iterations for each of %u joints: bring residual and "
-                              "maximum, %g and %g m, nearer to each other",
-                              MOST_ITERATIONS, n->b->count, n->p->residual, n->p->maximum);
+                      "the flow does not converge in %d iterations for each of %u joints: bring residual and "
+                      "maximum, %g and %g m, nearer to each other",
+                      MOST_ITERATIONS, n->b->count, n->p->residual, n->p->maximum);
     for (size_t e = 0; e < n->cells; e++)
         if (n->step > 0 && is_joint(n, e)) {
             const cell c = cell_of(n, e);
