@@ -78,20 +78,36 @@ static bool is_taken(const keys *k, uint64_t key)
     return key && k->count && bsearch(&key, k->at, k->count, sizeof key, compare_keys);
 }
 
-/* Takes the keys of what has been placed, and leaves out what has a key that was taken before. */
+/* Takes the keys of what has been placed, and leaves out what has a key that was taken before: where all keys of a call
+ * were, what has none, too. */
 static bool take_keys(keys *k, tl_placing *p)
 {
-    size_t kept = 0;
+    size_t kept = 0, keyed = 0;
     for (size_t i = 0; i < p->placed_count; i++)
-        if (!is_taken(k, p->placed[i].key))
+        if (!is_taken(k, p->placed[i].key)) {
+            keyed += p->placed[i].key != 0;
             p->placed[kept++] = p->placed[i];
-    p->placed_count = kept;
+        }
+    p->placed_count = kept = keyed == 0 && kept < p->placed_count ? 0 : kept;
     if (!tl_grow(&k->at, &k->capacity, k->count + kept + 1, sizeof *k->at))
         return false;
     for (size_t i = 0; i < kept; i++)
         k->at[k->count++] = p->placed[i].key;
     qsort(k->at, k->count, sizeof *k->at, compare_keys);
     return true;
+}
+
+/* Elements without a key go, too, where all of their call that had one have gone: `number` of a set is scratch. */
+static void leave_rest(struct tl_elements *e, size_t first, unsigned char *keep)
+{
+    const tl_element_table *t = &e->table;
+    for (size_t k = 0; k < e->set_count; k++)
+        e->set[k].number = 0;
+    for (size_t row = 0; row < first; row++) /* 1: some have gone; 2: some stay */
+        e->set[t->set[row]].number |= !keep[row] ? 1 : t->key[row] ? 2 : 0;
+    for (size_t row = 0; row < first; row++)
+        if (e->set[t->set[row]].number == 1)
+            keep[row] = 0;
 }
 
 bool tl_elements_give_way(struct tl_elements *e, size_t first)
@@ -109,6 +125,8 @@ bool tl_elements_give_way(struct tl_elements *e, size_t first)
     for (size_t row = 0; row < rows && enough; row++)
         keep[row] = row >= first || !tl_element_ops_of(&e->set[t->set[row]])->lays_again ||
                     strcmp(tl_plugin_id(e->set[t->set[row]].kind), plugin) != 0 || !is_taken(&taken, t->key[row]);
+    if (enough)
+        leave_rest(e, first, keep);
     if (enough)
         tl_elements_keep(e, keep, false);
     free(taken.at);

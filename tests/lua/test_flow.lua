@@ -122,8 +122,13 @@ local turns = rock()
 local count = #wet(turns)
 turns:water("uniform", { pressure = 1e4 })
 check.holds(#turns:elements { kind = "water" } == count - 2)
+check.holds(#turns:elements { kind = "flow" } == 0) -- heads go with their joints
+turns:generate("joint", { joint = "W", dip = 90, dip_direction = 90, origin = { 6, 0, 0 } })
+turns:cycle(1)
+check.holds(#turns:elements { kind = "flow" } == 0) -- and do not come back
 wet(turns)
-check.holds(#turns:elements { kind = "water" } == 0)
+wet(turns)
+check.holds(#turns:elements { kind = "water" } == 0 and #turns:flow().heads == 2)
 turns:water "none"
 check.holds(#turns:elements() == 0)
 check.raises(function() turns:flow() end, "no water flows here")
