@@ -5,6 +5,7 @@
 #include "cycle/undo.h"
 #include "element/act.h"
 #include "element/follow.h"
+#include "element/together.h"
 
 static tl_status apply(tl_model *m)
 {
@@ -40,7 +41,7 @@ static bool may_fail(const tl_model *m)
         sure = sure && tl_element_ops_of(&e->set[k])->never_fails;
     for (size_t row = 0; sure && row < e->nodes.table.rows; row++)
         sure = e->nodes.k[row] < TL_UNDO_TAME && e->nodes.c[row] < TL_UNDO_TAME;
-    return !sure;
+    return !sure || tl_elements_together_due(m);
 }
 
 const tl_contributor tl_elements_act = {.name = "elements",

@@ -9,6 +9,7 @@
 #include "element/batch.h"
 #include "element/carry.h"
 #include "element/steady.h"
+#include "element/together.h"
 #include "plugin/loader.h"
 #include "zone/zones.h"
 
@@ -105,12 +106,15 @@ static tl_status ask_all(tl_model *m, tl_failure *failure)
 tl_status tl_elements_apply(tl_model *m, tl_failure *failure)
 {
     struct tl_elements *e = m->elements;
-    e->resting = e->any_steady && tl_steady_keeps(m);
+    const bool due = tl_elements_together_due(m);
+    e->resting = e->any_steady && !due && tl_steady_keeps(m);
     if (e->any_steady && !e->resting)
         tl_steady_bring(m);
     if (!e->resting || !e->all_steady)
         e->asked++;
-    const tl_status status = ask_all(m, failure);
+    tl_status status = due ? tl_elements_together(m, 0, true) : TL_OK;
+    if (status == TL_OK)
+        status = ask_all(m, failure);
     if (e->any_steady && !e->resting && status == TL_OK)
         tl_steady_take(m);
     return status;
