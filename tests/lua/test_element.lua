@@ -134,6 +134,8 @@ m = beam()
 e = m:elements {}
 e:set { stiffness = 2e5 }
 check.near(e[1].params.stiffness, 2e5, 0)
+e:where(function(one) return one.id == 1 end):set { damping = 7 }
+check.near({ e[1].params.damping, e[2].params.damping, e[1].params.stiffness }, { 7, 10, 2e5 }, 0)
 check.raises(function() e:set { from = { 0, 0, 0 } } end, "says where it is")
 check.raises(function() e:set { stiffness = -1 } end, "stiffness")
 check.near(e[1].params.stiffness, 2e5, 0)
